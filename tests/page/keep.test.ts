@@ -16,6 +16,12 @@ let site: Site;
 before(async () => void (site = await Site.open()));
 after(() => site?.close());
 
+/** Opens a model and a cage of the visitor's own. */
+async function openOwn(page: Page): Promise<void> {
+  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+}
+
 /** All that somebody would miss. */
 async function state(page: Page) {
   assert.equal(await settled(page), 'ready', await shownError(page));
@@ -62,8 +68,7 @@ async function stroke(page: Page): Promise<void> {
 
 /** Opens files and changes everything that can be changed. */
 async function work(page: Page): Promise<void> {
-  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await openOwn(page);
   await drop(page, [image('stripes.png', 64, (x) => [4 * x, 20, 200, x % 8 < 4 ? 255 : 90])]);
   await rows(page).filter({ hasText: 'stripes.png' }).waitFor();
   await rows(page).filter({ hasText: 'stripes.png' }).locator('[name=opacity]').fill('60');
@@ -183,8 +188,7 @@ test('saved state that is broken, old or crashes the page does not stop the page
 
 test('own files that give way to a sample are put aside, and brought back when asked for', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
-  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await openOwn(page);
   await stroke(page);
   await kept(page);
   await page.getByTestId('threshold').fill('0.7'); // which is not stored yet
@@ -207,8 +211,7 @@ test('own files that give way to a sample are put aside, and brought back when a
 
 test('work that gives way to what is brought back is put aside in turn', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
-  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await openOwn(page);
   await stroke(page);
   await kept(page);
   const line = page.getByTestId('kept');
@@ -255,8 +258,7 @@ const kGone = `
 
 test('a project is not said to be saved if a file of it cannot be read any more', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } }, kGone);
-  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await openOwn(page);
   await page.evaluate('window.gone = true');
   await page.getByTestId('save-project').click();
   await page.locator('#alert').waitFor();
@@ -434,8 +436,7 @@ const kSlowTransfers = `
 test('a project that takes long to open leaves the work before it as it was', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } }, kSlowTransfers);
   const preset = page.getByTestId('preset');
-  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await openOwn(page);
   await preset.selectOption('paper');
   assert.equal(await settled(page), 'ready', await shownError(page));
   const { name, bytes } = await saved(page, 'save-project');

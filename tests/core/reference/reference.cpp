@@ -26,9 +26,9 @@ constexpr int kNudges = 16;
 // How far a ray that is turned is moved as well: a point on an edge of the cage is on either side of it.
 constexpr double kAside = 1e-7;
 
-// Which share of both is still far more than rounding: a triangle may be so narrow that a ray turned as far passes it
-// by.
-constexpr double kHardly = 1e-5;
+// Some rays are turned and moved by this share of both only, which is still far more than rounding: the others would
+// pass a very narrow triangle by.
+constexpr double kSmallShare = 1e-5;
 
 // Sums of areas that differ by less than this share may differ only by the order of adding.
 constexpr double kSumNoise = 1e-12;
@@ -98,7 +98,7 @@ Outcome outcomeOf(const Scene& scene, const Options& options, const Sight& sight
 unsigned bit(Zone zone) { return 1u << static_cast<unsigned>(zone); }
 bool single(unsigned zones) { return (zones & (zones - 1)) == 0; }
 
-/// The rays beside a ray: as far aside as counts, and hardly, for a ray through an edge of a very narrow triangle.
+/// The rays beside a ray, sixteen of them farther away than the other four.
 std::vector<Ray> nudged(const Scene& scene, const Ray& ray) {
   std::vector<Ray> rays;
   const Vec n = ray.direction;
@@ -112,7 +112,7 @@ std::vector<Ray> nudged(const Scene& scene, const Ray& ray) {
     }
   };
   turn(1, kNudges);
-  turn(kHardly, kNudges / 4);
+  turn(kSmallShare, kNudges / 4);
   return rays;
 }
 

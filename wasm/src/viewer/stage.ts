@@ -55,7 +55,7 @@ export class Stage {
     canvas.addEventListener('webglcontextrestored', this.draw);
     this.#sizes = new ResizeObserver(() => this.#resize());
     this.#sizes.observe(canvas);
-    this.#camera.aspect = canvas.width / canvas.height; // stays where it is not shown yet
+    this.#camera.aspect = canvas.width / canvas.height; // of an element that is not shown yet
     this.#resize();
   }
 

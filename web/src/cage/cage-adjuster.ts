@@ -396,10 +396,11 @@ export class CageAdjuster {
   #change(name: string, change: { positions?: Float32Array; indices?: Uint32Array }): void {
     const before = this.#session.shown!.cage;
     this.#isChanging = true;
-    void this.#maker.change(change).then((after) => {
-      const show = (cage: Model): void => this.#session.want({ cage: Promise.resolve(cage) });
-      this.#history.add(new CageStep(name, before, after, show));
-    });
+    const show = (cage: Model): void => this.#session.want({ cage: Promise.resolve(cage) });
+    this.#maker
+      .change(change)
+      .then((after) => this.#history.add(new CageStep(name, before, after, show)))
+      .catch((error) => this.#session.fail(error));
   }
 }
 

@@ -210,10 +210,9 @@ export class Keeper {
       flags.set('slot', work.slot);
       const { parts, work: now } = this.#project.snapshot()!;
       this.#kept = { all: JSON.stringify(parts), work: now, fragment: work.fragment };
-      const run = (): void => void this.startOver();
-      const text = 'Your last work is back. What was here is put aside.';
-      if (before && before !== work.slot) this.#offerBack(text, before);
-      else this.#view.offer({ text: 'Your last work is back.', action: { title: 'Start over', run } });
+      const text = 'Your last work is back.';
+      if (before && before !== work.slot) this.#offerBack(`${text} What was here is put aside.`, before);
+      else this.#view.offer({ text, action: { title: 'Start over', run: () => void this.startOver() } });
       this.#view.note(kKept);
       return true;
     } catch (error) {
