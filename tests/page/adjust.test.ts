@@ -125,6 +125,7 @@ test('a change of the cage waits for the one before, and none reaches the cage o
     await ready(page);
   };
   await page.getByTestId('adjust-cage').click();
+  await page.locator('[data-handle=x]').waitFor();
   await page.locator('#adjust input[value=hole]').check({ force: true });
   await page.locator('#view').evaluate((view) => {
     for (let i = 0; i < 2; i++) view.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter' }));
@@ -140,6 +141,7 @@ test('a change of the cage waits for the one before, and none reaches the cage o
   await dragBy(page, page.locator('[data-handle=corner]'), 40, 60);
   await did('moving a corner');
   await open();
+  await page.locator('#undo:disabled').waitFor();
   await page.waitForTimeout(1000);
   await ready(page);
   assert.ok(await undo.isDisabled(), 'nothing was done to the cage that came');
