@@ -66,6 +66,14 @@ async function stroke(page: Page): Promise<void> {
   await page.mouse.up();
 }
 
+/** Has no room while `window.full` is set. */
+const kFull = `
+  const { put } = IDBObjectStore.prototype;
+  IDBObjectStore.prototype.put = function (...values) {
+    if (window.full) throw new DOMException('full', 'QuotaExceededError');
+    return put.apply(this, values);
+  }`;
+
 /** Opens files and changes everything that can be changed. */
 async function work(page: Page): Promise<void> {
   await openOwn(page);
@@ -230,6 +238,47 @@ test('work that gives way to what is brought back is put aside in turn', async (
   assert.deepEqual(complaints, []);
 });
 
+test('work that gives way is not said to be put aside as a whole if there was no room for its last changes', async () => {
+  const { page } = await site.visit({ viewport: { width: 900, height: 600 } }, kFull);
+  await openOwn(page);
+  await page.getByTestId('kept-note').filter({ hasText: 'Your work is kept on this device' }).waitFor();
+  await page.evaluate('window.full = true');
+  await page.getByTestId('add-painting').click();
+  await page.locator('#error', { hasText: 'there is no room left' }).waitFor();
+  const line = page.getByTestId('kept');
+  await page.getByTestId('sample-select').selectOption('car');
+  await line.filter({ hasText: 'is put aside. What you did last is not in it: there is no room left' }).waitFor();
+  await page.getByRole('button', { name: 'Bring it back' }).click();
+  await line.filter({ hasText: 'Your last work is back.' }).waitFor();
+  assert.ok(!(await names(page)).includes('Painting 1'));
+});
+
+test('a tab beside one that has the latest work offers the one before', async () => {
+  const { page } = await site.visit({ viewport: { width: 900, height: 600 } });
+  const visit = async (): Promise<Page> => {
+    const one = await page.context().newPage();
+    await one.goto(site.url);
+    assert.equal(await settled(one), 'ready', await shownError(one));
+    return one;
+  };
+  const values = ['0.6', '0.7'];
+  const tabs = await Promise.all([visit(), visit()]);
+  for (const [i, tab] of tabs.entries()) {
+    await tab.getByTestId('threshold').fill(values[i]!);
+    await kept(tab);
+  }
+  for (const tab of tabs) await tab.close();
+  const line = (tab: Page) => tab.getByTestId('kept');
+  const latest = await visit();
+  await line(latest).filter({ hasText: 'Your last work is back.' }).waitFor();
+  const other = await visit();
+  await line(other).filter({ hasText: 'An earlier work of yours is kept.' }).waitFor();
+  await other.getByRole('button', { name: 'Bring it back' }).click();
+  await line(other).filter({ hasText: 'Your last work is back.' }).waitFor();
+  for (const [i, tab] of [other, latest].entries())
+    assert.equal(await tab.getByTestId('threshold').inputValue(), values[i]);
+});
+
 test('starting over offers the work of this tab, although another one has later work', async () => {
   const { page } = await site.visit({ viewport: { width: 900, height: 600 } });
   await page.getByTestId('threshold').fill('0.7');
@@ -339,10 +388,7 @@ test('a project file holds everything; a damaged or hostile one is told in one s
 });
 
 test('where there is no room, that is said once, and leaving asks', async () => {
-  const { page } = await site.visit(
-    { viewport: { width: 900, height: 600 } },
-    `IDBObjectStore.prototype.put = () => { throw new DOMException('full', 'QuotaExceededError'); };`,
-  );
+  const { page } = await site.visit({ viewport: { width: 900, height: 600 } }, `${kFull}; window.full = true;`);
   assert.equal(await warns(page), false, 'there is nothing to lose');
   await page.getByTestId('add-painting').click();
   await page.locator('#error', { hasText: 'there is no room left' }).waitFor();

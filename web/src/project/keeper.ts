@@ -51,6 +51,8 @@ export class Keeper {
   #saving: Promise<void> | undefined;
   /** How many states are being opened. */
   #opening = 0;
+  /** Why the work was not stored when that was tried last. */
+  #failure: string | undefined;
   #told = false;
 
   constructor(project: Project, session: Session, history: History, view: KeeperView) {
@@ -66,8 +68,11 @@ export class Keeper {
 
   /** Whether nothing would be lost by leaving now. */
   get isKept(): boolean {
-    const work = this.#project.snapshot()?.work;
-    return work === undefined || work === (this.#kept?.work ?? this.#first);
+    return this.#has(this.#project.snapshot());
+  }
+
+  #has(snapshot: Snapshot | undefined): boolean {
+    return snapshot === undefined || snapshot.work === (this.#kept?.work ?? this.#first);
   }
 
   /** Brings the last work of this tab back, or of the browser. @returns Whether that was tried and failed. */
@@ -76,12 +81,12 @@ export class Keeper {
       this.#store = await Store.open();
       // What may lie there although nothing was kept would come as a surprise.
       if (!flags.get('work')) return false;
-      const [latest, ...others] = await this.#store.works();
       const own = flags.get('slot');
-      const work = [latest, ...others].find((one) => one?.slot === own) ?? latest;
-      const isFree = work !== undefined && (await holdSlot(work.slot, work.slot === own ? kOwnPatience : 0));
-      if (!work || !isFree) return false;
-      const aside = this.#reasonToWait(work);
+      const rank = ({ slot }: Work): number => (slot === own ? 0 : 1);
+      const works = (await this.#store.works()).toSorted((a, b) => rank(a) - rank(b));
+      const work = await firstFree(works, own);
+      if (!work) return false;
+      const aside = work === works[0] ? this.#reasonToWait(work) : 'An earlier work of yours is kept.';
       if (!aside) return !(await this.#show(work));
       this.#offerBack(aside, work.slot);
     } catch (error) {
@@ -104,8 +109,9 @@ export class Keeper {
   /** Opens a project. The work before it stays in its slot, as it was. @returns and @throws like `Project.open`. */
   async open(parts: Record<string, unknown>, files: Files): Promise<boolean> {
     await this.save();
+    const { isKept } = this;
     if (!(await this.#open(parts, files))) return false;
-    this.#leaveSlot('The project is open, and your last work is put aside.');
+    this.#leaveSlot('The project is open, and your last work is put aside.', isKept);
     return true;
   }
 
@@ -113,15 +119,17 @@ export class Keeper {
   async putAside(): Promise<void> {
     if (this.#opening > 0) return; // what is opened knows its slot
     const snapshot = this.#project.snapshot();
+    let isKept = true;
     this.#opening++;
     try {
       clearTimeout(this.#timer);
       await this.#saving;
       if (snapshot && this.#store && this.#isWork(snapshot)) await this.#put(snapshot, this.#store);
+      isKept = this.#has(snapshot);
     } finally {
       this.#opening--;
     }
-    this.#leaveSlot('Your last work is put aside.');
+    this.#leaveSlot('Your last work is put aside.', isKept);
   }
 
   /** Opens a state. Nothing is stored meanwhile: it would be the models that are shown with settings of those to come. */
@@ -136,24 +144,31 @@ export class Keeper {
     }
   }
 
-  /** Goes on in a new slot. @param text  What the visitor is told, who may bring back what was in the last one. */
-  #leaveSlot(text: string): void {
+  /**
+   * Goes on in a new slot.
+   * @param text   What the visitor is told, who may bring back what was in the last one.
+   * @param isKept Whether that is all of the work.
+   */
+  #leaveSlot(text: string, isKept: boolean): void {
     const before = this.#kept && this.#slot;
     this.#moveTo(newSlot());
     void holdSlot(this.#slot, 0);
     this.#begin = this.#history.last;
     this.#kept = this.#first = undefined;
     this.#touch();
-    if (before) this.#offerBack(text, before);
+    if (before) this.#offerBack(text, before, isKept);
+    else if (!isKept && this.#failure)
+      this.#view.offer({ text: `Your last work could not be put aside: ${this.#failure}.` });
   }
 
-  /** Offers to bring back the work of a slot. */
-  #offerBack(text: string, slot: string): void {
+  /** Offers to bring back the work of a slot. @param isWhole Whether all of it is there. */
+  #offerBack(text: string, slot: string, isWhole = true): void {
     const back = async (): Promise<void> => {
       const work = (await this.#store!.works()).find((one) => one.slot === slot);
       if (work) await this.#show(work);
     };
-    this.#view.offer({ text, action: { title: 'Bring it back', run: () => void back() } });
+    const rest = isWhole || !this.#failure ? '' : ` What you did last is not in it: ${this.#failure}.`;
+    this.#view.offer({ text: text + rest, action: { title: 'Bring it back', run: () => void back() } });
   }
 
   /** Goes on in another slot. Only the last one is still held, so that the works of others give way to newer ones. */
@@ -188,6 +203,7 @@ export class Keeper {
 
   async #show(work: Work): Promise<boolean> {
     await this.save();
+    const { isKept } = this;
     // What was only looked at is no work that is missed.
     const before = this.#history.last === this.#begin ? undefined : this.#kept && this.#slot;
     // If it takes the page down, the next one does not try by itself.
@@ -211,7 +227,7 @@ export class Keeper {
       const { parts, work: now } = this.#project.snapshot()!;
       this.#kept = { all: JSON.stringify(parts), work: now, fragment: work.fragment };
       const text = 'Your last work is back.';
-      if (before && before !== work.slot) this.#offerBack(`${text} What was here is put aside.`, before);
+      if (before && before !== work.slot) this.#offerBack(`${text} What was here is put aside.`, before, isKept);
       else this.#view.offer({ text, action: { title: 'Start over', run: () => void this.startOver() } });
       this.#view.note(kKept);
       return true;
@@ -251,6 +267,7 @@ export class Keeper {
         // Again if another tab has dropped files meanwhile.
       } while (!(await store.put({ ...kept, at: Date.now() }, added, await heldSlots())));
       this.#kept = { all: JSON.stringify(parts), work, fragment };
+      this.#failure = undefined;
       flags.set('work', 'kept');
       flags.set('slot', this.#slot);
       this.#view.note(kKept);
@@ -262,12 +279,18 @@ export class Keeper {
   /** Tells once that work is not kept. */
   #fail(error: unknown): void {
     const isFull = (error as Error | null)?.name === 'QuotaExceededError';
-    const why = isFull ? 'there is no room left for this page' : messageOf(error);
-    const text = `Your work is not kept on this device: ${why.replace(/\.$/, '')}. Save the project as a file before you leave.`;
+    this.#failure = (isFull ? 'there is no room left for this page' : messageOf(error)).replace(/\.$/, '');
+    const text = `Your work is not kept on this device: ${this.#failure}. Save the project as a file before you leave.`;
     this.#view.note(text);
     if (isFull && !this.#told) showError(text);
     this.#told = true;
   }
+}
+
+/** The first of the works that no other tab has open. @param own The slot that this tab had. */
+async function firstFree(works: Work[], own: string | undefined): Promise<Work | undefined> {
+  for (const work of works) if (await holdSlot(work.slot, work.slot === own ? kOwnPatience : 0)) return work;
+  return undefined;
 }
 
 const kKept = 'Your work is kept on this device as you go.';
