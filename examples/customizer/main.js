@@ -14,8 +14,7 @@ const [head, cage, stripes] = await Promise.all([
   new THREE.TextureLoader().loadAsync('paint-tiger.png'),
   init(),
 ]);
-stripes.flipY = false; // textures of glTF begin at the top
-stripes.colorSpace = THREE.SRGBColorSpace;
+Object.assign(stripes, { flipY: false, colorSpace: THREE.SRGBColorSpace }); // as in glTF, from the top
 
 const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
 renderer.setSize(innerWidth, innerHeight);
@@ -28,6 +27,7 @@ camera.position.copy(controls.target).z += 2.5;
 
 const layers = createLayers({ renderer });
 const base = layers.add(stripes, { name: 'stripes' });
+layers.edits.forget(); // this is no step that can be undone
 const model = extract(head.scene); // as it is in the file: painting adds vertices
 const applied = applyTransfer(head.scene, cage.scene);
 const painter = createPainter({ layers, applied, cage: cage.scene });

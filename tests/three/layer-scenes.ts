@@ -6,11 +6,13 @@ import {
   Bone,
   BufferAttribute,
   DataTexture,
+  Mesh,
   MeshBasicMaterial,
   type Object3D,
   Raycaster,
   Skeleton,
   SkinnedMesh,
+  SphereGeometry,
   SRGBColorSpace,
   Vector2,
   Vector3,
@@ -70,14 +72,15 @@ function paintedBall(model: Object3D = modelOf(white()), layers?: Layers): Paint
   return { model, applied, painter, look, spots };
 }
 
-/** Loses the graphics context, and gets it back. */
-async function loseContext(): Promise<void> {
+/** Loses the graphics context, and gets it back. @param meanwhile What is done without it. */
+async function loseContext(meanwhile = (): void => {}): Promise<void> {
   // It cannot be restored before the event has ended.
   const told = (name: string) =>
     new Promise((done) => renderer.domElement.addEventListener(name, () => setTimeout(done), { once: true }));
   const lost = told('webglcontextlost');
   renderer.forceContextLoss();
   await lost;
+  meanwhile();
   const restored = told('webglcontextrestored');
   renderer.forceContextRestore();
   await restored;
@@ -326,6 +329,31 @@ export const layerScenes: Record<string, () => unknown> = {
     return { canvas, picture: [before, again, after] };
   },
 
+  /** A stroke over another one while the graphics context is lost. */
+  async strokeWhileLost() {
+    const { painter, look, spots } = paintedBall();
+    const at = spots([32, 32]);
+    const stroke = (color: string) => painter.stroke(at, { color, size: 0.2, hardness: 1 });
+    stroke('#ff0000');
+    const before = pixelAt(look(), 32, 32);
+    await loseContext(() => stroke('#0000ff'));
+    const after = pixelAt(look(), 32, 32);
+    painter.dispose();
+    return { before, after };
+  },
+
+  /** The texture of new layers, and of given ones. */
+  baseTexture() {
+    const model = modelOf(white());
+    const applied = applyTransfer(model, cage());
+    const options = { texture: clear(0xff0000, 255), applied, cage: cage() };
+    const own = createPainter({ ...options, renderer });
+    const undone = own.undo();
+    const { layers } = own;
+    createPainter({ ...options, layers });
+    return { undone, layers: layers.list.length };
+  },
+
   /** Layers after the graphics context was lost, whose painter had been disposed of. */
   async paintedBefore() {
     const { painter, look, spots } = paintedBall();
@@ -393,7 +421,8 @@ export const layerScenes: Record<string, () => unknown> = {
     const { left, top } = canvas.getBoundingClientRect();
     const send = (type: string, x: number, y: number, rest: PointerEventInit = {}): void => {
       const at = { clientX: left + x + 0.5, clientY: top + kSize - y - 0.5 };
-      canvas.dispatchEvent(new PointerEvent(type, { pointerId: 7, ...at, ...rest, bubbles: true, cancelable: true }));
+      const which = { pointerId: 7, isPrimary: true, bubbles: true, cancelable: true };
+      canvas.dispatchEvent(new PointerEvent(type, { ...which, ...at, ...rest }));
     };
     const drag = (from: [number, number], to: [number, number], rest?: PointerEventInit): void => {
       send('pointerdown', ...from, rest);
@@ -426,14 +455,36 @@ export const layerScenes: Record<string, () => unknown> = {
     painter.undo();
     painter.tool = 'brush';
     // A second finger takes back what the first began; others see both come down.
-    const fingers: number[] = [];
+    const [fingers, penned]: number[][] = [[], []] as [number[], number[]];
     const note = ({ pointerId }: PointerEvent): void => void fingers.push(pointerId);
     canvas.addEventListener('pointerdown', note);
     send('pointerdown', 24, 32, { pointerType: 'touch' });
-    send('pointerdown', 30, 32, { pointerType: 'touch', pointerId: 8 });
-    const two = difference(look(), bare);
-    canvas.removeEventListener('pointerdown', note);
+    const second = { pointerType: 'touch', pointerId: 8, isPrimary: false };
+    send('pointerdown', 30, 32, second);
+    const two = [difference(look(), bare)];
     send('pointerup', 24, 32, { pointerType: 'touch' });
+    // Nor does one whose first finger was beside the model.
+    send('pointerdown', 1, 1, { pointerType: 'touch' });
+    drag([30, 32], [40, 32], second);
+    send('pointerup', 1, 1, { pointerType: 'touch' });
+    two.push(difference(look(), bare));
+    // A hand on the screen does not take a pen's stroke back, whichever came first.
+    const hand = { pointerType: 'touch', pointerId: 9 };
+    for (const [x, y] of [
+      [1, 1],
+      [30, 32],
+    ] as const)
+      for (const isFirst of [true, false]) {
+        if (isFirst) send('pointerdown', x, y, hand);
+        send('pointerdown', 24, 32, { pointerType: 'pen', pressure: 1 });
+        if (!isFirst) send('pointerdown', x, y, hand);
+        send('pointermove', 40, 32, { pointerType: 'pen', pressure: 1 });
+        send('pointerup', 40, 32, { pointerType: 'pen', pressure: 1 });
+        send('pointerup', x, y, hand);
+        penned.push(filled(painter).texels);
+        painter.undo();
+      }
+    canvas.removeEventListener('pointerdown', note);
     painter.tool = undefined;
     drag([24, 32], [40, 32]);
     stop();
@@ -444,7 +495,37 @@ export const layerScenes: Record<string, () => unknown> = {
     canvas.setPointerCapture = setPointerCapture;
     canvas.remove();
     painter.dispose();
-    return { during, stroke, whole, pen, captured, beside, erased, sticker, two, fingers, rest: left2 };
+    return { during, stroke, whole, pen, captured, beside, erased, sticker, two, fingers, penned, rest: left2 };
+  },
+
+  /** How often a fast mouse makes the painter look for what it is on, in one frame. */
+  picks() {
+    const { painter } = paintedBall(new Mesh(new SphereGeometry(1, 250, 120), white()));
+    const canvas = renderer.domElement;
+    document.body.append(canvas);
+    const { setPointerCapture } = canvas;
+    canvas.setPointerCapture = () => {};
+    const stop = painter.listen(camera, canvas);
+    const { left, top, width, height } = canvas.getBoundingClientRect();
+    const eventAt = (type: string, i: number): PointerEvent =>
+      new PointerEvent(type, { isPrimary: true, clientX: left + width / 2 + i, clientY: top + height / 2 });
+    const moved = eventAt('pointermove', 16);
+    moved.getCoalescedEvents = () => Array.from({ length: 16 }, (_, i) => eventAt('pointermove', i + 1));
+    canvas.dispatchEvent(eventAt('pointerdown', 0));
+    let picks = 0;
+    const { pick } = painter;
+    painter.pick = (raycaster) => {
+      picks++;
+      return pick.call(painter, raycaster);
+    };
+    canvas.dispatchEvent(moved);
+    canvas.dispatchEvent(eventAt('pointerup', 16));
+    stop();
+    canvas.setPointerCapture = setPointerCapture;
+    canvas.remove();
+    const isPainted = painter.canUndo;
+    painter.dispose();
+    return { picks, isPainted };
   },
 
   /** What a painter needs of the renderer stays as it was. */

@@ -244,6 +244,8 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
         [true, true],
       ],
       replaced: true,
+      renewed: [false, true],
+      renewedWrapping: [true, true],
     });
   });
 
@@ -523,6 +525,22 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     assert.ok(changes > 0, 'who draws on demand is told');
   });
 
+  test('a stroke while the graphics context is lost leaves what was painted', async () => {
+    const { before, after } = await run<{ before: number[]; after: number[] }>('strokeWhileLost');
+    assert.ok(before[0]! > 2 * before[2]!, before.join());
+    assert.deepEqual(after, before);
+  });
+
+  test('the texture below new layers cannot be undone; given layers stay as they are', async () => {
+    assert.deepEqual(await run('baseTexture'), { undone: undefined, layers: 1 });
+  });
+
+  test('a fast mouse does not make the painter look for what it is on at each of its points', async () => {
+    const { picks, isPainted } = await run<{ picks: number; isPainted: boolean }>('picks');
+    assert.equal(isPainted, true);
+    assert.ok(picks <= 7, `${picks} times on a model of 60,000 triangles`);
+  });
+
   test('models that were moved, turned and posed are painted where they are seen', async () => {
     const seen =
       await run<{ surface: number[]; right: number[]; scale: number; pixel: number[]; missed: boolean }[]>('posed');
@@ -546,8 +564,9 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
       beside: number;
       erased: boolean;
       sticker: number;
-      two: number;
+      two: number[];
       fingers: number[];
+      penned: number[];
       rest: number;
     }>('pointers');
     assert.ok(seen.during < 40, `${seen.during} while the pointer is down`);
@@ -555,8 +574,10 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     assert.ok(seen.pen > 0 && seen.pen < 0.6 * seen.whole, `${seen.pen} of ${seen.whole}`);
     assert.deepEqual([seen.captured, seen.beside, seen.erased], [0, 1, true]);
     assert.ok(seen.sticker > 5, `${seen.sticker}`);
-    assert.deepEqual([seen.two, seen.rest], [0, 0]);
-    assert.deepEqual(seen.fingers, [7, 8], 'two fingers turn the model at once');
+    assert.deepEqual([...seen.two, seen.rest], [0, 0, 0]);
+    assert.deepEqual(seen.fingers.slice(0, 4), [7, 8, 7, 8], 'two fingers turn the model at once');
+    assert.deepEqual(seen.penned, Array(4).fill(seen.whole), 'a hand on the screen disturbs no pen');
+    assert.ok(!seen.fingers.slice(4).includes(7), 'nor does the pen turn the model');
     assert.equal(await run('rendererState'), true, 'the renderer is as it was');
   });
 });

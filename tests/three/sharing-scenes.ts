@@ -139,7 +139,15 @@ export const sharingScenes: Record<string, () => unknown> = {
     const other = modelOf(replaced);
     applyTransfer(other, cage(), { texture: red() });
     replaced.onBeforeRender = () => {};
-    return { own: seen(own)[0]! > 100, wrapping, replaced: seen(other)[0]! > 100 };
+    // A hook that is replaced takes the paint away, until the next texture.
+    const third = applyTransfer(model, cage(), { texture: red() });
+    const renewedWrapping = [isRed(), isBlue()];
+    wrapped.onBeforeCompile = () => {};
+    wrapped.needsUpdate = true;
+    const renewed = [isRed()];
+    third.setTexture(red());
+    renewed.push(isRed());
+    return { own: seen(own)[0]! > 100, wrapping, replaced: seen(other)[0]! > 100, renewed, renewedWrapping };
   },
 
   /** A transfer that was replaced, whose texture comes late. */

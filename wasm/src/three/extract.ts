@@ -178,7 +178,7 @@ export const isOfInstances = (attribute: object): boolean =>
   (attribute as InstancedBufferAttribute).isInstancedBufferAttribute === true ||
   ((attribute as InterleavedBufferAttribute).data as { isInstancedInterleavedBuffer?: true } | undefined)
     ?.isInstancedInterleavedBuffer === true;
-const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
+export const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
 
 /** Describes a value of the wrong type, for messages. */
 export const nameOf = (value: unknown): string => (typeof value === 'object' && value ? 'an object' : String(value));

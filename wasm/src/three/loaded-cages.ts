@@ -3,7 +3,7 @@ import * as cages from '../cages/index.js';
 import { CagecastError, type Mesh } from '../index.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
 import { readExtras } from '../parts/template.js';
-import { extract, isSkinned, type Part } from './extract.js';
+import { extract, isMesh, isSkinned, type Part } from './extract.js';
 
 /**
  * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones; else
@@ -135,8 +135,6 @@ function namesOf(parts: readonly Part[], root: object): string[][] {
     });
   });
 }
-
-const isMesh = (object: Object3D): boolean => (object as Object3D & { isMesh?: boolean }).isMesh === true;
 
 function bonesOf({ userData, parser }: LoadedGltf): Map<Object3D, string> {
   // GLTFLoader keeps extensions that it does not know here.

@@ -97,7 +97,9 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
     isQuiet: true,
   };
   patches.set(material, record);
-  const isPatched = record.painting !== undefined;
+  // If it is painted, somebody has replaced the hook, or wrapped it.
+  if (material.onBeforeCompile !== record.given.onBeforeCompile) unpaint(material, record.painting);
+  const isPatched = record.painting;
   record.painting = painting;
   setUniforms(record.uniforms, painting);
   if (isPatched) {
@@ -139,9 +141,9 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
 }
 
 /** Makes a material what it was, unless it shows another painting by now. Hooks that others have wrapped since stay theirs. */
-export function unpaint(material: Material, painting: Painting): void {
+export function unpaint(material: Material, painting: Painting | undefined): void {
   const record = patches.get(material);
-  if (record?.painting !== painting) return;
+  if (!record || record.painting !== painting) return;
   record.painting = undefined;
   setUniforms(record.uniforms, undefined);
   for (const name of kHooks) {

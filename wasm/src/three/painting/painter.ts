@@ -15,7 +15,7 @@ import { Stroke } from './stroke.js';
 export interface PainterOptions extends Partial<Pick<LayersOptions, 'renderer'>> {
   /** The layers to paint on, of `cagecast/three/layers`. Default: new ones, for which `renderer` is needed. */
   layers?: Layers | undefined;
-  /** The lowest of new layers, as for `layers.add`. */
+  /** The lowest of new layers, as for `layers.add`; not for given ones. */
   texture?: Texture | undefined;
   /** What was painted: the models that pointers paint on. Each of them is given the layers' texture. */
   applied: Applied | readonly Applied[];
@@ -87,7 +87,10 @@ export class Painter {
     const { positions, indices, uvs } = extract(cage, 'cage').mesh;
     if (!uvs) throw new CagecastError('badArgument', 'cagecast/three/paint: options.cage has no UVs');
     this.layers = layers ?? createLayers({ renderer } as LayersOptions);
-    if (texture) this.layers.add(texture);
+    if (texture && !layers) {
+      this.layers.add(texture);
+      this.layers.edits.forget(); // it is no step that can be undone
+    }
     this.#painter = new LayerPainter(this.layers);
     if (size !== undefined) this.#painter.size = size;
     const mesh: CageMesh = { positions: Float32Array.from(positions), indices, uvs: Float32Array.from(uvs) };

@@ -1,6 +1,6 @@
 import type { Vector2, Vector3 } from 'three';
 import { disjoint, kMostRects, type Rect, toShares, toTexels } from '../gpu/index.js';
-import type { Layer } from '../layers/index.js';
+import { freeName, type Layer, plainStyle } from '../layers/index.js';
 import type { SurfacePoint } from './cage-texels.js';
 import type { LayerPainter, PaintedLayers } from './layer-painter.js';
 import { PaintedSheet, type PaintingSize } from './painted-sheet.js';
@@ -117,10 +117,7 @@ export class StickerPainter {
     if (!rects) return;
     const { composite, stack } = this.#layers;
     if (!stack.layers.some((layer) => layer.sheet === sheet) && !this.#shown && !stack.full)
-      composite.set([
-        ...stack.layers,
-        { id: 0, name: '', sheet, opacity: 1, tint: '#ffffff', blend: 'normal', visible: true },
-      ]);
+      composite.set([...stack.layers, { ...plainStyle, id: 0, name: '', sheet }]);
     this.#shown = { sheet, stickers };
     this.#touch(sheet, rects);
   }
@@ -151,9 +148,7 @@ export class StickerPainter {
       const layer = stack.layers.find((one) => one.sheet === sheet);
       if (!layer) {
         this.#painter.keep(sheet);
-        let number = 1;
-        while (stack.layers.some((one) => one.name === `Stickers ${number}`)) number++;
-        stack.add(`Stickers ${number}`, sheet);
+        stack.add(freeName('Stickers', stack.layers), sheet);
         if (this.#spare === sheet) this.#spare = undefined;
       } else {
         stack.select(layer);

@@ -38,7 +38,7 @@ export interface PointerPosition {
 // Distance between two picks along the pointer's path: a share of the brush's radius, and a minimum in pixels.
 const kStep = 0.5;
 const kLeastStep = 4;
-// Picks between two pointer samples are limited: a pick visits every triangle. The rest of the path is interpolated on the cage.
+// Picks are limited, as a pick visits every triangle: the rest of the path is interpolated on the cage.
 const kTrianglesVisited = 120_000;
 const kMostPicks = 24;
 
@@ -81,9 +81,16 @@ export class PointerStroke {
   /** Extends the stroke along what a pointer event tells. @param aim What lies under the pointer. */
   move(aim: Aim | undefined, event: PointerEvent): void {
     // Browsers send one event per frame; coalesced events hold the points in between.
-    for (const between of event.getCoalescedEvents?.().slice(0, -1) ?? [])
-      this.to(this.view.aimAt(between.clientX, between.clientY), between);
+    const points = event.getCoalescedEvents?.().slice(0, -1) ?? [];
+    const every = Math.ceil(points.length / this.#most);
+    for (const [i, point] of points.entries())
+      if ((i + 1) % every === 0) this.to(this.view.aimAt(point.clientX, point.clientY), point);
     this.to(aim, event);
+  }
+
+  /** Picks for an event, and between two of its points. */
+  get #most(): number {
+    return Math.min(kMostPicks, Math.floor(kTrianglesVisited / this.view.triangles));
   }
 
   /** Extends the stroke in a straight line. @param aim What lies under the pointer. */
@@ -97,11 +104,7 @@ export class PointerStroke {
     if (aim) this.#scale = aim.scale;
     const step = Math.max(kLeastStep, kStep * this.#radius * this.#scale);
     const length = Math.hypot(x - from.x, y - from.y);
-    const picks = Math.min(
-      kMostPicks,
-      Math.floor(kTrianglesVisited / Math.max(1, this.view.triangles)),
-      Math.ceil(length / step) - 1,
-    );
+    const picks = Math.min(this.#most, Math.ceil(length / step) - 1);
     const between = length / (Math.max(0, picks) + 1) / this.#scale;
     const paint = (at: Aim | undefined, pressed: number): void =>
       this.painter.extend(this.#stroke!.to(at?.surface, between, pressed));

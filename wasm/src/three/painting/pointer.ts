@@ -7,10 +7,9 @@ export interface Drag {
 
 /** That the pointer of an event comes down where that was. */
 function downAt(event: PointerEvent): PointerEvent {
-  const { pointerId, pointerType, isPrimary, clientX, clientY, screenX, screenY, view } = event;
-  const at = { clientX, clientY, screenX, screenY, view };
-  const how = { pointerId, pointerType, isPrimary, button: 0, buttons: 1, bubbles: true, cancelable: true };
-  return new PointerEvent('pointerdown', { ...how, ...at });
+  const { pointerId, pointerType, isPrimary, clientX, clientY } = event;
+  const which = { pointerId, pointerType, isPrimary, button: 0, buttons: 1 };
+  return new PointerEvent('pointerdown', { ...which, clientX, clientY, bubbles: true, cancelable: true });
 }
 
 /**
@@ -20,7 +19,6 @@ function downAt(event: PointerEvent): PointerEvent {
  */
 export function listenTo(element: HTMLElement, begin: (event: PointerEvent) => Drag | undefined): () => void {
   let drag: Drag | undefined;
-  let pointer: number | undefined;
   /** What the pointer that paints last was. */
   let last: PointerEvent | undefined;
   let passesOn = false;
@@ -33,30 +31,36 @@ export function listenTo(element: HTMLElement, begin: (event: PointerEvent) => D
   const down = (event: PointerEvent): void => {
     if (passesOn) return;
     if (drag) {
-      // Another finger: most likely the two shall turn or zoom the model.
-      if (event.pointerType !== 'touch') return;
+      // Nothing disturbs a pen or a mouse, such as the hand that holds the pen.
+      if (last!.pointerType !== 'touch') {
+        event.stopImmediatePropagation();
+        return;
+      }
       finish('cancel');
-      // Those who turn it have not seen the first finger: it comes down for them where it is now.
-      passesOn = true;
-      if (last) element.dispatchEvent(downAt(last));
-      passesOn = false;
-      return;
+      if (event.pointerType === 'touch') {
+        // Another finger: most likely the two shall turn or zoom the model. Those who turn it have not seen the first one: it comes
+        // down for them where it is now.
+        passesOn = true;
+        element.dispatchEvent(downAt(last!));
+        passesOn = false;
+        return;
+      }
     }
-    if (event.button !== 0) return;
+    // The second of two fingers does what the first one does.
+    if (event.button !== 0 || !event.isPrimary) return;
     drag = begin(event);
     if (!drag) return;
-    pointer = event.pointerId;
     last = event;
     event.stopImmediatePropagation();
     element.setPointerCapture(event.pointerId);
   };
   const move = (event: PointerEvent): void => {
-    if (event.pointerId !== pointer || !drag) return;
+    if (!drag || event.pointerId !== last!.pointerId) return;
     last = event;
     drag.move(event);
   };
   const up = (event: PointerEvent): void => {
-    if (event.pointerId === pointer) finish(event.type === 'pointerup' ? 'end' : 'cancel');
+    if (event.pointerId === last?.pointerId) finish(event.type === 'pointerup' ? 'end' : 'cancel');
   };
 
   const listeners = { pointerdown: down, pointermove: move, pointerup: up, pointercancel: up };
