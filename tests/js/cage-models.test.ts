@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { Document, NodeIO } from '@gltf-transform/core';
 import { init } from 'cagecast';
-import { cageGlb } from 'cagecast/cages';
+import { cageGlb, fitCage, loadTemplate } from 'cagecast/cages';
 import * as gltf from 'cagecast/gltf';
 import * as three from 'cagecast/three';
 import type { Bone } from 'three';
@@ -241,5 +241,20 @@ describe('with a loaded model', () => {
     await init();
     const applied = three.applyTransfer(loaded.scene, three.cageGeometry(ofScene));
     assert.ok(applied.result.segmentStats.some(({ culled }) => culled));
+  });
+});
+
+test('a model of two figures is refused: no cage fits both', async () => {
+  const model = gltf.cageModel(await new NodeIO().read('build/assets/human/target.glb'));
+  const count = model.positions.length / 3;
+  const twice = {
+    ...model,
+    positions: Float32Array.from([...model.positions, ...model.positions.map((x, i) => (i % 3 === 0 ? x + 0.5 : x))]),
+    indices: Uint32Array.from([...model.indices, ...model.indices.map((vertex) => vertex + count)]),
+    groups: Uint32Array.from([...model.groups!, ...model.groups!]),
+  };
+  await assert.rejects(fitCage(await loadTemplate('human-head'), twice), {
+    code: 'badModel',
+    message: /^fitCage: model: the template does not fit it; if there are several figures in it, exclude all but one/,
   });
 });

@@ -10,8 +10,13 @@ namespace {
 
 /// A landmark of a model is at most this far outside its box, in diagonals.
 constexpr double kMostOutside = 0.2;
-/// A landmark that is off by more than this share of the diagonal, after the others are aligned, is a mistake.
+/// A landmark that is off by more than this share of the diagonal, after the others are aligned, may be a mistake.
 constexpr double kMostOff = 0.15;
+/// It is one if without it the others are at most this share of what they all were from where a similarity puts them,
+/// on average; or without all that are off: shapes may differ, such as an animal's head from a person's.
+constexpr double kRestOfOne = 0.5, kRestOfSeveral = 0.25;
+/// So are they if all are off by more than this share of the diagonal on average.
+constexpr double kMostApart = 0.2;
 /// Two that are off by more than this share of the diagonal together may have been exchanged.
 constexpr double kClearlyOff = 0.05;
 
@@ -69,6 +74,50 @@ std::string exchangedPair(const std::vector<Landmark>& from, const std::vector<L
   return {};
 }
 
+/// How far points are from where others are mapped to, on average.
+double residual(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  const Similarity map = fitSimilarity(from, to);
+  double sum = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) sum += length(map.inverse(to[i]) - from[i]);
+  return sum / static_cast<double>(from.size());
+}
+
+/// A point that is not where the others put it.
+struct Suspect {
+  std::size_t index;
+  double off;   ///< How far it is off.
+  double rest;  ///< The residual without it and those before it.
+};
+
+/// Leaves out the point that is farthest from where the others put it, again and again, until none is off by more than
+/// `most`.
+/// @return what it has left out.
+std::vector<Suspect> leaveOut(std::vector<Vec3> from, std::vector<Vec3> to, double most) {
+  std::vector<Suspect> suspects;
+  std::vector<std::size_t> left(from.size());
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
+  const auto without = [](auto list, std::size_t i) {
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(i));
+    return list;
+  };
+  while (left.size() > 3) {
+    std::size_t worst = 0;
+    double farthest = 0;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const double off = length(fitSimilarity(without(from, i), without(to, i)).inverse(to[i]) - from[i]);
+      if (off <= farthest) continue;
+      farthest = off;
+      worst = i;
+    }
+    if (!(farthest > most)) break;
+    from = without(from, worst);
+    to = without(to, worst);
+    suspects.push_back({left[worst], farthest, residual(from, to)});
+    left = without(left, worst);
+  }
+  return suspects;
+}
+
 }  // namespace
 
 Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* name, const Bounds& box,
@@ -96,18 +145,16 @@ Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* na
 Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
                        const std::vector<bool>& given, double diagonal) {
   std::vector<Vec3> a, b;
+  std::vector<std::string> names;
+  std::vector<bool> isGiven;
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (isJoint(from[i].name)) continue;
     a.push_back(positionOf(from[i]));
     b.push_back(positionOf(to[i]));
+    names.push_back(from[i].name);
+    isGiven.push_back(given[i]);
   }
   if (a.size() < 3) return {};
-  const auto residual = [](const std::vector<Vec3>& p, const std::vector<Vec3>& q) {
-    const Similarity map = fitSimilarity(p, q);
-    double sum = 0;
-    for (std::size_t i = 0; i < p.size(); ++i) sum += length(map.inverse(q[i]) - p[i]);
-    return sum / static_cast<double>(p.size());
-  };
   // Left and right swapped: the mirrored names fit much better.
   std::vector<Vec3> swapped;
   std::size_t pairs = 0;
@@ -125,21 +172,15 @@ Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Land
   const double asGiven = residual(a, b);
   if (pairs > 0 && asGiven > 0.02 * diagonal && residual(a, swapped) < 0.5 * asGiven) return otherSide(pairName);
   if (const std::string name = exchangedPair(from, to, given, diagonal); !name.empty()) return otherSide(name);
-  // One at a time: where the others put it.
-  for (std::size_t skip = 0, i = 0; i < from.size() && a.size() > 3; ++i) {
-    if (isJoint(from[i].name)) continue;
-    const std::size_t at = skip++;
-    if (!given[i]) continue;
-    std::vector<Vec3> p = a, q = b;
-    p.erase(p.begin() + static_cast<std::ptrdiff_t>(at));
-    q.erase(q.begin() + static_cast<std::ptrdiff_t>(at));
-    const Similarity map = fitSimilarity(p, q);
-    const double off = length(map.inverse(b[at]) - a[at]) / diagonal;
-    if (off > kMostOff && residual(p, q) < 0.5 * residual(a, b))
-      return {Problem::badLandmarks,
-              "landmarks: " + from[i].name + " is " + text("%.0f", 100 * off) +
-                  " % of the diagonal away from where the others put it; at most 15 % is expected"};
-  }
+  const std::vector<Suspect> suspects = leaveOut(a, b, kMostOff * diagonal);
+  const bool isOne = !suspects.empty() && suspects.front().rest < kRestOfOne * asGiven;
+  const bool areSeveral = !suspects.empty() && suspects.back().rest < kRestOfSeveral * asGiven;
+  if (isOne || areSeveral || asGiven > kMostApart * diagonal)
+    for (const Suspect& suspect : suspects)
+      if (isGiven[suspect.index])
+        return {Problem::badLandmarks,
+                "landmarks: " + names[suspect.index] + " is " + text("%.0f", 100 * suspect.off / diagonal) +
+                    " % of the diagonal away from where the others put it; at most 15 % is expected"};
   return {};
 }
 

@@ -36,6 +36,8 @@ constexpr FitSettings kBody{0.010, 200, 2, {.reach = 0.02, .sliding = 0.05, .sti
 /// The hull is at least this far off, in diagonals: templates whose landmarks lie on the cage.
 constexpr double kLeastOffset = 0.003;
 constexpr std::size_t kLeastLandmarks = 4;
+/// A fitted cage that is farther than this from the figure's box, in diagonals, is no cage of it.
+constexpr double kMostBeyond = 1;
 /// Of a face, these do to begin with.
 constexpr std::array kFirstFive{"eye_centre_left", "eye_centre_right", "nose_tip", "lip_lower", "chin"};
 /// How many landmarks a message lists at most.
@@ -89,6 +91,20 @@ Outcome pairLandmarks(const Template& from, const std::vector<Landmark>& given, 
   return {Problem::badLandmarks, "landmarks: " + std::to_string(out.from.size()) + " are known, at least " +
                                      std::to_string(kLeastLandmarks) + " are needed; please give some of " +
                                      listed(firstOf(cage.missing))};
+}
+
+Vec3 middleOf(const std::vector<Landmark>& landmarks) {
+  Vec3 sum{0, 0, 0};
+  for (const Landmark& landmark : landmarks) sum = sum + positionOf(landmark);
+  return 1 / static_cast<double>(landmarks.size()) * sum;
+}
+
+/// Whether positions are within a distance of the box around a hull and landmarks.
+bool isNear(const std::vector<Vec3>& positions, const TriangleMesh& hull, const std::vector<Landmark>& landmarks,
+            double distance) {
+  Bounds box = boundsOf(hull);
+  for (const Landmark& landmark : landmarks) box.add(positionOf(landmark));
+  return std::all_of(positions.begin(), positions.end(), [&](const Vec3& p) { return box.distance(p) < distance; });
 }
 
 /// The triangles that count as the figure: not those that stick out or lie inside.
@@ -217,7 +233,7 @@ Outcome Fit::run(FittedCage& out) {
   if (!tell(kLandmarksEnd, "hull")) return cancelled;
   TriangleMesh hull;
   const bool done = makeHull(
-      figure_.mesh, {settings.closing * cage.diagonal, cage.offset, settings.voxels},
+      figure_.mesh, {settings.closing * cage.diagonal, cage.offset, settings.voxels, middleOf(pairs_.to)},
       [&](float share, const char*) {
         return tell(kLandmarksEnd + static_cast<double>(share) * (kTightenStart - kLandmarksEnd), "hull");
       },
@@ -238,6 +254,9 @@ Outcome Fit::run(FittedCage& out) {
       cage, {skin_, hull}, tracks,
       [&](double share) { return tell(kTightenEnd + share * (1 - kTightenEnd), "push out"); }, positions);
   if (!pushed) return cancelled;
+  if (!isNear(positions, hull, pairs_.to, kMostBeyond * cage.diagonal))
+    return {Problem::badModel,
+            "model: the template does not fit it; if there are several figures in it, exclude all but one of them"};
   out.positions.clear();
   for (const std::uint32_t v : cage.vertexOf) {
     const Vec3 p = map_(positions[v]);

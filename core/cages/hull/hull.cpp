@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "hull/distance_band.hpp"
 #include "hull/grid.hpp"
@@ -99,9 +100,25 @@ std::vector<GridPoint> outerBorder(const VoxelGrid& grid, const DistanceBand& ba
   return points;
 }
 
+/// The positive node nearest to a point.
+std::size_t nearestNode(const VoxelGrid& grid, const std::vector<float>& values, const Vec3& point) {
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t z = 0; z < grid.nz; ++z)
+    for (std::uint32_t y = 0; y < grid.ny; ++y)
+      for (std::uint32_t x = 0; x < grid.nx; ++x) {
+        const double distance = length(grid.position(x, y, z) - point);
+        if (distance >= least || !(values[grid.index(x, y, z)] > 0)) continue;
+        least = distance;
+        nearest = grid.index(x, y, z);
+      }
+  return nearest;
+}
+
 /// Leaves one body of positive nodes without pockets in it.
+/// @param near  As in `HullOptions`.
 /// @return its share of all positive nodes.
-double keepLargest(const VoxelGrid& grid, std::vector<float>& values) {
+double keepOne(const VoxelGrid& grid, const std::optional<Vec3>& near, std::vector<float>& values) {
   constexpr float kTiny = 1e-6f;  // In spacings: the vertices stay next to the node that changes its sign.
   const auto tiny = kTiny * static_cast<float>(grid.spacing);
   std::vector<std::uint8_t> reached(grid.size(), 0);
@@ -120,10 +137,11 @@ double keepLargest(const VoxelGrid& grid, std::vector<float>& values) {
     seed = i;
   }
   if (largest == 0) return 1;
-  flood(grid, seed, 2, body, positive);
+  if (near && largest < all) seed = nearestNode(grid, values, *near);
+  const std::size_t kept = flood(grid, seed, 2, body, positive);
   for (std::size_t i = 0; i < grid.size(); ++i)
     if (body[i] == 1) values[i] = -tiny;
-  return static_cast<double>(largest) / static_cast<double>(all);
+  return static_cast<double>(kept) / static_cast<double>(all);
 }
 
 }  // namespace
@@ -176,7 +194,7 @@ bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progre
   const auto depth = static_cast<float>(inwards);
   for (std::size_t i = 0; i < grid.size(); ++i)
     band.distance[i] = (outside[i] != 0 ? -band.distance[i] : band.distance[i]) - depth;
-  const double kept = keepLargest(grid, band.distance);
+  const double kept = keepOne(grid, options.near, band.distance);
   if (share != nullptr) *share = kept;
   if (progress && !progress(0.95f, "hull")) return false;
   out = isoSurface(grid, band.distance);

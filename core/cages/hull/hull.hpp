@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "cagecast/cages.hpp"
 #include "mesh/triangle_mesh.hpp"
@@ -9,9 +10,10 @@ namespace cagecast::cages {
 
 /// Lengths are in the space of the model.
 struct HullOptions {
-  double closing = 0;        ///< Gaps narrower than twice this are bridged.
-  double offset = 0;         ///< Distance of the hull from the model, at least.
-  std::uint32_t voxels = 0;  ///< Along the longest side of the grid: 8 to 512.
+  double closing = 0;          ///< Gaps narrower than twice this are bridged.
+  double offset = 0;           ///< Distance of the hull from the model, at least.
+  std::uint32_t voxels = 0;    ///< Along the longest side of the grid: 8 to 512.
+  std::optional<Vec3> near{};  ///< Of several components, the one nearest to this point; by default the largest.
 };
 
 /// An open border of a mesh that is too wide for `HullOptions::closing` to bridge: the neck of a head without a body,
@@ -29,7 +31,7 @@ struct Opening {
 /// @param[out] openings  If not null: what was closed, the widest first.
 TriangleMesh closeOpenings(const TriangleMesh& mesh, double width, std::vector<Opening>* openings = nullptr);
 
-/// A closed surface around a mesh, at a distance, that bridges gaps and mouths: one component, the largest, a manifold
+/// A closed surface around a mesh, at a distance, that bridges gaps and mouths: one component, a manifold
 /// with its normals outwards and no triangle without an area. Openings wider than `closing` are closed, as by
 /// `closeOpenings`.
 /// Cost: a head at 140 voxels takes half a second and 30 MB.

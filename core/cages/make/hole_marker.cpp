@@ -30,8 +30,8 @@ constexpr int kWidening = 2;
 constexpr double kMostSamplesPerEdge = 64;
 /// A needle is a triangle narrower than this share of the spacing of samples: one row of them does.
 constexpr double kNeedleWidth = 0.25;
-/// Samples of all needles together, about: there may be thousands of them side by side.
-constexpr double kNeedleSamples = 100'000;
+/// Samples of all needles together, about: there may be thousands of them side by side; and of all other triangles.
+constexpr double kNeedleSamples = 100'000, kTriangleSamples = 2'000'000;
 /// Points or rays between two calls of the callback: a few milliseconds of work.
 constexpr std::size_t kBatch = 4096;
 
@@ -57,28 +57,37 @@ struct OnLongestEdge {
   }
 };
 
-/// The spacing of samples along needles, so that all of them together do not get too many.
-double needleSpacing(const MarkedMesh& model, double spacing) {
-  double samples = 0;
-  for (std::uint32_t t = 0; t < model.isMarked.size(); ++t) {
-    if (!model.isMarked[t]) continue;
-    const OnLongestEdge needle(*model.mesh, model.mesh->triangles[t]);
-    if (needle.isNeedle(spacing)) samples += needle.steps(spacing);
+/// The spacings of samples along needles and on other triangles, so that all of them together do not get too many.
+struct Spacings {
+  double needles, triangles;
+
+  Spacings(const MarkedMesh& model, double spacing) {
+    double alongNeedles = 0, onTriangles = 0;
+    for (std::uint32_t t = 0; t < model.isMarked.size(); ++t) {
+      if (!model.isMarked[t]) continue;
+      const OnLongestEdge triangle(*model.mesh, model.mesh->triangles[t]);
+      const double steps = triangle.steps(spacing);
+      if (triangle.isNeedle(spacing))
+        alongNeedles += steps;
+      else
+        onTriangles += steps * (steps + 1) / 2;
+    }
+    needles = spacing * std::max(1.0, alongNeedles / kNeedleSamples);
+    triangles = spacing * std::sqrt(std::max(1.0, onTriangles / kTriangleSamples));
   }
-  return spacing * std::max(1.0, samples / kNeedleSamples);
-}
+};
 
 /// Points all over the marked triangles, about `spacing` apart, with the triangles that they are on.
 void sampleMarked(const MarkedMesh& model, double spacing, std::vector<Vec3>& samples,
                   std::vector<std::uint32_t>& triangles) {
   // Multiples of it, modulo 1, are spread evenly, however many there are.
   constexpr double kGoldenRatio = 0.6180339887498949;
-  const double alongNeedles = needleSpacing(model, spacing);
+  const Spacings spacings(model, spacing);
   for (std::uint32_t t = 0; t < model.isMarked.size(); ++t) {
     if (!model.isMarked[t]) continue;
     const Triangle3& triangle = model.mesh->triangles[t];
     if (const OnLongestEdge needle(*model.mesh, triangle); needle.isNeedle(spacing)) {
-      const double steps = needle.steps(alongNeedles);
+      const double steps = needle.steps(spacings.needles);
       // Needles side by side have their samples in different places.
       double shift = kGoldenRatio * t;
       shift -= std::floor(shift);
@@ -91,7 +100,7 @@ void sampleMarked(const MarkedMesh& model, double spacing, std::vector<Vec3>& sa
     const Vec3 a = model.mesh->positions[triangle[0]];
     const Vec3 ab = model.mesh->positions[triangle[1]] - a, ac = model.mesh->positions[triangle[2]] - a;
     const double longest = std::max({length(ab), length(ac), length(ac - ab)});
-    const double steps = std::clamp(std::ceil(longest / spacing), 1.0, kMostSamplesPerEdge);
+    const double steps = std::clamp(std::ceil(longest / spacings.triangles), 1.0, kMostSamplesPerEdge);
     for (double i = 0; i < steps; ++i)
       for (double j = 0; i + j < steps; ++j) {
         samples.push_back(a + (i + 1.0 / 3) / steps * ab + (j + 1.0 / 3) / steps * ac);

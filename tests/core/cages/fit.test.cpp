@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "cagecast/cages.hpp"
 #include "fit/relax.hpp"
@@ -236,6 +237,25 @@ TEST_CASE("vertices that no triangle uses make no difference to a fit", "[cages]
   CHECK(heads.out.positions == before);
 }
 
+TEST_CASE("a cage is fitted to what its landmarks are on, whatever else there is", "[cages][fit]") {
+  Heads heads;
+  REQUIRE(heads.fit(heads.other).ok());
+  const std::vector<float> alone = heads.out.positions;
+  HeadMesh both = heads.other;
+  const auto first = static_cast<std::uint32_t>(both.positions.size() / 3);
+  const TriangleMesh pedestal = sphere({0, -4, 0}, 2);
+  for (const Vec3& p : pedestal.positions)
+    for (const double x : {p.x, p.y, p.z}) both.positions.push_back(static_cast<float>(x));
+  for (const Triangle3& t : pedestal.triangles)
+    for (const std::uint32_t v : t) both.indices.push_back(first + v);
+  both.uvs.clear();
+  REQUIRE(heads.fit(both).ok());
+  double most = 0;
+  for (std::size_t i = 0; i < alone.size(); ++i)
+    most = std::max(most, std::abs(static_cast<double>(heads.out.positions[i] - alone[i])));
+  CHECK(most < 0.1);  // The voxels are larger.
+}
+
 TEST_CASE("a fitted cage has the kind of its template", "[cages][fit]") {
   Heads heads;
   Template from = heads.from();
@@ -297,6 +317,17 @@ TEST_CASE("landmarks that contradict are named", "[cages][fit]") {
   SECTION("far off") {
     heads.landmarks[2].position = {0, -1, 0.5f};
     CHECK(messageOf().rfind("landmarks: crown is ", 0) == 0);
+  }
+  SECTION("several in other axes") {
+    for (const std::size_t i : {0u, 1u, 6u, 7u}) {
+      float* p = heads.landmarks[i].position.data();
+      p[1] = -std::exchange(p[2], p[1]);
+    }
+    CHECK(messageOf().find("away from where the others put it") != std::string::npos);
+  }
+  SECTION("all under other names") {
+    for (std::size_t i = 0; i < good.size(); ++i) heads.landmarks[i].position = good[(i + 3) % good.size()].position;
+    CHECK(messageOf().find("landmarks: ") == 0);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "mesh/bounds.hpp"
 #include "mesh/surface.hpp"
 #include "shapes.hpp"
 
@@ -92,6 +93,14 @@ TEST_CASE("gaps narrower than twice the closing are bridged, wider ones are not"
   const TriangleMesh hull = hullOf(apart, {.closing = 0.1, .offset = 0.05, .voxels = 80});
   CHECK(volume(hull) == Approx(4.0 / 3 * std::numbers::pi * 1.05 * 1.05 * 1.05).epsilon(0.03));
   CHECK(closedManifold(hull));
+}
+
+TEST_CASE("of several bodies a hull has the largest, or the one that is asked for", "[cages][hull]") {
+  const TriangleMesh both = together(sphere({0, 0, 0}, 1), sphere({3, 0, 0}, 0.5));
+  HullOptions options{.closing = 0.1, .offset = 0.05, .voxels = 48};
+  CHECK(boundsOf(hullOf(both, options)).middle().x == Approx(0).margin(0.1));
+  options.near = Vec3{2, 0, 0};
+  CHECK(boundsOf(hullOf(both, options)).middle().x == Approx(3).margin(0.1));
 }
 
 TEST_CASE("what is inside is not seen in a hull, even through a wide opening", "[cages][hull]") {
