@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <system_error>
 
 #include "gltf.hpp"
 #include "problem.hpp"
@@ -140,16 +140,18 @@ Result write(const std::string& path, const Content& content) {
   return guarded(path, [&] {
     const std::string bytes = serialise(content);
     const std::string unfinished = path + ".part";
+    errno = 0;
     std::ofstream file(unfinished, std::ios::binary);
     file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     file.close();
-    std::error_code error;
+    std::error_code error(errno, std::generic_category());
     if (file.good()) {
       std::filesystem::rename(unfinished, path, error);
       if (!error) return;
     }
-    std::filesystem::remove(unfinished, error);
-    fail("cannot be written (", std::strerror(errno), ")");
+    std::error_code ignored;
+    std::filesystem::remove(unfinished, ignored);
+    fail("cannot be written (", error.message(), ")");
   });
 }
 
