@@ -3,7 +3,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { type Document, type Material, NodeIO } from '@gltf-transform/core';
+import { Document, type Material, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS, KHRMaterialsVariants } from '@gltf-transform/extensions';
 import { init } from 'cagecast';
 import type { Image } from 'cagecast/bake';
@@ -521,11 +521,81 @@ test('another size keeps the colours under an alpha of 0, and the longer side is
   const packed = (...more: string[]) =>
     cagecast('bake', at('packed.glb'), at('cage.glb'), at('red.png'), ...more, '-o', at('packed.png'));
   assert.match(packed('--size', '32').stdout, /: 32 × 32, for /);
-  assert.match(packed().stderr, /packed\.glb: is a KTX2 image, which cannot be baked/);
+  assert.match(packed().stderr, /packed\.glb: its texture is a KTX2 image, which cannot be baked/);
   // The way back shows what an opaque material does.
   assert.equal(bakeTo('back.png', '--back').status, 0);
   const back = PNG.sync.read(readFileSync(at('back.png')));
   assert.ok(back.data.some((byte, i) => i % 4 === 3 && byte === 255));
+});
+
+/** A strip from x = 0 to 2, or a part of it, whose u is a function of x. */
+interface Strip {
+  name: string;
+  z: number;
+  from?: number;
+  to?: number;
+  u(x: number): number;
+}
+
+/** A model of strips with one texture, half red and half blue; a cage has none. */
+async function strips(path: string, parts: readonly Strip[], wrapS?: number): Promise<void> {
+  const document = new Document();
+  const buffer = document.createBuffer();
+  const scene = document.createScene();
+  const accessor = (type: 'VEC2' | 'VEC3' | 'SCALAR', array: Float32Array | Uint16Array) =>
+    document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
+  const material = document.createMaterial('skin');
+  if (wrapS !== undefined) {
+    const image = pngOf(picture(64, (x) => (x < 32 ? [255, 0, 0, 255] : [0, 0, 255, 255])));
+    material.setBaseColorTexture(document.createTexture().setImage(image).setMimeType('image/png'));
+    material.getBaseColorTextureInfo()!.setWrapS(wrapS as 10497 | 33648 | 33071);
+  }
+  for (const { name, z, from = 0, to = 2, u } of parts) {
+    const columns = Array.from({ length: 17 }, (_, i) => from + ((to - from) * i) / 16);
+    const corners = columns.flatMap((x) => [0, 1].map((y) => [x, y] as const));
+    const primitive = document
+      .createPrimitive()
+      .setAttribute('POSITION', accessor('VEC3', Float32Array.from(corners.flatMap(([x, y]) => [x, y, z]))))
+      .setAttribute('TEXCOORD_0', accessor('VEC2', Float32Array.from(corners.flatMap(([x, y]) => [u(x), 1 - y]))))
+      .setIndices(
+        accessor(
+          'SCALAR',
+          Uint16Array.from(columns.slice(1).flatMap((_, i) => [0, 2, 3, 0, 3, 1].map((k) => 2 * i + k))),
+        ),
+      )
+      .setMaterial(wrapS === undefined ? null : material);
+    scene.addChild(document.createNode(name).setMesh(document.createMesh(name).addPrimitive(primitive)));
+  }
+  await io.write(path, document);
+}
+
+test('the way back shows what the model shows: what is nearest to the cage, and textures that are mirrored or clamped', async () => {
+  const halfOf = (x: number) => x / 4; // red
+  await strips(at('strip-cage.glb'), [{ name: 'cage', z: 0.02, u: (x) => x / 2 }]);
+  const shirt: Strip = { name: 'shirt', z: 0.008, from: 0.5, to: 1.5, u: (x) => 0.5 + x / 4 };
+  const skin: Strip = { name: 'skin', z: 0, u: halfOf };
+  await strips(at('skin-first.glb'), [skin, shirt], 10497);
+  await strips(at('shirt-first.glb'), [shirt, skin], 10497);
+  await strips(at('mirror.glb'), [{ name: 'body', z: 0, u: (x) => x }], 33648);
+  await strips(at('repeat.glb'), [{ name: 'body', z: 0, u: (x) => x }], 10497);
+  await strips(at('clamp.glb'), [{ name: 'body', z: 0, u: (x) => x - 0.5 }], 33071);
+  const [r, b] = ['red', 'blue'];
+  const expected = {
+    'skin-first': [r, b, b, r],
+    'shirt-first': [r, b, b, r],
+    mirror: [r, b, b, r],
+    repeat: [r, b, r, b],
+    clamp: [r, r, b, b],
+  };
+  for (const [name, colors] of Object.entries(expected))
+    for (const borders of ['triangle', 'cut']) {
+      const args = [at(`${name}.glb`), at('strip-cage.glb'), '--back', '--size', '64', '--borders', borders];
+      const { status, stderr } = cagecast('bake', ...args, '-o', at('strip.png'));
+      assert.deepEqual([status, stderr], [0, ''], name);
+      const { data } = PNG.sync.read(readFileSync(at('strip.png')));
+      const found = [8, 24, 40, 56].map((x) => (data[4 * (32 * 64 + x)]! > 200 ? r : b));
+      assert.deepEqual(found, colors, `${name}, ${borders}`);
+    }
 });
 
 test('avatars show the paint where their own materials name the texture, even if others go on using it', async () => {
@@ -534,7 +604,12 @@ test('avatars show the paint where their own materials name the texture, even if
   const texture = material!.pbrMetallicRoughness!.baseColorTexture!.index;
   material!.emissiveTexture = { index: texture }; // so it is not painted in its place
   material!.extensions = { VRMC_materials_mtoon: { specVersion: '1.0', shadeMultiplyTexture: { index: texture } } };
-  const properties = { textureProperties: { _MainTex: texture, _ShadeTexture: texture } };
+  material!.pbrMetallicRoughness!.baseColorFactor = [0.5, 0.25, 0.5, 1];
+  const textureProperties = { _MainTex: texture, _ShadeTexture: texture };
+  const properties = {
+    textureProperties,
+    vectorProperties: { _Color: [0.5, 0.25, 0.5, 1], _ShadeColor: [0, 0, 0, 1] },
+  };
   json.extensions = { VRM: { materialProperties: [properties] } };
   json.extensionsUsed = ['VRM', 'VRMC_materials_mtoon'];
   writeFileSync(at('avatar.glb'), packGlb({ json, bin }));
@@ -544,7 +619,12 @@ test('avatars show the paint where their own materials name the texture, even if
   const now = painted!.pbrMetallicRoughness!.baseColorTexture!.index;
   assert.notEqual(now, painted!.emissiveTexture!.index);
   assert.deepEqual(after.extensions!['VRM'], {
-    materialProperties: [{ textureProperties: { _MainTex: now, _ShadeTexture: now } }],
+    materialProperties: [
+      {
+        textureProperties: { _MainTex: now, _ShadeTexture: now },
+        vectorProperties: { _Color: [1, 1, 1, 1], _ShadeColor: [0, 0, 0, 1] }, // the factor is in the texture
+      },
+    ],
   });
   const mtoon = painted!.extensions!['VRMC_materials_mtoon'] as { shadeMultiplyTexture: { index: number } };
   assert.equal(mtoon.shadeMultiplyTexture.index, now);

@@ -144,6 +144,7 @@ test('a batch that cannot be right does not begin', () => {
   const cases: [string[], number, RegExp][] = [
     [['batch'], 2, /give either TARGETS or --manifest/],
     [['batch', at('in/*.glb')], 2, /TARGETS need --cage/],
+    [['batch', at('in/*.glb'), '--cage', '-', '-o', at('{name}.glb')], 2, /its jobs have no standard input/],
     [['batch', at('in/*.glb'), ...cage, '--resume'], 2, /--resume needs --results/],
     [['batch', at('in/*.gltf'), ...cage], 1, /in\/\*\.gltf: no file has such a name/],
     [['batch', at('in/*.glb'), ...cage, '-o', at('same.glb')], 1, /same\.glb: is written for .* and .*; use \{name\}/],

@@ -304,6 +304,23 @@ test('--uv-bounds: the texture covers a part of the UVs, and nothing is painted 
   const i = before.triangles.indexOf(after.triangles[0]!);
   const [old, own] = [uvOf(before, 3 * i), uvOf(after, 0)];
   assert.ok(Math.abs(own[0]! - (old[0]! - 0.25) / 0.5) < 1e-3 && Math.abs(own[1]! - (old[1]! - 0.2) / 0.4) < 1e-3);
+  // A region has what the bounds leave.
+  const region = ['--region', `${at('cage.glb')}=${at('other.png')}`];
+  const report = at('bounded.json');
+  ok('transfer', target, ...cage, ...bounds, '--texture', at('paint.png'), ...region, '-o', part, '--report', report);
+  const { triangles, regions } = JSON.parse(readFileSync(report, 'utf8')) as Report;
+  assert.equal(regions[0]!.triangles.cosmetic, triangles.cosmetic - after.triangles.length);
+  const both = overlaysOf(await io.read(part));
+  assert.equal(both.length, 2);
+  assert.equal(both[0]!.triangles.length + both[1]!.triangles.length, before.triangles.length);
+  // Whether the cage fits has nothing to do with what the texture covers.
+  const inspected = (...flags: string[]) => {
+    const { verdict, findings } = JSON.parse(cagecast('inspect', target, ...cage, ...flags, '--json').stdout);
+    return [verdict, findings];
+  };
+  assert.deepEqual(inspected('--uv-bounds', '0.45,0.45,0.5,0.5'), inspected());
+  const bare = cagecast('transfer', target, ...cage, '--texture', at('paint.png'), '--exclude', '*', '-o', part);
+  assert.match(bare.stdout, /_NCZ; no overlay, as the texture shows nowhere/);
   for (const [value, code, says] of [
     ['0,0,1', 2, /It is not four numbers U0,V0,U1,V1 with U0 < U1 and V0 < V1/],
     ['1,0,0,1', 2, /It is not four numbers/],

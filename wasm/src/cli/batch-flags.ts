@@ -90,7 +90,7 @@ export function addBatchCommand(program: Command, progress: Progress): void {
       'after',
       `
 A line of a manifest, with paths relative to the manifest:
-  {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["eye*"]}
+  {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
 A line that is printed: target, output, status (done, failed or skipped), ms, counts, and error, verdict and findings (codes) if there are.
 With --resume, a skipped job adds no line to --results, unless the last line about its target is from another job (another
 cage, say).
@@ -136,12 +136,14 @@ Examples:
 /** What is wrong with the arguments together, if anything is. */
 function faultOf(
   targets: readonly string[],
-  { manifest, results, resume, cage, texture, output, report }: BatchFlags,
+  { manifest, results, resume, cage, referenceCage, texture, output, report }: BatchFlags,
 ): string | undefined {
   if (targets.length > 0 === (manifest !== undefined)) return 'give either TARGETS or --manifest';
   if (resume && results === undefined) return '--resume needs --results, which says what is done';
   if (manifest === undefined && cage === undefined) return 'TARGETS need --cage';
   if (texture !== undefined && output === undefined && manifest === undefined) return '--texture needs -o OUT.glb';
   if (output === standard || report === standard) return 'a batch writes files; the standard output has its lines';
+  if ([cage, referenceCage, texture, ...targets].includes(standard))
+    return 'a batch reads files; its jobs have no standard input';
   return undefined;
 }

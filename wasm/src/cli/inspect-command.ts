@@ -54,7 +54,7 @@ export async function inspectCommand(
 /** Inspects the cage of a run. */
 export function inspectionReport(
   { target: targetFile, cage: cageFile, rules }: Pick<InspectCommand, 'target' | 'cage' | 'rules'>,
-  { target, cage, options, result }: Run,
+  { target, cageAsDrawn: cage, options, result }: Run,
 ): InspectionReport {
   const { mesh, parts } = target;
   const areas = perZone(result.zones, vertexAreas(mesh));

@@ -28,6 +28,8 @@ export interface Run {
   target: Extracted;
   cageFile: GltfFile;
   cage: Extracted;
+  /** The cage with the UVs that it has in its file, whatever part of them the texture covers. */
+  cageAsDrawn: Extracted;
   /** What `transfer` was called with. */
   options: TransferOptions;
   result: TransferResult;
@@ -66,8 +68,9 @@ export async function run(
   const cageOf = async (path: string) => withUvs(await models.cage(path, reading, progress));
   const whole = sources.cage === autoCage ? await madeCage(read, progress) : await cageOf(sources.cage);
   const reference = sources.referenceCage === undefined ? undefined : await cageOf(sources.referenceCage);
-  const cage = withinBounds(withoutLacking(whole, reference), sources.uvBounds);
-  return transferred(read, cage, options, progress);
+  const drawn = withoutLacking(whole, reference);
+  const done = await transferred(read, withinBounds(drawn, sources.uvBounds), options, progress);
+  return { ...done, cageAsDrawn: drawn.extracted };
 }
 
 /** The masks of a target. @throws {InputError} that names the file at fault. */
@@ -167,7 +170,12 @@ export async function transferred(
   await init();
   const files = { targetFile: target.file, target: target.extracted, cageFile: cage.file, cage: cage.extracted };
   try {
-    return { ...files, options, result: transfer(files.cage.mesh, files.target.mesh, options) };
+    return {
+      ...files,
+      cageAsDrawn: cage.extracted,
+      options,
+      result: transfer(files.cage.mesh, files.target.mesh, options),
+    };
   } catch (error) {
     throw inFile(error, files);
   }
@@ -193,7 +201,7 @@ function usable(file: GltfFile, extracted: Extracted): Extracted {
 /** Adds the file, and the place in it, to an error of the core; returns any other error unchanged. */
 export function inFile(
   error: unknown,
-  { targetFile, target, cageFile, cage }: Omit<Run, 'options' | 'result'>,
+  { targetFile, target, cageFile, cage }: Pick<Run, 'targetFile' | 'target' | 'cageFile' | 'cage'>,
 ): unknown {
   if (!(error instanceof CagecastError)) return error;
   const { message, code, at } = error;

@@ -3,7 +3,7 @@ import { dracoOf, meshoptView } from '../gltf/check.js';
 import { placeOf } from '../gltf/extract.js';
 import type { Form } from '../gltf/glb-writer.js';
 import { InputError } from '../gltf/input-error.js';
-import { diagonal, zoneAttribute } from '../gltf/overlay.js';
+import { diagonal, isShown, type Paint, zoneAttribute } from '../gltf/overlay.js';
 import { type Added, writeTransfer } from '../gltf/write.js';
 import type { CutTarget } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
@@ -127,7 +127,8 @@ async function transferRegion(
   const { cosmeticTriangles } = cut ?? done.result;
   const painted = Uint8Array.from(cosmeticTriangles, (_, t) => before?.painted[cut ? cut.triangles[t]! : t] ?? 0);
   const earlier = sumOf(painted);
-  const own = cosmeticTriangles.map((isCosmetic, t) => (painted[t] ? 0 : isCosmetic));
+  const shows = showing(paints, cut ?? done.result, cut?.indices ?? done.target.mesh.indices);
+  const own = cosmeticTriangles.map((isCosmetic, t) => (isCosmetic && !painted[t] && shows(t) ? 1 : 0));
   own.forEach((isPainted, t) => {
     if (isPainted) painted[t] = 1;
   });
@@ -152,6 +153,19 @@ async function transferRegion(
     throw error instanceof InputError ? error.in(target) : error;
   });
   return { done, cut, painted, before: earlier, written, zones };
+}
+
+/** Whether a triangle shows one of some paints, if there are any. */
+function showing(
+  paints: readonly Paint[],
+  { uvs, cornerUvs }: Pick<CutTarget, 'uvs' | 'cornerUvs'>,
+  indices: Uint32Array,
+): (triangle: number) => boolean {
+  if (paints.every(({ area }) => area === undefined)) return () => true;
+  const isOwn = cornerUvs.length > 0;
+  const vertex = (corner: number): number => (isOwn ? corner : indices[corner]!);
+  const all = isOwn ? cornerUvs : uvs;
+  return (t) => paints.some(({ area }) => isShown(area, all, vertex(3 * t), vertex(3 * t + 1), vertex(3 * t + 2)));
 }
 
 /** How the geometry of a target is compressed. */
@@ -345,13 +359,20 @@ function summary(
   const filled = [...new Set(parts.filter(({ fillsCutOuts }) => fillsCutOuts).map(({ name }) => `“${name}”`))].join(
     ', ',
   );
+  const hasOverlay = parts.some(({ overlayTriangles }) => overlayTriangles > 0);
+  const overlay =
+    command.texture === undefined
+      ? ''
+      : hasOverlay
+        ? ', and an overlay with the texture'
+        : '; no overlay, as the texture shows nowhere';
   const lines = [
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
     table(rows),
     `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted${cut ? `; cut along borders, ${integer(cut.triangles.cosmetic)} of ${integer(cut.triangles.total)}` : ''}; ${timings.total.toFixed(1)} ms`,
     output === null
       ? ''
-      : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}${replacedOverlays === 0 ? '' : `; ${takenAway(replacedOverlays)}`}`,
+      : `wrote ${output}: ${sets}, ${zoneAttribute}${overlay}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}${replacedOverlays === 0 ? '' : `; ${takenAway(replacedOverlays)}`}`,
     filled && `the overlay fills what the material cuts out of ${filled}; cagecast bake paints only the rest`,
     ...regions.map(
       ({ cage, texture, triangles: { cosmetic, total } }) =>

@@ -27,7 +27,8 @@ export function unmarkDraco(primitives: readonly GLTF.IMeshPrimitive[]): void {
 /**
  * Compresses those primitives again that were compressed by Draco and have been added to. Positions get 14 bits, normals 10, as is
  * usual: what was rounded so before stays as it is. Integers, such as the UVs and zones of a transfer, keep their values, and so do
- * attributes with names of an application's own. Vertices and triangles may change their order, except in primitives with morph targets.
+ * attributes with names of an application's own; UVs of a transfer that are not within 0..1 get 16 bits. Vertices and triangles may change
+ * their order, except in primitives with morph targets.
  */
 export async function packDraco(writer: GlbWriter, file: GltfFile): Promise<void> {
   const all = (writer.json.meshes ?? []).flatMap((mesh) => mesh.primitives);
@@ -99,8 +100,15 @@ function documentOf(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrim
   // These may be numbers of things. With 0 bits, they are not rounded.
   const isOwn = ([semantic, accessor]: [string, number]) =>
     semantic.startsWith('_') && values(accessor) instanceof Float32Array;
-  if (Object.entries(primitive.attributes).some(isOwn))
-    compression.setEncoderOptions({ quantizationBits: { GENERIC: 0 } });
+  const areFarUvs = ([semantic, accessor]: [string, number]) =>
+    semantic.startsWith('TEXCOORD_') && writer.stored(accessor)?.values instanceof Float32Array;
+  const attributes = Object.entries(primitive.attributes);
+  compression.setEncoderOptions({
+    quantizationBits: {
+      ...(attributes.some(isOwn) && { GENERIC: 0 }),
+      ...(attributes.some(areFarUvs) && { TEX_COORD: 16 }),
+    },
+  });
   const buffer = document.createBuffer();
   const accessorOf = (accessor: number): Accessor => {
     const { type, normalized = false } = writer.json.accessors![accessor]!;

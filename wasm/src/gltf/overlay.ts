@@ -74,19 +74,20 @@ export function freeUvSet(has: (semantic: string) => boolean): string {
 /** The tile of UDIM at a UV: 1001 at 0..1, 1002 to its right, 1011 above. In glTF, v grows downwards. */
 export const tileAt = (u: number, v: number): number => 1001 + Math.floor(u) + 10 * Math.floor(1 - v);
 
-/** The corners of those triangles that show a texture. @param uvs  2 per vertex. */
-export function cornersIn(area: PaintArea | undefined, corners: Uint32Array, uvs: Float32Array): Uint32Array {
-  if (area === undefined) return corners;
-  const shows = (a: number, b: number, c: number): boolean => {
-    const [u, v] = [0, 1].map((k) => [uvs[2 * a + k]!, uvs[2 * b + k]!, uvs[2 * c + k]!]) as [number[], number[]];
-    if (area === 'bounded') return [u, v].every((of) => Math.max(...of) > 0 && Math.min(...of) < 1);
-    return tileAt((u[0]! + u[1]! + u[2]!) / 3, (v[0]! + v[1]! + v[2]!) / 3) === area.tile;
-  };
-  return corners.filter((_, i) => {
-    const first = i - (i % 3);
-    return shows(corners[first]!, corners[first + 1]!, corners[first + 2]!);
-  });
+/** Whether a triangle shows a texture. @param uvs  2 per vertex. */
+export function isShown(area: PaintArea | undefined, uvs: Float32Array, a: number, b: number, c: number): boolean {
+  if (area === undefined) return true;
+  const [u, v] = [0, 1].map((k) => [uvs[2 * a + k]!, uvs[2 * b + k]!, uvs[2 * c + k]!]) as [number[], number[]];
+  if (area === 'bounded') return [u, v].every((of) => Math.max(...of) > 0 && Math.min(...of) < 1);
+  return tileAt((u[0]! + u[1]! + u[2]!) / 3, (v[0]! + v[1]! + v[2]!) / 3) === area.tile;
 }
+
+/** The corners of those triangles that show a texture. @param uvs  2 per vertex. */
+export const cornersIn = (area: PaintArea | undefined, corners: Uint32Array, uvs: Float32Array): Uint32Array =>
+  corners.filter((_, i) => {
+    const first = i - (i % 3);
+    return isShown(area, uvs, corners[first]!, corners[first + 1]!, corners[first + 2]!);
+  });
 
 /** The corners of those triangles that may be painted; `cosmetic` is 1 per triangle. */
 export function cosmeticCorners(indices: Uint32Array, cosmetic: Uint8Array): Uint32Array {

@@ -1,4 +1,4 @@
-import { type Baked, cageTexture, fill, type Image, type Layout } from '../../bake/index.js';
+import { type Baked, cageTexture, fill, type Image, type Layout, type Wrap } from '../../bake/index.js';
 import { FileModel } from '../../gltf/bake/file.js';
 import { type BakeReport, bakeModel, layoutOf, type Paints, type TextureUse } from '../../gltf/bake/plan.js';
 import { takeOverlays } from '../../gltf/earlier-transfer.js';
@@ -135,7 +135,8 @@ async function bakePicture(command: BakeCommand, done: Run, cut: CutTarget | und
     const own =
       file &&
       (await decodeImage(file.bytes).catch((error: unknown) => {
-        if (back || size === undefined) throw error;
+        if (back || size === undefined)
+          throw new InputError(`its texture ${(error as Error).message}`, { cause: error });
         return undefined; // Only its proportions were asked for.
       }));
     const ownCount = done.target.mesh.positions.length / 3;
@@ -143,8 +144,9 @@ async function bakePicture(command: BakeCommand, done: Run, cut: CutTarget | und
     const layouts = parts.map((part) => layoutOf(model, part, useOf(model, part), found));
     if (back && !own) throw new InputError('its painted parts have no texture to take the paint from');
     const [wide, high] = back || !own ? [size ?? kSide, size ?? kSide] : scaledTo(own, size);
+    const whole = own && parts.every((part) => isOpaque(model, part)) ? withoutAlpha(own) : own;
     const baked = back
-      ? pictureOfCage(layouts, parts.every((part) => isOpaque(model, part)) ? withoutAlpha(own!) : own!, wide)
+      ? pictureOfCage(unrolled(whole!, layouts, uses(model, parts[0]!)!.wraps), distancesOf(parts, done, cut), wide)
       : fill('bake', layouts, color!, { width: wide, height: high });
     write(command, done, await encodePng(baked));
     const names = parts.map(({ name }) => name);
@@ -178,8 +180,60 @@ function isOpaque(model: FileModel, part: Part): boolean {
   return material !== undefined && model.isOpaque(material);
 }
 
-/** What is painted on a model, in the cage's UVs. */
-function pictureOfCage(layouts: readonly Layout[], own: Image, width: number): Baked {
+/** The texture of a model, and how its triangles lie in it. */
+interface ModelTexture {
+  image: Image;
+  layouts: readonly Layout[];
+}
+
+/** A texture that is mirrored or clamped where UVs leave 0..1, as one that repeats. */
+function unrolled(image: Image, layouts: readonly Layout[], wraps: readonly [Wrap, Wrap]): ModelTexture {
+  let texture: ModelTexture = { image, layouts };
+  for (const [k, wrap] of wraps.entries()) {
+    const isInside = (at: number, i: number) => i % 2 !== k || (at >= 0 && at <= 1);
+    if (wrap === 'repeat' || layouts.every(({ to }) => to.every(isInside))) continue;
+    const middle = 0.5 / (k === 0 ? image.width : image.height); // of the first texel
+    const place = (at: number) => (wrap === 'mirror' ? at / 2 : Math.min(1 - middle, Math.max(middle, at)));
+    texture = {
+      image: wrap === 'mirror' ? withMirrorImage(texture.image, k) : texture.image,
+      layouts: texture.layouts.map((layout) => ({
+        ...layout,
+        to: layout.to.map((at, i) => (i % 2 === k ? place(at) : at)),
+      })),
+    };
+  }
+  return texture;
+}
+
+/** An image and its mirror image, side by side or one above the other. */
+function withMirrorImage({ width, height, data }: Image, axis: number): Image {
+  const [wide, high] = axis === 0 ? [2 * width, height] : [width, 2 * height];
+  const out = new Uint8ClampedArray(4 * wide * high);
+  for (let y = 0; y < high; ++y)
+    for (let x = 0; x < wide; ++x) {
+      const from = 4 * (Math.min(y, 2 * height - 1 - y) * width + Math.min(x, 2 * width - 1 - x));
+      out.set(data.subarray(from, from + 4), 4 * (y * wide + x));
+    }
+  return { width: wide, height: high, data: out };
+}
+
+/** How far each triangle of the layouts of some parts is from the cage, on average. */
+function distancesOf(parts: readonly Part[], { target, result }: Run, cut: CutTarget | undefined): number[] {
+  const { indices } = target.mesh;
+  const far = 1e30; // for triangles that the cage does not reach
+  const distance = (t: number) =>
+    [0, 1, 2].reduce((sum, k) => sum + Math.min(far, result.distances[indices[3 * t + k]!]!), 0) / 3;
+  return parts.flatMap(({ firstTriangle, triangleCount }) => {
+    const isOwn = (t: number) => t >= firstTriangle && t < firstTriangle + triangleCount;
+    const own = cut
+      ? [...cut.triangles].filter(isOwn)
+      : Array.from({ length: triangleCount }, (_, t) => firstTriangle + t);
+    return own.map(distance);
+  });
+}
+
+/** What is painted on a model, in the cage's UVs. @param distances  Of each triangle: the nearest ones are seen. */
+function pictureOfCage({ image, layouts }: ModelTexture, distances: readonly number[], width: number): Baked {
   const corners = layouts.map(({ painted }) => Uint32Array.from({ length: 3 * painted.length }, (_, i) => i));
   const all = (values: Layout['to'][]) => Float32Array.from(values.flatMap((one) => [...one]));
   const painted = Uint8Array.from(layouts.flatMap((layout) => [...layout.painted]));
@@ -188,8 +242,9 @@ function pictureOfCage(layouts: readonly Layout[], own: Image, width: number): B
     uvs: all(layouts.map(({ from }) => from)),
     cornerUvs: new Float32Array(0),
     cosmeticTriangles: painted,
+    distances: Float32Array.from(indices, (corner) => distances[Math.floor(corner / 3)]!),
   };
-  return cageTexture({ indices, uvs: all(layouts.map(({ to }) => to)) }, result, own, { width });
+  return cageTexture({ indices, uvs: all(layouts.map(({ to }) => to)) }, result, image, { width });
 }
 
 /** How the texture of a part lies on it, if it has one. */

@@ -65,7 +65,7 @@ A file may be - for the standard input or output; if OUT is, the summary goes to
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
   cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json
-  cagecast transfer body.glb --cage cage.glb --keep skin --exclude 'eye*' -o painted.glb
+  cagecast transfer body.glb --cage cage.glb --keep skin --exclude '*eye*' -o painted.glb
   cagecast transfer body.glb --cage face.glb --texture face.png --region arms.glb=arms.png -o painted.gltf
   cagecast transfer body.glb --cage tiled.glb --texture 'skin.<UDIM>.png' -o painted.glb`,
     )

@@ -161,9 +161,16 @@ export class FileModel implements BakeModel<number, number> {
   /** Makes the materials of avatars, which name their textures once more, show a new one, too. */
   #followInExtensions(material: number, before: number, now: number): void {
     const vrm = this.#json.extensions?.['VRM'] as
-      | { materialProperties?: { textureProperties?: Record<string, number> }[] }
+      | {
+          materialProperties?: {
+            textureProperties?: Record<string, number>;
+            vectorProperties?: Record<string, number[]>;
+          }[];
+        }
       | undefined;
-    const textures = vrm?.materialProperties?.[material]?.textureProperties ?? {};
+    const { textureProperties: textures = {}, vectorProperties: colors } = vrm?.materialProperties?.[material] ?? {};
+    // The factor, once more: it is in the texture now.
+    if (colors?.['_Color']) colors['_Color'] = [1, 1, 1, colors['_Color'][3] ?? 1];
     for (const [name, texture] of Object.entries(textures)) if (texture === before) textures[name] = now;
     const mtoon = this.#material(material).extensions?.['VRMC_materials_mtoon'] as
       | { shadeMultiplyTexture?: GLTF.ITextureInfo }
