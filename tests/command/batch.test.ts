@@ -7,6 +7,7 @@ import {
   mkdtempSync,
   readdirSync,
   readFileSync,
+  renameSync,
   rmSync,
   symlinkSync,
   writeFileSync,
@@ -106,6 +107,31 @@ test('patterns reach into folders, lines are printed, and --fail-on exits 3', ()
     [at('in/deep/a.glb'), null, 'done', 'unfit'],
   );
   assert.match(away.stderr, /1 with a cage that does not fit as demanded/);
+  // A region's cage counts, too.
+  writeFileSync(at('paint.png'), PNG.sync.write(new PNG({ width: 4, height: 4 })));
+  const region = [
+    '--region',
+    `${at('away.glb')}=${at('paint.png')}`,
+    '--texture',
+    at('paint.png'),
+    '-o',
+    at('out.glb'),
+  ];
+  const both = cagecast('batch', at('in/0.glb'), '--cage', at('cage.glb'), ...region, '--fail-on', 'unfit');
+  assert.deepEqual([both.status, linesOf(both.stdout)[0]!.verdict], [3, 'unfit'], both.stdout);
+});
+
+test('borders that a configuration cuts are no matter where nothing is written', () => {
+  const config = at('in/cagecast.config.json');
+  const check = ['batch', at('in/0.glb'), '--cage', at('cage.glb'), '--fail-on', 'unfit'];
+  writeFileSync(config, '{ "borders": "cut" }');
+  try {
+    assert.equal(cagecast(...check).status, 0);
+  } finally {
+    rmSync(config);
+  }
+  const asked = cagecast(...check, '--borders', 'cut');
+  assert.deepEqual([asked.status, /--borders cut needs -o OUT\.glb/.test(asked.stderr)], [2, true]);
 });
 
 test('a manifest has a job per line, with options of its own; a wrong line is a job that fails', () => {
@@ -277,6 +303,26 @@ test('--resume does again what another job has overwritten since, and the last l
   }
   assert.equal(batch().status, 0);
   assert.deepEqual([last().status, last().target], ['skipped', at('in/0.glb')]);
+
+  // The same job fails, and then its file is there again.
+  const inFolder = [
+    'batch',
+    at('in/0.glb'),
+    '--cage',
+    at('cage.glb'),
+    '-o',
+    at('once/{name}.glb'),
+    '--results',
+    results,
+  ];
+  assert.equal(cagecast(...inFolder).status, 0);
+  renameSync(at('once'), at('twice'));
+  writeFileSync(at('once'), '');
+  assert.equal(cagecast(...inFolder).status, 1);
+  rmSync(at('once'));
+  renameSync(at('twice'), at('once'));
+  assert.equal(cagecast(...inFolder, '--resume').status, 0);
+  assert.equal(last().status, 'skipped');
 });
 
 test('--resume minds what a glTF has beside it, as it is read and as it is written', () => {

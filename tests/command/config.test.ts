@@ -53,6 +53,12 @@ test('settings come from the nearest file above the target; characters by name w
   // What a flag names must be there; what the file names need not.
   const { status, stderr } = cagecast('transfer', ada, ...cage, '--exclude', 'gone');
   assert.deepEqual([status, /--exclude gone/.test(stderr)], [1, true]);
+  // Names that are numbers have their place, too.
+  writeFileSync(at('assets/heads/101.glb'), readFileSync(ada));
+  set({ characters: { '*': { threshold: 0.6 } } });
+  writeFileSync(config, readFileSync(config, 'utf8').replace('}}}', '}, "101" : { "threshold": 0.3 } } }'));
+  assert.equal(optionsOf('inspect', at('assets/heads/101.glb')).threshold, 0.3);
+  rmSync(at('assets/heads/101.glb'));
 });
 
 test('--config names another file, --no-config none; the output says which file was used', () => {

@@ -411,15 +411,16 @@ describe('holes and segments', () => {
   test('a segment near the threshold is reported', () => {
     const { segments } = look({});
     const eye = segments.find(({ part }) => part === 'eye')!;
-    const inspection = inspect(cage, target, {
-      parts,
-      threshold: Math.min(1, eye.coverage + 0.02),
-      steps: { floor: 'none' },
-    });
-    assert.match(
-      find(inspection, 'segmentInDoubt').sentence,
-      /"eye" is not painted, but only just: its coverage is 0\.\d\d, less than the threshold/,
-    );
+    const threshold = Math.min(1, eye.coverage + 0.02);
+    const inspection = inspect(cage, target, { parts, threshold, steps: { floor: 'none' } });
+    const { sentence, locks } = find(inspection, 'segmentInDoubt');
+    assert.match(sentence, /"eye" is not painted, but only just: its coverage is 0\.\d\d, less than the threshold/);
+    const kept = locks!.segments!;
+    const excluded = Object.fromEntries(Object.keys(kept).map((segment) => [segment, 'exclude' as const]));
+    for (const segments of [kept, excluded]) {
+      const decided = inspect(cage, target, { parts, threshold, steps: { floor: 'none' }, locks: { segments } });
+      assert.ok(!decided.findings.some(({ code }) => code === 'segmentInDoubt'), 'a lock settles it');
+    }
   });
 
   test('a cage that is tiny beside its target is unfit, not an error', () => {

@@ -7,6 +7,7 @@ import { firstLine, InputError } from '../gltf/input-error.js';
 import type { Verdict } from '../inspect/index.js';
 import { isWritten, type Job, writtenBy } from './batch-jobs.js';
 import type { Outcome } from './batch-worker.js';
+import { verdicts } from './inspect-command.js';
 import { placeOf } from './output.js';
 import { jsonText, oneLine } from './print.js';
 import type { Progress } from './progress.js';
@@ -42,9 +43,6 @@ export interface BatchSummary {
   configs: string[];
   seconds: number;
 }
-
-/** Verdicts, from bad to good. */
-const verdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
 
 /**
  * Runs jobs, each in one of some threads. A job that fails does not stop the others.
@@ -128,7 +126,7 @@ interface EarlierResults {
   lines: Map<string, ResultLine>;
   /** The keys of the jobs that wrote files last, by the place of the file. */
   writers: Map<string, string>;
-  /** The keys of the last lines, by target. */
+  /** The keys of the last lines, by target; '' if that is of a job that failed. */
   last: Map<string, string>;
 }
 
@@ -143,7 +141,7 @@ function readResults(path: string): EarlierResults {
     try {
       const line = JSON.parse(one) as ResultLine;
       if (typeof line.key !== 'string') continue;
-      last.set(line.target, line.key);
+      last.set(line.target, line.status === 'failed' ? '' : line.key);
       if (line.status !== 'done') continue;
       lines.set(line.key, line);
       for (const file of [line.output, line.report]) if (file) writers.set(placeOf(file), line.key);

@@ -136,12 +136,14 @@ Examples:
 /** What is wrong with the arguments together, if anything is. */
 function faultOf(
   targets: readonly string[],
-  { manifest, results, resume, cage, referenceCage, texture, output, report }: BatchFlags,
+  { manifest, results, resume, cage, referenceCage, texture, output, report, borders }: BatchFlags,
 ): string | undefined {
   if (targets.length > 0 === (manifest !== undefined)) return 'give either TARGETS or --manifest';
   if (resume && results === undefined) return '--resume needs --results, which says what is done';
   if (manifest === undefined && cage === undefined) return 'TARGETS need --cage';
   if (texture !== undefined && output === undefined && manifest === undefined) return '--texture needs -o OUT.glb';
+  if (borders === 'cut' && output === undefined && manifest === undefined)
+    return '--borders cut needs -o OUT.glb, the file for the cut target';
   if (output === standard || report === standard) return 'a batch writes files; the standard output has its lines';
   if ([cage, referenceCage, texture, ...targets].includes(standard))
     return 'a batch reads files; its jobs have no standard input';

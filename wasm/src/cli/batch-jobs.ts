@@ -107,7 +107,7 @@ const noSettings: Settled = {
 };
 
 /** A line of a manifest: its settings win over flags. @throws {InputError} that names the member. */
-async function jobLine(line: string, folder: string, { settled }: JobDefaults): Promise<JobNames & Settled> {
+async function jobLine(line: string, folder: string, { settled, output }: JobDefaults): Promise<JobNames & Settled> {
   const given = parseObject(line);
   refuseUnknown(given, [...paths, 'regions', 'uvBounds', ...settingNames]);
   for (const name of paths)
@@ -127,6 +127,8 @@ async function jobLine(line: string, folder: string, { settled }: JobDefaults): 
   ]) as Partial<JobNames> & { target: string };
   const common = await settled(own.target);
   const { borders, compress, preset, keep, exclude, masks, single } = settingsOf(given, folder);
+  // A configuration may say so for other commands.
+  if (borders === 'cut' && (own.output ?? output) === undefined) throw noOutput(own.target);
   const { rules } = common;
   return {
     ...own,
@@ -166,6 +168,9 @@ type JobNames = Pick<TransferCommand, 'target' | 'referenceCage' | 'texture' | '
   cage?: string | undefined;
 };
 
+const noOutput = (target: string): InputError =>
+  new InputError('has no output, where its texture or its cut target would be written').in(target);
+
 /** Fills in a job's own names. `{name}` in a path is the target's name without its ending, `{dir}` its folder. */
 function jobOf({ settled: _, results: __, ...given }: JobDefaults & JobNames & Settled): Job {
   const { target, cage, output, report } = given;
@@ -176,8 +181,7 @@ function jobOf({ settled: _, results: __, ...given }: JobDefaults & JobNames & S
     path?.replace(/\{name\}|\{dir\}/g, (found) =>
       found === '{dir}' ? dirname(target) : basename(target, extname(target)),
     );
-  if (output === undefined && (given.texture !== undefined || given.regions?.length || given.borders === 'cut'))
-    throw new InputError('has no output, where its texture or its cut target would be written').in(target);
+  if (output === undefined && (given.texture !== undefined || given.regions?.length)) throw noOutput(target);
   if (output !== undefined && !/\.(glb|vrm|gltf)$/i.test(output))
     throw new InputError(`its output ${output} does not end in .glb, .vrm or .gltf`).in(target);
   const command: TransferCommand = { ...given, cage, output: fill(output), report: fill(report) };

@@ -162,7 +162,7 @@ async function finish(
 ): Promise<CageVerdict> {
   const done = await transferred(model, await readBack(cage, output), { preset: 'default' }, progress);
   progress.step('inspecting');
-  const report = inspectionReport({ target: model.file.path, cage: output, rules }, done);
+  const report = inspectionReport({ target: model.file.path, cage: output, rules }, done, []);
   writeFiles([
     { path: output, data: cageGlb(cage) },
     ...(html === undefined ? [] : [{ path: html, data: inspectionPage(report, done) }]),

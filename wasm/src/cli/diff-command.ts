@@ -3,9 +3,8 @@ import { join } from 'node:path';
 import { isFolder, readBytes } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
-import type { Verdict } from '../inspect/index.js';
 import { parseObject } from './config/settings.js';
-import type { InspectionReport } from './inspect-command.js';
+import { type InspectionReport, verdicts } from './inspect-command.js';
 import { type Found, oneLine } from './print.js';
 import { cut, integer, percent, short, table } from './table.js';
 import type { Report } from './transfer-command.js';
@@ -34,8 +33,8 @@ type AnyReport = Pick<Report, 'target' | 'segments'> &
   Partial<Omit<InspectionReport, 'target' | 'segments' | 'cage' | 'options' | 'versions' | 'counts'>>;
 
 const zoneNames = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
-/** Verdicts, from bad to good. */
-const verdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
+/** Two kinds of reports may round a sum differently. */
+const kRounding = 1e-9;
 
 /** What changed between two reports. */
 interface Difference {
@@ -213,7 +212,7 @@ function compare(before: Measures, after: Measures, tolerance: number): Change[]
     // Only one of the two kinds of reports has it, or the part is not there.
     if ((!old || !now) && kind !== 'part') return [];
     const change = kind === 'ratio' ? now!.value / old!.value - 1 : kind === 'share' ? now!.value - old!.value : 0;
-    const isOver = kind === 'part' || Math.abs(change) > tolerance;
+    const isOver = kind === 'part' || Math.abs(change) > tolerance + kRounding;
     const value = (one: typeof old) => (kind === 'part' ? (one ? 'there' : null) : one!.value);
     return [{ measure, kind, before: value(old), after: value(now), isOver }];
   });

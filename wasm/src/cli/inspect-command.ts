@@ -5,6 +5,7 @@ import { type Inspection, inspect, unfitFrom, usableFrom, type Verdict } from '.
 import { inspectionPage } from './inspect-page.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
+import { boundsAround, type UvBounds, withinBounds } from './paint/cage-area.js';
 import { oneLine } from './print.js';
 import type { Progress } from './progress.js';
 import { type Run, run, type Sources } from './run.js';
@@ -15,6 +16,9 @@ import { type PerZone, perZone } from './zones.js';
 export interface InspectCommand extends Sources {
   html?: string | undefined;
 }
+
+/** Verdicts, from bad to good. */
+export const verdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
 
 /** The JSON output of `inspect`: the inspection, and its inputs. */
 export interface InspectionReport extends Inspection {
@@ -39,7 +43,7 @@ export async function inspectCommand(
 ): Promise<{ text: string; report: InspectionReport; verdict: Verdict }> {
   const done = await run(command, progress);
   progress.step('inspecting');
-  const report = inspectionReport(command, done);
+  const report = inspectionReport(command, done, command.uvBounds ? [command.uvBounds] : []);
   if (command.html !== undefined) {
     progress.step(`writing ${command.html}`);
     writeFiles([{ path: command.html, data: inspectionPage(report, done) }]);
@@ -51,11 +55,13 @@ export async function inspectCommand(
   };
 }
 
-/** Inspects the cage of a run. */
+/** Inspects the cage of a run. @param textures  Where its UVs have textures, besides 0..1. */
 export function inspectionReport(
   { target: targetFile, cage: cageFile, rules }: Pick<InspectCommand, 'target' | 'cage' | 'rules'>,
-  { target, cageAsDrawn: cage, options, result }: Run,
+  { target, wholeCage, options, result }: Run,
+  textures: readonly UvBounds[],
 ): InspectionReport {
+  const cage = withinBounds(wholeCage, boundsAround(textures)).extracted;
   const { mesh, parts } = target;
   const areas = perZone(result.zones, vertexAreas(mesh));
   const total = areas.cosmetic + areas.occluded + areas.uncovered + areas.culled || 1;

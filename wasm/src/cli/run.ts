@@ -28,8 +28,8 @@ export interface Run {
   target: Extracted;
   cageFile: GltfFile;
   cage: Extracted;
-  /** The cage with the UVs that it has in its file, whatever part of them the texture covers. */
-  cageAsDrawn: Extracted;
+  /** The cage before its UVs were moved to those of the texture. */
+  wholeCage: ReadModel;
   /** What `transfer` was called with. */
   options: TransferOptions;
   result: TransferResult;
@@ -70,7 +70,7 @@ export async function run(
   const reference = sources.referenceCage === undefined ? undefined : await cageOf(sources.referenceCage);
   const drawn = withoutLacking(whole, reference);
   const done = await transferred(read, withinBounds(drawn, sources.uvBounds), options, progress);
-  return { ...done, cageAsDrawn: drawn.extracted };
+  return { ...done, wholeCage: drawn };
 }
 
 /** The masks of a target. @throws {InputError} that names the file at fault. */
@@ -172,7 +172,7 @@ export async function transferred(
   try {
     return {
       ...files,
-      cageAsDrawn: cage.extracted,
+      wholeCage: cage,
       options,
       result: transfer(files.cage.mesh, files.target.mesh, options),
     };

@@ -9,9 +9,10 @@ import type { CutTarget } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import type { Finding, Verdict } from '../inspect/index.js';
 import { refuseOverwritingRead } from './beside.js';
-import { inspectionReport } from './inspect-command.js';
+import { inspectionReport, verdicts } from './inspect-command.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
+import { boundsOfTile, type UvBounds } from './paint/cage-area.js';
 import { isTiled, readPaint, readTiles } from './paint/read-paint.js';
 import { type Stretch, stretchOf } from './paint/stretch.js';
 import { jsonText } from './print.js';
@@ -56,7 +57,7 @@ export async function transferCommand(
   const first = await transferRegion(command, command.texture, progress, { models, isLast: regions.length === 0 });
   const report = makeReport(command, first.done, output === undefined ? undefined : first.written, first.cut);
   if (command.inspects) {
-    const { verdict, findings } = inspectionReport(command, first.done);
+    const { verdict, findings } = inspectionReport(command, first.done, first.textures);
     Object.assign(report, { verdict, findings });
   }
   let last = first;
@@ -69,6 +70,11 @@ export async function transferCommand(
       zones: `${zoneAttribute}_${r + 1}`,
     });
     report.regions.push(regionReport({ cage, texture, output }, last));
+    if (command.inspects) {
+      const { verdict, findings } = inspectionReport({ ...command, cage }, last.done, last.textures);
+      report.verdict = worse(report.verdict!, verdict);
+      report.findings!.push(...findings.map((finding) => ({ ...finding, sentence: `${cage}: ${finding.sentence}` })));
+    }
   }
   const files: { path: string; data: Uint8Array | string }[] = [];
   if (output !== undefined) {
@@ -85,6 +91,9 @@ export async function transferCommand(
   writeFiles(files);
   return { text: summary(command, report), report, done: first.done };
 }
+
+/** The worse of two verdicts. */
+const worse = (a: Verdict, b: Verdict): Verdict => (verdicts.indexOf(a) < verdicts.indexOf(b) ? a : b);
 
 /** What a region's transfer is given besides its files. */
 interface RegionContext {
@@ -107,6 +116,8 @@ interface DoneRegion {
   before: number;
   written: Awaited<ReturnType<typeof writeTransfer>> | undefined;
   zones: string;
+  /** Where the cage's UVs have textures. */
+  textures: UvBounds[];
 }
 
 /** Runs the transfer of a region. Triangles that an earlier one paints are not painted again. */
@@ -122,7 +133,9 @@ async function transferRegion(
   const done = await run(command, progress, models, model);
   const cage = { file: done.cageFile, extracted: done.cage };
   const tiles = texture !== undefined && isTiled(texture) ? await readTiles(texture, cage, reading.limits) : [];
-  const paints = paint ? [{ ...paint, ...(uvBounds && { area: 'bounded' as const }) }] : tiles;
+  const paints = paint
+    ? [{ ...paint, ...(uvBounds && { area: 'bounded' as const }) }]
+    : tiles.map(({ tile, ...one }) => ({ ...one, area: { tile } }));
   const cut = output !== undefined && command.borders === 'cut' ? cutTarget(done, progress) : undefined;
   const { cosmeticTriangles } = cut ?? done.result;
   const painted = Uint8Array.from(cosmeticTriangles, (_, t) => before?.painted[cut ? cut.triangles[t]! : t] ?? 0);
@@ -132,7 +145,9 @@ async function transferRegion(
   own.forEach((isPainted, t) => {
     if (isPainted) painted[t] = 1;
   });
-  if (output === undefined && isLast) return { done, cut, painted, before: earlier, written: undefined, zones };
+  const textures = uvBounds ? [uvBounds] : tiles.map(({ tile }) => boundsOfTile(tile));
+  const found = { done, cut, painted, before: earlier, zones, textures };
+  if (output === undefined && isLast) return { ...found, written: undefined };
   progress.step(`writing ${output ?? target}`);
   const finalOne = before?.form ?? command.compress;
   const isText = isLast && output !== undefined && /\.gltf$/i.test(output);
@@ -152,7 +167,7 @@ async function transferRegion(
   ).catch((error: unknown) => {
     throw error instanceof InputError ? error.in(target) : error;
   });
-  return { done, cut, painted, before: earlier, written, zones };
+  return { ...found, written };
 }
 
 /** Whether a triangle shows one of some paints, if there are any. */
@@ -244,7 +259,7 @@ export interface Report {
     counts: PerZone;
     triangles: { total: number; cosmetic: number };
   }[];
-  /** Whether the cage fits, and why; if it was inspected. */
+  /** Whether all of the cages fit, and why not; if they were inspected. */
   verdict?: Verdict;
   findings?: Finding[];
   /** Milliseconds of CPU time. */

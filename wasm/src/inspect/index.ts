@@ -134,7 +134,7 @@ function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
     ...checkPlacement(upright, placement),
     ...checkInside(inside),
     ...checkHoles(holes, segments),
-    ...checkSegments(scene, segments),
+    ...checkSegments(scene, segments, options.locks),
   ];
   return { scene, orientation, findings, placement, inside, holes, segments };
 

@@ -53,18 +53,23 @@ export function segmentsOf({ parts, result }: Scene): Segment[] {
 /** A segment and its number. */
 type Numbered = Segment & { s: number };
 
-/** Reports if too little is painted, if verdicts are close, if twins differ, and if much is culled. */
-export function checkSegments(scene: Scene, segments: readonly Segment[]): Finding[] {
+/** Reports if too little is painted, if verdicts are close, if twins differ, and if much is culled, unless locks say so. */
+export function checkSegments(scene: Scene, segments: readonly Segment[], locks: Locks = {}): Finding[] {
   const numbered = segments.map((segment, s) => ({ ...segment, s })).sort((a, b) => b.exposedArea - a.exposedArea);
   const exposed = numbered.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
   if (exposed === 0) return [];
   const left = checkLeft(scene, numbered);
   return [
     ...left,
-    ...checkDoubt(scene, numbered, exposed),
+    ...checkDoubt(scene, numbered.filter(isOpen), exposed),
     ...checkTwins(scene, numbered, exposed),
-    ...(left.length > 0 ? [] : checkCulled(numbered, exposed)),
+    ...(left.length > 0 ? [] : checkCulled(numbered.filter(isOpen), exposed)),
   ];
+
+  /** Whether no lock has decided on a segment. */
+  function isOpen({ s, group }: Numbered): boolean {
+    return (locks.segments?.[s] ?? locks.groups?.[group] ?? 'auto') === 'auto';
+  }
 }
 
 /** Too little is left to paint. */

@@ -108,13 +108,15 @@ export class Configuration {
 }
 
 function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
-  const all = parseObject(text);
-  refuseUnknown(all, [...settingNames, 'characters']);
+  refuseUnknown(parseObject(text), [...settingNames, 'characters']);
+  // In JavaScript, names that are numbers come first in an object.
+  const all = parseObject(text.replace(/"(\d+)"(?=\s*:)/g, '"\\u0000$1"'));
   const { characters = {} } = all;
   if (!isObject(characters)) throw new InputError('"characters" is not an object of patterns and settings');
   return {
     common: settingsOf(all, folder),
-    characters: Object.entries(characters).map(([pattern, given]) => {
+    characters: Object.entries(characters).map(([name, given]) => {
+      const pattern = name.replace('\0', '');
       try {
         if (!isObject(given)) throw new InputError('is not an object of settings');
         refuseUnknown(given, settingNames);

@@ -38,6 +38,20 @@ export function withinBounds(cage: ReadModel, bounds: UvBounds | undefined): Rea
   return { ...cage, extracted: { ...cage.extracted, mesh: { ...mesh, uvs } } };
 }
 
+/** The least bounds around some, and 0..1. */
+export const boundsAround = (all: readonly UvBounds[]): UvBounds => [
+  Math.min(0, ...all.map(([left]) => left)),
+  Math.min(0, ...all.map(([, top]) => top)),
+  Math.max(1, ...all.map(([, , right]) => right)),
+  Math.max(1, ...all.map(([, , , bottom]) => bottom)),
+];
+
+/** The bounds of a tile of UDIM. */
+export function boundsOfTile(tile: number): UvBounds {
+  const [column, row] = [(tile - 1001) % 10, Math.floor((tile - 1001) / 10)];
+  return [column, -row, column + 1, 1 - row];
+}
+
 /**
  * A cage without the triangles whose UVs a reference lacks: they were cut away from it. A triangle is lacking if the centre of its
  * UVs is on no triangle of the reference's UVs.

@@ -29,15 +29,19 @@ export async function readPaint(path: string, limits: ReadLimits): Promise<Paint
 }
 
 /** Reads the texture of each tile that a cage uses. @throws {InputError} that names the file, or the cage's triangle. */
-export async function readTiles(path: string, cage: ReadModel, limits: ReadLimits): Promise<Paint[]> {
+export async function readTiles(
+  path: string,
+  cage: ReadModel,
+  limits: ReadLimits,
+): Promise<(Paint & { tile: number })[]> {
   const tiles = tilesOf(cage);
   return Promise.all(
-    tiles.map(async (tile): Promise<Paint> => {
+    tiles.map(async (tile) => {
       const paint = await readPaint(tilePath(path, tile), limits).catch((error: unknown) => {
         const text = `${cage.file.path} uses the ${tiles.length === 1 ? 'tile' : 'tiles'} ${tiles.join(', ')}`;
         throw error instanceof InputError ? new InputError(`${error.message} (${text})`, { cause: error }) : error;
       });
-      return { ...paint, area: { tile } };
+      return { ...paint, tile };
     }),
   );
 }
