@@ -76,6 +76,19 @@ TEST_CASE("a shrunk array keeps its begin and gives back its end", "[arena]") {
   CHECK(arena.peak() == peak);
 }
 
+TEST_CASE("after a failure, nothing that was kept is in the way", "[arena]") {
+  constexpr std::size_t kUnit = std::size_t{1} << 17;
+  Arena arena(8 * kUnit);
+  (void)arena.allocate<char>(4 * kUnit);
+  const auto twoArrays = [&] {
+    arena.restart();
+    (void)arena.allocate<char>(3 * kUnit);
+    return arena.allocate<char>(5 * kUnit - 64);
+  };
+  CHECK(twoArrays() == nullptr);
+  CHECK(twoArrays() != nullptr);
+}
+
 TEST_CASE("a restarted arena has one block of what it needed before", "[arena]") {
   Arena arena;
   for (int i = 0; i < 5; ++i) (void)arena.allocate<char>(std::size_t{1} << 16);

@@ -444,6 +444,13 @@ TEST_CASE("splitting leaves one vertex where corners agree, and none where no tr
   CHECK(copied(split.sources) == std::vector<std::uint32_t>{4, 2, 1, 2, 3});
   CHECK(copied(split.indices) == std::vector<std::uint32_t>{0, 1, 2, 2, 3, 4});
   CHECK(copied(split.uvs) == std::vector<float>{0.5f, 0.5f, 0.25f, 0, 0, 1, 0.75f, 0, 1, 1});
+  // Into what it is split from: every corner by itself.
+  const std::vector<float> others{0, 0, 0, 1, 0, 2, 0, 3, 0, 4, 0, 5};
+  SplitVertices apart;
+  REQUIRE(splitVertices(split.indices, others, 5, apart).ok());
+  REQUIRE(splitVertices(split.indices, others, 5, split).ok());
+  CHECK(copied(split.sources) == copied(apart.sources));
+  CHECK(copied(split.indices) == copied(apart.indices));
   REQUIRE(splitVertices({}, {}, 6, split).ok());
   CHECK(split.sources.empty());
   CHECK(split.indices.empty());

@@ -106,7 +106,9 @@ struct Projection {
   Array<std::uint32_t> recovery;     ///< 1 per vertex, see `Recovery`, with `secondLook` or `holes`; else empty.
   Array<HoleShare> holeShares;       ///< 1 per hole and segment near it, with `holes`; ordered by hole.
   Timings timings;
-  std::uint64_t peakBytes = 0;  ///< Peak memory during the call, without the caller's inputs.
+  /// Peak memory during the call, without the caller's inputs; with gaps, which depend on earlier calls with the
+  /// workspace.
+  std::uint64_t peakBytes = 0;
 
   [[nodiscard]] ProjectionView view() const noexcept { return {zones, segments, segmentStats, recovery, holeShares}; }
 };

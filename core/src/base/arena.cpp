@@ -82,6 +82,7 @@ void Arena::shrinkTo(const std::byte* end) noexcept {
 
 void Arena::restart() noexcept {
   rewind({0, 0});
+  if (failed_) release();  // Gaps in what was kept may have been in the way.
   if (blockCount_ > 1) {
     const std::size_t all = peak_;
     release();

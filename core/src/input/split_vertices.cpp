@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "base/hash_index.hpp"
 #include "cagecast/split.hpp"
@@ -32,21 +33,23 @@ Status splitVertices(std::span<const std::uint32_t> indices, std::span<const flo
   const auto cornerCount = static_cast<std::uint32_t>(indices.size());
   auto* firstCorners = arena.allocate<std::uint32_t>(cornerCount);  // Of each new vertex.
   HashIndex known(cornerCount, arena);
-  if (arena.failed() || !out.indices.reset(cornerCount)) return {Code::outOfMemory};
+  SplitVertices made;  // The arguments may be arrays of `out`.
+  if (arena.failed() || !made.indices.reset(cornerCount)) return {Code::outOfMemory};
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < cornerCount; ++i) {
     const Corner c = corner(i);
     const std::uint32_t first =
         known.firstEqual(i, HashIndex::hash(c), [&](std::uint32_t other) { return corner(other) == c; });
     if (first == i) firstCorners[count++] = i;
-    out.indices[i] = first == i ? count - 1 : out.indices[first];
+    made.indices[i] = first == i ? count - 1 : made.indices[first];
   }
-  if (!out.sources.reset(count) || !out.uvs.reset(std::size_t{2} * count)) return {Code::outOfMemory};
+  if (!made.sources.reset(count) || !made.uvs.reset(std::size_t{2} * count)) return {Code::outOfMemory};
   for (std::uint32_t n = 0; n < count; ++n) {
     const std::size_t i = firstCorners[n];
-    out.sources[n] = indices[i];
-    std::copy_n(cornerUvs.data() + 2 * i, 2, out.uvs.data() + std::size_t{2} * n);
+    made.sources[n] = indices[i];
+    std::copy_n(cornerUvs.data() + 2 * i, 2, made.uvs.data() + std::size_t{2} * n);
   }
+  out = std::move(made);
   return {};
 }
 
