@@ -82,6 +82,11 @@ export default defineConfig({
     outDir: path.join(kRepository, 'build/web'),
     emptyOutDir: true,
     target: 'es2022',
+    // What loads later has few imports of its own; browsers that know no preloading load the same a little later.
+    modulePreload: {
+      polyfill: false,
+      resolveDependencies: (_, files, { hostType }) => (hostType === 'html' ? files : []),
+    },
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 900,
   },

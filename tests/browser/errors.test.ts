@@ -194,6 +194,16 @@ test('known files are opened and others are reported', async () => {
   );
   await page.locator('#alert-close').click();
   assert.equal(await shownError(page), '');
+  const thing = { name: 'thing.obj', mimeType: '', buffer: Buffer.from('o thing\nv 0 0 0\n') };
+  const picture = {
+    name: 'thing.png',
+    mimeType: 'image/png',
+    buffer: PNG.sync.write(new PNG({ width: 4, height: 4 })),
+  };
+  await drop(page, [thing, picture]);
+  assert.equal(await settled(page), 'error');
+  assert.match(await shownError(page), /thing\.obj: .*an OBJ file/);
+  await page.locator('#alert-close').click();
 
   const [small, large, cage] = [
     glb('cage-a.glb', glbOf(tetrahedron(), 'thing')),
@@ -209,7 +219,7 @@ test('known files are opened and others are reported', async () => {
     [
       [{ ...small, name: 'a.glb' }, cage, text, { ...small, name: 'c.glb' }],
       ['a.glb', 'cage.glb'],
-      'notes.txt and 1 more were ignored: only one target, one cage and one paint can be opened at a time.',
+      'notes.txt and 1 more were ignored: only one target, one cage and one paint can be opened at a time, as GLB, glTF, VRM or image.',
     ],
   ] as const) {
     await drop(page, [...files]);
@@ -243,6 +253,21 @@ test('folders can be dropped; empty ones and files that are too large are report
     await page.locator('#target-name', { hasText: 'head.glb' }).waitFor();
     assert.equal(await settled(page), 'ready', await shownError(page));
     assert.equal(await page.locator('#cage-name').textContent(), 'cage.glb');
+    const { cosmetic } = await shownCounts(page);
+    // Files of one name, in the folders of their models.
+    const pair = { first: glbOf(tetrahedron(9), 'thing'), second: lizard };
+    for (const [name, bytes] of Object.entries(pair)) {
+      const length = bytes.readUInt32LE(12);
+      const json = JSON.parse(bytes.subarray(20, 20 + length).toString());
+      json.buffers[0].uri = 'scene.bin';
+      await mkdir(path.join(folder, 'pair', name), { recursive: true });
+      await writeFile(path.join(folder, 'pair', name, 'scene.gltf'), JSON.stringify(json));
+      await writeFile(path.join(folder, 'pair', name, 'scene.bin'), bytes.subarray(28 + length));
+    }
+    await dropFolder('pair');
+    await page.locator('#target-name', { hasText: 'scene.gltf' }).waitFor();
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    assert.equal((await shownCounts(page)).cosmetic, cosmetic);
 
     const huge = path.join(folder, 'huge.glb');
     await writeFile(huge, '');

@@ -94,6 +94,16 @@ test('a deformed model is shown with its paint, and returns to the same pixels',
     assert.ok(difference(picture, await look(page, area)) > 0.02, `${how} is painted`);
     await page.locator('#show-paint').check({ force: true });
   }
+  // So is the cage: as it is drawn anew by a transfer.
+  await page.locator('#show-cage').check({ force: true });
+  const bent = await look(page, area);
+  for (const preset of ['paper', 'default']) {
+    await page.getByTestId('preset').selectOption(preset);
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    await page.locator('#live[aria-busy=false]').waitFor();
+  }
+  assert.ok(difference(bent, await look(page, area)) < 0.001, 'the cage is shown where it is moved to');
+  await page.locator('#show-cage').uncheck({ force: true });
   await bend(page, 0);
   assert.deepEqual(await shownCounts(page), before.counts);
   assert.equal(difference(before.picture, await look(page, area)), 0);

@@ -140,6 +140,10 @@ test('a change of the cage waits for the one before, and none reaches the cage o
   await page.locator('#view').press('Enter');
   await dragBy(page, page.locator('[data-handle=corner]'), 40, 60);
   await did('moving a corner');
+  await page.locator('[data-handle=corner]').waitFor();
+  await drop(page, [glb('other-cage.glb', asset('lizard', 'cage.glb'))]);
+  await page.locator('[data-handle=corner]').waitFor({ state: 'detached' });
+  await ready(page);
   await open();
   await page.locator('#undo:disabled').waitFor();
   await page.waitForTimeout(1000);

@@ -6,7 +6,7 @@ const kHeads: [kind: RegExp, head: string, advice: RegExp][] = [
   [/FBX/, 'Kaydara FBX Binary  \0\x1a\0', /Blender.*FBX.*glTF 2\.0/],
   [/FBX/, '; FBX 7.4.0 project file\n', /Blender/],
   [/Blender/, 'BLENDER-v279', /glTF 2\.0/],
-  [/compressed Blender/, '\x28\xb5\x2f\xfd\x00', /glTF 2\.0/],
+  [/Blender/, '\x28\xb5\x2f\xfd\x00', /glTF 2\.0/],
   [/USDZ/, 'PK\x03\x04\x0a\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x0a\0\x1c\0model.usdc', /Blender/],
   [/ZIP/, 'PK\x03\x04\x14\0\x08\0\x08\0figure.glb', /unpack/],
   [/OBJ/, '# made by hand\r\nmtllib thing.mtl\no thing\nv 0.5 -1 2\n', /Blender.*Wavefront/],

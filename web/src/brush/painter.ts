@@ -39,7 +39,11 @@ export class Painter extends LayerPainter implements PointerView {
     this.#options = options;
     this.#stack = layers.stack;
     session.on('transfer', ({ cage }) => {
-      this.setCage(hasUvs(cage.mesh) ? cage.mesh : undefined);
+      this.settle();
+      const { mesh } = cage;
+      // It is painted at rest, however it is moved with the model.
+      mesh.rest ??= mesh.positions.slice();
+      this.setCage(hasUvs(mesh) ? { ...mesh, positions: mesh.rest } : undefined);
     });
     layers.stack.on('select', (layer) => {
       const sheet = layer?.sheet;

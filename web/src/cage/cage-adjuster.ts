@@ -13,6 +13,7 @@ import {
 import { announce, element } from '../platform/page';
 import type { CageMaker } from '../scene/cage-maker';
 import type { Model } from '../scene/load-model';
+import { haveSameUvs } from '../scene/same-uvs';
 import type { Session } from '../scene/session';
 import { diagonalOf } from '../scene/surface';
 import type { RailTool, Tools } from '../view/tool-rail';
@@ -106,15 +107,15 @@ export class CageAdjuster {
       this.#place();
       this.#buttons.get('corner')?.focus();
     });
-    let { target } = session.shown ?? {};
+    let { target, cage } = session.shown ?? {};
     session.on('transfer', (shown) => {
       this.#isChanging = false;
       if (target && target !== shown.target) {
         this.#drop(); // or it would be done to the cage of this model
         tools.choose(undefined);
         history.forget((command) => command instanceof CageStep);
-      }
-      target = shown.target;
+      } else if (cage && !haveSameUvs(cage, shown.cage)) this.#drop(); // its corners are others
+      ({ target, cage } = shown);
       this.#reset();
     });
     session.on('progress', ({ state }) => {

@@ -25,7 +25,9 @@ export interface KeeperView {
   note(text: string): void;
 }
 
-const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+/** What an error says, without a full stop. */
+const messageOf = (error: unknown): string =>
+  (error instanceof Error ? error.message : String(error)).replace(/\.$/, '');
 
 /**
  * Keeps the state of the page in this browser, and brings it back. Each tab has a slot of its own; the works of the last few
@@ -111,7 +113,7 @@ export class Keeper {
     await this.save();
     const { isKept } = this;
     if (!(await this.#open(parts, files))) return false;
-    this.#leaveSlot('The project is open, and your last work is put aside.', isKept);
+    this.#leaveSlot(isKept);
     return true;
   }
 
@@ -129,7 +131,7 @@ export class Keeper {
     } finally {
       this.#opening--;
     }
-    this.#leaveSlot('Your last work is put aside.', isKept);
+    this.#leaveSlot(isKept);
   }
 
   /** Opens a state. Nothing is stored meanwhile: it would be the models that are shown with settings of those to come. */
@@ -144,19 +146,15 @@ export class Keeper {
     }
   }
 
-  /**
-   * Goes on in a new slot.
-   * @param text   What the visitor is told, who may bring back what was in the last one.
-   * @param isKept Whether that is all of the work.
-   */
-  #leaveSlot(text: string, isKept: boolean): void {
+  /** Goes on in a new slot, and offers to bring back what was in the last one. @param isKept Whether that is all of the work. */
+  #leaveSlot(isKept: boolean): void {
     const before = this.#kept && this.#slot;
     this.#moveTo(newSlot());
     void holdSlot(this.#slot, 0);
     this.#begin = this.#history.last;
     this.#kept = this.#first = undefined;
     this.#touch();
-    if (before) this.#offerBack(text, before, isKept);
+    if (before) this.#offerBack(kAside, before, isKept);
     else if (!isKept && this.#failure)
       this.#view.offer({ text: `Your last work could not be put aside: ${this.#failure}.` });
   }
@@ -195,7 +193,7 @@ export class Keeper {
 
   /** Why a work is not brought back without asking; undefined if it is. */
   #reasonToWait({ fragment }: Work): string | undefined {
-    if (flags.get('start') === 'over') return 'Your last work is put aside.';
+    if (flags.get('start') === 'over') return kAside;
     if (flags.get('work') === 'opening') return 'Your last work is kept. The page did not get to show it last time.';
     if (fragment !== location.hash && readLink(location.hash)) return 'Your last work is kept.';
     return undefined;
@@ -232,8 +230,7 @@ export class Keeper {
       this.#view.note(kKept);
       return true;
     } catch (error) {
-      const because = messageOf(error).replace(/\.$/, '');
-      this.#view.offer({ text: `Your last work could not be brought back: ${because}.` });
+      this.#view.offer({ text: `Your last work could not be brought back: ${messageOf(error)}.` });
       this.#session.fail(error);
       return false;
     } finally {
@@ -279,7 +276,7 @@ export class Keeper {
   /** Tells once that work is not kept. */
   #fail(error: unknown): void {
     const isFull = (error as Error | null)?.name === 'QuotaExceededError';
-    this.#failure = (isFull ? 'there is no room left for this page' : messageOf(error)).replace(/\.$/, '');
+    this.#failure = isFull ? 'there is no room left for this page' : messageOf(error);
     const text = `Your work is not kept on this device: ${this.#failure}. Save the project as a file before you leave.`;
     this.#view.note(text);
     if (isFull && !this.#told) showError(text);
@@ -293,6 +290,7 @@ async function firstFree(works: Work[], own: string | undefined): Promise<Work |
   return undefined;
 }
 
+const kAside = 'Your last work is put aside.';
 const kKept = 'Your work is kept on this device as you go.';
 
 const newSlot = (): string => `${Date.now().toString(36)}-${Math.random().toString(36).slice(2)}`;

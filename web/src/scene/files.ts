@@ -49,7 +49,7 @@ export function sortFiles(all: readonly File[]): Intake {
   const known = cages.length === 1 || (cages.length > 0 && rest.length > 0) || models.length === 1;
   if (known) [intake.cage, intake.target] = [cages[0], rest[0]];
   else if (models.length > 1) intake.unclear = models.slice(0, 2);
-  else if (images.length === 0) intake.target = others[0];
+  else intake.target = others.find((file) => !images.includes(file));
 
   const [one, other] = intake.unclear;
   if (one && other && cages.length > 0)
@@ -60,12 +60,15 @@ export function sortFiles(all: readonly File[]): Intake {
   const [left, ...more] = (withGltf ? models : all).filter((file) => !used.includes(file));
   if (left)
     intake.warnings.push(
-      `${left.name}${more.length > 0 ? ` and ${more.length} more were` : ' was'} ignored: only one target, one cage and one paint can be opened at a time.`,
+      `${left.name}${more.length > 0 ? ` and ${more.length} more were` : ' was'} ignored: only one target, one cage and one paint can be opened at a time, as GLB, glTF, VRM or image.`,
     );
   return intake;
 }
 
 const kMostFiles = 1000;
+
+/** Where files of dropped folders are. */
+export const paths = new WeakMap<File, string>();
 
 /** The dropped files, including those in folders. @throws Error with a message for people. */
 async function droppedFiles({ items, files }: DataTransfer): Promise<File[]> {
@@ -76,8 +79,11 @@ async function droppedFiles({ items, files }: DataTransfer): Promise<File[]> {
   const open = async (entry: FileSystemEntry): Promise<void> => {
     if (found.length >= kMostFiles)
       throw new Error(`${entries[0]!.name}: the folder contains more than ${kMostFiles} files`);
-    if (isFile(entry))
-      return void found.push(await new Promise<File>((resolve, reject) => entry.file(resolve, reject)));
+    if (isFile(entry)) {
+      const file = await new Promise<File>((resolve, reject) => entry.file(resolve, reject));
+      paths.set(file, entry.fullPath);
+      return void found.push(file);
+    }
     for (const inner of await entriesOf(entry as FileSystemDirectoryEntry)) await open(inner);
   };
   for (const entry of entries) await open(entry);

@@ -4,6 +4,7 @@ import { type AnimationClip, Group, LoadingManager, Mesh, type Object3D, type We
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { disposeAfterFrame } from '../platform/programs';
 import { type ExtractedMesh, extractMesh } from './extract-mesh';
+import { paths } from './files';
 import { readGltfHead } from './gltf-file';
 import { damageOf } from './image-damage';
 import { adviceOn, kSniffed } from './other-formats';
@@ -48,9 +49,9 @@ export async function loadModel(
     const advice = adviceOn(new Uint8Array(bytes, 0, Math.min(kSniffed, bytes.byteLength)));
     if (advice) throw new Error(advice);
     const head = readGltfHead(bytes);
-    const used = [...new Set(head.uris.map((uri) => findCompanion(uri, companions)))];
+    const used = [...new Set(head.uris.map((uri) => findCompanion(uri, companions, file)))];
     checkCost(bytes, used);
-    for (const uri of head.uris) urls.set(uri, URL.createObjectURL(findCompanion(uri, companions)));
+    for (const uri of head.uris) urls.set(uri, URL.createObjectURL(findCompanion(uri, companions, file)));
 
     const manager = new LoadingManager().setURLModifier((url) => urls.get(decodeURIComponent(url)) ?? url);
     const loader = new GLTFLoader(manager);
@@ -134,9 +135,11 @@ function checkCost(bytes: ArrayBuffer, companions: readonly File[]): void {
   }
 }
 
-function findCompanion(uri: string, companions: readonly File[]): File {
+function findCompanion(uri: string, companions: readonly File[], model: File): File {
   const name = uri.split('/').at(-1);
-  const found = companions.find((file) => file.name === name);
+  const path = paths.get(model)?.replace(/[^/]*$/, uri);
+  const found =
+    companions.find((file) => path && paths.get(file) === path) ?? companions.find((file) => file.name === name);
   if (!found) throw new Error(`the model needs the file ${uri}; choose or drop both together`);
   return found;
 }

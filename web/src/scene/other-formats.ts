@@ -16,10 +16,9 @@ const kBlender = (kind: string): string =>
 
 const kFormats: Format[] = [
   { name: 'an FBX file', begins: /^(Kaydara FBX Binary|; FBX )/, advice: kBlender('FBX') },
-  { name: 'a Blender file', begins: /^BLENDER/, advice: 'open it in Blender and choose File, Export, glTF 2.0' },
   {
-    name: 'a compressed Blender file',
-    begins: /^\(\xb5\/\xfd/,
+    name: 'a Blender file',
+    begins: /^(BLENDER|\(\xb5\/\xfd)/, // or compressed
     advice: 'open it in Blender and choose File, Export, glTF 2.0',
   },
   { name: 'a USDZ file', begins: /^PK.{28}[^/]*\.usd[ac]?/s, advice: kBlender('Universal Scene Description') },

@@ -7,7 +7,10 @@ export function showModel(session: Session, viewer: Viewer): void {
     viewer.setTarget(target, projection);
     viewer.setCage(cage);
   });
-  session.on('frame', (projection) => viewer.move(projection));
+  session.on('frame', (projection) => {
+    viewer.move(projection);
+    viewer.setCage(session.shown!.cage); // which may have been moved, too
+  });
   session.on('zones', ({ classification }) => viewer.classify(classification));
   session.on('view', (view) => viewer.setView(view));
 
