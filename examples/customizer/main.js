@@ -14,7 +14,7 @@ const [head, cage, stripes] = await Promise.all([
   new THREE.TextureLoader().loadAsync('paint-tiger.png'),
   init(),
 ]);
-Object.assign(stripes, { flipY: false, colorSpace: THREE.SRGBColorSpace }); // as in glTF, from the top
+Object.assign(stripes, { flipY: false, colorSpace: THREE.SRGBColorSpace }); // as textures of glTF are
 
 const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
 renderer.setSize(innerWidth, innerHeight);

@@ -132,6 +132,9 @@ test('borders that a configuration cuts are no matter where nothing is written',
   }
   const asked = cagecast(...check, '--borders', 'cut');
   assert.deepEqual([asked.status, /--borders cut needs -o OUT\.glb/.test(asked.stderr)], [2, true]);
+  writeFileSync(at('checks.jsonl'), JSON.stringify({ target: 'in/0.glb', cage: 'cage.glb' }));
+  const lines = cagecast('batch', '--manifest', at('checks.jsonl'), '--borders', 'cut');
+  assert.deepEqual([lines.status, /has no output/.test(lines.stdout)], [1, true]);
 });
 
 test('a manifest has a job per line, with options of its own; a wrong line is a job that fails', () => {
@@ -171,6 +174,7 @@ test('a batch that cannot be right does not begin', () => {
     [['batch'], 2, /give either TARGETS or --manifest/],
     [['batch', at('in/*.glb')], 2, /TARGETS need --cage/],
     [['batch', at('in/*.glb'), '--cage', '-', '-o', at('{name}.glb')], 2, /its jobs have no standard input/],
+    [['batch', at('in/*.glb'), '--cage', at('cage.glb'), '--region', '-=p.png'], 2, /its jobs have no standard input/],
     [['batch', at('in/*.glb'), ...cage, '--resume'], 2, /--resume needs --results/],
     [['batch', at('in/*.gltf'), ...cage], 1, /in\/\*\.gltf: no file has such a name/],
     [['batch', at('in/*.glb'), ...cage, '-o', at('same.glb')], 1, /same\.glb: is written for .* and .*; use \{name\}/],

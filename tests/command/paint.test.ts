@@ -319,6 +319,8 @@ test('--uv-bounds: the texture covers a part of the UVs, and nothing is painted 
     return [verdict, findings];
   };
   assert.deepEqual(inspected('--uv-bounds', '0.45,0.45,0.5,0.5'), inspected());
+  writeFileSync(at('beside.glb'), glbOf(uvsMoved(scene.cage, (u, v) => [u + 1.1, v])));
+  assert.match(JSON.stringify(inspected('--cage', at('beside.glb'))), /uvsOutside/);
   writeFileSync(at('four.glb'), glbOf(uvsMoved(scene.cage, (u, v) => [4 * u, 4 * v])));
   assert.deepEqual(inspected('--cage', at('four.glb'), '--uv-bounds', '0,0,4,4'), inspected());
   const bare = cagecast('transfer', target, ...cage, '--texture', at('paint.png'), '--exclude', '*', '-o', part);

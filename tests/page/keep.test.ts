@@ -247,7 +247,7 @@ test('work that gives way is not said to be put aside as a whole if there was no
   await page.locator('#error', { hasText: 'there is no room left' }).waitFor();
   const line = page.getByTestId('kept');
   await page.getByTestId('sample-select').selectOption('car');
-  await line.filter({ hasText: 'is put aside. What you did last is not in it: there is no room left' }).waitFor();
+  await line.filter({ hasText: 'is put aside. Its last changes could not be kept: there is no room left' }).waitFor();
   await page.getByRole('button', { name: 'Bring it back' }).click();
   await line.filter({ hasText: 'Your last work is back.' }).waitFor();
   assert.ok(!(await names(page)).includes('Painting 1'));
@@ -268,6 +268,10 @@ test('a tab beside one that has the latest work offers the one before', async ()
     await kept(tab);
   }
   for (const tab of tabs) await tab.close();
+  await page.waitForFunction(async () => {
+    const { held = [] } = await navigator.locks.query();
+    return held.length === 1; // their works are free
+  });
   const line = (tab: Page) => tab.getByTestId('kept');
   const latest = await visit();
   await line(latest).filter({ hasText: 'Your last work is back.' }).waitFor();

@@ -12,10 +12,10 @@ namespace {
 constexpr double kMostOutside = 0.2;
 /// A landmark that is off by more than this share of the diagonal, after the others are aligned, may be a mistake.
 constexpr double kMostOff = 0.15;
-/// It is one if without it the others are at most this share of what they all were from where a similarity puts them,
-/// on average; or without all that are off: shapes may differ, such as an animal's head from a person's.
+/// The farthest is a mistake if the residual without it is at most this share of that of all. Several are if it is at
+/// most this share without them: shapes may differ, such as an animal's head from a person's.
 constexpr double kRestOfOne = 0.5, kRestOfSeveral = 0.25;
-/// So are they if all are off by more than this share of the diagonal on average.
+/// Nothing fits if the residual of all is more than this share of the diagonal.
 constexpr double kMostApart = 0.2;
 /// Two that are off by more than this share of the diagonal together may have been exchanged.
 constexpr double kClearlyOff = 0.05;
@@ -172,10 +172,11 @@ Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Land
   const double asGiven = residual(a, b);
   if (pairs > 0 && asGiven > 0.02 * diagonal && residual(a, swapped) < 0.5 * asGiven) return otherSide(pairName);
   if (const std::string name = exchangedPair(from, to, given, diagonal); !name.empty()) return otherSide(name);
-  const std::vector<Suspect> suspects = leaveOut(a, b, kMostOff * diagonal);
-  const bool isOne = !suspects.empty() && suspects.front().rest < kRestOfOne * asGiven;
-  const bool areSeveral = !suspects.empty() && suspects.back().rest < kRestOfSeveral * asGiven;
-  if (isOne || areSeveral || asGiven > kMostApart * diagonal)
+  std::vector<Suspect> suspects = leaveOut(a, b, kMostOff * diagonal);
+  if (suspects.empty()) return {};
+  const bool areSeveral = suspects.back().rest < kRestOfSeveral * asGiven || asGiven > kMostApart * diagonal;
+  if (!areSeveral) suspects.resize(1);
+  if (areSeveral || suspects.front().rest < kRestOfOne * asGiven)
     for (const Suspect& suspect : suspects)
       if (isGiven[suspect.index])
         return {Problem::badLandmarks,

@@ -25,9 +25,9 @@ class Arena;
 class Workspace {
  public:
   /// @param limit  Maximum size of the working memory in bytes; a call that needs more ends with outOfMemory. Gaps in
-  ///   memory that is kept from other calls count, too. It is freed after such an end, so that the same call may work
-  ///   when it is repeated. `cutBorders`, and calls with a `weldTolerance`, take more besides, in proportion to the
-  ///   mesh.
+  ///   memory that is kept from other calls count, too. The call after such an end begins by freeing that memory, so
+  ///   the same call may work when it is repeated. `cutBorders`, and calls with a `weldTolerance`, take more besides,
+  ///   in proportion to the mesh.
   explicit Workspace(std::size_t limit = SIZE_MAX) noexcept : limit_(limit) {}
   Workspace(Workspace&& other) noexcept;
   Workspace& operator=(Workspace&& other) noexcept;

@@ -92,8 +92,8 @@ export function addBatchCommand(program: Command, progress: Progress): void {
 A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
 A line that is printed: target, output, status (done, failed or skipped), ms, counts, and error, verdict and findings (codes) if there are.
-With --resume, a skipped job adds no line to --results, unless the last line about its target is from another job (another
-cage, say).
+With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure, or from
+another job (another cage, say).
 A job that fails does not stop the others, and leaves what an earlier run wrote. Files are complete or not there, even if the
 batch is killed; folders that are missing are made. {name} and {dir} are for -o and --report only: cages and textures that
 differ need a manifest.
@@ -118,6 +118,7 @@ Examples:
       report,
       results,
       inspects: failOn === undefined ? undefined : true,
+      cuts: flags.borders === 'cut',
       settled: settler(command, flags),
       reading: readingOf(flags),
     };
@@ -136,7 +137,7 @@ Examples:
 /** What is wrong with the arguments together, if anything is. */
 function faultOf(
   targets: readonly string[],
-  { manifest, results, resume, cage, referenceCage, texture, output, report, borders }: BatchFlags,
+  { manifest, results, resume, cage, referenceCage, texture, region, output, report, borders }: BatchFlags,
 ): string | undefined {
   if (targets.length > 0 === (manifest !== undefined)) return 'give either TARGETS or --manifest';
   if (resume && results === undefined) return '--resume needs --results, which says what is done';
@@ -145,7 +146,8 @@ function faultOf(
   if (borders === 'cut' && output === undefined && manifest === undefined)
     return '--borders cut needs -o OUT.glb, the file for the cut target';
   if (output === standard || report === standard) return 'a batch writes files; the standard output has its lines';
-  if ([cage, referenceCage, texture, ...targets].includes(standard))
+  const ofRegions = region.flatMap((one) => [one.cage, one.texture]);
+  if ([cage, referenceCage, texture, ...ofRegions, ...targets].includes(standard))
     return 'a batch reads files; its jobs have no standard input';
   return undefined;
 }

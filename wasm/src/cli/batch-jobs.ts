@@ -27,6 +27,8 @@ export interface JobDefaults extends Omit<TransferCommand, 'target' | 'cage' | k
   /** Where the batch writes its results, if in a file. */
   results?: string | undefined;
   settled: (target: string) => Promise<Settled>;
+  /** Whether a flag asks for cut borders. */
+  cuts: boolean;
 }
 
 /** The jobs for the files that patterns name. @throws {InputError} for a pattern without files. */
@@ -107,7 +109,11 @@ const noSettings: Settled = {
 };
 
 /** A line of a manifest: its settings win over flags. @throws {InputError} that names the member. */
-async function jobLine(line: string, folder: string, { settled, output }: JobDefaults): Promise<JobNames & Settled> {
+async function jobLine(
+  line: string,
+  folder: string,
+  { settled, output, cuts }: JobDefaults,
+): Promise<JobNames & Settled> {
   const given = parseObject(line);
   refuseUnknown(given, [...paths, 'regions', 'uvBounds', ...settingNames]);
   for (const name of paths)
@@ -128,7 +134,7 @@ async function jobLine(line: string, folder: string, { settled, output }: JobDef
   const common = await settled(own.target);
   const { borders, compress, preset, keep, exclude, masks, single } = settingsOf(given, folder);
   // A configuration may say so for other commands.
-  if (borders === 'cut' && (own.output ?? output) === undefined) throw noOutput(own.target);
+  if ((borders ? borders === 'cut' : cuts) && (own.output ?? output) === undefined) throw noOutput(own.target);
   const { rules } = common;
   return {
     ...own,
@@ -172,7 +178,7 @@ const noOutput = (target: string): InputError =>
   new InputError('has no output, where its texture or its cut target would be written').in(target);
 
 /** Fills in a job's own names. `{name}` in a path is the target's name without its ending, `{dir}` its folder. */
-function jobOf({ settled: _, results: __, ...given }: JobDefaults & JobNames & Settled): Job {
+function jobOf({ settled: _, results: __, cuts: ___, ...given }: JobDefaults & JobNames & Settled): Job {
   const { target, cage, output, report } = given;
   if (cage === undefined)
     throw new InputError('has no cage; give one with --cage, or as "cage" in the manifest').in(target);

@@ -61,7 +61,7 @@ export function inspectionReport(
   { target, wholeCage, options, result }: Run,
   textures: readonly UvBounds[],
 ): InspectionReport {
-  const cage = withinBounds(wholeCage, boundsAround(textures)).extracted;
+  const cage = withinBounds(wholeCage, textures.length > 0 ? boundsAround(textures) : undefined).extracted;
   const { mesh, parts } = target;
   const areas = perZone(result.zones, vertexAreas(mesh));
   const total = areas.cosmetic + areas.occluded + areas.uncovered + areas.culled || 1;

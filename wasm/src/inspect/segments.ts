@@ -53,7 +53,7 @@ export function segmentsOf({ parts, result }: Scene): Segment[] {
 /** A segment and its number. */
 type Numbered = Segment & { s: number };
 
-/** Reports if too little is painted, if verdicts are close, if twins differ, and if much is culled, unless locks say so. */
+/** Reports if too little is painted and if twins differ; and of segments without a lock, if verdicts are close and if much is culled. */
 export function checkSegments(scene: Scene, segments: readonly Segment[], locks: Locks = {}): Finding[] {
   const numbered = segments.map((segment, s) => ({ ...segment, s })).sort((a, b) => b.exposedArea - a.exposedArea);
   const exposed = numbered.reduce((sum, { exposedArea }) => sum + exposedArea, 0);

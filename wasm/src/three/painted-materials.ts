@@ -97,7 +97,7 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
     isQuiet: true,
   };
   patches.set(material, record);
-  // If it is painted, somebody has replaced the hook, or wrapped it.
+  // Somebody has replaced or wrapped the hook that was given, or none was given yet.
   if (material.onBeforeCompile !== record.given.onBeforeCompile) unpaint(material, record.painting);
   const isPatched = record.painting;
   record.painting = painting;

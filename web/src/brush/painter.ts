@@ -10,6 +10,7 @@ import {
   StickersSheet,
 } from 'cagecast/three/paint';
 import { showError } from '../platform/page';
+import type { ExtractedMesh } from '../scene/extract-mesh';
 import type { Session, Shown } from '../scene/session';
 import type { Spot } from '../view/pick';
 import type { Viewer } from '../view/viewer';
@@ -40,10 +41,7 @@ export class Painter extends LayerPainter implements PointerView {
     this.#stack = layers.stack;
     session.on('transfer', ({ cage }) => {
       this.settle();
-      const { mesh } = cage;
-      // It is painted at rest, however it is moved with the model.
-      mesh.rest ??= mesh.positions.slice();
-      this.setCage(hasUvs(mesh) ? { ...mesh, positions: mesh.rest } : undefined);
+      this.setCage(atRest(cage.mesh));
     });
     layers.stack.on('select', (layer) => {
       const sheet = layer?.sheet;
@@ -152,7 +150,17 @@ const kCorners: readonly Spot['weights'][] = [
   [0, 0, 1],
 ];
 
-const hasUvs = (mesh: Partial<CageMesh>): mesh is CageMesh => mesh.uvs !== undefined;
+const cagesAtRest = new WeakMap<ExtractedMesh, CageMesh>();
+
+/** A cage as it is painted: at rest, however it is moved with the model. The same object for the same cage; undefined without UVs. */
+function atRest(mesh: ExtractedMesh): CageMesh | undefined {
+  const { uvs, indices } = mesh;
+  if (!uvs) return undefined;
+  const positions = (mesh.rest ??= mesh.positions.slice());
+  const cage = cagesAtRest.get(mesh) ?? { positions, indices, uvs };
+  cagesAtRest.set(mesh, cage);
+  return cage;
+}
 
 /** The UVs of a spot. */
 function uvOf(

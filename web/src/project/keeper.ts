@@ -126,7 +126,7 @@ export class Keeper {
     try {
       clearTimeout(this.#timer);
       await this.#saving;
-      if (snapshot && this.#store && this.#isWork(snapshot)) await this.#put(snapshot, this.#store);
+      if (snapshot && this.#isWork(snapshot) && this.#store) await this.#put(snapshot, this.#store);
       isKept = this.#has(snapshot);
     } finally {
       this.#opening--;
@@ -165,7 +165,7 @@ export class Keeper {
       const work = (await this.#store!.works()).find((one) => one.slot === slot);
       if (work) await this.#show(work);
     };
-    const rest = isWhole || !this.#failure ? '' : ` What you did last is not in it: ${this.#failure}.`;
+    const rest = isWhole || !this.#failure ? '' : ` Its last changes could not be kept: ${this.#failure}.`;
     this.#view.offer({ text: text + rest, action: { title: 'Bring it back', run: () => void back() } });
   }
 
@@ -184,7 +184,7 @@ export class Keeper {
     this.#since = undefined;
     if (this.#opening > 0) return;
     const snapshot = this.#project.snapshot();
-    if (!snapshot || !this.#store || !this.#isWork(snapshot)) return;
+    if (!snapshot || !this.#isWork(snapshot) || !this.#store) return;
     // A stroke that is being drawn is stored when it ends.
     if (this.#history.held) return this.#touch();
     this.#saving = this.#put(snapshot, this.#store).finally(() => (this.#saving = undefined));
@@ -203,7 +203,9 @@ export class Keeper {
     await this.save();
     const { isKept } = this;
     // What was only looked at is no work that is missed.
-    const before = this.#history.last === this.#begin ? undefined : this.#kept && this.#slot;
+    const isMissed = this.#history.last !== this.#begin;
+    const before = isMissed ? this.#kept && this.#slot : undefined;
+    const lost = isMissed && !before && !isKept && this.#failure;
     // If it takes the page down, the next one does not try by itself.
     flags.set('work', 'opening');
     try {
@@ -224,7 +226,7 @@ export class Keeper {
       flags.set('slot', work.slot);
       const { parts, work: now } = this.#project.snapshot()!;
       this.#kept = { all: JSON.stringify(parts), work: now, fragment: work.fragment };
-      const text = 'Your last work is back.';
+      const text = `Your last work is back.${lost ? ` What was here could not be kept: ${lost}.` : ''}`;
       if (before && before !== work.slot) this.#offerBack(`${text} What was here is put aside.`, before, isKept);
       else this.#view.offer({ text, action: { title: 'Start over', run: () => void this.startOver() } });
       this.#view.note(kKept);

@@ -19,6 +19,7 @@ export interface Intake {
 }
 
 const kModel = /\.(glb|gltf|vrm)$/i;
+const kForeign = /\.(obj|fbx|blend|usdz?|stl|ply|dae)$/i;
 const kProject = /\.cagecast$/i;
 const kCage = /cage/i;
 const kImage = /\.(png|jpe?g|webp)$/i;
@@ -34,7 +35,7 @@ export function modelsAmong(files: readonly File[]): { cages: File[]; targets: F
 
 /**
  * Assigns files to roles: models by their names, images as paint unless a .gltf came with them.
- * Any other file becomes the target if there is nothing else, so that the reader reports what is wrong with it.
+ * A model of another format, or any other file if there is nothing else, becomes the target, so that the reader reports what is wrong with it.
  */
 export function sortFiles(all: readonly File[]): Intake {
   const { cages, targets: rest } = modelsAmong(all);
@@ -49,7 +50,7 @@ export function sortFiles(all: readonly File[]): Intake {
   const known = cages.length === 1 || (cages.length > 0 && rest.length > 0) || models.length === 1;
   if (known) [intake.cage, intake.target] = [cages[0], rest[0]];
   else if (models.length > 1) intake.unclear = models.slice(0, 2);
-  else intake.target = others.find((file) => !images.includes(file));
+  else intake.target = others.find(({ name }) => kForeign.test(name)) ?? (images.length > 0 ? undefined : others[0]);
 
   const [one, other] = intake.unclear;
   if (one && other && cages.length > 0)
@@ -60,7 +61,7 @@ export function sortFiles(all: readonly File[]): Intake {
   const [left, ...more] = (withGltf ? models : all).filter((file) => !used.includes(file));
   if (left)
     intake.warnings.push(
-      `${left.name}${more.length > 0 ? ` and ${more.length} more were` : ' was'} ignored: only one target, one cage and one paint can be opened at a time, as GLB, glTF, VRM or image.`,
+      `${left.name}${more.length > 0 ? ` and ${more.length} more were` : ' was'} ignored: only one target, one cage and one paint can be opened at a time.`,
     );
   return intake;
 }

@@ -137,7 +137,8 @@ function checkCost(bytes: ArrayBuffer, companions: readonly File[]): void {
 
 function findCompanion(uri: string, companions: readonly File[], model: File): File {
   const name = uri.split('/').at(-1);
-  const path = paths.get(model)?.replace(/[^/]*$/, () => uri);
+  const folder = paths.get(model);
+  const path = folder && decodeURI(new URL(encodeURI(uri), `file:${encodeURI(folder)}`).pathname);
   const found =
     companions.find((file) => path && paths.get(file) === path) ?? companions.find((file) => file.name === name);
   if (!found) throw new Error(`the model needs the file ${uri}; choose or drop both together`);

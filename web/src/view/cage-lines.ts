@@ -1,11 +1,11 @@
-import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, WireframeGeometry } from 'three';
+import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments } from 'three';
 import { disposeAfterFrame } from '../platform/programs';
 import type { ExtractedMesh } from '../scene/extract-mesh';
 
 /** The cage as a wireframe; faint where the target is in front of it. */
 export class CageLines {
   readonly object = new Group();
-  readonly #lines: WireframeGeometry;
+  readonly #lines = new BufferGeometry();
   readonly #front = new LineBasicMaterial({ color: '#19b394', transparent: true, opacity: 0.85, depthWrite: false });
   readonly #behind = new LineBasicMaterial({
     color: '#19b394',
@@ -16,12 +16,21 @@ export class CageLines {
   });
 
   constructor(cage: ExtractedMesh) {
-    const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(cage.positions, 3));
-    geometry.setIndex(new BufferAttribute(cage.indices, 1));
-    this.#lines = new WireframeGeometry(geometry);
+    const { positions, indices } = cage;
+    const edges = new Map<number, [number, number]>();
+    indices.forEach((a, i) => {
+      const b = indices[i % 3 === 2 ? i - 2 : i + 1]!;
+      edges.set(Math.min(a, b) * positions.length + Math.max(a, b), [a, b]);
+    });
+    this.#lines.setAttribute('position', new BufferAttribute(positions, 3));
+    this.#lines.setIndex(new BufferAttribute(Uint32Array.from([...edges.values()].flat()), 1));
     this.object.add(new LineSegments(this.#lines, this.#behind), new LineSegments(this.#lines, this.#front));
-    for (const lines of this.object.children) lines.renderOrder = 2;
+    for (const lines of this.object.children) Object.assign(lines, { renderOrder: 2, frustumCulled: false });
+  }
+
+  /** Draws the positions of the cage as they are now. */
+  update(): void {
+    this.#lines.getAttribute('position').needsUpdate = true;
   }
 
   show(visible: boolean): void {

@@ -1,4 +1,4 @@
-import { type Intersection, type Raycaster, type SkinnedMesh, Triangle, Vector3 } from 'three';
+import { type Intersection, type Raycaster, Triangle, Vector3 } from 'three';
 import type { ExtractedMesh, Primitive } from '../scene/extract-mesh';
 
 /** A spot on the surface of the target. */
@@ -21,11 +21,7 @@ export function pick(target: ExtractedMesh, raycaster: Raycaster): Spot | undefi
   let nearest: { primitive: Primitive; hit: Intersection } | undefined;
   for (const primitive of target.primitives) {
     // Three.js keeps the bounds of an earlier pose.
-    const { boundingSphere } = primitive.mesh as Partial<SkinnedMesh>;
-    if (boundingSphere) {
-      boundingSphere.radius = Infinity;
-      Object.assign(primitive.mesh, { boundingBox: null });
-    }
+    if ('boundingSphere' in primitive.mesh) Object.assign(primitive.mesh, { boundingSphere: null, boundingBox: null });
     const [hit] = raycaster.intersectObject(primitive.mesh, false);
     if (hit && (!nearest || hit.distance < nearest.hit.distance)) nearest = { primitive, hit };
   }

@@ -9,7 +9,7 @@ export function showModel(session: Session, viewer: Viewer): void {
   });
   session.on('frame', (projection) => {
     viewer.move(projection);
-    viewer.setCage(session.shown!.cage); // which may have been moved, too
+    viewer.followCage();
   });
   session.on('zones', ({ classification }) => viewer.classify(classification));
   session.on('view', (view) => viewer.setView(view));

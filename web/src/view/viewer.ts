@@ -367,6 +367,12 @@ export class Viewer {
     this.redraw();
   }
 
+  /** Shows the cage where its vertices are now. */
+  followCage(): void {
+    this.#cage?.update();
+    this.redraw();
+  }
+
   /** Shows the cage moved; it stays where it is. */
   moveCage(matrix: Matrix4): void {
     if (!this.#cage) return;

@@ -1,4 +1,5 @@
-import { type Baked, cageTexture, fill, type Image, type Layout, type Wrap } from '../../bake/index.js';
+import { mostTexels } from '../../bake/image.js';
+import { type Baked, cageTexture, fill, type Image, type Layout, resize, type Wrap } from '../../bake/index.js';
 import { FileModel } from '../../gltf/bake/file.js';
 import { type BakeReport, bakeModel, layoutOf, type Paints, type TextureUse } from '../../gltf/bake/plan.js';
 import { takeOverlays } from '../../gltf/earlier-transfer.js';
@@ -186,7 +187,7 @@ interface ModelTexture {
   layouts: readonly Layout[];
 }
 
-/** A texture that is mirrored or clamped where UVs leave 0..1, as one that repeats. */
+/** A texture that is mirrored or clamped where UVs leave 0..1, as one that repeats. Clamped are the corners of triangles. */
 function unrolled(image: Image, layouts: readonly Layout[], wraps: readonly [Wrap, Wrap]): ModelTexture {
   let texture: ModelTexture = { image, layouts };
   for (const [k, wrap] of wraps.entries()) {
@@ -205,8 +206,11 @@ function unrolled(image: Image, layouts: readonly Layout[], wraps: readonly [Wra
   return texture;
 }
 
-/** An image and its mirror image, side by side or one above the other. */
-function withMirrorImage({ width, height, data }: Image, axis: number): Image {
+/** An image and its mirror image, side by side or one above the other; coarser if that would be too large. */
+function withMirrorImage(image: Image, axis: number): Image {
+  const most = mostTexels / 2;
+  const fits = axis === 0 ? [Math.min(image.width, most), image.height] : [image.width, Math.min(image.height, most)];
+  const { width, height, data } = resize(image, fits[0]!, fits[1]!);
   const [wide, high] = axis === 0 ? [2 * width, height] : [width, 2 * height];
   const out = new Uint8ClampedArray(4 * wide * high);
   for (let y = 0; y < high; ++y)

@@ -108,15 +108,14 @@ export class Configuration {
 }
 
 function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
-  refuseUnknown(parseObject(text), [...settingNames, 'characters']);
-  // In JavaScript, names that are numbers come first in an object.
-  const all = parseObject(text.replace(/"(\d+)"(?=\s*:)/g, '"\\u0000$1"'));
+  const all = parseObject(text);
+  refuseUnknown(all, [...settingNames, 'characters']);
   const { characters = {} } = all;
   if (!isObject(characters)) throw new InputError('"characters" is not an object of patterns and settings');
   return {
     common: settingsOf(all, folder),
-    characters: Object.entries(characters).map(([name, given]) => {
-      const pattern = name.replace('\0', '');
+    characters: inOrder(characters, text).map((pattern) => {
+      const given = characters[pattern];
       try {
         if (!isObject(given)) throw new InputError('is not an object of settings');
         refuseUnknown(given, settingNames);
@@ -126,4 +125,11 @@ function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
       }
     }),
   };
+}
+
+/** The names of the characters as they are in the file. Objects have names that are integers first; with a letter before them, they do not. */
+function inOrder(characters: object, text: string): string[] {
+  const { characters: marked = {} } = parseObject(text.replace(/"(\d+)"(?=\s*:)/g, '"n$1"'));
+  const names = Object.keys(characters);
+  return Object.keys(marked as object).map((name) => (names.includes(name) ? name : name.slice(1)));
 }

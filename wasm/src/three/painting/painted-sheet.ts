@@ -44,7 +44,7 @@ export class PaintedSheet implements Sheet {
 
   /** Copies a part of the target into the bytes and returns it. @param rect In texels. Waits for the GPU. */
   readBack(renderer: WebGLRenderer, rect: Rect): Uint8Array {
-    // Then nothing can be read, and what was painted before stays.
+    // A context that is lost gives no texels: those that were painted before stay.
     if (renderer.getContext().isContextLost()) return this.get(rect);
     const [width, height] = [rect.right - rect.left, rect.bottom - rect.top];
     const part = new Uint8Array(4 * width * height);

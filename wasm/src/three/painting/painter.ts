@@ -178,7 +178,7 @@ export class Painter {
 
   /**
    * Lets pointers paint with `tool`: those that go down where paint may be are not seen by what listens to the element otherwise, such
-   * as `OrbitControls`. The pressure of pens makes the brush smaller.
+   * as `OrbitControls`. Of several fingers on the page, the first one paints. The pressure of pens makes the brush smaller.
    * @param element  Default: the renderer's canvas.
    * @returns a function that ends it.
    */

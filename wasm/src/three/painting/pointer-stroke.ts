@@ -90,7 +90,7 @@ export class PointerStroke {
 
   /** Picks for an event, and between two of its points. */
   get #most(): number {
-    return Math.min(kMostPicks, Math.floor(kTrianglesVisited / this.view.triangles));
+    return Math.min(kMostPicks, Math.ceil(kTrianglesVisited / this.view.triangles));
   }
 
   /** Extends the stroke in a straight line. @param aim What lies under the pointer. */

@@ -7,9 +7,9 @@ export interface Drag {
 
 /** That the pointer of an event comes down where that was. */
 function downAt(event: PointerEvent): PointerEvent {
-  const { pointerId, pointerType, isPrimary, clientX, clientY } = event;
-  const which = { pointerId, pointerType, isPrimary, button: 0, buttons: 1 };
-  return new PointerEvent('pointerdown', { ...which, clientX, clientY, bubbles: true, cancelable: true });
+  const { pointerId, pointerType, isPrimary, clientX, clientY, view } = event;
+  const which = { pointerId, pointerType, isPrimary, buttons: 1 };
+  return new PointerEvent('pointerdown', { ...which, clientX, clientY, view, bubbles: true, cancelable: true });
 }
 
 /**
@@ -30,24 +30,20 @@ export function listenTo(element: HTMLElement, begin: (event: PointerEvent) => D
   };
   const down = (event: PointerEvent): void => {
     if (passesOn) return;
-    if (drag) {
-      // Nothing disturbs a pen or a mouse, such as the hand that holds the pen.
-      if (last!.pointerType !== 'touch') {
-        event.stopImmediatePropagation();
-        return;
-      }
-      finish('cancel');
-      if (event.pointerType === 'touch') {
+    if (drag && event.pointerType === 'touch') {
+      if (last!.pointerType === 'touch') {
         // Another finger: most likely the two shall turn or zoom the model. Those who turn it have not seen the first one: it comes
         // down for them where it is now.
+        finish('cancel');
         passesOn = true;
         element.dispatchEvent(downAt(last!));
         passesOn = false;
-        return;
-      }
+      } else event.stopImmediatePropagation(); // A hand on the screen does not disturb a pen or a mouse.
+      return;
     }
     // The second of two fingers does what the first one does.
     if (event.button !== 0 || !event.isPrimary) return;
+    finish('cancel');
     drag = begin(event);
     if (!drag) return;
     last = event;
