@@ -534,9 +534,7 @@ export class Viewer {
     stage.position.copy(box.getCenter(this.#place0).multiplyScalar(-scale));
     stage.add(model.scene);
     model.scene.traverse((object) => {
-      if (!(object instanceof Mesh)) return;
-      object.castShadow = object.receiveShadow = true;
-      object.frustumCulled = false; // by where a skinned mesh was at first
+      if (object instanceof Mesh) object.castShadow = object.receiveShadow = true;
     });
     this.#studio.setFloor((-size.y * scale) / 2);
     this.#points = model.mesh.positions.map((value, i) => scale * value + stage.position.getComponent(i % 3));
