@@ -1,4 +1,5 @@
 import { element, showError } from '../platform/page';
+import { paths } from './file-paths';
 
 /** The use of a file. */
 export type Role = 'target' | 'cage' | 'texture';
@@ -67,9 +68,6 @@ export function sortFiles(all: readonly File[]): Intake {
 }
 
 const kMostFiles = 1000;
-
-/** Where files of dropped folders are. */
-export const paths = new WeakMap<File, string>();
 
 /** The dropped files, including those in folders. @throws Error with a message for people. */
 async function droppedFiles({ items, files }: DataTransfer): Promise<File[]> {

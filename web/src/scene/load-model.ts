@@ -4,7 +4,7 @@ import { type AnimationClip, Group, LoadingManager, Mesh, type Object3D, type We
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { disposeAfterFrame } from '../platform/programs';
 import { type ExtractedMesh, extractMesh } from './extract-mesh';
-import { paths } from './files';
+import { paths } from './file-paths';
 import { readGltfHead } from './gltf-file';
 import { damageOf } from './image-damage';
 import { adviceOn, kSniffed } from './other-formats';
