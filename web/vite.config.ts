@@ -82,7 +82,7 @@ export default defineConfig({
     outDir: path.join(kRepository, 'build/web'),
     emptyOutDir: true,
     target: 'es2022',
-    // What loads later has few imports of its own; browsers that know no preloading load the same a little later.
+    // Only what the page begins with is preloaded; scripts that load later import little. Old browsers do without.
     modulePreload: {
       polyfill: false,
       resolveDependencies: (_, files, { hostType }) => (hostType === 'html' ? files : []),

@@ -56,7 +56,10 @@ test('settings come from the nearest file above the target; characters by name w
   // Names that are numbers have their place, too.
   writeFileSync(at('assets/heads/101.glb'), readFileSync(ada));
   set({ characters: { '*': { threshold: 0.6 } } });
-  writeFileSync(config, readFileSync(config, 'utf8').replace('}}}', '}, "101" : { "threshold": 0.3 } } }'));
+  writeFileSync(
+    config,
+    readFileSync(config, 'utf8').replace('}}}', '}, "n101": { "threshold": 0.9 }, "101" : { "threshold": 0.3 } } }'),
+  );
   assert.equal(optionsOf('inspect', at('assets/heads/101.glb')).threshold, 0.3);
   rmSync(at('assets/heads/101.glb'));
 });

@@ -455,7 +455,8 @@ export const layerScenes: Record<string, () => unknown> = {
     painter.undo();
     painter.tool = 'brush';
     // A second finger takes back what the first began; others see both come down.
-    const [fingers, penned]: number[][] = [[], []] as [number[], number[]];
+    const fingers: number[] = [];
+    const penned: number[] = [];
     const note = ({ pointerId }: PointerEvent): void => void fingers.push(pointerId);
     canvas.addEventListener('pointerdown', note);
     send('pointerdown', 24, 32, { pointerType: 'touch' });

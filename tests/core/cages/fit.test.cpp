@@ -253,7 +253,7 @@ TEST_CASE("a cage is fitted to what its landmarks are on, whatever else there is
   double most = 0;
   for (std::size_t i = 0; i < alone.size(); ++i)
     most = std::max(most, std::abs(static_cast<double>(heads.out.positions[i] - alone[i])));
-  CHECK(most < 0.1);  // The voxels are larger.
+  CHECK(most < 0.02);  // Voxels are larger around both; drawn to the pedestal's hull, or to none, it is 0.04 and more.
 }
 
 TEST_CASE("a fitted cage has the kind of its template", "[cages][fit]") {

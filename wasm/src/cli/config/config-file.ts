@@ -114,7 +114,7 @@ function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
   if (!isObject(characters)) throw new InputError('"characters" is not an object of patterns and settings');
   return {
     common: settingsOf(all, folder),
-    characters: inOrder(characters, text).map((pattern) => {
+    characters: inOrder(text).map((pattern) => {
       const given = characters[pattern];
       try {
         if (!isObject(given)) throw new InputError('is not an object of settings');
@@ -127,9 +127,8 @@ function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
   };
 }
 
-/** The names of the characters as they are in the file. Objects have names that are integers first; with a letter before them, they do not. */
-function inOrder(characters: object, text: string): string[] {
-  const { characters: marked = {} } = parseObject(text.replace(/"(\d+)"(?=\s*:)/g, '"n$1"'));
-  const names = Object.keys(characters);
-  return Object.keys(marked as object).map((name) => (names.includes(name) ? name : name.slice(1)));
+/** The names of the characters in the order of the file. Objects put integers first; with a NUL before them, they keep their place. */
+function inOrder(text: string): string[] {
+  const { characters = {} } = parseObject(text.replace(/"(\d+)"(?=\s*:)/g, '"\\u0000$1"'));
+  return Object.keys(characters as object).map((name) => name.replace('\0', ''));
 }
