@@ -109,9 +109,11 @@ test('figures dropped together get the template of the first; a stroke is on all
   );
   const pictures = () =>
     page.locator('.avatars img').evaluateAll((images) => images.map((image) => (image as HTMLImageElement).src));
-  const before = (await pictures())[0]!;
   await page.locator('#landmark-show').click();
   await page.locator('label', { hasText: 'Zones' }).click();
+  const before = (await pictures())[0]!;
+  const shown = page.getByTestId('layer-list').locator('[name=visible]').first();
+  await shown.setChecked(false, { force: true }); // so that pictures are taken again
   await page.waitForFunction(
     (before) => document.querySelector<HTMLImageElement>('.avatars img')!.src !== before,
     before,
@@ -121,6 +123,7 @@ test('figures dropped together get the template of the first; a stroke is on all
   );
   const differing = first!.filter((value, i) => Math.abs(value - second![i]!) > 24).length;
   assert.ok(differing < 100, `${differing}: the first has no landmarks in its picture, as the second has none`);
+  await shown.setChecked(true, { force: true });
   await page.locator('label', { hasText: 'Result' }).click();
   assert.deepEqual(await faults(page), []);
 
