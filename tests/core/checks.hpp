@@ -2,13 +2,13 @@
 
 #include <catch2/catch.hpp>
 
-#include <cstdlib>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "reference/reference.hpp"
 #include "scenes/scenes.hpp"
+#include "seed.hpp"
 
 /// What several tests ask.
 namespace cagecast {
@@ -48,12 +48,6 @@ inline reference::Differences requireSameAsReference(const std::string& name, co
   CHECK(found.corners == 0);
   CHECK(found.stats == 0);
   return found;
-}
-
-/// The first of the seeds that a test tries: 1, or CAGECAST_SEED.
-inline std::uint64_t firstSeed() {
-  const char* given = std::getenv("CAGECAST_SEED");
-  return given == nullptr ? 1 : std::strtoull(given, nullptr, 0);
 }
 
 /// A copy as a vector, which Catch can print and compare.

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <random>
 
 #include "checks.hpp"
 #include "gltf/gltf.hpp"
@@ -14,6 +15,11 @@ using Catch::Matchers::StartsWith;
 using Bytes = std::vector<std::uint8_t>;
 
 namespace {
+
+/// A place for a file that no other run of these tests uses.
+std::filesystem::path ownPath(const std::string& name) {
+  return std::filesystem::temp_directory_path() / (std::to_string(std::random_device{}()) + "-" + name);
+}
 
 template <typename T>
 void put(Bytes& bytes, std::initializer_list<T> values) {
@@ -325,7 +331,7 @@ TEST_CASE("a .gltf file with a data URI is read", "[gltf]") {
 }
 
 TEST_CASE("a .gltf file with a buffer beside it is read, and a missing one is named", "[gltf]") {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "cagecast-gltf-test";
+  const std::filesystem::path folder = ownPath("cagecast-gltf-test");
   std::filesystem::create_directories(folder);
   File file = triangle();
   file.buffer = R"({"byteLength":)" + std::to_string(file.bin.size()) + R"(,"uri":"beside%20it.bin"})";
@@ -565,7 +571,7 @@ TEST_CASE("what is written is read back", "[gltf]") {
   const std::string text(bytes.begin(), bytes.end());
   CHECK_THAT(text, Contains("TEXCOORD_1") && Contains("_NCZ"));
 
-  const std::string path = (std::filesystem::temp_directory_path() / "cagecast-write-test.glb").string();
+  const std::string path = ownPath("cagecast-write-test.glb").string();
   REQUIRE(gltf::write(path, content).ok());
   gltf::Model again;
   REQUIRE(gltf::read(path, again).ok());
@@ -580,7 +586,7 @@ TEST_CASE("what cannot be written is an error, and leaves no file", "[gltf]") {
   content.mesh = mesh.view();
   CHECK_THAT(gltf::write("/nowhere/at-all/out.glb", content).error,
              StartsWith("/nowhere/at-all/out.glb: cannot be written"));
-  const std::string path = (std::filesystem::temp_directory_path() / "cagecast-not-written.glb").string();
+  const std::string path = ownPath("cagecast-not-written.glb").string();
   scenes::Mesh bad = mesh;
   bad.positions[4] = std::numeric_limits<float>::infinity();
   content.mesh = bad.view();
