@@ -3,7 +3,7 @@ import { execFileSync } from 'node:child_process';
 import { before, describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import * as direct from 'cagecast';
-import { CagecastError } from 'cagecast';
+import { CagecastError, type Mesh } from 'cagecast';
 import * as slim from 'cagecast/slim';
 import {
   classify,
@@ -108,6 +108,28 @@ describe('the worker', () => {
       const expected = direct.transfer(scene.cage, { ...scene.target, positions: scaled(size) });
       assert.deepEqual(results[i]!.distances, expected.distances, `call ${i}`);
     }
+  });
+
+  test('sends no more of a buffer than the arrays that are views of it', async () => {
+    const { positions } = scene.target;
+    const asset = new ArrayBuffer(positions.byteLength + 4096);
+    new Float32Array(asset, 1024, positions.length).set(positions);
+    const target = { ...scene.target, positions: new Float32Array(asset, 1024, positions.length) };
+    const { postMessage } = Worker.prototype;
+    const sent: number[] = [];
+    Worker.prototype.postMessage = function (this: Worker, message: { args?: Mesh[] }, ...rest) {
+      if (message.args) sent.push(message.args[1]!.positions.buffer.byteLength);
+      postMessage.call(this, message, ...rest);
+    };
+    try {
+      // The first is sent at once, the second waits.
+      const results = await Promise.all([transfer(scene.cage, target), transfer(scene.cage, target)]);
+      for (const result of results) assert.deepEqual(result.uvs, direct.transfer(scene.cage, scene.target).uvs);
+    } finally {
+      Worker.prototype.postMessage = postMessage;
+    }
+    assert.deepEqual(sent, [positions.byteLength, positions.byteLength]);
+    assert.equal(asset.byteLength, positions.byteLength + 4096, 'it is left as it was');
   });
 
   test('one signal cancels all calls that wait, without a worker for each', async () => {

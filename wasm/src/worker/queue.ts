@@ -56,6 +56,7 @@ export class WorkerQueue {
   ): Promise<T> {
     return new Promise<T>((resolve, reject) => {
       if (signal?.aborted) return reject(signal.reason);
+      if (!move) args = args.map(withoutRest);
       let failure: CagecastError | undefined;
       if (this.#jobs.length > 0) {
         // It waits; what is sent later is what the arguments are now.
@@ -192,6 +193,26 @@ const unsendable = (fn: string, cause: unknown): CagecastError =>
   new CagecastError('badArgument', `${fn}: the arguments cannot be sent to the worker (${String(cause)})`, 0, {
     cause,
   });
+
+/** An argument with arrays that are small parts of their buffers as arrays of their own: to send a part sends its whole buffer. */
+function withoutRest(arg: unknown): unknown {
+  if (ArrayBuffer.isView(arg)) return isPart(arg) ? ownArray(arg) : arg;
+  if (typeof arg !== 'object' || arg === null || !Object.values(arg).some(isPart)) return arg;
+  return Object.fromEntries(
+    Object.entries(arg).map(([name, value]) => [name, isPart(value) ? ownArray(value) : value]),
+  );
+}
+
+const isPart = (value: unknown): value is ArrayBufferView<ArrayBuffer> =>
+  ArrayBuffer.isView(value) && value.buffer instanceof ArrayBuffer && value.byteLength < value.buffer.byteLength;
+
+function ownArray(array: ArrayBufferView<ArrayBuffer>): ArrayBufferView {
+  const { buffer, byteOffset, byteLength } = array;
+  const bytes = buffer.slice(byteOffset, byteOffset + byteLength);
+  // Not its constructor, which may be one of a library.
+  const kind = Object.prototype.toString.call(array).slice(8, -1) as 'Float32Array';
+  return new globalThis[kind](bytes);
+}
 
 function buffersOf(args: unknown[]): ArrayBuffer[] {
   const values = args.flatMap((arg) =>
