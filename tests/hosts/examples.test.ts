@@ -102,6 +102,7 @@ async function painted(page: Page, faults: string[]): Promise<void> {
 /** Opens an example and waits until it says that it has painted something. */
 async function open(address: string): Promise<{ page: Page; faults: string[] }> {
   const page = await browser.newPage({ viewport: { width: 256, height: 256 } });
+  page.setDefaultTimeout(120_000);
   const faults: string[] = [];
   page.on('pageerror', (error) => faults.push(String(error)));
   page.on('console', (message) => {
@@ -159,7 +160,7 @@ describe('examples, from the packed package', () => {
         await page.mouse.up();
         let both = [0, 0];
         const isDrawn = () => both[0]! > left + 20 && both[1]! > right + 20;
-        for (const end = Date.now() + 10000; !isDrawn() && Date.now() < end; ) both = await blue();
+        for (const end = Date.now() + 60_000; !isDrawn() && Date.now() < end; ) both = await blue();
         assert.ok(isDrawn(), `${left}, ${right}: ${both.join()}`);
       }
       assert.deepEqual(faults, []);
@@ -261,6 +262,32 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.equal(await page.evaluate('viewer.setAttribute("opacity", "1"); next()'), 'load');
     assert.ok(await page.isHidden('cagecast-viewer [role=alert]'));
     await page.evaluate(`viewer.removeAttribute("opacity"); viewer.setAttribute("target", "${target}"); next()`);
+  });
+
+  test('frees the pictures of what is not shown any more, and of what could not be loaded', async () => {
+    const live = await page.evaluate(`(async () => {
+      let live = 0;
+      const make = createImageBitmap;
+      const { close } = ImageBitmap.prototype;
+      globalThis.createImageBitmap = (...args) => (++live, make(...args));
+      ImageBitmap.prototype.close = function () {
+        if (this.width > 0) --live;
+        close.call(this);
+      };
+      const seen = [];
+      for (const threshold of ['0.4', 'none', '0.5', 'some', '0.6']) {
+        viewer.setAttribute('threshold', threshold);
+        const said = await next();
+        await new Promise((done) => setTimeout(done, 200));
+        seen.push(said.split(' ')[0] + ' ' + live);
+      }
+      globalThis.createImageBitmap = make;
+      ImageBitmap.prototype.close = close;
+      viewer.removeAttribute('threshold');
+      await next();
+      return seen;
+    })()`);
+    assert.deepEqual(live, ['load 0', 'error 0', 'load 0', 'error 0', 'load 0']);
   });
 
   test('stays as it is where it is moved, even if its address leads nowhere by now', async () => {

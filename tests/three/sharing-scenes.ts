@@ -198,7 +198,18 @@ export const sharingScenes: Record<string, () => unknown> = {
     const model = modelOf(white());
     const texture = red();
     draw(model);
-    const counts: Record<string, number[]> = { textures: [], transfers: [], painters: [] };
+    const counts: Record<string, number[]> = { textures: [], transfers: [], buffers: [], painters: [] };
+    let buffers = 0;
+    const gl = renderer.getContext();
+    const { createBuffer, deleteBuffer } = gl;
+    gl.createBuffer = () => {
+      ++buffers;
+      return createBuffer.call(gl);
+    };
+    gl.deleteBuffer = (buffer) => {
+      --buffers;
+      deleteBuffer.call(gl, buffer);
+    };
     const applied = applyTransfer(model, cage(), { texture });
     for (let i = 0; i < 4; ++i) {
       draw(model);
@@ -214,7 +225,9 @@ export const sharingScenes: Record<string, () => unknown> = {
       one.dispose();
       draw(model);
       counts['transfers']!.push(renderer.info.programs!.length);
+      counts['buffers']!.push(buffers);
     }
+    Object.assign(gl, { createBuffer, deleteBuffer });
     const around = cage();
     for (let i = 0; i < 3; ++i) {
       const one = applyTransfer(model, around, { texture });

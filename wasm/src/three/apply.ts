@@ -34,7 +34,7 @@ function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
   if (free === undefined)
     throw new CagecastError(
       'badArgument',
-      'cagecast/three: target has uv1, uv2 and uv3 of its own; choose the one to overwrite: options.channel',
+      'cagecast/three: target has uv1, uv2 and uv3 of its own; choose one to overwrite: options.channel',
     );
   return free;
 }
@@ -86,7 +86,7 @@ function checkMaterials(parts: readonly Part[]): void {
     if (![mesh?.material].flat().some((material) => (material as { isNodeMaterial?: true })?.isNodeMaterial)) continue;
     throw new CagecastError(
       'badOption',
-      `cagecast/three: "${name}" has a node material, which cannot show options.texture; give options.material, one of yours that can`,
+      `cagecast/three: "${name}" has a node material, which cannot show options.texture; give options.material`,
     );
   }
 }
@@ -131,6 +131,7 @@ export function* apply(
     const isReplaced = options.material ? givenChannels.get(geometry) === channel : options.texture !== undefined;
     if (mesh && isReplaced) removeOverlays(mesh);
     if (remades[p]) replace(geometry, remades[p]!);
+    else geometry.dispose(); // or the GPU buffers of what is replaced here would never be freed
     const { split } = prepared.parts[p]!;
     geometry.setAttribute(`uv${channel}`, new BufferAttribute(split.uvs.slice(), 2));
     geometry.setAttribute(zoneAttribute, new BufferAttribute(new Float32Array(split.sources.length), 1));
@@ -278,6 +279,7 @@ class Shown implements Applied {
       if (paintings.get(part.geometry) === this.#painting) paintings.delete(part.geometry);
       if (shownPaintings.get(part.geometry) === this.#painting) {
         shownPaintings.delete(part.geometry);
+        geometry.dispose(); // or the attribute's GPU buffer would never be freed
         geometry.deleteAttribute(paintAttribute);
       }
       if (!overlay) continue;

@@ -231,27 +231,38 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       const file = await fetchFile(name, address, signal);
       return { file, gltf: await readModel(this.loader, name, file) };
     };
-    const [{ file, gltf }, around, texture] = await Promise.all([
-      load('target', target!),
-      cage ? load('cage', cage).then((loaded) => loaded.gltf) : undefined,
-      paint ? loadPaint(paint, signal) : undefined,
-    ]);
-    signal.throwIfAborted();
-    const options = this.#options();
-    const check = around && this.hasAttribute('check') ? await this.#inspector(gltf, around) : undefined;
-    const onProgress = (share: number, stage: string) => this.#tell('progress', { share: 0.3 + 0.7 * share, stage });
-    const applied =
-      around && (await applyTransferAsync(gltf.scene, around.scene, { ...options, texture, signal, onProgress }));
-    if (around) disposeModel(around.scene);
-    if (signal.aborted) disposeModel(gltf.scene);
-    signal.throwIfAborted();
+    const model = load('target', target!);
+    const around = cage ? load('cage', cage) : undefined;
+    const texture = paint ? loadPaint(paint, signal) : undefined;
+    let shown: Shown;
+    let tellVerdict: (() => void) | undefined;
+    try {
+      const [{ file, gltf }, outer, paint] = await Promise.all([model, around, texture]);
+      signal.throwIfAborted();
+      const options = this.#options();
+      const check = outer && this.hasAttribute('check') ? await this.#inspector(gltf, outer.gltf) : undefined;
+      const onProgress = (share: number, stage: string) => this.#tell('progress', { share: 0.3 + 0.7 * share, stage });
+      const applied =
+        outer &&
+        (await applyTransferAsync(gltf.scene, outer.gltf.scene, { ...options, texture: paint, signal, onProgress }));
+      signal.throwIfAborted();
+      shown = { file, gltf, applied, paint };
+      if (check && applied) tellVerdict = () => this.#tell('verdict', check(applied, options));
+    } catch (error) {
+      // Of no use are what was loaded and what is still to come.
+      free(model);
+      free(texture);
+      throw error;
+    } finally {
+      free(around);
+    }
     this.#drop();
-    this.#shown = { file, gltf, applied, paint: texture };
+    this.#shown = shown;
     this.#isOutdated = false;
     this.#poster.hidden = true;
-    this.#stage!.show(gltf.scene, this.#orbit());
+    this.#stage!.show(shown.gltf.scene, this.#orbit());
     this.#setOpacity(); // It may have changed since.
-    if (check && applied) this.#tell('verdict', check(applied, options));
+    tellVerdict?.();
   }
 
   /** Reads the arrays before vertices are split. */
@@ -335,4 +346,12 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     this.#canvas.replaceWith(canvas);
     this.#canvas = canvas;
   }
+}
+
+/** Frees what is being loaded, once it is there. */
+function free(loading: Promise<Texture | { gltf: GLTF }> | undefined): void {
+  loading?.then(
+    (loaded) => ('gltf' in loaded ? disposeModel(loaded.gltf.scene) : loaded.dispose()),
+    () => {}, // has been said
+  );
 }

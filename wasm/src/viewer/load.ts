@@ -76,7 +76,7 @@ function textureOf(picture: ImageBitmap): Texture {
   return texture;
 }
 
-/** Frees the geometries, materials and textures of a model. */
+/** Frees the geometries, materials, textures and pictures of a model. */
 export function disposeModel(model: Object3D): void {
   model.traverse((child) => {
     const { geometry, material } = child as Partial<Mesh>;
@@ -86,6 +86,10 @@ export function disposeModel(model: Object3D): void {
 }
 
 function disposeMaterial(material: Material): void {
-  for (const value of Object.values(material)) if (value instanceof Texture) value.dispose();
+  for (const value of Object.values(material)) {
+    if (!(value instanceof Texture)) continue;
+    value.dispose();
+    if (value.image instanceof ImageBitmap) value.image.close();
+  }
   material.dispose();
 }
