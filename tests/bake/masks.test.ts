@@ -107,6 +107,7 @@ describe('masks', () => {
       ],
       [{ eyes: new Int8Array(vertices) }, /options\.masks\.eyes is unknown; there are: vertices, triangles/],
       [7, /options\.masks is 7, not an object/],
+      [new Map([['vertices', new Int8Array(vertices)]]), /options\.masks is .*, not an object/],
     ];
     for (const [masks, message] of cases)
       assert.throws(

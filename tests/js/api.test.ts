@@ -454,6 +454,8 @@ describe('locks', () => {
     fails({ segment: {} }, /options\.locks\.segment is unknown; there are: segments, groups$/);
     fails('keep', /options\.locks is "keep", not an object$/);
     fails({ groups: 1 }, /options\.locks\.groups is 1, not an object/);
+    fails({ groups: new Set([0]) }, /options\.locks\.groups is .*, not an object/);
+    fails(new Map([['groups', { 0: 'exclude' }]]), /options\.locks is .*, not an object/);
   });
 });
 

@@ -9,7 +9,10 @@ export * from '../support/glb.js';
 
 /** Runs the command. */
 export function cagecast(...args: string[]): { status: number | null; stdout: string; stderr: string } {
-  const { status, stdout, stderr } = spawnSync(process.execPath, ['dist/cli.js', ...args], { encoding: 'utf8' });
+  const { status, stdout, stderr } = spawnSync(process.execPath, ['dist/cli.js', ...args], {
+    encoding: 'utf8',
+    timeout: 300_000,
+  });
   return { status, stdout, stderr };
 }
 

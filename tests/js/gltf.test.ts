@@ -6,7 +6,7 @@ import { after, before, describe, test } from 'node:test';
 import { Document, NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { CagecastError, init, type Mesh, type TransferResult, transfer } from 'cagecast';
-import { cagecast as cagecastTransform } from 'cagecast/gltf';
+import { type CagecastOptions, cagecast as cagecastTransform } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { assertTransferred, cagecast, GlbMaker, glbOf, validate } from './glb.js';
 import { ball, head, modelFolders } from './scenes.js';
@@ -302,7 +302,7 @@ describe('document.transform(cagecast(…))', () => {
 
   test('unusable input is one error, and the document stays unchanged', async () => {
     const fails = async (
-      make: () => Promise<{ target?: Uint8Array; cage?: Document | Mesh; texture?: Uint8Array; threshold?: number }>,
+      make: () => Promise<Partial<CagecastOptions> & { target?: Uint8Array }>,
       code: string,
       message: RegExp,
     ) => {
@@ -351,8 +351,18 @@ describe('document.transform(cagecast(…))', () => {
     await fails(
       async () => ({ texture: paint.buffer as unknown as Uint8Array }),
       'badArgument',
-      /^cagecast: texture is of type ArrayBuffer, not a Uint8Array of a file's bytes/,
+      /^cagecast: texture is of type ArrayBuffer, not a Uint8Array$/,
     );
+    const never = { width: 1, height: 1, data: new Uint8Array(4) };
+    await fails(
+      async () => ({ maskImages: { nevr: never } as object }),
+      'badArgument',
+      /^cagecast: maskImages is .*, not \{ never, always \}/,
+    );
+    const refused = () => {
+      throw new CagecastError('badArgument', 'not for this model');
+    };
+    await fails(async () => ({ onResult: refused }), 'badArgument', /^not for this model$/);
   });
 
   test('real compressed files can be targets', {

@@ -182,6 +182,11 @@ describe('a file that demands too much', () => {
       () => checkGltf(whole, { limits: { vertices: 3 } as object }),
       /limits\.vertices = 3 .* one of bytes, nesting, instances, implied, expansion/,
     );
+    for (const otherBytes of [NaN, -1, '9999999'])
+      assert.throws(
+        () => checkGltf(whole, { otherBytes: otherBytes as number }),
+        /checkGltf: otherBytes = .* is not a number ≥ 0/,
+      );
     assert.throws(() => checkGltf('a.glb' as never), /checkGltf: bytes is "a\.glb", not a Uint8Array/);
     const target = write(instances(3), 'target.glb');
     const run = (...flags: string[]) => cagecast('transfer', target, '--cage', at('cage.glb'), ...flags);

@@ -44,3 +44,7 @@ export function show(value: unknown): string {
   if (typeof value === 'object') return `of type ${value.constructor?.name ?? 'object'}`;
   return `of type ${typeof value}`;
 }
+
+/** Whether something has its entries as fields. A map or a set would seem to have none. */
+export const isRecord = (value: unknown): value is Record<string, unknown> =>
+  typeof value === 'object' && value !== null && !(value instanceof Map) && !(value instanceof Set);

@@ -1,5 +1,5 @@
 import { Zone } from '../generated/zone.js';
-import { CagecastError, show } from './error.js';
+import { CagecastError, isRecord, show } from './error.js';
 import { count } from './mesh.js';
 import type { Classification } from './result.js';
 import { plainArray, showArray } from './typed-arrays.js';
@@ -25,7 +25,7 @@ export interface Masks {
 export function checkMasks(fn: string, masks: unknown): Masks | undefined {
   if (masks === undefined) return undefined;
   const wrong = (text: string, at = 0) => new CagecastError('badOption', `${fn}: options.masks${text}`, at);
-  if (typeof masks !== 'object' || masks === null) throw wrong(` is ${show(masks)}, not an object`);
+  if (!isRecord(masks)) throw wrong(` is ${show(masks)}, not an object`);
   const out: Masks = {};
   for (const [field, value] of Object.entries(masks)) {
     if (field !== 'vertices' && field !== 'triangles')

@@ -7,7 +7,7 @@ import {
   type ProjectStage,
   type ProjectSteps,
 } from '../generated/options.js';
-import { CagecastError, show } from './error.js';
+import { CagecastError, isRecord, show } from './error.js';
 import { checkMasks, type Masks } from './masks.js';
 
 /**
@@ -155,8 +155,7 @@ export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'de
 }
 
 function checkNames(fn: string, where: string, given: unknown = {}, known: readonly string[]): Record<string, unknown> {
-  if (typeof given !== 'object' || given === null)
-    throw new CagecastError('badOption', `${fn}: ${where} is ${show(given)}, not an object`);
+  if (!isRecord(given)) throw new CagecastError('badOption', `${fn}: ${where} is ${show(given)}, not an object`);
   const unknown = Object.keys(given).find((name) => !known.includes(name));
   if (unknown !== undefined)
     throw new CagecastError('badOption', `${fn}: ${where}.${unknown} is not an option; there are: ${known.join(', ')}`);
@@ -181,13 +180,12 @@ function checkValue(fn: string, where: string, name: OptionName, value: unknown)
 
 function checkLocks(fn: string, locks: unknown = {}): CoreLocks {
   const wrong = (text: string) => new CagecastError('badOption', `${fn}: options.locks${text}`);
-  if (typeof locks !== 'object' || locks === null) throw wrong(` is ${show(locks)}, not an object`);
+  if (!isRecord(locks)) throw wrong(` is ${show(locks)}, not an object`);
   const out: CoreLocks = { segments: [], groups: [] };
   for (const [field, entries] of Object.entries(locks)) {
     if (field !== 'segments' && field !== 'groups') throw wrong(`.${field} is unknown; there are: segments, groups`);
     if (entries === undefined) continue;
-    if (typeof entries !== 'object' || entries === null || entries instanceof Map)
-      throw wrong(`.${field} is ${show(entries)}, not an object of numbers and locks`);
+    if (!isRecord(entries)) throw wrong(`.${field} is ${show(entries)}, not an object of numbers and locks`);
     out[field] = Object.entries(entries).map(([id, lock]) => {
       // Segments and groups have 32-bit numbers.
       if (!/^(0|[1-9][0-9]*)$/.test(id) || Number(id) >= 2 ** 32)

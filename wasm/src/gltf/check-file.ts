@@ -29,6 +29,8 @@ export function checkGltf(bytes: Uint8Array, { limits, otherBytes = 0 }: CheckOp
       throw wrong(
         `limits.${name} = ${show(value)} is not a number ≥ 0 of one of ${Object.keys(defaultLimits).join(', ')}`,
       );
+  if (typeof otherBytes !== 'number' || !(otherBytes >= 0))
+    throw wrong(`otherBytes = ${show(otherBytes)} is not a number ≥ 0`);
   const all = { ...defaultLimits, ...limits };
   try {
     const { json, binary } = parseGltf(bytes, all);

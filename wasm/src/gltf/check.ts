@@ -183,7 +183,7 @@ function checkMeshes({ bufferViews = [], accessors = [], meshes = [], materials 
       const draco = dracoOf(primitive);
       if (draco === undefined) return;
       if (typeof draco?.attributes !== 'object' || draco.attributes === null)
-        throw new InputError(`${name} is compressed, but has no compressed attributes`);
+        throw new InputError(`${name} (compressed) has no attributes`);
       index(`${name} (compressed).bufferView`, draco.bufferView, bufferViews.length, 'bufferViews');
     });
   });

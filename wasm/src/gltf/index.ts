@@ -48,7 +48,10 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
    * then cut (`cut`): smooth borders, but more triangles.
    */
   borders?: Borders | undefined;
-  /** Called with the result, and with the parts of the document in the order of the result's arrays. */
+  /**
+   * Called with the result, and with the parts of the document in the order of the result's arrays, before the document is changed:
+   * if it throws, the document stays as it was.
+   */
   onResult?: ((result: TransferResult, parts: PartRange[]) => void) | undefined;
 }
 
@@ -77,7 +80,6 @@ export function cagecast(options: CagecastOptions): Transform {
   return async function cagecast(document: Document): Promise<void> {
     const cuts = isCut('cagecast', borders);
     const { target, result, cut, paint } = await transferDocument('cagecast', document, own, cuts);
-    addTransfer(document, target, result, paint, cut);
     onResult?.(
       result,
       target.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({
@@ -88,5 +90,6 @@ export function cagecast(options: CagecastOptions): Transform {
         triangleCount,
       })),
     );
+    addTransfer(document, target, result, paint, cut);
   };
 }

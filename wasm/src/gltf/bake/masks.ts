@@ -29,7 +29,8 @@ export function masksOf<Material, Texture>(
 ): Masks | undefined {
   const { parts } = model;
   const last = parts.at(-1);
-  if (!last || (!images?.never && !images?.always && colors === undefined)) return given;
+  const shown = images?.never || images?.always ? images : undefined;
+  if (!last || (!shown && colors === undefined)) return given;
   const vertices = new Int8Array(last.firstVertex + last.vertexCount);
   const triangles = new Int8Array(last.firstTriangle + last.triangleCount);
   let [hasUvs, hasColors] = [false, false];
@@ -41,15 +42,14 @@ export function masksOf<Material, Texture>(
     }
     const material = model.materialOf(part);
     const use = material === undefined ? undefined : model.useOf(material, 'color');
-    const stored = images && model.uvsOf(part, use?.set ?? 'TEXCOORD_0');
+    const stored = shown && model.uvsOf(part, use?.set ?? 'TEXCOORD_0');
     if (!stored) continue;
     hasUvs = true;
     const uvs = use?.transform ? transformUvs(stored, use.transform) : stored;
-    triangles.set(maskTriangles({ indices: part.localIndices, uvs }, images), part.firstTriangle);
+    triangles.set(maskTriangles({ indices: part.localIndices, uvs }, shown), part.firstTriangle);
   }
-  if (colors !== undefined && !hasColors)
-    throw new InputError(`no part has ${colors} of 3 or 4 numbers, the colours that say where it is masked`);
-  if (images && !hasUvs) throw new InputError('no part has UVs, by which a mask could be laid on it');
+  if (colors !== undefined && !hasColors) throw new InputError(`no part has ${colors} of 3 or 4 numbers`);
+  if (shown && !hasUvs) throw new InputError('no part has UVs for a mask');
   return { vertices: over(given?.vertices, vertices), triangles: over(given?.triangles, triangles) };
 }
 

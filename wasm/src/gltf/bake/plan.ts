@@ -297,9 +297,6 @@ function unusable(layouts: readonly Layout[], texels: number): string | undefine
 /** Checks paints. @throws {CagecastError} `badArgument` */
 export function checkPaints(fn: string, paints: unknown): Paints {
   if (typeof paints !== 'object' || paints === null || !slots.some((slot) => (paints as Paints)[slot]))
-    throw new CagecastError(
-      'badArgument',
-      `${fn}: paints has none of ${slots.join(', ')}; each is an image in the cage's UVs`,
-    );
+    throw new CagecastError('badArgument', `${fn}: paints has none of ${slots.join(', ')}`);
   return paints as Paints;
 }

@@ -47,8 +47,9 @@ export async function transferDocument(
   const wrong = (argument: string, value: unknown, type: string) =>
     new CagecastError('badArgument', `${caller}: ${argument} is ${show(value)}, not ${type}`);
   if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'a document or a mesh');
-  if (texture !== undefined && !(texture instanceof Uint8Array))
-    throw wrong('texture', texture, "a Uint8Array of a file's bytes");
+  if (texture !== undefined && !(texture instanceof Uint8Array)) throw wrong('texture', texture, 'a Uint8Array');
+  if (Object.keys(maskImages ?? {}).some((name) => name !== 'never' && name !== 'always'))
+    throw wrong('maskImages', maskImages, '{ never, always }');
   await init();
   const paint = texture && within(caller, 'texture', () => paintOf(texture));
   const source = 'getRoot' in cage ? within(caller, 'cage', () => extractDocument(cage).mesh) : cage;
