@@ -1,8 +1,9 @@
 import { CagecastError, show } from '../api/error.js';
-import { checkMesh } from '../api/mesh.js';
+import { checkMesh, count } from '../api/mesh.js';
+import { plainArray } from '../api/typed-arrays.js';
 import { type EnumValue, namesOf } from '../core/module.js';
 import type { CagesModule, CoreLandmark, CoreModel, CoreOptions, CoreTemplate } from './module.js';
-import type { CageModel, Landmarks, Template } from './types.js';
+import type { CageModel, Holes, Landmarks, Template } from './types.js';
 
 const wrong = (fn: string, text: string) => new CagecastError('badArgument', `${fn}: ${text}`);
 
@@ -15,14 +16,18 @@ const isPosition = (value: unknown): value is [number, number, number] =>
  */
 export function checkModel(fn: string, model: unknown): CoreModel {
   const mesh = checkMesh(fn, 'model', model);
-  const { parts = [], joints = [], marks = new Uint8Array(0) } = model as CageModel;
+  const { parts = [], joints = [], marks } = model as CageModel;
   const bad = (field: string, value: unknown, type: string) =>
     wrong(fn, `model.${field} is ${show(value)}, not ${type}`);
   if (!Array.isArray(joints)) throw bad('joints', joints, 'an array of joints { name, position, parent }');
-  if (!(marks instanceof Uint8Array)) throw bad('marks', marks, 'a Uint8Array');
+  const plainMarks = plainArray(marks, 'Uint8Array');
+  if (marks !== undefined && !plainMarks) throw bad('marks', marks, 'a Uint8Array');
+  // An array that was moved to a worker is empty, which C++ would take for "no marks".
+  if (plainMarks?.length === 0 && mesh.indices.length > 0)
+    throw wrong(fn, `model.marks has 0 numbers, not 1 for each of ${count(mesh.indices.length / 3, 'triangle')}`);
   return {
     mesh,
-    marks,
+    marks: plainMarks ?? new Uint8Array(0),
     parts: checkParts(fn, 'model.parts', parts),
     joints: joints.map((joint, j) => {
       if (typeof joint?.name !== 'string') throw bad(`joints[${j}].name`, joint?.name, 'a name');
@@ -61,15 +66,33 @@ export function checkCage(fn: string, name: 'cage' | 'template', cage: unknown) 
   return mesh;
 }
 
-/** Checks the types of a template. @throws {CagecastError} `badArgument`, `missingUvs` */
-export function checkTemplate(fn: string, module: CagesModule, template: unknown): CoreTemplate {
-  const mesh = checkCage(fn, 'template', template);
+/** Checks the types of a cage that may have landmarks and a kind. @throws {CagecastError} `badArgument`, `missingUvs` */
+export function checkTemplate(
+  fn: string,
+  name: 'cage' | 'template',
+  module: CagesModule,
+  template: unknown,
+): CoreTemplate {
+  const mesh = checkCage(fn, name, template);
   const { landmarks, kind = 'automatic' } = template as Template;
   return {
     mesh,
-    landmarks: checkLandmarks(fn, 'template.landmarks', landmarks),
-    kind: kindOf(module, kind, (kinds) => wrong(fn, `template.kind is ${show(kind)}, not one of ${kinds}`)),
+    landmarks: checkLandmarks(fn, `${name}.landmarks`, landmarks),
+    kind: kindOf(module, kind, (kinds) => wrong(fn, `${name}.kind is ${show(kind)}, not one of ${kinds}`)),
   };
+}
+
+/** Checks the types of a cage's holes. @returns copies. @throws {CagecastError} `badArgument` */
+export function checkHoles(fn: string, argument: string, holes: unknown = {}): Holes {
+  if (typeof holes !== 'object' || holes === null)
+    throw wrong(fn, `${argument} is ${show(holes)}, not an object of names and vertices`);
+  return Object.fromEntries(
+    Object.entries(holes).map(([name, vertices]: [string, unknown]) => {
+      if (!Array.isArray(vertices))
+        throw wrong(fn, `${argument}.${name} is ${show(vertices)}, not an array of vertices`);
+      return [name, [...vertices]];
+    }),
+  );
 }
 
 /** The value in C++ of a kind. @param bad  Makes the error from the names that there are. */
@@ -87,7 +110,7 @@ export function checkLandmarks(fn: string, argument: string, landmarks: unknown)
   return Object.entries(landmarks as Landmarks).map(([name, position]) => {
     if (!isPosition(position))
       throw wrong(fn, `${argument}.${name} is ${show(position)}, not 3 finite numbers [x, y, z]`);
-    return { name, position, confidence: 1 };
+    return { name, position: [...position], confidence: 1 };
   });
 }
 

@@ -1,4 +1,6 @@
-import type { Cage } from './types.js';
+import { show } from '../api/error.js';
+import { CagecastError } from '../index.js';
+import type { Cage, Template } from './types.js';
 
 /** What a GLB's node has in its `extras` if its mesh is a cage, as `cageGlb` writes it: docs/cages.md describes the format. */
 export interface CageExtras {
@@ -10,18 +12,24 @@ export interface CageExtras {
 /**
  * Writes a cage as a GLB file: one node named `cage`, with landmarks, holes and kind in its `extras`. So it is a template for fits.
  * @param cage  `landmarks`, `holes` and `kind` may be missing.
+ * @throws {CagecastError} `badArgument` if positions, UVs or indices are no typed arrays.
  */
 export function cageGlb(
-  cage: Pick<Cage, 'positions' | 'uvs' | 'indices'> & Partial<CageExtras>,
+  cage: Pick<Template, 'positions' | 'uvs' | 'indices'> & Partial<CageExtras>,
 ): Uint8Array<ArrayBuffer> {
   const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
+  for (const [name, array] of Object.entries({ positions, uvs }))
+    if (!(array instanceof Float32Array))
+      throw new CagecastError('badArgument', `cageGlb: cage.${name} is ${show(array)}, not a Float32Array`);
+  if (!ArrayBuffer.isView(indices))
+    throw new CagecastError('badArgument', `cageGlb: cage.indices is ${show(indices)}, not a Uint32Array`);
   const min = [Infinity, Infinity, Infinity];
   const max = [-Infinity, -Infinity, -Infinity];
   positions.forEach((x, i) => {
     min[i % 3] = Math.min(min[i % 3]!, x);
     max[i % 3] = Math.max(max[i % 3]!, x);
   });
-  const arrays = [positions, uvs, indices];
+  const arrays = [positions, uvs, indices instanceof Uint32Array ? indices : Uint32Array.from(indices)];
   let end = 0;
   const bufferViews = arrays.map(({ byteLength }, a) => {
     const byteOffset = end;

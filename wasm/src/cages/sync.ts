@@ -12,7 +12,7 @@ import { instantiate, isLackOfMemory, unsupported } from '../core/instantiate.js
 import { nameOf } from '../core/module.js';
 import { compileFile } from '../core/read-file.js';
 import {
-  checkCage,
+  checkHoles,
   checkLandmarks,
   checkModel,
   checkOptions,
@@ -20,7 +20,7 @@ import {
   checkPatterns,
   checkTemplate,
 } from './check.js';
-import type { CageAnswer, CagesAnswer, CagesModule, CoreLandmark, CoreOptions } from './module.js';
+import type { CageAnswer, CagesAnswer, CagesModule, CoreLandmark, CoreOptions, CoreTemplate } from './module.js';
 import type {
   Cage,
   CageModel,
@@ -82,19 +82,20 @@ export function fitCage(
   landmarks?: Landmarks,
   options: FitOptions & SyncOptions = {},
 ): Fit {
+  const holes = checkHoles('fitCage', 'template.holes', template?.holes);
   return call(options, {
     fn: 'fitCage',
     defaults: 'fitOptions',
     run: (module, core, report) =>
       module.fitCage(
-        checkTemplate('fitCage', module, template),
+        checkTemplate('fitCage', 'template', module, template),
         checkModel('fitCage', model),
         checkLandmarks('fitCage', 'landmarks', landmarks),
         core,
         report,
       ),
     result: (answer, module) => ({
-      cage: cageOf(module, answer, template.holes),
+      cage: cageOf(module, answer, holes),
       used: landmarksOf(answer.landmarks),
       confidence: confidenceOf(answer.landmarks),
       missing: answer.missing,
@@ -123,14 +124,21 @@ export function refineCage(
   model: CageModel,
   options: RefineOptions & SyncOptions = {},
 ): Cage {
-  const { landmarks, holes, kind = 'automatic' } = (cage ?? {}) as Partial<Template>;
+  const holes = checkHoles('refineCage', 'cage.holes', (cage as Partial<Template> | undefined)?.holes);
+  let given: CoreTemplate;
   return call(options, {
     fn: 'refineCage',
     defaults: 'refineOptions',
-    run: (module, core, report) =>
-      module.refineCage(checkCage('refineCage', 'cage', cage), checkModel('refineCage', model), core, report),
+    run: (module, core, report) => {
+      given = checkTemplate('refineCage', 'cage', module, cage);
+      return module.refineCage(given.mesh, checkModel('refineCage', model), core, report);
+    },
     // Landmarks are spots of the model, which does not move.
-    result: (answer, module) => ({ ...cageOf(module, answer, holes), landmarks: { ...landmarks }, kind }),
+    result: (answer, module) => ({
+      ...cageOf(module, answer, holes),
+      landmarks: landmarksOf(given.landmarks),
+      kind: kindOf(module, given.kind),
+    }),
   });
 }
 
