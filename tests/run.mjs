@@ -8,6 +8,7 @@ import { availableParallelism } from 'node:os';
 import { fileURLToPath } from 'node:url';
 
 const root = fileURLToPath(new URL('..', import.meta.url));
+const kMostPerFile = 20 * 60_000; // milliseconds, until a file of tests counts as one that hangs
 const kSuites = ['lint', 'core', 'package', 'browser', 'lanes'];
 
 const phases = [];
@@ -23,7 +24,7 @@ async function timed(name, work) {
 }
 
 /** Runs a command and shows its output, all at once where others run at the same time. */
-function run(program, args, { env = {}, atOnce = false } = {}) {
+function run(program, args, { env = {}, atOnce = false, timeout } = {}) {
   const title = `\n$ ${[program, ...args].join(' ')}\n`;
   if (!atOnce) process.stdout.write(title);
   return new Promise((resolve, reject) => {
@@ -31,6 +32,8 @@ function run(program, args, { env = {}, atOnce = false } = {}) {
       cwd: root,
       env: { ...process.env, ...env },
       stdio: ['ignore', 'pipe', 'pipe'],
+      timeout,
+      killSignal: 'SIGKILL',
     });
     let output = '';
     for (const stream of [child.stdout, child.stderr]) {
@@ -130,7 +133,7 @@ async function testFolders(folders, env) {
     for (let file = waiting.shift(); file; file = waiting.shift()) {
       const began = Date.now();
       const args = ['--import', 'tsx', '--test-reporter=spec', '--test-reporter-destination=stdout', file];
-      const { status, output } = await run(process.execPath, args, { env, atOnce: true });
+      const { status, output } = await run(process.execPath, args, { env, atOnce: true, timeout: kMostPerFile });
       durations[file] = (Date.now() - began) / 1000;
       const count = (word) => Number(new RegExp(`^ℹ ${word} (\\d+)`, 'm').exec(output)?.[1] ?? 0);
       const all = counts[folders.find((folder) => file.startsWith(`${folder}/`))];

@@ -242,7 +242,7 @@ test('a click copies the link; own files have no link, and the page says why', a
 test('the three.js code has the current options', async () => {
   const { page } = await site.visit();
   const code = page.getByTestId('code');
-  assert.match((await code.textContent())!, /applyTransfer\(target\.scene, cage\.scene, \{ texture \}\)/);
+  await page.locator('#code', { hasText: 'applyTransfer(target.scene, cage.scene, { texture })' }).waitFor();
   await setThreshold(page, 0.8);
   await page.getByTestId('preset').selectOption('paper');
   await settled(page);

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { columns, difference, frames, look, modelArea, shareOfHue, watch } from '../support/picture';
-import { Site, setThreshold, shownCounts, shownError, type Visit } from '../support/site';
+import { Site, setThreshold, settled, shownCounts, shownError, type Visit } from '../support/site';
 
 const kFrames = 30; // in which whatever moves does
 
@@ -29,6 +29,12 @@ test('the page opens with the first sample, without complaints or requests to ot
 
 test('the page retimes the transfer once the browser has compiled it, and keeps the first time', async () => {
   const { page } = visit;
+  // What takes 0.2 s is not retimed; compiled, it takes less.
+  for (let i = 0; i < 10 && Number(await page.getByTestId('time-total').textContent()) >= 200; i++)
+    for (const preset of ['paper', 'default']) {
+      await page.getByTestId('preset').selectOption(preset);
+      assert.equal(await settled(page), 'ready', await shownError(page));
+    }
   // Shown only where it was much longer.
   const first = page.locator('#time-first').filter({ hasText: /^[\d.]+ ms the first time/ });
   await first.waitFor({ state: 'attached' });
@@ -173,6 +179,7 @@ test('the content security policy forbids other hosts, inline scripts and eval',
 
 test('the model turns by itself until it is touched, but not with reduced motion', async () => {
   const moving = await site.visit({ reducedMotion: 'no-preference', viewport: { width: 800, height: 700 } });
+  await moving.page.locator('#poster').waitFor({ state: 'detached' });
   const area = await modelArea(moving.page);
   const first = await look(moving.page, area);
   await watch(moving.page, area, (picture) => difference(first, picture) > 0.01);

@@ -57,9 +57,10 @@ test('200 jobs, five of them broken, killed in the middle and resumed: every goo
   const args = ['batch', at('in/*.glb'), '--cage', at('cage.glb'), '-o', at('out/{name}.glb'), '--results', results];
   const first = spawn(process.execPath, ['dist/cli.js', ...args, '--workers', '2'], { stdio: 'ignore' });
   const written = () => (existsSync(results) ? readFileSync(results, 'utf8').split('\n').length - 1 : 0);
-  while (written() < 30) await new Promise((resolve) => setTimeout(resolve, 5));
+  const ended = once(first, 'exit');
+  while (written() < 30 && first.exitCode === null) await new Promise((resolve) => setTimeout(resolve, 5));
   first.kill('SIGKILL');
-  await once(first, 'exit');
+  await ended;
   const doneBefore = linesOf(readFileSync(results, 'utf8').replace(/[^\n]*$/, '')).length;
   assert.ok(doneBefore < 190, `${doneBefore} jobs were done before it was killed`);
   writeFileSync(results, '{"target":"cut o', { flag: 'a' }); // as if killed within a line

@@ -241,7 +241,8 @@ try {
     console.log(`${name.padEnd(30)} ${line}`);
   }
 } finally {
-  rmSync(scenes, { recursive: true, force: true });
+  // Chromium's processes may still be ending.
+  rmSync(scenes, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
 }
 console.log(`lanes with equal hashes: ${equal}, with others: ${failed}`);
 process.exit(failed === 0 && equal > 0 ? 0 : 1);

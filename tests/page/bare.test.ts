@@ -43,7 +43,8 @@ const markedCount = async (page: Page): Promise<number> =>
 
 /** Waits until the cage has followed the marks. */
 async function followed(page: Page): Promise<void> {
-  await page.waitForTimeout(1500); // longer than the page waits before it makes the cage again
+  // Longer than the page waits before it makes the cage again, by the page's own clock: its earlier timers have run by then.
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 1500)));
   await ready(page);
 }
 

@@ -33,7 +33,8 @@ test('a first visit is offered a way of four steps, which the keyboard can walk,
 
   await page.reload();
   await settled(page);
-  await page.waitForTimeout(200);
+  assert.equal(await page.evaluate(() => localStorage.getItem('cagecast-guide')), 'seen');
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 1500)));
   assert.equal(await guide.count(), 0);
   await page.locator('#about summary').click();
   await page.getByTestId('show-guide').click();

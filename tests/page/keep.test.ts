@@ -325,7 +325,16 @@ test('the work is back after a reload, too, when a link to it is in the address'
   await kept(page);
   await page.getByTestId('share-link').click();
   await page.locator('#copy-note', { hasText: 'copied' }).waitFor();
-  await page.waitForTimeout(2000); // until the page would keep what was changed
+  const isKept = `new Promise((done) => {
+    indexedDB.open('cagecast').onsuccess = ({ target: { result } }) => {
+      result.transaction('works').objectStore('works').getAll().onsuccess = ({ target }) => {
+        result.close();
+        done(location.hash !== '' && target.result.some(({ fragment }) => fragment === location.hash));
+      };
+    };
+  })`;
+  for (const end = Date.now() + 60_000; !(await page.evaluate(isKept)); await page.waitForTimeout(100))
+    assert.ok(Date.now() < end, 'the link is not kept');
   await page.reload();
   await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
   assert.ok((await names(page)).includes('Painting 1'));
@@ -399,7 +408,7 @@ test('where there is no room, that is said once, and leaving asks', async () => 
   assert.equal(await warns(page), true);
   await page.locator('#alert-close').click();
   await page.getByTestId('add-painting').click();
-  await page.waitForTimeout(1500); // longer than the page waits before it tries again
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 1500))); // longer than it waits before it tries again
   assert.equal(await shownError(page), '');
   assert.match((await page.getByTestId('kept-note').textContent())!, /is not kept on this device/);
   await saved(page, 'save-project');
@@ -433,7 +442,7 @@ test('the works of open tabs are kept however many there are, and a work whose f
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
   const filesOf = (name: string): string => `${name}-cage.glb ${name}.glb`;
   const waitFor = async (page: Page, ...wanted: string[]): Promise<void> => {
-    for (const end = Date.now() + 20_000; ; await page.waitForTimeout(200)) {
+    for (const end = Date.now() + 60_000; ; await page.waitForTimeout(200)) {
       const found = await keptFiles(page);
       if (wanted.map(filesOf).join() === found.join()) return;
       if (Date.now() > end) assert.deepEqual(found, wanted.map(filesOf));
@@ -453,6 +462,7 @@ test('the works of open tabs are kept however many there are, and a work whose f
     await waitFor(tab, ...all.slice(0, at + 1));
   }
   for (const tab of others) await tab.close();
+  await page.waitForFunction(async () => ((await navigator.locks.query()).held ?? []).length === 1);
   await page.bringToFront();
   await page.getByTestId('threshold').fill('0.6');
   await waitFor(page, 'a', 'c', 'd');

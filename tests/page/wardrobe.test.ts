@@ -302,11 +302,11 @@ test('an avatar that leaves the stage, and one that is just being painted, follo
   await avatars(page, 1);
   await drop(page, [model('two'), cage]);
   await avatars(page, 2);
+  await page.evaluate('window.asked = []');
   await page.locator('.avatars .avatar').nth(1).click();
   await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'two' }).waitFor();
   assert.equal(await settled(page), 'ready', await shownError(page));
-  await page.waitForTimeout(1000);
-  await page.evaluate('window.asked = []');
+  await asked('default', 2); // of the one that comes, and of the one that now stands beside it
   await page.getByTestId('preset').selectOption('paper');
   await asked('paper', 2); // of both
   await page.locator('.avatars .avatar').nth(0).click();
