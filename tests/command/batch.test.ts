@@ -58,7 +58,8 @@ test('200 jobs, five of them broken, killed in the middle and resumed: every goo
   const first = spawn(process.execPath, ['dist/cli.js', ...args, '--workers', '2'], { stdio: 'ignore' });
   const written = () => (existsSync(results) ? readFileSync(results, 'utf8').split('\n').length - 1 : 0);
   const ended = once(first, 'exit');
-  while (written() < 30 && first.exitCode === null) await new Promise((resolve) => setTimeout(resolve, 5));
+  while (written() < 30 && first.exitCode === null && first.signalCode === null)
+    await new Promise((resolve) => setTimeout(resolve, 5));
   first.kill('SIGKILL');
   await ended;
   const doneBefore = linesOf(readFileSync(results, 'utf8').replace(/[^\n]*$/, '')).length;

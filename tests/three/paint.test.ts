@@ -278,6 +278,15 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
       assert.deepEqual(new Set(counts).size, 1, `${what}: ${counts}`);
   });
 
+  test('meshes elsewhere with the same vertices, and overlays, are drawn whatever is done to the model', async () => {
+    const found = await run<{ counts: number[]; splits: number; overlaid: boolean }[]>('sharedVertices');
+    for (const { counts, overlaid } of found) {
+      assert.ok(counts[0]! > 100 && new Set(counts).size === 1, counts.join());
+      assert.ok(overlaid, 'the overlay stays');
+    }
+    assert.ok(found[1]!.splits > 0, 'vertices are split');
+  });
+
   test('skinned meshes are targets by themselves, and picked where their bones have moved them', async () => {
     const { counts, picks } = await run<{ counts: number[]; picks: boolean[] }>('bones');
     assert.ok(counts[0]! > 100 && counts[1] === counts[0], counts.join());

@@ -6,6 +6,7 @@ import {
   Bone,
   Box3,
   BufferAttribute,
+  BufferGeometry,
   Group,
   InstancedBufferAttribute,
   InstancedMesh,
@@ -191,6 +192,37 @@ export const sharingScenes: Record<string, () => unknown> = {
     second.dispose();
     looks.push(look());
     return { looks, isOriginal: (b.children[0] as Mesh).material === shared };
+  },
+
+  /** A mesh elsewhere with the vertices of a model, as glTF's loader makes it: its red
+   * pixels after each thing that is done to the model. */
+  sharedVertices() {
+    return [0, 1].map((turn) => {
+      const geometry = ball();
+      const half = new BufferGeometry().setIndex(new BufferAttribute(geometry.index!.array.slice(), 1));
+      for (const [name, attribute] of Object.entries(geometry.attributes)) half.setAttribute(name, attribute);
+      const other = new Group().add(new Mesh(half, new MeshBasicMaterial({ color: 0xff0000 })));
+      const model = modelOf(white(), geometry);
+      const around = cage().rotateY(turn);
+      const counts: number[] = [];
+      const look = (): void => {
+        draw(model);
+        counts.push(seen(other)[0]!);
+      };
+      look();
+      const first = applyTransfer(model, around, { texture: blue() });
+      look();
+      applyTransfer(model, around, { material: new MeshBasicMaterial({ color: 0x00ff00 }) });
+      look();
+      const overlaid = seen(model)[1]!;
+      const third = applyTransfer(model, around, { channel: 2 });
+      look();
+      third.dispose();
+      look();
+      first.dispose();
+      look();
+      return { counts, splits: first.splitVertices, overlaid: overlaid > 0 && overlaid === seen(model)[1] };
+    });
   },
 
   /** Programs and textures on the GPU, while paint comes and goes. */

@@ -45,6 +45,6 @@ export function show(value: unknown): string {
   return `of type ${typeof value}`;
 }
 
-/** Whether something has its entries as fields. A map or a set would seem to have none. */
-export const isRecord = (value: unknown): value is Record<string, unknown> =>
-  typeof value === 'object' && value !== null && !(value instanceof Map) && !(value instanceof Set);
+/** Whether something has its entries as fields. A map or a set, of any realm, would seem to have none. */
+export const isRecord = <Value>(value: Value): value is Value & Record<string, unknown> =>
+  typeof value === 'object' && value !== null && !/ (Map|Set)]$/.test(Object.prototype.toString.call(value));

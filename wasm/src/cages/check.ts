@@ -1,6 +1,6 @@
-import { CagecastError, show } from '../api/error.js';
+import { CagecastError, isRecord, show } from '../api/error.js';
 import { checkMesh, count } from '../api/mesh.js';
-import { plainArray } from '../api/typed-arrays.js';
+import { plainArray, showArray } from '../api/typed-arrays.js';
 import { type EnumValue, namesOf } from '../core/module.js';
 import type { CagesModule, CoreLandmark, CoreModel, CoreOptions, CoreTemplate } from './module.js';
 import type { CageModel, Holes, Landmarks, Template } from './types.js';
@@ -21,7 +21,8 @@ export function checkModel(fn: string, model: unknown): CoreModel {
     wrong(fn, `model.${field} is ${show(value)}, not ${type}`);
   if (!Array.isArray(joints)) throw bad('joints', joints, 'an array of joints { name, position, parent }');
   const plainMarks = plainArray(marks, 'Uint8Array');
-  if (marks !== undefined && !plainMarks) throw bad('marks', marks, 'a Uint8Array');
+  if (marks !== undefined && !plainMarks)
+    throw wrong(fn, `model.marks is ${showArray(marks, 'Uint8Array')}, not a Uint8Array`);
   // An array that was moved to a worker is empty, which C++ would take for "no marks".
   if (plainMarks?.length === 0 && mesh.indices.length > 0)
     throw wrong(fn, `model.marks has 0 numbers, not 1 for each of ${count(mesh.indices.length / 3, 'triangle')}`);
@@ -83,14 +84,14 @@ export function checkTemplate(
 }
 
 /** Checks the types of a cage's holes. @returns copies. @throws {CagecastError} `badArgument` */
-export function checkHoles(fn: string, argument: string, holes: unknown = {}): Holes {
-  if (typeof holes !== 'object' || holes === null)
-    throw wrong(fn, `${argument} is ${show(holes)}, not an object of names and vertices`);
+export function checkHoles(fn: string, argument: string, holes: unknown): Holes {
+  if (holes === undefined || holes === null) return {};
+  if (!isRecord(holes)) throw wrong(fn, `${argument} is ${show(holes)}, not an object of names and vertices`);
   return Object.fromEntries(
     Object.entries(holes).map(([name, vertices]: [string, unknown]) => {
-      if (!Array.isArray(vertices))
+      if (!Array.isArray(vertices) && !ArrayBuffer.isView(vertices))
         throw wrong(fn, `${argument}.${name} is ${show(vertices)}, not an array of vertices`);
-      return [name, [...vertices]];
+      return [name, Array.from(vertices as Uint32Array)];
     }),
   );
 }
@@ -105,7 +106,7 @@ function kindOf(module: CagesModule, kind: unknown, bad: (kinds: string) => Cage
 /** Checks the types of landmarks. @throws {CagecastError} `badArgument` */
 export function checkLandmarks(fn: string, argument: string, landmarks: unknown): CoreLandmark[] {
   if (landmarks === undefined) return [];
-  if (typeof landmarks !== 'object' || landmarks === null || Array.isArray(landmarks))
+  if (!isRecord(landmarks) || Array.isArray(landmarks))
     throw wrong(fn, `${argument} is ${show(landmarks)}, not an object of names and positions`);
   return Object.entries(landmarks as Landmarks).map(([name, position]) => {
     if (!isPosition(position))

@@ -12,17 +12,16 @@ export interface CageExtras {
 /**
  * Writes a cage as a GLB file: one node named `cage`, with landmarks, holes and kind in its `extras`. So it is a template for fits.
  * @param cage  `landmarks`, `holes` and `kind` may be missing.
- * @throws {CagecastError} `badArgument` if positions, UVs or indices are no typed arrays.
+ * @throws {CagecastError} `badArgument` if positions, UVs or indices are not of the right type.
  */
 export function cageGlb(
   cage: Pick<Template, 'positions' | 'uvs' | 'indices'> & Partial<CageExtras>,
 ): Uint8Array<ArrayBuffer> {
   const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
-  for (const [name, array] of Object.entries({ positions, uvs }))
-    if (!(array instanceof Float32Array))
-      throw new CagecastError('badArgument', `cageGlb: cage.${name} is ${show(array)}, not a Float32Array`);
-  if (!ArrayBuffer.isView(indices))
-    throw new CagecastError('badArgument', `cageGlb: cage.indices is ${show(indices)}, not a Uint32Array`);
+  const types = { positions: 'Float32Array', uvs: 'Float32Array', indices: 'Uint' };
+  for (const [name, type] of Object.entries(types) as [keyof typeof types, string][])
+    if (!Object.prototype.toString.call(cage[name]).startsWith(`[object ${type}`))
+      throw new CagecastError('badArgument', `cageGlb: cage.${name} is ${show(cage[name])}, not of type ${type}`);
   const min = [Infinity, Infinity, Infinity];
   const max = [-Infinity, -Infinity, -Infinity];
   positions.forEach((x, i) => {

@@ -42,7 +42,7 @@ const queue = new WorkerQueue(spawn);
 function unreadOf(fn: string, model: Partial<CageModel> | undefined): Promise<never> | undefined {
   if (typeof model !== 'object' || model === null || model.positions !== undefined) return undefined;
   const text =
-    'model has no positions (cageModel of cagecast/gltf or cagecast/three makes a model of a document or scene)';
+    'model has no positions (cageModel of cagecast/gltf or cagecast/three makes one of a scene)';
   return Promise.reject(new CagecastError('badArgument', `${fn}: ${text}`));
 }
 

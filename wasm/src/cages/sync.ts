@@ -6,7 +6,7 @@
  * @module cagecast/cages/sync
  */
 import createModule from '#cages-glue';
-import { CagecastError, type Code, show } from '../api/error.js';
+import { CagecastError, type Code, isRecord, show } from '../api/error.js';
 import type { Mesh } from '../api/mesh.js';
 import { instantiate, isLackOfMemory, unsupported } from '../core/instantiate.js';
 import { nameOf } from '../core/module.js';
@@ -181,8 +181,7 @@ interface Call<Answer extends CagesAnswer, Result> {
  */
 function call<Answer extends CagesAnswer, Result>(given: SyncOptions, of: Call<Answer, Result>): Result {
   const { fn } = of;
-  if (typeof given !== 'object' || given === null)
-    throw new CagecastError('badOption', `${fn}: options is ${show(given)}, not an object`);
+  if (!isRecord(given)) throw new CagecastError('badOption', `${fn}: options is ${show(given)}, not an object`);
   const { onProgress, ...rest } = given;
   const module = freshModule(fn);
   const options = checkOptions(fn, module, of.defaults ? module[of.defaults]() : {}, rest);

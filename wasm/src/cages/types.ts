@@ -30,7 +30,7 @@ export interface CageModel extends Mesh {
   parts?: readonly (string | readonly string[])[] | undefined;
   /** The skeleton's joints. Default: none. */
   joints?: readonly Joint[] | undefined;
-  /** 1 per triangle: 1 must not be painted. Default: none of them. */
+  /** 1 per triangle: 1 must not be painted. Default: none of them; for that leave it out, as an empty array is an error. */
   marks?: Uint8Array | undefined;
 }
 

@@ -49,7 +49,7 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
    */
   borders?: Borders | undefined;
   /**
-   * Called with the result, and with the parts of the document in the order of the result's arrays, before the document is changed:
+   * Called with a copy of the result, and with the parts of the document in the order of the result's arrays, before the document is changed:
    * if it throws, the document stays as it was.
    */
   onResult?: ((result: TransferResult, parts: PartRange[]) => void) | undefined;
@@ -81,7 +81,7 @@ export function cagecast(options: CagecastOptions): Transform {
     const cuts = isCut('cagecast', borders);
     const { target, result, cut, paint } = await transferDocument('cagecast', document, own, cuts);
     onResult?.(
-      result,
+      structuredClone(result),
       target.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({
         name,
         firstVertex,

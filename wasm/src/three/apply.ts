@@ -4,6 +4,7 @@ import type { PartRange, Prepared } from '../parts/prepare.js';
 import { type Extracted, isTurned, nameOf, type Part } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths } from './options.js';
 import { removeOverlay, removeOverlays } from './overlay.js';
+import { disposeOwn, own } from './own-attributes.js';
 import { Place, paintAttribute } from './paint.js';
 import { canBePainted, isPainted, makePainting, type Painting, paintOn, unpaint } from './painted-materials.js';
 import { type ShownPart, showMaterial, showPaint, writePaint, writeZones, zoneAttribute } from './shown-parts.js';
@@ -131,10 +132,10 @@ export function* apply(
     const isReplaced = options.material ? givenChannels.get(geometry) === channel : options.texture !== undefined;
     if (mesh && isReplaced) removeOverlays(mesh);
     if (remades[p]) replace(geometry, remades[p]!);
-    else geometry.dispose(); // or the GPU buffers of what is replaced here would never be freed
+    else disposeOwn(geometry); // or the GPU buffers of what is replaced here would be left to the garbage collector
     const { split } = prepared.parts[p]!;
-    geometry.setAttribute(`uv${channel}`, new BufferAttribute(split.uvs.slice(), 2));
-    geometry.setAttribute(zoneAttribute, new BufferAttribute(new Float32Array(split.sources.length), 1));
+    geometry.setAttribute(`uv${channel}`, own(new BufferAttribute(split.uvs.slice(), 2)));
+    geometry.setAttribute(zoneAttribute, own(new BufferAttribute(new Float32Array(split.sources.length), 1)));
     givenChannels.set(geometry, channel);
     paintings.set(geometry, painting);
   });
@@ -279,7 +280,7 @@ class Shown implements Applied {
       if (paintings.get(part.geometry) === this.#painting) paintings.delete(part.geometry);
       if (shownPaintings.get(part.geometry) === this.#painting) {
         shownPaintings.delete(part.geometry);
-        geometry.dispose(); // or the attribute's GPU buffer would never be freed
+        disposeOwn(geometry); // or the attribute's GPU buffer would be left to the garbage collector
         geometry.deleteAttribute(paintAttribute);
       }
       if (!overlay) continue;

@@ -9,6 +9,7 @@ import {
   SkinnedMesh,
 } from 'three';
 import { isInstanced, isSkinned, overlayMark, type Part } from './extract.js';
+import { disposeOwn, own, share } from './own-attributes.js';
 
 /** What an overlay has of its base at any time, not only when it was made. */
 const kFollowed = [
@@ -64,13 +65,15 @@ function shareVertices(base: BufferGeometry, index: BufferAttribute): BufferGeom
   const geometry = new BufferGeometry();
   for (const [name, attribute] of Object.entries(base.attributes)) {
     // Its colours would tint the texture.
-    if (name !== 'color') geometry.setAttribute(name, attribute);
+    if (name === 'color') continue;
+    share(attribute);
+    geometry.setAttribute(name, attribute);
   }
   geometry.morphAttributes = base.morphAttributes;
   geometry.morphTargetsRelative = base.morphTargetsRelative;
   geometry.boundingBox = base.boundingBox;
   geometry.boundingSphere = base.boundingSphere;
-  geometry.setIndex(index);
+  geometry.setIndex(own(index));
   geometry.userData['source'] = base.uuid;
   return geometry;
 }
@@ -99,26 +102,17 @@ export function showTriangles(overlay: Mesh, base: Mesh, indices: Uint32Array, c
   const corners = new Uint32Array(3 * cosmetic.reduce((sum, one) => sum + one, 0));
   let filled = 0;
   for (let i = 0; i < 3 * cosmetic.length; ++i) if (cosmetic[Math.floor(i / 3)] === 1) corners[filled++] = indices[i]!;
-  freeTriangles(overlay.geometry);
+  disposeOwn(overlay.geometry);
   overlay.geometry = shareVertices(base.geometry, new BufferAttribute(corners, 1));
   if (filled === 0) overlay.removeFromParent();
   else if (overlay.parent !== base) base.add(overlay);
-}
-
-/** Frees what the geometry of an overlay has of its own. It stays as it is, for copies of the overlay. */
-function freeTriangles(geometry: BufferGeometry): void {
-  const { attributes, morphAttributes } = geometry;
-  // Disposing a geometry frees the buffers of all its attributes, but these belong to the model.
-  Object.assign(geometry, { attributes: {}, morphAttributes: {} });
-  geometry.dispose();
-  Object.assign(geometry, { attributes, morphAttributes });
 }
 
 /** Frees what an overlay has of its own, and takes it away, also from copies of the model. */
 export function removeOverlay(overlay: Mesh): void {
   const { geometry } = overlay;
   overlay.removeFromParent();
-  freeTriangles(geometry);
+  disposeOwn(geometry);
   for (const name of Object.keys(geometry.attributes)) geometry.deleteAttribute(name);
   geometry.morphAttributes = {};
 }
@@ -127,7 +121,7 @@ export function removeOverlay(overlay: Mesh): void {
 export function removeOverlays(base: Mesh): void {
   for (const child of base.children.filter(({ userData }) => userData[overlayMark] === true)) {
     child.removeFromParent();
-    freeTriangles((child as Mesh).geometry);
+    disposeOwn((child as Mesh).geometry);
   }
 }
 

@@ -23,14 +23,14 @@ const kVertex = `attribute vec4 ${paintAttribute};
 varying vec4 vCagecastPaint;
 `;
 
+// The last row of a transform of UVs is 0, 0, 1, so there is room for opacity, feather and how to decode: 1 for sRGB, 2 for
+// colours that are multiplied by alpha.
 // A triangle is painted if all its vertices are: what is interpolated from three zeros is exactly zero, on every GPU.
 const kFragment = `#define CAGECAST_PAINT
 varying vec4 vCagecastPaint;
 uniform sampler2D cagecastMap;
 uniform mat3 cagecastPlace;
 vec4 cagecastTexel() {
-  // The last row of a transform of UVs is 0, 0, 1, so there is room for opacity, feather and how to decode: 1 for sRGB, 2 for
-  // colours that are multiplied by alpha.
   vec3 amount = vec3(cagecastPlace[0].z, cagecastPlace[1].z, cagecastPlace[2].z);
   vec4 texel = texture2D(cagecastMap, (cagecastPlace * vec3(vCagecastPaint.xy, 1.0)).xy);
   vec3 linear = mix(pow((texel.rgb + 0.055) / 1.055, vec3(2.4)), texel.rgb / 12.92, vec3(lessThanEqual(texel.rgb, vec3(0.04045))));

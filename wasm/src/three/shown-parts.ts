@@ -7,6 +7,7 @@ import type { PartRange, PreparedPart } from '../parts/prepare.js';
 import { paintedVertices, separatePaint, withCopies } from '../parts/separate-paint.js';
 import type { Part } from './extract.js';
 import { makeOverlay, overlayMaterial, showTriangles } from './overlay.js';
+import { own } from './own-attributes.js';
 import { paintAttribute } from './paint.js';
 import { canBePainted, originals, type Painting, paintOn } from './painted-materials.js';
 import { atOnce, remake, replace } from './split.js';
@@ -68,7 +69,7 @@ export function writePaint(parts: readonly ShownPart[], reach: number, diagonal:
     const known = geometry.getAttribute(paintAttribute) as BufferAttribute | undefined;
     // One that came with the model's file may be laid out in another way.
     const isOwn = known?.isBufferAttribute && known.array.length === 4 * count && known.array instanceof Float32Array;
-    const attribute = isOwn ? known : new BufferAttribute(new Float32Array(4 * count), 4);
+    const attribute = isOwn ? known : own(new BufferAttribute(new Float32Array(4 * count), 4));
     const values = attribute.array;
     for (let v = 0; v < count; ++v) {
       values[4 * v] = split.uvs[2 * v]!;

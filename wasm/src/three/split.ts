@@ -8,6 +8,7 @@ import {
 import { type AttributeArray, type Blends, blendInto, blendSkin, noBlends, type Rule, ruleOf } from '../parts/blend.js';
 import type { PreparedPart } from '../parts/prepare.js';
 import { isOfInstances } from './extract.js';
+import { disposeOwn, own } from './own-attributes.js';
 
 export type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
@@ -75,10 +76,11 @@ export function* remake(
 
 /** Replaces what a geometry has, and has its GPU buffers made again. */
 export function replace(geometry: BufferGeometry, { attributes, morphs, indices, groups, drawRange }: Remade): void {
-  geometry.dispose();
-  for (const [name, attribute] of attributes) geometry.setAttribute(name, attribute);
+  disposeOwn(geometry);
+  for (const [name, attribute] of attributes)
+    if (attribute !== geometry.attributes[name]) geometry.setAttribute(name, own(attribute));
   for (const [name, list] of morphs) geometry.morphAttributes[name as keyof BufferGeometry['morphAttributes']] = list;
-  geometry.setIndex(new BufferAttribute(indices, 1));
+  geometry.setIndex(own(new BufferAttribute(indices, 1)));
   geometry.groups = groups;
   Object.assign(geometry.drawRange, drawRange);
 }

@@ -1,4 +1,4 @@
-import { type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from 'three';
+import { Cache, type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from 'three';
 import type { GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { checkGltf } from '../gltf/check-file.js';
 
@@ -89,7 +89,8 @@ function disposeMaterial(material: Material): void {
   for (const value of Object.values(material)) {
     if (!(value instanceof Texture)) continue;
     value.dispose();
-    if (value.image instanceof ImageBitmap) value.image.close();
+    // What is in the page's cache may be shown again.
+    if (!Cache.enabled && value.image instanceof ImageBitmap) value.image.close();
   }
   material.dispose();
 }

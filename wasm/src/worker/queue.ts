@@ -1,4 +1,4 @@
-import { show } from '../api/error.js';
+import { isRecord, show } from '../api/error.js';
 import { CagecastError } from '../index.js';
 import type { Reply, Request, Spawn, Thread } from './protocol.js';
 
@@ -38,7 +38,7 @@ export class WorkerQueue {
 
   /** Calls a function with the options of a call among its own. @param args  Its other arguments. */
   withOptions<T>(fn: string, args: unknown[], options: CallOptions & { onProgress?: OnProgress | undefined }) {
-    if (typeof options !== 'object' || options === null) return this.call<T>(fn, [...args, options], {});
+    if (!isRecord(options)) return this.call<T>(fn, [...args, options], {});
     const { signal, move, onProgress, ...rest } = options;
     const wrong = (text: string) => Promise.reject<T>(new CagecastError('badOption', `${fn}: options.${text}`));
     if (signal !== undefined && typeof signal?.addEventListener !== 'function')
@@ -56,9 +56,13 @@ export class WorkerQueue {
   ): Promise<T> {
     return new Promise<T>((resolve, reject) => {
       if (signal?.aborted) return reject(signal.reason);
-      if (!move) args = args.map(withoutRest);
       let failure: CagecastError | undefined;
-      if (this.#jobs.length > 0) {
+      try {
+        if (!move) args = args.map(withoutRest);
+      } catch (cause) {
+        failure = unsendable(fn, cause);
+      }
+      if (!failure && this.#jobs.length > 0) {
         // It waits; what is sent later is what the arguments are now.
         try {
           args = structuredClone(args, { transfer: move ? buffersOf(args) : [] });
@@ -194,24 +198,24 @@ const unsendable = (fn: string, cause: unknown): CagecastError =>
     cause,
   });
 
-/** An argument with arrays that are small parts of their buffers as arrays of their own: to send a part sends its whole buffer. */
-function withoutRest(arg: unknown): unknown {
-  if (ArrayBuffer.isView(arg)) return isPart(arg) ? ownArray(arg) : arg;
-  if (typeof arg !== 'object' || arg === null || !Object.values(arg).some(isPart)) return arg;
-  return Object.fromEntries(
-    Object.entries(arg).map(([name, value]) => [name, isPart(value) ? ownArray(value) : value]),
-  );
+/**
+ * A value of an argument without what it does not use of its buffers: to send an array that is a part of its buffer sends the whole.
+ */
+function withoutRest(value: unknown): unknown {
+  if (ArrayBuffer.isView(value)) return isPart(value) ? ownArray(value) : value;
+  if (typeof value !== 'object' || value === null || Object.getPrototypeOf(value) !== Object.prototype) return value;
+  return Object.fromEntries(Object.entries(value).map(([name, field]) => [name, withoutRest(field)]));
 }
 
-const isPart = (value: unknown): value is ArrayBufferView<ArrayBuffer> =>
-  ArrayBuffer.isView(value) && value.buffer instanceof ArrayBuffer && value.byteLength < value.buffer.byteLength;
+const isPart = (array: ArrayBufferView): array is ArrayBufferView<ArrayBuffer> =>
+  array.buffer instanceof ArrayBuffer && array.buffer.byteLength > 0 && array.byteLength < array.buffer.byteLength;
 
 function ownArray(array: ArrayBufferView<ArrayBuffer>): ArrayBufferView {
   const { buffer, byteOffset, byteLength } = array;
   const bytes = buffer.slice(byteOffset, byteOffset + byteLength);
-  // Not its constructor, which may be one of a library.
-  const kind = Object.prototype.toString.call(array).slice(8, -1) as 'Float32Array';
-  return new globalThis[kind](bytes);
+  // Its real type: its constructor may be one of a library.
+  const kind = Reflect.get(Object.getPrototypeOf(Uint8Array.prototype), Symbol.toStringTag, array) ?? 'DataView';
+  return new globalThis[kind as 'Float32Array'](bytes);
 }
 
 function buffersOf(args: unknown[]): ArrayBuffer[] {

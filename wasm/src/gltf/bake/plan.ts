@@ -207,7 +207,7 @@ async function bakeSheet<Material, Texture>(
   if (wrong) return wrong;
   const { width, height } = base;
   const baked = fill('bake', layouts, paint, { width, height, wrap: use.wraps, kind: kindOf[slot] });
-  if (baked.overlap.lost > kMostLost) return 'most of its paint would lie in texels that others use';
+  if (baked.overlap.lost > kMostLost) return 'most of its paint would lie on that of others';
   const image = layOver(base, baked, slot === 'normal' ? [1, 1, 1] : factor);
   model.replace([...new Set(sheet.users.map(({ material }) => material))], slot, await input.codec.encode(image), use);
   return baked;

@@ -1,0 +1,26 @@
+import type { BufferGeometry } from 'three';
+
+/** Attributes that were made here, and that one geometry alone has. */
+const owned = new WeakSet<object>();
+
+/** Notes that one geometry alone has an attribute. */
+export function own<Attribute extends object>(attribute: Attribute): Attribute {
+  owned.add(attribute);
+  return attribute;
+}
+
+/** Notes that several geometries have an attribute. */
+export const share = (attribute: object): boolean => owned.delete(attribute);
+
+/**
+ * Disposes of a geometry, which stays as it is and may be drawn again, but for the GPU buffers of attributes that others may have,
+ * as models loaded from glTF do: three.js would not notice, and draw nothing of the others.
+ */
+export function disposeOwn(geometry: BufferGeometry): void {
+  const { attributes, morphAttributes, index } = geometry;
+  const own = Object.entries(attributes).filter(([, attribute]) => owned.has(attribute));
+  const ownIndex = index && owned.has(index) ? index : null;
+  Object.assign(geometry, { attributes: Object.fromEntries(own), morphAttributes: {}, index: ownIndex });
+  geometry.dispose();
+  Object.assign(geometry, { attributes, morphAttributes, index });
+}
