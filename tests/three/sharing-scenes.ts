@@ -221,6 +221,14 @@ export const sharingScenes: Record<string, () => unknown> = {
       look();
       first.dispose();
       look();
+      // Of what the model has now.
+      half.setIndex(new BufferAttribute(geometry.index!.array.slice(), 1));
+      for (const [name, attribute] of Object.entries(geometry.attributes)) half.setAttribute(name, attribute);
+      look();
+      const fourth = applyTransfer(model, around, { channel: 2 });
+      look();
+      fourth.dispose();
+      look();
       return { counts, splits: first.splitVertices, overlaid: overlaid > 0 && overlaid === seen(model)[1] };
     });
   },

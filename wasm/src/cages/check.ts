@@ -105,7 +105,7 @@ function kindOf(module: CagesModule, kind: unknown, bad: (kinds: string) => Cage
 
 /** Checks the types of landmarks. @throws {CagecastError} `badArgument` */
 export function checkLandmarks(fn: string, argument: string, landmarks: unknown): CoreLandmark[] {
-  if (landmarks === undefined) return [];
+  if (landmarks === undefined || landmarks === null) return [];
   if (!isRecord(landmarks) || Array.isArray(landmarks))
     throw wrong(fn, `${argument} is ${show(landmarks)}, not an object of names and positions`);
   return Object.entries(landmarks as Landmarks).map(([name, position]) => {

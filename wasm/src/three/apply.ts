@@ -132,7 +132,7 @@ export function* apply(
     const isReplaced = options.material ? givenChannels.get(geometry) === channel : options.texture !== undefined;
     if (mesh && isReplaced) removeOverlays(mesh);
     if (remades[p]) replace(geometry, remades[p]!);
-    else disposeOwn(geometry); // or the GPU buffers of what is replaced here would be left to the garbage collector
+    else disposeOwn(geometry, [`uv${channel}`, zoneAttribute]); // or the GPU buffers of what is replaced here would be left to the garbage collector
     const { split } = prepared.parts[p]!;
     geometry.setAttribute(`uv${channel}`, own(new BufferAttribute(split.uvs.slice(), 2)));
     geometry.setAttribute(zoneAttribute, own(new BufferAttribute(new Float32Array(split.sources.length), 1)));
@@ -280,7 +280,7 @@ class Shown implements Applied {
       if (paintings.get(part.geometry) === this.#painting) paintings.delete(part.geometry);
       if (shownPaintings.get(part.geometry) === this.#painting) {
         shownPaintings.delete(part.geometry);
-        disposeOwn(geometry); // or the attribute's GPU buffer would be left to the garbage collector
+        disposeOwn(geometry, [paintAttribute]); // or the attribute's GPU buffer would be left to the garbage collector
         geometry.deleteAttribute(paintAttribute);
       }
       if (!overlay) continue;

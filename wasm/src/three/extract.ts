@@ -76,7 +76,7 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   const parts: Part[] = [];
   const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
     if ((mesh && 'isBatchedMesh' in mesh) || 'isInstancedBufferGeometry' in geometry)
-      throw wrong(argument, name, 'is a batch or an instanced geometry; make each instance a mesh of its own first');
+      throw wrong(argument, name, 'is a batch or an instanced geometry; make each instance a mesh of its own');
     const position = geometry.getAttribute('position') as Attribute | undefined;
     const vertexCount = position?.count ?? 0;
     const corners = geometry.index ? geometry.index.count : vertexCount;

@@ -15,11 +15,12 @@ export const share = (attribute: object): boolean => owned.delete(attribute);
 /**
  * Disposes of a geometry, which stays as it is and may be drawn again, but for the GPU buffers of attributes that others may have,
  * as models loaded from glTF do: three.js would not notice, and draw nothing of the others.
+ * @param names  The attributes that are taken off or replaced; without them, all are, and the index.
  */
-export function disposeOwn(geometry: BufferGeometry): void {
+export function disposeOwn(geometry: BufferGeometry, names?: readonly string[]): void {
   const { attributes, morphAttributes, index } = geometry;
-  const own = Object.entries(attributes).filter(([, attribute]) => owned.has(attribute));
-  const ownIndex = index && owned.has(index) ? index : null;
+  const own = Object.entries(attributes).filter(([name, one]) => owned.has(one) && names?.includes(name) !== false);
+  const ownIndex = names || !owned.has(index as object) ? null : index;
   Object.assign(geometry, { attributes: Object.fromEntries(own), morphAttributes: {}, index: ownIndex });
   geometry.dispose();
   Object.assign(geometry, { attributes, morphAttributes, index });

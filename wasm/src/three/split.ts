@@ -78,7 +78,7 @@ export function* remake(
 export function replace(geometry: BufferGeometry, { attributes, morphs, indices, groups, drawRange }: Remade): void {
   disposeOwn(geometry);
   for (const [name, attribute] of attributes)
-    if (attribute !== geometry.attributes[name]) geometry.setAttribute(name, own(attribute));
+    if (!isOfInstances(attribute)) geometry.setAttribute(name, own(attribute));
   for (const [name, list] of morphs) geometry.morphAttributes[name as keyof BufferGeometry['morphAttributes']] = list;
   geometry.setIndex(own(new BufferAttribute(indices, 1)));
   geometry.groups = groups;
