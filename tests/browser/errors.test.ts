@@ -12,6 +12,7 @@ import {
   drop,
   glb,
   inRepository,
+  passed,
   Site,
   settled,
   shownCounts,
@@ -360,7 +361,7 @@ test('warnings about files stay while borders are cut', async () => {
     glb('cage.glb', glbOf(tetrahedron(4), 'thing')),
   ]);
   assert.equal(await settled(page), 'ready');
-  await page.evaluate(() => new Promise((done) => setTimeout(done, 1500)));
+  await passed(page, 1500);
   assert.equal(await settled(page), 'ready');
   assert.match(await shownError(page), / was ignored: /);
 });

@@ -10,6 +10,7 @@ import {
   drop,
   glb,
   inRepository,
+  passed,
   Site,
   setThreshold,
   settled,
@@ -104,7 +105,7 @@ test('a large model is inspected on request', async () => {
     glb('cage.glb', glbOf(tetrahedron(2), 'thing')),
   ]);
   assert.equal(await settled(page), 'ready', await shownError(page));
-  await page.evaluate(() => new Promise((done) => setTimeout(done, 1500)));
+  await passed(page, 1500);
   assert.equal(await page.locator('#fit-verdict').textContent(), '');
   await page.getByRole('button', { name: 'Inspect the cage' }).click();
   assert.match((await found()).verdict, /^(good|usable|unfit)$/);

@@ -1,7 +1,6 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { before, describe, test } from 'node:test';
-import { Worker } from 'node:worker_threads';
 import { NodeIO } from '@gltf-transform/core';
 import { type Code, init, type Mesh } from 'cagecast';
 import {
@@ -22,6 +21,7 @@ import {
 import * as sync from 'cagecast/cages/sync';
 import { cageModel } from 'cagecast/gltf';
 import { inspect } from 'cagecast/inspect';
+import { countingEnds } from '../support/ended-workers.js';
 import { ball, join3d } from './scenes.js';
 
 /** An egg with two balls in it that stick out in front: a head, as far as making a cage is concerned. */
@@ -96,28 +96,28 @@ describe('makeCage', () => {
     assert.equal(inspect(one, model).holes.length, 1);
   });
 
-  test('is cancelled where its signal says so, and the next call starts anew', async () => {
-    const { terminate: end } = Worker.prototype;
-    let ended = 0;
-    Worker.prototype.terminate = function () {
-      ended++;
-      return end.call(this);
-    };
+  test('is cancelled at once by its signal, and the next call starts anew', async () => {
     // At the first report and in the middle of the work, however fast it is.
-    for (const from of [0, 0.4]) {
-      const controller = new AbortController();
-      const call = makeCage(head(40), {
-        ...options,
-        triangles: 2000,
-        signal: controller.signal,
-        onProgress: (share) => {
-          if (share >= from) controller.abort(new Error('never mind'));
-        },
+    for (const from of [0, 0.4])
+      await countingEnds(async (ended) => {
+        const controller = new AbortController();
+        let isSettled = false;
+        let wasSettled: boolean | undefined;
+        const call = makeCage(head(40), {
+          ...options,
+          triangles: 2000,
+          signal: controller.signal,
+          onProgress: (share) => {
+            if (share < from || controller.signal.aborted) return;
+            controller.abort(new Error('never mind'));
+            setImmediate(() => (wasSettled = isSettled));
+          },
+        }).finally(() => (isSettled = true));
+        await assert.rejects(call, /never mind/);
+        await new Promise((done) => setImmediate(done));
+        assert.equal(wasSettled, true, 'before anything else happens');
+        assert.equal(ended(), 1, 'its worker is ended');
       });
-      await assert.rejects(call, /never mind/);
-      assert.equal(ended, from === 0 ? 1 : 2, 'its worker is ended');
-    }
-    Worker.prototype.terminate = end;
     assert.ok((await makeCage(head(), options)).indices.length > 0);
     await assert.rejects(makeCage(head(), { signal: AbortSignal.abort() }), { name: 'AbortError' });
   });
@@ -176,7 +176,7 @@ describe('makeCage', () => {
       [
         () => untyped({ scene: () => {} }),
         'badArgument',
-        'model has no positions (cageModel of cagecast/gltf or cagecast/three makes one of a scene)',
+        'model has no positions; see cageModel of cagecast/gltf and cagecast/three',
       ],
       [() => untyped(bad({ positions: [1] })), 'badArgument', 'model.positions is of type Array, not a Float32Array'],
       [() => untyped(bad({ parts: 'skin' })), 'badArgument', 'model.parts is "skin", not an array of names'],

@@ -15,6 +15,7 @@ import {
   terminate,
   transfer,
 } from 'cagecast/worker';
+import { countingEnds } from '../support/ended-workers.js';
 import { head } from './scenes.js';
 
 const scene = head(30, 12);
@@ -133,23 +134,15 @@ describe('the worker', () => {
   });
 
   test('one signal cancels all calls that wait, without a worker for each', async () => {
-    const { terminate: end } = Worker.prototype;
-    let ended = 0;
-    Worker.prototype.terminate = function () {
-      ended++;
-      return end.call(this);
-    };
-    try {
+    await countingEnds(async (ended) => {
       const abort = new AbortController();
       const { signal } = abort;
       const calls = Array.from({ length: 8 }, () => failure(transfer(large.cage, large.target, { signal })));
       abort.abort('enough');
       assert.deepEqual(await Promise.all(calls), Array(8).fill('enough'));
       assert.ok((await transfer(scene.cage, scene.target)).zones.length > 0);
-      assert.equal(ended, 1);
-    } finally {
-      Worker.prototype.terminate = end;
-    }
+      assert.equal(ended(), 1);
+    });
   });
 
   test('many calls that cannot be sent are refused one after the other, and the next one works', async () => {

@@ -4,7 +4,7 @@ import { faults } from '../support/axe';
 import { asset, dragBy, head, ready, savedCage } from '../support/cages';
 import { difference, look, modelArea } from '../support/picture';
 import { saved, validModel } from '../support/saved';
-import { drop, glb, Site, setThreshold, shownCounts, shownParts } from '../support/site';
+import { drop, glb, passed, Site, setThreshold, shownCounts, shownParts } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -150,7 +150,7 @@ test('a change of the cage waits for the one before, and none reaches the cage o
   await ready(page);
   await open();
   await page.locator('#undo:disabled').waitFor();
-  await page.evaluate(() => new Promise((done) => setTimeout(done, 1000)));
+  await passed(page, 1000);
   await ready(page);
   assert.ok(await undo.isDisabled(), 'nothing was done to the cage that came');
   assert.deepEqual(complaints, []);

@@ -6,7 +6,7 @@ import type { Page } from 'playwright-core';
 import { faults } from '../support/axe';
 import { asset, middleOf, ready } from '../support/cages';
 import { difference, frames, look, modelArea } from '../support/picture';
-import { drop, glb, Site, shownCounts } from '../support/site';
+import { drop, glb, passed, Site, shownCounts } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -43,8 +43,7 @@ const markedCount = async (page: Page): Promise<number> =>
 
 /** Waits until the cage has followed the marks. */
 async function followed(page: Page): Promise<void> {
-  // Longer than the page waits before it makes the cage again, by the page's own clock: its earlier timers have run by then.
-  await page.evaluate(() => new Promise((done) => setTimeout(done, 1500)));
+  await passed(page, 1500); // longer than the page waits before it makes the cage again
   await ready(page);
 }
 

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { faults } from '../support/axe';
-import { Site, settled } from '../support/site';
+import { passed, Site, settled } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -34,7 +34,7 @@ test('a first visit is offered a way of four steps, which the keyboard can walk,
   await page.reload();
   await settled(page);
   assert.equal(await page.evaluate(() => localStorage.getItem('cagecast-guide')), 'seen');
-  await page.evaluate(() => new Promise((done) => setTimeout(done, 1500)));
+  await passed(page, 1500);
   assert.equal(await guide.count(), 0);
   await page.locator('#about summary').click();
   await page.getByTestId('show-guide').click();

@@ -7,7 +7,7 @@ import { faults } from '../support/axe';
 import { filled, image, names, rows, savedTexture } from '../support/layers';
 import { modelArea } from '../support/picture';
 import { saved } from '../support/saved';
-import { drop, glb, inRepository, Site, settled, shownCounts, shownError, shownParts } from '../support/site';
+import { drop, glb, inRepository, passed, Site, settled, shownCounts, shownError, shownParts } from '../support/site';
 
 const asset = (name: string): Buffer => readFileSync(inRepository('build/assets/human-misaligned', name));
 const project = (name: string, buffer: Buffer) => ({ name, mimeType: '', buffer });
@@ -408,7 +408,7 @@ test('where there is no room, that is said once, and leaving asks', async () => 
   assert.equal(await warns(page), true);
   await page.locator('#alert-close').click();
   await page.getByTestId('add-painting').click();
-  await page.evaluate(() => new Promise((done) => setTimeout(done, 1500))); // longer than it waits before it tries again
+  await passed(page, 1500); // longer than it waits before it tries again
   assert.equal(await shownError(page), '');
   assert.match((await page.getByTestId('kept-note').textContent())!, /is not kept on this device/);
   await saved(page, 'save-project');

@@ -224,3 +224,7 @@ export async function drop(page: Page, uploads: Upload[]): Promise<void> {
     }
   }, files);
 }
+
+/** Waits by the page's own clock: earlier timers of the page have run by then, however slow it is. */
+export const passed = (page: Page, milliseconds: number): Promise<void> =>
+  page.evaluate((time) => new Promise<void>((done) => setTimeout(done, time)), milliseconds);

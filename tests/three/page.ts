@@ -408,7 +408,7 @@ const asyncScenes: Record<string, () => Promise<unknown>> = {
     const best = { sync: { longest: Infinity, total: Infinity }, background: { longest: Infinity, total: Infinity } };
     const note = (seen: { longest: number; total: number }, { longest, total }: typeof seen) =>
       Object.assign(seen, { longest: Math.min(seen.longest, longest), total: Math.min(seen.total, total) });
-    // What the test asks for.
+    // As the test asks.
     const isQuick = () =>
       best.background.total <= 1.5 * Math.max(best.sync.total, 100) &&
       best.background.longest <= Math.max(50, best.sync.total / 4);

@@ -194,14 +194,16 @@ export const sharingScenes: Record<string, () => unknown> = {
     return { looks, isOriginal: (b.children[0] as Mesh).material === shared };
   },
 
-  /** A mesh elsewhere with the vertices of a model, as glTF's loader makes it: its red
-   * pixels after each thing that is done to the model. */
+  /**
+   * A mesh elsewhere that has the attributes of a model, as GLTFLoader makes such: its red pixels after each thing that is done to
+   * the model, and whether the model's overlay stays.
+   */
   sharedVertices() {
     return [0, 1].map((turn) => {
       const geometry = ball();
-      const half = new BufferGeometry().setIndex(new BufferAttribute(geometry.index!.array.slice(), 1));
-      for (const [name, attribute] of Object.entries(geometry.attributes)) half.setAttribute(name, attribute);
-      const other = new Group().add(new Mesh(half, new MeshBasicMaterial({ color: 0xff0000 })));
+      const shared = new BufferGeometry().setIndex(new BufferAttribute(geometry.index!.array.slice(), 1));
+      for (const [name, attribute] of Object.entries(geometry.attributes)) shared.setAttribute(name, attribute);
+      const other = new Group().add(new Mesh(shared, new MeshBasicMaterial({ color: 0xff0000 })));
       const model = modelOf(white(), geometry);
       const around = cage().rotateY(turn);
       const counts: number[] = [];
@@ -222,8 +224,8 @@ export const sharingScenes: Record<string, () => unknown> = {
       first.dispose();
       look();
       // Of what the model has now.
-      half.setIndex(new BufferAttribute(geometry.index!.array.slice(), 1));
-      for (const [name, attribute] of Object.entries(geometry.attributes)) half.setAttribute(name, attribute);
+      shared.setIndex(new BufferAttribute(geometry.index!.array.slice(), 1));
+      for (const [name, attribute] of Object.entries(geometry.attributes)) shared.setAttribute(name, attribute);
       look();
       const fourth = applyTransfer(model, around, { channel: 2 });
       look();
@@ -233,7 +235,7 @@ export const sharingScenes: Record<string, () => unknown> = {
     });
   },
 
-  /** Programs and textures on the GPU, while paint comes and goes. */
+  /** Programs, buffers and textures on the GPU, while paint comes and goes. */
   leaks() {
     const model = modelOf(white());
     const texture = red();

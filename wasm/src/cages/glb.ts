@@ -18,10 +18,14 @@ export function cageGlb(
   cage: Pick<Template, 'positions' | 'uvs' | 'indices'> & Partial<CageExtras>,
 ): Uint8Array<ArrayBuffer> {
   const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
-  const types = { positions: 'Float32Array', uvs: 'Float32Array', indices: 'Uint' };
-  for (const [name, type] of Object.entries(types) as [keyof typeof types, string][])
-    if (!Object.prototype.toString.call(cage[name]).startsWith(`[object ${type}`))
-      throw new CagecastError('badArgument', `cageGlb: cage.${name} is ${show(cage[name])}, not of type ${type}`);
+  const types = {
+    positions: ['Float32Array'],
+    uvs: ['Float32Array'],
+    indices: ['Uint32Array', 'Uint16Array', 'Uint8Array'],
+  };
+  for (const [name, known] of Object.entries(types) as [keyof typeof types, string[]][])
+    if (!known.includes(Object.prototype.toString.call(cage[name]).slice(8, -1)))
+      throw new CagecastError('badArgument', `cageGlb: cage.${name} is ${show(cage[name])}, not a ${known[0]}`);
   const min = [Infinity, Infinity, Infinity];
   const max = [-Infinity, -Infinity, -Infinity];
   positions.forEach((x, i) => {

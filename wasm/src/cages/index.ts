@@ -41,7 +41,7 @@ const queue = new WorkerQueue(spawn);
 /** A rejection if a document or a scene is given instead of a model: it cannot be sent to the worker. */
 function unreadOf(fn: string, model: Partial<CageModel> | undefined): Promise<never> | undefined {
   if (typeof model !== 'object' || model === null || model.positions !== undefined) return undefined;
-  const text = 'model has no positions (cageModel of cagecast/gltf or cagecast/three makes one of a scene)';
+  const text = 'model has no positions; see cageModel of cagecast/gltf and cagecast/three';
   return Promise.reject(new CagecastError('badArgument', `${fn}: ${text}`));
 }
 

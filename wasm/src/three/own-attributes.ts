@@ -13,9 +13,9 @@ export function own<Attribute extends object>(attribute: Attribute): Attribute {
 export const share = (attribute: object): boolean => owned.delete(attribute);
 
 /**
- * Disposes of a geometry, which stays as it is and may be drawn again, but for the GPU buffers of attributes that others may have,
- * as models loaded from glTF do: three.js would not notice, and draw nothing of the others.
- * @param names  The attributes that are taken off or replaced; without them, all are, and the index.
+ * Frees the GPU buffers of a geometry, which stays as it is and may be drawn again. Buffers of attributes that others may have, as
+ * geometries of GLTFLoader do, are kept: three.js would not notice that they are gone, and would draw nothing of the others.
+ * @param names  Of attributes that are taken off or replaced: only these are freed. Default: all, and the index.
  */
 export function disposeOwn(geometry: BufferGeometry, names?: readonly string[]): void {
   const { attributes, morphAttributes, index } = geometry;

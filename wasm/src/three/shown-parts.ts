@@ -31,7 +31,7 @@ export function geometryOf({ part, split }: ShownPart): BufferGeometry {
   if (found !== count)
     throw new CagecastError(
       'badArgument',
-      `cagecast/three: the geometry of "${part.name}" has ${found} vertices, it had ${count}; apply again`,
+      `cagecast/three: the geometry of "${part.name}" has ${found} vertices, it had ${count}; transfer again`,
     );
   return geometry;
 }

@@ -249,7 +249,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       shown = { file, gltf, applied, paint };
       if (check && applied) tellVerdict = () => this.#tell('verdict', check(applied, options));
     } catch (error) {
-      // Of no use are what was loaded and what is still to come.
+      // Neither what was loaded nor what is still to come is of use now.
       free(model);
       free(texture);
       throw error;

@@ -58,7 +58,7 @@ export class WorkerQueue {
       if (signal?.aborted) return reject(signal.reason);
       let failure: CagecastError | undefined;
       try {
-        if (!move) args = args.map(withoutRest);
+        if (!move) args = args.map(withOwnBuffers);
       } catch (cause) {
         failure = unsendable(fn, cause);
       }
@@ -198,13 +198,11 @@ const unsendable = (fn: string, cause: unknown): CagecastError =>
     cause,
   });
 
-/**
- * A value of an argument without what it does not use of its buffers: to send an array that is a part of its buffer sends the whole.
- */
-function withoutRest(value: unknown): unknown {
+/** Copies arrays that use a part of their buffer only: to send such an array would send the whole buffer. */
+function withOwnBuffers(value: unknown): unknown {
   if (ArrayBuffer.isView(value)) return isPart(value) ? ownArray(value) : value;
   if (typeof value !== 'object' || value === null || Object.getPrototypeOf(value) !== Object.prototype) return value;
-  return Object.fromEntries(Object.entries(value).map(([name, field]) => [name, withoutRest(field)]));
+  return Object.fromEntries(Object.entries(value).map(([name, field]) => [name, withOwnBuffers(field)]));
 }
 
 const isPart = (array: ArrayBufferView): array is ArrayBufferView<ArrayBuffer> =>
