@@ -228,6 +228,14 @@ describe('with a loaded model', () => {
       code: 'badArgument',
       message: 'cageModel: model is of type Object, not a document of glTF-Transform',
     });
+    assert.throws(() => gltf.addCage({} as never, {} as never), {
+      code: 'badArgument',
+      message: 'addCage: document is of type Object, not a document of glTF-Transform',
+    });
+    await assert.rejects(async () => gltf.cagecast({ cage: {} as never })({} as never), {
+      code: 'badArgument',
+      message: 'cagecast: target is of type Object, not a document of glTF-Transform',
+    });
     await assert.rejects(gltf.fitCage(null as never, await read(bytes)), {
       code: 'badArgument',
       message: 'fitCage: template is null, not a mesh { positions, indices, … }',

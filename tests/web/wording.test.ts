@@ -27,7 +27,9 @@ test('findings are told in the words of the page: parts, no flags, no functions'
 test('nothing that the package finds keeps words of programs on the page', () => {
   for (const file of ['segments', 'placement', 'holes', 'inside', 'normals', 'topology', 'uv']) {
     const source = readFileSync(inRepository('wasm/src/inspect', `${file}.ts`), 'utf8');
-    for (const [, text] of source.matchAll(/(?:sentence|advice):\s*[`']([^`']*)/g))
+    const texts = [...source.matchAll(/(?:sentence|advice):\s*[`']([^`']*)/g)];
+    assert.ok(texts.length > 0, `no sentence or advice found in ${file}.ts`);
+    for (const [, text] of texts)
       assert.doesNotMatch(
         forPeople(text!.replace(/\$\{option\(\w+\)\}/, '--keep "eye"')),
         /segment|--|refineCage/,

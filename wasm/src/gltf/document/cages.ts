@@ -1,12 +1,11 @@
 import type { Document, Node } from '@gltf-transform/core';
-import { show } from '../../api/error.js';
 import * as cages from '../../cages/index.js';
 import { CagecastError, type Mesh } from '../../index.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { readExtras } from '../../parts/template.js';
 import { InputError } from '../input-error.js';
 import { type DocumentPart, extractDocument } from './read.js';
-import { within } from './transfer.js';
+import { isDocument, read } from './transfer.js';
 
 /** What glTF-Transform does not keep of a file. */
 export interface FileOptions {
@@ -98,7 +97,7 @@ export function addCage<D extends Document>(
   cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
 ): { document: D; node: Node } {
   const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
-  const root = document.getRoot();
+  const root = read('addCage', 'document', document, () => document.getRoot());
   const buffer = root.listBuffers()[0] ?? document.createBuffer();
   const accessor = (array: Float32Array | Uint32Array, type: 'VEC3' | 'VEC2' | 'SCALAR') =>
     document
@@ -138,13 +137,4 @@ function jointsOf(document: Document, parts: readonly DocumentPart[], bones: Map
     });
   });
   return listJoints([...joints, ...[...boneOf.keys()].map(atNode)], (node) => node.getParentNode());
-}
-
-const isDocument = (value: unknown): value is Document =>
-  typeof (value as Document | null | undefined)?.getRoot === 'function';
-
-function read<T>(fn: string, argument: string, document: unknown, work: () => T): T {
-  if (!isDocument(document))
-    throw new CagecastError('badArgument', `${fn}: ${argument} is ${show(document)}, not a document of glTF-Transform`);
-  return within(fn, argument, work);
 }

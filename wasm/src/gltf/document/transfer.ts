@@ -44,21 +44,32 @@ export async function transferDocument(
   cuts: boolean,
 ): Promise<DocumentTransfer> {
   const { cage, texture, maskImages, maskColors, ...own } = options;
-  const wrong = (argument: string, value: unknown, type: string) =>
-    new CagecastError('badArgument', `${caller}: ${argument} is ${show(value)}, not ${type}`);
-  if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'a document or a mesh');
-  if (texture !== undefined && !(texture instanceof Uint8Array)) throw wrong('texture', texture, 'a Uint8Array');
+  if (typeof cage !== 'object' || cage === null) throw wrong(caller, 'cage', cage, 'a document or a mesh');
+  if (texture !== undefined && !(texture instanceof Uint8Array))
+    throw wrong(caller, 'texture', texture, 'a Uint8Array');
   if (Object.keys(maskImages ?? {}).some((name) => name !== 'never' && name !== 'always'))
-    throw wrong('maskImages', maskImages, '{ never, always }');
+    throw wrong(caller, 'maskImages', maskImages, '{ never, always }');
   await init();
   const paint = texture && within(caller, 'texture', () => paintOf(texture));
-  const source = 'getRoot' in cage ? within(caller, 'cage', () => extractDocument(cage).mesh) : cage;
-  const target = within(caller, 'target', () => extractDocument(document));
+  const source = isDocument(cage) ? within(caller, 'cage', () => extractDocument(cage).mesh) : cage;
+  const target = read(caller, 'target', document, () => extractDocument(document));
   const model = new DocumentModel(document, target.parts);
   const masks = within(caller, 'target', () => masksOf(model, own.masks, { images: maskImages, colors: maskColors }));
   const rules = { ...own, masks };
   const result = transfer(source, target.mesh, rules);
   return { target, model, result, cut: cuts ? cutBorders(source, target.mesh, result, rules) : undefined, paint };
+}
+
+const wrong = (caller: string, argument: string, value: unknown, type: string) =>
+  new CagecastError('badArgument', `${caller}: ${argument} is ${show(value)}, not ${type}`);
+
+export const isDocument = (value: unknown): value is Document =>
+  typeof (value as Document | null | undefined)?.getRoot === 'function';
+
+/** Reads a document, if it is one. Errors name the argument. */
+export function read<T>(caller: string, argument: string, document: unknown, work: () => T): T {
+  if (!isDocument(document)) throw wrong(caller, argument, document, 'a document of glTF-Transform');
+  return within(caller, argument, work);
 }
 
 /** Names the argument in errors of a file or document. */
