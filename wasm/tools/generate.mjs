@@ -113,9 +113,10 @@ function makePage(options) {
 
 <!-- Made by wasm/tools/generate.mjs from core/include/cagecast/options.def. Do not edit. -->
 
-C++ (\`TransferOptions\`), JavaScript and the command have the same options with the same defaults. \`transfer\` and
-\`cutBorders\` read all of them, \`project\` and \`classify\` those of their own stage. Options that are not given have the value
-of the preset: \`default\`, or \`paper\` for the method as published.
+C++ (\`TransferOptions\`), JavaScript and the command have the same options with the same defaults. \`transfer\`
+reads all of them, \`project\` and \`classify\` those of their own stage. \`cutBorders\` keeps the verdicts on segments that it is
+given: it reads those of \`project\` but \`weldTolerance\`, and of those of \`classify\` only \`partialTriangles\`. Options that are not given have
+the value of the preset: \`default\`, or \`paper\` for the method as published.
 
 ${head}${rows(false)}
 JavaScript also has \`preset\`, \`locks\`, \`masks\` and \`reuse\` (an earlier result whose arrays are overwritten). C++ also has

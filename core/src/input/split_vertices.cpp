@@ -14,7 +14,7 @@ Status splitVertices(std::span<const std::uint32_t> indices, std::span<const flo
   };
   if (indices.size() % 3 != 0) return fault(Code::indicesNotTriples);
   if (indices.size() / 3 > kMaxTriangles) return fault(Code::tooLarge, indices.size() / 3);
-  if (cornerUvs.size() != 2 * indices.size()) return fault(Code::cornerUvCountMismatch);
+  if (cornerUvs.size() != 2 * indices.size()) return fault(Code::cornerUvCountMismatch, cornerUvs.size());
   const auto stray = std::find_if(indices.begin(), indices.end(), [=](std::uint32_t v) { return v >= vertexCount; });
   if (stray != indices.end()) return fault(Code::indexOutOfRange, static_cast<std::size_t>(stray - indices.begin()));
 

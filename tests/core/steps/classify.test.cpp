@@ -82,6 +82,7 @@ TEST_CASE("a projection that is not whole, or not of this target, is an error", 
     return status.code == Code::resultMismatch && status.argument == Argument::target;
   };
   CHECK(isMismatch([](Parts& of) { of.segments.pop_back(); }));
+  CHECK(isMismatch([](Parts& of) { of.zones.pop_back(); }));
   CHECK(isMismatch([](Parts& of) { of.segments[1] = 2; }));
   CHECK(isMismatch([](Parts& of) { of.recovery.pop_back(); }));
   CHECK(isMismatch([](Parts& of) { of.stats[0].twinOf = 2; }));

@@ -69,7 +69,7 @@ export function cutBorders(
   return cut;
 }
 
-/** Checks that a result is complete and belongs to this target, because the core does not check it. */
+/** Checks that a result is complete and belongs to this target, and names the entry at fault, which the core cannot. */
 function checkResult(result: unknown, { positions }: CheckedMesh): CoreDecision {
   const wrong = (text: string) =>
     new CagecastError('badArgument', `cutBorders: result${text}; pass what transfer() returned`);

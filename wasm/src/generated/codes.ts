@@ -14,7 +14,7 @@ export type CoreCode =
   | 'uvCountMismatch'
   /** There is not one group per vertex. */
   | 'groupCountMismatch'
-  /** There are not two UV floats per index. */
+  /** There are not two UV floats per index; `at` is their number. */
   | 'cornerUvCountMismatch'
   /** An index is not less than the number of vertices; `at` is its position in `indices`. */
   | 'indexOutOfRange'
