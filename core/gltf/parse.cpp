@@ -178,6 +178,12 @@ double component(const std::uint8_t* at, int type, bool normalized) {
 
 }  // namespace
 
+void checkIndexType(int componentType, const std::string& where) {
+  if (componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+      componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT && componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+    fail(where, " has component type ", componentType, ", not 5121, 5123 or 5125");
+}
+
 std::vector<double> decode(const tinygltf::Model& model, int index, int type, std::size_t components,
                            const std::string& referrer) {
   const tinygltf::Accessor& accessor = element(model.accessors, index, "accessors", referrer);
@@ -209,6 +215,7 @@ std::vector<double> decode(const tinygltf::Model& model, int index, int type, st
     fail(where, " has a sparse part that does not fit it");
   const std::size_t replaced = static_cast<std::size_t>(sparse.count);
   const int indexType = sparse.indices.componentType;
+  checkIndexType(indexType, where + ".sparse.indices");
   const Elements places = elementsIn(model,
                                      {sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset),
                                       replaced, componentSize(indexType, where)},

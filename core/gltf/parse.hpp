@@ -35,6 +35,10 @@ const T& element(const std::vector<T>& items, int index, const char* kind, const
   return items[static_cast<std::size_t>(index)];
 }
 
+/// Fails unless indices are unsigned integers.
+/// @param where  The indices.
+void checkIndexType(int componentType, const std::string& where);
+
 /// Decodes an accessor into `components` numbers per element.
 /// @param type  What it must be: TINYGLTF_TYPE_VEC3 and the like.
 std::vector<double> decode(const tinygltf::Model& model, int index, int type, std::size_t components,

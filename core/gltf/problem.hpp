@@ -23,8 +23,9 @@ template <typename... Parts>
 }
 
 /// Runs work that may fail, and turns whatever it throws into an error about a file.
+/// @param unknown  What to say of the file if a library throws: "is not valid glTF".
 template <typename Work>
-Result guarded(const std::string& name, Work work) {
+Result guarded(const std::string& name, const char* unknown, Work work) {
   try {
     work();
     return {};
@@ -33,7 +34,7 @@ Result guarded(const std::string& name, Work work) {
   } catch (const std::bad_alloc&) {
     return {name + ": not enough memory"};
   } catch (const std::exception& error) {
-    return {name + ": is not valid glTF (" + error.what() + ")"};
+    return {name + ": " + unknown + " (" + error.what() + ")"};
   }
 }
 

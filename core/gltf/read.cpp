@@ -11,6 +11,8 @@
 namespace cagecast::gltf {
 namespace {
 
+constexpr const char* kNotValid = "is not valid glTF";
+
 /// A 3×4 affine transform, row by row.
 struct Transform {
   std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -111,6 +113,7 @@ void append(const tinygltf::Model& model, const Instance& instance, Model& out, 
   const std::size_t vertexCount = local.size() / 3;
   std::vector<std::uint32_t> corners;
   if (primitive.indices >= 0) {
+    checkIndexType(element(model.accessors, primitive.indices, "accessors", where).componentType, where + ".indices");
     const std::vector<double> indices = decode(model, primitive.indices, TINYGLTF_TYPE_SCALAR, 1, where + ".indices");
     corners.reserve(indices.size());
     for (std::size_t i = 0; i < indices.size(); ++i) {
@@ -187,6 +190,8 @@ std::vector<Instance> instancesIn(const tinygltf::Model& model) {
     const tinygltf::Mesh& mesh = element(model.meshes, node.mesh, "meshes", nodeName);
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const tinygltf::Primitive& primitive = mesh.primitives[p];
+      if (primitive.mode < -1 || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+        fail("meshes[", node.mesh, "].primitives[", p, "].mode = ", primitive.mode, " is not within 0..6");
       if (primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES) continue;  // Points and lines.
       if (attributeOf(primitive, "POSITION") < 0) continue;  // glTF allows it, and asks to draw nothing.
       std::string name = !node.name.empty() ? node.name : !mesh.name.empty() ? mesh.name : nodeName;
@@ -222,12 +227,12 @@ Model flatten(const tinygltf::Model& model) {
 }  // namespace
 
 Result readMemory(std::span<const std::uint8_t> bytes, const std::string& name, const std::string& folder, Model& out) {
-  return guarded(name, [&] { out = flatten(parse(bytes, folder)); });
+  return guarded(name, kNotValid, [&] { out = flatten(parse(bytes, folder)); });
 }
 
 Result read(const std::string& path, Model& out) {
   std::vector<std::uint8_t> bytes;
-  Result result = guarded(path, [&] {
+  Result result = guarded(path, kNotValid, [&] {
     std::error_code error;
     const auto size = std::filesystem::file_size(path, error);
     if (error) fail("cannot be read (", error.message(), ")");

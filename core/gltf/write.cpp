@@ -130,14 +130,14 @@ std::string serialise(const Content& content) {
 }  // namespace
 
 Result writeMemory(const Content& content, std::vector<std::uint8_t>& out) {
-  return guarded(content.name, [&] {
+  return guarded(content.name, "cannot be written", [&] {
     const std::string bytes = serialise(content);
     out.assign(bytes.begin(), bytes.end());
   });
 }
 
 Result write(const std::string& path, const Content& content) {
-  return guarded(path, [&] {
+  return guarded(path, "cannot be written", [&] {
     const std::string bytes = serialise(content);
     const std::string unfinished = path + ".part";
     errno = 0;

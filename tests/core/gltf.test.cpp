@@ -142,6 +142,12 @@ TEST_CASE("indices of every width are read, and left out they count up", "[gltf]
     file.primitive += R"(,"indices":1)";
     CHECK(readable(file.bytes()).indices == Indices{4, 3, 2});
   }
+  SECTION("not of floats") {
+    File file = points();
+    file.accessor(file.view<float>({4, 3, 2}), kFloat, "SCALAR", 3);
+    file.primitive += R"(,"indices":1)";
+    CHECK_THAT(errorOf(file.bytes()), Contains("primitives[0].indices has component type 5126"));
+  }
   SECTION("none: two vertices are left over") { CHECK(readable(points().bytes()).indices == Indices{0, 1, 2}); }
 }
 
@@ -159,6 +165,11 @@ TEST_CASE("points and lines are passed over, and a scene of nothing else is an e
     File file = points();
     file.primitive += std::string(R"(,"mode":)") + mode;
     CHECK_THAT(errorOf(file.bytes()), Contains("no triangles"));
+  }
+  for (const char* mode : {"7", "-2"}) {
+    File file = points();
+    file.primitive += std::string(R"(,"mode":)") + mode;
+    CHECK_THAT(errorOf(file.bytes()), Contains(std::string("meshes[0].primitives[0].mode = ") + mode));
   }
 }
 
@@ -599,5 +610,8 @@ TEST_CASE("what cannot be written is an error, and leaves no file", "[gltf]") {
   const Floats few(5);
   content.uvs1 = few;
   CHECK_THAT(gltf::write(path, content).error, Contains("uvs1 has 5 values for 24 vertices"));
+  content.uvs1 = {};
+  content.name = "not UTF-8: \xff";
+  CHECK_THAT(gltf::write(path, content).error, Contains("cannot be written"));
   CHECK_FALSE(std::filesystem::exists(path));
 }

@@ -20,8 +20,8 @@ constexpr double kEyeNear = 0.04;    ///< From the landmark to the middle of the
 constexpr double kLargestEye = 0.3;  ///< The size of an eye, at most.
 constexpr double kLift = 1e-4;       ///< Rays from a surface start this far off it.
 constexpr int kDirections = 144, kSteps = 144, kGrid = 48;
-/// A piece of which all is this near to the middle of an eye, as it is seen and in depth, in largest radii of what is
-/// visible, may be its lashes.
+/// A component may be the lashes of an eye if all of it is this near to the eye's middle, across and in depth. In
+/// largest radii of what is visible of the eye.
 constexpr double kCoverReach = 1.6, kCoverDepth = 4;
 /// The centre of an eye is in the box of the eyeball, enlarged by this share of its size.
 constexpr double kBoxSlack = 0.2;

@@ -273,7 +273,6 @@ Outcome Fit::run(FittedCage& out) {
 
 Outcome fitCage(const Template& from, const Model& model, const FitOptions& options, const Progress& progress,
                 FittedCage& out) {
-  out = {};
   if (Outcome outcome = checkMesh(from.cage, "template.cage", Problem::badTemplate); !outcome.ok()) return outcome;
   if (from.cage.uvs.size() / 2 != from.cage.positions.size() / 3)
     return {Problem::badTemplate, "template.cage: it has no UVs; a cage needs 2 numbers per vertex"};
@@ -288,7 +287,10 @@ Outcome fitCage(const Template& from, const Model& model, const FitOptions& opti
   if (Outcome outcome = checkLandmarkList(options.landmarks, "landmarks", boundsOf(model.mesh), Problem::badLandmarks);
       !outcome.ok())
     return outcome;
-  return Fit(from, model, options, progress).run(out);
+  FittedCage fitted;  // `out` may own the template.
+  Outcome outcome = Fit(from, model, options, progress).run(fitted);
+  out = std::move(fitted);
+  return outcome;
 }
 
 }  // namespace cagecast::cages

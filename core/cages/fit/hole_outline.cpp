@@ -14,9 +14,10 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kOutlineMargin = 1.12;
 /// What else is free should be less than this share of what must be free.
 constexpr double kMostSpill = 0.38;
-/// What a share of what must be free costs if it is covered; as a margin; or if it is free but need not be.
+/// Costs per share of what must be free: of what of it is covered, of what of its margin is, of what else is free, and
+/// of that beyond `kMostSpill`.
 constexpr double kCovered = 5, kMarginCovered = 1.5, kSpill = 1, kTooMuch = 10;
-/// What it costs if the covers are not free, and corners that turn by one radian.
+/// Costs of covers of the eye that are not free, and of each radian that a corner turns.
 constexpr double kCoversCovered = 2, kTurned = 0.1;
 /// A transfer leaves out a piece of which less than half is covered: this share of it may be.
 constexpr double kMayBeCovered = 0.35;

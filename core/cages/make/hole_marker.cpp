@@ -4,14 +4,16 @@
 #include <cmath>
 #include <limits>
 
+#include "base/tolerances.hpp"
+
 namespace cagecast::cages {
 
 namespace {
 
 /// Each averages a vertex with its neighbours: details of about two edges go.
 constexpr int kFieldSmoothings = 6;
-/// What a ray meets at more than so many times the distance to the nearest part is seen through a gap, such as teeth
-/// between lips, and does not count.
+/// What a ray meets farther away than this multiple of the distance to the nearest part is seen through a gap, as teeth
+/// are between lips, and does not count.
 constexpr double kStraightBelow = 1.5;
 /// The hull is refined as far as this from the borders of the marks, in edges.
 constexpr int kRefinedEdges = 3;
@@ -21,8 +23,7 @@ constexpr int kGapEdges = 3;
 constexpr std::size_t kLeastMark = 4;
 /// A part of whose visible area more than this is covered needs a wider hole; transfers paint it from a half on.
 constexpr double kMostCovered = 0.35;
-/// Of transfers, in diagonals: where rays start, and how far behind the cage what they meet hides it.
-constexpr double kRayStart = 1e-5;
+/// How far behind the cage, in diagonals, what a ray meets hides it: the default of transfers.
 constexpr double kOcclusionReach = 0.03;
 /// By how much its hole is widened, in edges.
 constexpr int kWidening = 2;

@@ -54,6 +54,8 @@ struct MakeSettings {
 };
 
 Outcome checkOptions(const MakeOptions& options) {
+  if (options.kind > Kind::prop)
+    return {Problem::badOptions, "options.kind = " + std::to_string(static_cast<int>(options.kind)) + " is not a kind"};
   struct Range {
     const char* name;
     double value, least, most;

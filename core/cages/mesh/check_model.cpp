@@ -18,6 +18,11 @@ constexpr double kLeastModelHeight = 1e-6;
 /// Farthest a coordinate may be from the origin, in diagonals of the mesh: what `Surface` can take.
 constexpr double kMaxProportion = 1e6;
 
+/// Range of sizes of a mesh: smaller coordinates would be floats of fewer digits, and a cage around larger ones would
+/// not fit a float.
+constexpr double kLeastDiagonal = 1e-37;
+constexpr double kMaxCoordinate = 0x1p125;
+
 std::string element(const char* name, const char* field, std::size_t i) {
   return std::string(name) + "." + field + "[" + std::to_string(i) + "]";
 }
@@ -75,9 +80,11 @@ std::string extentOf(const MeshView& mesh, const std::string& name) {
     hasArea = length(cagecast::areaNormal(corner(i), corner(i + 1), corner(i + 2))) > least * longest;
   }
   if (!hasArea) return name + " has no triangle with an area";
+  const double diagonal = length(high - low);
+  if (diagonal < kLeastDiagonal) return name + " is smaller than 1e-37 across";
   const double farthest = std::max({-low.x, -low.y, -low.z, high.x, high.y, high.z});
-  if (farthest > kMaxProportion * length(high - low))
-    return name + " is more than a million times its size away from the origin";
+  if (farthest > kMaxCoordinate) return name + " reaches farther than 4.2e37 from the origin";
+  if (farthest > kMaxProportion * diagonal) return name + " is more than a million times its size away from the origin";
   return {};
 }
 

@@ -209,18 +209,18 @@ Outcome refineCage(const MeshView& cage, const Model& model, const RefineOptions
   Refinement refinement(welded, target, reach, progress);
   if (!refinement.run()) return {Problem::cancelled, "cancelled"};
   if (Outcome outcome = refinement.judge(); !outcome.ok()) return outcome;
-  out.positions.assign(cage.positions.begin(), cage.positions.end());
-  out.uvs.assign(cage.uvs.begin(), cage.uvs.end());
-  out.indices.assign(cage.indices.begin(), cage.indices.end());
-  out.landmarks.clear();
-  if (refinement.stays()) return {};
-  for (std::size_t v = 0; v < vertexOf.size(); ++v) {
+  Cage refined;  // `out` may own the cage.
+  refined.positions.assign(cage.positions.begin(), cage.positions.end());
+  refined.uvs.assign(cage.uvs.begin(), cage.uvs.end());
+  refined.indices.assign(cage.indices.begin(), cage.indices.end());
+  for (std::size_t v = 0; v < vertexOf.size() && !refinement.stays(); ++v) {
     const Vec3 p =
         Vec3::from(&cage.positions[3 * v]) + refinement.cage().positions[vertexOf[v]] - welded.positions[vertexOf[v]];
-    out.positions[3 * v] = static_cast<float>(p.x);
-    out.positions[3 * v + 1] = static_cast<float>(p.y);
-    out.positions[3 * v + 2] = static_cast<float>(p.z);
+    refined.positions[3 * v] = static_cast<float>(p.x);
+    refined.positions[3 * v + 1] = static_cast<float>(p.y);
+    refined.positions[3 * v + 2] = static_cast<float>(p.z);
   }
+  out = std::move(refined);
   return {};
 }
 

@@ -33,7 +33,7 @@ struct Joint {
 
 /// What a cage is made for. The arrays belong to the caller and are only read.
 struct Model {
-  MeshView mesh;                             ///< UVs are not used. `groups` number the parts.
+  MeshView mesh;                             ///< `groups` number the parts. UVs are checked, not used.
   std::vector<std::string> parts = {};       ///< Name of each part, or several: "node/mesh/material". May be empty.
   std::vector<Joint> joints = {};            ///< May be empty.
   std::span<const std::uint8_t> marks = {};  ///< 1 per triangle or none: 1 must not be painted, as by a brush.

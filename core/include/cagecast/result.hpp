@@ -99,12 +99,15 @@ struct Projection {
   /// only where a seam of the cage's texture runs through a triangle.
   Array<float> cornerUvs;
   Array<Zone> zones;                 ///< 1 per vertex: cosmetic (here: covered), occluded or uncovered.
-  Array<std::uint32_t> triangles;    ///< 1 per vertex: the nearest cage triangle.
+  Array<std::uint32_t> triangles;    ///< 1 per vertex: the nearest cage triangle, or with
+                                     ///< `ProjectionMode::nearestVertex` the first at the nearest vertex.
   Array<float> distances;            ///< 1 per vertex: the distance to it, in units of the input.
   Array<std::uint32_t> segments;     ///< 1 per vertex: its segment. Segments are numbered by their first vertex.
   Array<SegmentStats> segmentStats;  ///< 1 per segment.
-  Array<std::uint32_t> recovery;     ///< 1 per vertex, see `Recovery`, with `secondLook` or `holes`; else empty.
-  Array<HoleShare> holeShares;       ///< 1 per hole and segment near it, with `holes`; ordered by hole.
+  Array<std::uint32_t> recovery;     ///< 1 per vertex, see `Recovery`, with `secondLook` or `holes`;
+                                     ///< else, and with `nearestVertex`, empty.
+  Array<HoleShare> holeShares;       ///< 1 per hole and segment near it, with `holes` and not
+                                     ///< `nearestVertex`; ordered by hole.
   Timings timings;
   /// Peak memory during the call, without the caller's inputs; with gaps, which depend on earlier calls with the
   /// workspace.

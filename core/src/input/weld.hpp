@@ -21,9 +21,9 @@ struct Points {
   std::uint32_t triangleCount = 0;           ///< Triangles with an area; the others take no part in anything.
   const std::uint32_t* triangles = nullptr;  ///< 3 points per triangle with an area.
   const double* doubleAreas = nullptr;       ///< Twice the area of each of them, scaled.
-  const float* rests = nullptr;              ///< 3 per point, or none: what the exact position has beyond `positions`.
+  const float* rests = nullptr;              ///< 3 per point, or none: the exact position minus `positions`.
 
-  /// Splits a position into that of a point and what it has beyond that.
+  /// Splits a position into floats and the remainder.
   static void split(Vec3 p, float* position, float* rest) noexcept;
 
   [[nodiscard]] const float* at(std::uint32_t point) const { return positions + kStride * point; }

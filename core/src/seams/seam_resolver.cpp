@@ -14,7 +14,7 @@ constexpr double kPatchSlack = 0.01;
 /// docs/method.md, step 9: sums of distances whose difference is within this share of the diagonal are equal.
 constexpr double kTieSum = 1e-7;
 
-/// The sum of the corners' distances to the patch around corner k, in float precision; infinity if there is none.
+/// The sum of the corners' distances to the patch around corner k, in float precision; infinity if there is no patch.
 double roughSum(Corner* const (&corners)[3], const ChartPatch* patch, const std::uint8_t (&inGroup)[3], int k) {
   if (patch == nullptr) return std::numeric_limits<double>::infinity();
   const auto distance = [&](int c) { return std::sqrt(static_cast<double>(patch->leastSquared[inGroup[c]])); };

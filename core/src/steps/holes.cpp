@@ -35,7 +35,8 @@ bool takesPart(const PointData& data, const Array<SegmentStats>& stats, std::uin
   return !isUnderCage && stats[data.segments[point]].coveredArea > 0;
 }
 
-/// Finds the boundary loop that a point's closest point on the cage lies on.
+/// Finds the boundary loop that a point's closest point on the cage lies on, and decides whether an uncovered
+/// point at a loop is recovered: not if it lies too far beyond it.
 /// @param[in,out] recovery  Of an uncovered point: `always` before.
 std::uint32_t loopOfPoint(const Scene& scene, const PointData& data, std::uint32_t point, std::uint32_t& recovery) {
   const BoundaryLoops& loops = scene.loops;

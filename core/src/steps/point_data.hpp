@@ -33,7 +33,7 @@ struct PointData {
   float* distances = nullptr;              ///< To the closest point of the cage.
   std::uint32_t* cageTriangles = nullptr;  ///< The triangle of that point, in `Cage::triangles`.
   Zone* zones = nullptr;
-  bool* meetsCage = nullptr;        ///< Whether the ray of step 3 is known to hit the cage.
+  bool* meetsCage = nullptr;        ///< Whether the ray of step 3 hits the cage; false if step 1 left that open.
   double* cageDistances = nullptr;  ///< How far along its ray the cage is; infinity: nowhere. With step 2′, else null.
 
   // Of steps 4 and 5:

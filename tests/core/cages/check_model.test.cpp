@@ -67,6 +67,12 @@ TEST_CASE("whatever is wrong with a model is said in a sentence", "[cages][check
   arrays = good;
   for (std::size_t v = 0; v < 3; ++v) arrays.positions[3 * v + 2] = 1e7f;
   CHECK(arrays.fault() == "model is more than a million times its size away from the origin");
+  for (const auto& [scale, fault] : {std::pair{1e-38f, "model is smaller than 1e-37 across"},
+                                     std::pair{6e37f, "model reaches farther than 4.2e37 from the origin"}}) {
+    arrays = good;
+    for (float& x : arrays.positions) x *= scale;
+    CHECK(arrays.fault() == fault);
+  }
   arrays = good;
   arrays.indices.resize(3 * (kMaxModelTriangles + 1), 0);
   CHECK(arrays.fault() == "model has 2000001 triangles, more than 2000000; simplify it first");

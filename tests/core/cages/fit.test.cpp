@@ -265,6 +265,19 @@ TEST_CASE("a fitted cage has the kind of its template", "[cages][fit]") {
   CHECK(heads.out.kind == Kind::head);
 }
 
+TEST_CASE("a cage can be fitted in place", "[cages][fit]") {
+  Heads heads;
+  REQUIRE(heads.fit(heads.other).ok());
+  FittedCage inPlace;
+  inPlace.positions = heads.cage.positions;
+  inPlace.uvs = heads.cage.uvs;
+  inPlace.indices = heads.cage.indices;
+  const Template from{{inPlace.positions, inPlace.indices, inPlace.uvs}, headLandmarks(kOwn)};
+  REQUIRE(fitCage(from, {heads.other.view()}, heads.options(), {}, inPlace).ok());
+  CHECK(inPlace.positions == heads.out.positions);
+  CHECK(inPlace.uvs == heads.out.uvs);
+}
+
 TEST_CASE("landmarks that contradict are named", "[cages][fit]") {
   Heads heads;
   const auto messageOf = [&] {

@@ -243,6 +243,11 @@ TEST_CASE("a made cage knows the kind of its model", "[cages][make]") {
   MakeOptions options;
   options.kind = Kind::prop;
   CHECK(made(model.model(), options).kind == Kind::prop);
+  options.kind = static_cast<Kind>(77);
+  Cage cage;
+  const Outcome outcome = makeCage(model.model(), options, {}, cage);
+  CHECK(outcome.problem == Problem::badOptions);
+  CHECK(outcome.message == "options.kind = 77 is not a kind");
 }
 
 TEST_CASE("pieces that lie a little too far apart are bridged, all of them or none", "[cages][make]") {
