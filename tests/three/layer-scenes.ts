@@ -1,21 +1,33 @@
 // What the page of the tests does with layers and painters. Runs in the browser.
-import { type Applied, applyTransfer } from 'cagecast/three';
+import { type Applied, applyTransfer, modelMasks } from 'cagecast/three';
 import { type Blend, createLayers, type Layers } from 'cagecast/three/layers';
-import { createPainter, type Painter, type StrokePoint } from 'cagecast/three/paint';
+import {
+  createPainter,
+  LayerPainter,
+  type Painter,
+  type StickerPicture,
+  type StickerPlace,
+  type StrokePoint,
+} from 'cagecast/three/paint';
 import {
   Bone,
   BufferAttribute,
   DataTexture,
+  Group,
+  Matrix4,
   Mesh,
   MeshBasicMaterial,
   type Object3D,
   Raycaster,
+  Scene,
   Skeleton,
   SkinnedMesh,
   SphereGeometry,
   SRGBColorSpace,
+  Texture,
   Vector2,
   Vector3,
+  WebGLRenderer,
 } from 'three';
 import { ball, cage, camera, countOf, difference, draw, flat, kSize, modelOf, renderer } from './scenes';
 
@@ -184,6 +196,55 @@ export const layerScenes: Record<string, () => unknown> = {
     const { opacity, tint, blend, visible } = layers.list[0]!;
     layers.dispose();
     return { added, style: { opacity, tint, blend, visible } };
+  },
+
+  /** What a renderer with a reversed depth buffer draws: layers, a stroke, filled triangles, a sticker. */
+  reversedDepth() {
+    const own = new WebGLRenderer({ reversedDepthBuffer: true } as object);
+    const layers = createLayers({ renderer: own, size: 256 });
+    layers.add(flat(0xdd3311));
+    const texel = texelOf(layers.toImageData(16));
+    layers.dispose();
+    const painter = createPainter({ renderer: own, applied: [], cage: cage() });
+    const at = { x: 0.5, y: 0.5 };
+    painter.stroke([at], { size: 0.1 });
+    const counts = [filled(painter).texels];
+    painter.undo();
+    painter.sticker({ text: 'III', color: '#ff0000' }, { at });
+    counts.push(filled(painter).texels);
+    painter.undo();
+    const filler = new LayerPainter(painter.layers);
+    filler.setCage({
+      positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]),
+      indices: new Uint32Array([0, 1, 2]),
+      uvs: new Float32Array([0, 0, 1, 0, 0, 1]),
+    });
+    filler.begin('fill', { color: '#ff0000', opacity: 1, hardness: 1, erases: false });
+    filler.fill([0, 0, 1, 0, 0, 1]);
+    filler.end();
+    counts.push(filled(painter).texels);
+    filler.dispose();
+    painter.dispose();
+    painter.layers.dispose();
+    own.dispose();
+    own.forceContextLoss();
+    return { texel, counts };
+  },
+
+  /** An update that fails, and the next one. */
+  failedUpdate() {
+    const layers = createLayers({ renderer, size: 256 });
+    layers.add(flat(0xdd3311));
+    const { render } = renderer;
+    renderer.render = () => {
+      throw new Error('not now');
+    };
+    const message = messageOf(() => layers.update());
+    renderer.render = render;
+    const updated = layers.update();
+    const texel = texelOf(layers.toImageData(16));
+    layers.dispose();
+    return { message, updated, texel };
   },
 
   /** One stack on two models, beside the same colour as a texture; a texture that changes. */

@@ -62,6 +62,8 @@ before(async () => {
   await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
   browser = await launchChromium({ drawing: true });
   page = await browser.newPage();
+  const session = await page.context().newCDPSession(page);
+  await page.exposeFunction('collectGarbage', () => session.send('HeapProfiler.collectGarbage'));
   page.on('pageerror', (error) => complaints.push(String(error)));
   page.on('console', (message) => {
     // The renderer frees what a lost context had, too.
@@ -437,6 +439,20 @@ describe('cagecast/three/layers, drawn by Chromium', () => {
       added: [0xdd, 0x33, 0x11, 255],
       style: { opacity: 0.5, tint: '#ff0000', blend: 'normal', visible: true },
     });
+  });
+
+  test('a renderer with a reversed depth buffer draws layers, strokes, stickers and filled triangles', async () => {
+    const { texel, counts } = await run<{ texel: number[]; counts: number[] }>('reversedDepth');
+    assertNear(texel, [0xdd, 0x33, 0x11, 255]);
+    for (const count of counts) assert.ok(count > 100, counts.join());
+  });
+
+  test('an update that fails is made up for by the next one', async () => {
+    const { message, updated, texel } = await run<{ message: string; updated: boolean; texel: number[] }>(
+      'failedUpdate',
+    );
+    assert.deepEqual([message, updated], ['not now', true]);
+    assertNear(texel, [0xdd, 0x33, 0x11, 255]);
   });
 
   test('adding, removing and other layers are steps of their own, and names are not given twice', async () => {

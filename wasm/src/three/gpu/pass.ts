@@ -1,12 +1,13 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  Camera,
   DynamicDrawUsage,
   GLSL3,
   type IUniform,
+  type Material,
   Mesh,
   NoBlending,
+  OrthographicCamera,
   RawShaderMaterial,
   Scene,
   type ShaderMaterialParameters,
@@ -27,9 +28,8 @@ void main() { gl_Position = vec4(position, 1.0); }
 export class Pass<Uniforms extends Record<string, IUniform>> {
   readonly #corners = new BufferAttribute(new Float32Array(6 * 3 * kMostRects), 3).setUsage(DynamicDrawUsage);
   readonly #geometry = new BufferGeometry().setAttribute('position', this.#corners);
-  readonly #scene = new Scene();
-  readonly #camera = new Camera();
   readonly #material: RawShaderMaterial;
+  readonly #draw: (renderer: WebGLRenderer) => void;
 
   /**
    * @param fragmentShader GLSL ES 3.0. It writes linear colour; the target's format encodes it.
@@ -49,9 +49,7 @@ export class Pass<Uniforms extends Record<string, IUniform>> {
       depthWrite: false,
       ...blending,
     });
-    const mesh = new Mesh(this.#geometry, this.#material);
-    mesh.frustumCulled = false;
-    this.#scene.add(mesh);
+    this.#draw = drawerOf(this.#geometry, this.#material);
   }
 
   /** @param rects In texels of the target, at most `kMostRects`. */
@@ -60,13 +58,7 @@ export class Pass<Uniforms extends Record<string, IUniform>> {
     rects.forEach((rect, index) => this.#setCorners(index, rect, target));
     this.#corners.needsUpdate = true;
     this.#geometry.setDrawRange(0, 6 * rects.length);
-    keepState(renderer, () => {
-      renderer.autoClear = false;
-      // In a headset it would draw once for each eye.
-      renderer.xr.enabled = false;
-      renderer.setRenderTarget(target);
-      renderer.render(this.#scene, this.#camera);
-    });
+    drawTo(renderer, target, () => this.#draw(renderer));
   }
 
   #setCorners(index: number, { left, top, right, bottom }: Rect, { width, height }: WebGLRenderTarget): void {
@@ -81,12 +73,26 @@ export class Pass<Uniforms extends Record<string, IUniform>> {
   }
 }
 
-/** Runs something that draws, and makes the renderer what it was. */
-export function keepState(renderer: WebGLRenderer, draw: () => void): void {
+/** Returns a function that draws a geometry, which its vertex shader places. */
+export function drawerOf(geometry: BufferGeometry, material: Material): (renderer: WebGLRenderer) => void {
+  const mesh = new Mesh(geometry, material);
+  mesh.frustumCulled = false;
+  const scene = new Scene().add(mesh);
+  // Not a plain `Camera`: a renderer with a reversed depth buffer updates its projection.
+  const camera = new OrthographicCamera();
+  return (renderer) => renderer.render(scene, camera);
+}
+
+/** Runs something that draws to a target, over what that shows, and makes the renderer what it was. */
+export function drawTo(renderer: WebGLRenderer, target: WebGLRenderTarget, draw: () => void): void {
   const { autoClear, xr } = renderer;
   const before = renderer.getRenderTarget();
   const [face, level, isInHeadset] = [renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel(), xr.enabled];
   try {
+    renderer.autoClear = false;
+    // In a headset it would draw once for each eye.
+    xr.enabled = false;
+    renderer.setRenderTarget(target);
     draw();
   } finally {
     renderer.autoClear = autoClear;

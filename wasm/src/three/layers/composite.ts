@@ -123,7 +123,6 @@ export class Composite {
           this.#stale.map((rect) => toTexels(rect, size, margin)),
           kMostRects,
         );
-    this.#stale = [];
     const first = this.#layers.length > kMostAtOnce ? this.#layers.slice(0, kMostAtOnce) : [];
     if (first.length > 0) {
       this.#below ??= new WebGLRenderTarget(size, size, kFormat);
@@ -132,6 +131,7 @@ export class Composite {
     }
     this.#draw(renderer, this.#target, this.#layers.slice(first.length), rects, first.length > 0);
     refreshMipmaps(renderer, this.#target, rects);
+    this.#stale = [];
     return true;
   }
 

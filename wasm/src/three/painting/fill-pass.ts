@@ -1,21 +1,18 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  Camera,
   Color,
   DoubleSide,
   GLSL3,
-  Mesh,
   NoBlending,
   RawShaderMaterial,
-  Scene,
   Sphere,
   type Texture,
   Vector2,
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { keepState, type Rect } from '../gpu/index.js';
+import { drawerOf, drawTo, type Rect } from '../gpu/index.js';
 import { fillShader } from './stroke-shaders.js';
 
 const kVertexShader = /* glsl */ `
@@ -33,8 +30,7 @@ const kInGutters = [2, 3.5];
 export class FillPass {
   readonly #geometry = new BufferGeometry();
   readonly #material: RawShaderMaterial;
-  readonly #scene = new Scene();
-  readonly #camera = new Camera();
+  readonly #draw: (renderer: WebGLRenderer) => void;
   readonly #size: number;
 
   /** @param size Texels per side. */
@@ -58,9 +54,7 @@ export class FillPass {
     });
     // Else the renderer would compute it, of coordinates that have no z.
     this.#geometry.boundingSphere = new Sphere();
-    const mesh = new Mesh(this.#geometry, this.#material);
-    mesh.frustumCulled = false;
-    this.#scene.add(mesh);
+    this.#draw = drawerOf(this.#geometry, this.#material);
   }
 
   /**
@@ -73,15 +67,12 @@ export class FillPass {
     this.#geometry.setAttribute('position', new BufferAttribute(new Float32Array(inside), 2));
     const { uniforms } = this.#material;
     uniforms.paint!.value.set(color);
-    keepState(renderer, () => {
-      renderer.autoClear = false;
-      renderer.xr.enabled = false;
-      renderer.setRenderTarget(target);
+    drawTo(renderer, target, () => {
       const draw = (x: number, y: number, guttersOnly: boolean): void => {
         uniforms.offset!.value.set(x / this.#size, y / this.#size);
         uniforms.guttersOnly!.value = guttersOnly;
         this.#material.uniformsNeedUpdate = true;
-        renderer.render(this.#scene, this.#camera);
+        this.#draw(renderer);
       };
       draw(0, 0, false);
       for (const reach of [...kAround, ...kInGutters])
