@@ -247,6 +247,25 @@ export const layerScenes: Record<string, () => unknown> = {
     return { message, updated, texel };
   },
 
+  /** Layers added with what another one, or a saved list, has, and one that gets the style of another. */
+  copiedLayers() {
+    const layers = createLayers({ renderer, size: 256 });
+    const first = layers.add(flat(0xff0000), { name: 'red' });
+    const copy = layers.add(flat(0x0000ff), { ...first, name: 'copy' });
+    const shown = texelOf(layers.toImageData(16));
+    layers.set(first, { ...copy, opacity: 0.5 });
+    const step = layers.undo();
+    layers.redo();
+    const saved = JSON.parse(JSON.stringify(layers.list.map(({ sheet, ...rest }) => rest)));
+    layers.remove(copy);
+    const back = layers.add(flat(0x0000ff), saved[1]);
+    layers.add(flat(0x00ff00), { name: 'third' });
+    layers.remove(back);
+    const list = layers.list.map(({ name, opacity }) => `${name} ${opacity}`);
+    layers.dispose();
+    return { shown, step, list };
+  },
+
   /** One stack on two models, beside the same colour as a texture; a texture that changes. */
   stackOnModels() {
     const layers = createLayers({ renderer });

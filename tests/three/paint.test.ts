@@ -455,6 +455,13 @@ describe('cagecast/three/layers, drawn by Chromium', () => {
     assertNear(texel, [0xdd, 0x33, 0x11, 255]);
   });
 
+  test('a layer may be added with all that another one, or a saved list, has: it stays a layer of its own', async () => {
+    const { shown, step, list } = await run<{ shown: number[]; step: string; list: string[] }>('copiedLayers');
+    assertNear(shown, [0, 0, 255, 255]);
+    assert.equal(step, 'changing opacity, tint, blend, visible of red');
+    assert.deepEqual(list, ['red 0.5', 'third 1']);
+  });
+
   test('adding, removing and other layers are steps of their own, and names are not given twice', async () => {
     assert.deepEqual(await run('quickSteps'), {
       added: [2, 1, 0],

@@ -32,7 +32,7 @@ export interface Style {
 /** The style of a layer by default. */
 export const plainStyle: Style = { opacity: 1, tint: '#ffffff', blend: 'normal', visible: true };
 
-/** The fields of a style that are not undefined. @throws {CagecastError} `badOption` that names the field and its value. */
+/** The fields of a style that are not undefined, and no others that were given with it. @throws {CagecastError} `badOption` that names the field and its value. */
 export function readStyle(style: Partial<Style>): Partial<Style> {
   const check = (fits: boolean, name: string, value: unknown, what: string): void => {
     if (!fits)
@@ -44,7 +44,7 @@ export function readStyle(style: Partial<Style>): Partial<Style> {
   check(blendModes.includes(blend), 'blend', blend, `one of ${blendModes.join(', ')}`);
   check(typeof visible === 'boolean', 'visible', visible, 'true or false');
   // Spread, undefined would take the place of a value.
-  return Object.fromEntries(Object.entries(style).filter(([, value]) => value !== undefined));
+  return Object.fromEntries(Object.entries(style).filter(([name, value]) => name in plainStyle && value !== undefined));
 }
 
 const describe = (value: unknown): string =>

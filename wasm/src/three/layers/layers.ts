@@ -5,7 +5,7 @@ import { Composite, maxCompositeSize } from './composite.js';
 import { Edits } from './edits.js';
 import { Emitter } from './emitter.js';
 import { History } from './history.js';
-import { checkTexture, freeName, type Layer, type Style } from './layer.js';
+import { checkTexture, freeName, type Layer, readStyle, type Style } from './layer.js';
 import { LayerStack } from './stack.js';
 
 /** Options of `createLayers`. */
@@ -92,8 +92,9 @@ export class Layers extends Emitter<{
 
   /** Changes opacity, tint, blend mode or visibility. Equal changes of a layer in quick succession, as by a slider, are one step. */
   set(layer: Pick<Layer, 'id'>, style: Partial<Style>): void {
-    this.edits.do(`changing ${Object.keys(style).join(', ')} of ${this.#nameOf(layer)}`, () =>
-      this.stack.restyle(layer, style),
+    const change = readStyle(style);
+    this.edits.do(`changing ${Object.keys(change).join(', ')} of ${this.#nameOf(layer)}`, () =>
+      this.stack.restyle(layer, change),
     );
   }
 
