@@ -385,6 +385,53 @@ export const layerScenes: Record<string, () => unknown> = {
     return { text, upright: ends(upright), turned: ends(turned) };
   },
 
+  /** What is left of renderers, painters and their canvases when they are disposed of, after garbage was collected. */
+  async leftovers() {
+    const kept: Record<string, WeakRef<object>[]> = { renderers: [], texels: [], canvases: [] };
+    const layers = createLayers({ renderer, size: 256 });
+    const { createElement } = document;
+    const Owners = Int32Array;
+    document.createElement = ((name: string) => {
+      const element = createElement.call(document, name);
+      if (name === 'canvas') kept['canvases']!.push(new WeakRef(element));
+      return element;
+    }) as typeof createElement;
+    globalThis.Int32Array = new Proxy(Owners, {
+      construct(target, args) {
+        const made = Reflect.construct(target, args) as Int32Array;
+        if (made.length >= 1024 ** 2) kept['texels']!.push(new WeakRef(made));
+        return made;
+      },
+    });
+    const use = (): void => {
+      const own = new WebGLRenderer();
+      const drawn = createLayers({ renderer: own, size: 256 });
+      drawn.add(flat(0xdd3311));
+      drawn.toImageData(16);
+      drawn.dispose();
+      own.dispose();
+      own.forceContextLoss();
+      kept['renderers']!.push(new WeakRef(own));
+      const painter = createPainter({ layers, applied: [], cage: cage() });
+      painter.stroke([{ x: 0.5, y: 0.5 }]);
+      painter.sticker({ text: 'A', color: '#ff0000' }, { at: { x: 0.5, y: 0.5 } });
+      painter.dispose();
+    };
+    for (let i = 0; i < 3; ++i) use();
+    document.createElement = createElement;
+    globalThis.Int32Array = Owners;
+    layers.toImageData(16); // what comes next may keep the last one
+    const made = Object.values(kept).map(({ length }) => length);
+    const { collectGarbage } = globalThis as unknown as { collectGarbage(): Promise<void> };
+    // What one collection frees may have held something else.
+    for (let i = 0; i < 3; ++i) await collectGarbage();
+    const left = Object.fromEntries(
+      Object.entries(kept).map(([what, refs]) => [what, refs.filter((ref) => ref.deref()).length]),
+    );
+    layers.dispose();
+    return { made, left };
+  },
+
   /** Stickers of a canvas that is drawn anew, and of one picture before and after the graphics context was lost. */
   async stickersAnew() {
     const { painter, look, spots } = paintedBall();

@@ -544,6 +544,12 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     assert.deepEqual(turned, ['blue', 'red']);
   });
 
+  test('renderers and painters leave nothing behind when they are disposed of', async () => {
+    const { made, left } = await run<{ made: number[]; left: Record<string, number> }>('leftovers');
+    for (const count of made) assert.ok(count >= 3, made.join());
+    assert.deepEqual(left, { renderers: 0, texels: 0, canvases: 0 });
+  });
+
   test('stickers show a canvas as it is now, and their picture after the graphics context was lost', async () => {
     assert.deepEqual(await run('stickersAnew'), { canvas: ['red', 'blue'], picture: ['blue', 'blue', 'blue'] });
   });

@@ -17,7 +17,8 @@ void main() {
 }
 `;
 
-let pass: Pass<{ source: { value: Texture | null }; size: { value: number } }> | undefined;
+// By renderer, as what it has drawn with holds it.
+const passes = new WeakMap<WebGLRenderer, Pass<{ source: { value: Texture | null }; size: { value: number } }>>();
 
 /**
  * Reads a premultiplied texture as an image file has it: sRGB, colours not multiplied by alpha, upper row first.
@@ -25,10 +26,12 @@ let pass: Pass<{ source: { value: Texture | null }; size: { value: number } }> |
  */
 export function readStraight(renderer: WebGLRenderer, source: Texture, size: number): ImageData {
   const target = new WebGLRenderTarget(size, size, { colorSpace: NoColorSpace, depthBuffer: false });
-  pass ??= new Pass(kShader, { source: { value: null }, size: { value: 1 } });
+  const pass = passes.get(renderer) ?? new Pass(kShader, { source: { value: null }, size: { value: 1 } });
+  passes.set(renderer, pass);
   pass.uniforms.source.value = source;
   pass.uniforms.size.value = size;
   pass.run(renderer, target, [toTexels(kWhole, size)]);
+  pass.uniforms.source.value = null;
   const image = new ImageData(size, size);
   renderer.readRenderTargetPixels(target, 0, 0, size, size, image.data);
   target.dispose();

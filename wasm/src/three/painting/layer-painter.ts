@@ -66,6 +66,7 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
     if (cage === this.#cage) return;
     for (const surface of this.#surfaces.values()) surface.dispose();
     this.#surfaces.clear();
+    this.#stroke = undefined;
     this.#cage = cage;
   }
 

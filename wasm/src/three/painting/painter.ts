@@ -95,14 +95,10 @@ export class Painter {
     if (size !== undefined) this.#painter.size = size;
     const mesh: CageMesh = { positions: Float32Array.from(positions), indices, uvs: Float32Array.from(uvs) };
     this.#painter.setCage(mesh);
-    this.#painter.on('change', () => this.layers.announce());
+    follow(this.layers, this.#painter);
     for (const model of this.#models) model.setTexture(this.layers.texture);
-    const [painter, sheet] = [this.#painter, this.#sheet];
-    // Also after `dispose`, as the layers stay.
-    this.layers.on('restored', () => {
-      painter.restore();
-      sheet.dispose(); // its texture is empty; it is drawn again when it is needed
-    });
+    // Its texture is empty then; it is drawn again when it is needed.
+    this.#stops.add(this.layers.on('restored', () => this.#sheet.dispose()));
   }
 
   /** All layers in one, for further models. */
@@ -290,6 +286,12 @@ export class Painter {
 function keyOf(picture: StickerPicture): unknown {
   if ('text' in picture) return JSON.stringify([picture.text, picture.color, picture.font, picture.outline]);
   return picture.image instanceof ImageBitmap ? picture.image : undefined;
+}
+
+/** Also after the painter has been disposed of, as the layers stay: so this holds no more of it. */
+function follow(layers: Layers, painter: LayerPainter): void {
+  painter.on('change', () => layers.announce());
+  layers.on('restored', () => painter.restore());
 }
 
 /** @throws {CagecastError} `badOption` that names the field and its value. */
