@@ -98,6 +98,20 @@ async function loseContext(meanwhile = (): void => {}): Promise<void> {
   await restored;
 }
 
+/** A white image, laid out on the page in another size than its own. */
+async function shownImage(width: number, height: number): Promise<HTMLImageElement> {
+  const context = document.createElement('canvas').getContext('2d')!;
+  Object.assign(context.canvas, { width, height });
+  context.fillStyle = '#ffffff';
+  context.fillRect(0, 0, width, height);
+  const image = new Image();
+  image.src = context.canvas.toDataURL();
+  await image.decode();
+  image.style.cssText = 'width: 16px; height: 16px';
+  document.body.append(image);
+  return image;
+}
+
 /** Texels with paint. */
 function filled(painter: Painter): { texels: number; most: number } {
   const { data } = painter.layers.toImageData();
@@ -383,6 +397,68 @@ export const layerScenes: Record<string, () => unknown> = {
       [36, 28].map((y) => (pixelAt(pixels, 32, y)[0]! > 150 ? 'red' : 'blue'));
     painter.dispose();
     return { text, upright: ends(upright), turned: ends(turned) };
+  },
+
+  /** An image of another size on the page than its own, as a sticker and as a mask. */
+  async shownImages() {
+    const { painter } = paintedBall();
+    const image = await shownImage(128, 32);
+    painter.sticker({ image }, { at: { x: 0.5, y: 0.5 }, size: 0.1 });
+    const { data, width } = painter.layers.toImageData();
+    const columns = new Set<number>();
+    const rows = new Set<number>();
+    for (let i = 0; i < width * width; ++i) {
+      if (data[4 * i + 3]! < 128) continue;
+      columns.add(i % width);
+      rows.add(Math.floor(i / width));
+    }
+    const never = new Texture(image);
+    const masked = [...modelMasks(ball(), { never }).triangles!].filter((mask) => mask === -1).length;
+    const triangles = ball().index!.count / 3;
+    image.remove();
+    painter.dispose();
+    return { shape: columns.size / rows.size, masked, triangles };
+  },
+
+  /** Stickers, pressures and pictures that are refused; nothing is painted and no step is left. */
+  refusedStickers() {
+    const { painter } = paintedBall();
+    const at = { x: 0.5, y: 0.5 };
+    const sticker = (place: object, picture: StickerPicture = { text: 'A', color: '#ff0000' }) =>
+      messageOf(() => painter.sticker(picture, { at, ...place } as StickerPlace));
+    const errors = [
+      sticker({ size: Number.NaN }),
+      sticker({ size: -0.2 }),
+      sticker({ size: 0 }),
+      sticker({ size: 'big' }),
+      sticker({ angle: Number.NaN }),
+      sticker({ opacity: 2 }),
+      sticker({}, { image: new Image() }),
+      messageOf(() => painter.stroke([{ ...at, pressure: Number.NaN }])),
+    ];
+    const { canUndo } = painter;
+    painter.dispose();
+    return { errors, canUndo };
+  },
+
+  /** One text twice. Meanwhile its font is loaded: here, one whose letters are solid. */
+  lateFont() {
+    const { painter } = paintedBall();
+    const texels = (): number => {
+      painter.sticker({ text: 'III', color: '#ff0000' }, { at: { x: 0.5, y: 0.5 } });
+      const found = filled(painter).texels;
+      painter.undo();
+      return found;
+    };
+    const before = texels();
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function () {
+      this.fillRect(0, 0, this.canvas.width, this.canvas.height);
+    };
+    const after = texels();
+    CanvasRenderingContext2D.prototype.fillText = fillText;
+    painter.dispose();
+    return { before, after };
   },
 
   /** What is left of renderers, painters and their canvases when they are disposed of, after garbage was collected. */

@@ -544,6 +544,34 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     assert.deepEqual(turned, ['blue', 'red']);
   });
 
+  test('an image that the page shows in another size is a sticker, and a mask, of its own shape', async () => {
+    const { shape, masked, triangles } = await run<{ shape: number; masked: number; triangles: number }>('shownImages');
+    // Four times as wide as high, in texels of a ball, which are twice as wide as high.
+    assert.ok(shape > 1.7 && shape < 2.3, `${shape} times as many columns as rows`);
+    assert.equal(masked, triangles);
+  });
+
+  test('stickers of a wrong size or angle, without a picture, and pressures that are no shares are refused', async () => {
+    const { errors, canUndo } = await run<{ errors: string[]; canUndo: boolean }>('refusedStickers');
+    const expected = [
+      /size is NaN, not a number from 0 to 2$/,
+      /size is -0\.2, not a number from 0 to 2$/,
+      /size is 0, not a number from 0 to 2$/,
+      /size is big, not a number from 0 to 2$/,
+      /angle is NaN, not a number$/,
+      /opacity is 2, not a number from 0 to 1$/,
+      /the image is not loaded yet$/,
+      /pressure is NaN, not a number from 0 to 1$/,
+    ];
+    errors.forEach((message, i) => assert.match(message, expected[i]!));
+    assert.equal(canUndo, false);
+  });
+
+  test('a text that is laid again has the font that was loaded meanwhile', async () => {
+    const { before, after } = await run<{ before: number; after: number }>('lateFont');
+    assert.ok(before > 0 && after > 1.2 * before, `${after} texels after ${before}`);
+  });
+
   test('renderers and painters leave nothing behind when they are disposed of', async () => {
     const { made, left } = await run<{ made: number[]; left: Record<string, number> }>('leftovers');
     for (const count of made) assert.ok(count >= 3, made.join());

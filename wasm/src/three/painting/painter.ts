@@ -35,7 +35,7 @@ export type StrokePoint = (Spot | { x: number; y: number }) & { pressure?: numbe
 export interface StickerPlace {
   /** A spot of a model, or a UV of the cage. Undefined, as `pick` returns it beside the models, is no place: nothing is laid. */
   at: Spot | { x: number; y: number } | undefined;
-  /** Its longer side, as a share of the diagonal of the cage. Default: 0.2. */
+  /** Its longer side, as a share of the diagonal of the cage, up to 2. Default: 0.2. */
   size?: number | undefined;
   /** Radians, clockwise as seen. Default: 0. */
   angle?: number | undefined;
@@ -47,12 +47,12 @@ export interface StickerPlace {
   up?: Vector3 | undefined;
 }
 
-const kSticker = { size: 0.2, angle: 0, opacity: 1 };
-
-const checkShare = (name: string, value: number): void => {
-  if (!(value >= 0 && value <= 1))
-    throw new CagecastError('badOption', `cagecast/three/paint: ${name} is ${value}, not a number from 0 to 1`);
+const check = (fits: boolean, name: string, value: unknown, what: string): void => {
+  if (!fits) throw new CagecastError('badOption', `cagecast/three/paint: ${name} is ${value}, not ${what}`);
 };
+const checkShare = (name: string, value: number): void =>
+  check(value >= 0 && value <= 1, name, value, 'a number from 0 to 1');
+const checkSize = (size: number): void => check(size > 0 && size <= 2, 'size', size, 'a number from 0 to 2');
 
 /** Paints on models, in the cage's UV space. */
 export class Painter {
@@ -72,8 +72,6 @@ export class Painter {
   readonly #painter: LayerPainter;
   readonly #models: readonly Applied[];
   readonly #sheet = new StickerSheet();
-  /** What is on the sheet, unless that may have changed since. */
-  #drawn: unknown;
   readonly #stops = new Set<() => void>();
 
   constructor({ layers, renderer, texture, applied, cage, size }: PainterOptions) {
@@ -97,8 +95,6 @@ export class Painter {
     this.#painter.setCage(mesh);
     follow(this.layers, this.#painter);
     for (const model of this.#models) model.setTexture(this.layers.texture);
-    // Its texture is empty then; it is drawn again when it is needed.
-    this.#stops.add(this.layers.on('restored', () => this.#sheet.dispose()));
   }
 
   /** All layers in one, for further models. */
@@ -106,7 +102,10 @@ export class Painter {
     return this.layers.texture;
   }
 
-  /** The nearest spot of the models on a ray. Where nothing may be painted its `uv` is undefined. */
+  /**
+   * The nearest spot of the models on a ray; parts that are hidden, or were taken out of the scene, are passed over. Where nothing may be
+   * painted its `uv` is undefined.
+   */
   pick(raycaster: Raycaster): Spot | undefined {
     return pickSpot(this.#models, raycaster, this.#painter.cageTexels);
   }
@@ -137,12 +136,14 @@ export class Painter {
     if (this.#painter.hasPainting) this.#stroke(points, { ...this.brush, ...style, erases: true });
   }
 
-  /** Lays a text or an image on the model, as one undo step; nothing where no cage is. */
+  /**
+   * Lays a text or an image on the model, as one undo step; nothing where no cage is.
+   * @throws {CagecastError} as `stroke`, and `badArgument` for an image that is not loaded yet.
+   */
   sticker(picture: StickerPicture, place: StickerPlace): void {
     const surface = this.#surfaceAt(place.at);
     if (!surface) return;
-    this.#beginSticker(picture, place);
-    this.#moveSticker(surface, place);
+    this.#beginSticker(picture, place)(surface, place.up);
     this.#painter.end();
   }
 
@@ -219,11 +220,10 @@ export class Painter {
   #dragSticker(first: Spot, camera: Camera): Drag | undefined {
     const { picture } = this;
     if (!picture) return undefined;
-    this.#beginSticker(picture, picture);
+    const lay = this.#beginSticker(picture, picture);
     const place = (spot: Spot | undefined): void => {
       if (!spot?.surface) return;
-      const up = new Vector3().setFromMatrixColumn(camera.matrixWorld, 1).transformDirection(spot.toCage);
-      this.#moveSticker(spot.surface, { ...picture, up });
+      lay(spot.surface, new Vector3().setFromMatrixColumn(camera.matrixWorld, 1).transformDirection(spot.toCage));
     };
     place(first);
     return {
@@ -239,20 +239,18 @@ export class Painter {
     return { surface: spot.surface, scale: spot.scale * pixelsPerUnit(camera, spot.point, height) };
   }
 
-  #beginSticker(picture: StickerPicture, { opacity = kSticker.opacity }: Partial<StickerPlace>): void {
+  /** Begins a sticker. @returns a function that lays it somewhere, upright with respect to a direction. */
+  #beginSticker(
+    picture: StickerPicture,
+    { size = 0.2, angle = 0, mirrored, opacity = 1 }: Partial<StickerPlace>,
+  ): (surface: SurfacePoint, up?: Vector3) => void {
+    checkSize(size);
+    check(Number.isFinite(angle), 'angle', angle, 'a number');
     checkShare('opacity', opacity);
-    const key = keyOf(picture);
-    if (key === undefined || key !== this.#drawn) this.#sheet.draw(picture);
-    this.#drawn = key;
+    this.#sheet.draw(picture);
     this.#painter.begin('sticker', { color: '#000000', opacity, hardness: 1, erases: false });
-  }
-
-  #moveSticker(
-    surface: SurfacePoint,
-    { size = kSticker.size, angle = kSticker.angle, up = new Vector3(0, 1, 0), mirrored }: Partial<StickerPlace>,
-  ): void {
-    const { diagonal } = this.#painter.cageTexels!;
-    this.#painter.stick(surface, this.#sheet, { size: size * diagonal, angle, mirrored }, up);
+    const style = { size: size * this.#painter.cageTexels!.diagonal, angle, mirrored };
+    return (surface, up = new Vector3(0, 1, 0)) => this.#painter.stick(surface, this.#sheet, style, up);
   }
 
   #stroke(points: readonly (StrokePoint | undefined)[], style: BrushStyle): void {
@@ -261,8 +259,11 @@ export class Painter {
     const stroke = new Stroke(texels, { radius: (style.size / 2) * texels.diagonal, mirror: style.mirror });
     this.#painter.begin(style.erases ? 'erasing' : 'stroke', style);
     try {
-      for (const point of points)
-        this.#painter.extend(stroke.to(this.#surfaceAt(point), Infinity, point?.pressure ?? 1));
+      for (const point of points) {
+        const { pressure = 1 } = point ?? {};
+        checkShare('pressure', pressure);
+        this.#painter.extend(stroke.to(this.#surfaceAt(point), Infinity, pressure));
+      }
     } catch (error) {
       this.#painter.cancel();
       throw error;
@@ -282,12 +283,6 @@ export class Painter {
   }
 }
 
-/** What is equal for equal pictures; undefined for a canvas or an element, as that may show something else by now. */
-function keyOf(picture: StickerPicture): unknown {
-  if ('text' in picture) return JSON.stringify([picture.text, picture.color, picture.font, picture.outline]);
-  return picture.image instanceof ImageBitmap ? picture.image : undefined;
-}
-
 /** Also after the painter has been disposed of, as the layers stay: so this holds no more of it. */
 function follow(layers: Layers, painter: LayerPainter): void {
   painter.on('change', () => layers.announce());
@@ -296,12 +291,10 @@ function follow(layers: Layers, painter: LayerPainter): void {
 
 /** @throws {CagecastError} `badOption` that names the field and its value. */
 function checkBrush({ color, size, hardness, opacity }: BrushStyle): void {
-  if (!/^#[0-9a-f]{6}$/i.test(color))
-    throw new CagecastError('badOption', `cagecast/three/paint: color is "${color}", not a colour such as #ff8800`);
+  check(/^#[0-9a-f]{6}$/i.test(color), 'color', `"${color}"`, 'a colour such as #ff8800');
   checkShare('opacity', opacity);
   checkShare('hardness', hardness);
-  if (!(size > 0 && size <= 2))
-    throw new CagecastError('badOption', `cagecast/three/paint: size is ${size}, not a number from 0 to 2`);
+  checkSize(size);
 }
 
 /**

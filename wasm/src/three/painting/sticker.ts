@@ -1,4 +1,5 @@
 import { CanvasTexture, SRGBColorSpace, Vector3, type WebGLRenderer } from 'three';
+import { CagecastError } from '../../index.js';
 import { Composite, plainStyle } from '../layers/index.js';
 import type { SurfacePoint } from './cage-texels.js';
 import type { Sticker } from './stroke-layer.js';
@@ -39,14 +40,12 @@ const kMargin = 4; // transparent pixels around it, so that filtering does not w
 export class StickerSheet {
   // A composite of one layer brings mipmaps and premultiplied alpha, so that edges keep their colour.
   readonly #composite = new Composite();
-  #canvas = makeCanvas(1, 1);
   #texture: CanvasTexture<Canvas> | undefined;
 
   /** Shows another picture. */
   draw(picture: StickerPicture): void {
-    this.#canvas = 'text' in picture ? drawText(picture) : drawImage(picture.image);
+    const texture = new CanvasTexture('text' in picture ? drawText(picture) : drawImage(picture.image));
     this.#texture?.dispose();
-    const texture = new CanvasTexture(this.#canvas);
     texture.colorSpace = SRGBColorSpace;
     texture.flipY = false;
     texture.generateMipmaps = false;
@@ -54,7 +53,7 @@ export class StickerSheet {
     this.#composite.set([{ ...plainStyle, id: 0, name: '', sheet: { texture } }]);
   }
 
-  /** The sticker at a point of the cage, upright with respect to `up`. */
+  /** The sticker that was drawn, at a point of the cage, upright with respect to `up`. */
   at(
     renderer: WebGLRenderer,
     { normal }: SurfacePoint,
@@ -62,7 +61,7 @@ export class StickerSheet {
     { size, angle, mirrored = false }: StickerStyle,
   ): Sticker {
     this.#composite.update(renderer);
-    const { width, height } = this.#canvas;
+    const { width, height } = this.#texture!.image;
     const scale = size / Math.max(width, height);
     const upright = new Vector3().copy(up).addScaledVector(normal, -up.dot(normal));
     // Seen along `up`: any direction is upright.
@@ -116,8 +115,11 @@ function drawText({ text, color, outline, font: family = 'system-ui, sans-serif'
 }
 
 function drawImage(image: StickerImage): Canvas {
-  const scale = (kSide - 2 * kMargin) / Math.max(image.width, image.height);
-  const [width, height] = [Math.max(1, Math.round(image.width * scale)), Math.max(1, Math.round(image.height * scale))];
+  // The width of an element is that of its place on the page.
+  const { naturalWidth: wide = image.width, naturalHeight: high = image.height } = image as HTMLImageElement;
+  if (!(wide * high > 0)) throw new CagecastError('badArgument', 'cagecast/three/paint: the image is not loaded yet');
+  const scale = (kSide - 2 * kMargin) / Math.max(wide, high);
+  const [width, height] = [wide, high].map((side) => Math.max(1, Math.round(side * scale))) as [number, number];
   const canvas = makeCanvas(width + 2 * kMargin, height + 2 * kMargin);
   const context = canvas.getContext('2d') as Context;
   context.imageSmoothingQuality = 'high';
