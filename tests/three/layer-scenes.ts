@@ -508,6 +508,33 @@ export const layerScenes: Record<string, () => unknown> = {
     return { made, left };
   },
 
+  /** A part in front of another one that is taken out of the model. */
+  removedPart() {
+    const [head, hair] = [new Mesh(ball(0.8), white()), new Mesh(ball(), white())];
+    const { painter } = paintedBall(new Group().add(head, hair));
+    const model = head.parent!;
+    const look = () => painter.pick(ray(32, 32))?.mesh;
+    const picked = [look() === hair];
+    new Scene().add(model);
+    picked.push(look() === hair);
+    hair.removeFromParent();
+    picked.push(look() === head);
+    painter.dispose();
+    return picked;
+  },
+
+  /** How directions of the scene are turned to those of the cage, on models that are as they were painted. */
+  toCage() {
+    return [1, -1].map((x) => {
+      const model = modelOf(white());
+      model.scale.x = x;
+      const { painter, spots } = paintedBall(model);
+      const { toCage } = spots([40, 40])[0] as { toCage: Matrix4 };
+      painter.dispose();
+      return Math.max(...toCage.elements.map((value, i) => Math.abs(value - new Matrix4().elements[i]!)));
+    });
+  },
+
   /** Stickers of a canvas that is drawn anew, and of one picture before and after the graphics context was lost. */
   async stickersAnew() {
     const { painter, look, spots } = paintedBall();

@@ -578,6 +578,14 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     assert.deepEqual(left, { renderers: 0, texels: 0, canvases: 0 });
   });
 
+  test('a part that was taken out of a model in a scene is not picked', async () => {
+    assert.deepEqual(await run('removedPart'), [true, true, true]);
+  });
+
+  test('directions on a model, mirrored or not, are those of the cage', async () => {
+    for (const apart of await run<number[]>('toCage')) assert.ok(apart < 1e-6, `${apart}`);
+  });
+
   test('stickers show a canvas as it is now, and their picture after the graphics context was lost', async () => {
     assert.deepEqual(await run('stickersAnew'), { canvas: ['red', 'blue'], picture: ['blue', 'blue', 'blue'] });
   });

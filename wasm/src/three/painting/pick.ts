@@ -5,6 +5,7 @@ import {
   type Intersection,
   Matrix4,
   type Mesh,
+  type Object3D,
   type Raycaster,
   type SkinnedMesh,
   Sphere,
@@ -36,13 +37,18 @@ export function pickSpot(
   raycaster: Raycaster,
   texels: CageTexels | undefined,
 ): Spot | undefined {
+  const shown = models.flatMap(({ parts, channel }) =>
+    parts.flatMap((part) => {
+      const root = rootOf(part.mesh);
+      return root ? { part, channel, root } : [];
+    }),
+  );
+  // What was taken out of a scene is seen no more.
+  const inScene = shown.filter(({ root }) => 'isScene' in root);
   let nearest: { part: Part; channel: number; hit: Intersection } | undefined;
-  for (const { parts, channel } of models) {
-    for (const part of parts) {
-      if (!part.mesh || !isShown(part.mesh)) continue;
-      const hit = hitOf(part.mesh, raycaster);
-      if (hit?.face && (!nearest || hit.distance < nearest.hit.distance)) nearest = { part, channel, hit };
-    }
+  for (const { part, channel } of inScene.length > 0 ? inScene : shown) {
+    const hit = hitOf(part.mesh!, raycaster);
+    if (hit?.face && (!nearest || hit.distance < nearest.hit.distance)) nearest = { part, channel, hit };
   }
   return nearest && spotOf(nearest.part, nearest.hit, nearest.channel, texels);
 }
@@ -57,10 +63,10 @@ function hitOf(mesh: Mesh, raycaster: Raycaster): Intersection | undefined {
   return hit;
 }
 
-/** Rays hit what is hidden, too. */
-function isShown(mesh: Mesh): boolean {
-  for (let object: Mesh['parent'] = mesh; object; object = object.parent) if (!object.visible) return false;
-  return true;
+/** The uppermost of the objects that hold a mesh, unless one of them is hidden: rays hit what is hidden, too. */
+function rootOf(mesh: Object3D | undefined): Object3D | undefined {
+  while (mesh?.visible && mesh.parent) mesh = mesh.parent;
+  return mesh?.visible ? mesh : undefined;
 }
 
 function spotOf({ matrix }: Part, hit: Intersection, channel: number, texels: CageTexels | undefined): Spot {
@@ -83,7 +89,11 @@ function spotOf({ matrix }: Part, hit: Intersection, channel: number, texels: Ca
   const uv = isPainted(mesh, corners) ? uvAt(geometry.getAttribute(`uv${channel}`), corners, weights) : undefined;
   const [posed, stored] = [areaOf(at), areaOf(rest)];
   const size = Math.cbrt(Math.abs(matrix.determinant())) * (posed > 0 && stored > 0 ? Math.sqrt(stored / posed) : 1);
-  const toCage = new Matrix4().extractRotation(matrix).multiply(frameOf(rest)).multiply(frameOf(at).transpose());
+  const side = new Vector3(1, placed.determinant() < 0 ? -1 : 1, 1); // of the triangle that is outside
+  const toCage = new Matrix4()
+    .extractRotation(matrix)
+    .multiply(frameOf(rest))
+    .multiply(frameOf(at).scale(side).transpose());
   return {
     mesh,
     point: hit.point,
