@@ -224,6 +224,11 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     await page.evaluate('viewer.removeAttribute("camera-orbit")');
   });
 
+  test('of an element that shows nothing, a picture is refused by the promise', async () => {
+    const said = await page.evaluate<string>('document.createElement("cagecast-viewer").toBlob().catch(String)');
+    assert.match(said, /^Error: toBlob: .* shows nothing yet/);
+  });
+
   test('exports a valid model with its paint', async () => {
     const file = join(user, 'exported.glb');
     writeFileSync(file, await bytesOf('viewer.exportGlb().then((glb) => text(new Blob([glb])))'));

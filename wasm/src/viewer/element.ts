@@ -110,7 +110,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
    * @param quality  0 to 1, for types with losses.
    * @throws Error if nothing is shown yet.
    */
-  toBlob(type?: string, quality?: number): Promise<Blob> {
+  async toBlob(type?: string, quality?: number): Promise<Blob> {
     this.#get('toBlob');
     this.#stage!.drawNow();
     return new Promise((resolve, reject) =>
