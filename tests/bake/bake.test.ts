@@ -305,10 +305,15 @@ test('what cannot be baked is one clear error', () => {
     ],
     [
       () => bake(mesh, result, paint, { kind: 'hue' as 'color' }),
-      /options\.kind is hue; there are: color, data, normal/,
+      /options\.kind is "hue"; there are: color, data, normal/,
     ],
-    [() => bake(mesh, result, paint, { wrap: 'fold' as 'clamp' }), /options\.wrap is fold; there are/],
+    [() => bake(mesh, result, paint, { wrap: 'fold' as 'clamp' }), /options\.wrap is "fold"; there are/],
     [() => bake(mesh, result, paint, { gutter: -1 }), /options\.gutter is -1/],
+    [
+      () => bake(mesh, result, paint, { size: 2048 } as object),
+      /^bake: options\.size is not an option; there are: width, height, kind, gutter, wrap, parts$/,
+    ],
+    [() => cageTexture(mesh, result, paint, { size: 64 } as object), /^cageTexture: options\.size is not an option/],
     [
       () => bake(mesh, result, paint, { parts: [{ name: 'x', firstTriangle: 1, triangleCount: 2 }] }),
       /options\.parts\[0\] is not/,

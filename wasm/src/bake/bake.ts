@@ -116,8 +116,7 @@ function layoutsOf(fn: string, target: BakeTarget, result: BakeResult, options: 
     throw wrong(`result is ${show(result)}; pass what transfer() returned`);
   const { indices, uvs, positions } = target;
   if (!ArrayBuffer.isView(indices)) throw wrong(`target.indices is ${show(indices)}, not a typed array`);
-  if (!ArrayBuffer.isView(uvs) || uvs.length === 0)
-    throw wrong('target has no UVs: a texture can only be laid on a model that is unwrapped');
+  if (!ArrayBuffer.isView(uvs) || uvs.length === 0) throw wrong('target has no UVs; unwrap it first');
   const [triangles, vertices] = [indices.length / 3, uvs.length / 2];
   if (!Number.isInteger(triangles)) throw wrong(`target.indices has ${indices.length} entries, not 3 per triangle`);
   const bad = uvs.findIndex((value) => !Number.isFinite(value));

@@ -37,6 +37,13 @@ export function colorByte(): (linear: number) => number {
   return (linear) => table[linear <= 0 ? 0 : linear >= 1 ? kSteps : (linear * kSteps + 0.5) | 0]!;
 }
 
+/** @throws {CagecastError} `badOption` for a name that is unknown. */
+export function checkNames(fn: string, where: string, given: object, known: string): void {
+  for (const name in given)
+    if (!known.split(', ').includes(name))
+      throw new CagecastError('badOption', `${fn}: ${where}.${name} is not an option; there are: ${known}`);
+}
+
 /**
  * Checks a size in texels.
  * @throws {CagecastError} `badArgument`

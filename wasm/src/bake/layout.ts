@@ -1,6 +1,7 @@
+import { show } from '../api/error.js';
 import { CagecastError } from '../index.js';
 import { fillGutter } from './gutter.js';
-import { checkImage, checkSize, colorByte, type Image, linearOf } from './image.js';
+import { checkImage, checkNames, checkSize, colorByte, type Image, linearOf } from './image.js';
 import { type Corners, type Kind, Raster, type Wrap } from './raster.js';
 
 /** Triangles that lie in two textures: in the one that is filled, and in the image that fills it. */
@@ -71,6 +72,7 @@ interface Fill {
 export function checkFill(fn: string, options: FillOptions = {}): Fill {
   if (typeof options !== 'object' || options === null)
     throw new CagecastError('badOption', `${fn}: options is ${options}, not an object`);
+  checkNames(fn, 'options', options, 'width, height, kind, gutter, wrap, parts');
   const { kind = 'color', wrap = 'repeat' } = options;
   const width = checkSize(fn, 'options.width', options.width ?? 1024);
   const height = checkSize(fn, 'options.height', options.height ?? width);
@@ -81,12 +83,12 @@ export function checkFill(fn: string, options: FillOptions = {}): Fill {
       `${fn}: options.gutter is ${gutter}, not a whole number of texels from 0 to ${Math.max(width, height)}`,
     );
   if (!kinds.includes(kind))
-    throw new CagecastError('badOption', `${fn}: options.kind is ${kind}; there are: ${kinds.join(', ')}`);
+    throw new CagecastError('badOption', `${fn}: options.kind is ${show(kind)}; there are: ${kinds.join(', ')}`);
   const both: readonly Wrap[] = typeof wrap === 'string' ? [wrap, wrap] : wrap;
   if (!Array.isArray(both) || both.length !== 2 || !both.every((one) => wraps.includes(one)))
     throw new CagecastError(
       'badOption',
-      `${fn}: options.wrap is ${wrap}; there are: ${wraps.join(', ')}, or one for each direction`,
+      `${fn}: options.wrap is ${show(wrap)}; there are: ${wraps.join(', ')}, or one for each direction`,
     );
   return { kind, width, height, gutter, wraps: [both[0]!, both[1]!] };
 }
@@ -201,10 +203,10 @@ function densityOf(layouts: readonly Layout[], texels: number, image: Image): nu
 
 type Vector = [number, number, number];
 const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const plus = (a: Vector, b: Vector, times: number): Vector => [
-  a[0] + times * b[0],
-  a[1] + times * b[1],
-  a[2] + times * b[2],
+const sum = (s: number, a: Vector, t: number, b: Vector): Vector => [
+  s * a[0] + t * b[0],
+  s * a[1] + t * b[1],
+  s * a[2] + t * b[2],
 ];
 
 function unit(a: Vector): Vector {
@@ -213,23 +215,18 @@ function unit(a: Vector): Vector {
 }
 
 /** The tangent and bitangent of a triangle: where u grows and, as glTF has it, where v falls. */
-function frameOf(positions: ArrayLike<number>, uvs: Corners): [Vector, Vector] {
-  const at = (corner: number): Vector => [
-    positions[3 * corner]!,
-    positions[3 * corner + 1]!,
-    positions[3 * corner + 2]!,
-  ];
-  const [p, q] = [plus(at(1), at(0), -1), plus(at(2), at(0), -1)];
+function frameOf(positions: Float32Array, uvs: Corners): [Vector, Vector] {
+  const at = (corner: number) => [...positions.subarray(3 * corner, 3 * corner + 3)] as Vector;
+  const [p, q] = [sum(1, at(1), -1, at(0)), sum(1, at(2), -1, at(0))];
   const [u1, v1, u2, v2] = [uvs[2]! - uvs[0]!, uvs[3]! - uvs[1]!, uvs[4]! - uvs[0]!, uvs[5]! - uvs[1]!];
   const sign = Math.sign(u1 * v2 - u2 * v1);
-  const scaled = (a: Vector): Vector => [sign * a[0], sign * a[1], sign * a[2]];
-  const tangent = unit(scaled(plus([v2 * p[0], v2 * p[1], v2 * p[2]], q, -v1)));
-  const along = scaled(plus([u2 * p[0], u2 * p[1], u2 * p[2]], q, -u1));
-  return [tangent, unit(plus(along, tangent, -dot(along, tangent)))];
+  const tangent = unit(sum(sign * v2, p, -sign * v1, q));
+  const along = sum(sign * u2, p, -sign * u1, q);
+  return [tangent, unit(sum(1, along, -dot(along, tangent), tangent))];
 }
 
 /** The matrix from the tangent space of one UV layout to that of another, on a triangle. */
-function turnOf(positions: ArrayLike<number>, from: Corners, to: Corners): [number, number, number, number] {
+function turnOf(positions: Float32Array, from: Corners, to: Corners): [number, number, number, number] {
   const [[t, b], [ownT, ownB]] = [frameOf(positions, from), frameOf(positions, to)];
   return [dot(t, ownT), dot(b, ownT), dot(t, ownB), dot(b, ownB)];
 }
@@ -289,10 +286,7 @@ export function layOver(image: Image, baked: Baked, factor: readonly [number, nu
     const mixed = [0, 1, 2].map(
       (k) => (alpha * over[at + k]! + (1 - alpha) * factor[k]! * data[at + k]!) / 255,
     ) as Vector;
-    const [r, g, b] = kind === 'normal' ? unitColor(...mixed) : mixed;
-    data[at] = 255 * r;
-    data[at + 1] = 255 * g;
-    data[at + 2] = 255 * b;
+    (kind === 'normal' ? unitColor(...mixed) : mixed).forEach((share, k) => (data[at + k] = 255 * share));
   }
   return { width, height, data };
 }

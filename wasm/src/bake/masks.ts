@@ -1,7 +1,8 @@
 import { show } from '../api/error.js';
 import { CagecastError } from '../index.js';
 import { cornersOf } from './bake.js';
-import { checkImage, type Image } from './image.js';
+import { checkImage, checkNames, type Image } from './image.js';
+import { modulo } from './raster.js';
 
 /** Images in a model's own UVs: white where it is never, or always, painted; black or transparent elsewhere. */
 export interface MaskImages {
@@ -19,7 +20,7 @@ const kHalf = 0.5;
  * Cost: a sample per texel of each triangle, 6 to 300.
  * @param target  Triangles and UVs, which repeat. Triangles with UVs that are not finite numbers are not masked.
  * @returns 1 per triangle: `masks.triangles`.
- * @throws {CagecastError} `badArgument` for images of a wrong type, or a target without UVs.
+ * @throws {CagecastError} `badArgument` for images of a wrong type, or a target without UVs; `badOption` for other names of images.
  *
  * @example
  * transfer(cage, scan, { masks: { triangles: maskTriangles(scan, { never: eyes }) } });
@@ -28,8 +29,8 @@ export function maskTriangles(
   { indices, uvs }: { indices: ArrayLike<number>; uvs?: ArrayLike<number> | undefined },
   images: MaskImages,
 ): Int8Array<ArrayBuffer> {
-  if (!uvs || uvs.length === 0)
-    throw new CagecastError('badArgument', 'maskTriangles: target has no UVs, by which a mask could be laid on it');
+  if (!uvs || uvs.length === 0) throw new CagecastError('badArgument', 'maskTriangles: target has no UVs');
+  checkNames('maskTriangles', 'images', images, 'never, always');
   const [never, always] = (['never', 'always'] as const).map((name) =>
     images[name] === undefined ? undefined : checkImage('maskTriangles', `images.${name}`, images[name]),
   );
@@ -53,8 +54,8 @@ function maskedShare({ width, height, data }: Image, uvs: ArrayLike<number>): nu
   for (let i = 0; i < n; ++i) {
     for (let j = 0; i + j < n; ++j) {
       const [s, t] = [(i + 1 / 3) / n, (j + 1 / 3) / n];
-      const x = wrapped(Math.floor(u0 + s * du + t * eu), width);
-      const y = wrapped(Math.floor(v0 + s * dv + t * ev), height);
+      const x = modulo(Math.floor(u0 + s * du + t * eu), width);
+      const y = modulo(Math.floor(v0 + s * dv + t * ev), height);
       const at = 4 * (y * width + x);
       sum += ((data[at]! + data[at + 1]! + data[at + 2]!) * data[at + 3]!) / (3 * 255 * 255);
       ++count;
@@ -62,8 +63,6 @@ function maskedShare({ width, height, data }: Image, uvs: ArrayLike<number>): nu
   }
   return sum / count;
 }
-
-const wrapped = (place: number, size: number): number => ((place % size) + size) % size;
 
 /**
  * Masks for `transfer` from vertex colours: never where red exceeds green by at least half, always where green exceeds red so.

@@ -350,7 +350,7 @@ function spanOf(edges: readonly number[], y: number, k: number, lefts: Float64Ar
   rights[k] = Math.ceil(right);
 }
 
-const modulo = (a: number, b: number): number => a - b * Math.floor(a / b);
+export const modulo = (a: number, b: number): number => a - b * Math.floor(a / b);
 
 function placer(size: number, wrap: Wrap): Place {
   if (wrap === 'repeat') return (place) => (place >= 0 && place < size ? place : modulo(place, size));
