@@ -171,7 +171,7 @@ describe('extract', () => {
     );
     fails(/cagecast\/three: cage is undefined, not a scene/, target);
     fails(/cagecast\/three: options is null, not an object/, target, cage, null);
-    fails(/cagecast\/three: options\.texture is paint\.png, not a Texture/, target, cage, { texture: 'paint.png' });
+    fails(/cagecast\/three: options\.texture is "paint\.png", not a Texture/, target, cage, { texture: 'paint.png' });
     fails(/cagecast\/three: options\.material is an object, not a Material/, target, cage, { material: {} });
     fails(/cagecast\/three: options\.channel is 7, not 1, 2 or 3/, target, cage, { channel: 7 });
     fails(
@@ -359,7 +359,7 @@ describe('applyTransfer', () => {
     setTexture(new Texture());
     setOpacity(0.5);
     assert.throws(() => setOpacity(2), /setOpacity: 2 is not a number from 0 to 1/);
-    assert.throws(() => setTexture('paint.png' as unknown as Texture), /setTexture: paint\.png is not a Texture/);
+    assert.throws(() => setTexture('paint.png' as unknown as Texture), /setTexture: "paint\.png" is not a Texture/);
     dispose();
     assert.ok(!Object.hasOwn(material, 'onBeforeCompile') && !Object.hasOwn(material, 'customProgramCacheKey'));
     assert.ok(!geometry.hasAttribute('_cagecast_paint') && geometry.hasAttribute('uv1'));
@@ -797,7 +797,7 @@ describe('saved transfers', () => {
       bytes.map((byte, i) => (i === 4 ? 9 : byte)),
       /has version 9 of the format; this one reads version 1/,
     );
-    refuses('bytes' as unknown as Uint8Array, /bytes is bytes, not a Uint8Array/);
+    refuses('bytes' as unknown as Uint8Array, /bytes is "bytes", not a Uint8Array/);
     assert.throws(() => serialize({} as never), /applied is not what applyTransfer returned/);
     assert.throws(
       () => applyTransfer(meshOf(scene.target), undefined, { saved: {} as never }),

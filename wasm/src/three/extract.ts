@@ -181,7 +181,8 @@ export const isOfInstances = (attribute: object): boolean =>
 export const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
 
 /** Describes a value of the wrong type, for messages. */
-export const nameOf = (value: unknown): string => (typeof value === 'object' && value ? 'an object' : String(value));
+export const nameOf = (value: unknown): string =>
+  typeof value === 'string' ? `"${value}"` : typeof value === 'object' && value ? 'an object' : String(value);
 
 const wrong = (argument: string, name: string, text: string, at = 0): CagecastError =>
   new CagecastError('badArgument', `cagecast/three: ${argument}: "${name}" ${text}`, at);
