@@ -3,7 +3,18 @@ import { before, describe, test } from 'node:test';
 import { CagecastError, classify, cutBorders, init, type Masks, project, transfer, Zone } from 'cagecast';
 import { type Image, maskTriangles, maskVertices } from 'cagecast/bake';
 import { applyTransfer, modelMasks } from 'cagecast/three';
-import { BufferAttribute, DataTexture, Group, Mesh, PlaneGeometry, SphereGeometry, Texture } from 'three';
+import {
+  BufferAttribute,
+  type BufferGeometry,
+  CompressedTexture,
+  DataTexture,
+  Float16BufferAttribute,
+  Group,
+  Mesh,
+  PlaneGeometry,
+  SphereGeometry,
+  Texture,
+} from 'three';
 import { head } from '../js/scenes.js';
 import { randomNumbers } from './reference';
 
@@ -163,6 +174,58 @@ describe('masks of loaded models', () => {
       /modelMasks: no part of target has the attribute _mask/,
     );
     assert.throws(() => modelMasks(geometry, { never: new Texture() }), /the texture "never" has no image yet/);
+    const compressed = new CompressedTexture([{ data: new Uint8Array(8), width: 4, height: 4 }], 4, 4);
+    assert.throws(
+      () => modelMasks(geometry, { never: compressed }),
+      (error) =>
+        error instanceof CagecastError &&
+        error.code === 'badArgument' &&
+        /^modelMasks: the texture "never" cannot be read: /.test(error.message),
+    );
+  });
+
+  test('half floats are read as what they stand for', () => {
+    const [whole, half] = [plane().geometry, plane().geometry];
+    const colors = new BufferAttribute(new Float32Array(3 * 18), 3);
+    for (let v = 0; v < 9; ++v) colors.setXYZ(v, Number(v < 5), Number(v > 5), 0.25);
+    whole.setAttribute('color', colors);
+    for (const name of ['uv', 'color']) {
+      const from = whole.getAttribute(name);
+      const to = new Float16BufferAttribute(new Uint16Array(from.count * from.itemSize), from.itemSize);
+      for (let v = 0; v < from.count; ++v) {
+        to.setX(v, from.getX(v));
+        to.setY(v, from.getY(v));
+        if (from.itemSize > 2) to.setZ(v, from.getZ(v));
+      }
+      half.setAttribute(name, to);
+    }
+    const masked = (geometry: BufferGeometry) =>
+      modelMasks(geometry, { never: texture(leftWhite(16)), attribute: 'color' });
+    assert.deepEqual(masked(half), masked(whole));
+    assert.ok(masked(whole).triangles!.includes(-1) && masked(whole).vertices!.includes(1), 'both mask something');
+  });
+
+  test('an image beside its name, and names that there are not, are an error', () => {
+    const image = leftWhite(16);
+    const mesh = { indices: [0, 1, 2], uvs: [0, 0, 1, 0, 0, 1] };
+    const cases: [() => unknown, RegExp][] = [
+      [
+        () => maskTriangles(mesh, image as object),
+        /^maskTriangles: images\.width is not an option; .*: never, always$/,
+      ],
+      [() => maskTriangles(mesh, { nevr: image } as object), /^maskTriangles: images\.nevr is not an option/],
+      [
+        () => modelMasks(plane(), { nevr: texture(image) } as object),
+        /^modelMasks: options\.nevr is not an option; there are: never, always, attribute$/,
+      ],
+      [() => modelMasks(plane(), texture(image) as object), /^modelMasks: options\.\w+ is not an option/],
+    ];
+    for (const [call, message] of cases)
+      assert.throws(
+        call,
+        (error) => error instanceof CagecastError && error.code === 'badOption' && message.test(error.message),
+        String(message),
+      );
   });
 });
 

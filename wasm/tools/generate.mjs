@@ -133,8 +133,8 @@ Locks are for whole segments and parts. Masks are for what no name tells apart, 
 | Source | \`cagecast\`, \`cagecast/worker\` | \`cagecast/gltf\` | \`cagecast/three\` | Command |
 |---|---|---|---|---|
 | an array, as a painting tool makes | \`masks: { vertices, triangles }\`, \`Int8Array\`s | \`masks\` | \`masks\` | |
-| an image in the model's own UVs: white is masked | \`maskTriangles\` of \`cagecast/bake\` | \`maskImages: { never, always }\` | \`modelMasks\` | \`--never-mask\`, \`--always-mask\` |
-| vertex colours: red never, green always | \`maskVertices\` of \`cagecast/bake\` | \`maskColors: 'COLOR_0'\` | \`modelMasks\` | \`--mask-colors COLOR_0\` |
+| an image in the model's own UVs: white is masked | \`maskTriangles\` of \`cagecast/bake\` | \`maskImages: { never, always }\` | \`modelMasks(model, { never, always })\` | \`--never-mask\`, \`--always-mask\` |
+| vertex colours: red never, green always | \`maskVertices\` of \`cagecast/bake\` | \`maskColors: 'COLOR_0'\` | \`modelMasks(model, { attribute: 'color' })\` | \`--mask-colors COLOR_0\` |
 
 - **Masks end at edges of triangles.** An image masks a triangle if at least half of it is white. A vertex of −1 keeps paint
   from all triangles at it; a triangle with a vertex of 1 is painted if its other vertices may be. With \`borders: 'cut'\`, a masked

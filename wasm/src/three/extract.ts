@@ -151,7 +151,7 @@ export function placeOf(mesh: ThreeMesh): Matrix4 {
 }
 
 /** The numbers of an attribute, decoded, to be read only: its own array if that has nothing else. */
-function valuesOf(attribute: Attribute): Float32Array {
+export function valuesOf(attribute: Attribute): Float32Array {
   const { count, itemSize, array } = attribute;
   if (array instanceof Float32Array && !('isInterleavedBufferAttribute' in attribute)) return array;
   const values = new Float32Array(count * itemSize);
@@ -199,10 +199,10 @@ function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, ou
     const x = values[3 * v]!;
     const y = values[3 * v + 1]!;
     const z = values[3 * v + 2]!;
-    const to = 3 * (firstVertex + v);
-    out[to] = moves ? m[0]! * x + m[4]! * y + m[8]! * z + m[12]! : x;
-    out[to + 1] = moves ? m[1]! * x + m[5]! * y + m[9]! * z + m[13]! : y;
-    out[to + 2] = moves ? m[2]! * x + m[6]! * y + m[10]! * z + m[14]! : z;
+    for (let k = 0; k < 3; ++k)
+      out[3 * (firstVertex + v) + k] = moves
+        ? m[k]! * x + m[4 + k]! * y + m[8 + k]! * z + m[12 + k]!
+        : values[3 * v + k]!;
   }
 }
 
@@ -256,16 +256,12 @@ function uvsOf({ geometry, mesh }: Part): Attribute | undefined {
 function readUvs(parts: readonly Part[], vertices: number, argument: string): Float32Array | undefined {
   if (!parts.every(uvsOf)) return undefined;
   const uvs = new Float32Array(2 * vertices);
-  let at = 0;
   for (const part of parts) {
-    const { name, vertexCount } = part;
+    const { name, firstVertex, vertexCount } = part;
     const uv = uvsOf(part)!;
     if (uv.count !== vertexCount || uv.itemSize !== 2)
       throw wrong(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers, not ${vertexCount} of 2`);
-    for (let v = 0; v < vertexCount; ++v) {
-      uvs[at++] = uv.getX(v);
-      uvs[at++] = uv.getY(v);
-    }
+    uvs.set(valuesOf(uv), 2 * firstVertex);
   }
   return uvs;
 }

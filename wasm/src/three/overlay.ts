@@ -128,12 +128,15 @@ export function removeOverlays(base: Mesh): void {
 /** A material for paint on top of one that cannot be painted. */
 export function overlayMaterial(base: Material): MeshStandardMaterial {
   const { side, opacity } = base;
-  const material = new MeshStandardMaterial({ roughness: 0.8, side, opacity });
-  material.transparent = true;
-  material.depthWrite = false;
-  material.depthFunc = LessEqualDepth;
-  material.polygonOffset = true;
-  material.polygonOffsetFactor = -1;
-  material.polygonOffsetUnits = -1;
-  return material;
+  return new MeshStandardMaterial({
+    roughness: 0.8,
+    side,
+    opacity,
+    transparent: true,
+    depthWrite: false,
+    depthFunc: LessEqualDepth,
+    polygonOffset: true,
+    polygonOffsetFactor: -1,
+    polygonOffsetUnits: -1,
+  });
 }
