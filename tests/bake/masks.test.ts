@@ -173,7 +173,7 @@ describe('masks of loaded models', () => {
       () => modelMasks(geometry, { attribute: '_mask' }),
       /modelMasks: no part of target has the attribute _mask/,
     );
-    assert.throws(() => modelMasks(geometry, { never: new Texture() }), /the texture "never" has no image yet/);
+    assert.throws(() => modelMasks(geometry, { never: new Texture() }), /the texture "never" is not loaded yet/);
     const compressed = new CompressedTexture([{ data: new Uint8Array(8), width: 4, height: 4 }], 4, 4);
     assert.throws(
       () => modelMasks(geometry, { never: compressed }),

@@ -286,7 +286,10 @@ export function layOver(image: Image, baked: Baked, factor: readonly [number, nu
     const mixed = [0, 1, 2].map(
       (k) => (alpha * over[at + k]! + (1 - alpha) * factor[k]! * data[at + k]!) / 255,
     ) as Vector;
-    (kind === 'normal' ? unitColor(...mixed) : mixed).forEach((share, k) => (data[at + k] = 255 * share));
+    const [r, g, b] = kind === 'normal' ? unitColor(...mixed) : mixed;
+    data[at] = 255 * r;
+    data[at + 1] = 255 * g;
+    data[at + 2] = 255 * b;
   }
   return { width, height, data };
 }

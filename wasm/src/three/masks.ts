@@ -65,7 +65,7 @@ function imageOf(name: string, given: Texture | Image): Image {
   const wrong = (text: string) => new CagecastError('badArgument', `modelMasks: the texture "${name}" ${text}`);
   // The width of an element is that of its place on the page.
   const { naturalWidth: width = image.width, naturalHeight: height = image.height } = image;
-  if (!(width > 0 && height > 0)) throw wrong('has no image yet; wait until it is loaded');
+  if (!(width > 0 && height > 0)) throw wrong('is not loaded yet');
   let { data } = image;
   if (data === undefined) {
     try {

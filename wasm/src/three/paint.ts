@@ -115,10 +115,22 @@ export class Place {
     if (!texture) return;
     const { offset, repeat, center, rotation, matrixAutoUpdate } = texture;
     const { opacity, feather } = paint;
-    const made = [texture, opacity, feather, rotation, offset.x, offset.y, repeat.x, repeat.y, center.x, center.y];
+    const m = this.#made;
     // A matrix that the caller sets may change at any time.
-    if (matrixAutoUpdate && made.every((value, i) => value === this.#made[i])) return;
-    this.#made = made;
+    const isSame =
+      matrixAutoUpdate &&
+      m[0] === texture &&
+      m[1] === opacity &&
+      m[2] === feather &&
+      m[3] === rotation &&
+      m[4] === offset.x &&
+      m[5] === offset.y &&
+      m[6] === repeat.x &&
+      m[7] === repeat.y &&
+      m[8] === center.x &&
+      m[9] === center.y;
+    if (isSame) return;
+    this.#made = [texture, opacity, feather, rotation, offset.x, offset.y, repeat.x, repeat.y, center.x, center.y];
     if (matrixAutoUpdate) texture.updateMatrix();
     const { elements } = this.matrix.copy(texture.matrix);
     elements[2] = opacity;
