@@ -4,7 +4,12 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Document, type Material, NodeIO, TextureInfo } from '@gltf-transform/core';
-import { ALL_EXTENSIONS, KHRMaterialsVariants } from '@gltf-transform/extensions';
+import {
+  ALL_EXTENSIONS,
+  KHRMaterialsTransmission,
+  KHRMaterialsVariants,
+  type Transmission,
+} from '@gltf-transform/extensions';
 import { init } from 'cagecast';
 import type { Image } from 'cagecast/bake';
 import { type BakeReport, bake, cagecast as cagecastTransform, type ImageCodec } from 'cagecast/gltf';
@@ -274,6 +279,26 @@ test('a texture that is used in another way, too, stays; the paint gets one of i
   assert.deepEqual(texel(painted, 16, 24).slice(0, 3), [230, 30, 40]);
   assert.ok(texel(painted, 0, 0)[1]! < texel(own, 0, 0)[1]!, 'the factor is in the texture');
   assert.deepEqual(material.getBaseColorFactor(), [1, 1, 1, 1]);
+});
+
+test('an ORM texture that an extension reads, too, stays as the extension shows it', async () => {
+  const document = await io.read(at('box.glb'));
+  const shared = document
+    .createTexture('orm')
+    .setMimeType('image/png')
+    .setImage(new Uint8Array(pngOf(picture(size, () => [0, 180, 0, 255]))));
+  const transmission = document.createExtension(KHRMaterialsTransmission).createTransmission();
+  transmission.setTransmissionFactor(1).setTransmissionTexture(shared);
+  materialOf(document).setMetallicRoughnessTexture(shared).setExtension('KHR_materials_transmission', transmission);
+  writeFileSync(at('glass.glb'), await io.writeBinary(document));
+  const args = ['bake', at('glass.glb'), at('cage.glb'), '--orm', at('rough.png'), '-o', at('glass-out.glb')];
+  const { status, stderr } = cagecast(...args);
+  assert.deepEqual([status, stderr], [0, '']);
+  await validate(at('glass-out.glb'));
+  const material = materialOf(await io.read(at('glass-out.glb')));
+  const after = material.getExtension<Transmission>('KHR_materials_transmission')!;
+  assert.deepEqual(texel(imageOf(after.getTransmissionTexture()), 0, 0), [0, 180, 0, 255]);
+  assert.deepEqual(texel(imageOf(material.getMetallicRoughnessTexture()), 16, 24), [255, 60, 90, 255]);
 });
 
 test('masks by images and by colours keep paint away, and bring it back: documents, files', async () => {

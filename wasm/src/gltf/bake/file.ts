@@ -178,7 +178,7 @@ export class FileModel implements BakeModel<number, number> {
     if (mtoon?.shadeMultiplyTexture?.index === before) mtoon.shadeMultiplyTexture.index = now;
   }
 
-  /** Whether the standard materials use a texture in no other way. */
+  /** Whether the standard materials and their extensions, which add to them, use a texture in no other way. */
   #isOnlyFor(texture: number, materials: readonly number[], slot: Slot): boolean {
     return (this.#json.materials ?? []).every((material, m) => {
       const { pbrMetallicRoughness: pbr, normalTexture, occlusionTexture, emissiveTexture } = material;
@@ -188,10 +188,19 @@ export class FileModel implements BakeModel<number, number> {
         [occlusionTexture, 'orm'],
         [normalTexture, 'normal'],
         [emissiveTexture, undefined],
+        ...addedTextures(material).map((info) => [info, undefined] as [GLTF.ITextureInfo, undefined]),
       ];
       return uses.every(([info, used]) => info?.index !== texture || (used === slot && materials.includes(m)));
     });
   }
+}
+
+/** The textures of extensions that add to a material, such as KHR_materials_transmission; not of the one that replaces it. */
+function addedTextures({ extensions = {} }: GLTF.IMaterial): GLTF.ITextureInfo[] {
+  const added = Object.keys(extensions).filter((name) => /^KHR_materials_(?!pbrSpecularGlossiness)/.test(name));
+  return added
+    .flatMap((name) => Object.values(extensions[name] as object))
+    .filter((value) => Number.isInteger(value?.index));
 }
 
 function infoOf(material: GLTF.IMaterial, slot: Slot): GLTF.ITextureInfo | undefined {
