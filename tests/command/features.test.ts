@@ -100,6 +100,24 @@ test('a standard output that does not take all of it is one line and exit code 1
   assert.ok(!existsSync(at('beside.json')), 'all files are written, or none');
 });
 
+test('a descriptor is written to, not replaced', { skip: !existsSync('/dev/fd') }, () => {
+  for (const [redirection, path] of [
+    ['', '/dev/stdout'],
+    ['2', '/dev/stderr'],
+    ['3', '/dev/fd/3'],
+    ['4', '/proc/self/fd/4'],
+  ] as const) {
+    if (path.startsWith('/proc') && !existsSync('/proc/self/fd')) continue;
+    writeFileSync(at('log'), 'before\n');
+    const args = ['transfer', at('target.glb'), ...cage, '--quiet', '--report', path];
+    const script = `"$@" ${redirection}>> "$0"`;
+    spawnSync('bash', ['-c', script, at('log'), process.execPath, 'dist/cli.js', ...args]);
+    const text = readFileSync(at('log'), 'utf8');
+    assert.ok(text.startsWith('before\n{'), `${path}: ${text.slice(0, 20)}`);
+    assert.ok((JSON.parse(text.slice(7)) as { counts: object }).counts, path);
+  }
+});
+
 test('a reader that closes the pipe early changes neither the exit code nor what is written', () => {
   const shell = (...args: string[]) => {
     const command = ['-c', 'set -o pipefail; "$0" "$@" | true', process.execPath, 'dist/cli.js', ...args];

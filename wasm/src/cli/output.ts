@@ -18,22 +18,25 @@ import { firstLine, InputError } from '../gltf/input-error.js';
 /**
  * Writes all of the files or none: each is first written under a temporary name, and renamed once all are complete, the first one
  * last, as it may refer to the others. Symbolic links are followed, even to files that do not exist yet; a replaced file keeps its
- * permissions. Pipes and devices such as /dev/null are written to directly, the standard output for `-`.
+ * permissions. Pipes, devices such as /dev/null and descriptors such as /dev/stdout are written to directly, the standard output
+ * for `-`.
  * @throws {InputError} that names the file that cannot be written.
  */
 export function writeFiles(files: readonly { path: string; data: Uint8Array | string }[]): void {
   const written: { path: string; temporary: string }[] = [];
   try {
-    for (const { path, data } of files.filter(({ path }) => !isStream(path))) {
+    for (const { path, data } of files.filter(({ path }) => streamOf(path) === undefined)) {
       const place = placeOf(path);
       const temporary = join(dirname(place), `.${basename(place)}.${process.pid}.tmp`);
       written.push({ path, temporary });
-      attempt(path, () => writeAs(place, temporary, data));
+      writing(path, () => writeAs(place, temporary, data));
     }
-    for (const { path, data } of files.filter(({ path }) => isStream(path)))
-      if (path === standard) writeStandard(data);
-      else attempt(path, () => writeFileSync(path, data));
-    for (const { path, temporary } of written.reverse()) attempt(path, () => renameSync(temporary, placeOf(path)));
+    for (const { path, data } of files) {
+      const stream = streamOf(path);
+      if (stream === standard) writeStandard(data);
+      else if (stream !== undefined) writing(path, () => writeFileSync(stream, data));
+    }
+    for (const { path, temporary } of written.reverse()) writing(path, () => renameSync(temporary, placeOf(path)));
   } finally {
     for (const { temporary } of written) rmSync(temporary, { force: true });
   }
@@ -46,7 +49,7 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
 export function writeStandard(data: Uint8Array | string): void {
   if (isatty(1) || isPipe(fstatSync(1))) process.stdout.write(data);
   // Node's stream for files loses without an error what the disk has no room for.
-  else attempt('the standard output', () => writeFileSync(1, data));
+  else writing('the standard output', () => writeFileSync(1, data));
 }
 
 const isPipe = (found: Stats): boolean => found.isFIFO() || found.isSocket();
@@ -82,11 +85,19 @@ function isLink(path: string): boolean {
   }
 }
 
-/** Whether a path is a pipe or a device: it must be written to, not replaced. */
-function isStream(path: string): boolean {
-  if (path === standard) return true;
-  const found = attempt(path, () => statSync(path, { throwIfNoEntry: false }));
-  return found !== undefined && !found.isFile() && !found.isDirectory();
+/** What is to be written to, not replaced: a pipe or a device, by its path, or a file that is open, by its descriptor. */
+function streamOf(path: string): string | number | undefined {
+  if (path === standard) return standard;
+  const found = writing(path, () => statSync(path, { throwIfNoEntry: false }));
+  return found && !found.isFile() && !found.isDirectory() ? path : descriptorOf(path);
+}
+
+/** The descriptor that a path such as /dev/stdout leads to. @param links  How many links may still be followed. */
+function descriptorOf(path: string, links = 40): number | undefined {
+  const place = join(placeOf(dirname(path)), basename(path));
+  const [, number] = /^\/(?:dev|proc\/\d+)\/fd\/(\d+)$/.exec(place) ?? [];
+  if (number !== undefined) return Number(number);
+  return links > 0 && isLink(place) ? descriptorOf(resolve(dirname(place), readlinkSync(place)), links - 1) : undefined;
 }
 
 /** Errors of the system that mean something else than in reading. */
@@ -97,7 +108,8 @@ const writingReasons: Readonly<Record<string, string>> = {
   EACCES: 'permission denied',
 };
 
-function attempt<Result>(path: string, write: () => Result): Result {
+/** Does what writes a file. @throws {InputError} that names it. */
+export function writing<Result>(path: string, write: () => Result): Result {
   try {
     return write();
   } catch (error) {
