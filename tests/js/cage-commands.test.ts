@@ -157,18 +157,35 @@ describe('cagecast transfer --cage auto', () => {
     const { meshes } = unpackGlb(readFileSync(at('auto.glb'))).json;
     assert.ok(meshes!.every(({ primitives }) => primitives[0]!.attributes['TEXCOORD_1'] !== undefined));
   });
-});
 
-describe('cagecast fit', () => {
-  const target = 'build/assets/human/target.glb';
-
-  test('writes the template moved onto the model, and what it was moved by', async () => {
+  test('paints nothing of the parts that the cage is made without, unless they are to be kept', () => {
+    const lizard = 'build/assets/lizard/target.glb';
+    const { status, stdout, stderr } = cagecast(
+      'transfer',
+      lizard,
+      '--cage',
+      'auto',
+      '--keep',
+      'upper-teeth',
+      '--json',
+    );
+    assert.deepEqual([status, stderr], [0, '']);
+    const { parts } = JSON.parse(stdout) as { parts: { name: string; counts: { cosmetic: number } }[] };
+    const painted = parts.filter(({ counts }) => counts.cosmetic > 0).map(({ name }) => name);
+    assert.deepEqual(painted, ['skin', 'upper-teeth']);
+  });
     const { status, stdout, stderr } = cagecast(
       'fit',
       'human-head',
       target,
       '-o',
       at('fit.glb'),
+});
+
+describe('cagecast fit', () => {
+  const target = 'build/assets/human/target.glb';
+
+  test('writes the template moved onto the model, and what it was moved by', async () => {
       '--html',
       at('fit.html'),
     );
@@ -236,15 +253,22 @@ describe('cagecast fit', () => {
     write('no-uvs.glb', glbOf(noUvs));
     const out = at('never.glb');
     const before = files();
+    bare.json.meshes![0]!.extras = { landmarks: { chin: [0, 0, 0] } };
+    write('few.glb', packGlb(bare));
     for (const [args, status, says] of [
       [['human-head'], 2, /missing required argument 'TARGET'|required option/],
       [['human', target, '-o', out], 1, /human: no such file, and no template of the package: there are human-head, /],
       [['human-head', target], 2, /required option '-o, --output <CAGE\.glb>' not specified/],
-      [[at('bare.glb'), target, '-o', at('bare.glb')], 2, /would overwrite another file/],
+      [[at('bare.glb'), target, '-o', at('bare.glb')], 2, /would overwrite .*bare\.glb, which this command reads/],
       [
         [at('bare.glb'), target, '-o', out],
         1,
-        /bare\.glb: has no landmarks in the extras of its nodes and meshes; give those .*--template-landmarks T\.json/,
+        /bare\.glb: has no landmarks in the extras of its nodes and meshes; give at least 4 .*--template-landmarks T\.json/,
+      ],
+      [
+        [at('few.glb'), target, '-o', out],
+        1,
+        /few\.glb: has 1 landmark in the extras .*; give at least 4 .*--template-landmarks T\.json/,
       ],
       [[at('odd.glb'), target, '-o', out], 1, /odd\.glb: meshes\[0\]\.extras\.landmarks\.chin is not 3 finite numbers/],
       [

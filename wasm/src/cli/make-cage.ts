@@ -1,4 +1,4 @@
-import { findLandmarks, fitCage, init, makeCage, matchingParts } from '../cages/sync.js';
+import { defaultExclusions, findLandmarks, fitCage, init, makeCage, matchingParts } from '../cages/sync.js';
 import type { Cage, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../cages/types.js';
 import { cageModelOf } from '../gltf/cage-file.js';
 import { InputError } from '../gltf/input-error.js';
@@ -20,6 +20,12 @@ export function landmarksOf(model: ReadModel, progress: Progress): Promise<Landm
     const { landmarks } = findLandmarks(cageModelOf(model.file, model.extracted), { onProgress });
     return landmarks;
   });
+}
+
+/** Whether each part of a model is one that a cage is made without, unless other names are given. */
+export async function partsLeftOut({ file, extracted }: ReadModel): Promise<boolean[]> {
+  await init();
+  return matchingParts(cageModelOf(file, extracted).parts ?? [], defaultExclusions());
 }
 
 /** Checks that each pattern matches a part of a model. @throws {InputError} that names the file and the pattern. */

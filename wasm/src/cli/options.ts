@@ -141,11 +141,13 @@ export const configLine = (config: string | null | undefined): string => (config
 export function transferOptions(
   { preset, single, keep, exclude, ranks, optional = [], config }: Rules,
   { parts }: Extracted,
+ * @param leftOut  Whether each part is excluded if nothing is said of it. Default: none
 ): TransferOptions {
   const saidOf = new Map<number, { lock: Lock; pattern: string; rank: number }>();
   for (const [lock, patterns] of [
     ['keep', keep],
     ['exclude', exclude],
+  leftOut: readonly boolean[] = [],
   ] as const) {
     for (const [i, pattern] of patterns.entries()) {
       const rank = ranks?.[lock][i] ?? 0;
@@ -163,7 +165,9 @@ export function transferOptions(
       }
     }
   }
-  const groups = Object.fromEntries([...saidOf].map(([p, { lock }]) => [p, lock]));
+  const said = [...saidOf].map(([p, { lock }]): [number, Lock] => [p, lock]);
+  const unsaid = leftOut.flatMap((is, p): [number, Lock][] => (is ? [[p, 'exclude']] : []));
+  const groups = Object.fromEntries([...unsaid, ...said]);
   return { preset, ...single, locks: { groups } };
 }
 

@@ -17,7 +17,7 @@ import {
   transfer,
 } from '../index.js';
 import { readImage } from './bake/images.js';
-import { makeCageFor } from './make-cage.js';
+import { makeCageFor, partsLeftOut } from './make-cage.js';
 import { quoted, type Rules, transferOptions } from './options.js';
 import { type UvBounds, withinBounds, withoutLacking } from './paint/cage-area.js';
 import type { Progress } from './progress.js';
@@ -64,9 +64,11 @@ export async function run(
   const { rules, reading } = sources;
   const read = target ?? (await readModel(sources.target, reading, progress));
   const masks = await readMasks(read, rules, reading);
-  const options = { ...optionsFor(read.file, read.extracted, rules), ...(masks && { masks }) };
+  const isMade = sources.cage === autoCage;
+  const leftOut = isMade ? await partsLeftOut(read) : [];
+  const options = { ...optionsFor(read, rules, leftOut), ...(masks && { masks }) };
   const cageOf = async (path: string) => withUvs(await models.cage(path, reading, progress));
-  const whole = sources.cage === autoCage ? await madeCage(read, progress) : await cageOf(sources.cage);
+  const whole = isMade ? await madeCage(read, progress) : await cageOf(sources.cage);
   const reference = sources.referenceCage === undefined ? undefined : await cageOf(sources.referenceCage);
   const drawn = withoutLacking(whole, reference);
   const done = await transferred(read, withinBounds(drawn, sources.uvBounds), options, progress);
@@ -181,11 +183,11 @@ export async function transferred(
   }
 }
 
-function optionsFor({ path }: GltfFile, target: Extracted, rules: Rules): TransferOptions {
+function optionsFor({ file, extracted }: ReadModel, rules: Rules, leftOut: readonly boolean[]): TransferOptions {
   try {
-    return transferOptions(rules, target);
+    return transferOptions(rules, extracted, leftOut);
   } catch (error) {
-    throw error instanceof InputError ? error.in(path) : error;
+    throw error instanceof InputError ? error.in(file.path) : error;
   }
 }
 
