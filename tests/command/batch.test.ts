@@ -209,6 +209,11 @@ test('a batch that cannot be right does not begin', () => {
     assert.match(stderr, /^cagecast: [^\n]+\n$/);
   }
   assert.equal(readFileSync(manifest, 'utf8'), line);
+    [
+      [...one, '--texture', 'p.<UDIM>.png', '--uv-bounds', '0,0,1,1', '-o', at('{name}.glb')],
+      2,
+      /a file for each tile/,
+    ],
   assert.equal(readFileSync(config, 'utf8'), '{}');
   assert.deepEqual(readFileSync(at('cage.glb')), Buffer.from(glbOf(scene.cage)));
 });

@@ -336,6 +336,12 @@ test('--uv-bounds: the texture covers a part of the UVs, and nothing is painted 
   }
 });
 
+test('--uv-bounds and tiles of UVs exclude each other', () => {
+  const both = ['--texture', at('tile.<UDIM>.png'), '--uv-bounds', '0,0,1,1', '-o', at('both.glb')];
+  const { status, stderr } = cagecast('transfer', target, ...cage, ...both);
+  assert.deepEqual([status, /a texture with <UDIM> has a file for each tile/.test(stderr)], [2, true]);
+});
+
 test('--reference-cage: triangles whose UVs it lacks count as cut away', () => {
   const isKept = (centre: number[]) => centre[0]! > 0;
   writeFileSync(at('kept.glb'), glbOf(some(scene.cage, isKept)));
@@ -369,17 +375,23 @@ test('a manifest has regions, bounds and a reference', () => {
     threshold: 0,
     minCovered: 0,
   };
-  const lines = [job, { ...job, uvBounds: [0, 0] }, { ...job, regions: ['cage.glb'] }];
+  const lines = [
+    job,
+    { ...job, uvBounds: [0, 0] },
+    { ...job, regions: ['cage.glb'] },
+    { ...job, texture: 'tile.<UDIM>.png' },
+  ];
   writeFileSync(at('jobs.jsonl'), lines.map((line) => JSON.stringify(line)).join('\n'));
   const { stdout } = cagecast('batch', '--manifest', at('jobs.jsonl'));
   const found = stdout
     .trim()
     .split('\n')
     .map((line) => JSON.parse(line) as { status: string; error?: string });
-  assert.deepEqual(found.map(({ status }) => status).sort(), ['done', 'failed', 'failed']);
+  assert.deepEqual(found.map(({ status }) => status).sort(), ['done', 'failed', 'failed', 'failed']);
   const errors = found.map(({ error }) => error ?? '').sort();
   assert.match(errors[1]!, /line 2 of .*: "uvBounds" is not an array of four numbers/);
   assert.match(errors[2]!, /line 3 of .*: "regions" is not an array of \{"cage": …, "texture": …\}/);
+  assert.match(errors[3]!, /line 4 of .*: a texture with <UDIM> has a file for each tile/);
   const report = JSON.parse(readFileSync(at('job.json'), 'utf8')) as Report;
   assert.equal(report.regions[0]!.uvSet, 'TEXCOORD_1');
   assert.ok(readdirSync(folder).includes('job-image1.png'));

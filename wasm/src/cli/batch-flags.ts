@@ -8,7 +8,8 @@ import { borderKinds } from './config/settings.js';
 import { addRuleFlags, type RuleFlags } from './options.js';
 import { writeStandard } from './output.js';
 import { addCageAreaFlags, addRegionFlag, type CageFlags } from './paint/paint-flags.js';
-import { addPrintFlags, jsonText, type PrintFlags } from './print.js';
+import { boundsFault } from './paint/read-paint.js';
+import { addPrintFlags, jsonText, oneLine, type PrintFlags } from './print.js';
 import type { Progress } from './progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
 import type { Region, TransferCommand } from './transfer-command.js';
@@ -135,10 +136,8 @@ Examples:
 }
 
 /** What is wrong with the arguments together, if anything is. */
-function faultOf(
-  targets: readonly string[],
-  { manifest, results, resume, cage, referenceCage, texture, region, output, report, borders }: BatchFlags,
-): string | undefined {
+function faultOf(targets: readonly string[], flags: BatchFlags): string | undefined {
+  const { manifest, results, resume, cage, uvBounds, referenceCage, texture, region, output, report, borders } = flags;
   if (targets.length > 0 === (manifest !== undefined)) return 'give either TARGETS or --manifest';
   if (resume && results === undefined) return '--resume needs --results, which says what is done';
   if (manifest === undefined && cage === undefined) return 'TARGETS need --cage';
@@ -149,5 +148,6 @@ function faultOf(
   const ofRegions = region.flatMap((one) => [one.cage, one.texture]);
   if ([cage, referenceCage, texture, ...ofRegions, ...targets].includes(standard))
     return 'a batch reads files; its jobs have no standard input';
-  return undefined;
+  if (manifest === standard && flags.config === standard) return 'only one file can be the standard input';
+  return boundsFault(texture, uvBounds);
 }

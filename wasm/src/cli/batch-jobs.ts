@@ -17,6 +17,7 @@ export interface Job {
   command: TransferCommand;
   /** Identifies the job: its arguments, and the size and time of what it reads. */
   key: string;
+import { boundsFault } from './paint/read-paint.js';
   /** Why it cannot be started, if so. */
   error?: string;
 }
@@ -199,6 +200,8 @@ function jobOf({ settled: _, results: __, cuts: ___, ...given }: JobDefaults & J
   return { command, key };
 }
 
+  const fault = boundsFault(given.texture, given.uvBounds);
+  if (fault !== undefined) throw new InputError(fault).in(target);
 /** Of a file; neither if it cannot be looked up, which whatever opens it reports. */
 function sizeAndTime(path: string): (number | undefined)[] {
   try {

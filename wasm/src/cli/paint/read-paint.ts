@@ -6,12 +6,19 @@ import type { ReadLimits } from '../../gltf/limits.js';
 import { type Paint, paintOf, tileAt } from '../../gltf/overlay.js';
 import { quoted } from '../options.js';
 import type { ReadModel } from '../run.js';
+import type { UvBounds } from './cage-area.js';
 
 /** What stands for the number of a tile in the name of a texture. */
 const placeholder = '<UDIM>';
 
 /** Whether a path names a texture for each tile. */
 export const isTiled = (path: string): boolean => path.includes(placeholder);
+
+/** Why a texture and bounds of UVs exclude each other, if they do. */
+export const boundsFault = (texture: string | undefined, bounds: UvBounds | undefined): string | undefined =>
+  texture !== undefined && isTiled(texture) && bounds
+    ? `a texture with ${placeholder} has a file for each tile, which covers all of it; bounds of UVs are for a single file`
+    : undefined;
 
 /** The path of a tile's texture; with `*` for the tile, a pattern for all. */
 export const tilePath = (path: string, tile: number | '*'): string => path.replaceAll(placeholder, String(tile));

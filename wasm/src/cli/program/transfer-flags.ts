@@ -4,6 +4,7 @@ import { settler } from '../config/config-flags.js';
 import { borderKinds } from '../config/settings.js';
 import { maskInputs } from '../options.js';
 import { addRegionFlag } from '../paint/paint-flags.js';
+import { boundsFault } from '../paint/read-paint.js';
 import { print } from '../print.js';
 import type { Progress } from '../progress.js';
 import { readingOf } from '../read-flags.js';
@@ -84,6 +85,8 @@ Examples:
           command.error('--region needs -o OUT.glb, the file to add it to', { exitCode: wrongUsage });
         if (flags.borders === 'cut' && output === undefined)
           command.error('--borders cut needs -o OUT.glb, the file for the cut target', { exitCode: wrongUsage });
+        const fault = boundsFault(texture, uvBounds);
+        if (fault !== undefined) command.error(fault, { exitCode: wrongUsage });
         const cages = [cage, ...regions.map((region) => region.cage)].filter((path) => path !== autoCage);
         const textures = [texture, ...regions.map((region) => region.texture)];
         const inputs = [target, referenceCage, ...cages, ...textures, ...maskInputs(flags)];
