@@ -177,6 +177,9 @@ test('a batch that cannot be right does not begin', () => {
     [['batch', at('in/*.glb')], 2, /TARGETS need --cage/],
     [['batch', at('in/*.glb'), '--cage', '-', '-o', at('{name}.glb')], 2, /its jobs have no standard input/],
     [['batch', at('in/*.glb'), '--cage', at('cage.glb'), '--region', '-=p.png'], 2, /its jobs have no standard input/],
+    [['batch', at('in/*.glb'), ...cage, '--never-mask', '-'], 2, /its jobs have no standard input/],
+    [['batch', at('in/*.glb'), ...cage, '--results', '-'], 2, /the standard output has its lines/],
+    [['batch', at('in/*.glb'), ...cage, '--results', at('out')], 1, /out: cannot be written \(is a folder\)/],
     [['batch', at('in/*.glb'), ...cage, '--resume'], 2, /--resume needs --results/],
     [['batch', at('in/*.gltf'), ...cage], 1, /in\/\*\.gltf: no file has such a name/],
     [['batch', at('in/*.glb'), ...cage, '-o', at('same.glb')], 1, /same\.glb: is written for .* and .*; use \{name\}/],
@@ -187,6 +190,11 @@ test('a batch that cannot be right does not begin', () => {
       /0\.gltf: is written beside a file of its name that this batch reads/,
     ],
   ];
+  // Two outputs that share what is beside them.
+  const twins = at('twins.jsonl');
+  const jobs = ['gltf', 'GLTF'].map((ending) => ({ target: 'in/0.glb', cage: 'cage.glb', output: `out/e.${ending}` }));
+  writeFileSync(twins, jobs.map((job) => JSON.stringify(job)).join('\n'));
+  cases.push([['batch', '--manifest', twins], 1, /e\.bin: is written for .* and /]);
   // What the batch itself reads and writes.
   const manifest = at('clash.jsonl');
   const line = `{"target": "beside/0.glb", "cage": "cage.glb"}\n`;
@@ -298,7 +306,7 @@ test('--resume does again what another job has overwritten since, and the last l
   const first = readFileSync(output);
   batch('--threshold', '1');
   assert.notDeepEqual(readFileSync(output), first);
-  assert.match(batch().stderr, /1 jobs: 1 done, 0 failed;/);
+  assert.match(batch().stderr, /^1 job: 1 done, 0 failed;/);
   assert.deepEqual(readFileSync(output), first);
   assert.match(batch().stderr, /1 done before/);
 
@@ -449,6 +457,27 @@ test('with --fail-on reports have the verdict, which diff compares', () => {
     const path = at(`${cage}.json`);
     cagecast('batch', at('in/0.glb'), '--cage', at(`${cage}.glb`), '--report', path, '--fail-on', 'unfit');
     return path;
+  const quiet = cagecast('batch', at('one/a.glb'), at('two/b.glb'), '--cage', at('cage.glb'), '--quiet');
+  assert.deepEqual([quiet.status, quiet.stdout], [1, '']);
+  assert.match(quiet.stderr, /^cagecast: [^\n]*two\/cagecast\.config\.json: "treshold" is unknown[^\n]*\n$/);
+});
+
+test('an empty path fails its job, which names the member', () => {
+  const job = { target: 'in/0.glb', cage: 'cage.glb' };
+  const regions = [{ cage: 'cage.glb', texture: '' }];
+  const wrong = [{ target: '' }, { cage: '' }, { report: '' }, { neverMask: '' }, { regions }];
+  writeFileSync(at('empty.jsonl'), [{}, ...wrong].map((one) => JSON.stringify({ ...job, ...one })).join('\n'));
+  const { status, stdout, stderr } = cagecast('batch', '--manifest', at('empty.jsonl'));
+  assert.equal(status, 1);
+  assert.match(stderr, /^6 jobs: 1 done, 5 failed; /);
+  const errors = linesOf(stdout).flatMap(({ error }) => error ?? []);
+  const members = errors.map((error) => /^line (\d) of [^:]*: "(\w+)" is empty/.exec(error)?.slice(1));
+  const empty = ['target', 'cage', 'report', 'neverMask', 'texture'];
+  assert.deepEqual(
+    members.sort(),
+    empty.map((name, i) => [String(i + 2), name]),
+  );
+  assert.match(cagecast('batch', at('in/0.glb'), '--cage', at('cage.glb')).stderr, /^1 job: 1 done, /);
   };
   const [good, bad] = [report('cage'), report('away')];
   const { verdict, findings } = JSON.parse(readFileSync(bad, 'utf8')) as {

@@ -146,6 +146,15 @@ describe('usage', () => {
     for (const [args, message] of cases) {
       const { status, stdout, stderr } = cagecast(...args);
       assert.equal(status, 2, `${args.join(' ')}: ${stderr}`);
+      [['help', 'transmogrify'], /unknown command 'transmogrify'/],
+      [['transfer', '', '--cage', at('cage.glb')], /TARGET is empty/],
+      [['transfer', at('target.glb'), '--cage', ''], /--cage is empty/],
+      [[...ok, '--report', ''], /--report is empty/],
+      [[...ok, '--region', '=paint.png', '-o', at('out.glb')], /not the file of a cage and that of a texture/],
+      [['batch', '', '--cage', at('cage.glb')], /TARGETS is empty/],
+      [['transfer', '-', '--cage', at('cage.glb'), '--config', '-'], /only one file can be the standard input/],
+      [['inspect', '-', '--cage', at('cage.glb'), '--config', '-'], /only one file can be the standard input/],
+      [['bake', '-', at('cage.glb'), at('paint.png'), '--config', '-', '-o', at('out.glb')], /only one file can be/],
       assert.equal(stdout, '');
       assert.match(stderr, message);
       assert.match(stderr, /^cagecast: [^\n]+\n$/);

@@ -4,11 +4,12 @@ import { basename, dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { Worker } from 'node:worker_threads';
 import { firstLine, InputError } from '../gltf/input-error.js';
+import { counted } from '../inspect/finding.js';
 import type { Verdict } from '../inspect/index.js';
 import { isWritten, type Job, writtenBy } from './batch-jobs.js';
 import type { Outcome } from './batch-worker.js';
 import { verdicts } from './inspect-command.js';
-import { placeOf } from './output.js';
+import { placeOf, writing } from './output.js';
 import { jsonText, oneLine } from './print.js';
 import type { Progress } from './progress.js';
 import type { TransferCommand } from './transfer-command.js';
@@ -23,6 +24,8 @@ export interface BatchCommand {
   /** The verdict from which on the batch fails; the jobs inspect cages then. */
   failOn?: 'usable' | 'unfit' | undefined;
   workers?: number | undefined;
+  /** Called with each error of a job. */
+  onError?: ((error: string) => void) | undefined;
 }
 
 /** A line of the results. */
@@ -50,7 +53,7 @@ export interface BatchSummary {
  * @throws {InputError} if the results cannot be read or written.
  */
 export async function batchCommand(
-  { jobs, results, resume, failOn, workers }: BatchCommand,
+  { jobs, results, resume, failOn, workers, onError }: BatchCommand,
   write: (line: string) => void,
   progress: Progress,
 ): Promise<BatchSummary> {
@@ -63,6 +66,7 @@ export async function batchCommand(
     const { target, output = null, report } = job.command;
     const line: ResultLine = { target, output, ...(report && { report }), key: job.key, ...outcome };
     ++summary[line.status];
+    if (line.status === 'failed') onError?.(line.error);
     if (failOn && 'verdict' in line && verdicts.indexOf(line.verdict!) <= verdicts.indexOf(failOn)) ++summary.misfits;
     const text = jsonText(line);
     if (results === undefined) write(text);
@@ -136,7 +140,7 @@ const noResults = (): EarlierResults => ({ lines: new Map(), writers: new Map(),
 function readResults(path: string): EarlierResults {
   const { lines, writers, last } = noResults();
   if (!existsSync(path)) return { lines, writers, last };
-  const text = attempt(path, 'read', () => readFileSync(path, 'utf8'));
+  const text = readText(path);
   for (const one of text.split('\n')) {
     try {
       const line = JSON.parse(one) as ResultLine;
@@ -153,21 +157,21 @@ function readResults(path: string): EarlierResults {
   return { lines, writers, last };
 }
 
+function readText(path: string): string {
+  try {
+    return readFileSync(path, 'utf8');
+  } catch (error) {
+    throw new InputError(`cannot be read (${firstLine(error)})`, { cause: error }).in(path);
+  }
+}
+
 /** Finds out before the first job whether results can be written. Makes their folder. */
 function openResults(path: string): void {
-  attempt(path, 'written', () => mkdirSync(dirname(path), { recursive: true }));
+  writing(path, () => mkdirSync(dirname(path), { recursive: true }));
   append(path, '');
 }
 
-const append = (path: string, text: string): void => attempt(path, 'written', () => appendFileSync(path, text));
-
-function attempt<Result>(path: string, what: string, work: () => Result): Result {
-  try {
-    return work();
-  } catch (error) {
-    throw new InputError(`cannot be ${what} (${firstLine(error)})`, { cause: error }).in(path);
-  }
-}
+const append = (path: string, text: string): void => writing(path, () => appendFileSync(path, text));
 
 /** Removes files under temporary names that a batch left when it was killed. */
 function removeLeftovers(paths: readonly (string | undefined)[]): void {
@@ -190,5 +194,5 @@ export function describeBatch({ jobs, done, failed, skipped, misfits, configs, s
     ...(misfits > 0 ? [`${misfits} with a cage that does not fit as demanded`] : []),
   ];
   const from = configs.length > 0 ? `; settings from ${configs.join(', ')}` : '';
-  return oneLine(`${jobs} jobs: ${parts.join(', ')}; ${seconds.toFixed(1)} s${from}`);
+  return oneLine(`${counted(jobs, 'job')}: ${parts.join(', ')}; ${seconds.toFixed(1)} s${from}`);
 }

@@ -5,7 +5,7 @@ import { batchCommand, describeBatch } from './batch-command.js';
 import { jobsOfManifest, jobsOfPatterns } from './batch-jobs.js';
 import { addConfigFlags, type ConfigFlags, settler } from './config/config-flags.js';
 import { borderKinds } from './config/settings.js';
-import { addRuleFlags, type RuleFlags } from './options.js';
+import { addRuleFlags, maskInputs, type RuleFlags } from './options.js';
 import { writeStandard } from './output.js';
 import { addCageAreaFlags, addRegionFlag, type CageFlags } from './paint/paint-flags.js';
 import { boundsFault } from './paint/read-paint.js';
@@ -92,7 +92,9 @@ export function addBatchCommand(program: Command, progress: Progress): void {
       `
 A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
-A line that is printed: target, output, status (done, failed or skipped), ms, counts, and error, verdict and findings (codes) if there are.
+A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
+failed or skipped), ms, counts, and error, verdict and findings (codes) if there are. After the lines, a summary goes to the
+standard error: a text, or with --json JSON. With --quiet, only the errors of jobs go there.
 With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure, or from
 another job (another cage, say).
 A job that fails does not stop the others, and leaves what an earlier run wrote. Files are complete or not there, even if the
@@ -126,7 +128,7 @@ Examples:
     const jobs =
       manifest === undefined ? await jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
     const summary = await batchCommand(
-      { jobs, results, resume, failOn, workers },
+      { jobs, results, resume, failOn, workers, onError: flags.quiet ? printError : undefined },
       flags.quiet ? () => {} : writeStandard,
       progress,
     );
@@ -134,6 +136,8 @@ Examples:
     process.exitCode = summary.failed > 0 ? unusable : summary.misfits > 0 ? unfit : 0;
   });
 }
+
+const printError = (error: string): void => void process.stderr.write(`cagecast: ${oneLine(error)}\n`);
 
 /** What is wrong with the arguments together, if anything is. */
 function faultOf(targets: readonly string[], flags: BatchFlags): string | undefined {
@@ -144,9 +148,9 @@ function faultOf(targets: readonly string[], flags: BatchFlags): string | undefi
   if (texture !== undefined && output === undefined && manifest === undefined) return '--texture needs -o OUT.glb';
   if (borders === 'cut' && output === undefined && manifest === undefined)
     return '--borders cut needs -o OUT.glb, the file for the cut target';
-  if (output === standard || report === standard) return 'a batch writes files; the standard output has its lines';
+  if ([output, report, results].includes(standard)) return 'a batch writes files; the standard output has its lines';
   const ofRegions = region.flatMap((one) => [one.cage, one.texture]);
-  if ([cage, referenceCage, texture, ...ofRegions, ...targets].includes(standard))
+  if ([cage, referenceCage, texture, ...ofRegions, ...maskInputs(flags), ...targets].includes(standard))
     return 'a batch reads files; its jobs have no standard input';
   if (manifest === standard && flags.config === standard) return 'only one file can be the standard input';
   return boundsFault(texture, uvBounds);

@@ -5,7 +5,15 @@ import { readBytes, standard } from '../gltf/files.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
 import { filesBeside, filesReadBy } from './beside.js';
 import type { Settled } from './config/config-flags.js';
-import { isObject, mergeMasks, parseObject, refuseUnknown, settingNames, settingsOf } from './config/settings.js';
+import {
+  isObject,
+  mergeMasks,
+  parseObject,
+  pathOf,
+  refuseUnknown,
+  settingNames,
+  settingsOf,
+} from './config/settings.js';
 import { filesOf } from './glob.js';
 import { placeOf } from './output.js';
 import { areBounds, boundsText } from './paint/cage-area.js';
@@ -94,7 +102,7 @@ function failedJob(target: string, place: string, { reading }: JobDefaults, erro
 function targetOf(line: string, folder: string): string | undefined {
   try {
     const { target } = parseObject(line);
-    return typeof target === 'string' ? resolve(folder, target) : undefined;
+    return typeof target === 'string' && target !== '' ? resolve(folder, target) : undefined;
   } catch {
     return undefined;
   }
@@ -117,20 +125,17 @@ async function jobLine(
 ): Promise<JobNames & Settled> {
   const given = parseObject(line);
   refuseUnknown(given, [...paths, 'regions', 'uvBounds', ...settingNames]);
-  for (const name of paths)
-    if (given[name] !== undefined && typeof given[name] !== 'string') throw new InputError(`"${name}" is not a path`);
   if (given['target'] === undefined) throw new InputError('has no "target"');
   const { uvBounds, regions } = given;
   if (uvBounds !== undefined && !areBounds(uvBounds))
     throw new InputError(`"uvBounds" is not an array of ${boundsText}`);
-  const inFolder = (path: string, isCage: boolean) => (isCage && path === autoCage ? path : resolve(folder, path));
   const own = Object.fromEntries([
     ...paths.flatMap((name) => {
-      const path = given[name] as string | undefined;
-      return path === undefined ? [] : [[name, inFolder(path, name === 'cage')]];
+      const path = pathIn(given, name, folder);
+      return path === undefined ? [] : [[name, path]];
     }),
     ...(uvBounds === undefined ? [] : [['uvBounds', uvBounds]]),
-    ...(regions === undefined ? [] : [['regions', regionsOf(regions, inFolder)]]),
+    ...(regions === undefined ? [] : [['regions', regionsOf(regions, folder)]]),
   ]) as Partial<JobNames> & { target: string };
   const common = await settled(own.target);
   const { borders, compress, preset, keep, exclude, masks, single } = settingsOf(given, folder);
@@ -159,16 +164,23 @@ async function jobLine(
       }),
       single: { ...rules.single, ...single },
     },
+/** A path of a line, which may be that of no file but of a cage to be made. @throws {InputError} that names the member. */
+const pathIn = (given: Readonly<Record<string, unknown>>, name: string, folder: string): string | undefined =>
+  name === 'cage' && given[name] === autoCage ? autoCage : pathOf(given, name, folder);
+
   };
 }
 
 /** @throws {InputError} */
-function regionsOf(regions: unknown, inFolder: (path: string, isCage: boolean) => string): Region[] {
-  const isRegion = (one: unknown): one is Region =>
+function regionsOf(regions: unknown, folder: string): Region[] {
+  const isRegion = (one: unknown): one is Region & Record<string, unknown> =>
     isObject(one) && typeof one['cage'] === 'string' && typeof one['texture'] === 'string';
   if (!Array.isArray(regions) || !regions.every(isRegion))
     throw new InputError('"regions" is not an array of {"cage": …, "texture": …}');
-  return regions.map(({ cage, texture }) => ({ cage: inFolder(cage, true), texture: inFolder(texture, false) }));
+  return regions.map((region) => ({
+    cage: pathIn(region, 'cage', folder)!,
+    texture: pathIn(region, 'texture', folder)!,
+  }));
 }
 
 type JobNames = Pick<TransferCommand, 'target' | 'referenceCage' | 'texture' | 'regions' | 'output' | 'report'> & {
@@ -231,13 +243,15 @@ function refuseClashes(jobs: Job[], { results }: JobDefaults, manifest?: string)
     written.set(placeOf(results), 'the results');
   }
   for (const { command, error } of jobs) {
-    for (const path of error === undefined ? [command.output, command.report] : []) {
+    const { output, report } = command;
+    const buffer = output !== undefined && /\.gltf$/i.test(output) ? output.replace(/\w+$/, 'bin') : undefined;
+    for (const path of error === undefined ? [output, buffer, report] : []) {
       if (path === undefined) continue;
       const place = placeOf(path);
       const other = written.get(place);
       if (other !== undefined)
         throw new InputError(`is written for ${other} and ${command.target}; use {name} or {dir} in its path`).in(path);
-      if (path === command.output && readBeside.has(place))
+      if (path === output && readBeside.has(place))
         throw new InputError('is written beside a file of its name that this batch reads').in(path);
       if (read.has(place)) throw new InputError('is read and written by this batch').in(path);
       written.set(place, command.target);

@@ -80,7 +80,8 @@ Examples:
         refuse('there is nothing to bake: give PAINT, --normal or --orm');
       if (!isPicture && part.length > 0) refuse('--part is for a PNG; for a GLB, use --exclude');
       if (flags.quiet) progress.silence();
-      const inputs = [target, cage === autoCage ? undefined : cage, paint, normal, orm, ...maskInputs(flags)];
+      const own = [target, cage === autoCage ? undefined : cage, paint, normal, orm];
+      const inputs = [...own, ...maskInputs(flags), flags.config || undefined];
       refuseOverwriting(command, inputs, [output]);
       const found = await bakeCommand(
         {

@@ -40,7 +40,18 @@ const choices: Readonly<Record<string, readonly string[]>> = {
   compress: forms,
 };
 
-const shown = (value: unknown): string => quoted(JSON.stringify(value) ?? String(value)).slice(1, -1);
+/** A value in a message. JSON has no infinite numbers. */
+export const shown = (value: unknown): string =>
+  quoted(typeof value === 'number' ? String(value) : JSON.stringify(value)).slice(1, -1);
+
+/** The path that an object from JSON has by a name, from a folder on, if it has one. @throws {InputError} that names the member. */
+export function pathOf(given: Readonly<Record<string, unknown>>, name: string, folder: string): string | undefined {
+  const path = given[name];
+  if (path === undefined) return undefined;
+  if (typeof path !== 'string') throw new InputError(`"${name}" is ${shown(path)}, not a path`);
+  if (path === '') throw new InputError(`"${name}" is empty`);
+  return resolve(folder, path);
+}
 
 /**
  * Checks settings that were read from JSON; other members of the object are ignored.
@@ -62,15 +73,10 @@ export function settingsOf(given: Readonly<Record<string, unknown>>, folder: str
     if (!(Array.isArray(list) && list.every((one) => typeof one === 'string'))) throw wrong(name, 'an array of names');
     settings[name] = list;
   }
-  const texts = ['neverMask', 'alwaysMask', 'maskColors'].map((name) => {
-    const text = given[name];
-    if (text !== undefined && typeof text !== 'string')
-      throw wrong(name, name === 'maskColors' ? 'the name of an attribute' : 'a path');
-    return text;
-  });
-  const [never, always] = texts.map((path) => (path === undefined ? undefined : resolve(folder, path)));
-  const colors = texts[2];
-  if (texts.some((text) => text !== undefined)) settings['masks'] = { never, always, colors };
+  const [never, always] = ['neverMask', 'alwaysMask'].map((name) => pathOf(given, name, folder));
+  const { maskColors: colors } = given;
+  if (colors !== undefined && typeof colors !== 'string') throw wrong('maskColors', 'the name of an attribute');
+  if ((never ?? always ?? colors) !== undefined) settings['masks'] = { never, always, colors };
   for (const { name, kind, range } of optionFlags) {
     const value = given[name];
     if (value === undefined) continue;

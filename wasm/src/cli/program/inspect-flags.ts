@@ -27,7 +27,8 @@ Examples:
     .action(async (target: string, flags: CommonFlags & { html?: string }, command: Command) => {
       const { cage, uvBounds, referenceCage, html } = flags;
       if (flags.quiet) progress.silence();
-      refuseOverwriting(command, [target, cage, referenceCage, ...maskInputs(flags)], [html]);
+      const inputs = [target, cage, referenceCage, ...maskInputs(flags), flags.config || undefined];
+      refuseOverwriting(command, inputs, [html]);
       const found = await inspectCommand(
         {
           target,

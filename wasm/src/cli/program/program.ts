@@ -5,6 +5,7 @@ import { addCageCommands } from '../cage-flags.js';
 import { writeStandard } from '../output.js';
 import { oneLine } from '../print.js';
 import type { Progress } from '../progress.js';
+import { wrongUsage } from '../usage.js';
 import { addCompletionCommand } from './completion.js';
 import { addDiffCommand } from './diff-flags.js';
 import { addInspectCommand } from './inspect-flags.js';
@@ -48,6 +49,12 @@ Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make
 4 diff finds a change over the limit.`,
     );
 
+  // An empty path would be the current folder.
+  program.hook('preAction', (_, command) => {
+    const flag = command.options.find((option) => command.getOptionValue(option.attributeName()) === '')?.long;
+    const argument = command.registeredArguments.find((_, i) => [command.processedArgs[i]].flat().includes(''))?.name();
+    if (flag ?? argument) command.error(`${flag ?? argument} is empty`, { exitCode: wrongUsage });
+  });
   addTransferCommand(program, progress);
   addInspectCommand(program, progress);
   addBakeCommand(program, progress);

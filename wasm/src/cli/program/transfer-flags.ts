@@ -89,7 +89,7 @@ Examples:
         if (fault !== undefined) command.error(fault, { exitCode: wrongUsage });
         const cages = [cage, ...regions.map((region) => region.cage)].filter((path) => path !== autoCage);
         const textures = [texture, ...regions.map((region) => region.texture)];
-        const inputs = [target, referenceCage, ...cages, ...textures, ...maskInputs(flags)];
+        const inputs = [target, referenceCage, ...cages, ...textures, ...maskInputs(flags), flags.config || undefined];
         refuseOverwriting(command, inputs, [output, report]);
         const found = await transferCommand(
           {
