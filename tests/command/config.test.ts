@@ -76,9 +76,20 @@ test('--config names another file, --no-config none; the output says which file 
   assert.match(cagecast('inspect', ada, ...cage).stdout, new RegExp(`settings from ${config}\n$`));
 });
 
+test('an occlusion reach without end is written as a text, in settings and in reports', () => {
+  set({ occlusionReach: 'Infinity' });
+  const { stdout, stderr } = cagecast('transfer', ada, ...cage, '--json');
+  assert.equal(stderr, '');
+  const { occlusionReach } = (JSON.parse(stdout) as { options: { occlusionReach: unknown } }).options;
+  assert.equal(occlusionReach, 'Infinity');
+});
+
 test('masks are paths from the folder of the file; flags about masks replace them', () => {
   set({ alwaysMask: 'gone.png' });
-  assert.match(cagecast('transfer', ada, ...cage).stderr, new RegExp(`${at('gone.png')}: no such file`));
+  assert.match(
+    cagecast('transfer', ada, ...cage).stderr,
+    new RegExp(`^cagecast: ${config}: "alwaysMask": ${at('gone.png')}: no such file\n$`),
+  );
   assert.match(cagecast('transfer', ada, ...cage, '--never-mask', at('other.png')).stderr, /other\.png: no such file/);
 });
 
@@ -135,7 +146,8 @@ test('a file that was found may be a stranger’s: it is a regular file, and its
   refused(/heads\/cagecast\.config\.json: is a device or a pipe, not a file\n$/);
   assert.equal(cagecast('inspect', ada, ...cage, '--no-config').status, 0);
   rmSync(inHeads);
-  const outside = /cage\.glb: is outside the folder of the file that refers to it; --allow-outside permits it\n$/;
+  const outside =
+    /heads\/cagecast\.config\.json: "neverMask": .*cage\.glb: is outside the folder of the file that refers to it; --allow-outside permits it\n$/;
   for (const neverMask of ['../../cage.glb', at('cage.glb')]) {
     set({ neverMask }, inHeads);
     refused(outside);
@@ -181,6 +193,9 @@ test('what is wrong in the file is one line that names file, member and value', 
     ['{"seams": "edge"}', /"seams" is "edge", not one of vertex, corner/],
     ['{"preset": 1}', /"preset" is 1, not one of default, paper/],
     ['{"exclude": "eye"}', /"exclude" is "eye", not an array of names/],
+    ['{"threshold": 1e999}', /"threshold" is Infinity, not a number within 0\.\.1/],
+    ['{"occlusionReach": "far"}', /"occlusionReach" is "far", not a number within 0\.\.Infinity/],
+    ['{"threshold": "Infinity"}', /"threshold" is "Infinity", not a number within 0\.\.1/],
     ['{"neverMask": 1}', /"neverMask" is 1, not a path/],
     ['{"neverMask": ""}', /"neverMask" is empty/],
     ['{"characters": []}', /"characters" is \[\], not an object of patterns and settings/],

@@ -17,6 +17,7 @@ import {
 import { filesOf } from './glob.js';
 import { placeOf } from './output.js';
 import { areBounds, boundsText } from './paint/cage-area.js';
+import { boundsFault } from './paint/read-paint.js';
 import { autoCage } from './run.js';
 import type { Region, TransferCommand } from './transfer-command.js';
 
@@ -25,7 +26,6 @@ export interface Job {
   command: TransferCommand;
   /** Identifies the job: its arguments, and the size and time of what it reads. */
   key: string;
-import { boundsFault } from './paint/read-paint.js';
   /** Why it cannot be started, if so. */
   error?: string;
 }
@@ -157,19 +157,16 @@ async function jobLine(
       },
       ...(masks && {
         masks: mergeMasks(rules.masks, masks)!,
-        maskFolders: {
-          ...(masks.never === undefined && { never: rules.maskFolders?.never }),
-          ...(masks.always === undefined && { always: rules.maskFolders?.always }),
-        },
+        configMasks: (rules.configMasks ?? []).filter((kind) => masks[kind] === undefined),
       }),
       single: { ...rules.single, ...single },
     },
+  };
+}
+
 /** A path of a line, which may be that of no file but of a cage to be made. @throws {InputError} that names the member. */
 const pathIn = (given: Readonly<Record<string, unknown>>, name: string, folder: string): string | undefined =>
   name === 'cage' && given[name] === autoCage ? autoCage : pathOf(given, name, folder);
-
-  };
-}
 
 /** @throws {InputError} */
 function regionsOf(regions: unknown, folder: string): Region[] {
@@ -203,6 +200,8 @@ function jobOf({ settled: _, results: __, cuts: ___, ...given }: JobDefaults & J
   if (output === undefined && (given.texture !== undefined || given.regions?.length)) throw noOutput(target);
   if (output !== undefined && !/\.(glb|vrm|gltf)$/i.test(output))
     throw new InputError(`its output ${output} does not end in .glb, .vrm or .gltf`).in(target);
+  const fault = boundsFault(given.texture, given.uvBounds);
+  if (fault !== undefined) throw new InputError(fault).in(target);
   const command: TransferCommand = { ...given, cage, output: fill(output), report: fill(report) };
   const read = filesReadBy(command).map(sizeAndTime);
   const key = createHash('sha256')
@@ -212,8 +211,6 @@ function jobOf({ settled: _, results: __, cuts: ___, ...given }: JobDefaults & J
   return { command, key };
 }
 
-  const fault = boundsFault(given.texture, given.uvBounds);
-  if (fault !== undefined) throw new InputError(fault).in(target);
 /** Of a file; neither if it cannot be looked up, which whatever opens it reports. */
 function sizeAndTime(path: string): (number | undefined)[] {
   try {

@@ -28,10 +28,12 @@ export interface Rules {
   /** Those of both that may match nothing. */
   optional?: string[];
   masks?: MaskFiles;
-  /** Where a mask's file has to be, if that is not left to whoever names it. */
-  maskFolders?: Pick<MaskFiles, 'never' | 'always'>;
   /** The configuration file that some of it comes from. */
   config?: string;
+  /** The masks that it names. */
+  configMasks?: readonly ('never' | 'always')[];
+  /** Where their files have to be: the configuration may be a stranger's if nobody named it. */
+  maskFolder?: string;
 }
 
 /** The flags of these options, as commander parses them. */
@@ -112,10 +114,13 @@ export function rulesOf({ preset, keep, exclude, neverMask, alwaysMask, maskColo
   return { preset, keep, exclude, single: Object.fromEntries(given), ...(isMasked && { masks }) };
 }
 
-/** All options that a transfer was made with, for a report. `occlusionReach` is `null` if it is infinite. */
+/** How JSON writes a number without end. */
+export const infinite = 'Infinity';
+
+/** All options that a transfer was made with, for a report. */
 export interface EffectiveOptions extends Omit<PresetOptions, 'occlusionReach'> {
   preset: Preset;
-  occlusionReach: number | null;
+  occlusionReach: number | typeof infinite;
   keep: string[];
   exclude: string[];
   /** If there are any. */
@@ -127,7 +132,7 @@ export interface EffectiveOptions extends Omit<PresetOptions, 'occlusionReach'> 
 /** The options in full; needs `init`. */
 export function effectiveOptions({ preset, single, keep, exclude, masks, config }: Rules): EffectiveOptions {
   const all = { ...presetOptions(preset), ...single };
-  const occlusionReach = Number.isFinite(all.occlusionReach) ? all.occlusionReach : null;
+  const occlusionReach = Number.isFinite(all.occlusionReach) ? all.occlusionReach : infinite;
   return { preset, ...all, occlusionReach, keep, exclude, ...(masks && { masks }), config: config ?? null };
 }
 
@@ -136,18 +141,18 @@ export const configLine = (config: string | null | undefined): string => (config
 
 /**
  * The options of `transfer`. Names of parts become locks by group, because each part is a group.
+ * @param leftOut  Whether each part is excluded if nothing is said of it. Default: none
  * @throws {InputError} if nothing has a given name, or a part is both kept and excluded in one place.
  */
 export function transferOptions(
   { preset, single, keep, exclude, ranks, optional = [], config }: Rules,
   { parts }: Extracted,
- * @param leftOut  Whether each part is excluded if nothing is said of it. Default: none
+  leftOut: readonly boolean[] = [],
 ): TransferOptions {
   const saidOf = new Map<number, { lock: Lock; pattern: string; rank: number }>();
   for (const [lock, patterns] of [
     ['keep', keep],
     ['exclude', exclude],
-  leftOut: readonly boolean[] = [],
   ] as const) {
     for (const [i, pattern] of patterns.entries()) {
       const rank = ranks?.[lock][i] ?? 0;

@@ -78,14 +78,18 @@ export async function run(
 /** The masks of a target. @throws {InputError} that names the file at fault. */
 async function readMasks(
   { file, extracted }: ReadModel,
-  { masks, maskFolders = {} }: Rules,
+  { masks, config, configMasks = [], maskFolder }: Rules,
   reading: ReadOptions,
 ): Promise<Masks | undefined> {
   if (!masks) return undefined;
   const [never, always] = await Promise.all(
     (['never', 'always'] as const).map((kind) => {
       const path = masks[kind];
-      return path === undefined ? undefined : readImage(path, reading, maskFolders[kind]);
+      if (path === undefined) return undefined;
+      if (!configMasks.includes(kind)) return readImage(path, reading);
+      return readImage(path, reading, maskFolder).catch((error: unknown) => {
+        throw error instanceof InputError ? error.in(`${config}: "${kind}Mask"`) : error;
+      });
     }),
   );
   try {

@@ -11,6 +11,7 @@ import {
   type Settings,
   settingNames,
   settingsOf,
+  shown,
 } from './settings.js';
 
 /** The name under which configuration files are found. */
@@ -29,8 +30,8 @@ export interface ConfigSettings extends Settings {
   path: string;
   /** As in `Rules`. */
   ranks: NonNullable<Rules['ranks']>;
-  /** Where masks have to be, if nobody named the file: like a model, it may be a stranger's. */
-  maskFolders?: NonNullable<Rules['maskFolders']>;
+  /** As in `Rules`. */
+  maskFolder?: string;
 }
 
 /** Finds the configuration files of targets, and reads each once. */
@@ -72,7 +73,7 @@ export class Configuration {
       ranks: { keep: [...keep.values()], exclude: [...exclude.values()] },
       ...(masks && { masks }),
       path: file.path,
-      ...(this.#given === undefined && { maskFolders: { never: dirname(path), always: dirname(path) } }),
+      ...(this.#given === undefined && { maskFolder: dirname(path) }),
     } as ConfigSettings;
   }
 
@@ -111,13 +112,14 @@ function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
   const all = parseObject(text);
   refuseUnknown(all, [...settingNames, 'characters']);
   const { characters = {} } = all;
-  if (!isObject(characters)) throw new InputError('"characters" is not an object of patterns and settings');
+  if (!isObject(characters))
+    throw new InputError(`"characters" is ${shown(characters)}, not an object of patterns and settings`);
   return {
     common: settingsOf(all, folder),
     characters: inOrder(text).map((pattern) => {
       const given = characters[pattern];
       try {
-        if (!isObject(given)) throw new InputError('is not an object of settings');
+        if (!isObject(given)) throw new InputError(`is ${shown(given)}, not an object of settings`);
         refuseUnknown(given, settingNames);
         return { matches: matcher(pattern), settings: settingsOf(given, folder) };
       } catch (error) {

@@ -40,7 +40,7 @@ export function settler(
     if (found === undefined) return { rules: own, borders, compress };
     const pick = <Value>(name: string, value: Value, other: Value | undefined) =>
       isGiven(name) ? value : (other ?? value);
-    const { path, single, masks, maskFolders, ranks } = found;
+    const { path, single, masks, maskFolder, ranks } = found;
     const [keep, exclude] = [pick('keep', own.keep, found.keep), pick('exclude', own.exclude, found.exclude)];
     return {
       rules: {
@@ -53,7 +53,9 @@ export function settler(
           exclude: isGiven('exclude') ? exclude.map(() => 0) : ranks.exclude,
         },
         // Flags about masks replace all of those in the file.
-        ...(own.masks ? { masks: own.masks } : masks && { masks, ...(maskFolders && { maskFolders }) }),
+        ...(own.masks
+          ? { masks: own.masks }
+          : masks && { masks, configMasks: ['never', 'always'], ...(maskFolder && { maskFolder }) }),
         config: path,
         // A file speaks of many models, and not each of them has every part.
         optional: [...(isGiven('keep') ? [] : keep), ...(isGiven('exclude') ? [] : exclude)],
