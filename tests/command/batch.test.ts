@@ -260,6 +260,13 @@ test('patterns follow links to folders, and ** does not go round in circles', ()
   assert.deepEqual(targets('linked/**/*.glb'), [at('linked/own/b.glb')]);
 });
 
+test('a * in the name of a file that is given whole is no pattern', () => {
+  writeFileSync(at('sta*r.glb'), target);
+  writeFileSync(at('star.glb'), target);
+  const args = ['transfer', at('sta*r.glb'), '--cage', at('cage.glb'), '-o', at('star.glb'), '--quiet'];
+  assert.deepEqual(cagecast(...args), { status: 0, stdout: '', stderr: '' });
+});
+
 test('results that cannot be written end the batch at once; their folder is made', () => {
   mkdirSync(at('some'));
   for (let i = 0; i < 12; ++i) writeFileSync(at('some', `${i}.glb`), target);

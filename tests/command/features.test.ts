@@ -212,13 +212,16 @@ test('diff shows what changed between two reports, and exits 4 over the limit', 
 test('diff compares the reports of two folders: what changed, is gone and is new', () => {
   const report = (name: string, ...flags: string[]) =>
     ok('transfer', at('target.glb'), ...cage, '--report', at(name), '--quiet', ...flags);
-  for (const folder of ['approved', 'build', 'none']) mkdirSync(at(folder), { recursive: true });
+  for (const folder of ['approved/deep', 'build/deep', 'none']) mkdirSync(at(folder), { recursive: true });
   for (const name of [
     'approved/same.json',
     'build/same.json',
     'approved/other.json',
     'approved/gone.json',
     'build/new.json',
+    'approved/deep/same.json',
+    'build/deep/same.json',
+    'approved/deep/gone.json',
   ])
     report(name);
   report('build/other.json', '--exclude', 'only');
@@ -227,7 +230,7 @@ test('diff compares the reports of two folders: what changed, is gone and is new
   assert.match(stdout, /^other\.json\n +before +after/);
   assert.match(
     stdout,
-    /\ngone: gone\.json\nnew: new\.json\n2 reports compared: 1 changed, 1 over the limit; 1 gone, 1 new\n$/,
+    /\ngone: deep.gone\.json\ngone: gone\.json\nnew: new\.json\n3 reports compared: 1 changed, 1 over the limit; 2 gone, 1 new\n$/,
   );
   const found = JSON.parse(cagecast('diff', at('approved'), at('build'), '--json').stdout) as {
     over: number;
@@ -235,11 +238,12 @@ test('diff compares the reports of two folders: what changed, is gone and is new
     gone: string[];
     new: string[];
   };
-  assert.deepEqual([found.gone, found.new], [['gone.json'], ['new.json']]);
-  assert.equal(found.over, 1 + found.reports.find(({ name }) => name === 'other.json')!.over);
+  assert.deepEqual([found.gone, found.new], [[join('deep', 'gone.json'), 'gone.json'], ['new.json']]);
+  assert.equal(found.over, 2 + found.reports.find(({ name }) => name === 'other.json')!.over);
   // A report that is gone is a change by itself; a new one is not.
-  for (const name of ['approved/gone.json', 'approved/other.json', 'build/other.json']) rmSync(at(name));
-  assert.match(ok('diff', at('approved'), at('build')), /^new: new\.json\n1 report compared: 0 changed/);
+  for (const name of ['approved/gone.json', 'approved/deep/gone.json', 'approved/other.json', 'build/other.json'])
+    rmSync(at(name));
+  assert.match(ok('diff', at('approved'), at('build')), /^new: new\.json\n2 reports compared: 0 changed/);
   assert.equal(cagecast('diff', at('build'), at('approved')).status, 4);
   for (const [before, after, message] of [
     ['approved', 'build/same.json', /approved: is a folder, and the other is a file/],

@@ -6,7 +6,7 @@ import { InputError } from '../gltf/input-error.js';
 import { parseGltf } from '../gltf/parse.js';
 import { filesOf } from './glob.js';
 import { placeOf } from './output.js';
-import { tilePath } from './paint/read-paint.js';
+import { isTiled, tilePath } from './paint/read-paint.js';
 import type { Run, Sources } from './run.js';
 import type { Region } from './transfer-command.js';
 
@@ -72,7 +72,7 @@ const readBy = ({ target, cage, referenceCage, texture, rules, regions = [] }: R
 /** All files that a transfer reads but its configuration, tiles of textures and what is beside a glTF included. */
 export const filesReadBy = (command: Reads): string[] =>
   readBy(command)
-    .flatMap((path) => filesOf(tilePath(path, '*')))
+    .flatMap((path) => (isTiled(path) ? filesOf(tilePath(path, '*')) : [path]))
     .flatMap((path) => [path, ...filesBeside(path, command.reading)]);
 
 /**

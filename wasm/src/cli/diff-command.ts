@@ -86,7 +86,7 @@ async function diffFolders({ before, after, tolerance }: DiffCommand): Promise<F
 }
 
 async function reportsIn(folder: string): Promise<string[]> {
-  const names = (await readdir(folder)).filter((name) => name.endsWith('.json')).sort();
+  const names = (await readdir(folder, { recursive: true })).filter((name) => name.endsWith('.json')).sort();
   if (names.length === 0) throw new InputError('has no reports (*.json)').in(folder);
   return names;
 }
