@@ -70,6 +70,8 @@ describe('cagecast make', () => {
     const words = cagecast(...['make', at('head.glb'), '--exclude', 'eye', '--triangles', '300', '-o', at('two.glb')]);
     assert.equal(words.status, 0, words.stderr);
     assert.match(words.stdout, /, 2 holes$/m);
+    const none = cagecast(...['make', at('head.glb'), '--exclude', '', '--triangles', '300', '-o', at('none.glb')]);
+    assert.deepEqual([none.stderr, /, 0 holes$/m.test(none.stdout)], ['', true]);
     const triangles = unpackGlb(readFileSync(at('one.glb'))).json.accessors![2]!.count / 3;
     assert.ok(triangles > 200 && triangles < 400, `${triangles}`);
   });
@@ -251,10 +253,10 @@ describe('cagecast fit', () => {
     write('odd.glb', packGlb(bare));
     const { uvs: _, ...noUvs } = skin();
     write('no-uvs.glb', glbOf(noUvs));
-    const out = at('never.glb');
-    const before = files();
     bare.json.meshes![0]!.extras = { landmarks: { chin: [0, 0, 0] } };
     write('few.glb', packGlb(bare));
+    const out = at('never.glb');
+    const before = files();
     for (const [args, status, says] of [
       [['human-head'], 2, /missing required argument 'TARGET'|required option/],
       [['human', target, '-o', out], 1, /human: no such file, and no template of the package: there are human-head, /],

@@ -29,8 +29,8 @@ interface CageOutput {
 /** The arguments of `cagecast make`. */
 export interface MakeCommand extends CageOutput {
   target: string;
-  /** Patterns of names that replace the default ones; empty for these. */
-  exclude: string[];
+  /** Patterns of names that replace the default ones. */
+  exclude?: string[] | undefined;
   triangles?: number | undefined;
   kind: Kind;
   /** A share of the model's diagonal. */
@@ -43,8 +43,8 @@ export interface FitCommand extends CageOutput {
   target: string;
   templateLandmarks?: string | undefined;
   landmarks?: string | undefined;
-  /** Patterns of names that replace the default ones; empty for these. */
-  exclude: string[];
+  /** Patterns of names that replace the default ones. */
+  exclude?: string[] | undefined;
 }
 
 /** What a fit says of landmarks: lines for people, and all of it for programs. */
@@ -71,7 +71,7 @@ export async function makeCommand(command: MakeCommand, progress: Progress): Pro
   const { target, exclude, triangles, kind, closing, reading } = command;
   const model = await readModel(target, reading, progress);
   await checkExclusions(exclude, model);
-  const options = { ...(exclude.length > 0 && { exclude }), triangles, kind, closing };
+  const options = { exclude, triangles, kind, closing };
   const cage = await makeCageFor(model, options, progress);
   return finish(command, model, { ...cage, landmarks: await landmarksOf(model, progress) }, progress);
 }
@@ -88,16 +88,16 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
     ...own,
     ...(templateLandmarks !== undefined && { landmarks: await readLandmarks(templateLandmarks) }),
   };
-  if (Object.keys(template.landmarks).length === 0)
+  const count = Object.keys(template.landmarks).length;
+  if (count < leastLandmarks)
     throw new InputError(
-      'has no landmarks in the extras of its nodes and meshes; give those of the model that it was made for: --template-landmarks T.json',
+      `has ${count === 0 ? 'no landmarks' : counted(count, 'landmark')} in the extras of its nodes and meshes; give at least ${leastLandmarks} of the model that it was made for: --template-landmarks T.json`,
     ).in(templatePath);
   const landmarks = landmarksPath === undefined ? undefined : await readLandmarks(landmarksPath);
   const model = await readModel(target, reading, progress);
   await checkExclusions(exclude, model);
   const files = { template: templatePath, landmarks: landmarksPath };
-  const options = exclude.length > 0 ? { exclude } : {};
-  const fit = await fitCageTo(model, { template, landmarks, files, options }, progress);
+  const fit = await fitCageTo(model, { template, landmarks, files, options: { exclude } }, progress);
   return finish(command, model, fit.cage, progress, describeFit(fit, landmarks ?? {}));
 }
 
@@ -123,6 +123,9 @@ async function readLandmarks(path: string): Promise<Landmarks> {
     throw error instanceof InputError ? error.in(path) : error;
   }
 }
+
+/** How many landmarks `fitCage` needs of a template. */
+const leastLandmarks = 4;
 
 /** How many landmarks are listed at most. */
 const mostNames = 12;

@@ -30,10 +30,8 @@ const output = (command: Command): Command =>
 const exclusion = (): Option =>
   new Option(
     '--exclude <NAME>',
-    'do not paint parts whose node or material has this name, or this word in its name (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair',
-  )
-    .default([], 'by name')
-    .argParser((name: string, before: string[]) => [...before, name]);
+    'do not paint parts whose node or material has this name, or this word in its name (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair; an empty name excludes nothing',
+  ).argParser((name: string, before: string[] = []) => (name === '' ? before : [...before, name]));
 
 function triangles(text: string): number {
   const value = Number(text);

@@ -29,7 +29,7 @@ export async function partsLeftOut({ file, extracted }: ReadModel): Promise<bool
 }
 
 /** Checks that each pattern matches a part of a model. @throws {InputError} that names the file and the pattern. */
-export async function checkExclusions(patterns: readonly string[], { file, extracted }: ReadModel): Promise<void> {
+export async function checkExclusions(patterns: readonly string[] = [], { file, extracted }: ReadModel): Promise<void> {
   await init();
   const { parts = [] } = cageModelOf(file, extracted);
   for (const pattern of patterns)
