@@ -29,10 +29,15 @@ export function refuseOverwriting(
   ] as const)
     if (paths.filter((path) => path === standard).length > 1)
       command.error(`only one file can be the standard ${name}`, { exitCode: wrongUsage });
-  const placesOf = (paths: readonly (string | undefined)[]) =>
-    paths.filter((path) => path !== undefined && path !== standard).map((path) => placeOf(path!));
-  const [read, written] = [placesOf(inputs), placesOf(outputs)];
-  const clash = written.find((path, i) => read.includes(path) || written.indexOf(path) !== i);
-  if (clash !== undefined)
-    command.error(`${clash} would overwrite another file of this command`, { exitCode: wrongUsage });
+  const known = new Map<string, string>();
+  const add = (path: string | undefined, use: string) => {
+    if (path !== undefined && path !== standard) known.set(placeOf(path), `${path}, which this command ${use}`);
+  };
+  for (const path of inputs) add(path, 'reads');
+  for (const path of outputs) {
+    const other = path === undefined || path === standard ? undefined : known.get(placeOf(path));
+    if (other !== undefined)
+      command.error(`${path} would overwrite ${other}; choose another output`, { exitCode: wrongUsage });
+    add(path, 'writes');
+  }
 }

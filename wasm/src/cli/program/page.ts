@@ -2,17 +2,18 @@ import type { Command, Option } from 'commander';
 
 /** The page about the command, in Markdown: docs/cli.md. It says what `--help` says. */
 export function pageOf(program: Command): string {
+  const commands = program.commands.filter((command) => command.name() !== 'help');
   return `# The command
 
 <!-- Made by wasm/tools/generate.mjs from wasm/src/cli. Do not edit. -->
 
 ${program.description()}
 
-${[...program.commands].map((command) => `- [\`${command.name()}\`](#cagecast-${command.name()}): ${command.description()}`).join('\n')}
+${commands.map((command) => `- [\`${command.name()}\`](#cagecast-${command.name()}): ${command.description()}`).join('\n')}
 
-\`cagecast help COMMAND\` prints what is below.
+\`cagecast help COMMAND\` prints what is below, \`cagecast --version\` the version.
 ${helpAfter(program)}
-${program.commands.map(sectionOf).join('\n')}`;
+${commands.map(sectionOf).join('\n')}`;
 }
 
 function sectionOf(command: Command): string {
