@@ -86,7 +86,7 @@ export function addBatchCommand(program: Command, progress: Progress): void {
         'inspect each cage, and exit 3 if one is no better than this; reports have the verdict then',
       ).choices(['usable', 'unfit']),
     )
-    .addOption(new Option('--workers <N>', 'threads (default: one per processor)').argParser(workers))
+    .addOption(new Option('--workers <N>', 'threads; 1 to 999 (default: one per processor)').argParser(workers))
     .addHelpText(
       'after',
       `

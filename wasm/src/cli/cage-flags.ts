@@ -15,7 +15,7 @@ const closingRange = [0.0005, 0.2] as const;
 const output = (command: Command): Command =>
   addPrintFlags(addReadFlags(command))
     .addOption(
-      new Option('-o, --output <CAGE.glb>', 'where to write the cage')
+      new Option('-o, --output <CAGE.glb>', 'where to write the cage; - for the standard output')
         .argParser(endingIn('.glb'))
         .makeOptionMandatory(),
     )
@@ -50,7 +50,12 @@ export function addCageCommands(program: Command, progress: Progress): void {
   output(program.command('make').argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing'))
     .description('make a cage for TARGET: a hull with holes over what is not painted, and UVs; print a verdict')
     .addOption(exclusion())
-    .addOption(new Option('--triangles <N>', 'triangles of the cage, about (default: by kind)').argParser(triangles))
+    .addOption(
+      new Option(
+        '--triangles <N>',
+        `triangles of the cage, about; ${triangleRange[0]} to ${triangleRange[1]} (default: by kind)`,
+      ).argParser(triangles),
+    )
     .addOption(
       new Option('--kind <KIND>', 'what TARGET is, which decides how tight the cage is and where its seams are')
         .choices(['automatic', 'head', 'body', 'prop'])

@@ -33,7 +33,10 @@ export function addBakeCommand(program: Command, progress: Progress): void {
     .argument('[PAINT]', "PNG in the cage's UV space; JPEG and WebP where sharp is installed")
     .allowExcessArguments(false)
     .addOption(
-      new Option('-o, --output <OUT>', "a GLB or VRM, or a PNG of the paint alone, in TARGET's UVs")
+      new Option(
+        '-o, --output <OUT>',
+        "a GLB or VRM, or a PNG of the paint alone, in TARGET's UVs; - for a GLB on the standard output",
+      )
         .argParser(endingIn('.glb', '.vrm', '.png'))
         .makeOptionMandatory(),
     )
@@ -49,7 +52,10 @@ export function addBakeCommand(program: Command, progress: Progress): void {
         .argParser((name: string, before: string[]) => [...before, name]),
     )
     .addOption(
-      new Option('--size <TEXELS>', 'the longer side of painted textures (default: as before)').argParser(sizeOf),
+      new Option(
+        '--size <TEXELS>',
+        `the longer side of painted textures; 1 to ${mostTexels} (default: as before)`,
+      ).argParser(sizeOf),
     )
     .addOption(
       new Option('--borders <HOW>', 'triangle: the paint ends at triangle edges; cut: exactly at holes and seams')

@@ -19,7 +19,7 @@ export function addDiffCommand(program: Command): void {
       'show what changed between two reports: zones, coverage of parts, regions, stretch, distances, borders, verdict',
     )
     .addOption(
-      new Option('--tolerance <SHARE>', 'how much a share, or the stretch of the texture, may change')
+      new Option('--tolerance <SHARE>', 'how much a share, or the stretch of the texture, may change; 0 to 1')
         .argParser(numberWithin(0, 1))
         .default(0.01),
     )
