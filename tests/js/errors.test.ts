@@ -178,7 +178,7 @@ describe('errors', () => {
     fails(
       untyped(cage, target, { treshold: 0.5 }),
       'badOption',
-      'transfer: options.treshold is not an option; there are: preset, threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered, steps, locks, masks, reuse',
+      'transfer: options.treshold is not an option; transfer takes: preset, threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered, steps, locks, masks, reuse',
     );
     fails(
       untyped(cage, target, { preset: 'deflaut' }),
@@ -232,7 +232,7 @@ describe('errors', () => {
     fails(
       untyped(cage, target, { steps: { votes: true } }),
       'badOption',
-      /^transfer: options\.steps\.votes is not an option; there are: projection, /,
+      /^transfer: options\.steps\.votes is not an option; transfer takes: projection, /,
     );
     fails(untyped(cage, target, { steps: 1 }), 'badOption', 'transfer: options.steps is 1, not an object');
     fails(

@@ -158,7 +158,10 @@ function checkNames(fn: string, where: string, given: unknown = {}, known: reado
   if (!isRecord(given)) throw new CagecastError('badOption', `${fn}: ${where} is ${show(given)}, not an object`);
   const unknown = Object.keys(given).find((name) => !known.includes(name));
   if (unknown !== undefined)
-    throw new CagecastError('badOption', `${fn}: ${where}.${unknown} is not an option; there are: ${known.join(', ')}`);
+    throw new CagecastError(
+      'badOption',
+      `${fn}: ${where}.${unknown} is not an option; ${fn} takes: ${known.join(', ')}`,
+    );
   return given as Record<string, unknown>;
 }
 
