@@ -732,6 +732,19 @@ test('what cannot be baked is one line that names the file', async () => {
     assert.match(stderr, message);
   }
   const document = await io.read(at('box.glb'));
-  await assert.rejects(async () => baked(document, { paints: {} }), /bake: paints has none of color, normal, orm/);
+  await assert.rejects(
+    async () => baked(document, { paints: {} }),
+    /bake: paints is "", not some of color, normal, orm/,
+  );
+  const misspelt = { color: red, norml: red };
+  await assert.rejects(
+    async () => baked(document, { paints: misspelt }),
+    /bake: paints is "color,norml", not some of color/,
+  );
+  for (const wrong of [0, -5, 0.5, NaN, 99999, null, '64'])
+    await assert.rejects(
+      async () => baked(document, { size: wrong as number }),
+      /^CagecastError: bake: size is .+, not a whole number of texels from 1 to 8192$/,
+    );
   await assert.rejects(async () => baked(document, { images: undefined as never }), /bake: images is undefined, not/);
 });

@@ -209,6 +209,11 @@ test('a batch that cannot be right does not begin', () => {
     [[...one, '--config', config, '--report', config], 1, /clash\.config\.json: is read and written by this batch/],
     [[...one, '--results', at('r.json'), '--report', at('r.json')], 1, /r\.json: is written for the results and /],
     [[...one, '-o', '-'], 2, /the standard output has its lines/],
+    [
+      [...one, '--texture', 'p.<UDIM>.png', '--uv-bounds', '0,0,1,1', '-o', at('{name}.glb')],
+      2,
+      /a file for each tile/,
+    ],
   );
   for (const [args, code, message] of cases) {
     const { status, stdout, stderr } = cagecast(...args);
@@ -217,11 +222,6 @@ test('a batch that cannot be right does not begin', () => {
     assert.match(stderr, /^cagecast: [^\n]+\n$/);
   }
   assert.equal(readFileSync(manifest, 'utf8'), line);
-    [
-      [...one, '--texture', 'p.<UDIM>.png', '--uv-bounds', '0,0,1,1', '-o', at('{name}.glb')],
-      2,
-      /a file for each tile/,
-    ],
   assert.equal(readFileSync(config, 'utf8'), '{}');
   assert.deepEqual(readFileSync(at('cage.glb')), Buffer.from(glbOf(scene.cage)));
 });
@@ -457,13 +457,6 @@ test('settings that are wrong fail the jobs that they are for, and no other', ()
   const [line] = linesOf(cagecast('batch', '--manifest', at('wrong.jsonl')).stdout);
   assert.deepEqual([line!.target, line!.status], [at('one/a.glb'), 'failed']);
   assert.match(line!.error!, /^line 1 of /);
-});
-
-test('with --fail-on reports have the verdict, which diff compares', () => {
-  const report = (cage: string) => {
-    const path = at(`${cage}.json`);
-    cagecast('batch', at('in/0.glb'), '--cage', at(`${cage}.glb`), '--report', path, '--fail-on', 'unfit');
-    return path;
   const quiet = cagecast('batch', at('one/a.glb'), at('two/b.glb'), '--cage', at('cage.glb'), '--quiet');
   assert.deepEqual([quiet.status, quiet.stdout], [1, '']);
   assert.match(quiet.stderr, /^cagecast: [^\n]*two\/cagecast\.config\.json: "treshold" is unknown[^\n]*\n$/);
@@ -485,6 +478,13 @@ test('an empty path fails its job, which names the member', () => {
     empty.map((name, i) => [String(i + 2), name]),
   );
   assert.match(cagecast('batch', at('in/0.glb'), '--cage', at('cage.glb')).stderr, /^1 job: 1 done, /);
+});
+
+test('with --fail-on reports have the verdict, which diff compares', () => {
+  const report = (cage: string) => {
+    const path = at(`${cage}.json`);
+    cagecast('batch', at('in/0.glb'), '--cage', at(`${cage}.glb`), '--report', path, '--fail-on', 'unfit');
+    return path;
   };
   const [good, bad] = [report('cage'), report('away')];
   const { verdict, findings } = JSON.parse(readFileSync(bad, 'utf8')) as {

@@ -182,6 +182,10 @@ describe('a file that demands too much', () => {
       () => checkGltf(whole, { limits: { vertices: 3 } as object }),
       /limits\.vertices = 3 .* one of bytes, nesting, instances, implied, expansion/,
     );
+    assert.throws(
+      () => checkGltf(whole, { limit: { instances: 0 } } as object),
+      /^CagecastError: checkGltf: limit is not an option$/,
+    );
     for (const otherBytes of [NaN, -1, '9999999'])
       assert.throws(
         () => checkGltf(whole, { otherBytes: otherBytes as number }),

@@ -20,16 +20,17 @@ export interface CheckOptions {
  * @param bytes  The whole file.
  * @throws {CagecastError} `badArgument` that names the element, the value and the limit.
  */
-export function checkGltf(bytes: Uint8Array, { limits, otherBytes = 0 }: CheckOptions = {}): void {
-  const wrong = (text: string, cause?: unknown) =>
-    new CagecastError('badArgument', `checkGltf: ${text}`, 0, cause === undefined ? {} : { cause });
+export function checkGltf(bytes: Uint8Array, { limits, otherBytes = 0, ...others }: CheckOptions = {}): void {
+  const wrong = (text: string, options?: ErrorOptions) =>
+    new CagecastError('badArgument', `checkGltf: ${text}`, 0, options);
   if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`);
+  for (const name in others) throw wrong(`${name} is not an option`);
   for (const [name, value] of Object.entries(limits ?? {}))
     if (!(name in defaultLimits) || !(typeof value === 'number' && value >= 0))
       throw wrong(
         `limits.${name} = ${show(value)} is not a number ≥ 0 of one of ${Object.keys(defaultLimits).join(', ')}`,
       );
-  if (typeof otherBytes !== 'number' || !(otherBytes >= 0))
+  if (!(typeof otherBytes === 'number' && otherBytes >= 0))
     throw wrong(`otherBytes = ${show(otherBytes)} is not a number ≥ 0`);
   const all = { ...defaultLimits, ...limits };
   try {
@@ -40,6 +41,6 @@ export function checkGltf(bytes: Uint8Array, { limits, otherBytes = 0 }: CheckOp
     checkGeometry(json, sizes);
     checkLimits(json, bytes.byteLength + otherBytes, all);
   } catch (error) {
-    throw error instanceof InputError ? wrong(error.message, error) : error;
+    throw error instanceof InputError ? wrong(error.message, { cause: error }) : error;
   }
 }

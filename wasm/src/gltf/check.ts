@@ -116,7 +116,7 @@ function checkViews({ bufferViews = [] }: GLTF.IGLTF, bytes: (number | undefined
     whole(`${name}.byteOffset`, offset);
     whole(`${name}.byteLength`, length);
     const size = bytes[buffer];
-    if (size === undefined ? !mayLack : offset + length > size && !mayLack) {
+    if (!mayLack && offset + length > (size ?? -1)) {
       throw new InputError(`${name} ends at byte ${offset + length} of buffers[${buffer}], which has ${size ?? 0}`);
     }
   }

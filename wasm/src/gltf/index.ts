@@ -4,11 +4,10 @@
  * @module cagecast/gltf
  */
 import type { Document, Transform } from '@gltf-transform/core';
-import { show } from '../api/error.js';
-import { CagecastError, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
+import type { Mesh, TransferOptions, TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import type { MaskSources } from './bake/masks.js';
-import { transferDocument } from './document/transfer.js';
+import { transferDocument, wrong } from './document/transfer.js';
 import { addTransfer } from './document/write.js';
 
 export { type BakeOptions, bake } from './bake/document.js';
@@ -74,8 +73,7 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
  * await io.write('painted.glb', document);
  */
 export function cagecast(options: CagecastOptions): Transform {
-  if (typeof options !== 'object' || options === null)
-    throw new CagecastError('badArgument', `cagecast: the argument is ${show(options)}, not an object`);
+  if (typeof options !== 'object' || options === null) throw wrong('cagecast', 'the argument', options, 'an object');
   const { borders, onResult, ...own } = options;
   return async function cagecast(document: Document): Promise<void> {
     const cuts = isCut('cagecast', borders);

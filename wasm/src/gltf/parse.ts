@@ -7,7 +7,7 @@ import { checkNesting, type ReadLimits } from './limits.js';
 /** The JSON of a GLB or glTF file, and the GLB's bytes. @throws {InputError} with a message that does not name the file. */
 export function parseGltf(bytes: Uint8Array, limits: ReadLimits): { json: GLTF.IGLTF; binary: Uint8Array | undefined } {
   if (bytes.byteLength === 0) throw new InputError('the file is empty');
-  const isGlb = bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] === 0x54 && bytes[3] === 0x46; // "glTF"
+  const isGlb = String.fromCharCode(...bytes.subarray(0, 4)) === 'glTF';
   const { text, binary } = isGlb ? chunks(bytes) : { text: bytes, binary: undefined };
   checkNesting(text, limits);
   let json: GLTF.IGLTF | null;
@@ -16,10 +16,8 @@ export function parseGltf(bytes: Uint8Array, limits: ReadLimits): { json: GLTF.I
   } catch (cause) {
     throw new InputError(isGlb ? 'its JSON is damaged' : 'is neither a GLB nor a glTF file', { cause });
   }
-  const version = typeof json === 'object' ? json?.asset?.version : undefined;
-  if (typeof json !== 'object' || json === null || version === undefined) {
-    throw new InputError('is JSON but not glTF: it has no asset.version');
-  }
+  if (json?.asset?.version === undefined) throw new InputError('is JSON but not glTF: it has no asset.version');
+  const { version } = json.asset;
   if (!/^2\./.test(String(version)))
     throw new InputError(`is glTF ${typeof version === 'string' ? version : show(version)}; only 2.x can be read`);
   checkLists(json);

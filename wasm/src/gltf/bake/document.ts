@@ -1,12 +1,12 @@
 import type { Document } from '@gltf-transform/core';
-import { show } from '../../api/error.js';
-import { CagecastError, type Mesh, type TransferOptions } from '../../index.js';
+import { mostTexels } from '../../bake/index.js';
+import type { Mesh, TransferOptions } from '../../index.js';
 import { type Borders, isCut } from '../../parts/borders-option.js';
 import { takeOverlays } from '../document/earlier-transfer.js';
-import { transferDocument, within } from '../document/transfer.js';
+import { transferDocument, within, wrong } from '../document/transfer.js';
 import { addTransfer } from '../document/write.js';
 import type { MaskSources } from './masks.js';
-import { type BakeReport, bakeModel, checkPaints, type ImageCodec, type Paints } from './plan.js';
+import { type BakeReport, bakeModel, type ImageCodec, type Paints, type Slot, slots } from './plan.js';
 
 /** Options of `bake`: those of `transfer`, and what to bake. */
 export interface BakeOptions extends TransferOptions, MaskSources {
@@ -51,19 +51,21 @@ export interface BakeOptions extends TransferOptions, MaskSources {
  * await document.transform(bake({ cage, paints: { color }, images }));
  */
 export function bake(options: BakeOptions): (document: Document) => Promise<void> {
-  if (typeof options !== 'object' || options === null)
-    throw new CagecastError('badArgument', `bake: the argument is ${show(options)}, not an object`);
-  const { paints: given, images, size, borders, onBaked, ...own } = options;
+  if (typeof options !== 'object' || options === null) throw wrong('bake', 'the argument', options, 'an object');
+  const { paints, images, size, borders, onBaked, ...own } = options;
   return async function bake(document: Document): Promise<void> {
     const cuts = isCut('bake', borders);
-    const paints = checkPaints('bake', given);
+    const names = Object.keys(paints ?? {});
+    if (!slots.some((slot) => paints?.[slot]) || names.some((name) => !slots.includes(name as Slot)))
+      throw wrong('bake', 'paints', names.join(), `some of ${slots.join(', ')}`);
     if (typeof images?.decode !== 'function' || typeof images.encode !== 'function')
-      throw new CagecastError('badArgument', `bake: images is ${show(images)}, not { decode, encode }`);
+      throw wrong('bake', 'images', images, '{ decode, encode }');
+    if (size !== undefined && !(Number.isInteger(size) && size > 0 && size <= mostTexels))
+      throw wrong('bake', 'size', size, `a whole number of texels from 1 to ${mostTexels}`);
     const { target, model, result, cut, paint } = await transferDocument('bake', document, own, cuts);
-    const ownCount = target.mesh.positions.length / 3;
     const { report, baked } = await bakeModel(model, {
       result,
-      cut: cut && { target: cut, ownCount },
+      cut: cut && { target: cut, ownCount: target.mesh.positions.length / 3 },
       paints,
       codec: images,
       size,
@@ -75,13 +77,13 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
     takeOverlays(document, target.parts);
     if (paint) {
       // What is baked is not shown twice.
-      const triangles = target.parts.filter((part) => baked.has(part));
-      const isBaked = (t: number) =>
-        triangles.some((part) => t >= part.firstTriangle && t < part.firstTriangle + part.triangleCount);
-      const shown = { ...result, cosmeticTriangles: result.cosmeticTriangles.map((is, t) => (isBaked(t) ? 0 : is)) };
+      const isLeft = result.cosmeticTriangles.slice().fill(1);
+      for (const { firstTriangle, triangleCount } of baked)
+        isLeft.fill(0, firstTriangle, firstTriangle + triangleCount);
+      const shown = { ...result, cosmeticTriangles: result.cosmeticTriangles.map((is, t) => is && isLeft[t]!) };
       const shownCut = cut && {
         ...cut,
-        cosmeticTriangles: cut.cosmeticTriangles.map((is, t) => (isBaked(cut.triangles[t]!) ? 0 : is)),
+        cosmeticTriangles: cut.cosmeticTriangles.map((is, t) => is && isLeft[cut.triangles[t]!]!),
       };
       addTransfer(document, target, shown, paint, shownCut);
     }

@@ -9,7 +9,7 @@ import {
   resize,
   type Wrap,
 } from '../../bake/index.js';
-import { CagecastError, type CutTarget, type TransferResult } from '../../index.js';
+import type { CutTarget, TransferResult } from '../../index.js';
 import { blend } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
 import { type Piece, requireFinite } from '../pieces.js';
@@ -250,8 +250,8 @@ async function baseOf<Material, Texture>(
   }
   if (redIsNew) image = { ...image, data: image.data.map((byte, i) => (i % 4 === 0 ? 255 : byte)) };
   if (size === undefined) return image;
-  const scale = size / Math.max(image.width, image.height);
-  return resize(image, Math.max(1, Math.round(scale * image.width)), Math.max(1, Math.round(scale * image.height)));
+  const scaled = (side: number) => Math.max(1, Math.round((size * side) / Math.max(image.width, image.height)));
+  return resize(image, scaled(image.width), scaled(image.height));
 }
 
 /** The triangles of a part, cut where the result is, in the UVs of a texture and in the cage's. */
@@ -292,11 +292,4 @@ function unusable(layouts: readonly Layout[], texels: number): string | undefine
   }
   if (laid > kMostRepeats) return 'its texture is a pattern that repeats';
   return flat > kMostFlat * drawn ? 'its texture is a palette, without room for paint' : undefined;
-}
-
-/** Checks paints. @throws {CagecastError} `badArgument` */
-export function checkPaints(fn: string, paints: unknown): Paints {
-  if (typeof paints !== 'object' || paints === null || !slots.some((slot) => (paints as Paints)[slot]))
-    throw new CagecastError('badArgument', `${fn}: paints has none of ${slots.join(', ')}`);
-  return paints as Paints;
 }

@@ -60,7 +60,8 @@ export async function transferDocument(
   return { target, model, result, cut: cuts ? cutBorders(source, target.mesh, result, rules) : undefined, paint };
 }
 
-const wrong = (caller: string, argument: string, value: unknown, type: string) =>
+/** The error of an argument of the wrong type. */
+export const wrong = (caller: string, argument: string, value: unknown, type: string) =>
   new CagecastError('badArgument', `${caller}: ${argument} is ${show(value)}, not ${type}`);
 
 export const isDocument = (value: unknown): value is Document =>
