@@ -146,7 +146,6 @@ describe('usage', () => {
       [[...ok, 'extra.glb', '-o', at('out.glb')], /too many arguments/],
       [[...ok, '--colour', 'red'], /unknown option '--colour'/],
       [['transmogrify'], /unknown command 'transmogrify'/],
-      [['help', 'transmogrify'], /unknown command 'transmogrify'/],
       [['transfer', '', '--cage', at('cage.glb')], /TARGET is empty/],
       [['transfer', at('target.glb'), '--cage', ''], /--cage is empty/],
       [[...ok, '--report', ''], /--report is empty/],

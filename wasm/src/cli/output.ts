@@ -95,8 +95,8 @@ function streamOf(path: string): string | number | undefined {
 /** The descriptor that a path such as /dev/stdout leads to. @param links  How many links may still be followed. */
 function descriptorOf(path: string, links = 40): number | undefined {
   const place = join(placeOf(dirname(path)), basename(path));
-  const [, number] = /^\/(?:dev|proc\/\d+)\/fd\/(\d+)$/.exec(place) ?? [];
-  if (number !== undefined) return Number(number);
+  const number = [`/proc/${process.pid}/fd`, '/dev/fd'].includes(dirname(place)) ? Number(basename(place)) : Number.NaN;
+  if (Number.isInteger(number)) return number;
   return links > 0 && isLink(place) ? descriptorOf(resolve(dirname(place), readlinkSync(place)), links - 1) : undefined;
 }
 

@@ -5,7 +5,7 @@ import { writeStandard } from '../output.js';
 export const shells = ['bash', 'zsh', 'fish'] as const;
 type Shell = (typeof shells)[number];
 
-/** What a shell offers: a command but `help`, and its flags. */
+/** What a shell offers: the commands, and the flags of each. */
 interface Known {
   name: string;
   description: string;
@@ -13,13 +13,11 @@ interface Known {
 }
 
 const knownOf = (program: Command): Known[] =>
-  program.commands
-    .filter((command) => command.name() !== 'help')
-    .map((command) => ({
-      name: command.name(),
-      description: command.description(),
-      options: command.createHelp().visibleOptions(command),
-    }));
+  program.commands.map((command) => ({
+    name: command.name(),
+    description: command.description(),
+    options: command.createHelp().visibleOptions(command),
+  }));
 
 const flagsOf = ({ short, long }: Option): string[] => [short, long].filter((flag) => flag !== undefined);
 

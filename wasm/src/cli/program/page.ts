@@ -2,18 +2,17 @@ import type { Command, Option } from 'commander';
 
 /** The page about the command, in Markdown: docs/cli.md. It says what `--help` says. */
 export function pageOf(program: Command): string {
-  const commands = program.commands.filter((command) => command.name() !== 'help');
   return `# The command
 
 <!-- Made by wasm/tools/generate.mjs from wasm/src/cli. Do not edit. -->
 
 ${program.description()}
 
-${commands.map((command) => `- [\`${command.name()}\`](#cagecast-${command.name()}): ${command.description()}`).join('\n')}
+${program.commands.map((command) => `- [\`${command.name()}\`](#cagecast-${command.name()}): ${command.description()}`).join('\n')}
 
 \`cagecast help COMMAND\` prints what is below, \`cagecast --version\` the version.
 ${helpAfter(program)}
-${commands.map(sectionOf).join('\n')}`;
+${program.commands.map(sectionOf).join('\n')}`;
 }
 
 function sectionOf(command: Command): string {

@@ -19,7 +19,7 @@ export function makeProgram(progress: Progress): Command {
     )
     .version(CAGECAST_VERSION, '--version', 'print the version')
     .helpOption('-h, --help', 'print help')
-    .helpCommand(false)
+    .helpCommand('help [COMMAND]', 'print help for COMMAND')
     .exitOverride()
     .configureOutput({
       writeOut: writeStandard,
@@ -62,15 +62,5 @@ Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make
   addBatchCommand(program, progress);
   addDiffCommand(program);
   addCompletionCommand(program);
-  // Commander's own shows the help of all for a command that it does not know.
-  program
-    .command('help')
-    .argument('[COMMAND]', 'the one to explain')
-    .description('print help for COMMAND')
-    .action((name?: string) => {
-      const found = name === undefined ? program : program.commands.find((command) => command.name() === name);
-      if (found) found.help();
-      else program.error(`unknown command '${name}'`, { exitCode: wrongUsage });
-    });
   return program;
 }
