@@ -83,6 +83,40 @@ test('what the page says of a made cage that is poor, or that cannot be made, ca
   assert.deepEqual(complaints, []);
 });
 
+test('a sample whose cage was moved into place keeps its paints, over a reload too, and the cage can be adjusted and saved', async () => {
+  const { page, complaints } = await site.visit();
+  await page.getByTestId('sample-select').selectOption('human-misaligned');
+  await ready(page);
+  const paints = page.locator('#paints input[type=radio]');
+  const names = (): Promise<string[]> =>
+    paints.evaluateAll((all) => all.map((one) => one.closest('label')!.textContent!));
+  const before = await names();
+  assert.ok(before.length > 1, `the sample has ${before.length} paints`);
+  const remedy = page.getByTestId('stage-remedy').filter({ hasText: 'Move the cage' });
+  await remedy.click();
+  await page.locator('#cage-note', { hasText: 'was moved into place' }).waitFor();
+  await ready(page);
+  assert.equal(await page.locator('#cage-name').textContent(), 'cage.glb');
+  const holds = async (when: string): Promise<void> => {
+    assert.deepEqual(await names(), before, when);
+    for (const id of ['save-cage', 'adjust-cage']) assert.ok(await page.getByTestId(id).isVisible(), `${id} ${when}`);
+    assert.doesNotMatch((await page.locator('#hint').textContent())!, /still the sample/, when);
+  };
+  await holds('after the move');
+  await page.getByTestId('kept-note').filter({ hasText: 'is kept on this device' }).waitFor();
+  await page.reload();
+  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  await ready(page);
+  await holds('after a reload');
+
+  await page.getByTestId('make-cage').click();
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  await ready(page);
+  assert.equal(await page.locator('#cage-name').textContent(), 'target-cage.glb');
+  assert.deepEqual(await names(), before.slice(-1), 'a cage with other UVs has the checker alone');
+  assert.deepEqual(complaints, []);
+});
+
 test('a model dropped alone: a cage is made, it is painted, and the model is saved with the paint', async () => {
   const { page, complaints } = await site.visit();
   await drop(page, [head()]);

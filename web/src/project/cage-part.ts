@@ -1,6 +1,7 @@
 import type { Landmarks, TemplateName } from 'cagecast/cages';
 import { element } from '../platform/page';
 import { type Fitting, madeOf, noteMade } from '../scene/cage-maker';
+import type { Opener } from '../scene/opener';
 import type { Session } from '../scene/session';
 import type { WardrobeOfPage } from '../wardrobe/set-up-wardrobe';
 import { damaged, listOf, numberOf, objectOf, textOf } from './checks';
@@ -12,7 +13,7 @@ const kFarthest = 1e9; // of a landmark
 const kName = /^[a-z][a-z0-9_]{0,60}$/; // of a landmark
 
 /** How the cages were made that were made here, those of the wardrobe too. */
-export function cagePart(session: Session, wardrobe: WardrobeOfPage | undefined): Contribution {
+export function cagePart(session: Session, opener: Opener, wardrobe: WardrobeOfPage | undefined): Contribution {
   return {
     name: 'cages',
     isWork: true,
@@ -25,19 +26,23 @@ export function cagePart(session: Session, wardrobe: WardrobeOfPage | undefined)
       const all = pairs.flatMap(({ target, cage }) => {
         const own = madeOf(cage);
         if (!own) return [];
+        const { fitting, sample } = own;
         // The model that it was made for may be gone.
-        return [{ cage: keep(cage), ...(own.target === target && { target: keep(target) }), fitting: own.fitting }];
+        return [
+          { cage: keep(cage), ...(own.target === target && { target: keep(target) }), fitting, sample: sample?.name },
+        ];
       });
       return all.length > 0 ? all : undefined;
     },
     read(saved, files) {
       const all = listOf(saved, kMostCages, 'cages').map((one) => {
-        const { cage, target, fitting } = objectOf(one, 'cage');
+        const { cage, target, fitting, sample } = objectOf(one, 'cage');
         const file = files(cage);
         // The cage itself stands for a model that is gone: it is no target.
         const made = {
           target: target === undefined ? file : files(target),
           fitting: fitting === undefined ? undefined : fittingOf(fitting),
+          sample: opener.samples.find(({ name }) => name === sample),
         };
         return { file, made };
       });

@@ -40,7 +40,7 @@ export function setUpProjects(page: ProjectOfPage): Projects {
   project.add(layersPart(page));
   for (const part of settingsParts(session, live, viewer)) project.add(part);
   project.add(barePart(session));
-  project.add(cagePart(session, wardrobe));
+  project.add(cagePart(session, page.opener, wardrobe));
   if (wardrobe) project.add(wardrobePart(wardrobe));
   const keeper = new Keeper(project, session, history, {
     offer: showOffer,

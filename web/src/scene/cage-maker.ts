@@ -7,6 +7,7 @@ import { download } from '../platform/download';
 import { element } from '../platform/page';
 import { likelyTemplate } from './likely-template';
 import { loadModel, type Model } from './load-model';
+import type { Sample } from './samples';
 import type { Session } from './session';
 
 /** What the steps of the engine are called for people. */
@@ -32,10 +33,16 @@ export interface Fitting extends Omit<Fit, 'cage'> {
 /** A fit needs so many landmarks. */
 export const kLeastLandmarks = 4;
 
-/** How a cage was made here: for which target, and from which fit. */
+/** How a cage was made here. */
 export interface Made {
+  /** What it was made for. */
   target: File;
+  /** The fit that it came from. */
   fitting: Fitting | undefined;
+  /** The sample whose cage it was changed from. Its UVs are the same. */
+  sample?: Sample | undefined;
+  /** What was done, for people. */
+  note?: string;
 }
 
 /** By the files of the cages. */
@@ -43,6 +50,9 @@ const made = new WeakMap<File, Made>();
 
 /** How a cage was made; undefined if it was not made here. */
 export const madeOf = (cage: File): Made | undefined => made.get(cage);
+
+/** The sample whose paints fit a cage. */
+export const sampleOf = ({ sample, files }: Model): Sample | undefined => sample ?? madeOf(files[0]!)?.sample;
 
 /** Notes how a cage was made. */
 export const noteMade = (cage: File, how: Made): unknown => made.set(cage, how);
@@ -89,10 +99,10 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     session.on('transfer', ({ target, cage }) => {
       if (target !== shown) this.#template.value = likelyTemplate(target.mesh.positions);
       shown = target;
-      element('no-cage', HTMLElement).hidden = target.sample !== undefined;
+      element('no-cage', HTMLElement).hidden = target.sample !== undefined && target.sample === cage.sample;
       // Of several files, saving the first would not do.
       this.#save.hidden = cage.sample !== undefined || cage.files.length > 1;
-      if (!made.has(cage.files[0]!)) this.#note.textContent = '';
+      this.#note.textContent = made.get(cage.files[0]!)?.note ?? '';
       this.#missing.textContent = '';
       this.emit('fitting', this.isOthers ? undefined : made.get(cage.files[0]!)?.fitting);
     });
@@ -156,10 +166,11 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     const extras: Partial<Cage> = {};
     current.scene.traverse(({ userData }) => void (userData.landmarks && Object.assign(extras, userData)));
     const bytes = cageGlb({ ...extras, ...({ positions: rest, indices, uvs, ...change } as Cage) });
-    const file = new File([bytes], current.name.replace(/(-cage)?(\.\w+)?$/, '-cage.glb'));
-    made.set(file, { target: target.files[0]!, fitting: made.get(current.files[0]!)?.fitting });
+    const file = new File([bytes], cageNameFrom(current.name));
+    const fitting = madeOf(current.files[0]!)?.fitting;
+    const note = 'The cage was changed. Save it if it is right.';
+    made.set(file, { target: target.files[0]!, fitting, sample: sampleOf(current), note });
     const cage = loadModel(file, this.#renderer);
-    this.#note.textContent = 'The cage was changed. Save it if it is right.';
     this.#session.want({ cage });
     return cage;
   }
@@ -195,12 +206,12 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       if (abort.signal.aborted) return;
       if (!result) return done();
       const { cage, note, fitting, isNew } = result;
-      const name = cage.uvs === old.uvs ? current.name : target.name;
-      const file = new File([engine.cageGlb(cage)], name.replace(/(-cage)?(\.\w+)?$/, '-cage.glb'));
-      made.set(file, { target: target.files[0]!, fitting });
+      const isChanged = cage.uvs === old.uvs;
+      const file = new File([engine.cageGlb(cage)], cageNameFrom((isChanged ? current : target).name));
+      const sample = isChanged ? sampleOf(current) : undefined;
+      made.set(file, { target: target.files[0]!, fitting, sample, note });
       if (isNew) fresh.add(file);
       this.latest = fitting;
-      this.#note.textContent = note;
       done();
       this.#session.want({ cage: loadModel(file, this.#renderer) });
     } catch (error) {
@@ -265,6 +276,10 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     }
   }
 }
+
+/** The name of a cage's file, from that of a model or of an earlier cage. */
+const cageNameFrom = (name: string): string =>
+  name.replace(/(^cage|-cage|)(\.\w+)?$/, (_, ending: string) => `${ending || '-cage'}.glb`);
 
 const kNoName = { landmarks: {}, holes: {}, kind: 'automatic' } as const;
 

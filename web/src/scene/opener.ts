@@ -2,6 +2,7 @@ import type { Edits, LayerStack, Sheet } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
 import { type Choice, offerPaints } from '../panels/paint-picker';
 import { element, showError } from '../platform/page';
+import { madeOf, sampleOf } from './cage-maker';
 import { type Intake, setUpFiles } from './files';
 import { loadModel, type Model } from './load-model';
 import { loadPaint, type Paint, titleOf } from './paint';
@@ -150,23 +151,24 @@ export class Opener {
     }
     const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`;
     element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.`;
-    this.#describeOrigin(target.sample !== undefined, cage.sample !== undefined);
+    this.#describeOrigin({ target, cage });
     this.#offerPaints({ cage });
   }
 
   /** Tells which of the models still belongs to a sample. */
-  #describeOrigin(target: boolean, cage: boolean): void {
+  #describeOrigin({ target, cage }: Pick<Shown, 'target' | 'cage'>): void {
     const own = this.#select.querySelector<HTMLOptionElement>(`option[value=${kOwn}]`);
-    if (target && cage) own?.remove();
+    if (target.sample && cage.sample) own?.remove();
     else {
       if (!own) this.#select.append(new Option('Your own files', kOwn));
       this.#select.value = kOwn;
     }
-    element('swap', HTMLButtonElement).hidden = target || cage;
+    element('swap', HTMLButtonElement).hidden = Boolean(target.sample ?? cage.sample);
+    const isMade = madeOf(cage.files[0]!)?.target === target.files[0];
     element('hint', HTMLElement).textContent =
-      target === cage
+      isMade || !target.sample === !cage.sample
         ? 'Choose your own files, or drop them anywhere on the page. They stay on this device.'
-        : target
+        : target.sample
           ? 'The cage is yours, but the target is still the sample’s. Add the target that your cage was made for.'
           : 'The target is yours, but the cage is still the sample’s. Add the cage that was made for your target, or make one.';
   }
@@ -187,8 +189,9 @@ export class Opener {
   }
 
   /** Lists the base paints: the sample's, and the checker. */
-  #offerPaints({ cage: { sample } }: Pick<Shown, 'cage'>): void {
+  #offerPaints({ cage }: Pick<Shown, 'cage'>): void {
     const { checker } = this.#session;
+    const sample = sampleOf(cage);
     const choices: (Choice & { load(): Promise<Paint> })[] = [
       ...(sample?.paints ?? []).map((paint) => ({
         title: paint.title,
