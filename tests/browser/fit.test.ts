@@ -95,6 +95,25 @@ test('a finding highlights its part, and locks it as proposed', async () => {
   assert.equal(await settled(page), 'ready');
 });
 
+test('where a part only falls below the threshold, the stage offers to keep it, and not another cage', async () => {
+  const { page } = visit;
+  await page.getByTestId('sample-select').selectOption('human');
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await setThreshold(page, 1);
+  const remedy = page.getByTestId('stage-remedy');
+  await remedy.waitFor();
+  assert.equal(await page.locator('#stage-verdict').getAttribute('data-verdict'), 'unfit');
+  assert.equal(await remedy.textContent(), 'Keep “skin”');
+  assert.ok(await page.getByRole('button', { name: 'Make a cage' }).isHidden(), 'another cage would not help');
+  await remedy.click();
+  await remedy.waitFor({ state: 'hidden' });
+  await page.locator('#stage-verdict:not([data-verdict=""])').waitFor();
+  assert.notEqual(await page.locator('#stage-verdict').getAttribute('data-verdict'), 'unfit');
+  assert.ok((await shownCounts(page)).cosmetic > 0, 'the part is painted');
+  await setThreshold(page, 0.5);
+  assert.equal(await settled(page), 'ready');
+});
+
 test('a large model is inspected on request', async () => {
   const { page } = visit;
   const small = tetrahedron();

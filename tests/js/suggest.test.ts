@@ -118,12 +118,23 @@ describe('suggest', () => {
     }
   });
 
+  test('a coverage below the threshold reads as less, and a part that is named as the reason is not in doubt as well', async () => {
+    const near = smallHole(0.1);
+    const { sentence } = find(
+      suggest(near.cage, near.target, { threshold: 0.69, steps: { floor: 'none', holeContents: false } }),
+      'segmentInDoubt',
+    );
+    assert.match(sentence, /its coverage is 0\.68, less than the threshold of 0\.69/); // 0.6859
+    const bust = await sample('human');
+    assert.deepEqual(codes(suggest(bust.cage, bust.target, { threshold: 1 })), ['nothingToPaint']);
+  });
+
   test('a hole that seems to be meant for a part: it says so, and has the lock that paints it', () => {
     const { cage, target } = smallHole(0.08);
     const { sentence, places, locks } = find(suggest(cage, target), 'segmentInDoubt');
     assert.match(
       sentence,
-      /^"group 1" is not painted, but only just: its coverage is 0\.82, but a hole of the cage seems to be meant for it/,
+      /^"group 1" is not painted, but only just: its coverage is 0\.81, but a hole of the cage seems to be meant for it/,
     );
     assert.deepEqual(
       places!.map(({ segment }) => segment),

@@ -59,9 +59,11 @@ export function checkSegments(scene: Scene, segments: readonly Segment[], locks:
   const exposed = numbered.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
   if (exposed === 0) return [];
   const left = checkLeft(scene, numbered);
+  const named = left.flatMap(({ places = [] }) => places.map(({ segment }) => segment));
+  const unnamed = numbered.filter((segment) => isOpen(segment) && !named.includes(segment.s));
   return [
     ...left,
-    ...checkDoubt(scene, numbered.filter(isOpen), exposed),
+    ...checkDoubt(scene, unnamed, exposed),
     ...checkTwins(scene, numbered, exposed),
     ...(left.length > 0 ? [] : checkCulled(numbered.filter(isOpen), exposed)),
   ];
@@ -91,7 +93,7 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
       code: 'nothingToPaint',
       weight: 2,
       sentence: largest
-        ? `${only} may be painted: the cage covers ${percent(largest.coverage)} of the exposed area of "${largest.part}", ${reason(largest, threshold)}`
+        ? `${only} may be painted: the cage covers ${percent(roundedDown(largest.coverage, 0.001))} of the exposed area of "${largest.part}", ${reason(largest, threshold)}`
         : `${only} may be painted`,
       advice: largest
         ? `If the cage should cover only a region of "${largest.part}", override this (${option(largest)}) or make that region a mesh of its own. Otherwise extend the cage.`
@@ -116,7 +118,7 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
       {
         code: 'segmentInDoubt',
         weight: Math.min(0.9, 0.2 + 2 * area),
-        sentence: `${one} ${is} ${culled ? 'not painted' : 'painted'}, but only just: ${alike.length === 1 ? 'its coverage is' : 'the largest has a coverage of'} ${coverage.toFixed(2)}, ${reason(largest, threshold)} (${percent(area)} of the target's exposed area)`,
+        sentence: `${one} ${is} ${culled ? 'not painted' : 'painted'}, but only just: ${alike.length === 1 ? 'its coverage is' : 'the largest has a coverage of'} ${roundedDown(coverage, 0.01).toFixed(2)}, ${reason(largest, threshold)} (${percent(area)} of the target's exposed area)`,
         advice: `If that is wrong, override it (${option(largest)}), or widen or close the holes over ${alike.length === 1 ? 'it' : 'them'}.`,
         numbers: { segments: alike.length, area, score: largest.score! },
         places: alike.map((segment) => placeOf(segment.s, segment)),
@@ -168,6 +170,9 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
     },
   ];
 }
+
+/** A coverage for people, which does not read like the threshold that it is less than. */
+const roundedDown = (coverage: number, unit: number): number => Math.floor(coverage / unit) * unit;
 
 /** Why a segment is culled or kept, as the end of a sentence about its coverage. */
 function reason({ coverage, culled, culledBy, score }: Segment, threshold: number): string {

@@ -1,5 +1,5 @@
 import type { Lock } from 'cagecast';
-import type { Finding, Inspection } from 'cagecast/inspect';
+import { type Finding, type Inspection, unfitFrom } from 'cagecast/inspect';
 import { element } from '../platform/page';
 import type { CageMaker } from '../scene/cage-maker';
 import type { Session } from '../scene/session';
@@ -111,9 +111,14 @@ export class FitPanel {
     list.append(...findings.map((finding) => this.#item(finding, inspection)));
     const share = `${Math.round(100 * paintableShare(segments))} % of the visible surface can be painted.`;
     const remedies = findings.flatMap((finding) => this.#remedyFor(finding, inspection) ?? []);
-    const making = verdict === 'unfit' && !this.#maker.isFresh ? [this.#making] : [];
+    const { isFresh, isOthers } = this.#maker;
+    const reasons = findings.filter(({ weight }) => weight >= unfitFrom);
+    // Where keeping a part is enough, another cage would be judged by the same rules.
+    const [kept] = (!isOthers && reasons.every(({ locks }) => locks) && reasons[0]?.places) || [];
+    if (kept) remedies.unshift({ title: `Keep “${kept.part}”`, run: () => this.#session.lock([kept.segment], 'keep') });
+    const making = verdict === 'unfit' && !isFresh && !kept ? [this.#making] : [];
     // The cage of another model is not meant for this one.
-    if (this.#maker.isOthers) remedies.unshift(...making);
+    if (isOthers) remedies.unshift(...making);
     const content = [text('p', `${share} ${kVerdicts[verdict]}`), ...(findings.length > 0 ? [list] : [])];
     content.push(...making.map(buttonFor));
     // What is good needs no remedy on the stage; the findings offer theirs.
