@@ -115,7 +115,7 @@ test('the cage can be moved, turned and scaled by handles and keys, its corners 
   assert.deepEqual(complaints, []);
 });
 
-test('a change of the cage waits for the one before, and none reaches the cage of another model', async () => {
+test('a change of the cage waits for the one before, and none reaches a cage that came otherwise, or of another model', async () => {
   const { page, complaints } = await site.visit();
   const open = async () => {
     await drop(page, [head(), glb('bust-cage.glb', asset('human', 'cage.glb'))]);
@@ -148,6 +148,7 @@ test('a change of the cage waits for the one before, and none reaches the cage o
   await drop(page, [glb('other-cage.glb', asset('lizard', 'cage.glb'))]);
   await page.locator('[data-handle=corner]').waitFor({ state: 'detached' });
   await ready(page);
+  assert.ok(await undo.isDisabled(), 'undoing would put the cage of before in the place of the one that came');
   await open();
   await page.locator('#undo:disabled').waitFor();
   await passed(page, 1000);

@@ -69,6 +69,8 @@ export class CageAdjuster {
   #waiting: ReturnType<typeof setTimeout> | undefined;
   /** Whether a change is not shown yet. */
   #isChanging = false;
+  /** The cages that steps lead to, forwards or backwards. */
+  readonly #stepped = new WeakSet<Model>();
 
   constructor(session: Session, viewer: Viewer, tools: Tools, maker: CageMaker, history: History) {
     this.#session = session;
@@ -113,8 +115,10 @@ export class CageAdjuster {
       if (target && target !== shown.target) {
         this.#drop(); // or it would be done to the cage of this model
         tools.choose(undefined);
-        history.forget((command) => command instanceof CageStep);
       } else if (cage && !haveSameUvs(cage, shown.cage)) this.#drop(); // its corners are others
+      // Steps lead neither to another model's cage nor from a cage that came otherwise.
+      if (target !== shown.target || !this.#stepped.has(shown.cage))
+        history.forget((command) => command instanceof CageStep);
       ({ target, cage } = shown);
       this.#reset();
     });
@@ -400,7 +404,10 @@ export class CageAdjuster {
     const show = (cage: Model): void => this.#session.want({ cage: Promise.resolve(cage) });
     this.#maker
       .change(change)
-      .then((after) => this.#history.add(new CageStep(name, before, after, show)))
+      .then((after) => {
+        for (const cage of [before, after]) this.#stepped.add(cage);
+        this.#history.add(new CageStep(name, before, after, show));
+      })
       .catch((error) => this.#session.fail(error));
   }
 }
