@@ -323,6 +323,24 @@ test('keys choose tools and sizes, and a list names them', async () => {
   assert.ok(await list.isHidden());
 });
 
+test('where no paint is seen, nobody paints: the pointer turns the model again, and opens the menu of a part', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } });
+  const turn = page.getByRole('radio', { name: 'Turn', exact: true });
+  await choose(page, 'Brush');
+  await page.locator('#show-paint').uncheck({ force: true });
+  assert.ok(await turn.isChecked(), 'without paint');
+  await choose(page, 'Fill');
+  assert.ok(await page.locator('#show-paint').isChecked());
+  await page.locator('#view-mode input[value=segments]').check({ force: true });
+  assert.ok(await turn.isChecked(), 'in Parts');
+  const before = await names(page);
+  const { x, y } = at(await modelArea(page), 0.5, 0.5);
+  await page.mouse.click(x, y);
+  await page.getByTestId('part-menu').waitFor();
+  assert.deepEqual(await names(page), before, 'nothing was painted');
+  assert.deepEqual(complaints, []);
+});
+
 /** A model whose file has expressions, of either version of VRM. */
 async function vrm(version: 0 | 1): Promise<Upload> {
   const file = await morphingBalls({ names: ['eyeBlinkLeft', 'Fcl_MTH_A'] });

@@ -2,6 +2,7 @@ import { element, showError } from '../platform/page';
 import { readImage } from '../scene/paint';
 import type { Session } from '../scene/session';
 import type { RailTool, Tools } from '../view/tool-rail';
+import { showsPaint } from '../view/view';
 import type { Viewer } from '../view/viewer';
 import { BrushTool } from './brush-tool';
 import { EraserTool } from './eraser-tool';
@@ -71,6 +72,11 @@ export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, la
       }),
     );
   }
+  // Nobody paints unseen.
+  session.on('view', ({ mode, paint }) => {
+    const isPainting = Object.values(offers).some((offer) => offer === tools.chosen);
+    if (isPainting && !(paint && showsPaint(mode))) tools.choose(undefined);
+  });
 
   const canvas = element('view', HTMLCanvasElement);
   element('stage', HTMLElement).addEventListener('keydown', ({ key, target, ctrlKey, metaKey, altKey }) => {
