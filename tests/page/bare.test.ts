@@ -101,6 +101,7 @@ test('marked spots stay bare, and the made cage has a hole there; marks are eras
   await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
   await ready(page);
   assert.deepEqual(await shownCounts(page), before);
+  await page.locator('#tools input[data-key=n]').waitFor({ state: 'attached' }); // its tool is there at once
   await page.getByTestId('make-options').locator('summary').click();
   await page.getByTestId('bare-brush').click();
   assert.equal(await markedCount(page), count);

@@ -99,6 +99,7 @@ export class BareBrush {
   /** Shows the marks, how many there are, and how large the brush is. */
   #write(): void {
     const marks = this.#stroke?.marks ?? this.#session.bare;
+    if (marks) this.#tools.offer(this.#offer, true);
     this.#shown?.show(marks);
     this.#viewer.redraw();
     const count = marks?.reduce((sum, mark) => sum + mark, 0) ?? 0;

@@ -17,8 +17,8 @@ export function setUpCageTools(
 ): void {
   const details = element('make-options', HTMLDetailsElement);
   let options: Promise<unknown> | undefined;
-  details.addEventListener('toggle', async () => {
-    if (!details.open || options) return;
+  const offerOptions = async (): Promise<void> => {
+    if (options) return;
     options = import('./make-options').then(
       ({ MakeOptionsPanel }) => new MakeOptionsPanel(session, viewer, maker, tools, history),
     );
@@ -26,7 +26,10 @@ export function setUpCageTools(
       options = undefined;
       session.fail(error);
     });
-  });
+  };
+  details.addEventListener('toggle', () => details.open && void offerOptions());
+  // Marks of an earlier visit are of use with their tool.
+  session.on('zones', () => session.bare && void offerOptions());
 
   let adjuster: Promise<CageAdjuster> | undefined;
   element('adjust-cage', HTMLButtonElement).addEventListener('click', async () => {
