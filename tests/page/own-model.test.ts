@@ -37,6 +37,7 @@ test('a model too large to be inspected by itself is offered a cage on the stage
   assert.equal(await page.getByTestId('stage-remedy').textContent(), 'Make a cage');
   await makeCage(page);
   assert.equal(await page.locator('#stage-verdict-text').textContent(), 'The cage is not checked yet');
+  assert.equal(await page.locator('#model-verdict').textContent(), 'not checked yet');
   assert.equal(await page.getByTestId('stage-remedy').textContent(), 'Check it');
   await page.getByTestId('stage-remedy').click();
   await page.locator('#stage-verdict:not([data-verdict=""])').waitFor();

@@ -66,6 +66,33 @@ for (const folder of modelFolders()) {
   });
 }
 
+test('a vertex that was recovered is explained by what recovered it: a recheck, or the rule for holes', async () => {
+  const found = new Map<number, number>();
+  for (const folder of modelFolders()) {
+    const [target, cage] = await Promise.all(
+      ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),
+    );
+    const projection = project(cage!, target!);
+    const shown = { target: { mesh: withPrimitives(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
+    const classification = classify(projection);
+    const loops = new BoundaryLoops(cage!);
+    for (const zone of [1, 2]) {
+      const triangle = classification.cosmeticTriangles.findIndex((isPainted, t) => {
+        const vertex = target!.indices[3 * t]!;
+        return isPainted === 1 && projection.zones[vertex] === zone && classification.zones[vertex] === 0;
+      });
+      if (triangle < 0) continue;
+      const facts = { shown, classification, rules: { preset: 'default', threshold: 0.5 } as const, locks: {}, loops };
+      const { because, steps } = explain(facts, triangle, [1, 0, 0]);
+      const step = steps.find(({ title }) => title === (zone === 1 ? 'Recheck' : 'Hole'));
+      assert.match(because, zone === 1 ? /hidden at first, but rays/ : /uncovered at first, but the hole/, folder);
+      assert.match(step?.sentence ?? '', /so (it|this spot) is recovered/, folder);
+      found.set(zone, (found.get(zone) ?? 0) + 1);
+    }
+  }
+  assert.deepEqual([...found.keys()].sort(), [1, 2], 'both are among the models');
+});
+
 test('a part that a hole is meant for is explained so, and is painted without that rule', () => {
   const { cage, target } = smallHole();
   const projection = project(cage, target);

@@ -160,7 +160,7 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
     {
       code: 'muchCulled',
       weight: 0.2,
-      sentence: `${percent(share)} of the target's exposed area is culled, in ${counted(all.length, 'segment')}; the largest belongs to "${largest.part}"`,
+      sentence: `${percent(share)} of the target's exposed area is culled, in ${counted(all.length, 'exposed segment')}; the largest belongs to "${largest.part}"`,
       advice: `If some of it should be painted, override this (${option(largest)}), or close the holes of the cage over it.`,
       numbers: { share },
       places: all

@@ -130,7 +130,7 @@ export class CageAdjuster {
   /** Begins; the cage is shown. */
   start(): void {
     if (this.#session.moved) {
-      this.#session.fail(new Error('The cage can be adjusted while the model is at rest: undo what Move did.'));
+      this.#session.fail(new Error('The cage can be adjusted while the model is undeformed: undo what Move did.'));
       return;
     }
     this.#session.setView({ cage: true });

@@ -67,7 +67,7 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
     options,
   );
   const part = segmentOf(facts, vertex);
-  const secondLook = secondLookStep(facts, vertex);
+  const recovery = recoveryStep(facts, vertex);
   const isMarked = facts.bare?.[triangle] === 1;
   const steps = [
     ...(isMarked
@@ -75,7 +75,7 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
       : []),
     { title: 'Closest', sentence: closestStep(path, cageTriangle, diagonal) },
     { title: 'Ray', sentence: rayStep(facts, path, diagonal) },
-    ...(secondLook ? [{ title: 'Second look', sentence: secondLook }] : []),
+    ...(recovery ? [recovery] : []),
     { title: 'Part', sentence: partStep(facts, part, options) },
   ];
   return {
@@ -157,18 +157,24 @@ function rayStep({ shown }: Facts, { outcome, cage, model, outside }: Path, diag
   }
 }
 
-/** The outcome of the second look and of the hole rule; empty if they do not apply. */
-function secondLookStep({ shown: { projection }, classification }: Facts, vertex: number): string {
+/** The outcome of the recheck of an occluded vertex, or of the rule for holes of an uncovered one; undefined if they do not apply. */
+function recoveryStep(facts: Facts, vertex: number): Explanation['steps'][number] | undefined {
+  const sentence = recoveryOf(facts, vertex);
+  const isOccluded = facts.shown.projection.zones[vertex] === Zone.Occluded;
+  return sentence ? { title: isOccluded ? 'Recheck' : 'Hole', sentence } : undefined;
+}
+
+function recoveryOf({ shown: { projection }, classification }: Facts, vertex: number): string {
   const first = projection.zones[vertex]!;
   const recovery = projection.recovery[vertex] ?? 0;
   if (first === Zone.Cosmetic || recovery === 0) return '';
   if (classification.segmentStats[projection.segments[vertex]!]!.culled)
-    return 'The second look would restore it, but its part is culled.';
-  if (first === Zone.Occluded) return 'Rays in other directions reach the cage freely, so the second look restores it.';
+    return 'It would be recovered, but its part is culled.';
+  if (first === Zone.Occluded) return 'Rays in other directions reach the cage freely, so it is recovered.';
   if (recovery === 1)
-    return 'The closest point of the cage is not on the edge of the hole, or the spot lies hardly beyond that edge, so it is restored.';
+    return 'The closest point of the cage is not on the edge of the hole, or the spot lies hardly beyond that edge, so it is recovered.';
   return classification.zones[vertex] === Zone.Cosmetic
-    ? 'The hole is meant for the part behind it, not for the edge around that part, so this spot is restored.'
+    ? 'The hole is meant for the part behind it, not for the edge around that part, so this spot is recovered.'
     : 'No unpainted part lies behind this hole, so we assume the hole itself is meant to stay unpainted.';
 }
 
@@ -225,8 +231,10 @@ function brief(
   switch (zone) {
     case Zone.Cosmetic:
       if (locks[part.segment] === 'always') return `you chose to paint ${part.name} anyway`;
-      if (shown.projection.zones[vertex] !== Zone.Cosmetic)
-        return 'it seemed hidden or uncovered at first, but the second look restored it';
+      if (shown.projection.zones[vertex] === Zone.Occluded)
+        return 'it seemed hidden at first, but rays in other directions reach the cage';
+      if (shown.projection.zones[vertex] === Zone.Uncovered)
+        return 'it seemed uncovered at first, but the hole of the cage is not meant for it';
       return outcome === 'pokesOut'
         ? 'it pokes out of the cage a little, which counts as covered'
         : 'the cage covers it, and nothing of the model lies between';

@@ -11,7 +11,7 @@ const kSteps = {
   occluded: 'occluded',
   covered: 'covered',
   segments: 'segments',
-  secondLook: 'second look',
+  secondLook: 'recheck',
   holes: 'holes',
   seams: 'seams',
   classify: 'classify',

@@ -51,7 +51,8 @@ export class StageVerdict {
     };
     this.#box.hidden = this.#card.hidden = false;
     this.#text.textContent = texts[verdict];
-    this.#card.textContent = verdict === 'unfit' ? 'does not fit' : verdict === '' ? 'not checked yet' : share;
+    const unchecked = this.#remedy ? 'not checked yet' : 'checking…';
+    this.#card.textContent = verdict === 'unfit' ? 'does not fit' : verdict === '' ? unchecked : share;
     this.#box.dataset.verdict = this.#card.dataset.verdict = verdict;
     const leaves = !this.#remedy && document.activeElement === this.#button;
     this.#button.hidden = !this.#remedy;
