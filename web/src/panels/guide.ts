@@ -31,7 +31,7 @@ const kSteps: readonly Step[] = [
   },
   {
     title: 'Your own model',
-    text: 'Drop a GLB, glTF or VRM file anywhere on the page. If it has no cage, choose Make a cage. It stays on your device until you save it.',
+    text: 'Choose a GLB, glTF or VRM file as Target, or drop it anywhere on the page. If it has no cage, choose Make a cage. Save downloads the painted model; nothing leaves your device.',
     about: '#target-file, #stage-save',
   },
 ];
@@ -101,7 +101,10 @@ export class Guide {
 
   #mark(about: string | undefined): void {
     for (const marked of document.querySelectorAll('.guided')) marked.classList.remove('guided');
-    if (about) for (const found of document.querySelectorAll(about)) found.classList.add('guided');
+    for (const found of about ? document.querySelectorAll(about) : []) {
+      found.classList.add('guided');
+      found.scrollIntoView({ block: 'nearest' });
+    }
   }
 
   #end(): void {
