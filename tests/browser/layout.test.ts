@@ -265,14 +265,20 @@ const kStageSizes = [
   [1280, 800],
 ] as const;
 
+/** Those with room for a text between the columns of tools. */
+const kPhoneSizes = [
+  [390, 844],
+  [412, 915],
+] as const;
+
 const kStageControls =
-  ':is(.masthead, .stage-head, .quick, .angles) :is(button, input), :is(.rail, .toolbar) label, .knob';
-const kStageGroups = '.masthead button, .stage-head > *, .rail, .quick, .angles, .toolbar';
+  ':is(.masthead, .stage-head, .quick, .angles, .sticker-bar) :is(button, input), :is(.rail, .toolbar) label, .knob';
+const kStageGroups = '.masthead button, .stage-head > *, .rail, .quick, .angles, .toolbar, .bubble, .sticker-bar';
 
 /** What can be pressed on the stage but is outside the window or covered, and groups of controls that overlap, at all sizes. */
-async function stageFaults(page: Page): Promise<string[]> {
+async function stageFaults(page: Page, sizes: readonly (readonly [number, number])[] = kStageSizes): Promise<string[]> {
   const faults: string[] = [];
-  for (const [width, height] of kStageSizes) {
+  for (const [width, height] of sizes) {
     await page.setViewportSize({ width, height });
     await page.evaluate(() => scrollTo(0, 0));
     const found = await page.evaluate(
@@ -308,6 +314,16 @@ test('on the stage, nothing that can be pressed is covered or cut off', async ()
   assert.deepEqual(await stageFaults(page), []);
   await page.getByRole('radio', { name: 'Brush' }).check({ force: true });
   assert.deepEqual(await stageFaults(page), [], 'while one paints');
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.getByRole('radio', { name: 'Result', exact: true }).check({ force: true });
+  await page.getByRole('radio', { name: 'Sticker' }).check({ force: true });
+  await page.locator('#view').press(' ');
+  await page.locator('.sticker-bar').waitFor();
+  assert.deepEqual(await stageFaults(page, kPhoneSizes), [], 'with a sticker that is placed');
+  await page.getByRole('button', { name: 'Explain the centre' }).click();
+  await page.getByTestId('explain-bubble').waitFor();
+  assert.deepEqual(await stageFaults(page, kPhoneSizes), [], 'with an explanation');
+  await page.locator('#view').press('Escape');
   await drop(page, [head()]);
   await ready(page);
   await page.getByTestId('stage-remedy').waitFor();
