@@ -74,8 +74,7 @@ export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, la
   }
   // Nobody paints unseen.
   session.on('view', ({ mode, paint }) => {
-    const isPainting = Object.values(offers).some((offer) => offer === tools.chosen);
-    if (isPainting && !(paint && showsPaint(mode))) tools.choose(undefined);
+    if (Object.values(offers).includes(tools.chosen!) && !(paint && showsPaint(mode))) tools.choose(undefined);
   });
 
   const canvas = element('view', HTMLCanvasElement);

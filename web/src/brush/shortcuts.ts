@@ -33,7 +33,7 @@ function makeDialog(): HTMLDialogElement {
   const rows = kKeys.map(([keys, what]) => `<div><dt>${what}</dt><dd><kbd>${keys}</kbd></dd></div>`);
   made.innerHTML =
     '<header><h2 id="shortcuts-title">Keys</h2><button type="button" class="icon" aria-label="Close">✕</button></header>' +
-    `<p class="hint">They work while the model has the focus: click it, or use Tab. Undo, redo and ? work everywhere.</p><dl>${rows.join('')}</dl>`;
+    `<p class="hint">Most work while the model has the focus: click it, or use Tab.</p><dl>${rows.join('')}</dl>`;
   made.querySelector('button')!.addEventListener('click', () => made.close());
   // A click beside it.
   made.addEventListener('click', (event) => event.target === made && made.close());

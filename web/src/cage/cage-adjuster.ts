@@ -405,7 +405,7 @@ export class CageAdjuster {
     this.#maker
       .change(change)
       .then((after) => {
-        for (const cage of [before, after]) this.#stepped.add(cage);
+        this.#stepped.add(before).add(after);
         this.#history.add(new CageStep(name, before, after, show));
       })
       .catch((error) => this.#session.fail(error));

@@ -16,16 +16,17 @@ export function setUpCageTools(
   history: History,
 ): void {
   const details = element('make-options', HTMLDetailsElement);
-  let options: Promise<unknown> | undefined;
+  let hasOptions = false;
   const offerOptions = async (): Promise<void> => {
-    if (options) return;
-    options = import('./make-options').then(
-      ({ MakeOptionsPanel }) => new MakeOptionsPanel(session, viewer, maker, tools, history),
-    );
-    await options.catch((error) => {
-      options = undefined;
+    if (hasOptions) return;
+    hasOptions = true;
+    try {
+      const { MakeOptionsPanel } = await import('./make-options');
+      new MakeOptionsPanel(session, viewer, maker, tools, history);
+    } catch (error) {
+      hasOptions = false;
       session.fail(error);
-    });
+    }
   };
   details.addEventListener('toggle', () => details.open && void offerOptions());
   // Marks of an earlier visit are of use with their tool.

@@ -67,7 +67,6 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
     options,
   );
   const part = segmentOf(facts, vertex);
-  const recovery = recoveryStep(facts, vertex);
   const isMarked = facts.bare?.[triangle] === 1;
   const steps = [
     ...(isMarked
@@ -75,7 +74,7 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
       : []),
     { title: 'Closest', sentence: closestStep(path, cageTriangle, diagonal) },
     { title: 'Ray', sentence: rayStep(facts, path, diagonal) },
-    ...(recovery ? [recovery] : []),
+    ...recoveryStep(facts, vertex),
     { title: 'Part', sentence: partStep(facts, part, options) },
   ];
   return {
@@ -157,25 +156,23 @@ function rayStep({ shown }: Facts, { outcome, cage, model, outside }: Path, diag
   }
 }
 
-/** The outcome of the recheck of an occluded vertex, or of the rule for holes of an uncovered one; undefined if they do not apply. */
-function recoveryStep(facts: Facts, vertex: number): Explanation['steps'][number] | undefined {
-  const sentence = recoveryOf(facts, vertex);
-  const isOccluded = facts.shown.projection.zones[vertex] === Zone.Occluded;
-  return sentence ? { title: isOccluded ? 'Recheck' : 'Hole', sentence } : undefined;
-}
-
-function recoveryOf({ shown: { projection }, classification }: Facts, vertex: number): string {
+/** The outcome of the recheck of an occluded vertex, or of the rule for holes of an uncovered one; none if they do not apply. */
+function recoveryStep({ shown: { projection }, classification }: Facts, vertex: number): Explanation['steps'] {
   const first = projection.zones[vertex]!;
   const recovery = projection.recovery[vertex] ?? 0;
-  if (first === Zone.Cosmetic || recovery === 0) return '';
-  if (classification.segmentStats[projection.segments[vertex]!]!.culled)
-    return 'It would be recovered, but its part is culled.';
-  if (first === Zone.Occluded) return 'Rays in other directions reach the cage freely, so it is recovered.';
-  if (recovery === 1)
-    return 'The closest point of the cage is not on the edge of the hole, or the spot lies hardly beyond that edge, so it is recovered.';
-  return classification.zones[vertex] === Zone.Cosmetic
-    ? 'The hole is meant for the part behind it, not for the edge around that part, so this spot is recovered.'
-    : 'No unpainted part lies behind this hole, so we assume the hole itself is meant to stay unpainted.';
+  if (first === Zone.Cosmetic || recovery === 0) return [];
+  const isCulled = classification.segmentStats[projection.segments[vertex]!]!.culled;
+  const isHidden = first === Zone.Occluded;
+  const sentence = isCulled
+    ? 'It would be recovered, but its part is culled.'
+    : isHidden
+      ? 'Rays in other directions reach the cage freely, so it is recovered.'
+      : recovery === 1
+        ? 'It lies hardly beyond the edge of the hole, if at all, so it is recovered.'
+        : classification.zones[vertex] === Zone.Cosmetic
+          ? 'The hole is meant for the part behind it, not for the edge around that part, so it is recovered.'
+          : 'No unpainted part lies behind this hole, so we assume the hole itself is meant to stay unpainted.';
+  return [{ title: isHidden ? 'Recheck' : 'Hole', sentence }];
 }
 
 function partStep({ classification, locks }: Facts, part: SegmentFacts, options: PresetOptions): string {
@@ -234,7 +231,7 @@ function brief(
       if (shown.projection.zones[vertex] === Zone.Occluded)
         return 'it seemed hidden at first, but rays in other directions reach the cage';
       if (shown.projection.zones[vertex] === Zone.Uncovered)
-        return 'it seemed uncovered at first, but the hole of the cage is not meant for it';
+        return 'it seemed uncovered at first, but the hole is not meant for it';
       return outcome === 'pokesOut'
         ? 'it pokes out of the cage a little, which counts as covered'
         : 'the cage covers it, and nothing of the model lies between';

@@ -43,6 +43,8 @@ export interface Made {
   sample?: Sample | undefined;
   /** What was done, for people. */
   note?: string;
+  /** Whether it was made from the model alone: it is where it belongs. */
+  isNew?: boolean | undefined;
 }
 
 /** By the files of the cages. */
@@ -56,9 +58,6 @@ export const sampleOf = ({ sample, files }: Model): Sample | undefined => sample
 
 /** Notes how a cage was made. */
 export const noteMade = (cage: File, how: Made): unknown => made.set(cage, how);
-
-/** Those of them that were made from the model, and not altered since: where they are is where they belong. */
-const fresh = new WeakSet<File>();
 
 /** A landmark's name for people: "ear_lobe_left" is the left ear lobe. */
 export const readable = (landmark: string): string =>
@@ -136,7 +135,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
 
   /** Whether the current cage is as it was made for the current target: neither moving it nor making it again changes it. */
   get isFresh(): boolean {
-    return this.isMade && fresh.has(this.#session.shown!.cage.files[0]!);
+    return this.isMade && made.get(this.#session.shown!.cage.files[0]!)!.isNew === true;
   }
 
   /** Makes a cage for the current target. */
@@ -209,8 +208,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       const isChanged = cage.uvs === old.uvs;
       const file = new File([engine.cageGlb(cage)], cageNameFrom((isChanged ? current : target).name));
       const sample = isChanged ? sampleOf(current) : undefined;
-      made.set(file, { target: target.files[0]!, fitting, sample, note });
-      if (isNew) fresh.add(file);
+      made.set(file, { target: target.files[0]!, fitting, sample, note, isNew });
       this.latest = fitting;
       done();
       this.#session.want({ cage: loadModel(file, this.#renderer) });
