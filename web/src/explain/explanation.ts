@@ -168,10 +168,10 @@ function recoveryStep({ shown: { projection }, classification }: Facts, vertex: 
     : isHidden
       ? 'Rays in other directions reach the cage freely, so it is recovered.'
       : recovery === 1
-        ? 'It lies hardly beyond the edge of the hole, if at all, so it is recovered.'
+        ? 'It lies hardly beyond the edge of the hole, so it is recovered.'
         : classification.zones[vertex] === Zone.Cosmetic
-          ? 'The hole is meant for the part behind it, not for the edge around that part, so it is recovered.'
-          : 'No unpainted part lies behind this hole, so we assume the hole itself is meant to stay unpainted.';
+          ? 'The hole is meant for the part behind it, not for this spot, so it is recovered.'
+          : 'No unpainted part lies behind this hole, so it stays unpainted.';
   return [{ title: isHidden ? 'Recheck' : 'Hole', sentence }];
 }
 
