@@ -105,7 +105,7 @@ const native =
     return printed(await compiled(compiler, flags));
   };
 
-/** What is not built is left out, but not where all has just been built. */
+/** What is missing is an error with `--built`; else its lane is left out. */
 const notBuilt = (text) => (isQuick ? new Error(text) : new LeftOut(text));
 
 /** A native build that `npm test` has made anyway. */

@@ -115,7 +115,7 @@ function makePage(options) {
 
 C++ (\`TransferOptions\`), JavaScript and the command have the same options with the same defaults. \`transfer\`
 reads all of them, \`project\` and \`classify\` those of their own stage. \`cutBorders\` keeps the verdicts on segments that it is
-given: it reads those of \`project\` but \`weldTolerance\`, and of those of \`classify\` only \`partialTriangles\`. Options that are not given have
+given: of the options of \`project\` it reads all except \`weldTolerance\`, of those of \`classify\` only \`partialTriangles\`. Options that are not given have
 the value of the preset: \`default\`, or \`paper\` for the method as published.
 
 ${head}${rows(false)}

@@ -93,7 +93,7 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
       code: 'nothingToPaint',
       weight: 2,
       sentence: largest
-        ? `${only} may be painted: the cage covers ${percent(roundedDown(largest.coverage, 0.001))} of the exposed area of "${largest.part}", ${reason(largest, threshold)}`
+        ? `${only} may be painted: the cage covers ${percent(largest.coverage)} of the exposed area of "${largest.part}", ${reason(largest, threshold)}`
         : `${only} may be painted`,
       advice: largest
         ? `If the cage should cover only a region of "${largest.part}", override this (${option(largest)}) or make that region a mesh of its own. Otherwise extend the cage.`
@@ -111,14 +111,14 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
     const [largest] = alike;
     const area = alike.reduce((sum, { exposedArea }) => sum + exposedArea, 0) / exposed;
     if (area < leastArea) return [];
-    const { part, coverage, culled } = largest;
+    const { part, culled } = largest;
     const one = alike.length === 1 ? `"${part}"` : `${alike.length} segments of "${part}"`;
     const is = alike.length === 1 ? 'is' : 'are';
     return [
       {
         code: 'segmentInDoubt',
         weight: Math.min(0.9, 0.2 + 2 * area),
-        sentence: `${one} ${is} ${culled ? 'not painted' : 'painted'}, but only just: ${alike.length === 1 ? 'its coverage is' : 'the largest has a coverage of'} ${roundedDown(coverage, 0.01).toFixed(2)}, ${reason(largest, threshold)} (${percent(area)} of the target's exposed area)`,
+        sentence: `${one} ${is} ${culled ? 'not painted' : 'painted'}, but only just: ${alike.length === 1 ? 'its coverage is' : 'the largest has a coverage of'} ${shownCoverage(largest, threshold)}, ${reason(largest, threshold)} (${percent(area)} of the target's exposed area)`,
         advice: `If that is wrong, override it (${option(largest)}), or widen or close the holes over ${alike.length === 1 ? 'it' : 'them'}.`,
         numbers: { segments: alike.length, area, score: largest.score! },
         places: alike.map((segment) => placeOf(segment.s, segment)),
@@ -171,8 +171,11 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
   ];
 }
 
-/** A coverage for people, which does not read like the threshold that it is less than. */
-const roundedDown = (coverage: number, unit: number): number => Math.floor(coverage / unit) * unit;
+/** A coverage for people. Rounding does not take it to the threshold that it is below. */
+function shownCoverage({ coverage, culled }: Segment, threshold: number): string {
+  const rounded = coverage.toFixed(2);
+  return culled && Number(rounded) >= threshold ? (Math.floor(100 * coverage) / 100).toFixed(2) : rounded;
+}
 
 /** Why a segment is culled or kept, as the end of a sentence about its coverage. */
 function reason({ coverage, culled, culledBy, score }: Segment, threshold: number): string {

@@ -193,16 +193,14 @@ export const isTurned = (matrix: Matrix4): boolean => matrix.determinant() < 0;
 function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, out: Float32Array): void {
   // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
   const values = valuesOf(geometry.getAttribute('position') as Attribute);
+  if (matrix.equals(identity)) {
+    out.set(values.subarray(0, 3 * vertexCount), 3 * firstVertex);
+    return;
+  }
   const m = matrix.elements;
-  const moves = !matrix.equals(identity);
   for (let v = 0; v < vertexCount; ++v) {
-    const x = values[3 * v]!;
-    const y = values[3 * v + 1]!;
-    const z = values[3 * v + 2]!;
-    for (let k = 0; k < 3; ++k)
-      out[3 * (firstVertex + v) + k] = moves
-        ? m[k]! * x + m[4 + k]! * y + m[8 + k]! * z + m[12 + k]!
-        : values[3 * v + k]!;
+    const [x, y, z] = [values[3 * v]!, values[3 * v + 1]!, values[3 * v + 2]!];
+    for (let k = 0; k < 3; ++k) out[3 * (firstVertex + v) + k] = m[k]! * x + m[4 + k]! * y + m[8 + k]! * z + m[12 + k]!;
   }
 }
 

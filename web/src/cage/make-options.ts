@@ -112,7 +112,7 @@ export class MakeOptionsPanel {
     });
     this.#parts.replaceChildren(this.#parts.querySelector('legend')!, ...rows);
     this.#parts.hidden = false;
-    announce(`${rows.length} parts can be switched.`);
+    if (this.#parts.offsetParent) announce(`${rows.length} parts can be switched.`);
   }
 
   #choices({ groups, indices }: CageModel): ReturnType<NonNullable<CageMaker['choices']>> {

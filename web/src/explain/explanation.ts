@@ -166,9 +166,9 @@ function recoveryStep({ shown: { projection }, classification }: Facts, vertex: 
   const sentence = isCulled
     ? 'It would be recovered, but its part is culled.'
     : isHidden
-      ? 'Rays in other directions reach the cage freely, so it is recovered.'
+      ? 'Rays in other directions reach the cage, so it is recovered.'
       : recovery === 1
-        ? 'It lies hardly beyond the edge of the hole, so it is recovered.'
+        ? 'It is hardly beyond a hole, if at all, so it is recovered.'
         : classification.zones[vertex] === Zone.Cosmetic
           ? 'The hole is meant for the part behind it, not for this spot, so it is recovered.'
           : 'No unpainted part lies behind this hole, so it stays unpainted.';
@@ -229,9 +229,9 @@ function brief(
     case Zone.Cosmetic:
       if (locks[part.segment] === 'always') return `you chose to paint ${part.name} anyway`;
       if (shown.projection.zones[vertex] === Zone.Occluded)
-        return 'it seemed hidden at first, but rays in other directions reach the cage';
+        return 'it seemed hidden, but rays in other directions reach the cage';
       if (shown.projection.zones[vertex] === Zone.Uncovered)
-        return 'it seemed uncovered at first, but the hole is not meant for it';
+        return 'it seemed uncovered, but the rule for holes recovers it';
       return outcome === 'pokesOut'
         ? 'it pokes out of the cage a little, which counts as covered'
         : 'the cage covers it, and nothing of the model lies between';

@@ -115,7 +115,7 @@ export class FitPanel {
     const reasons = findings.filter(({ weight }) => weight >= unfitFrom);
     // Where keeping a part is enough, another cage would be judged by the same rules.
     const [kept] = (!isOthers && reasons.every(({ locks }) => locks) && reasons[0]?.places) || [];
-    if (kept) remedies.unshift({ title: `Keep “${kept.part}”`, run: () => this.#session.lock([kept.segment], 'keep') });
+    if (kept) remedies.push({ title: `Keep “${kept.part}”`, run: () => this.#session.lock([kept.segment], 'keep') });
     const making = verdict === 'unfit' && !isFresh && !kept ? [this.#making] : [];
     // The cage of another model is not meant for this one.
     if (isOthers) remedies.unshift(...making);

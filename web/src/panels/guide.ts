@@ -31,7 +31,7 @@ const kSteps: readonly Step[] = [
   },
   {
     title: 'Your own model',
-    text: 'Choose a GLB, glTF or VRM file as Target, or drop it on the page. If it has no cage, choose Make a cage. Save downloads the painted model; nothing leaves your device.',
+    text: 'Choose a GLB, glTF or VRM file as Target, or drop it here. If it has no cage, choose Make a cage. Nothing leaves your device.',
     about: '#target-file, #stage-save',
   },
 ];

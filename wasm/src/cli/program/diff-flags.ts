@@ -9,10 +9,7 @@ export function addDiffCommand(program: Command): void {
   addPrintFlags(
     program
       .command('diff')
-      .argument(
-        '<BEFORE>',
-        'a report of transfer, or of inspect --json, or a folder of reports, in which subfolders count, too',
-      )
+      .argument('<BEFORE>', 'a report of transfer, or of inspect --json, or a folder of reports, with its subfolders')
       .argument('<AFTER>', 'another; in a folder, reports of the same names are compared'),
   )
     .description(

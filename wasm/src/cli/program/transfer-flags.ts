@@ -61,8 +61,8 @@ Each --region adds UVs and zones of its own (_NCZ_1, …) to the same vertices. 
 1011 above. A glTF gets OUT.bin and OUT-image0.png, … beside it. A mesh that is drawn as many instances
 (EXT_mesh_gpu_instancing) is taken once, where its first instance is; all instances show the same paint.
 A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
---cage auto makes a cage for TARGET on the way, as cagecast make does, and excludes the parts that this one leaves out by
-their names, unless --keep names them; for a file named auto, write ./auto.
+--cage auto makes a cage for TARGET on the way, as cagecast make does, and excludes the parts whose names make leaves out by
+default, unless --keep names them; for a file named auto, write ./auto.
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb

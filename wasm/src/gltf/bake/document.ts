@@ -55,9 +55,8 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
   const { paints, images, size, borders, onBaked, ...own } = options;
   return async function bake(document: Document): Promise<void> {
     const cuts = isCut('bake', borders);
-    const names = Object.keys(paints ?? {});
-    if (!slots.some((slot) => paints?.[slot]) || names.some((name) => !slots.includes(name as Slot)))
-      throw wrong('bake', 'paints', names.join(), `some of ${slots.join(', ')}`);
+    if (!slots.some((slot) => paints?.[slot]) || Object.keys(paints).some((name) => !slots.includes(name as Slot)))
+      throw wrong('bake', 'paints', paints, `{ ${slots.join(', ')} }`);
     if (typeof images?.decode !== 'function' || typeof images.encode !== 'function')
       throw wrong('bake', 'images', images, '{ decode, encode }');
     if (size !== undefined && !(Number.isInteger(size) && size > 0 && size <= mostTexels))

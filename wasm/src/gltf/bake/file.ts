@@ -196,10 +196,10 @@ export class FileModel implements BakeModel<number, number> {
 }
 
 /** The textures of extensions that add to a material, such as KHR_materials_transmission; not of the one that replaces it. */
-function addedTextures({ extensions = {} }: GLTF.IMaterial): GLTF.ITextureInfo[] {
-  const added = Object.keys(extensions).filter((name) => /^KHR_materials_(?!pbrSpecularGlossiness)/.test(name));
-  return added
-    .flatMap((name) => Object.values(extensions[name] as object))
+function addedTextures({ extensions }: GLTF.IMaterial): GLTF.ITextureInfo[] {
+  return Object.entries(extensions ?? {})
+    .filter(([name]) => /^KHR_materials_(?!pbrSpecularGlossiness)/.test(name))
+    .flatMap(([, added]) => Object.values((added ?? {}) as object))
     .filter((value) => Number.isInteger(value?.index));
 }
 
