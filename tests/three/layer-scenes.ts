@@ -493,17 +493,24 @@ export const layerScenes: Record<string, () => unknown> = {
       painter.sticker({ text: 'A', color: '#ff0000' }, { at: { x: 0.5, y: 0.5 } });
       painter.dispose();
     };
-    for (let i = 0; i < 3; ++i) use();
-    document.createElement = createElement;
-    globalThis.Int32Array = Owners;
+    try {
+      for (let i = 0; i < 3; ++i) use();
+    } finally {
+      document.createElement = createElement;
+      globalThis.Int32Array = Owners;
+    }
     layers.toImageData(16); // what comes next may keep the last one
     const made = Object.values(kept).map(({ length }) => length);
     const { collectGarbage } = globalThis as unknown as { collectGarbage(): Promise<void> };
-    // What one collection frees may have held something else.
-    for (let i = 0; i < 3; ++i) await collectGarbage();
-    const left = Object.fromEntries(
-      Object.entries(kept).map(([what, refs]) => [what, refs.filter((ref) => ref.deref()).length]),
-    );
+    const countLeft = () =>
+      Object.fromEntries(Object.entries(kept).map(([what, refs]) => [what, refs.filter((ref) => ref.deref()).length]));
+    let left = countLeft();
+    // What one collection frees may have held something else, and contexts tell of their loss when they have time.
+    for (let i = 0; i < 50 && Object.values(left).some((count) => count > 0); ++i) {
+      await new Promise((resolve) => setTimeout(resolve, 10));
+      await collectGarbage();
+      left = countLeft();
+    }
     layers.dispose();
     return { made, left };
   },
