@@ -171,7 +171,7 @@ function recoveryStep({ shown: { projection }, classification }: Facts, vertex: 
         ? 'It is hardly beyond a hole, if at all, so it is recovered.'
         : classification.zones[vertex] === Zone.Cosmetic
           ? 'The hole is meant for the part behind it, not for this spot, so it is recovered.'
-          : 'No unpainted part lies behind this hole, so it stays unpainted.';
+          : 'No unpainted part lies behind this hole, so it stays bare.';
   return [{ title: isHidden ? 'Recheck' : 'Hole', sentence }];
 }
 

@@ -32,7 +32,7 @@ const kSteps: readonly Step[] = [
   {
     title: 'Your own model',
     text: 'Choose a GLB, glTF or VRM file as Target, or drop it here. If it has no cage, choose Make a cage. Nothing leaves your device.',
-    about: '#target-file, #stage-save',
+    about: '#target-file',
   },
 ];
 
