@@ -212,7 +212,7 @@ test('a batch that cannot be right does not begin', () => {
     [
       [...one, '--texture', 'p.<UDIM>.png', '--uv-bounds', '0,0,1,1', '-o', at('{name}.glb')],
       2,
-      /a file for each tile/,
+      /bounds of UVs cannot be given with a texture of <UDIM> tiles/,
     ],
   );
   for (const [args, code, message] of cases) {

@@ -339,7 +339,7 @@ test('--uv-bounds: the texture covers a part of the UVs, and nothing is painted 
 test('--uv-bounds and tiles of UVs exclude each other', () => {
   const both = ['--texture', at('tile.<UDIM>.png'), '--uv-bounds', '0,0,1,1', '-o', at('both.glb')];
   const { status, stderr } = cagecast('transfer', target, ...cage, ...both);
-  assert.deepEqual([status, /a texture with <UDIM> has a file for each tile/.test(stderr)], [2, true]);
+  assert.deepEqual([status, /bounds of UVs cannot be given with a texture of <UDIM> tiles/.test(stderr)], [2, true]);
 });
 
 test('--reference-cage: triangles whose UVs it lacks count as cut away', () => {
@@ -391,7 +391,7 @@ test('a manifest has regions, bounds and a reference', () => {
   const errors = found.map(({ error }) => error ?? '').sort();
   assert.match(errors[1]!, /line 2 of .*: "uvBounds" is not an array of four numbers/);
   assert.match(errors[2]!, /line 3 of .*: "regions" is not an array of \{"cage": …, "texture": …\}/);
-  assert.match(errors[3]!, /line 4 of .*: a texture with <UDIM> has a file for each tile/);
+  assert.match(errors[3]!, /line 4 of .*: bounds of UVs cannot be given with a texture of <UDIM> tiles/);
   const report = JSON.parse(readFileSync(at('job.json'), 'utf8')) as Report;
   assert.equal(report.regions[0]!.uvSet, 'TEXCOORD_1');
   assert.ok(readdirSync(folder).includes('job-image1.png'));

@@ -14,8 +14,8 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kOutlineMargin = 1.12;
 /// What else is free should be less than this share of what must be free.
 constexpr double kMostSpill = 0.38;
-/// Costs per share of what must be free: of what of it is covered, of what of its margin is, of what else is free, and
-/// of that beyond `kMostSpill`.
+/// Costs of four areas, as shares of what must be free: what of it is covered; what of its margin is covered; what else
+/// is free; and what of that is beyond `kMostSpill`.
 constexpr double kCovered = 5, kMarginCovered = 1.5, kSpill = 1, kTooMuch = 10;
 /// Costs of covers of the eye that are not free, and of each radian that a corner turns.
 constexpr double kCoversCovered = 2, kTurned = 0.1;

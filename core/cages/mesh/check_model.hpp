@@ -11,8 +11,8 @@ inline constexpr std::size_t kMaxModelTriangles = 2'000'000;
 inline constexpr std::size_t kMaxModelVertices = 6'000'000;
 
 /// Checks what every function of this library asks of a model: triangles with an area, positions that are finite and
-/// not too far from the origin, a size from 1e-37, indices, groups, marks and joints that fit together. Holes, edges of
-/// more than two triangles, several shells and triangles turned inside out are no errors.
+/// not too far from the origin, a size of at least 1e-37, indices, groups, marks and joints that fit together. Holes,
+/// edges of more than two triangles, several shells and triangles turned inside out are no errors.
 /// @return Problem::badModel with a sentence that begins with "model".
 Outcome checkModel(const Model& model);
 

@@ -47,9 +47,9 @@ class Workspace {
 /// Finds, for every vertex of the target, its UV and whether it is occluded or uncovered: steps 1 to 4, 5′, 6, 7 and 9,
 /// and the twins of 5″. The result does not depend on threshold, floor or locks.
 /// @return badOption, or any code about the meshes, or weldToleranceTooLarge, or outOfMemory.
-/// Cost: O((V + N + M) log(N + M)) for V vertices and N triangles of the target and M triangles of the cage, where few
-/// cage triangles are equally near to a vertex, and few segments or few holes of the cage are small; else up to their
-/// product.
+/// Cost: O((V + N + M) log(N + M)) for V vertices and N triangles of the target and M triangles of the cage. Up to
+/// their product for a target of very many small segments under a cage with very many holes, or where many cage
+/// triangles are equally near to each vertex.
 Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
                Projection& out) noexcept;
 

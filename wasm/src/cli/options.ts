@@ -141,7 +141,7 @@ export const configLine = (config: string | null | undefined): string => (config
 
 /**
  * The options of `transfer`. Names of parts become locks by group, because each part is a group.
- * @param leftOut  Whether each part is excluded if nothing is said of it. Default: none
+ * @param leftOut  Whether each part is excluded if nothing is said of it. Default: none is.
  * @throws {InputError} if nothing has a given name, or a part is both kept and excluded in one place.
  */
 export function transferOptions(

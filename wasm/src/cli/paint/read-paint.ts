@@ -17,7 +17,7 @@ export const isTiled = (path: string): boolean => path.includes(placeholder);
 /** Why a texture and bounds of UVs exclude each other, if they do. */
 export const boundsFault = (texture: string | undefined, bounds: UvBounds | undefined): string | undefined =>
   texture !== undefined && isTiled(texture) && bounds
-    ? `a texture with ${placeholder} has a file for each tile, which covers all of it; bounds of UVs are for a single file`
+    ? `bounds of UVs cannot be given with a texture of ${placeholder} tiles, each of which has the bounds of its tile`
     : undefined;
 
 /** The path of a tile's texture; with `*` for the tile, a pattern for all. */
