@@ -25,7 +25,7 @@ constexpr std::size_t kLeastMark = 4;
 constexpr double kMostCovered = 0.35;
 /// How far behind the cage, in diagonals, what a ray meets hides it: the default of transfers.
 constexpr double kOcclusionReach = 0.03;
-/// By how much its hole is widened, in edges.
+/// By how much farther its hole is widened each time, in edges.
 constexpr int kWidening = 2;
 /// Samples along the longest edge of a triangle at most.
 constexpr double kMostSamplesPerEdge = 64;
@@ -276,7 +276,7 @@ std::vector<double> HoleMarker::field() const {
   return field;
 }
 
-bool HoleMarker::widen(const TriangleMesh& cage) {
+std::size_t HoleMarker::widen(const TriangleMesh& cage) {
   const Surface surface(cage);
   std::vector<Vec3> positions;
   positions.reserve(samples_.size());
@@ -304,10 +304,11 @@ bool HoleMarker::widen(const TriangleMesh& cage) {
   for (std::size_t i = 0; i < samples_.size(); ++i)
     if (isCovered[i] && covered[samples_[i].piece] > kMostCovered * all[samples_[i].piece])
       front.push_back(vertices[i]);
-  if (front.empty()) return false;
-  const std::vector<bool> reached = within(neighboursIn(hull_), std::move(front), kWidening);
+  const std::size_t count = front.size();
+  widened_ += kWidening;
+  const std::vector<bool> reached = within(neighboursIn(hull_), std::move(front), widened_);
   for (std::size_t v = 0; v < reached.size(); ++v) below_[v] = below_[v] || reached[v];
-  return true;
+  return count;
 }
 
 }  // namespace cagecast::cages

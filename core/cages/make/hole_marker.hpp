@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -36,9 +37,10 @@ class HoleMarker {
   /// marks that smoothing would remove come back.
   [[nodiscard]] std::vector<double> field() const;
 
-  /// Marks more of the hull where a cage made with `field` still covers too much of a marked part.
-  /// @return whether there is such a part.
-  bool widen(const TriangleMesh& cage);
+  /// Marks more of the hull where a cage made with `field` still covers too much of a marked part; farther around each
+  /// time that it is called.
+  /// @return how many samples of such parts the cage covers.
+  std::size_t widen(const TriangleMesh& cage);
 
  private:
   /// A spot on a marked part that is seen from the hull.
@@ -63,6 +65,7 @@ class HoleMarker {
   std::uint32_t pieces_ = 0;
   std::vector<bool> below_;    ///< Per vertex: what is below or nearest is marked.
   std::vector<bool> sampled_;  ///< Per vertex: a sample is nearest to it.
+  int widened_ = 0;            ///< How far around, in edges, `widen` marked last.
 };
 
 }  // namespace cagecast::cages

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include "cagecast/cages.hpp"
 #include "charts/unwrap.hpp"
@@ -36,8 +39,8 @@ constexpr double kVisibleDepth = 1.4;
 constexpr double kDepthMargin = 0.4;
 /// How far a vertex of the cage may be moved outwards, in offsets.
 constexpr double kFarthestPush = 4;
-/// How often the cage is made, with wider holes where it covers too much.
-constexpr int kAttempts = 3;
+/// How often the cage is made at most, with wider holes where it covers too much.
+constexpr int kAttempts = 5;
 /// Points of the hull that the cage is moved past, about.
 constexpr std::size_t kEnclosedPoints = 20000;
 
@@ -173,20 +176,27 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   const MarkedMesh marked{&mesh, &surface, std::move(isMarked)};
   HoleMarker marker(marked, kVisibleDepth * offset, hull);
   if (!marker.mark(settings.kind == Kind::body ? 2 : 1, part(kHullEnd, kHolesEnd))) return cancelled;
+  // A later cage may cover more than an earlier one, as it is simplified differently: the best is kept.
   TriangleMesh cage;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  std::size_t leastCovered = std::numeric_limits<std::size_t>::max();
+  for (int attempt = 0; attempt < kAttempts && leastCovered > 0; ++attempt) {
     std::vector<double> field = marker.field();
     openNecks(hull, necks, field);
     const TriangleMesh shell = cutHoles(hull, field);
-    if (shell.empty()) return nothingToPaint;
-    if (!simplify(shell, {settings.triangles, offset}, part(kHolesEnd, kSimplifyEnd), cage)) return cancelled;
-    if (cage.empty())
+    if (shell.empty() && cage.empty()) return nothingToPaint;
+    TriangleMesh next;
+    if (!simplify(shell, {settings.triangles, offset}, part(kHolesEnd, kSimplifyEnd), next)) return cancelled;
+    if (next.empty() && cage.empty())
       return {Problem::badModel,
               "model is too thin for a cage of so few triangles: nothing is left of its hull; allow more triangles"};
+    if (next.empty()) break;
     const double depth = (1 - kDepthMargin) * offset;
-    if (!enclose(pointsToEnclose(hull, field, depth), kFarthestPush * offset, part(kSimplifyEnd, kEncloseEnd), cage))
+    if (!enclose(pointsToEnclose(hull, field, depth), kFarthestPush * offset, part(kSimplifyEnd, kEncloseEnd), next))
       return cancelled;
-    if (!marker.widen(cage)) break;
+    const std::size_t covered = marker.widen(next);
+    if (covered >= leastCovered) continue;
+    leastCovered = covered;
+    cage = std::move(next);
   }
   Layout layout;
   UnwrapOptions unwrapOptions;

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "cagecast/cages.hpp"
+#include "make/cut_holes.hpp"
+#include "make/hole_marker.hpp"
 #include "make/kind.hpp"
 #include "make/simplify.hpp"
 #include "mesh/surface.hpp"
@@ -95,6 +97,31 @@ TEST_CASE("a mark, as by a brush, gets its hole", "[cages][make]") {
   CHECK(hasHoleAt(mesh, {2, 0, 1}, 0.1));
   model.marks.assign(model.marks.size(), 0);
   CHECK(boundaryLoops(meshOf(made(model.model()))).empty());
+}
+
+TEST_CASE("a hole over a part that stays covered is widened farther each time", "[cages][make]") {
+  const TriangleMesh ball = sphere({0, 0, 0}, 1, 32);
+  const Surface surface(ball);
+  std::vector<bool> isMarked;
+  for (const Triangle3& t : ball.triangles) isMarked.push_back(ball.positions[t[0]].z > 0.9);
+  const MarkedMesh marked{&ball, &surface, isMarked};
+  TriangleMesh hull = sphere({0, 0, 0}, 1.02, 48);
+  const TriangleMesh closed = hull;  // A cage that covers the part as if it had no hole.
+  HoleMarker marker(marked, 0.05, hull);
+  REQUIRE(marker.mark(0, {}));
+  const auto open = [&] {
+    const std::vector<double> field = marker.field();
+    return std::count_if(field.begin(), field.end(), [](double share) { return share > 0.5; });
+  };
+  for (int time = 0; time < 4; ++time) {
+    const auto before = open();
+    CHECK(marker.widen(closed) > 100);
+    CHECK(open() > before);
+  }
+  TriangleMesh with = cutHoles(hull, marker.field());
+  const auto before = open();
+  CHECK(marker.widen(with) == 0);
+  CHECK(open() == before);
 }
 
 TEST_CASE("a cage has about as many triangles as asked for", "[cages][make]") {
