@@ -7,6 +7,7 @@
 #include "charts/flatten.hpp"
 #include "charts/slim.hpp"
 #include "charts/unwrap.hpp"
+#include "mesh/disjoint_sets.hpp"
 
 namespace cagecast::cages {
 
@@ -54,7 +55,7 @@ double quantile(std::vector<std::pair<double, double>> valuesAndWeights, double 
 std::uint32_t countCharts(const std::vector<Vec3>& positions, const std::vector<Uv>& uvs,
                           const std::vector<Triangle3>& triangles) {
   std::map<std::array<double, 5>, std::uint32_t> vertices;
-  Unions sets(positions.size());
+  DisjointSets sets(positions.size());
   for (const Triangle3& t : triangles) {
     sets.join(t[0], t[1]);
     sets.join(t[1], t[2]);

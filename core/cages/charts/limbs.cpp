@@ -8,6 +8,7 @@
 
 #include "charts/min_cut.hpp"
 #include "charts/seams.hpp"
+#include "mesh/disjoint_sets.hpp"
 
 namespace cagecast::cages {
 
@@ -78,7 +79,7 @@ std::vector<Peak> peaksOf(const TriangleMesh& mesh, const std::vector<double>& v
   std::vector<std::uint32_t> order(mesh.positions.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return value[a] > value[b]; });
-  Unions sets(mesh.positions.size());
+  DisjointSets sets(mesh.positions.size());
   std::vector<Region> regions(mesh.positions.size());
   std::vector<bool> done(mesh.positions.size());
   std::vector<Peak> peaks;

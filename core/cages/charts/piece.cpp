@@ -4,19 +4,9 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/disjoint_sets.hpp"
+
 namespace cagecast::cages {
-
-Unions::Unions(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-std::uint32_t Unions::find(std::uint32_t i) {
-  while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-  return i;
-}
-
-void Unions::join(std::uint32_t i, std::uint32_t k) {
-  const std::uint32_t a = find(i), b = find(k);
-  parent_[std::max(a, b)] = std::min(a, b);
-}
 
 std::vector<std::uint32_t> findTwins(const TriangleMesh& mesh) {
   struct Edge {
@@ -57,7 +47,7 @@ Piece wholeOf(const TriangleMesh& mesh) {
 Piece cutOpen(const Piece& piece, const std::vector<bool>& cut) {
   const TriangleMesh& mesh = piece.mesh;
   const std::vector<std::uint32_t> twins = findTwins(mesh);
-  Unions corners(3 * mesh.triangles.size());
+  DisjointSets corners(3 * mesh.triangles.size());
   for (std::size_t h = 0; h < twins.size(); ++h) {
     const std::uint32_t twin = twins[h];
     if (twin == kNone || twin < h || cut[h] || cut[twin]) continue;
@@ -83,7 +73,7 @@ Piece cutOpen(const Piece& piece, const std::vector<bool>& cut) {
 std::vector<Piece> componentsOf(const Piece& piece) {
   const TriangleMesh& mesh = piece.mesh;
   const std::vector<std::uint32_t> twins = findTwins(mesh);
-  Unions sets(mesh.triangles.size());
+  DisjointSets sets(mesh.triangles.size());
   for (std::size_t h = 0; h < twins.size(); ++h)
     if (twins[h] != kNone) sets.join(static_cast<std::uint32_t>(h / 3), twins[h] / 3);
   std::vector<std::uint32_t> pieceOf(mesh.triangles.size(), kNone), newVertex(mesh.positions.size(), kNone);

@@ -51,15 +51,4 @@ std::vector<std::vector<std::uint32_t>> loopsOf(const TriangleMesh& mesh, std::s
 /// The length of a walk of half-edges.
 double lengthOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk);
 
-/// Disjoint sets of numbers.
-class Unions {
- public:
-  explicit Unions(std::size_t count);
-  std::uint32_t find(std::uint32_t i);
-  void join(std::uint32_t i, std::uint32_t k);
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 }  // namespace cagecast::cages

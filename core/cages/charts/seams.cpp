@@ -7,6 +7,8 @@
 #include <queue>
 #include <utility>
 
+#include "mesh/disjoint_sets.hpp"
+
 namespace cagecast::cages {
 
 namespace {
@@ -56,7 +58,7 @@ Piece cutHandles(const Piece& piece, const SeamCost& cost) {
     }
   std::sort(order.begin(), order.end());
   // Triangles are joined across the edges where a seam would cost most; the others are the first cut.
-  Unions joined(mesh.triangles.size());
+  DisjointSets joined(mesh.triangles.size());
   std::vector<bool> cut(twins.size());
   std::vector<std::uint32_t> uses(mesh.positions.size());
   const auto use = [&](std::uint32_t h, std::uint32_t by) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "charts/min_cut.hpp"
+#include "mesh/disjoint_sets.hpp"
 
 namespace cagecast::cages {
 
@@ -93,7 +94,7 @@ bool expand(const TriangleMesh& mesh, const Prices& price, std::uint32_t label, 
 
 std::vector<std::uint32_t> regionsOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& labels) {
   const std::vector<std::uint32_t> twins = findTwins(mesh);
-  Unions sets(mesh.triangles.size());
+  DisjointSets sets(mesh.triangles.size());
   for (std::size_t h = 0; h < twins.size(); ++h)
     if (twins[h] != kNone && labels[h / 3] == labels[twins[h] / 3])
       sets.join(static_cast<std::uint32_t>(h / 3), twins[h] / 3);

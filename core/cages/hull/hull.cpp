@@ -9,6 +9,7 @@
 #include "hull/grid.hpp"
 #include "hull/iso_surface.hpp"
 #include "mesh/bounds.hpp"
+#include "mesh/progress.hpp"
 
 namespace cagecast::cages {
 
@@ -171,10 +172,6 @@ TriangleMesh closeOpenings(const TriangleMesh& mesh, double width, std::vector<O
 
 bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progress& progress, TriangleMesh& out,
               double* share) {
-  const auto part = [&](float from, float to) -> Progress {
-    if (!progress) return {};
-    return [&progress, from, to](float done, const char* stage) { return progress(from + (to - from) * done, stage); };
-  };
   // Dilated by `outwards`, what remains is then eroded by `inwards`. The difference is the offset.
   if (progress && !progress(0, "hull")) return false;
   const TriangleMesh closed = closeOpenings(mesh, 2 * options.closing);
@@ -184,13 +181,13 @@ bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progre
   // Beyond both levels by the diagonal of a cell, so that the nodes on either side of them have distances.
   const double beyond = 1.8 * grid.spacing;
   DistanceBand band;
-  if (!distanceToMesh(closed, grid, outwards + beyond, part(0.0f, 0.6f), band)) return false;
+  if (!distanceToMesh(closed, grid, outwards + beyond, partOf(progress, 0, 0.6f), band)) return false;
   std::vector<std::uint8_t> outside(grid.size(), 0);
   const auto level = static_cast<float>(outwards);
   flood(grid, 0, 1, outside, [&](std::size_t i) { return band.distance[i] > level; });
   if (progress && !progress(0.65f, "hull")) return false;
   const std::vector<GridPoint> border = outerBorder(grid, band, outside, outwards);
-  if (!distanceToPoints(border, grid, inwards + beyond, part(0.65f, 0.9f), band)) return false;
+  if (!distanceToPoints(border, grid, inwards + beyond, partOf(progress, 0.65f, 0.9f), band)) return false;
   const auto depth = static_cast<float>(inwards);
   for (std::size_t i = 0; i < grid.size(); ++i)
     band.distance[i] = (outside[i] != 0 ? -band.distance[i] : band.distance[i]) - depth;

@@ -147,8 +147,8 @@ std::optional<Eyes> findNamedEyes(const Figure& figure) {
     high = std::max(high, dot(heading, p));
   }
   // Whole components go to one side: a bulging iris may be a component of its own.
-  std::vector<std::uint32_t> component;
-  const std::uint32_t count = findComponents(all, component);
+  std::uint32_t count = 0;
+  const std::vector<std::uint32_t> component = connectedPieces(all, count);
   std::vector<double> sums(count), areas(count);
   for (std::size_t t = 0; t < component.size(); ++t) {
     const double area = length(areaNormal(all, all.triangles[t]));

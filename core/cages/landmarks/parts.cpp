@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <numeric>
 #include <string>
 
 namespace cagecast::cages {
@@ -12,11 +11,6 @@ namespace {
 bool contains(const std::string& text, std::initializer_list<std::string_view> words) {
   return std::any_of(words.begin(), words.end(),
                      [&](std::string_view word) { return text.find(word) != std::string::npos; });
-}
-
-std::uint32_t rootOf(std::vector<std::uint32_t>& parents, std::uint32_t v) {
-  while (parents[v] != v) v = parents[v] = parents[parents[v]];
-  return v;
 }
 
 }  // namespace
@@ -41,25 +35,6 @@ TriangleMesh Figure::only(Role first, Role second) const {
   return subset(mesh, keep);
 }
 
-std::uint32_t findComponents(const TriangleMesh& mesh, std::vector<std::uint32_t>& ofTriangle) {
-  std::vector<std::uint32_t> parents(mesh.positions.size());
-  std::iota(parents.begin(), parents.end(), 0u);
-  for (const Triangle3& t : mesh.triangles) {
-    const std::uint32_t a = rootOf(parents, t[0]);
-    parents[rootOf(parents, t[1])] = a;
-    parents[rootOf(parents, t[2])] = a;
-  }
-  std::vector<std::uint32_t> numbers(mesh.positions.size(), kNone);
-  std::uint32_t count = 0;
-  ofTriangle.clear();
-  for (const Triangle3& t : mesh.triangles) {
-    std::uint32_t& number = numbers[rootOf(parents, t[0])];
-    if (number == kNone) number = count++;
-    ofTriangle.push_back(number);
-  }
-  return count;
-}
-
 Figure readFigure(const Model& model) {
   Figure out;
   std::vector<std::uint32_t> triangleOf;
@@ -76,7 +51,7 @@ Figure readFigure(const Model& model) {
   }
   // A file whose only part is called "Eyeball" is a model of an eyeball.
   if (!out.has(Role::surface)) std::fill(out.roles.begin(), out.roles.end(), Role::surface);
-  out.componentCount = findComponents(out.mesh, out.components);
+  out.components = connectedPieces(out.mesh, out.componentCount);
   return out;
 }
 

@@ -35,7 +35,4 @@ struct Figure {
 
 Figure readFigure(const Model& model);
 
-/// Numbers connected components, in the order of their first triangles.
-std::uint32_t findComponents(const TriangleMesh& mesh, std::vector<std::uint32_t>& ofTriangle);
-
 }  // namespace cagecast::cages

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/tolerances.hpp"
+#include "mesh/progress.hpp"
 
 namespace cagecast::cages {
 
@@ -249,18 +250,13 @@ std::vector<bool> HoleMarker::marks() const {
 }
 
 bool HoleMarker::mark(int refinements, const Progress& progress) {
-  const auto part = [&](float from, float to) -> Progress {
-    if (!progress) return {};
-    return
-        [&progress, from, to](float share, const char* stage) { return progress(from + (to - from) * share, stage); };
-  };
-  if (!findSamples(part(0, 0.4f)) || !markFrom(0, part(0.4f, 0.8f))) return false;
+  if (!findSamples(partOf(progress, 0, 0.4f)) || !markFrom(0, partOf(progress, 0.4f, 0.8f))) return false;
   markSamples();
   for (int level = 0; level < refinements; ++level) {
     const Neighbours neighbours = neighboursIn(hull_);
     const std::size_t before = hull_.positions.size();
     refine(within(neighbours, borderOf(neighbours, marks()), kRefinedEdges), hull_, parents_);
-    if (!markFrom(before, part(0.8f, 0.8f))) return false;
+    if (!markFrom(before, partOf(progress, 0.8f, 0.8f))) return false;
     markSamples();
   }
   return !progress || progress(1, "holes");

@@ -19,6 +19,7 @@
 #include "make/wrap.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/part_names.hpp"
+#include "mesh/progress.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -150,13 +151,11 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   if (Outcome outcome = checkOptions(options); !outcome.ok()) return outcome;
   Outcome cancelled{Problem::cancelled, "cancelled"};
   float reached = 0;  // A repeated stage does not go back.
-  const auto part = [&](float from, float to) -> Progress {
-    if (!progress) return {};
-    return [&progress, &reached, from, to](float done, const char* stage) {
-      reached = std::max(reached, from + (to - from) * done);
-      return progress(reached, stage);
-    };
+  const Progress rising = [&progress, &reached](float share, const char* stage) {
+    reached = std::max(reached, share);
+    return !progress || progress(reached, stage);
   };
+  const auto part = [&rising](float from, float to) { return partOf(rising, from, to); };
   std::vector<std::uint32_t> triangleOf;
   TriangleMesh mesh = weldExactly(model.mesh, nullptr, &triangleOf);
   MakeSettings settings = settingsFor(model, options, diagonalOf(mesh));
@@ -205,7 +204,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   unwrapOptions.up = stance.up;
   unwrapOptions.front = stance.front;
   if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return cancelled;
-  if (progress && !part(1, 1)(1, "unwrap")) return cancelled;
+  if (!rising(1, "unwrap")) return cancelled;
   store(layout, settings.kind, out);
   return {};
 }

@@ -9,8 +9,8 @@
 #include <tuple>
 #include <utility>
 
-#include "base/union_find.hpp"
 #include "mesh/bounds.hpp"
+#include "mesh/disjoint_sets.hpp"
 
 namespace cagecast::cages {
 
@@ -104,8 +104,8 @@ void removeFins(TriangleMesh& mesh) {
     for (std::size_t i = 0; i < 3; ++i)
       trianglesAt[std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])].push_back(t);
   }
-  std::vector<std::uint32_t> parents(mesh.triangles.size()), sizes(mesh.triangles.size(), 0);
-  UnionFind pieces(parents.data(), static_cast<std::uint32_t>(parents.size()));
+  std::vector<std::uint32_t> sizes(mesh.triangles.size(), 0);
+  DisjointSets pieces(mesh.triangles.size());
   for (const auto& [edge, triangles] : trianglesAt)
     if (triangles.size() == 2) pieces.join(triangles[0], triangles[1]);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) ++sizes[pieces.find(t)];

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "mesh/bounds.hpp"
+#include "mesh/disjoint_sets.hpp"
 
 namespace cagecast::cages {
 
@@ -85,21 +86,16 @@ TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTrian
 }
 
 std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32_t& count) {
-  std::vector<std::uint32_t> parent(mesh.positions.size());
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets sets(mesh.positions.size());
   for (const Triangle3& t : mesh.triangles) {
-    parent[root(t[1])] = root(t[0]);
-    parent[root(t[2])] = root(t[0]);
+    sets.join(t[0], t[1]);
+    sets.join(t[0], t[2]);
   }
-  std::vector<std::uint32_t> numbers(parent.size(), kNone), pieces;
+  std::vector<std::uint32_t> numbers(mesh.positions.size(), kNone), pieces;
   pieces.reserve(mesh.triangles.size());
   count = 0;
   for (const Triangle3& t : mesh.triangles) {
-    std::uint32_t& number = numbers[root(t[0])];
+    std::uint32_t& number = numbers[sets.find(t[0])];
     if (number == kNone) number = count++;
     pieces.push_back(number);
   }

@@ -7,6 +7,7 @@
 #include "cagecast/cages.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/check_model.hpp"
+#include "mesh/progress.hpp"
 #include "refine/align.hpp"
 #include "refine/bend.hpp"
 
@@ -132,14 +133,14 @@ class Refinement {
  private:
   bool align(Growth growth, float from, Candidate& out) {
     out.cage = given_.cage;
-    if (!alignCage(target_, spots_, {growth, reach_}, part(from, from + 0.3f), out.cage)) return false;
+    if (!alignCage(target_, spots_, {growth, reach_}, partOf(progress_, from, from + 0.3f), out.cage)) return false;
     out.placement = placementOf(target_, measureGaps(target_, out.cage, spots_));
     return true;
   }
 
   bool bend(const Candidate& aligned, Candidate& out) {
     out.cage = aligned.cage;
-    if (!bendCage(target_, spots_, reach_, part(0.6f, 1), out.cage)) return false;
+    if (!bendCage(target_, spots_, reach_, partOf(progress_, 0.6f, 1), out.cage)) return false;
     out.placement = placementOf(target_, measureGaps(target_, out.cage, spots_));
     return true;
   }
@@ -175,11 +176,6 @@ class Refinement {
       squares += dot(way, way) / static_cast<double>(before.size());
     }
     return std::sqrt(squares);
-  }
-
-  [[nodiscard]] Progress part(float from, float to) const {
-    if (!progress_) return {};
-    return [this, from, to](float share, const char* stage) { return progress_(from + share * (to - from), stage); };
   }
 
   Target target_;

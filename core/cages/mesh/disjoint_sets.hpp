@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/union_find.hpp"
+
+namespace cagecast::cages {
+
+/// Disjoint sets of the numbers below a count, each alone at first; the root of a set is its lowest member.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count)
+      : parents_(count), sets_(parents_.data(), static_cast<std::uint32_t>(count)) {}
+  DisjointSets(const DisjointSets&) = delete;
+  DisjointSets& operator=(const DisjointSets&) = delete;
+
+  [[nodiscard]] std::uint32_t find(std::uint32_t i) { return sets_.find(i); }
+  void join(std::uint32_t a, std::uint32_t b) { sets_.join(a, b); }
+
+ private:
+  std::vector<std::uint32_t> parents_;
+  UnionFind sets_;
+};
+
+}  // namespace cagecast::cages
