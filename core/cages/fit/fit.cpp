@@ -16,6 +16,7 @@
 #include "landmarks/parts.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/part_names.hpp"
+#include "mesh/progress.hpp"
 
 /// The fit: landmarks or bones say where everything belongs, a smooth map carries the cage there, and the hull of the
 /// target draws it onto its surface without letting it slide. All in the space of the template, so that how the target
@@ -44,7 +45,7 @@ constexpr std::array kFirstFive{"eye_centre_left", "eye_centre_right", "nose_tip
 constexpr std::size_t kMostNames = 12;
 
 /// Shares of the work, for progress.
-constexpr double kLandmarksEnd = 0.3, kTightenStart = 0.6, kTightenEnd = 0.85;
+constexpr float kLandmarksEnd = 0.3f, kTightenStart = 0.6f, kTightenEnd = 0.85f;
 
 /// What is known of both models.
 struct Pairs {
@@ -201,9 +202,7 @@ Outcome Fit::run(FittedCage& out) {
     return findLandmark(given, landmark.name) != nullptr;
   });
   if (!allGiven) {
-    const Progress finding = [&](float share, const char* stage) {
-      return tell(static_cast<double>(share) * kLandmarksEnd, stage);
-    };
+    const Progress finding = partOf(progress_, 0, kLandmarksEnd);
     if (Outcome outcome = findLandmarks(model_, finding, found); !outcome.ok()) return outcome;
   }
   if (Outcome outcome = pairLandmarks(from_, given, found.landmarks, pairs_, out); !outcome.ok()) return outcome;
@@ -232,13 +231,8 @@ Outcome Fit::run(FittedCage& out) {
                                        " bones; give more of them, or landmarks on the skin"};
   if (!tell(kLandmarksEnd, "hull")) return cancelled;
   TriangleMesh hull;
-  const bool done = makeHull(
-      figure_.mesh, {settings.closing * cage.diagonal, cage.offset, settings.voxels, middleOf(pairs_.to)},
-      [&](float share, const char*) {
-        return tell(kLandmarksEnd + static_cast<double>(share) * (kTightenStart - kLandmarksEnd), "hull");
-      },
-      hull);
-  if (!done) return cancelled;
+  const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels, middleOf(pairs_.to)};
+  if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return cancelled;
   if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
   std::vector<Vec3> positions = start(cage, anchors);
   for (int pass = 0; pass < settings.passes; ++pass) {
@@ -249,6 +243,7 @@ Outcome Fit::run(FittedCage& out) {
     if (positions.empty()) return cancelled;
   }
   const std::vector<Vec3> tracks = fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
+  if (!tell(kTightenEnd, "fit")) return cancelled;
   relax(cage, tracks, positions);
   const bool pushed = pushOut(
       cage, {skin_, hull}, tracks,

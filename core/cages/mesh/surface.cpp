@@ -20,7 +20,8 @@ struct Surface::Trees {
   Units units;
   cagecast::Cage cage;
   CageTree tree;
-  Vec3 centre{};  ///< Of the box: coordinates relative to it have smaller rounding errors.
+  Vec3 centre{};    ///< Of the box: coordinates relative to it have smaller rounding errors.
+  double edge = 0;  ///< How long edges are, about, scaled.
 
   [[nodiscard]] Vec3 scaled(const Vec3& p) const { return static_cast<double>(units.scale) * (p - centre); }
   [[nodiscard]] Vec3 unscaled(const Vec3& p) const { return 1 / static_cast<double>(units.scale) * p + centre; }
@@ -31,6 +32,9 @@ namespace {
 /// A triangle is a needle if its height is less than this share of the mesh's diagonal: the search takes floats, in
 /// which it has no certain plane.
 constexpr double kNeedle = 1e-6;
+/// Points are searched for together if they are within this many edges of the first: those farther apart have different
+/// triangles near them, and each would be tested against all.
+constexpr double kGroupEdges = 2;
 
 /// Whether each triangle is a needle; none of them, if all are.
 std::vector<bool> needlesIn(const TriangleMesh& mesh, double diagonal) {
@@ -70,6 +74,10 @@ Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
     // A needle becomes a point, which is left out: its neighbours are as near.
     for (const std::uint32_t v : mesh.triangles[i]) indices.push_back(isNeedle[i] ? mesh.triangles[i][0] : v);
   }
+  double doubledArea = 0;
+  for (const Triangle3& t : mesh.triangles) doubledArea += length(areaNormal(mesh, t));
+  const double perTriangle = doubledArea / static_cast<double>(mesh.triangles.size());
+  trees.edge = static_cast<double>(trees.units.scale) * std::sqrt(perTriangle);
   const std::vector<float> uvs(2 * mesh.positions.size(), 0.0f);
   Units identity = trees.units;
   identity.scale = 1;  // Positions are scaled already.
@@ -92,13 +100,15 @@ std::vector<SurfacePoint> Surface::closest(std::span<const Vec3> points) const {
   std::vector<SurfacePoint> out(points.size());
   constexpr std::uint32_t kGroup = ClosestPointSearch::kGroup;
   float group[4 * kGroup] = {};
-  for (std::size_t first = 0; first < points.size(); first += kGroup) {
-    const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(kGroup, points.size() - first));
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const Vec3 p = trees.scaled(points[first + i]);
-      group[4 * i] = static_cast<float>(p.x);
-      group[4 * i + 1] = static_cast<float>(p.y);
-      group[4 * i + 2] = static_cast<float>(p.z);
+  for (std::size_t first = 0, next = 0; first < points.size(); first = next) {
+    const Vec3 start = trees.scaled(points[first]);
+    std::uint32_t count = 0;
+    for (; next < points.size() && count < kGroup; ++next, ++count) {
+      const Vec3 p = trees.scaled(points[next]);
+      if (length(p - start) > kGroupEdges * trees.edge) break;
+      group[4 * count] = static_cast<float>(p.x);
+      group[4 * count + 1] = static_cast<float>(p.y);
+      group[4 * count + 2] = static_cast<float>(p.z);
     }
     search.search(group, count);
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -80,8 +80,8 @@ struct RefineOptions {
   float reach = 0.05f;  ///< How far off the cage may be, as a share of the diagonal: 0.001 to 0.2.
 };
 
-/// Reports how far a call is, as a share 0..1, and what it does ("hull", "unwrap"). Called at least every 50 ms of
-/// work. Return false to cancel.
+/// Reports how far a call is, as a share 0..1, and what it does ("hull", "unwrap"). Called many times a
+/// second; on a model of a million triangles, single steps between two calls take seconds. Return false to cancel.
 using Progress = std::function<bool(float share, const char* stage)>;
 
 enum class Problem : std::uint8_t {
