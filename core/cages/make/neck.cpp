@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hull/hull.hpp"
 
@@ -11,23 +12,30 @@ namespace {
 
 /// An opening of at least this width, in diagonals, is a neck,
 constexpr double kLeastWidth = 0.2;
-/// if this share of the head is on one side of it.
+/// if this share of the head is on one side of it,
 constexpr double kBehind = 0.97;
+/// and its own piece reaches this far to that side of its border, in widths of the opening. A sheet, such as a strand
+/// of hair or a visor, lies within its border.
+constexpr double kLeastDepth = 0.1;
 /// A hull belongs to a neck as far as this from its axis and its plane, in radii of the opening.
 constexpr double kReach = 1.3;
+
+/// The normal of the area that a loop encloses, on either side.
+Vec3 normalOf(const TriangleMesh& head, const std::vector<std::uint32_t>& loop) {
+  Vec3 area{0, 0, 0};
+  const Vec3& first = head.positions[loop[0]];
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    area = area + cross(head.positions[loop[(i + 1) % loop.size()]] - first, head.positions[loop[i]] - first);
+  return length(area) > 0 ? 1 / length(area) * area : Vec3{0, -1, 0};
+}
 
 /// The plane of an opening.
 Neck planeOf(const TriangleMesh& head, const Opening& opening) {
   const std::vector<std::uint32_t>& loop = opening.loop;
-  const std::size_t n = loop.size();
   Neck neck;
-  Vec3 area{0, 0, 0};
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3& p = head.positions[loop[i]];
-    neck.middle = neck.middle + 1 / static_cast<double>(n) * p;
-    area = area + cross(head.positions[loop[(i + 1) % n]] - head.positions[loop[0]], p - head.positions[loop[0]]);
-  }
-  neck.normal = length(area) > 0 ? 1 / length(area) * area : Vec3{0, -1, 0};
+  for (const std::uint32_t v : loop)
+    neck.middle = neck.middle + 1 / static_cast<double>(loop.size()) * head.positions[v];
+  neck.normal = normalOf(head, loop);
   // Away from most of the head, also where its triangles are turned inside out.
   std::size_t before = 0;
   for (const Vec3& p : head.positions) before += dot(p - neck.middle, neck.normal) > 0 ? 1 : 0;
@@ -37,12 +45,48 @@ Neck planeOf(const TriangleMesh& head, const Opening& opening) {
   return neck;
 }
 
+/// The vertices of each connected piece of a mesh.
+class Pieces {
+ public:
+  explicit Pieces(const TriangleMesh& mesh) : of_(mesh.positions.size(), kNone) {
+    std::uint32_t count = 0;
+    const std::vector<std::uint32_t> pieces = connectedPieces(mesh, count);
+    vertices_.resize(count);
+    for (std::size_t t = 0; t < pieces.size(); ++t)
+      for (const std::uint32_t v : mesh.triangles[t]) {
+        if (of_[v] == kNone) vertices_[pieces[t]].push_back(v);
+        of_[v] = pieces[t];
+      }
+  }
+  /// The vertices of the piece that a vertex belongs to.
+  [[nodiscard]] const std::vector<std::uint32_t>& with(std::uint32_t vertex) const { return vertices_[of_[vertex]]; }
+
+ private:
+  std::vector<std::uint32_t> of_;
+  std::vector<std::vector<std::uint32_t>> vertices_;
+};
+
 /// Whether a head ends at an opening.
-bool isNeck(const TriangleMesh& head, const Opening& opening) {
+bool isNeck(const TriangleMesh& head, const Pieces& pieces, const Opening& opening) {
+  const auto extent = [&](const std::vector<std::uint32_t>& vertices, const Vec3& along) {
+    double low = INFINITY, high = -INFINITY;
+    for (const std::uint32_t v : vertices) {
+      low = std::min(low, dot(head.positions[v], along));
+      high = std::max(high, dot(head.positions[v], along));
+    }
+    return std::pair{low, high};
+  };
+  // Most openings of models with thousands of them are sheets, which their own vertices tell.
+  const Vec3 normal = normalOf(head, opening.loop);
+  const auto [loopLow, loopHigh] = extent(opening.loop, normal);
+  const auto [low, high] = extent(pieces.with(opening.loop[0]), normal);
+  const double leastDepth = kLeastDepth * opening.width;
+  if (loopLow - low < leastDepth && high - loopHigh < leastDepth) return false;
   const Neck neck = planeOf(head, opening);
+  const double depth = dot(neck.normal, normal) > 0 ? loopLow - low : high - loopHigh;
   const auto behind = std::count_if(head.positions.begin(), head.positions.end(),
                                     [&](const Vec3& p) { return dot(p, neck.normal) <= neck.height; });
-  return static_cast<double>(behind) >= kBehind * static_cast<double>(head.positions.size());
+  return depth >= leastDepth && static_cast<double>(behind) >= kBehind * static_cast<double>(head.positions.size());
 }
 
 Neck extend(const Opening& opening, double by, TriangleMesh& head) {
@@ -73,8 +117,9 @@ std::vector<Neck> extendNecks(double by, TriangleMesh& head) {
   closeOpenings(head, kLeastWidth * diagonalOf(head), &openings);
   std::vector<Neck> necks;
   const TriangleMesh own = head;
+  const Pieces pieces(own);
   for (const Opening& opening : openings)
-    if (isNeck(own, opening)) necks.push_back(extend(opening, by, head));
+    if (isNeck(own, pieces, opening)) necks.push_back(extend(opening, by, head));
   return necks;
 }
 

@@ -15,7 +15,7 @@ struct Neck {
 };
 
 /// Lengthens the open necks of a head to planes beyond them, for a hull to follow: openings of at least a fifth of the
-/// diagonal, at which the head ends.
+/// diagonal at which the head ends, and a piece of it that is more than a sheet.
 /// @param by  From the outermost spot of the border to the plane.
 /// @param[in,out] head  Gets vertices and triangles after its own.
 std::vector<Neck> extendNecks(double by, TriangleMesh& head);

@@ -78,6 +78,29 @@ TEST_CASE("a made cage is around its model, with holes over eyes and at the neck
   }
 }
 
+TEST_CASE("strands of hair and visors are no necks", "[cages][make]") {
+  OwnedModel model = head();
+  TriangleMesh strand, visor;
+  for (std::uint32_t k = 0; k < 12; ++k) {
+    const double down = 0.1 + 0.1 * k;
+    for (const double aside : {-0.05, 0.05})
+      strand.positions.push_back(1.03 * Vec3{-std::sin(down), std::cos(down), aside * std::sin(down)});
+    if (k == 11) break;
+    strand.triangles.push_back({2 * k, 2 * k + 2, 2 * k + 1});
+    strand.triangles.push_back({2 * k + 1, 2 * k + 2, 2 * k + 3});
+  }
+  visor.positions = {{-0.5, 0.5, 1.05}, {0.5, 0.5, 1.05}, {0.5, -0.5, 1.05}, {-0.5, -0.5, 1.05}, {0, 0, 1.1}};
+  for (std::uint32_t k = 0; k < 4; ++k) visor.triangles.push_back({4, (k + 1) % 4, k});
+  model.add("strand", strand);
+  model.add("visor", visor);
+  MakeOptions options;
+  options.kind = Kind::head;
+  options.exclude = {};
+  const TriangleMesh mesh = meshOf(made(model.model(), options));
+  REQUIRE(boundaryLoops(mesh).size() == 1);
+  CHECK(hasHoleAt(mesh, {0, -1, 0}, 0.3));
+}
+
 TEST_CASE("patterns decide what is excluded", "[cages][make]") {
   const OwnedModel model = head();
   MakeOptions options;
