@@ -272,7 +272,7 @@ std::vector<double> HoleMarker::field() const {
   return field;
 }
 
-std::size_t HoleMarker::widen(const TriangleMesh& cage) {
+double HoleMarker::widen(const TriangleMesh& cage) {
   const Surface surface(cage);
   std::vector<Vec3> positions;
   positions.reserve(samples_.size());
@@ -300,11 +300,11 @@ std::size_t HoleMarker::widen(const TriangleMesh& cage) {
   for (std::size_t i = 0; i < samples_.size(); ++i)
     if (isCovered[i] && covered[samples_[i].piece] > kMostCovered * all[samples_[i].piece])
       front.push_back(vertices[i]);
-  const std::size_t count = front.size();
+  const double share = samples_.empty() ? 0 : static_cast<double>(front.size()) / static_cast<double>(samples_.size());
   widened_ += kWidening;
   const std::vector<bool> reached = within(neighboursIn(hull_), std::move(front), widened_);
   for (std::size_t v = 0; v < reached.size(); ++v) below_[v] = below_[v] || reached[v];
-  return count;
+  return share;
 }
 
 }  // namespace cagecast::cages

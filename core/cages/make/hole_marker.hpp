@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -39,8 +38,8 @@ class HoleMarker {
 
   /// Marks more of the hull where a cage made with `field` still covers too much of a marked part; farther around each
   /// time that it is called.
-  /// @return how many samples of such parts the cage covers.
-  std::size_t widen(const TriangleMesh& cage);
+  /// @return the share of the marked parts that the cage covers of such parts; 0 if there are none.
+  double widen(const TriangleMesh& cage);
 
  private:
   /// A spot on a marked part that is seen from the hull.

@@ -42,6 +42,8 @@ constexpr double kDepthMargin = 0.4;
 constexpr double kFarthestPush = 4;
 /// How often the cage is made at most, with wider holes where it covers too much.
 constexpr int kAttempts = 5;
+/// Wider holes may open this share more of the hull.
+constexpr double kMostWidened = 0.1;
 /// Points of the hull that the cage is moved past, about.
 constexpr std::size_t kEnclosedPoints = 20000;
 
@@ -134,6 +136,49 @@ std::vector<OuterPoint> pointsToEnclose(const TriangleMesh& hull, const std::vec
   return points;
 }
 
+/// What a cage is shaped from.
+struct MarkedHull {
+  const TriangleMesh& mesh;
+  const std::vector<Neck>& necks;
+  HoleMarker& marker;
+};
+
+Outcome cancelled() { return {Problem::cancelled, "cancelled"}; }
+Outcome nothingToPaint() {
+  return {Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
+}
+
+/// Cuts holes into a hull, simplifies it, and moves it past the model; again with wider holes where it then covers too
+/// much of what must not be painted. A later cage may be worse, as it is simplified differently: the best is kept.
+Outcome shape(const MarkedHull& hull, const MakeSettings& settings, const Progress& progress, TriangleMesh& out) {
+  const double offset = settings.hull.offset, depth = (1 - kDepthMargin) * offset;
+  double covered = 1, leastCovered = std::numeric_limits<double>::infinity(), leastClosed = 0;
+  for (int attempt = 0; attempt < kAttempts && covered > 0; ++attempt) {
+    std::vector<double> field = hull.marker.field();
+    openNecks(hull.mesh, hull.necks, field);
+    const auto closed = std::count_if(field.begin(), field.end(), [](double open) { return open < 0.5; });
+    if (attempt == 0) leastClosed = (1 - kMostWidened) * static_cast<double>(closed);
+    if (static_cast<double>(closed) < leastClosed) break;
+    const TriangleMesh shell = cutHoles(hull.mesh, field);
+    if (shell.empty() && out.empty()) return nothingToPaint();
+    TriangleMesh cage;
+    if (!simplify(shell, {settings.triangles, offset}, partOf(progress, kHolesEnd, kSimplifyEnd), cage))
+      return cancelled();
+    if (cage.empty() && out.empty())
+      return {Problem::badModel,
+              "model is too thin for a cage of so few triangles: nothing is left of its hull; allow more triangles"};
+    if (cage.empty()) break;
+    if (!enclose(pointsToEnclose(hull.mesh, field, depth), kFarthestPush * offset,
+                 partOf(progress, kSimplifyEnd, kEncloseEnd), cage))
+      return cancelled();
+    covered = hull.marker.widen(cage);
+    if (covered >= leastCovered) continue;
+    leastCovered = covered;
+    out = std::move(cage);
+  }
+  return {};
+}
+
 void store(const Layout& layout, Kind kind, Cage& out) {
   out = {};
   out.kind = kind;
@@ -149,7 +194,6 @@ void store(const Layout& layout, Kind kind, Cage& out) {
 Outcome makeCage(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out) {
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
   if (Outcome outcome = checkOptions(options); !outcome.ok()) return outcome;
-  Outcome cancelled{Problem::cancelled, "cancelled"};
   float reached = 0;  // A repeated stage does not go back.
   const Progress rising = [&progress, &reached](float share, const char* stage) {
     reached = std::max(reached, share);
@@ -164,8 +208,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   lookForEyes(model, options, settings.kind, isMarked);
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
-  Outcome nothingToPaint{Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
-  if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return nothingToPaint;
+  if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return nothingToPaint();
   isMarked.resize(mesh.triangles.size(), false);
   TriangleMesh hull;
   const WrapOptions wrapping{settings.hull, options.closing == 0};
@@ -174,37 +217,17 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   const Surface surface(mesh);
   const MarkedMesh marked{&mesh, &surface, std::move(isMarked)};
   HoleMarker marker(marked, kVisibleDepth * offset, hull);
-  if (!marker.mark(settings.kind == Kind::body ? 2 : 1, part(kHullEnd, kHolesEnd))) return cancelled;
-  // A later cage may cover more than an earlier one, as it is simplified differently: the best is kept.
+  if (!marker.mark(settings.kind == Kind::body ? 2 : 1, part(kHullEnd, kHolesEnd))) return cancelled();
   TriangleMesh cage;
-  std::size_t leastCovered = std::numeric_limits<std::size_t>::max();
-  for (int attempt = 0; attempt < kAttempts && leastCovered > 0; ++attempt) {
-    std::vector<double> field = marker.field();
-    openNecks(hull, necks, field);
-    const TriangleMesh shell = cutHoles(hull, field);
-    if (shell.empty() && cage.empty()) return nothingToPaint;
-    TriangleMesh next;
-    if (!simplify(shell, {settings.triangles, offset}, part(kHolesEnd, kSimplifyEnd), next)) return cancelled;
-    if (next.empty() && cage.empty())
-      return {Problem::badModel,
-              "model is too thin for a cage of so few triangles: nothing is left of its hull; allow more triangles"};
-    if (next.empty()) break;
-    const double depth = (1 - kDepthMargin) * offset;
-    if (!enclose(pointsToEnclose(hull, field, depth), kFarthestPush * offset, part(kSimplifyEnd, kEncloseEnd), next))
-      return cancelled;
-    const std::size_t covered = marker.widen(next);
-    if (covered >= leastCovered) continue;
-    leastCovered = covered;
-    cage = std::move(next);
-  }
+  if (Outcome outcome = shape({hull, necks, marker}, settings, rising, cage); !outcome.ok()) return outcome;
   Layout layout;
   UnwrapOptions unwrapOptions;
   const Stance stance = stanceOf(model);
   unwrapOptions.kind = settings.kind;
   unwrapOptions.up = stance.up;
   unwrapOptions.front = stance.front;
-  if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return cancelled;
-  if (!rising(1, "unwrap")) return cancelled;
+  if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return cancelled();
+  if (!rising(1, "unwrap")) return cancelled();
   store(layout, settings.kind, out);
   return {};
 }
