@@ -5,7 +5,7 @@ import { after, before, describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import type { Browser, Page } from 'playwright-core';
 import { PNG } from 'pngjs';
-import { build } from 'vite';
+import { build, createServer } from 'vite';
 import { validate } from '../js/glb.js';
 import { launchChromium } from '../support/chromium.js';
 import { GlbMaker, tetrahedron } from '../support/glb.js';
@@ -171,6 +171,29 @@ describe('examples, from the packed package', () => {
     const { page } = await open(`${sites[1]!.origin}/import-map/index.html`);
     await seen(page);
     await page.close();
+  });
+});
+
+describe('examples, as examples/README.md says', () => {
+  test('worker shows the paint where cagecast is a link to the repository', async () => {
+    const repository = join(user, 'repository');
+    const folder = join(repository, 'examples/worker');
+    cpSync(join(user, 'node_modules/cagecast'), repository, { recursive: true });
+    cpSync(join(user, 'examples/worker'), folder, { recursive: true });
+    symlinkSync(join(user, 'build'), join(repository, 'build'));
+    mkdirSync(join(folder, 'node_modules'));
+    symlinkSync(repository, join(folder, 'node_modules/cagecast'));
+    symlinkSync(resolve('node_modules/three'), join(folder, 'node_modules/three'));
+    const server = await createServer({ root: folder, logLevel: 'error', server: { host: '127.0.0.1' } });
+    try {
+      await server.listen();
+      const { page, faults } = await open(server.resolvedUrls!.local[0]!);
+      await seen(page);
+      assert.deepEqual(faults, []);
+      await page.close();
+    } finally {
+      await server.close();
+    }
   });
 });
 
