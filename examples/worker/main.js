@@ -33,12 +33,23 @@ renderer.setAnimationLoop((time) => {
 
 // The first visit makes the transfer in a worker and keeps it. Later visits need neither the worker nor the cage.
 const cache = await caches.open('cagecast');
-const kept = await cache.match('transfer');
-const saved = kept && deserialize(new Uint8Array(await kept.arrayBuffer()));
-const onProgress = (share) => {
-  document.title = `${Math.round(100 * share)} %`;
-};
-const cage = saved ? undefined : (await load('cage.glb')).scene;
-const applied = await applyTransferAsync(head.scene, cage, { saved, texture: paint, onProgress });
-if (!saved) await cache.put('transfer', new Response(serialize(applied)));
+async function applyKept() {
+  const kept = await cache.match('transfer');
+  try {
+    const saved = kept && deserialize(new Uint8Array(await kept.arrayBuffer()));
+    return saved && (await applyTransferAsync(head.scene, undefined, { saved, texture: paint }));
+  } catch {
+    return undefined; // it is of another version of the package or of the model
+  }
+}
+async function applyAnew() {
+  const cage = await load('cage.glb');
+  const onProgress = (share) => {
+    document.title = `${Math.round(100 * share)} %`;
+  };
+  const made = await applyTransferAsync(head.scene, cage.scene, { texture: paint, onProgress });
+  await cache.put('transfer', new Response(serialize(made)));
+  return made;
+}
+const applied = (await applyKept()) ?? (await applyAnew());
 document.title = `${applied.parts.length} painted`;

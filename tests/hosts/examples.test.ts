@@ -143,6 +143,13 @@ describe('examples, from the packed package', () => {
         await page.reload();
         await painted(page, faults);
         assert.equal(cages, 0);
+        // What an earlier version kept is replaced.
+        await page.evaluate('caches.open("cagecast").then((cache) => cache.put("transfer", new Response("old")))');
+        await page.reload();
+        await painted(page, faults);
+        await page.reload();
+        await painted(page, faults);
+        assert.equal(cages, 1);
       }
       if (name === 'two-avatars') {
         const blue = () =>
