@@ -782,6 +782,9 @@ describe('saved transfers', () => {
     const bytes = serialize(applyTransfer(meshOf(scene.target), meshOf(scene.cage)));
     const other = meshOf({ ...scene.target, positions: scene.target.positions.map((x) => 0.999 * x) });
     assert.throws(() => applyTransfer(other, undefined, { saved: deserialize(bytes) }), /saved is of another target/);
+    const moved = meshOf(scene.target);
+    moved.position.x = 1;
+    assert.throws(() => applyTransfer(moved, undefined, { saved: deserialize(bytes) }), /load and place it as it was$/);
     const refuses = (wrong: Uint8Array, message: RegExp) =>
       assert.throws(
         () => deserialize(wrong),

@@ -52,7 +52,7 @@ export function checkSaved({ key, prepared }: Saved, target: Extracted): Prepare
   if (!key.startsWith(`${targetKey(target)}-`))
     throw new CagecastError(
       'badArgument',
-      'cagecast/three: options.saved is of another target or state of it; load it again',
+      'cagecast/three: options.saved is of another target or state of it; load and place it as it was',
     );
   return prepared;
 }
