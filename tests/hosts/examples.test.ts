@@ -388,6 +388,50 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     await page.evaluate('viewer.removeAttribute("opacity")');
   });
 
+  test('goes on telling of an opacity when another paint comes, and exports the one that is shown', async () => {
+    const before = await picture();
+    assert.match(await page.evaluate('viewer.setAttribute("opacity", "5"); next()'), /^error .*5 is not a number/);
+    const file = join(user, 'opacity.glb');
+    writeFileSync(file, await bytesOf('viewer.exportGlb().then((glb) => text(new Blob([glb])))'));
+    assert.deepEqual(await validate(file), []);
+    await page.evaluate(`(async () => {
+      viewer.setAttribute("paint", "paint-war-paint.png");
+      while (!told.includes("load")) await next();
+    })()`);
+    assert.match(await page.innerText('cagecast-viewer [role=alert]'), /5 is not a number/);
+    // The error of something else stays when the opacity is mended.
+    assert.match(await page.evaluate('viewer.setAttribute("paint", "none.png"); next()'), /^error paint: .*none/);
+    await page.evaluate('viewer.removeAttribute("opacity")');
+    assert.match(await page.innerText('cagecast-viewer [role=alert]'), /none\.png/);
+    await page.evaluate('viewer.setAttribute("paint", "paint-tiger.png"); next()');
+    assert.ok(await page.isHidden('cagecast-viewer [role=alert]'), 'no error is left');
+    assert.deepEqual(await picture(), before);
+  });
+
+  test('leaves the camera where it is at another transfer of the same model, and places it for another model', async () => {
+    const placed = await picture();
+    await page.evaluate('viewer.focus()');
+    await page.keyboard.press('ArrowRight');
+    const turned = await picture();
+    assert.notDeepEqual(turned, placed);
+    await page.evaluate('viewer.setAttribute("threshold", "0.4"); next()');
+    await page.evaluate('viewer.removeAttribute("threshold"); next()');
+    assert.deepEqual(await picture(), turned);
+    const target = await page.evaluate<string>('viewer.getAttribute("target")');
+    await page.evaluate('viewer.setAttribute("target", "cage.glb"); next()');
+    await page.evaluate(`viewer.setAttribute("target", "${target}"); next()`);
+    assert.deepEqual(await picture(), placed);
+  });
+
+  test('shows its poster again when its target is taken away', async () => {
+    const target = await page.evaluate<string>('viewer.getAttribute("target")');
+    await page.evaluate('viewer.setAttribute("poster", "paint-tiger.png"); viewer.removeAttribute("target")');
+    assert.ok(await page.isVisible('cagecast-viewer .poster'), 'nothing is shown');
+    await page.evaluate(`viewer.setAttribute("target", "${target}"); next()`);
+    assert.ok(await page.isHidden('cagecast-viewer .poster'), 'the model is shown');
+    await page.evaluate('viewer.removeAttribute("poster")');
+  });
+
   test('exports what is shown, not what cannot be loaded', async () => {
     const target = await page.evaluate<string>('viewer.getAttribute("target")');
     const exported = () => bytesOf('viewer.exportGlb().then((glb) => text(new Blob([glb])))');

@@ -37,6 +37,8 @@ interface Shown {
   gltf: GLTF;
   applied: Applied | undefined;
   paint: Texture | undefined;
+  /** Of the paint. */
+  opacity: number;
 }
 
 /**
@@ -123,7 +125,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
    * @throws Error if nothing is shown yet.
    */
   async exportGlb(): Promise<ArrayBuffer> {
-    const { file, applied, paint } = this.#get('exportGlb');
+    const { file, applied, paint, opacity } = this.#get('exportGlb');
     // Of the file as it was: its address may lead nowhere by now. The paint may change meanwhile.
     const [{ GLTFExporter }, { scene, animations }, map] = await Promise.all([
       import('three/addons/exporters/GLTFExporter.js'),
@@ -133,7 +135,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     try {
       if (applied && map) {
         map.channel = applied.channel;
-        const material = new MeshStandardMaterial({ map, transparent: true, opacity: this.#options().opacity ?? 1 });
+        const material = new MeshStandardMaterial({ map, transparent: true, opacity });
         applyTransfer(scene, undefined, { saved: deserialize(serialize(applied)), channel: applied.channel, material });
       }
       return (await new GLTFExporter().parseAsync(scene, { binary: true, animations })) as ArrayBuffer;
@@ -183,7 +185,9 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
 
   #setOpacity(): void {
     try {
-      this.#shown?.applied?.setOpacity(this.#options().opacity ?? 1);
+      const { opacity = 1 } = this.#options();
+      this.#shown?.applied?.setOpacity(opacity);
+      if (this.#shown) this.#shown.opacity = opacity;
       this.#stage?.draw();
       if (this.#hasBadOpacity) this.#error.hidden = true;
       this.#hasBadOpacity = false;
@@ -220,6 +224,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   #fail(error: unknown): void {
     this.#error.textContent = (error as Error).message;
     this.#error.hidden = false;
+    this.#hasBadOpacity = false;
     this.#tell('error', error);
   }
 
@@ -246,7 +251,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
         outer &&
         (await applyTransferAsync(gltf.scene, outer.gltf.scene, { ...options, texture: paint, signal, onProgress }));
       signal.throwIfAborted();
-      shown = { file, gltf, applied, paint };
+      shown = { file, gltf, applied, paint, opacity: options.opacity ?? 1 };
       if (check && applied) tellVerdict = () => this.#tell('verdict', check(applied, options));
     } catch (error) {
       // Neither what was loaded nor what is still to come is of use now.
@@ -256,11 +261,13 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     } finally {
       free(around);
     }
+    // Another transfer of the same model leaves the camera where people have moved it.
+    const isSame = this.#shown?.file.url === shown.file.url;
     this.#drop();
     this.#shown = shown;
     this.#isOutdated = false;
     this.#poster.hidden = true;
-    this.#stage!.show(shown.gltf.scene, this.#orbit());
+    this.#stage!.show(shown.gltf.scene, isSame ? undefined : this.#orbit());
     this.#setOpacity(); // It may have changed since.
     tellVerdict?.();
   }
@@ -286,6 +293,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     shown.paint?.dispose();
     shown.paint = paint;
     this.#stage!.draw();
+    this.#setOpacity(); // Its error, if there is one, was hidden.
   }
 
   #options(): ApplyOptions {
@@ -332,6 +340,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     if (this.#shown) disposeModel(this.#shown.gltf.scene);
     this.#shown = undefined;
     this.#isOutdated = true;
+    this.#poster.hidden = !this.getAttribute('poster');
   }
 
   #free(): void {

@@ -59,11 +59,12 @@ export class Stage {
     this.#resize();
   }
 
-  /** Shows a model instead of the one before, from where `orbit` says. */
-  show(model: Object3D, orbit: Orbit): void {
+  /** Shows a model instead of the one before, from where `orbit` says; without it, the same one again, from where the camera is. */
+  show(model: Object3D, orbit: Orbit | undefined): void {
     this.clear();
     this.#model = model;
     this.#scene.add(model);
+    if (!orbit) return;
     const { center, radius } = new Box3().setFromObject(model).getBoundingSphere(new Sphere());
     this.#controls.target.copy(center);
     this.#whole = (radius || 1) / Math.sin(MathUtils.degToRad(this.#camera.fov) / 2);
