@@ -338,6 +338,7 @@ export const layerScenes: Record<string, () => unknown> = {
       () => painter.stroke(path, { color: 'red' }),
       () => painter.stroke(path, { opacity: 2 }),
       () => painter.stroke([{ x: Number.NaN, y: 0 }]),
+      () => (createPainter as () => unknown)(),
       () => createPainter({ renderer, applied: {} as Applied, cage: cage() }),
       () => createPainter({ renderer, applied: [], cage: cage(), size: 512 as 1024 }),
     ].map(messageOf);
@@ -513,6 +514,30 @@ export const layerScenes: Record<string, () => unknown> = {
     }
     layers.dispose();
     return { made, left };
+  },
+
+  /** How many listeners painters leave on layers that go on: of one that has painted, and of one that has not. */
+  followers() {
+    const layers = createLayers({ renderer, size: 256 });
+    const { on } = layers;
+    let listeners = 0;
+    layers.on = ((...given: Parameters<typeof on>) => {
+      const stop = on.apply(layers, given);
+      ++listeners;
+      return () => {
+        stop();
+        --listeners;
+      };
+    }) as typeof on;
+    const left = [true, false].map((paints) => {
+      listeners = 0;
+      const painter = createPainter({ layers, applied: [], cage: cage() });
+      if (paints) painter.stroke([{ x: 0.5, y: 0.5 }]);
+      painter.dispose();
+      return listeners;
+    });
+    layers.dispose();
+    return left;
   },
 
   /** A part in front of another one that is taken out of the model. */

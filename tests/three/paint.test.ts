@@ -519,6 +519,7 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
       /opacity is 2, not a number from 0 to 1$/,
       /a point is \(NaN, 0\), not a UV$/,
       /options\.applied is not what applyTransfer returned$/,
+      /options\.applied is not what applyTransfer returned$/,
       /size is 512, not one of 1024, 2048$/,
     ];
     seen.errors.forEach((message, i) => assert.match(message, expected[i]!));
@@ -576,6 +577,10 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     const { made, left } = await run<{ made: number[]; left: Record<string, number> }>('leftovers');
     for (const count of made) assert.ok(count >= 3, made.join());
     assert.deepEqual(left, { renderers: 0, texels: 0, canvases: 0 });
+  });
+
+  test('painters that have painted nothing leave no listener on their layers', async () => {
+    assert.deepEqual(await run('followers'), [1, 0]);
   });
 
   test('a part that was taken out of a model in a scene is not picked', async () => {

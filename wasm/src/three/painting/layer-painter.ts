@@ -39,7 +39,7 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
   #layer: Layer | undefined;
   #name = '';
   /** All sheets that may be shown again: in the stack, or removed and kept by the undo history. */
-  readonly #sheets: WeakRef<PaintedSheet>[] = [];
+  readonly sheets: WeakRef<PaintedSheet>[] = [];
 
   constructor(layers: PaintedLayers) {
     super();
@@ -137,22 +137,17 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
       if (parts.length === 0) edits.cancel();
     }
     if (parts.length === 0) return;
+    const rects = parts.map(({ rect }) => rect);
     const put = (which: 'before' | 'after'): void => {
       for (const part of parts) sheet.put(renderer, part.rect, part[which]);
-      this.#changed(
-        sheet,
-        parts.map(({ rect }) => rect),
-      );
+      this.#changed(sheet, rects);
     };
     edits.end(this.#name, {
       bytes: parts.reduce((sum, { before, after }) => sum + before.length + after.length, 0),
       undo: () => put('before'),
       redo: () => put('after'),
     });
-    this.#changed(
-      sheet,
-      parts.map(({ rect }) => rect),
-    );
+    this.#changed(sheet, rects);
   }
 
   /** Discards the stroke. */
@@ -173,13 +168,13 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
 
   /** Uploads a sheet too, after the graphics context was lost. */
   keep(sheet: PaintedSheet): void {
-    this.#sheets.push(new WeakRef(sheet));
+    this.sheets.push(new WeakRef(sheet));
   }
 
   /** Uploads all paintings again, after the graphics context was lost. */
   restore(): void {
     const { renderer, composite, stack } = this.#layers;
-    for (const sheet of this.#sheets) sheet.deref()?.restore(renderer);
+    for (const sheet of this.sheets) sheet.deref()?.restore(renderer);
     composite.set(stack.layers);
     this.emit('change', undefined);
   }

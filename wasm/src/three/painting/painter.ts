@@ -15,7 +15,7 @@ import { Stroke } from './stroke.js';
 export interface PainterOptions extends Partial<Pick<LayersOptions, 'renderer'>> {
   /** The layers to paint on, of `cagecast/three/layers`. Default: new ones, for which `renderer` is needed. */
   layers?: Layers | undefined;
-  /** The lowest of new layers, as for `layers.add`; not for given ones. */
+  /** The lowest of new layers, as for `layers.add`. It is ignored where there are `layers`: add it to those. */
   texture?: Texture | undefined;
   /** What was painted: the models that pointers paint on. Each of them is given the layers' texture. */
   applied: Applied | readonly Applied[];
@@ -73,8 +73,9 @@ export class Painter {
   readonly #models: readonly Applied[];
   readonly #sheet = new StickerSheet();
   readonly #stops = new Set<() => void>();
+  readonly #unfollow: () => void;
 
-  constructor({ layers, renderer, texture, applied, cage, size }: PainterOptions) {
+  constructor({ layers, renderer, texture, applied, cage, size } = {} as PainterOptions) {
     this.#models = [applied].flat();
     for (const model of this.#models)
       if (typeof model?.setTexture !== 'function')
@@ -93,7 +94,7 @@ export class Painter {
     if (size !== undefined) this.#painter.size = size;
     const mesh: CageMesh = { positions: Float32Array.from(positions), indices, uvs: Float32Array.from(uvs) };
     this.#painter.setCage(mesh);
-    follow(this.layers, this.#painter);
+    this.#unfollow = follow(this.layers, this.#painter);
     for (const model of this.#models) model.setTexture(this.layers.texture);
   }
 
@@ -193,6 +194,7 @@ export class Painter {
     for (const stop of this.#stops) stop();
     this.#painter.dispose();
     this.#sheet.dispose();
+    if (this.#painter.sheets.length === 0) this.#unfollow();
   }
 
   /** Begins what the tool does with a pointer. */
@@ -204,13 +206,14 @@ export class Painter {
     if (tool === 'eraser' && !this.#painter.hasPainting) return undefined;
     const style = { ...this.brush, erases: tool === 'eraser' };
     checkBrush(style);
+    const aim = (at: { clientX: number; clientY: number }) => this.#aim(this.pickAt(at, camera), camera);
     const stroke = new PointerStroke(this.#painter, {
-      aimAt: (clientX, clientY) => this.#aim(this.pickAt({ clientX, clientY }, camera), camera),
+      aimAt: (clientX, clientY) => aim({ clientX, clientY }),
       triangles: this.#models.reduce((sum, { result }) => sum + result.cosmeticTriangles.length, 0),
     });
     if (!stroke.begin(this.#aim(spot, camera), event, style)) return undefined;
     return {
-      move: (moved) => stroke.move(this.#aim(this.pickAt(moved, camera), camera), moved),
+      move: (moved) => stroke.move(aim(moved), moved),
       end: () => stroke.end(),
       cancel: () => stroke.cancel(),
     };
@@ -234,9 +237,8 @@ export class Painter {
   }
 
   #aim(spot: Spot | undefined, camera: Camera): Aim | undefined {
-    if (!spot) return undefined;
     const { height } = (this.layers.renderer.domElement as HTMLElement).getBoundingClientRect();
-    return { surface: spot.surface, scale: spot.scale * pixelsPerUnit(camera, spot.point, height) };
+    return spot && { surface: spot.surface, scale: spot.scale * pixelsPerUnit(camera, spot.point, height) };
   }
 
   /** Begins a sticker. @returns a function that lays it somewhere, upright with respect to a direction. */
@@ -273,20 +275,18 @@ export class Painter {
 
   #surfaceAt(point: Spot | { x: number; y: number } | undefined): SurfacePoint | undefined {
     if (point === undefined) return undefined;
-    if (typeof point !== 'object' || point === null)
-      throw new CagecastError('badArgument', `cagecast/three/paint: a point is ${point}, not a spot or a UV`);
-    if ('toCage' in point) return point.surface;
-    const { x, y } = point;
-    if (!(Number.isFinite(x) && Number.isFinite(y)))
+    const { toCage, surface, x, y } = Object(point) as Partial<Spot & { x: number; y: number }>;
+    if (toCage) return surface;
+    if (!Number.isFinite(x) || !Number.isFinite(y))
       throw new CagecastError('badArgument', `cagecast/three/paint: a point is (${x}, ${y}), not a UV`);
-    return this.#painter.cageTexels?.at(x, y);
+    return this.#painter.cageTexels?.at(x!, y!);
   }
 }
 
-/** Also after the painter has been disposed of, as the layers stay: so this holds no more of it. */
-function follow(layers: Layers, painter: LayerPainter): void {
+/** Also after a painter has been disposed of that has painted, as the layers stay: so this holds no more of it. */
+function follow(layers: Layers, painter: LayerPainter): () => void {
   painter.on('change', () => layers.announce());
-  layers.on('restored', () => painter.restore());
+  return layers.on('restored', () => painter.restore());
 }
 
 /** @throws {CagecastError} `badOption` that names the field and its value. */
