@@ -1,19 +1,14 @@
 import { init } from 'cagecast';
 import { bake, layOver } from 'cagecast/bake';
 import { applyTransfer, extract } from 'cagecast/three';
-import { createLayers } from 'cagecast/three/layers';
 import { createPainter } from 'cagecast/three/paint';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 
-const load = (file) => new GLTFLoader().loadAsync(file);
-const [head, cage, stripes] = await Promise.all([
-  load('target.glb'),
-  load('cage.glb'),
-  new THREE.TextureLoader().loadAsync('paint-tiger.png'),
-  init(),
-]);
+const [head, cage] = await Promise.all(['target.glb', 'cage.glb'].map((file) => new GLTFLoader().loadAsync(file)));
+const stripes = await new THREE.TextureLoader().loadAsync('paint-tiger.png');
+await init();
 Object.assign(stripes, { flipY: false, colorSpace: THREE.SRGBColorSpace }); // as textures of glTF are
 
 const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
@@ -25,12 +20,11 @@ const controls = new OrbitControls(camera, renderer.domElement);
 new THREE.Box3().setFromObject(head.scene).getCenter(controls.target);
 camera.position.copy(controls.target).z += 2.5;
 
-const layers = createLayers({ renderer });
-const base = layers.add(stripes, { name: 'stripes' });
-layers.edits.forget(); // this is no step that can be undone
 const model = extract(head.scene); // as it is in the file: painting adds vertices
 const applied = applyTransfer(head.scene, cage.scene);
-const painter = createPainter({ layers, applied, cage: cage.scene });
+const painter = createPainter({ renderer, texture: stripes, applied, cage: cage.scene });
+const { layers } = painter;
+const [base] = layers.list; // the stripes
 painter.picture = { text: 'Rrr!', color: '#ffffff', size: 0.3 };
 painter.listen(camera); // what is not on the model turns it
 
@@ -40,6 +34,7 @@ control('color').oninput = ({ target }) => (painter.brush.color = painter.pictur
 control('size').oninput = ({ target }) => (painter.brush.size = Number(target.value));
 control('mirror').oninput = ({ target }) => (painter.brush.mirror = target.checked);
 control('stripes').oninput = ({ target }) => layers.set(base, { opacity: Number(target.value) });
+layers.on('change', () => (control('stripes').value = layers.list[0].opacity)); // undo changes it, too
 for (const step of ['undo', 'redo']) control(step).onclick = () => painter[step]();
 control('save').onclick = () => {
   const context = Object.assign(document.createElement('canvas'), { width: 1024, height: 1024 }).getContext('2d');
@@ -51,6 +46,10 @@ control('save').onclick = () => {
   Object.assign(document.createElement('a'), { href: context.canvas.toDataURL(), download: 'skin.png' }).click();
 };
 
+addEventListener('resize', () => {
+  renderer.setSize(innerWidth, innerHeight);
+  Object.assign(camera, { aspect: innerWidth / innerHeight }).updateProjectionMatrix();
+});
 renderer.setAnimationLoop(() => {
   controls.update();
   painter.update();

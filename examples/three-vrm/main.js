@@ -3,12 +3,12 @@ import { applyTransferAsync } from 'cagecast/three';
 import {
   AmbientLight,
   Box3,
-  Clock,
   DirectionalLight,
   PerspectiveCamera,
   Scene,
   SRGBColorSpace,
   TextureLoader,
+  Timer,
   WebGLRenderer,
 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
@@ -31,10 +31,11 @@ new Box3().setFromObject(vrm.scene).getCenter(camera.position).z += 2.5;
 const renderer = new WebGLRenderer({ antialias: true, alpha: true });
 renderer.setSize(innerWidth, innerHeight);
 document.body.append(renderer.domElement);
-const clock = new Clock();
+const timer = new Timer();
 renderer.setAnimationLoop((time) => {
+  timer.update(time);
   vrm.humanoid.getNormalizedBoneNode('hips').rotation.y = Math.sin(time / 2000) / 2;
-  vrm.update(clock.getDelta());
+  vrm.update(timer.getDelta());
   renderer.render(scene, camera);
 });
 document.title = `${parts.length} painted`;

@@ -88,6 +88,18 @@ describe('examples/customizer, of the packed package, in Chromium', () => {
     assert.deepEqual(faults, []);
   });
 
+  test('shows the opacity that undo brings back, and fills a window that has changed', {
+    timeout: 600_000,
+  }, async () => {
+    await page.locator('#stripes').fill('0.3');
+    await page.locator('#undo').click();
+    assert.equal(await page.locator('#stripes').inputValue(), '1');
+    await page.setViewportSize({ width: 480, height: 400 });
+    await page.waitForFunction(() => document.querySelector('canvas')!.clientWidth === innerWidth || undefined);
+    await page.setViewportSize({ width: 640, height: 400 });
+    assert.deepEqual(faults, []);
+  });
+
   test('hides a layer, and saves the others in the model’s own texture', { timeout: 600_000 }, async () => {
     await page.locator('#stripes').fill('0');
     const download = page.waitForEvent('download');
