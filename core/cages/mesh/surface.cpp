@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <new>
 
 #include "base/arena.hpp"
 #include "base/tolerances.hpp"
@@ -49,6 +51,17 @@ std::vector<bool> needlesIn(const TriangleMesh& mesh, double diagonal) {
   return out;
 }
 
+/// If memory has run out, does what `operator new` does then: throws `std::bad_alloc`, or ends the program if that is
+/// compiled without exceptions.
+void checkMemory(const Arena& arena) {
+  if (!arena.failed()) return;
+#ifdef __cpp_exceptions
+  throw std::bad_alloc();
+#else
+  std::abort();
+#endif
+}
+
 }  // namespace
 
 Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
@@ -81,8 +94,9 @@ Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
   const std::vector<float> uvs(2 * mesh.positions.size(), 0.0f);
   Units identity = trees.units;
   identity.scale = 1;  // Positions are scaled already.
-  gatherCage({positions, indices, uvs}, identity, trees.arena, trees.cage);
-  buildCageTree(trees.cage, identity, trees.arena, trees.tree);
+  if (gatherCage({positions, indices, uvs}, identity, trees.arena, trees.cage))
+    buildCageTree(trees.cage, identity, trees.arena, trees.tree);
+  checkMemory(trees.arena);
 }
 
 Surface::Surface(Surface&&) noexcept = default;
@@ -97,6 +111,7 @@ std::vector<SurfacePoint> Surface::closest(std::span<const Vec3> points) const {
   auto* candidates = trees.arena.allocate<Candidate>(triangleCount);
   // The search takes floats; the slack allows for the rounding of the points.
   ClosestPointSearch search(trees.tree, trees.units.diagonal + static_cast<double>(trees.units.reach), trees.arena);
+  checkMemory(trees.arena);
   std::vector<SurfacePoint> out(points.size());
   constexpr std::uint32_t kGroup = ClosestPointSearch::kGroup;
   float group[4 * kGroup] = {};
@@ -141,6 +156,7 @@ std::vector<RayHit> Surface::trace(std::span<const SurfaceRay> rays, double from
     const Arena::Scope scope(trees.arena);
     const auto scale = static_cast<double>(trees.units.scale);
     RaySearch search(trees.tree.rays, from * scale, trees.arena);
+    checkMemory(trees.arena);
     std::vector<Ray> chunk(RaySearch::kMostRays);
     std::vector<RayDirection> directions(RaySearch::kMostRays);
     const auto hit = std::make_unique<bool[]>(RaySearch::kMostRays);

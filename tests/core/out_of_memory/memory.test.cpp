@@ -1,60 +1,16 @@
 // Memory that runs out at any one allocation: the status says so, nothing is lost, and the next call is right.
 //
-// The linker hands every call of malloc to the functions below. Where each array of the arena is an allocation of its
-// own, with AddressSanitizer, that is every place at which a step can fail.
+// Where each array of the arena is an allocation of its own, with AddressSanitizer, that is every place at which a step
+// can fail.
 
 #include <cmath>
-#include <cstring>
-#include <new>
 
 #include "cagecast/split.hpp"
 #include "cuts.hpp"
 #include "hash.hpp"
+#include "out_of_memory/failing.hpp"
 
 using namespace cagecast;
-
-namespace {
-
-/// How many more allocations succeed; none is counted while this is not on.
-thread_local bool isOn = false;
-thread_local std::size_t left = 0;
-thread_local bool ranOut = false;
-/// What new memory is filled with; negative: nothing.
-thread_local int filling = -1;
-
-/// @return false if this allocation has to fail.
-bool mayTake() {
-  if (!isOn) return true;
-  if (left > 0) {
-    --left;
-    return true;
-  }
-  ranOut = true;
-  return false;
-}
-
-}  // namespace
-
-extern "C" {
-void* __real_malloc(std::size_t size);                                      // NOLINT: the linker's names
-void* __wrap_malloc(std::size_t size);                                      // NOLINT
-void* __real__Znwm(std::size_t size);                                       // NOLINT: operator new
-void* __wrap__Znwm(std::size_t size);                                       // NOLINT
-void* __real__ZnwmRKSt9nothrow_t(std::size_t size, const std::nothrow_t&);  // NOLINT
-void* __wrap__ZnwmRKSt9nothrow_t(std::size_t size, const std::nothrow_t&);  // NOLINT
-
-void* __wrap_malloc(std::size_t size) {  // NOLINT
-  void* const data = mayTake() ? __real_malloc(size) : nullptr;
-  return data == nullptr || filling < 0 ? data : std::memset(data, filling, size);
-}
-void* __wrap__Znwm(std::size_t size) {  // NOLINT
-  if (!mayTake()) throw std::bad_alloc();
-  return __real__Znwm(size);
-}
-void* __wrap__ZnwmRKSt9nothrow_t(std::size_t size, const std::nothrow_t& tag) {  // NOLINT
-  return mayTake() ? __real__ZnwmRKSt9nothrow_t(size, tag) : nullptr;
-}
-}
 
 namespace {
 
@@ -74,12 +30,9 @@ std::size_t failEverywhere(const Call& call) {
     INFO("allocation " << n);
     Workspace workspace;
     Hash hash;
-    left = n;
-    ranOut = false;
-    isOn = true;
+    failing::start(n);
     const Status status = call(workspace, hash);
-    isOn = false;
-    if (!ranOut) {
+    if (!failing::stop()) {
       CHECK(status.ok());
       CHECK(hash.text() == expected);
       return n;
@@ -157,12 +110,12 @@ TEST_CASE("what memory held before changes no result", "[memory]") {
       Workspace workspace;
       TransferResult result;
       CutTarget cut;
-      filling = fill;
+      failing::filling = fill;
       Status status = transfer(scene.cage.view(), scene.target.view(), cutting(), workspace, result);
       const DecidedTarget target{scene.target.view(), result.zones.zones, result.projection.segments,
                                  result.zones.culledBy};
       if (status.ok()) status = cutBorders(scene.cage.view(), target, cutting(), workspace, cut);
-      filling = -1;
+      failing::filling = -1;
       REQUIRE(status.ok());
       Hash hash;
       hash.add(result);
@@ -191,9 +144,9 @@ TEST_CASE("the first part at a hole is listed, whatever memory held before", "[m
   for (const int fill : {0, 255}) {
     Workspace workspace;
     TransferResult result;
-    filling = fill;
+    failing::filling = fill;
     const Status status = transfer(cage.view(), target.view(), options, workspace, result);
-    filling = -1;
+    failing::filling = -1;
     REQUIRE(status.ok());
     INFO("memory held " << fill);
     REQUIRE(result.projection.holeShares.size() == 1);
