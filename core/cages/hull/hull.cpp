@@ -19,6 +19,8 @@ namespace {
 constexpr double kBorder = 3;
 constexpr std::uint32_t kLeastVoxels = 8;
 constexpr std::uint32_t kMostVoxels = 512;
+/// That a flood reaches between two calls of the callback.
+constexpr std::size_t kNodesPerReport = 1 << 18;
 
 double longestOf(const Vec3& size) { return std::max({size.x, size.y, size.z}); }
 
@@ -50,37 +52,57 @@ VoxelGrid gridAround(const TriangleMesh& mesh, double pad, std::uint32_t voxels)
   return grid;
 }
 
+/// A mark for each node of a grid.
+struct Marks {
+  const VoxelGrid& grid;
+  std::vector<std::uint8_t> of;
+
+  explicit Marks(const VoxelGrid& on) : grid(on), of(on.size(), 0) {}
+};
+
 /// Marks the nodes that a walk along the axes reaches from `start` through nodes that `open` accepts.
+/// @return how many; 0 if `progress` cancelled it.
 template <class Open>
-std::size_t flood(const VoxelGrid& grid, std::size_t start, std::uint8_t mark, std::vector<std::uint8_t>& marks,
-                  const Open& open) {
-  std::vector<std::size_t> stack = {start};
-  marks[start] = mark;
-  std::size_t reached = 0;
+std::size_t flood(Marks& marks, std::size_t start, std::uint8_t mark, const Open& open, const Progress& progress) {
+  const VoxelGrid& grid = marks.grid;
   const std::size_t row = grid.nx, layer = row * grid.ny;
+  const auto isLeft = [&](std::size_t i) { return marks.of[i] != mark && open(i); };
+  std::vector<std::size_t> stack = {start};
+  std::size_t reached = 0, reported = 0;
   while (!stack.empty()) {
     const std::size_t i = stack.back();
     stack.pop_back();
-    ++reached;
-    const std::size_t x = i % row, y = i / row % grid.ny, z = i / layer;
-    const auto visit = [&](std::size_t n) {
-      if (marks[n] == mark || !open(n)) return;
-      marks[n] = mark;
-      stack.push_back(n);
+    if (marks.of[i] == mark) continue;
+    // All of the row that is reached along it, then the rows beside it.
+    const std::size_t rowStart = i - i % row, y = i / row % grid.ny, z = i / layer;
+    std::size_t begin = i, end = i + 1;
+    while (begin > rowStart && isLeft(begin - 1)) --begin;
+    while (end < rowStart + row && isLeft(end)) ++end;
+    std::fill(marks.of.begin() + static_cast<std::ptrdiff_t>(begin),
+              marks.of.begin() + static_cast<std::ptrdiff_t>(end), mark);
+    reached += end - begin;
+    const auto visit = [&](std::size_t from) {
+      bool before = false;
+      for (std::size_t n = from; n < from + (end - begin); ++n) {
+        const bool now = isLeft(n);
+        if (now && !before) stack.push_back(n);
+        before = now;
+      }
     };
-    if (x > 0) visit(i - 1);
-    if (x + 1 < row) visit(i + 1);
-    if (y > 0) visit(i - row);
-    if (y + 1 < grid.ny) visit(i + row);
-    if (z > 0) visit(i - layer);
-    if (z + 1 < grid.nz) visit(i + layer);
+    if (y > 0) visit(begin - row);
+    if (y + 1 < grid.ny) visit(begin + row);
+    if (z > 0) visit(begin - layer);
+    if (z + 1 < grid.nz) visit(begin + layer);
+    if (reached - reported < kNodesPerReport) continue;
+    reported = reached;
+    if (progress && !progress(static_cast<float>(reached) / static_cast<float>(grid.size()), "hull")) return 0;
   }
   return reached;
 }
 
 /// Where the distance passes `level` between the nodes outside and the others.
-std::vector<GridPoint> outerBorder(const VoxelGrid& grid, const DistanceBand& band,
-                                   const std::vector<std::uint8_t>& outside, double level) {
+std::vector<GridPoint> outerBorder(const DistanceBand& band, const Marks& outside, double level) {
+  const VoxelGrid& grid = outside.grid;
   std::vector<GridPoint> points;
   const std::array<std::size_t, 3> steps = {1, grid.nx, std::size_t{grid.nx} * grid.ny};
   for (std::uint32_t z = 0; z + 1 < grid.nz; ++z)
@@ -89,7 +111,7 @@ std::vector<GridPoint> outerBorder(const VoxelGrid& grid, const DistanceBand& ba
         const std::size_t i = grid.index(x, y, z);
         for (unsigned axis = 0; axis < 3; ++axis) {
           const std::size_t j = i + steps[axis];
-          if (outside[i] == outside[j]) continue;
+          if (outside.of[i] == outside.of[j]) continue;
           const auto a = static_cast<double>(band.distance[i]), b = static_cast<double>(band.distance[j]);
           const double share = a == b ? 0.5 : std::min(1.0, std::max(0.0, (level - a) / (b - a)));
           GridPoint point{grid.position(x, y, z), x, y, z};
@@ -118,31 +140,40 @@ std::size_t nearestNode(const VoxelGrid& grid, const std::vector<float>& values,
 
 /// Leaves one body of positive nodes without pockets in it.
 /// @param near  As in `HullOptions`.
-/// @return its share of all positive nodes.
-double keepOne(const VoxelGrid& grid, const std::optional<Vec3>& near, std::vector<float>& values) {
+/// @param[out] share  Its share of all positive nodes.
+/// @return false if `progress` cancelled it.
+bool keepOne(const VoxelGrid& grid, const std::optional<Vec3>& near, const Progress& progress,
+             std::vector<float>& values, double& share) {
   constexpr float kTiny = 1e-6f;  // In spacings: the vertices stay next to the node that changes its sign.
   const auto tiny = kTiny * static_cast<float>(grid.spacing);
-  std::vector<std::uint8_t> reached(grid.size(), 0);
-  flood(grid, 0, 1, reached, [&](std::size_t i) { return values[i] <= 0; });
-  for (std::size_t i = 0; i < grid.size(); ++i)
-    if (reached[i] == 0 && values[i] <= 0) values[i] = tiny;
-  std::vector<std::uint8_t> body(grid.size(), 0);
+  {
+    Marks outside(grid);
+    const auto negative = [&](std::size_t i) { return values[i] <= 0; };
+    if (flood(outside, 0, 1, negative, partOf(progress, 0, 0.4f)) == 0) return false;
+    for (std::size_t i = 0; i < grid.size(); ++i)
+      if (outside.of[i] == 0 && values[i] <= 0) values[i] = tiny;
+  }
+  Marks bodies(grid);
   std::size_t largest = 0, seed = 0, all = 0;
   const auto positive = [&](std::size_t i) { return values[i] > 0; };
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (body[i] != 0 || !positive(i)) continue;
-    const std::size_t size = flood(grid, i, 1, body, positive);
+    if (bodies.of[i] != 0 || !positive(i)) continue;
+    const std::size_t size = flood(bodies, i, 1, positive, partOf(progress, 0.4f, 0.8f));
+    if (size == 0) return false;
     all += size;
     if (size <= largest) continue;
     largest = size;
     seed = i;
   }
-  if (largest == 0) return 1;
-  if (near && largest < all) seed = nearestNode(grid, values, *near);
-  const std::size_t kept = flood(grid, seed, 2, body, positive);
+  share = 1;
+  if (largest == all) return true;
+  if (near) seed = nearestNode(grid, values, *near);
+  const std::size_t kept = flood(bodies, seed, 2, positive, partOf(progress, 0.8f, 1));
+  if (kept == 0) return false;
   for (std::size_t i = 0; i < grid.size(); ++i)
-    if (body[i] == 1) values[i] = -tiny;
-  return static_cast<double>(kept) / static_cast<double>(all);
+    if (bodies.of[i] == 1) values[i] = -tiny;
+  share = static_cast<double>(kept) / static_cast<double>(all);
+  return true;
 }
 
 }  // namespace
@@ -182,19 +213,20 @@ bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progre
   const double beyond = 1.8 * grid.spacing;
   DistanceBand band;
   if (!distanceToMesh(closed, grid, outwards + beyond, partOf(progress, 0, 0.6f), band)) return false;
-  std::vector<std::uint8_t> outside(grid.size(), 0);
+  Marks outside(grid);
   const auto level = static_cast<float>(outwards);
-  flood(grid, 0, 1, outside, [&](std::size_t i) { return band.distance[i] > level; });
+  const auto isBeyond = [&](std::size_t i) { return band.distance[i] > level; };
+  if (flood(outside, 0, 1, isBeyond, partOf(progress, 0.6f, 0.65f)) == 0) return false;
   if (progress && !progress(0.65f, "hull")) return false;
-  const std::vector<GridPoint> border = outerBorder(grid, band, outside, outwards);
+  const std::vector<GridPoint> border = outerBorder(band, outside, outwards);
   if (!distanceToPoints(border, grid, inwards + beyond, partOf(progress, 0.65f, 0.9f), band)) return false;
   const auto depth = static_cast<float>(inwards);
   for (std::size_t i = 0; i < grid.size(); ++i)
-    band.distance[i] = (outside[i] != 0 ? -band.distance[i] : band.distance[i]) - depth;
-  const double kept = keepOne(grid, options.near, band.distance);
+    band.distance[i] = (outside.of[i] != 0 ? -band.distance[i] : band.distance[i]) - depth;
+  double kept = 1;
+  if (!keepOne(grid, options.near, partOf(progress, 0.9f, 0.95f), band.distance, kept)) return false;
   if (share != nullptr) *share = kept;
-  if (progress && !progress(0.95f, "hull")) return false;
-  out = isoSurface(grid, band.distance);
+  if (!isoSurface(grid, band.distance, partOf(progress, 0.95f, 1), out)) return false;
   return !progress || progress(1, "hull");
 }
 

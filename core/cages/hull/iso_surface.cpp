@@ -92,14 +92,16 @@ class Marcher {
       for (auto& axis : half) axis.assign(layer, kNone);
   }
 
-  TriangleMesh run() {
+  bool run(const Progress& progress, TriangleMesh& out) {
     for (std::uint32_t z = 0; z + 1 < grid_.nz; ++z) {
+      if (progress && !progress(static_cast<float>(z) / static_cast<float>(grid_.nz), "hull")) return false;
       for (std::uint32_t y = 0; y + 1 < grid_.ny; ++y)
         for (std::uint32_t x = 0; x + 1 < grid_.nx; ++x) cell(x, y, z);
       vertices_[0].swap(vertices_[1]);
       for (auto& axis : vertices_[1]) std::fill(axis.begin(), axis.end(), kNone);
     }
-    return std::move(out_);
+    out = std::move(out_);
+    return true;
   }
 
  private:
@@ -163,6 +165,8 @@ class Marcher {
 
 }  // namespace
 
-TriangleMesh isoSurface(const VoxelGrid& grid, const std::vector<float>& values) { return Marcher(grid, values).run(); }
+bool isoSurface(const VoxelGrid& grid, const std::vector<float>& values, const Progress& progress, TriangleMesh& out) {
+  return Marcher(grid, values).run(progress, out);
+}
 
 }  // namespace cagecast::cages

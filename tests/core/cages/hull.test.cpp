@@ -154,3 +154,14 @@ TEST_CASE("a hull can be cancelled, and tells how far it is", "[cages][hull]") {
         ball, {.closing = 0.1, .offset = 0.05, .voxels = 60}, [&](float share, const char*) { return share < until; },
         hull));
 }
+
+TEST_CASE("a hull asks in each of its stages whether it is cancelled", "[cages][hull]") {
+  const TriangleMesh ball = sphere({0, 0, 0}, 1);
+  for (const auto& [from, to] : {std::pair{0.6f, 0.65f}, {0.9f, 0.95f}, {0.95f, 1.0f}}) {
+    INFO("between " << from << " and " << to);
+    TriangleMesh hull;
+    CHECK_FALSE(makeHull(
+        ball, {.closing = 0.1, .offset = 0.05, .voxels = 100},
+        [&](float share, const char*) { return !(share > from && share < to); }, hull));
+  }
+}
