@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
 #include <queue>
 #include <utility>
 
@@ -22,6 +21,8 @@ constexpr double kBorderWidth = 0.06;
 constexpr int kSegmentSweeps = 4;
 constexpr double kLeastSide = 0.04;
 constexpr std::size_t kMostSides = 8;
+/// Joining two regions looks at each triangle so briefly that this many count as one in the ticker's work.
+constexpr std::size_t kTrianglesPerWork = 200;
 
 Vec3 centreOf(const TriangleMesh& mesh, std::size_t t) {
   const Triangle3& c = mesh.triangles[t];
@@ -58,8 +59,8 @@ using Prices = std::vector<std::array<double, 6>>;
 /// Gives a label to those triangles where that makes prices and borders cheapest (alpha expansion: Boykov, Veksler,
 /// Zabih 2001).
 /// @return whether a label changed.
-bool expand(const TriangleMesh& mesh, const Prices& price, std::uint32_t label, std::vector<std::uint32_t>& labels) {
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+bool expand(const TriangleMesh& mesh, const std::vector<std::uint32_t>& twins, const Prices& price, std::uint32_t label,
+            std::vector<std::uint32_t>& labels) {
   const double border = kBorderWidth * diagonalOf(mesh);
   // The first side takes the label: it is the smaller one where that is all the same.
   std::vector<std::array<double, 2>> own(labels.size());
@@ -108,36 +109,52 @@ std::vector<std::uint32_t> regionsOf(const TriangleMesh& mesh, const std::vector
   return regions;
 }
 
-void joinSmallRegions(const TriangleMesh& mesh, double least, std::size_t most, std::vector<std::uint32_t>& regions) {
+void joinSmallRegions(const TriangleMesh& mesh, double least, std::size_t most, Ticker& ticker,
+                      std::vector<std::uint32_t>& regions) {
+  /// A half-edge between two regions.
+  struct Border {
+    std::uint32_t triangle, neighbour;
+    double length;
+  };
+  std::vector<Border> borders;
   const std::vector<std::uint32_t> twins = findTwins(mesh);
-  for (;;) {
-    std::map<std::uint32_t, double> areas;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, double> borders;
-    double whole = 0;
-    for (std::size_t t = 0; t < regions.size(); ++t) {
-      const double area = length(areaNormal(mesh, mesh.triangles[t]));
-      areas[regions[t]] += area;
-      whole += area;
+  for (std::uint32_t h = 0; h < twins.size(); ++h)
+    if (twins[h] != kNone && regions[h / 3] != regions[twins[h] / 3])
+      borders.push_back({h / 3, twins[h] / 3, edgeLength(mesh, h)});
+  std::vector<double> area(regions.size());
+  double whole = 0;
+  for (std::size_t t = 0; t < regions.size(); ++t) whole += area[t] = length(areaNormal(mesh, mesh.triangles[t]));
+  std::size_t count = regions.empty() ? 0 : *std::max_element(regions.begin(), regions.end()) + 1;
+  std::vector<double> areas(count, 0), lengths(count);
+  for (std::size_t t = 0; t < regions.size(); ++t) areas[regions[t]] += area[t];
+  for (; ticker.work(regions.size() / kTrianglesPerWork); --count) {
+    // The smallest region that has a neighbour; of equal ones the first.
+    std::uint32_t smallest = kNone;
+    for (const Border& border : borders) {
+      const std::uint32_t region = regions[border.triangle];
+      if (smallest == kNone || areas[region] < areas[smallest] ||
+          (areas[region] == areas[smallest] && region < smallest))
+        smallest = region;
     }
-    for (std::size_t h = 0; h < twins.size(); ++h)
-      if (twins[h] != kNone && regions[h / 3] != regions[twins[h] / 3])
-        borders[{regions[h / 3], regions[twins[h] / 3]}] += edgeLength(mesh, h);
-    // The smallest region that has a neighbour.
-    std::uint32_t smallest = kNone, neighbour = kNone;
-    for (const auto& [pair, size] : borders)
-      if (smallest == kNone || areas[pair.first] < areas[smallest]) smallest = pair.first;
-    if (smallest == kNone || (areas[smallest] >= least * whole && areas.size() <= most)) return;
-    double longest = -1;
-    for (const auto& [pair, size] : borders)
-      if (pair.first == smallest && size > longest) {
-        longest = size;
-        neighbour = pair.second;
-      }
-    std::replace(regions.begin(), regions.end(), smallest, neighbour);
+    if (smallest == kNone || (areas[smallest] >= least * whole && count <= most)) return;
+    std::fill(lengths.begin(), lengths.end(), -1);
+    for (const Border& border : borders) {
+      double& sum = lengths[regions[border.neighbour]];
+      if (regions[border.triangle] == smallest) sum = std::max(sum, 0.0) + border.length;
+    }
+    const auto longest = std::max_element(lengths.begin(), lengths.end());
+    const auto neighbour = static_cast<std::uint32_t>(longest - lengths.begin());
+    // Added up anew, in the order of the triangles: rounding must not depend on how regions were joined.
+    areas[neighbour] = 0;
+    for (std::size_t t = 0; t < regions.size(); ++t) {
+      if (regions[t] == smallest) regions[t] = neighbour;
+      if (regions[t] == neighbour) areas[neighbour] += area[t];
+    }
+    std::erase_if(borders, [&](const Border& border) { return regions[border.triangle] == regions[border.neighbour]; });
   }
 }
 
-std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& options) {
+std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& options, Ticker& ticker) {
   const TriangleMesh& mesh = piece.mesh;
   const std::vector<std::uint32_t> twins = findTwins(mesh);
   const Vec3 side = cross(options.up, options.front);
@@ -152,15 +169,16 @@ std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& opti
   }
   for (int sweep = 0; sweep < kSegmentSweeps; ++sweep) {
     bool changed = false;
-    for (std::uint32_t label = 0; label < 6; ++label) changed = expand(mesh, price, label, labels) || changed;
+    for (std::uint32_t label = 0; label < 6 && ticker.work(labels.size()); ++label)
+      changed = expand(mesh, twins, price, label, labels) || changed;
     if (!changed) break;
   }
   std::vector<std::uint32_t> regions = regionsOf(mesh, labels);
-  joinSmallRegions(mesh, kLeastSide, kMostSides, regions);
+  joinSmallRegions(mesh, kLeastSide, kMostSides, ticker, regions);
   return regions;
 }
 
-std::vector<std::uint32_t> frontAndBackOf(const TriangleMesh& mesh, const Vec3& front) {
+std::vector<std::uint32_t> frontAndBackOf(const TriangleMesh& mesh, const Vec3& front, Ticker& ticker) {
   const std::vector<std::uint32_t> twins = findTwins(mesh);
   const double border = kBorderWidth * diagonalOf(mesh);
   MinCut cut(mesh.triangles.size(), 1e-6 * border * border);
@@ -173,7 +191,7 @@ std::vector<std::uint32_t> frontAndBackOf(const TriangleMesh& mesh, const Vec3& 
     if (twins[h] != kNone && twins[h] > h) cut.addEdge(h / 3, twins[h] / 3, border * edgeLength(mesh, h));
   const std::vector<bool> back = cut.solve();
   std::vector<std::uint32_t> regions = regionsOf(mesh, {back.begin(), back.end()});
-  joinSmallRegions(mesh, kLeastSide, 2, regions);
+  joinSmallRegions(mesh, kLeastSide, 2, ticker, regions);
   return regions;
 }
 

@@ -248,7 +248,7 @@ bool Unwrapper::layOutBody(const Piece& body, std::size_t mostLimbs) {
     for (Piece& piece : piecesOf(body, limbs.labels, label)) {
       bool going = true;
       if (label == 0) {
-        for (Piece& half : splitBy(piece, frontAndBackOf(piece.mesh, options_.front)))
+        for (Piece& half : splitBy(piece, frontAndBackOf(piece.mesh, options_.front, ticker_)))
           going = going && layOut(std::move(half));
       } else if (label == head) {
         going = layOutHead(std::move(piece));
@@ -262,7 +262,7 @@ bool Unwrapper::layOutBody(const Piece& body, std::size_t mostLimbs) {
 }
 
 bool Unwrapper::layOutProp(const Piece& piece) {
-  for (Piece& side : splitBy(piece, sidesOf(piece, options_)))
+  for (Piece& side : splitBy(piece, sidesOf(piece, options_, ticker_)))
     if (!layOut(std::move(side))) return false;
   return true;
 }

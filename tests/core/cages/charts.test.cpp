@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
+#include <set>
 
+#include "charts/segment.hpp"
+#include "charts/ticker.hpp"
 #include "hull/hull.hpp"
 #include "seed.hpp"
 #include "shapes.hpp"
@@ -260,4 +264,22 @@ TEST_CASE("an unwrap can be cancelled, and is the same each time", "[cages][char
   CHECK(first.triangles == second.triangles);
   CHECK_FALSE(unwrap(
       mesh, {}, [](float, const char*) { return false; }, first));
+}
+
+TEST_CASE("joining many regions tells how far it is, and can be cancelled", "[cages][charts]") {
+  const TriangleMesh ball = sphere({0, 0, 0}, 1);
+  std::vector<std::uint32_t> each(ball.triangles.size());
+  std::iota(each.begin(), each.end(), 0u);
+  std::vector<std::uint32_t> regions = each;
+  int reports = 0;
+  const Progress counts = [&](float, const char*) { return ++reports > 0; };
+  Ticker counting(counts);
+  joinSmallRegions(ball, 0.04, 8, counting, regions);
+  CHECK(reports > 2);
+  CHECK(std::set(regions.begin(), regions.end()).size() <= 8);
+  regions = each;
+  const Progress cancels = [](float, const char*) { return false; };
+  Ticker cancelling(cancels);
+  joinSmallRegions(ball, 0.04, 8, cancelling, regions);
+  CHECK(regions == each);
 }
