@@ -8,7 +8,8 @@ namespace cagecast::cages {
 
 namespace {
 
-/// Nodes or triangles between two calls of the callback: a few milliseconds of work.
+/// Nodes or triangles between two calls of the callback. So many nodes take a few milliseconds; so many triangles take
+/// longer the larger they are, half a second where the grid is finest.
 constexpr std::size_t kPerReport = 1 << 14;
 
 double clamp01(double x) { return std::min(1.0, std::max(0.0, x)); }

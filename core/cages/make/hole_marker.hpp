@@ -38,8 +38,9 @@ class HoleMarker {
 
   /// Marks more of the hull where a cage made with `field` still covers too much of a marked part; farther around each
   /// time that it is called.
-  /// @return the share of the marked parts that the cage covers of such parts; 0 if there are none.
-  double widen(const TriangleMesh& cage);
+  /// @param[out] coveredShare  The share of what is seen of the marked parts that such parts have under the cage.
+  /// @return false if `progress` cancelled it, which leaves the marks as they were.
+  bool widen(const TriangleMesh& cage, const Progress& progress, double& coveredShare);
 
  private:
   /// A spot on a marked part that is seen from the hull.

@@ -171,7 +171,7 @@ Outcome shape(const MarkedHull& hull, const MakeSettings& settings, const Progre
     if (!enclose(pointsToEnclose(hull.mesh, field, depth), kFarthestPush * offset,
                  partOf(progress, kSimplifyEnd, kEncloseEnd), cage))
       return cancelled();
-    covered = hull.marker.widen(cage);
+    if (!hull.marker.widen(cage, partOf(progress, kEncloseEnd, kEncloseEnd), covered)) return cancelled();
     if (covered >= leastCovered) continue;
     leastCovered = covered;
     out = std::move(cage);

@@ -136,14 +136,20 @@ TEST_CASE("a hole over a part that stays covered is widened farther each time", 
     const std::vector<double> field = marker.field();
     return std::count_if(field.begin(), field.end(), [](double share) { return share > 0.5; });
   };
+  double covered = 0;
   for (int time = 0; time < 4; ++time) {
     const auto before = open();
-    CHECK(marker.widen(closed) == 1);
+    REQUIRE(marker.widen(closed, {}, covered));
+    CHECK(covered == 1);
     CHECK(open() > before);
   }
   TriangleMesh with = cutHoles(hull, marker.field());
   const auto before = open();
-  CHECK(marker.widen(with) == 0);
+  REQUIRE(marker.widen(with, {}, covered));
+  CHECK(covered == 0);
+  CHECK(open() == before);
+  CHECK_FALSE(marker.widen(
+      closed, [](float, const char*) { return false; }, covered));
   CHECK(open() == before);
 }
 
