@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/triangle_mesh.hpp"
+
 namespace cagecast::cages {
 
 namespace {
@@ -50,26 +52,41 @@ bool MinCut::findLevels() {
   return level_[sink_] >= 0;
 }
 
-std::int64_t MinCut::push(std::uint32_t node, std::int64_t most) {
-  if (node == sink_) return most;
-  std::int64_t pushed = 0;
+std::uint32_t MinCut::nextArc(std::uint32_t node) {
   for (std::size_t& i = next_[node]; i < leaving_[node].size(); ++i) {
-    const std::uint32_t arc = leaving_[node][i];
-    const std::uint32_t to = arcs_[arc].to;
-    if (arcs_[arc].free <= 0 || level_[to] != level_[node] + 1) continue;
-    const std::int64_t flow = push(to, std::min(most - pushed, arcs_[arc].free));
-    arcs_[arc].free -= flow;
-    arcs_[arc ^ 1].free += flow;
-    pushed += flow;
-    if (pushed == most) break;
+    const Arc& arc = arcs_[leaving_[node][i]];
+    if (arc.free > 0 && level_[arc.to] == level_[node] + 1) return leaving_[node][i];
   }
-  return pushed;
+  return kNone;
+}
+
+void MinCut::push() {
+  struct Step {
+    std::uint32_t node, arc;    // And the arc to it.
+    std::int64_t most, pushed;  // What may go through it, and what does.
+  };
+  // Not a recursion: a ribbon has as many levels as triangles, too many for the stack of a browser.
+  std::vector<Step> way = {{source_, kNone, kMost, 0}};
+  while (true) {
+    const Step here = way.back();
+    if (const std::uint32_t arc = here.pushed < here.most ? nextArc(here.node) : kNone; arc != kNone) {
+      const std::int64_t most = std::min(here.most - here.pushed, arcs_[arc].free);
+      way.push_back({arcs_[arc].to, arc, most, arcs_[arc].to == sink_ ? most : 0});
+      continue;
+    }
+    way.pop_back();
+    if (way.empty()) return;
+    arcs_[here.arc].free -= here.pushed;
+    arcs_[here.arc ^ 1].free += here.pushed;
+    way.back().pushed += here.pushed;
+    if (way.back().pushed < way.back().most) ++next_[way.back().node];
+  }
 }
 
 std::vector<bool> MinCut::solve() {
   while (findLevels()) {
     next_.assign(leaving_.size(), 0);
-    push(source_, kMost);
+    push();
   }
   std::vector<bool> second(source_);
   for (std::size_t node = 0; node < second.size(); ++node) second[node] = level_[node] < 0;

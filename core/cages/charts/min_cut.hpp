@@ -35,7 +35,10 @@ class MinCut {
 
   void addArc(std::uint32_t from, std::uint32_t to, double there, double back);
   bool findLevels();
-  std::int64_t push(std::uint32_t node, std::int64_t most);
+  /// The next arc of a node that leads on to a higher level and is not full; `kNone` if there is none.
+  std::uint32_t nextArc(std::uint32_t node);
+  /// Sends as much as gets through along the levels.
+  void push();
 };
 
 }  // namespace cagecast::cages

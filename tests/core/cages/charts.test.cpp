@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 
+#include "charts/min_cut.hpp"
 #include "charts/segment.hpp"
 #include "charts/ticker.hpp"
 #include "hull/hull.hpp"
@@ -282,4 +283,16 @@ TEST_CASE("joining many regions tells how far it is, and can be cancelled", "[ca
   Ticker cancelling(cancels);
   joinSmallRegions(ball, 0.04, 8, cancelling, regions);
   CHECK(regions == each);
+}
+
+TEST_CASE("a long chain is cut at its cheapest edge", "[cages][charts]") {
+  constexpr std::uint32_t kNodes = 300'000, kCheapest = 200'000;  // Recursion would overflow the stack.
+  MinCut cut(kNodes, 0.01);
+  cut.addNode(0, 0, MinCut::kForbidden);
+  cut.addNode(kNodes - 1, MinCut::kForbidden, 0);
+  for (std::uint32_t i = 0; i + 1 < kNodes; ++i) cut.addEdge(i, i + 1, i == kCheapest ? 1 : 2);
+  const std::vector<bool> second = cut.solve();
+  CHECK(std::count(second.begin(), second.end(), false) == kCheapest + 1);
+  CHECK_FALSE(second[kCheapest]);
+  CHECK(second[kCheapest + 1]);
 }
