@@ -38,7 +38,7 @@ class HoleMarker {
 
   /// Marks more of the hull where a cage made with `field` still covers too much of a marked part; farther around each
   /// time that it is called.
-  /// @param[out] coveredShare  The share of what is seen of the marked parts that such parts have under the cage.
+  /// @param[out] coveredShare  Of all that is seen of marked parts, the share that the cage covers in such parts.
   /// @return false if `progress` cancelled it, which leaves the marks as they were.
   bool widen(const TriangleMesh& cage, const Progress& progress, double& coveredShare);
 
