@@ -19,7 +19,7 @@ namespace {
 constexpr double kBorder = 3;
 constexpr std::uint32_t kLeastVoxels = 8;
 constexpr std::uint32_t kMostVoxels = 512;
-/// That a flood reaches between two calls of the callback: a few milliseconds of work.
+/// Nodes that a flood reaches between two calls of the callback: a few milliseconds of work.
 constexpr std::size_t kNodesPerReport = 1 << 18;
 
 double longestOf(const Vec3& size) { return std::max({size.x, size.y, size.z}); }

@@ -42,7 +42,7 @@ constexpr double kDepthMargin = 0.4;
 constexpr double kFarthestPush = 4;
 /// How often the cage is made at most, with wider holes where it covers too much.
 constexpr int kAttempts = 5;
-/// Wider holes may open this share more of the hull.
+/// Holes are widened until they open this share more of the hull, at most.
 constexpr double kMostWidened = 0.1;
 /// Points of the hull that the cage is moved past, about.
 constexpr std::size_t kEnclosedPoints = 20000;

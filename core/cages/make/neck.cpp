@@ -76,7 +76,7 @@ bool isNeck(const TriangleMesh& head, const Pieces& pieces, const Opening& openi
     }
     return std::pair{low, high};
   };
-  // Most openings of models with thousands of them are sheets, which their own vertices tell.
+  // A model may have thousands of sheets: their own vertices tell them, without a look at the whole head.
   const Vec3 normal = normalOf(head, opening.loop);
   const auto [loopLow, loopHigh] = extent(opening.loop, normal);
   const auto [low, high] = extent(pieces.with(opening.loop[0]), normal);

@@ -23,7 +23,7 @@ struct Surface::Trees {
   cagecast::Cage cage;
   CageTree tree;
   Vec3 centre{};    ///< Of the box: coordinates relative to it have smaller rounding errors.
-  double edge = 0;  ///< How long edges are, about, scaled.
+  double edge = 0;  ///< The typical length of an edge, scaled.
 
   [[nodiscard]] Vec3 scaled(const Vec3& p) const { return static_cast<double>(units.scale) * (p - centre); }
   [[nodiscard]] Vec3 unscaled(const Vec3& p) const { return 1 / static_cast<double>(units.scale) * p + centre; }

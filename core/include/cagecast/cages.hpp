@@ -81,7 +81,8 @@ struct RefineOptions {
 };
 
 /// Reports how far a call is, as a share 0..1, and what it does ("hull", "unwrap"). Called many times a
-/// second; on a model of a million triangles, single steps between two calls take seconds. Return false to cancel.
+/// second; on a model of a million triangles or on the finest grid, seconds may pass between two calls. Return false to
+/// cancel.
 using Progress = std::function<bool(float share, const char* stage)>;
 
 enum class Problem : std::uint8_t {

@@ -41,8 +41,8 @@ export { CagecastError };
 /** An option of every call. */
 export interface SyncOptions {
   /**
-   * Told many times a second how far the call is: a share 0..1 that never falls, and what it does. On a model of a million triangles,
-   * single steps take seconds. If it returns `false`, the call is cancelled: it throws `aborted`.
+   * Told many times a second how far the call is: a share 0..1 that never falls, and what it does. On a model of a million triangles
+   * or on the finest grid, seconds may pass between two calls. If it returns `false`, the call is cancelled: it throws `aborted`.
    */
   onProgress?: ((share: number, stage: string) => unknown) | undefined;
 }

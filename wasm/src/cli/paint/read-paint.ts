@@ -17,7 +17,7 @@ export const isTiled = (path: string): boolean => path.includes(placeholder);
 /** Why a texture and bounds of UVs exclude each other, if they do. */
 export const boundsFault = (texture: string | undefined, bounds: UvBounds | undefined): string | undefined =>
   texture !== undefined && isTiled(texture) && bounds
-    ? `bounds of UVs cannot be given with a texture of ${placeholder} tiles, each of which has the bounds of its tile`
+    ? `bounds of UVs cannot be given with a texture of ${placeholder} tiles: each file covers its own tile`
     : undefined;
 
 /** The path of a tile's texture; with `*` for the tile, a pattern for all. */
