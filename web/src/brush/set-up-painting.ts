@@ -1,8 +1,8 @@
 import { element, showError } from '../platform/page';
 import { readImage } from '../scene/paint';
 import type { Session } from '../scene/session';
+import { showsPaint } from '../scene/view-state';
 import type { RailTool, Tools } from '../view/tool-rail';
-import { showsPaint } from '../view/view';
 import type { Viewer } from '../view/viewer';
 import { BrushTool } from './brush-tool';
 import { EraserTool } from './eraser-tool';

@@ -1,7 +1,7 @@
 import { type Deform, kDeforms } from '../live/deform';
 import type { Choice, Locks, Rules } from '../scene/session';
-import { kLightNames } from '../view/light';
-import { type Angle, kModes, type Mode, type View } from '../view/view';
+import { kLightNames, kModes, type Mode, type View } from '../scene/view-state';
+import type { Angle } from '../view/framing';
 
 /** A layer in a link. */
 export interface LinkedLayer {

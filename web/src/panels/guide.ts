@@ -1,5 +1,5 @@
 import type { Session } from '../scene/session';
-import type { View } from '../view/view';
+import type { View } from '../scene/view-state';
 
 interface Step {
   title: string;

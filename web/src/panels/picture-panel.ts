@@ -1,7 +1,7 @@
 import { download } from '../platform/download';
 import { element, showError } from '../platform/page';
 import type { Session } from '../scene/session';
-import type { LightName } from '../view/light';
+import type { LightName } from '../scene/view-state';
 import type { Viewer } from '../view/viewer';
 
 /** Connects what makes a picture of the model: light, background, turntable, saving, the view in the room. */

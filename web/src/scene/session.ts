@@ -12,12 +12,12 @@ import type { Inspection } from 'cagecast/inspect';
 import type { Borders } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/layers';
 import { Pace } from '../platform/pace';
-import { kFirstView, type View } from '../view/view';
 import type { Model } from './load-model';
 import { makeChecker, type Paint } from './paint';
 import { haveSameUvs } from './same-uvs';
 import { Superseded, TransferClient } from './transfer-client';
 import type { SplitProjection } from './transfer-messages';
+import { kFirstView, type View } from './view-state';
 
 /** A target, its cage and a paint. */
 export interface Scene {

@@ -6,6 +6,16 @@ const kMargin = 1.03;
 const kMostPoints = 50_000; // more are sampled evenly
 const kTools = 70; // pixels at either side that tools cover
 
+/** Direction and distance of the camera. */
+export interface Angle {
+  /** Degrees around the model from its front; counter-clockwise seen from above. */
+  turn: number;
+  /** Degrees from straight above. */
+  tilt: number;
+  /** Magnification, relative to the distance at which the whole model is visible. */
+  near: number;
+}
+
 /** Other models beside the one on the stage. The viewer moves all of them together. */
 export interface Crowd {
   readonly object: Object3D;

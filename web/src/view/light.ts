@@ -10,6 +10,7 @@ import {
   type Texture,
   Vector3,
 } from 'three';
+import type { LightName } from '../scene/view-state';
 
 /** A distant lamp with soft edges: a spherical Gaussian. */
 interface Lamp {
@@ -38,8 +39,8 @@ interface Light {
   key: { color: number; strength: number };
 }
 
-/** The lights to choose from. */
-export const kLights = {
+/** The lights by their names. */
+export const kLights: Record<LightName, Light> = {
   /** Windows at both sides, a long one above, and a rim light from behind. */
   studio: {
     lamps: [
@@ -76,9 +77,7 @@ export const kLights = {
     tint: [0.75, 0.85, 1.25],
     key: { color: 0xffb468, strength: 1.9 },
   },
-} as const satisfies Record<string, Light>;
-export type LightName = keyof typeof kLights;
-export const kLightNames = Object.keys(kLights) as LightName[];
+};
 
 /** Texels per side of each level, by increasing roughness. Diffuse light needs at least 8. */
 const kSizes = [64, 32, 16, 8];

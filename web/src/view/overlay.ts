@@ -3,6 +3,7 @@ import type { Texture } from 'three';
 import { Pace } from '../platform/pace';
 import type { ExtractedMesh } from '../scene/extract-mesh';
 import type { SplitProjection } from '../scene/transfer-messages';
+import type { Mode } from '../scene/view-state';
 import { PrimitiveOverlay } from './primitive-overlay';
 
 /**
@@ -10,6 +11,17 @@ import { PrimitiveOverlay } from './primitive-overlay';
  * corner.
  */
 export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'checker' | 'colors';
+
+/** The overlay of each mode other than `compare`. */
+export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
+  result: 'result',
+  naive: 'naive',
+  zones: 'zones',
+  segments: 'colors',
+  checker: 'checker',
+  distance: 'colors',
+  stretch: 'colors',
+};
 
 /**
  * The paint over a target: overlay meshes for each of its meshes, which share its skin and morphs. The naive one shares its

@@ -9,7 +9,8 @@ import {
   ShadowMaterial,
   Vector3,
 } from 'three';
-import { environmentOf, kLights, type LightName } from './light';
+import type { LightName } from '../scene/view-state';
+import { environmentOf, kLights } from './light';
 
 const kOrigin = new Vector3();
 

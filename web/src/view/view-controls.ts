@@ -1,7 +1,7 @@
 import { element } from '../platform/page';
 import type { Session } from '../scene/session';
+import { type Mode, showsPaint } from '../scene/view-state';
 import { setUpDivider } from './divider';
-import { type Mode, showsPaint } from './view';
 
 /** Connects the controls of the view. */
 export function setUpViewControls(session: Session): void {

@@ -1,8 +1,8 @@
 import type { Classification } from 'cagecast';
 import type { Session, Shown } from '../scene/session';
+import type { Mode } from '../scene/view-state';
 import { type Coloring, colorByDistance, colorBySegment, colorByStretch } from './color-maps';
 import { type Legend, showLegend } from './legend';
-import type { Mode } from './view';
 import type { Viewer } from './viewer';
 
 const kColorings: { [Name in Mode]?: (shown: Shown, classification: Classification) => Coloring } = {

@@ -26,14 +26,14 @@ import { requireGraphics } from '../platform/graphics';
 import { clearError, showError } from '../platform/page';
 import { disposeModel, type Model } from '../scene/load-model';
 import type { SplitProjection } from '../scene/transfer-messages';
+import { kFirstView, showsPaint, type View } from '../scene/view-state';
 import { CageLines } from './cage-lines';
-import { aspectOf, type Crowd, type FreePart, fittingDistance, freePartOf, frontOf } from './framing';
+import { type Angle, aspectOf, type Crowd, type FreePart, fittingDistance, freePartOf, frontOf } from './framing';
 import { Highlight } from './highlight';
-import { type Look, Overlay } from './overlay';
+import { kLooks, type Look, Overlay } from './overlay';
 import { pick, type Spot } from './pick';
 import { Pointing, type Tool } from './pointing';
 import { Studio } from './studio';
-import { type Angle, kFirstView, kLooks, showsPaint, type View } from './view';
 
 const kFieldOfView = 28; // degrees
 const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14));

@@ -1,9 +1,10 @@
-import type { LightName } from './light';
-import type { Look } from './overlay';
-
 /** View modes; `compare` shows naive and result on either side of a divider. */
 export const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
 export type Mode = (typeof kModes)[number];
+
+/** The lights to choose from. */
+export const kLightNames = ['studio', 'soft', 'day', 'evening'] as const;
+export type LightName = (typeof kLightNames)[number];
 
 /** State of the view. */
 export interface View {
@@ -17,16 +18,6 @@ export interface View {
   background: string;
 }
 
-/** Direction and distance of the camera. */
-export interface Angle {
-  /** Degrees around the model from its front; counter-clockwise seen from above. */
-  turn: number;
-  /** Degrees from straight above. */
-  tilt: number;
-  /** Magnification, relative to the distance at which the whole model is visible. */
-  near: number;
-}
-
 export const kFirstView: View = {
   mode: 'compare',
   split: 0.5,
@@ -34,17 +25,6 @@ export const kFirstView: View = {
   cage: false,
   light: 'studio',
   background: '',
-};
-
-/** The overlay of each mode other than `compare`. */
-export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
-  result: 'result',
-  naive: 'naive',
-  zones: 'zones',
-  segments: 'colors',
-  checker: 'checker',
-  distance: 'colors',
-  stretch: 'colors',
 };
 
 /** Whether a mode shows paint, which can be switched off. */
