@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { forPeople } from '../../web/src/panels/wording';
+import { forPeople } from '../../web/src/scene/wording';
 import { inRepository } from '../support/site';
 
 test('findings are told in the words of the page: parts, no flags, no functions', () => {

@@ -1,4 +1,4 @@
-import { type Deform, kDeforms } from '../live/deform';
+import { type ChosenShape, kDeforms } from '../live/deform';
 import type { Choice, Locks, Rules } from '../scene/session';
 import { kLightNames, kModes, type Mode, type View } from '../scene/view-state';
 import type { Angle } from '../view/framing';
@@ -15,17 +15,6 @@ export interface LinkedLayer {
   visible: boolean;
 }
 
-/** The deformation of a model. */
-export interface LinkedShape {
-  deform: Deform;
-  /** From −1 to 1; 0 is the rest shape. */
-  amount: number;
-  /** Whether the cage is deformed too. */
-  cage: boolean;
-  /** Morph weights by name; the others are as in the file. */
-  morphs: ReadonlyMap<string, number>;
-}
-
 /** The state that a link restores. */
 export interface LinkState {
   sample: string;
@@ -35,7 +24,7 @@ export interface LinkState {
   locks: Locks;
   view: View;
   /** Absent at rest. */
-  shape?: LinkedShape | undefined;
+  shape?: ChosenShape | undefined;
   /** Absent for the default camera. */
   angle?: Angle | undefined;
 }
@@ -114,7 +103,7 @@ function readLayer(text: string): LinkedLayer {
   };
 }
 
-function readShape(words: URLSearchParams): LinkedShape | undefined {
+function readShape(words: URLSearchParams): ChosenShape | undefined {
   const [deform = '', amount = '', alone] = (words.get('deform') ?? '').split(',');
   const known = kDeforms.find((name) => name === deform);
   const far = Math.abs(Number(amount)) <= 1 ? Number(amount) : 0;

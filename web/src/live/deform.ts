@@ -4,6 +4,17 @@ import type { Vector3 } from 'three';
 export const kDeforms = ['bend', 'twist', 'inflate'] as const;
 export type Deform = (typeof kDeforms)[number];
 
+/** The shape of a model that the user chose. */
+export interface ChosenShape {
+  deform: Deform;
+  /** From −1 to 1; 0 is the rest shape. */
+  amount: number;
+  /** Whether the cage is deformed too. */
+  cage: boolean;
+  /** Morph weights by name; the others are as in the file. */
+  morphs: ReadonlyMap<string, number>;
+}
+
 /** The bounding box of the model at rest, which scales a deformation. */
 export interface Extent {
   center: Vector3;

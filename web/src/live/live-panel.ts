@@ -1,11 +1,10 @@
-import type { LinkedShape } from '../export/link';
 import { announce, element } from '../platform/page';
 import type { ExtractedMesh } from '../scene/extract-mesh';
 import type { Session, Shown } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
 import type { Viewer } from '../view/viewer';
 import { Animations } from './animations';
-import { type Deform, kDeforms } from './deform';
+import { type ChosenShape, type Deform, kDeforms } from './deform';
 import { expressionsOf } from './expressions';
 import { Morphs } from './morphs';
 import { isAtRest, Pose, type Shape } from './pose';
@@ -55,13 +54,13 @@ export class Live {
   }
 
   /** The shape chosen by the user; while “Animate” moves it, the one before. */
-  get shape(): LinkedShape {
+  get shape(): ChosenShape {
     const amount = this.#started === undefined ? Number(this.#amount.value) : this.#still;
     return { deform: this.#deform.value as Deform, amount, cage: this.#along.checked, morphs: this.#morphs.moved };
   }
 
   /** Sets the shape. */
-  move({ deform, amount, cage, morphs }: LinkedShape): void {
+  move({ deform, amount, cage, morphs }: ChosenShape): void {
     this.#stop();
     this.#deform.value = deform;
     this.#amount.value = String(amount);

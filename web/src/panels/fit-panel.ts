@@ -4,10 +4,10 @@ import { element } from '../platform/page';
 import type { CageMaker } from '../scene/cage-maker';
 import type { Session } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
+import { forPeople } from '../scene/wording';
 import { trianglesOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
 import { type KnownVerdict, paintableShare, type Remedy, StageVerdict } from './stage-verdict';
-import { forPeople } from './wording';
 
 const kCalm = 800; // milliseconds without a change before the cage is inspected
 const kMost = 60_000; // triangles that are inspected automatically; the time grows with their number

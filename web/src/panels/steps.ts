@@ -1,5 +1,5 @@
 import type { History } from 'cagecast/three/layers';
-import type { LinkedShape } from '../export/link';
+import type { ChosenShape } from '../live/deform';
 import type { Live } from '../live/live-panel';
 import { type Controlled, ControlSteps } from '../platform/controls';
 import type { Locks, Rules, Session } from '../scene/session';
@@ -29,7 +29,7 @@ export function recordControls(session: Session, live: Live, history: History): 
       return `${kDone[after[segment] ?? 'auto']} ${nameOfPart(session.shown!, segment)}${rest}`;
     },
   };
-  const shape: Controlled<Omit<LinkedShape, 'morphs'> & { morphs: [string, number][] }> = {
+  const shape: Controlled<Omit<ChosenShape, 'morphs'> & { morphs: [string, number][] }> = {
     get: () => ({ ...live.shape, morphs: [...live.shape.morphs] }),
     set: (state) => live.move({ ...state, morphs: new Map(state.morphs) }),
     nameOf: () => 'changing the shape',

@@ -2,13 +2,13 @@ import type { Cage, CageModel, Fit, Landmarks, MakeOptions, TemplateName } from 
 import { cageModel } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
-import { forPeople } from '../panels/wording';
 import { download } from '../platform/download';
 import { element } from '../platform/page';
 import { likelyTemplate } from './likely-template';
 import { loadModel, type Model } from './load-model';
 import type { Sample } from './samples';
 import type { Session } from './session';
+import { forPeople } from './wording';
 
 /** What the steps of the engine are called for people. */
 const kStages: Record<string, string> = {

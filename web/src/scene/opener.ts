@@ -1,11 +1,11 @@
 import type { Edits, LayerStack, Sheet } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
-import { type Choice, offerPaints } from '../panels/paint-picker';
 import { element, showError } from '../platform/page';
 import { madeOf, sampleOf } from './cage-maker';
 import { type Intake, setUpFiles } from './files';
 import { loadModel, type Model } from './load-model';
 import { loadPaint, type Paint, titleOf } from './paint';
+import { type Choice, offerPaints } from './paint-picker';
 import { fetchFile, kChecker, paintName, type Sample } from './samples';
 import { kReading, type Locks, type Session, type Shown, type Wanted } from './session';
 

@@ -1,4 +1,4 @@
-import type { Session } from '../scene/session';
+import type { Session } from './scene/session';
 
 /**
  * Caches the page and its samples, so that it works offline from the next visit on.

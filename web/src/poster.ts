@@ -1,7 +1,7 @@
-import { readLink } from '../export/link';
-import { flags } from '../project/flags';
-import type { Session } from '../scene/session';
-import type { Viewer } from './viewer';
+import { readLink } from './export/link';
+import { flags } from './project/flags';
+import type { Session } from './scene/session';
+import type { Viewer } from './view/viewer';
 
 const kFade = 300; // milliseconds
 
