@@ -60,6 +60,9 @@ describe('lint', () => {
       'core/src/steps/holes.cpp': '#include "base/arena.hpp"\n#include "cagecast/mesh.hpp"\n#include <vector>\n',
       'wasm/src/index.ts': "import { error } from './error.js';\n",
       'web/src/app.ts': "import { transfer } from 'cagecast';\nimport './view/viewer';\n",
+      'web/src/view/viewer.ts': "import type { Session } from '../scene/session';\n",
+      'core/cages/make/make.cpp': '#include "hull/hull.hpp"\n#include "base/arena.hpp"\n',
+      'core/cages/hull/hull.hpp': '#pragma once\n',
       'tests/js/deep.test.ts': "import { blend } from '../../wasm/src/blend.js';\n",
     });
     const { passed, output } = lint('arrows', root);
@@ -76,8 +79,12 @@ describe('lint', () => {
       'core/src/misc/other.cpp',
       '#include "base/arena.hpp"\n',
     ],
+    'a lower folder of the cages includes a higher one': ['core/cages/hull/hull.cpp', '#include "make/wrap.hpp"\n'],
     'the package imports the page': ['wasm/src/index.ts', "import { Viewer } from '../../web/src/view/viewer.js';\n"],
     'the page imports the package by its path': ['web/src/app.ts', "import { run } from '../../wasm/src/index.js';\n"],
+    'a lower folder of the page imports a higher one': ['web/src/scene/a.ts', "import type { B } from '../view/b';\n"],
+    'a folder of the page imports a file above it': ['web/src/project/a.ts', "const app = await import('../app');\n"],
+    'a folder of the page has no place in the order': ['web/src/misc/a.ts', "import { b } from '../platform/b';\n"],
     'the page loads the package by its path': ['web/src/app.ts', "const it = import('../../dist/index.js');\n"],
     'an example imports a test': ['examples/node/one.js', "import { glb } from '../../tests/support/glb.js';\n"],
   };
@@ -86,6 +93,7 @@ describe('lint', () => {
       const higher = {
         'core/src/steps/holes.hpp': '#pragma once\n',
         'core/src/transfer.hpp': '#pragma once\n',
+        'core/cages/make/wrap.hpp': '#pragma once\n',
         'wasm/names.hpp': '',
       };
       const root = treeOf(what.replace(/\W/g, '-'), { ...lower, ...higher, [path]: text });

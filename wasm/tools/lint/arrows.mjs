@@ -3,8 +3,34 @@ import { existsSync, readFileSync } from 'node:fs';
 import { dirname, join, normalize } from 'node:path';
 import { isCpp, isScript } from './files.mjs';
 
-/** The folders of core/src, lowest first; a file may include its own folder and those before it. transfer.cpp is the last. */
+// Folders lowest first: a file may include or import its own folder and those before it. Files beside the folders have their
+// places by name: transfer.cpp of the core is the last.
 const kCoreOrder = ['base', 'simd', 'geometry', 'input', 'search', 'cage', 'steps', 'seams', 'clip', 'transfer'];
+const kCagesOrder = ['mesh', 'hull', 'landmarks', 'charts', 'make', 'fit', 'refine'];
+const kPageOrder = [
+  'platform',
+  'scene',
+  'view',
+  'brush',
+  'explain',
+  'cage',
+  'layers',
+  'live',
+  'export',
+  'panels',
+  'wardrobe',
+  'project',
+  'offline',
+  'poster',
+  'app',
+];
+
+/** The orders, by where they hold. */
+const kOrders = {
+  'core/src/': kCoreOrder,
+  'core/cages/': kCagesOrder,
+  'web/src/': kPageOrder,
+};
 
 /** Where a quoted include is looked up, after the folder of the file itself. */
 const kIncludeFolders = ['core/src', 'core/include', 'core/cages', 'core', 'tests/core'];
@@ -38,17 +64,21 @@ const kScriptRules = [
   { from: 'examples/', may: ['examples/'], rule: "examples import the package by its public name, 'cagecast'" },
 ];
 
-/** `steps` for core/src/steps/holes.cpp, `transfer` for core/src/transfer.cpp. */
-function coreFolder(path) {
-  const [first, ...rest] = path.slice('core/src/'.length).split('/');
+/** `steps` for steps/holes.cpp, `transfer` for transfer.cpp. */
+function folderOf(path) {
+  const [first, ...rest] = path.split('/');
   return rest.length > 0 ? first : first.replace(/\.[a-z]+$/, '');
 }
 
+/** Checks two files of the same part against the order of its folders. */
 function checkOrder(from, to) {
-  const [lower, higher] = [coreFolder(to), coreFolder(from)].map((folder) => kCoreOrder.indexOf(folder));
-  if (higher < 0) return `${coreFolder(from)} is not in the order of folders: ${kCoreOrder.join(', ')}`;
-  if (lower > higher) return `${kCoreOrder[higher]} is below ${kCoreOrder[lower]}`;
-  return undefined;
+  const part = Object.keys(kOrders).find((candidate) => from.startsWith(candidate) && to.startsWith(candidate));
+  if (part === undefined) return undefined;
+  const order = kOrders[part];
+  const [higher, lower] = [from, to].map((path) => folderOf(path.slice(part.length)));
+  const unknown = [higher, lower].find((folder) => !order.includes(folder));
+  if (unknown !== undefined) return `${unknown} is not in the order of folders: ${order.join(', ')}`;
+  return order.indexOf(lower) > order.indexOf(higher) ? `${higher} is below ${lower}` : undefined;
 }
 
 function checkInclude(root, from, text) {
@@ -58,7 +88,7 @@ function checkInclude(root, from, text) {
   if (to === undefined) return undefined; // Of the system, or of a library.
   const rule = kCppRules.find((candidate) => from.startsWith(candidate.from));
   if (rule && !rule.may.some((folder) => to.startsWith(folder))) return rule.rule;
-  return from.startsWith('core/src/') && to.startsWith('core/src/') ? checkOrder(from, to) : undefined;
+  return checkOrder(from, to);
 }
 
 function checkImport(from, text) {
@@ -68,7 +98,8 @@ function checkImport(from, text) {
   }
   const to = normalize(join(dirname(from), text)).replaceAll('\\', '/');
   const rule = kScriptRules.find((candidate) => from.startsWith(candidate.from));
-  return rule && !rule.may.some((folder) => to.startsWith(folder)) ? rule.rule : undefined;
+  if (rule && !rule.may.some((folder) => to.startsWith(folder))) return rule.rule;
+  return checkOrder(from, to);
 }
 
 const kInclude = /^\s*#\s*include\s+["<]([^">]+)[">]/;
