@@ -5,7 +5,6 @@
 
 export { classify } from './api/classify.js';
 export { type CutTarget, cutBorders } from './api/cut-borders.js';
-export { CagecastError, type Code } from './api/error.js';
 export type { Masks } from './api/masks.js';
 export type { Mesh } from './api/mesh.js';
 export {
@@ -18,17 +17,11 @@ export {
   presetOptions,
   type TransferOptions,
 } from './api/options.js';
-export type {
-  Classification,
-  HoleShare,
-  Projected,
-  Projection,
-  SegmentStats,
-  Timings,
-  TransferResult,
-} from './api/result.js';
+export type { Classification, Projected, Projection, TransferResult } from './api/result.js';
 export type { Reuse } from './api/reuse.js';
 export { type SplitVertices, splitVertices } from './api/split-vertices.js';
 export { project, transfer } from './api/transfer.js';
 export { init } from './core/engine.js';
+export { CagecastError, type Code } from './core/error.js';
+export type { HoleShare, SegmentStats, Timings } from './core/records.js';
 export { Zone } from './generated/zone.js';

@@ -1,13 +1,14 @@
 import { callCore, useCore } from '../core/engine.js';
+import { CagecastError, show } from '../core/error.js';
 import type { CoreProjection } from '../core/module.js';
+import type { HoleShare, SegmentStats } from '../core/records.js';
+import { type ArrayKind, plainArray, showArray } from '../core/typed-arrays.js';
 import { Zone } from '../generated/zone.js';
-import { CagecastError, show } from './error.js';
 import { applyMasks, checkMaskLengths } from './masks.js';
 import { count } from './mesh.js';
 import { type ClassifyOptions, checkOptions } from './options.js';
-import type { Classification, HoleShare, Projection, SegmentStats } from './result.js';
+import type { Classification, Projection } from './result.js';
 import { checkReuse, handOver, type Reuse } from './reuse.js';
-import { type ArrayKind, plainArray, showArray } from './typed-arrays.js';
 
 /**
  * Decides which segments are culled, and so the zone of every vertex, in microseconds.

@@ -1,12 +1,12 @@
 import { callCore, useCore } from '../core/engine.js';
-import type { CoreDecision } from '../core/module.js';
+import { CagecastError, show } from '../core/error.js';
+import type { CheckedMesh, CoreDecision } from '../core/module.js';
+import { plainArray, showArray } from '../core/typed-arrays.js';
 import { Zone } from '../generated/zone.js';
-import { CagecastError, show } from './error.js';
 import { applyMasksToCut, checkMaskLengths } from './masks.js';
-import { type CheckedMesh, checkMesh, count, type Mesh } from './mesh.js';
+import { checkMesh, count, type Mesh } from './mesh.js';
 import { checkOptions, type TransferOptions } from './options.js';
 import type { TransferResult } from './result.js';
-import { plainArray, showArray } from './typed-arrays.js';
 
 /**
  * A target whose triangles are cut along the borders of the paint. The target's vertices keep their numbers, and new ones follow.

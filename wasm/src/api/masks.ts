@@ -1,8 +1,8 @@
+import { CagecastError, isRecord, show } from '../core/error.js';
+import { plainArray, showArray } from '../core/typed-arrays.js';
 import { Zone } from '../generated/zone.js';
-import { CagecastError, isRecord, show } from './error.js';
 import { count } from './mesh.js';
 import type { Classification } from './result.js';
-import { plainArray, showArray } from './typed-arrays.js';
 
 /**
  * Where the target is never painted (−1) or always (1), whatever the method says; 0 leaves it to the method. For what no lock can

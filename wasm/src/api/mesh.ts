@@ -1,5 +1,6 @@
-import { CagecastError, show } from './error.js';
-import { type ArrayKind, plainArray, showArray } from './typed-arrays.js';
+import { CagecastError, show } from '../core/error.js';
+import type { CheckedMesh } from '../core/module.js';
+import { type ArrayKind, plainArray, showArray } from '../core/typed-arrays.js';
 
 /** A triangle mesh. Its arrays are copied and never changed. */
 export interface Mesh {
@@ -11,14 +12,6 @@ export interface Mesh {
   uvs?: Float32Array | undefined;
   /** 1 per vertex, usually the number of its mesh or material: vertices of different groups are never welded. Default: all 0. */
   groups?: Uint32Array | undefined;
-}
-
-/** A mesh whose arrays have the right types; missing ones are empty. */
-export interface CheckedMesh {
-  positions: Float32Array;
-  indices: Uint32Array | Uint16Array | Uint8Array;
-  uvs: Float32Array;
-  groups: Uint32Array;
 }
 
 const noUvs = new Float32Array(0);

@@ -1,4 +1,5 @@
 import { useCore } from '../core/engine.js';
+import { CagecastError, isRecord, show } from '../core/error.js';
 import { type CoreLocks, type CoreOptions, type CoreValue, nameOf, namesOf } from '../core/module.js';
 import {
   type ClassifyStage,
@@ -7,7 +8,6 @@ import {
   type ProjectStage,
   type ProjectSteps,
 } from '../generated/options.js';
-import { CagecastError, isRecord, show } from './error.js';
 import { checkMasks, type Masks } from './masks.js';
 
 /**

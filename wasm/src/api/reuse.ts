@@ -1,6 +1,6 @@
 import type { Reusable } from '../core/engine.js';
-import { CagecastError, show } from './error.js';
-import { type ArrayKind, plainArray, realBuffer, showArray } from './typed-arrays.js';
+import { CagecastError, show } from '../core/error.js';
+import { type ArrayKind, plainArray, realBuffer, showArray } from '../core/typed-arrays.js';
 
 /** An option of functions that return arrays. */
 export interface Reuse<Result> {

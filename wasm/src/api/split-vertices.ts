@@ -1,7 +1,7 @@
 import { callCore } from '../core/engine.js';
-import { CagecastError } from './error.js';
+import { CagecastError } from '../core/error.js';
+import { plainArray, showArray } from '../core/typed-arrays.js';
 import { checkMesh, type Mesh } from './mesh.js';
-import { plainArray, showArray } from './typed-arrays.js';
 
 /** A mesh whose vertices are split wherever the UVs of their corners differ. The caller owns every array. */
 export interface SplitVertices {

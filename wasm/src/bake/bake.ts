@@ -1,4 +1,4 @@
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { CagecastError, type Mesh, type TransferResult } from '../index.js';
 import type { Image } from './image.js';
 import { type Baked, checkFill, type FillOptions, fill, type Layout, paintedOnly } from './layout.js';

@@ -1,4 +1,4 @@
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 
 /** An image: 4 bytes per pixel (red, green, blue, alpha), not premultiplied, upper row first, as in glTF's UV space. */

@@ -1,4 +1,4 @@
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import { fillGutter } from './gutter.js';
 import { checkImage, checkNames, checkSize, colorByte, type Image, linearOf } from './image.js';

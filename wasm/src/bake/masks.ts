@@ -1,4 +1,4 @@
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import { cornersOf } from './bake.js';
 import { checkImage, checkNames, type Image } from './image.js';

@@ -1,7 +1,7 @@
-import { CagecastError, isRecord, show } from '../api/error.js';
 import { checkMesh, count } from '../api/mesh.js';
-import { plainArray, showArray } from '../api/typed-arrays.js';
+import { CagecastError, isRecord, show } from '../core/error.js';
 import { type EnumValue, namesOf } from '../core/module.js';
+import { plainArray, showArray } from '../core/typed-arrays.js';
 import type { CagesModule, CoreLandmark, CoreModel, CoreOptions, CoreTemplate } from './module.js';
 import type { CageModel, Holes, Landmarks, Template } from './types.js';
 

@@ -1,4 +1,4 @@
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import type { Cage, Template } from './types.js';
 

@@ -1,5 +1,4 @@
-import type { CheckedMesh } from '../api/mesh.js';
-import type { Enum, EnumValue } from '../core/module.js';
+import type { CheckedMesh, Enum, EnumValue } from '../core/module.js';
 
 /** How a call ended. The other fields of an answer are there if `problem` is `none`. */
 export interface CagesAnswer {

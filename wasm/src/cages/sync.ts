@@ -6,8 +6,8 @@
  * @module cagecast/cages/sync
  */
 import createModule from '#cages-glue';
-import { CagecastError, type Code, isRecord, show } from '../api/error.js';
 import type { Mesh } from '../api/mesh.js';
+import { CagecastError, type Code, isRecord, show } from '../core/error.js';
 import { instantiate, isLackOfMemory, unsupported } from '../core/instantiate.js';
 import { nameOf } from '../core/module.js';
 import { compileFile } from '../core/read-file.js';

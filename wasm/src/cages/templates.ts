@@ -1,4 +1,4 @@
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { readFile } from '../core/read-file.js';
 import { CagecastError } from '../index.js';
 import { readExtras } from '../parts/template.js';

@@ -1,10 +1,10 @@
 import createModule from '#glue';
 import { compile } from '#wasm';
-import { CagecastError, type Code } from '../api/error.js';
-import type { SegmentStats } from '../api/result.js';
-import { overwrite, realLength } from '../api/typed-arrays.js';
+import { CagecastError, type Code } from './error.js';
 import { instantiate, isLackOfMemory, unsupported } from './instantiate.js';
 import { type Answer, type CoreModule, type CoreSegment, nameOf, type Workspace } from './module.js';
+import type { SegmentStats } from './records.js';
+import { overwrite, realLength } from './typed-arrays.js';
 
 let starting: Promise<void> | undefined;
 let compiled: WebAssembly.Module | undefined;

@@ -1,4 +1,4 @@
-import { CagecastError } from '../api/error.js';
+import { CagecastError } from './error.js';
 
 /**
  * Makes a fresh instance of a compiled module: a few milliseconds.

@@ -1,5 +1,4 @@
-import type { CheckedMesh } from '../api/mesh.js';
-import type { HoleShare, SegmentStats, Timings } from '../api/result.js';
+import type { HoleShare, SegmentStats, Timings } from './records.js';
 
 /** A value of an enumeration in C++. */
 export type EnumValue = { readonly value: number };
@@ -9,6 +8,14 @@ export type Enum = Record<string, EnumValue>;
 export type CoreValue = number | boolean | EnumValue;
 /** All options, as C++ takes them. */
 export type CoreOptions = { [name: string]: CoreValue } & { steps: Record<string, CoreValue> };
+
+/** A mesh whose arrays have the right types; missing ones are empty. */
+export interface CheckedMesh {
+  positions: Float32Array;
+  indices: Uint32Array | Uint16Array | Uint8Array;
+  uvs: Float32Array;
+  groups: Uint32Array;
+}
 
 /** The locks of parts, as C++ takes them. */
 export interface CoreLocks {

@@ -1,4 +1,4 @@
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import { checkGeometry } from './check.js';
 import { InputError } from './input-error.js';

@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { InputError } from './input-error.js';
 
 const componentBytes: Record<number, number> = { 5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4 };

@@ -1,6 +1,6 @@
 import type { Accessor, GLTF } from '@gltf-transform/core';
-import { show } from '../api/error.js';
 import type { Mesh } from '../api/mesh.js';
+import { show } from '../core/error.js';
 import { skinMatrix, usedJoints } from '../parts/skin.js';
 import { InputError } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';

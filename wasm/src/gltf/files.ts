@@ -1,7 +1,7 @@
 import { constants } from 'node:fs';
 import { type FileHandle, open, realpath, stat } from 'node:fs/promises';
 import { isAbsolute, relative, resolve } from 'node:path';
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { firstLine, InputError } from './input-error.js';
 import { defaultLimits, exceeds, type ReadLimits } from './limits.js';
 

@@ -1,7 +1,7 @@
 import { dirname, parse } from 'node:path';
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { type MeshoptView, meshoptExtensions, meshoptView } from './check.js';
 import { localFile, type ReadOptions, readUri } from './files.js';
 import { imageType } from './image.js';

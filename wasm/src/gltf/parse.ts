@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { checkLists } from './check.js';
 import { InputError } from './input-error.js';
 import { checkNesting, type ReadLimits } from './limits.js';

@@ -3,7 +3,7 @@
  * @module cagecast/inspect
  */
 
-import { show } from '../api/error.js';
+import { show } from '../core/error.js';
 import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../index.js';
 import {
   type Finding,

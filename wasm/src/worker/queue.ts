@@ -1,4 +1,4 @@
-import { isRecord, show } from '../api/error.js';
+import { isRecord, show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import type { Reply, Request, Spawn, Thread } from './protocol.js';
 

@@ -1,5 +1,5 @@
 import type { Document } from '@gltf-transform/core';
-import { show } from '../../api/error.js';
+import { show } from '../../core/error.js';
 import {
   CagecastError,
   type CutTarget,
