@@ -58,7 +58,8 @@ describe('lint', () => {
     const root = treeOf('down', {
       ...lower,
       'core/src/steps/holes.cpp': '#include "base/arena.hpp"\n#include "cagecast/mesh.hpp"\n#include <vector>\n',
-      'wasm/src/index.ts': "import { error } from './error.js';\n",
+      'wasm/src/index.ts': "import { error } from './core/error.js';\n",
+      'wasm/src/three/apply.ts': "import { CagecastError } from '../index.js';\n",
       'web/src/app.ts': "import { transfer } from 'cagecast';\nimport './view/viewer';\n",
       'web/src/view/viewer.ts': "import type { Session } from '../scene/session';\n",
       'core/cages/make/make.cpp': '#include "hull/hull.hpp"\n#include "base/arena.hpp"\n',
@@ -81,6 +82,8 @@ describe('lint', () => {
     ],
     'a lower folder of the cages includes a higher one': ['core/cages/hull/hull.cpp', '#include "make/wrap.hpp"\n'],
     'the package imports the page': ['wasm/src/index.ts', "import { Viewer } from '../../web/src/view/viewer.js';\n"],
+    'a lower folder of the package imports a higher one': ['wasm/src/core/a.ts', "import { b } from '../api/b.js';\n"],
+    'a folder below the package’s index imports it': ['wasm/src/api/a.ts', "import { b } from '../index.js';\n"],
     'the page imports the package by its path': ['web/src/app.ts', "import { run } from '../../wasm/src/index.js';\n"],
     'a lower folder of the page imports a higher one': ['web/src/scene/a.ts', "import type { B } from '../view/b';\n"],
     'a folder of the page imports a file above it': ['web/src/project/a.ts', "const app = await import('../app');\n"],

@@ -7,6 +7,21 @@ import { isCpp, isScript } from './files.mjs';
 // places by name: transfer.cpp of the core is the last.
 const kCoreOrder = ['base', 'simd', 'geometry', 'input', 'search', 'cage', 'steps', 'seams', 'clip', 'transfer'];
 const kCagesOrder = ['mesh', 'hull', 'landmarks', 'charts', 'make', 'fit', 'refine'];
+const kPackageOrder = [
+  'generated',
+  'core',
+  'api',
+  'index',
+  'inspect',
+  'bake',
+  'parts',
+  'worker',
+  'cages',
+  'gltf',
+  'three',
+  'viewer',
+  'cli',
+];
 const kPageOrder = [
   'platform',
   'scene',
@@ -29,6 +44,7 @@ const kPageOrder = [
 const kOrders = {
   'core/src/': kCoreOrder,
   'core/cages/': kCagesOrder,
+  'wasm/src/': kPackageOrder,
   'web/src/': kPageOrder,
 };
 
