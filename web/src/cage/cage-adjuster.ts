@@ -25,7 +25,7 @@ import { LandmarkDots } from './landmark-dots';
 type Mode = 'move' | 'turn' | 'scale' | 'corner' | 'hole';
 
 const kReach = 24; // pixels around a handle in which it is meant
-const kCalm = 600; // milliseconds after the last key before the cage is changed
+const kChangeDelay = 600; // milliseconds after the last key before the cage is changed
 const kArm = 0.18; // length of an axis, in diagonals of the cage
 const kAxes = { x: new Vector3(1, 0, 0), y: new Vector3(0, 1, 0), z: new Vector3(0, 0, 1) };
 const kColors: Record<string, string> = { x: '#d55e00', y: '#009e73', z: '#0072b2' };
@@ -348,7 +348,7 @@ export class CageAdjuster {
     else this.#about(new Matrix4().makeScale(kGrow ** sign, kGrow ** sign, kGrow ** sign));
     this.#viewer.redraw();
     clearTimeout(this.#waiting);
-    this.#waiting = setTimeout(() => this.#commit(), kCalm);
+    this.#waiting = setTimeout(() => this.#commit(), kChangeDelay);
   }
 
   /** The corner of the cage nearest to a position on the screen, in front of others. */

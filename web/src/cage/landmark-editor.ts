@@ -20,7 +20,7 @@ interface Spots {
 
 const kReach = 24; // pixels around a dot in which it is meant: half a finger
 const kStep = 5; // pixels per arrow key; with Shift 1
-const kCalm = 700; // milliseconds after the last key before the template is fitted again
+const kFitDelay = 700; // milliseconds after the last key before the template is fitted again
 const kUncertain = 0.7;
 const kColors = { found: '#0072b2', uncertain: '#e69f00', given: '#d81b60' };
 /** Those that say most of a model, for templates of which few are found. */
@@ -274,7 +274,7 @@ export class LandmarkEditor {
     if (!this.#put(name, x + length * step[0], y + length * step[1])) announce('The model ends there.');
     else this.#record(`moving the ${readable(name)}`, before, this.#waiting !== undefined);
     clearTimeout(this.#waiting);
-    this.#waiting = setTimeout(() => this.#fit(), kCalm);
+    this.#waiting = setTimeout(() => this.#fit(), kFitDelay);
   }
 
   /** Moves a landmark, and its counterpart, to where the model is at a position on the screen. @returns Whether it is there. */

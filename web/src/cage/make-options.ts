@@ -10,7 +10,7 @@ import type { Viewer } from '../view/viewer';
 import { BareBrush } from './bare-brush';
 
 const kSteps = 40;
-const kCalm = 700; // milliseconds after the last change before the cage is made again
+const kMakeDelay = 700; // milliseconds after the last change before the cage is made again
 
 /** A value on a slider with equal ratios between its steps; its lowest position, 0, is automatic. */
 const valueAt = (step: number, least: number, most: number): number =>
@@ -77,7 +77,7 @@ export class MakeOptionsPanel {
   /** Makes a cage again if it was made here. */
   #change(): void {
     clearTimeout(this.#waiting);
-    this.#waiting = setTimeout(() => this.#maker.isMade && void this.#maker.make(), kCalm);
+    this.#waiting = setTimeout(() => this.#maker.isMade && void this.#maker.make(), kMakeDelay);
   }
 
   /** Lists the parts of the current target, those that names tell to be bare switched off. */

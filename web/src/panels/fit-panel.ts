@@ -9,7 +9,7 @@ import { trianglesOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
 import { type KnownVerdict, paintableShare, type Remedy, StageVerdict } from './stage-verdict';
 
-const kCalm = 800; // milliseconds without a change before the cage is inspected
+const kInspectDelay = 800; // milliseconds without a change before the cage is inspected
 const kMost = 60_000; // triangles that are inspected automatically; the time grows with their number
 const kSoon = 'The cage will be inspected in a moment.';
 const kVerdicts: Record<Inspection['verdict'], string> = {
@@ -60,7 +60,7 @@ export class FitPanel {
     const { target, cage } = this.#session.shown!;
     const triangles = (target.mesh.indices.length + cage.mesh.indices.length) / 3;
     this.#forget();
-    if (triangles <= kMost) this.#waiting = setTimeout(() => void this.#inspect(), kCalm);
+    if (triangles <= kMost) this.#waiting = setTimeout(() => void this.#inspect(), kInspectDelay);
     else this.#show('', [text('p', 'This model is large; inspecting it takes a while.')], this.#next);
     this.#button.hidden = triangles <= kMost;
   }

@@ -4,7 +4,7 @@ import { element } from '../platform/page';
 import type { Session } from '../scene/session';
 import { nameOfPart } from './part-menu';
 
-const kCalm = 500; // milliseconds without a change
+const kSeekDelay = 500; // milliseconds without a change
 const kSteps = 100; // of the slider
 const kMostPoints = 300_000;
 const kMostNamed = 4;
@@ -28,7 +28,8 @@ export class ThresholdMarks {
     this.#basis = basis;
     clearTimeout(this.#waiting);
     this.#write(new Map());
-    if (shown!.projection.zones.length <= kMostPoints) this.#waiting = setTimeout(() => void this.#seek(basis), kCalm);
+    if (shown!.projection.zones.length <= kMostPoints)
+      this.#waiting = setTimeout(() => void this.#seek(basis), kSeekDelay);
   }
 
   async #seek(basis: readonly unknown[]): Promise<void> {

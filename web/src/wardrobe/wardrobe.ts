@@ -17,7 +17,7 @@ import type { KeptAvatar, KeptWardrobe } from './kept';
 import type { Surroundings } from './set-up-wardrobe';
 import { measure, SideBySide } from './side-by-side';
 
-const kCalm = 1500; // milliseconds without a change before pictures are drawn again
+const kPictureDelay = 1500; // milliseconds without a change before pictures are drawn again
 const kPicture = 128; // pixels per side
 const kMostInspected = 60_000; // triangles; the time grows with their number
 
@@ -467,7 +467,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     for (const avatar of avatars) this.#outdated.add(avatar);
     const isNew = [...this.#outdated].some(({ picture }) => picture === '');
     clearTimeout(this.#picturing);
-    this.#picturing = setTimeout(() => this.#takePictures(), isNew ? 0 : kCalm);
+    this.#picturing = setTimeout(() => this.#takePictures(), isNew ? 0 : kPictureDelay);
   }
 
   #takePictures(): void {
