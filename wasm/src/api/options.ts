@@ -68,7 +68,7 @@ export interface PresetOptions extends AllOf<ProjectStage & ClassifyStage> {
 }
 
 /** Checked options, as the core takes them. */
-export interface CheckedOptions {
+interface CheckedOptions {
   preset: Preset;
   core: CoreOptions;
   locks: CoreLocks;

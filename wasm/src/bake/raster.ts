@@ -26,7 +26,7 @@ const kMostRepeats = 64;
 export type Corners = ArrayLike<number>;
 
 /** What a painted triangle shows. */
-export interface Shown {
+interface Shown {
   /** 6 numbers: the UVs of its corners in the image that is sampled. Undefined if only the mask is wanted. */
   corners?: Corners | undefined;
   /** For normal maps, 4 numbers: the matrix, row by row, from the tangent space of the image to that of the texture. */

@@ -60,7 +60,7 @@ export function checkPatterns(patterns: unknown, bad: (type: string) => Cagecast
 }
 
 /** Checks the types of a cage. @throws {CagecastError} `badArgument`, `missingUvs` */
-export function checkCage(fn: string, name: 'cage' | 'template', cage: unknown) {
+function checkCage(fn: string, name: 'cage' | 'template', cage: unknown) {
   const mesh = checkMesh(fn, name, cage);
   if (mesh.uvs.length === 0)
     throw new CagecastError('missingUvs', `${fn}: ${name}.uvs is missing: the texture is drawn in the cage's UVs`);

@@ -15,7 +15,7 @@ import type { Progress } from './progress.js';
 import type { TransferCommand } from './transfer-command.js';
 
 /** The arguments of `cagecast batch`. */
-export interface BatchCommand {
+interface BatchCommand {
   jobs: readonly Job[];
   /** Where lines are added, one per job; if none, on the standard output. */
   results?: string | undefined;
@@ -29,13 +29,13 @@ export interface BatchCommand {
 }
 
 /** A line of the results. */
-export type ResultLine = { target: string; output: string | null; report?: string; key: string } & (
+type ResultLine = { target: string; output: string | null; report?: string; key: string } & (
   | Outcome
   | { status: 'skipped'; verdict?: Verdict }
 );
 
 /** What became of the jobs of a batch. */
-export interface BatchSummary {
+interface BatchSummary {
   jobs: number;
   done: number;
   failed: number;

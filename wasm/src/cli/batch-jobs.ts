@@ -31,7 +31,7 @@ export interface Job {
 }
 
 /** What jobs have in common, from the command line and configuration files. */
-export interface JobDefaults extends Omit<TransferCommand, 'target' | 'cage' | keyof Settled> {
+interface JobDefaults extends Omit<TransferCommand, 'target' | 'cage' | keyof Settled> {
   cage?: string | undefined;
   /** Where the batch writes its results, if in a file. */
   results?: string | undefined;

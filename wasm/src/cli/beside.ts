@@ -14,7 +14,7 @@ import type { Region } from './transfer-command.js';
 const mostBytes = 2 ** 23;
 
 /** The files that the JSON of a glTF in a folder names. */
-export const filesNamedIn = ({ buffers = [], images = [] }: GLTF.IGLTF, folder: string): string[] =>
+const filesNamedIn = ({ buffers = [], images = [] }: GLTF.IGLTF, folder: string): string[] =>
   [...buffers, ...images].flatMap(({ uri }) => (uri === undefined ? [] : (localFile(uri, folder) ?? [])));
 
 /**
@@ -52,7 +52,7 @@ function withoutBinary(path: string): Uint8Array {
 }
 
 /** What a command reads. */
-export interface Reads extends Sources {
+interface Reads extends Sources {
   texture?: string | undefined;
   regions?: readonly Region[] | undefined;
 }

@@ -11,7 +11,7 @@ import type { Report } from './transfer-command.js';
 import type { PerZone } from './zones.js';
 
 /** The arguments of `cagecast diff`. */
-export interface DiffCommand {
+interface DiffCommand {
   before: string;
   after: string;
   /** How much a share may change. */

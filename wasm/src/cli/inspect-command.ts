@@ -13,7 +13,7 @@ import { cut, fateText, integer, percent, scoreText, short, table } from './tabl
 import { type PerZone, perZone } from './zones.js';
 
 /** The arguments of `cagecast inspect`. */
-export interface InspectCommand extends Sources {
+interface InspectCommand extends Sources {
   html?: string | undefined;
 }
 

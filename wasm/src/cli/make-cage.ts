@@ -38,7 +38,7 @@ export async function checkExclusions(patterns: readonly string[] = [], { file, 
 }
 
 /** A template, landmarks of the model (none if there is no file of them), and the files that they come from. */
-export interface FitSources {
+interface FitSources {
   template: Template;
   landmarks: Landmarks | undefined;
   files: { template: string; landmarks?: string | undefined };

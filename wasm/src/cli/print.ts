@@ -6,7 +6,7 @@ import { writeStandard } from './output.js';
 const commands = /(?![\n\t])[\p{Cc}\p{Bidi_Control}]/gu;
 
 /** A text with names from files in it, harmless to print: "\u001b" for an escape character, as in JSON, where it means the same. */
-export function harmless(text: string): string {
+function harmless(text: string): string {
   return text.replace(commands, escaped);
 }
 

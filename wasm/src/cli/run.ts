@@ -205,7 +205,7 @@ function usable(file: GltfFile, extracted: Extracted): Extracted {
 }
 
 /** Adds the file, and the place in it, to an error of the core; returns any other error unchanged. */
-export function inFile(
+function inFile(
   error: unknown,
   { targetFile, target, cageFile, cage }: Pick<Run, 'targetFile' | 'target' | 'cageFile' | 'cage'>,
 ): unknown {

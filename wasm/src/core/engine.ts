@@ -11,7 +11,7 @@ let compiled: WebAssembly.Module | undefined;
 let instance: Core | undefined;
 
 /** An instance of the module, and the one workspace of its calls. */
-export interface Core {
+interface Core {
   module: CoreModule;
   workspace: Workspace;
 }
@@ -123,6 +123,6 @@ const fits = (array: Reusable[string] | undefined, { length }: Uint8Array): bool
   array !== undefined && length > 0 && realLength(array) === length;
 
 /** Frees the instance's memory, which can grow but never shrink. The next call makes a new instance. */
-export function dropInstance(): void {
+function dropInstance(): void {
   instance = undefined;
 }

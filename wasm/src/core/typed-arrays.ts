@@ -18,7 +18,7 @@ type Constructors = typeof constructors;
 export type ArrayKind = keyof Constructors;
 
 /** An array of a kind. */
-export type ArrayOf<Kind extends ArrayKind> = InstanceType<Constructors[Kind]>;
+type ArrayOf<Kind extends ArrayKind> = InstanceType<Constructors[Kind]>;
 
 /**
  * A plain view of the memory of a typed array, of any realm. One in shared memory is copied, as another thread could change it after

@@ -25,14 +25,14 @@ export const imageExtensions: Readonly<Record<string, string>> = {
 const typesByEnding: Readonly<Record<string, string>> = { dds: 'image/vnd-ms.dds', avif: 'image/avif' };
 const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4' } as const;
 
-export type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
+type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
 
 /** How the geometry of written files is compressed: as that of the file that was read, or in another way. */
 export const forms = ['keep', 'none', 'meshopt', 'draco'] as const;
 export type Form = (typeof forms)[number];
 
 /** What an accessor that was added holds. */
-export interface Stored {
+interface Stored {
   values: AttributeArray;
   size: number;
   accessor: GLTF.IAccessor;

@@ -46,7 +46,7 @@ export function multiply(a: Matrix, b: Matrix): Matrix {
 }
 
 /** The determinant of the upper 3×3: the factor of volume, negative if the matrix mirrors. */
-export function determinant(m: Matrix): number {
+function determinant(m: Matrix): number {
   const [a, b, c, , d, e, f, , g, h, i] = m as number[] as [
     number,
     number,

@@ -30,7 +30,7 @@ export interface Paint {
 }
 
 /** Where a texture is: in a tile of UDIM; or within 0..1 only, not repeated outside. */
-export type PaintArea = { tile: number } | 'bounded';
+type PaintArea = { tile: number } | 'bounded';
 
 const imageNames: Record<string, string> = {
   'image/png': 'PNG',

@@ -41,7 +41,7 @@ export interface Added {
 }
 
 /** How a target is written. */
-export interface Writing {
+interface Writing {
   /** Textures, each on its own triangles. Default: none */
   paints?: readonly Paint[];
   /** What `cutBorders` made from the result. */

@@ -118,7 +118,7 @@ export class UnionFind {
 }
 
 /** The point of a triangle that is nearest to another point. */
-export interface Nearest {
+interface Nearest {
   point: Vector;
   /** The corners of the feature it lies on: one for a corner, two for an edge, three inside. */
   corners: readonly number[];

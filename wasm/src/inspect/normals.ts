@@ -19,7 +19,7 @@ const clearMajority = 0.5;
 const leastArea = 0.005;
 
 /** Which triangles of the cage are turned inward. */
-export interface Orientation {
+interface Orientation {
   /** 1 per triangle: 1 if it is wound clockwise, seen from outside. */
   inward: Uint8Array;
   /** Their share of the cage's area. */

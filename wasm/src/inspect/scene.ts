@@ -28,7 +28,7 @@ export interface Scene {
 }
 
 /** On which side of the cage each target vertex lies. */
-export interface Sides {
+interface Sides {
   /** Distance to the cage, negative on the inner side of the nearest triangle's plane, where a target should be. */
   signed: Float64Array;
   /** The loop of open edges on which the nearest point of the cage lies, so that the cage says nothing about the vertex; else -1. */

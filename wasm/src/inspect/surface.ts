@@ -11,7 +11,7 @@ export interface Edge {
 }
 
 /** A boundary loop: a closed chain of open edges, or several that touch, around a hole or at the end of the cage. */
-export interface Loop {
+interface Loop {
   edges: Edge[];
   /** Total length of its edges, in units of the input. */
   perimeter: number;

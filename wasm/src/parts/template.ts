@@ -1,12 +1,12 @@
 /** What a cage's node or mesh has in its extras: docs/cages.md describes the format. */
-export interface ReadExtras {
+interface ReadExtras {
   landmarks: Record<string, [number, number, number]>;
   holes: Record<string, number[]>;
   kind: 'automatic' | 'head' | 'body' | 'prop';
 }
 
 /** The extras of a node or mesh. */
-export interface ExtrasSource {
+interface ExtrasSource {
   extras: unknown;
   /** For messages. */
   place: string;

@@ -44,7 +44,7 @@ export const keyOf = (target: Extracted, cage: Mesh | undefined, options: Transf
   [targetKey(target), hashOfMesh(cage), textHash(JSON.stringify([options, cuts]))].join('-');
 
 /** The part of a key that depends on the target. */
-export const targetKey = ({ mesh, parts }: Extracted): string =>
+const targetKey = ({ mesh, parts }: Extracted): string =>
   `${hashOfMesh(mesh)}${textHash(parts.map(({ vertexCount, triangleCount }) => `${vertexCount} ${triangleCount}`).join())}`;
 
 /** @throws {CagecastError} `badArgument` if what was saved is of another target. */

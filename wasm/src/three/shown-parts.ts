@@ -25,7 +25,7 @@ export interface ShownPart extends PreparedPart {
 }
 
 /** The geometry of a part as it is now: three-vrm, for example, replaces those whose morph targets it combines. */
-export function geometryOf({ part, split }: ShownPart): BufferGeometry {
+function geometryOf({ part, split }: ShownPart): BufferGeometry {
   const geometry = part.mesh?.geometry ?? part.geometry;
   const [found, count] = [geometry.getAttribute('position').count, split.sources.length];
   if (found !== count)

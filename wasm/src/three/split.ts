@@ -10,7 +10,7 @@ import type { PreparedPart } from '../parts/prepare.js';
 import { isOfInstances } from './extract.js';
 import { disposeOwn, own } from './own-attributes.js';
 
-export type Attribute = BufferAttribute | InterleavedBufferAttribute;
+type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
 /** glTF's names of attributes that are not blended by a simple mean. */
 const semantics: Record<string, string> = {

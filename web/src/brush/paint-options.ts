@@ -11,7 +11,7 @@ const kMostSize = 0.4;
 const kSizeStep = 4; // of the slider, for a key
 
 /** The options of a sticker. */
-export interface StickerOptions {
+interface StickerOptions {
   text: string;
   color: string;
   outlined: boolean;

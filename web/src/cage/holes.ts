@@ -2,7 +2,7 @@ import { type Ray, Vector3 } from 'three';
 import { firstHit } from '../explain/ray';
 
 /** A cage: UVs have a vertex for each side of a seam. */
-export interface CageArrays {
+interface CageArrays {
   positions: Float32Array;
   indices: Uint32Array;
   uvs: Float32Array;
@@ -56,7 +56,7 @@ function loopsOf({ positions, indices }: CageArrays): (number | undefined)[][] {
 }
 
 /** What a click on a cage does: opens a triangle, or closes a hole. */
-export type HoleChange = { indices: Uint32Array; opened: boolean } | { seam: true } | undefined;
+type HoleChange = { indices: Uint32Array; opened: boolean } | { seam: true } | undefined;
 
 /** Opens the cage where a ray meets it, or closes the hole that it passes first. */
 export function changeHole(cage: CageArrays, ray: Ray): HoleChange {

@@ -10,7 +10,7 @@ import {
 } from 'three';
 
 /** A dot and its colour. */
-export interface Dot {
+interface Dot {
   at: Vector3;
   color: string;
 }

@@ -38,7 +38,7 @@ export interface SegmentFacts {
 }
 
 /** What an explanation is derived from. */
-export interface Facts {
+interface Facts {
   shown: Shown;
   classification: Classification;
   rules: Pick<Rules, 'preset' | 'threshold'>;

@@ -22,13 +22,13 @@ export interface Path {
 }
 
 /** The options that matter here; shares of the model's diagonal. */
-export interface Reach {
+interface Reach {
   occlusionReach: number;
   pokeThrough: number;
 }
 
 /** The surfaces of a path. */
-export interface PathScene {
+interface PathScene {
   target: Surface;
   cage: Surface;
   /** Of the cage. */
@@ -36,7 +36,7 @@ export interface PathScene {
 }
 
 /** Where a path starts. */
-export interface PathStart {
+interface PathStart {
   /** Of the target. */
   vertex: number;
   /** The closest cage triangle, as the transfer found it. */

@@ -5,7 +5,7 @@ import type { Rules, Session } from '../scene/session';
 import type { Baked, ExportReply, ExportRequest, PaintInto } from './export-messages';
 
 /** What is exported. */
-export interface Exported {
+interface Exported {
   target: Pick<Model, 'name' | 'files'>;
   cage: Pick<Model, 'mesh'>;
   rules: Readonly<Rules>;

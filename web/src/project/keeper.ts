@@ -19,7 +19,7 @@ export interface Offer {
 }
 
 /** What the keeper tells. */
-export interface KeeperView {
+interface KeeperView {
   offer(offer: Offer): void;
   /** Whether work is kept on this device. */
   note(text: string): void;

@@ -7,7 +7,7 @@ export type Files = (key: unknown) => File;
 export type Keep = (source: object, pack?: () => Promise<Blob>) => string;
 
 /** What a feature restores, in the order in which it happens. */
-export interface Restoring {
+interface Restoring {
   /** Before the models are requested. */
   before?(): void;
   /** When the models are shown. */

@@ -24,7 +24,7 @@ export interface ProjectOfPage extends LayersOfPage {
 }
 
 /** Keeps the page's work in the browser, and saves and opens it as a file. */
-export interface Projects {
+interface Projects {
   /** For features that join. */
   project: Project;
   /** Brings back what was kept. @returns Whether that failed. */

@@ -34,7 +34,7 @@ export interface Fitting extends Omit<Fit, 'cage'> {
 export const kLeastLandmarks = 4;
 
 /** How a cage was made here. */
-export interface Made {
+interface Made {
   /** What it was made for. */
   target: File;
   /** The fit that it came from. */

@@ -1,9 +1,6 @@
 import { element, showError } from '../platform/page';
 import { paths } from './file-paths';
 
-/** The use of a file. */
-export type Role = 'target' | 'cage' | 'texture';
-
 /** Files that were chosen or dropped together. */
 export interface Intake {
   target?: File | undefined;
@@ -38,7 +35,7 @@ export function modelsAmong(files: readonly File[]): { cages: File[]; targets: F
  * Assigns files to roles: models by their names, images as paint unless a .gltf came with them.
  * A model of another format, or any other file if there is nothing else, becomes the target, so that the reader reports what is wrong with it.
  */
-export function sortFiles(all: readonly File[]): Intake {
+function sortFiles(all: readonly File[]): Intake {
   const { cages, targets: rest } = modelsAmong(all);
   const models = all.filter(({ name }) => kModel.test(name));
   const others = all.filter((file) => !models.includes(file));

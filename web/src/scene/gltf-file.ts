@@ -1,5 +1,5 @@
 /** What the page reads from a glTF file before it loads it. */
-export interface GltfHead {
+interface GltfHead {
   /** Whether it is a GLB. */
   binary: boolean;
   json: object;

@@ -7,7 +7,7 @@ export interface Choice {
 }
 
 /** Actions on a paint, by its index in the row. */
-export interface Uses {
+interface Uses {
   /** Use it as the base layer. */
   onChoose(index: number): void;
   /** Add it as a layer on top. */

@@ -86,7 +86,7 @@ export type Progress =
   | { state: 'failed'; error: Error };
 
 /** Events, in the order in which they occur when a model is opened. */
-export interface SessionEvents {
+interface SessionEvents {
   progress: Progress;
   /** Another target, cage or projection is shown. `zones` follows at once, then `paint` if it changed. */
   transfer: Shown;

@@ -18,7 +18,7 @@ export interface SplitProjection extends Projection {
 }
 
 /** Input of exact borders: the zones of the target, and the options they were computed with. */
-export interface CutOptions {
+interface CutOptions {
   result: Pick<TransferResult, 'zones' | 'segments' | 'segmentStats'>;
   rules: TransferOptions;
 }

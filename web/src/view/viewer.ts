@@ -53,7 +53,7 @@ const kKeyMove = 40; // pixels
 const kMiddle = new Vector3(); // of the model
 
 /** Somebody to take a picture of. */
-export interface Sitter {
+interface Sitter {
   /** The model, scaled to a diagonal of 2 about the origin; undefined for the one on the stage. */
   holder: Object3D | undefined;
   overlay: Pick<Overlay, 'show'> | undefined;
@@ -63,7 +63,7 @@ export interface Sitter {
 }
 
 /** What is on the stage, to be drawn elsewhere. */
-export interface Lent {
+interface Lent {
   /** Scaled and moved to a diagonal of 2 about the origin. */
   stage: Group;
   model: Object3D;

@@ -24,7 +24,7 @@ export interface Entry {
 }
 
 /** A model beside the one on the stage. */
-export interface Standing extends Beside {
+interface Standing extends Beside {
   model: Model;
   projection: SplitProjection | undefined;
 }

@@ -6,7 +6,7 @@ import type { Look, Overlay } from '../view/overlay';
 const kGap = 1.08; // of the width of a cell
 
 /** How much room a model needs when it is turned, once it is scaled to a diagonal of 2. */
-export interface Room {
+interface Room {
   /** From its middle to its sides and to its feet. */
   wide: number;
   high: number;

@@ -25,7 +25,7 @@ interface ConfigFile {
 }
 
 /** What a configuration file says of a target. */
-export interface ConfigSettings extends Settings {
+interface ConfigSettings extends Settings {
   /** The file. */
   path: string;
   /** As in `Rules`. */

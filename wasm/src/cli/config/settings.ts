@@ -7,7 +7,7 @@ import { infinite, type MaskFiles, quoted, type Single } from '../options.js';
 
 /** How paint may end: at existing edges of triangles, or where triangles are cut. */
 export const borderKinds = ['triangle', 'cut'] as const;
-export const presets = ['default', 'paper'] as const;
+const presets = ['default', 'paper'] as const;
 
 /** What can be said of a transfer besides its files: by flags, in a configuration file, in a line of a manifest. */
 export interface Settings {

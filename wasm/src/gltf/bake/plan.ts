@@ -74,7 +74,7 @@ export interface BakeReport {
 }
 
 /** What is baked. */
-export interface BakeInput {
+interface BakeInput {
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>;
   cut?: { target: CutTarget; ownCount: number } | undefined;
   paints: Paints;

@@ -1,7 +1,7 @@
 import { kErased } from '../gpu/index.js';
 
 /** How layers are read. */
-export interface Recipe {
+interface Recipe {
   /** How each layer is sampled, from the lowest. */
   takes: readonly ('whole' | 'spread')[];
   /** Which of them carries a stroke; -1 for none. */
