@@ -1,4 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
+import { determinant } from '../parts/skin.js';
 
 /** A 4×4 matrix, column by column, in double precision. */
 export type Matrix = readonly number[];
@@ -45,23 +46,5 @@ export function multiply(a: Matrix, b: Matrix): Matrix {
   return out;
 }
 
-/** The determinant of the upper 3×3: the factor of volume, negative if the matrix mirrors. */
-function determinant(m: Matrix): number {
-  const [a, b, c, , d, e, f, , g, h, i] = m as number[] as [
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-    number,
-  ];
-  return a * (e * i - f * h) - d * (b * i - c * h) + g * (b * f - c * e);
-}
-
 /** Whether a matrix mirrors, so that the winding of triangles must be reversed. */
-export const isTurned = (matrix: Matrix): boolean => determinant(matrix) < 0;
+export const isMirrored = (matrix: Matrix): boolean => determinant(matrix) < 0;

@@ -1,7 +1,7 @@
 import type { Accessor } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import { InputError } from './input-error.js';
-import { identity, isTurned, type Matrix } from './matrix.js';
+import { identity, isMirrored, type Matrix } from './matrix.js';
 
 /** One primitive of one node, and the ranges of its elements in the joined arrays. */
 export interface Piece {
@@ -126,7 +126,7 @@ function placePositions({ matrix: m, localPositions, firstVertex }: Piece, out: 
 }
 
 function placeIndices({ matrix, localIndices, firstVertex, firstTriangle }: Piece, out: Uint32Array): void {
-  const mirrored = isTurned(matrix);
+  const mirrored = isMirrored(matrix);
   for (let at = 0; at < localIndices.length; at += 3) {
     const to = 3 * firstTriangle + at;
     out[to] = firstVertex + localIndices[at]!;

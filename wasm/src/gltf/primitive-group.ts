@@ -2,7 +2,7 @@ import type { CutTarget, TransferResult } from '../index.js';
 import { type Blends, noBlends } from '../parts/blend.js';
 import { cutPart } from '../parts/cut-part.js';
 import { type SplitPart, splitPart } from '../parts/split-part.js';
-import { isTurned } from './matrix.js';
+import { isMirrored } from './matrix.js';
 import type { Piece } from './pieces.js';
 
 /** A primitive whose vertices were cut and split, as if they were its own. */
@@ -22,7 +22,7 @@ export function groupMember(
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
   cut: { target: CutTarget; ownCount: number } | undefined,
 ): GroupMember {
-  const whole = { ...part, turned: isTurned(part.matrix) };
+  const whole = { ...part, mirrored: isMirrored(part.matrix) };
   const {
     geometry,
     result: own,

@@ -2,7 +2,7 @@ import { type Finding, percent } from './finding.js';
 import { cross, dot, length, minus, pointAt, type Vector } from './geometry.js';
 import type { Reverse } from './reverse.js';
 import { partsOf, type Scene } from './scene.js';
-import { placeOf, type Segment } from './segments.js';
+import { placeOfSegment, type Segment } from './segments.js';
 
 /** A hole is explained if the unpainted parts at it have at least this share of the area that it cuts off. */
 const leastExplained = 0.02;
@@ -131,7 +131,7 @@ export function checkHoles(holes: readonly Hole[], segments: readonly Segment[])
       sentence: `${unexplained.length === 1 ? 'A hole of the cage has' : `${unexplained.length} holes of the cage have`} only ${where} behind ${unexplained.length === 1 ? 'it' : 'them'}, and no part that stays unpainted: ${percent(cut)} of the exposed area is left bare there`,
       advice: 'If there are eyes or similar parts, give them a mesh or material of their own. If not, close the hole.',
       numbers: { holes: unexplained.length, cutOff: cut },
-      places: [...new Set(unexplained.flatMap(({ cuts }) => cuts))].map((s) => placeOf(s, segments[s]!)),
+      places: [...new Set(unexplained.flatMap(({ cuts }) => cuts))].map((s) => placeOfSegment(s, segments[s]!)),
     },
   ];
 }

@@ -17,7 +17,7 @@ import {
 import { joined } from './geometry.js';
 import { checkHoles, type Hole, holesOf, spanPoints } from './holes.js';
 import { checkInside, type Inside, insideOf } from './inside.js';
-import { checkNormals, orientationOf, turnedRight } from './normals.js';
+import { checkNormals, facingOutward, orientationOf } from './normals.js';
 import { checkPlacement, type Placement, placementOf } from './placement.js';
 import { reverse } from './reverse.js';
 import { type PartName, sceneOf } from './scene.js';
@@ -140,8 +140,8 @@ function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
 
   // One cause, one finding: everything else is judged as if inward-facing triangles were flipped.
   function uprightScene() {
-    const turned = turnedRight(cage, orientation);
-    return sceneOf(turned, target, transfer(turned, target, options), scene.threshold, scene.parts);
+    const outward = facingOutward(cage, orientation);
+    return sceneOf(outward, target, transfer(outward, target, options), scene.threshold, scene.parts);
   }
 }
 

@@ -32,23 +32,23 @@ interface Orientation {
  */
 export function orientationOf(scene: Scene): Orientation {
   const { surface } = scene;
-  const turned = new Int8Array(surface.areas.length); // 1 as the piece's first triangle is wound, -1 against it
+  const winding = new Int8Array(surface.areas.length); // 1 as the piece's first triangle is wound, -1 against it
   const pieceOf = new Int32Array(surface.areas.length).fill(-1);
-  const pieces = windAlike(surface, turned, pieceOf);
-  const targetSides = targetSidesOf(scene, pieceOf, pieces.length, turned);
+  const pieces = windAlike(surface, winding, pieceOf);
+  const targetSides = targetSidesOf(scene, pieceOf, pieces.length, winding);
   const borders = bordersOf(surface, pieceOf, pieces.length);
   const total = targetSides.totals.reduce((sum, area) => sum + area, 0);
   const inward = new Uint8Array(surface.areas.length);
   let area = 0;
   pieces.forEach((triangles, p) => {
     const pieceArea = triangles.reduce((sum, t) => sum + surface.areas[t]!, 0);
-    const volume = volumeOf(surface, triangles, borders[p]!, { pieceOf, piece: p, turned });
+    const volume = volumeOf(surface, triangles, borders[p]!, { pieceOf, piece: p, winding });
     const outward =
       Math.abs(volume) >= leastVolume * pieceArea ** 1.5
         ? volume > 0
         : targetSides.totals[p]! < leastArea * total || targetSides.sums[p]! >= -clearMajority * targetSides.totals[p]!;
     for (const t of triangles) {
-      if ((turned[t] === 1) === outward) continue;
+      if ((winding[t] === 1) === outward) continue;
       inward[t] = 1;
       area += surface.areas[t]!;
     }
@@ -57,7 +57,7 @@ export function orientationOf(scene: Scene): Orientation {
 }
 
 /** Collects pieces of triangles joined by edges of two triangles, and finds which triangles of a piece are wound alike. */
-function windAlike({ areas, doubled, edges }: Surface, turned: Int8Array, pieceOf: Int32Array): number[][] {
+function windAlike({ areas, doubled, edges }: Surface, winding: Int8Array, pieceOf: Int32Array): number[][] {
   const neighbours: { triangle: number; alike: boolean }[][] = Array.from(areas, () => []);
   for (const { uses } of edges) {
     if (uses.length !== 2) continue;
@@ -69,14 +69,14 @@ function windAlike({ areas, doubled, edges }: Surface, turned: Int8Array, pieceO
   const pieces: number[][] = [];
   for (let first = 0; first < areas.length; ++first) {
     if (pieceOf[first]! >= 0 || areas[first] === 0 || doubled[first] === 1) continue;
-    turned[first] = 1;
+    winding[first] = 1;
     pieceOf[first] = pieces.length;
     const piece = [first];
     for (let i = 0; i < piece.length; ++i) {
       for (const { triangle, alike } of neighbours[piece[i]!]!) {
         if (pieceOf[triangle]! >= 0) continue;
         pieceOf[triangle] = pieces.length;
-        turned[triangle] = (alike ? 1 : -1) * turned[piece[i]!]!;
+        winding[triangle] = (alike ? 1 : -1) * winding[piece[i]!]!;
         piece.push(triangle);
       }
     }
@@ -101,7 +101,7 @@ function volumeOf(
   { mesh }: Surface,
   triangles: readonly number[],
   border: readonly Edge[],
-  { pieceOf, piece, turned }: { pieceOf: Int32Array; piece: number; turned: Int8Array },
+  { pieceOf, piece, winding }: { pieceOf: Int32Array; piece: number; winding: Int8Array },
 ): number {
   const { positions, indices } = mesh;
   const origin = pointAt(positions, indices[3 * triangles[0]!]!);
@@ -109,7 +109,7 @@ function volumeOf(
   const tetrahedron = (a: Vector, b: Vector, c: Vector) => dot(a, cross(b, c)) / 6;
   let volume = 0;
   for (const t of triangles)
-    volume += turned[t]! * tetrahedron(at(indices[3 * t]!), at(indices[3 * t + 1]!), at(indices[3 * t + 2]!));
+    volume += winding[t]! * tetrahedron(at(indices[3 * t]!), at(indices[3 * t + 1]!), at(indices[3 * t + 2]!));
   // Its borders, by connection: each is spanned from its middle.
   const atPlace = new Map<number, Edge[]>();
   for (const edge of border) {
@@ -137,7 +137,7 @@ function volumeOf(
     for (const { a, b, uses } of chain) {
       for (const { triangle, forward } of uses) {
         if (pieceOf[triangle] !== piece) continue;
-        const [from, to] = forward === (turned[triangle] === 1) ? [b, a] : [a, b]; // against the triangle
+        const [from, to] = forward === (winding[triangle] === 1) ? [b, a] : [a, b]; // against the triangle
         volume += tetrahedron(at(from), at(to), middle);
       }
     }
@@ -150,21 +150,21 @@ function targetSidesOf(
   { areas, sides, result }: Scene,
   pieceOf: Int32Array,
   pieces: number,
-  turned: Int8Array,
+  winding: Int8Array,
 ): { sums: Float64Array; totals: Float64Array } {
   const [sums, totals] = [new Float64Array(pieces), new Float64Array(pieces)];
   for (let v = 0; v < areas.length; ++v) {
     const t = result.triangles[v]!;
     const piece = pieceOf[t]!;
     if (sides.loops[v]! >= 0 || piece < 0) continue;
-    sums[piece]! -= areas[v]! * turned[t]! * Math.sign(sides.signed[v]!);
+    sums[piece]! -= areas[v]! * winding[t]! * Math.sign(sides.signed[v]!);
     totals[piece]! += areas[v]!;
   }
   return { sums, totals };
 }
 
 /** The cage with inward-facing triangles flipped. */
-export function turnedRight(cage: Mesh, { inward }: Orientation): Mesh {
+export function facingOutward(cage: Mesh, { inward }: Orientation): Mesh {
   const indices = cage.indices.slice();
   for (let t = 0; t < inward.length; ++t) {
     if (inward[t] === 1) indices.set([cage.indices[3 * t]!, cage.indices[3 * t + 2]!, cage.indices[3 * t + 1]!], 3 * t);

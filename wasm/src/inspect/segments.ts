@@ -99,7 +99,7 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
         ? `If the cage should cover only a region of "${largest.part}", override this (${option(largest)}) or make that region a mesh of its own. Otherwise extend the cage.`
         : 'The other findings and the zones show the reason; uncovered vertices, for example, have no cage over them.',
       numbers: { share, culled: over > 0 ? cut / over : 0 },
-      ...(largest && { places: [placeOf(largest.s, largest)], locks: locksFor([largest]) }),
+      ...(largest && { places: [placeOfSegment(largest.s, largest)], locks: locksFor([largest]) }),
     },
   ];
 }
@@ -121,7 +121,7 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
         sentence: `${one} ${is} ${culled ? 'not painted' : 'painted'}, but only just: ${alike.length === 1 ? 'its coverage is' : 'the largest has a coverage of'} ${shownCoverage(largest, threshold)}, ${reason(largest, threshold)} (${percent(area)} of the target's exposed area)`,
         advice: `If that is wrong, override it (${option(largest)}), or widen or close the holes over ${alike.length === 1 ? 'it' : 'them'}.`,
         numbers: { segments: alike.length, area, score: largest.score! },
-        places: alike.map((segment) => placeOf(segment.s, segment)),
+        places: alike.map((segment) => placeOfSegment(segment.s, segment)),
         locks: locksFor(alike),
       },
     ];
@@ -135,15 +135,15 @@ function checkTwins({ result }: Scene, numbered: readonly Numbered[], exposed: n
     const culled = twins.filter((twin) => twin.culled);
     if (culled.length === 0 || culled.length === twins.length) return [];
     const [largest] = twins;
-    const [painted, bare] = [twins.length - culled.length, culled.length];
+    const [painted, unpainted] = [twins.length - culled.length, culled.length];
     return [
       {
         code: 'twinsDiffer',
         weight: 0.2,
-        sentence: `Of ${twins.length} segments with the shape of "${largest.part}", ${painted} ${painted === 1 ? 'is' : 'are'} painted and ${bare} ${bare === 1 ? 'is' : 'are'} not`,
+        sentence: `Of ${twins.length} segments with the shape of "${largest.part}", ${painted} ${painted === 1 ? 'is' : 'are'} painted and ${unpainted} ${unpainted === 1 ? 'is' : 'are'} not`,
         advice: 'If they should be treated alike, lock some of them, and check whether the cage covers them equally.',
-        numbers: { painted, bare },
-        places: twins.map((twin) => placeOf(twin.s, twin)),
+        numbers: { painted, bare: unpainted },
+        places: twins.map((twin) => placeOfSegment(twin.s, twin)),
         locks: locksFor(culled),
       },
     ];
@@ -165,7 +165,7 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
       numbers: { share },
       places: all
         .filter(({ exposedArea }) => exposedArea >= leastArea * exposed)
-        .map((segment) => placeOf(segment.s, segment)),
+        .map((segment) => placeOfSegment(segment.s, segment)),
       locks: locksFor([largest]),
     },
   ];
@@ -189,7 +189,7 @@ function reason({ coverage, culled, culledBy, score }: Segment, threshold: numbe
 }
 
 /** Where a segment is. */
-export const placeOf = (segment: number, { group, part }: Segment): Place => ({ segment, group, part });
+export const placeOfSegment = (segment: number, { group, part }: Segment): Place => ({ segment, group, part });
 
 /** The lock that reverses the verdict on a segment, as an option of the command. */
 const option = ({ part, culled }: Segment): string => `--${culled ? 'keep' : 'exclude'} "${part}"`;

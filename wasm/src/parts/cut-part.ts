@@ -18,12 +18,12 @@ export interface CutPart {
  * @param ownCount  Vertices of the whole target before it was cut.
  */
 export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget, ownCount: number): CutPart {
-  const { firstVertex, vertexCount, firstTriangle, triangleCount, turned } = part;
+  const { firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = part;
   const added = new Uint32Array(cut.sources.length / 3)
     .map((_, n) => n)
     .filter((n) => cut.sources[3 * n]! >= firstVertex && cut.sources[3 * n]! < firstVertex + vertexCount);
-  const placeOf = new Uint32Array(cut.sources.length / 3);
-  added.forEach((n, i) => (placeOf[n] = vertexCount + i));
+  const newVertex = new Uint32Array(cut.sources.length / 3);
+  added.forEach((n, i) => (newVertex[n] = vertexCount + i));
   const vertices = new Uint32Array(vertexCount + added.length).map((_, v) =>
     v < vertexCount ? firstVertex + v : ownCount + added[v - vertexCount]!,
   );
@@ -35,8 +35,8 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
   const [first, end] = [before(firstTriangle), before(firstTriangle + triangleCount)];
   const localIndices = cut.indices
     .slice(3 * first, 3 * end)
-    .map((v) => (v < ownCount ? v - firstVertex : placeOf[v - ownCount]!));
-  for (let i = 0; turned && i < localIndices.length; i += 3)
+    .map((v) => (v < ownCount ? v - firstVertex : newVertex[v - ownCount]!));
+  for (let i = 0; mirrored && i < localIndices.length; i += 3)
     [localIndices[i + 1], localIndices[i + 2]] = [localIndices[i + 2]!, localIndices[i + 1]!];
   return {
     geometry: {
@@ -44,7 +44,7 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
       vertexCount: vertices.length,
       firstTriangle: 0,
       triangleCount: end - first,
-      turned,
+      mirrored,
       localIndices,
     },
     result: {

@@ -78,11 +78,11 @@ function preparePart(
 }
 
 /** The triangles of a part, in its own numbers and winding. */
-function localIndices({ firstVertex, firstTriangle, triangleCount, turned }: PartRange, indices: Mesh['indices']) {
+function localIndices({ firstVertex, firstTriangle, triangleCount, mirrored }: PartRange, indices: Mesh['indices']) {
   const local = Uint32Array.from(
     indices.subarray(3 * firstTriangle, 3 * (firstTriangle + triangleCount)),
     (v) => v - firstVertex,
   );
-  for (let i = 0; turned && i < local.length; i += 3) [local[i + 1], local[i + 2]] = [local[i + 2]!, local[i + 1]!];
+  for (let i = 0; mirrored && i < local.length; i += 3) [local[i + 1], local[i + 2]] = [local[i + 2]!, local[i + 1]!];
   return local;
 }

@@ -25,7 +25,7 @@ export function skinMatrix<M extends ArrayLike<number>>(
   if (first === undefined) return stored;
   let reach = 0;
   for (let i = 0; i < positions.length; ++i) reach = Math.max(reach, Math.abs(positions[i]!));
-  const scale = Math.cbrt(Math.abs(volume(first)));
+  const scale = Math.cbrt(Math.abs(determinant(first)));
   if (!(scale > 0 && scale < Infinity)) return stored;
   const isNear = (a: ArrayLike<number>, b: ArrayLike<number>): boolean =>
     [0, 1, 2].every((row) => {
@@ -33,7 +33,7 @@ export function skinMatrix<M extends ArrayLike<number>>(
       return (off(0) + off(1) + off(2)) * reach + off(3) <= same * scale * reach;
     });
   const isBound = others.every((other) => isNear(other, first));
-  const isAsLarge = Math.abs(scale - Math.cbrt(Math.abs(volume(stored)))) < same * scale;
+  const isAsLarge = Math.abs(scale - Math.cbrt(Math.abs(determinant(stored)))) < same * scale;
   return isNear(first, stored) || (!isBound && isFloat && isAsLarge) ? stored : first;
 }
 
@@ -47,8 +47,8 @@ export function usedJoints(joints: ArrayLike<number>, weights: ArrayLike<number>
   return used;
 }
 
-/** The factor by which a matrix changes volumes. */
-function volume(m: ArrayLike<number>): number {
+/** The determinant of the upper 3×3 of a 4×4 matrix, column by column: the factor of volume, negative if the matrix mirrors. */
+export function determinant(m: ArrayLike<number>): number {
   const [a, b, c, , d, e, f, , g, h, i] = Array.from(m) as [
     number,
     number,

@@ -6,8 +6,8 @@ export interface PartGeometry {
   vertexCount: number;
   firstTriangle: number;
   triangleCount: number;
-  /** Whether the winding of its triangles is reversed in the arrays: second and third corners are swapped. */
-  turned: boolean;
+  /** Whether its matrix mirrors it: then the winding of its triangles is reversed in the arrays, second and third corners swapped. */
+  mirrored: boolean;
   /** 3 per triangle, as numbers of the part's own vertices, before the winding is reversed. */
   localIndices: ArrayLike<number>;
 }
@@ -33,7 +33,7 @@ export function splitPart(part: PartGeometry, result: Pick<TransferResult, 'uvs'
     return { uvs, sources: new Uint32Array(vertexCount).map((_, v) => v), indices: localIndices, copies: 0 };
 
   const cornerUvs = result.cornerUvs.slice(6 * firstTriangle, 6 * (firstTriangle + triangleCount));
-  if (part.turned) {
+  if (part.mirrored) {
     for (let t = 0; t < cornerUvs.length; t += 6) {
       const second = cornerUvs.slice(t + 2, t + 4);
       cornerUvs.copyWithin(t + 2, t + 4, t + 6);

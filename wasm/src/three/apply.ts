@@ -1,11 +1,11 @@
 import { Box3, BufferAttribute, BufferGeometry, type Material, type Mesh, type Texture, Vector3 } from 'three';
 import { CagecastError, type Classification } from '../index.js';
 import type { PartRange, Prepared } from '../parts/prepare.js';
-import { type Extracted, isTurned, nameOf, type Part } from './extract.js';
+import { type Extracted, isMirrored, nameOf, type Part } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths } from './options.js';
 import { removeOverlay, removeOverlays } from './overlay.js';
 import { disposeOwn, own } from './own-attributes.js';
-import { Place, paintAttribute } from './paint.js';
+import { PaintMatrix, paintAttribute } from './paint.js';
 import { canBePainted, isPainted, makePainting, type Painting, paintOn, unpaint } from './painted-materials.js';
 import { type ShownPart, showMaterial, showPaint, writePaint, writeZones, zoneAttribute } from './shown-parts.js';
 import { type Remade, remake, replace } from './split.js';
@@ -25,7 +25,7 @@ export const rangesOf = ({ parts }: Extracted): PartRange[] =>
     vertexCount,
     firstTriangle,
     triangleCount,
-    turned: isTurned(matrix),
+    mirrored: isMirrored(matrix),
   }));
 
 function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
@@ -124,7 +124,7 @@ export function* apply(
     texture: options.texture,
     opacity: options.opacity ?? 1,
     feather: options.feather ?? 0,
-    place: new Place(),
+    matrix: new PaintMatrix(),
     meshes: new Set(parts.flatMap(({ mesh }) => mesh ?? [])),
   });
   parts.forEach(({ mesh, geometry }, p) => {
@@ -207,7 +207,7 @@ class Shown implements Applied {
     if (!(opacity >= 0 && opacity <= 1))
       throw new CagecastError('badArgument', `cagecast/three: setOpacity: ${opacity} is not a number from 0 to 1`);
     this.#painting.opacity = opacity;
-    this.#painting.place.refresh(this.#painting);
+    this.#painting.matrix.refresh(this.#painting);
   };
 
   readonly paint = (material: Material): boolean => {
@@ -244,7 +244,7 @@ class Shown implements Applied {
 
   #show(): void {
     if (this.#isDisposed) return;
-    const { texture, feather, place } = this.#painting;
+    const { texture, feather, matrix } = this.#painting;
     if (this.#material) {
       for (const one of this.#current) showMaterial(one, this.#material);
       return;
@@ -256,7 +256,7 @@ class Shown implements Applied {
       for (const { part } of shown) shownPaintings.set(part.geometry, this.#painting);
       this.#hasPaint = true;
     }
-    place.refresh(this.#painting);
+    matrix.refresh(this.#painting);
     // Materials without paint for now stay ready for it: to make them what they were, and again, would compile their shaders twice.
     const paints = texture !== undefined || this.#painted.size > 0;
     const painted = new Set(shown.flatMap((one) => showPaint(one, this.#painting, this.#copies, paints)));

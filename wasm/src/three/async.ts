@@ -22,7 +22,7 @@ export function nextTask(): Promise<void> {
 }
 
 /** Runs a generator to its end, in short tasks. @throws the reason of the signal, between two tasks. */
-export async function share<T>(steps: Generator<unknown, T>, signal: AbortSignal | undefined): Promise<T> {
+export async function runInTasks<T>(steps: Generator<unknown, T>, signal: AbortSignal | undefined): Promise<T> {
   for (;;) {
     await nextTask();
     signal?.throwIfAborted();

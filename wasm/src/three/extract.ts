@@ -188,7 +188,7 @@ const wrong = (argument: string, name: string, text: string, at = 0): CagecastEr
   new CagecastError('badArgument', `cagecast/three: ${argument}: "${name}" ${text}`, at);
 
 /** Whether a matrix mirrors, so that the winding of triangles must be reversed. */
-export const isTurned = (matrix: Matrix4): boolean => matrix.determinant() < 0;
+export const isMirrored = (matrix: Matrix4): boolean => matrix.determinant() < 0;
 
 function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, out: Float32Array): void {
   // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
@@ -210,7 +210,7 @@ function placeIndices(
   argument: string,
 ): void {
   const { index } = geometry;
-  const mirrored = isTurned(matrix);
+  const mirrored = isMirrored(matrix);
   for (let i = 0; i < 3 * triangleCount; ++i) {
     // Checked part by part: in the joined arrays an index too large would point into the next part.
     const vertex = index ? index.getX(i) : i;

@@ -11,7 +11,7 @@ import { type PartRange, type Prepared, type PrepareInput, prepare } from '../pa
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
 import { apply, rangesOf, statesOf } from './apply.js';
-import { type Calling, nextTask, share } from './async.js';
+import { type Calling, nextTask, runInTasks } from './async.js';
 import { cutGeometry } from './cut.js';
 import { type Extracted, extract, type Part, placeOf } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths, checkOptions, transferOptions } from './options.js';
@@ -118,7 +118,7 @@ export async function applyTransferAsync(
   onProgress?.(0.05, 'transfer');
   const prepared = call.saved ?? (await prepareParts(call.input, { signal }));
   onProgress?.(0.7, 'geometry');
-  const applied = await share(apply(call.extracted, call.states, prepared, options), signal);
+  const applied = await runInTasks(apply(call.extracted, call.states, prepared, options), signal);
   onProgress?.(1, 'done');
   return remember(applied, () => ({ key: call.key(), prepared }));
 }

@@ -58,7 +58,7 @@ export function modelMasks(
   return { vertices, triangles };
 }
 
-/** The pixels of a texture. A row that is upside down, as three.js reads most textures, is turned. */
+/** The pixels of a texture, in the order of v: three.js flips most textures as it reads them, so they are flipped here, too. */
 function imageOf(name: string, given: Texture | Image): Image {
   if (!('isTexture' in given)) return given;
   const image = (given.image ?? {}) as HTMLImageElement & { data?: Image['data'] };
@@ -78,7 +78,7 @@ function imageOf(name: string, given: Texture | Image): Image {
   }
   if (data.length !== 4 * width * height) throw wrong(`has ${data.length} values, not 4 bytes per pixel`);
   if (!given.flipY) return { width, height, data };
-  const [row, turned] = [4 * width, new Uint8Array(data.length)];
-  for (let at = 0; at < data.length; at += row) turned.set(data.subarray(at, at + row), data.length - row - at);
-  return { width, height, data: turned };
+  const [row, flipped] = [4 * width, new Uint8Array(data.length)];
+  for (let at = 0; at < data.length; at += row) flipped.set(data.subarray(at, at + row), data.length - row - at);
+  return { width, height, data: flipped };
 }

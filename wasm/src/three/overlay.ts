@@ -9,7 +9,7 @@ import {
   SkinnedMesh,
 } from 'three';
 import { isInstanced, isSkinned, overlayMark, type Part } from './extract.js';
-import { disposeOwn, own, share } from './own-attributes.js';
+import { disown, disposeOwn, own } from './own-attributes.js';
 
 /** What an overlay has of its base at any time, not only when it was made. */
 const kFollowed = [
@@ -66,7 +66,7 @@ function shareVertices(base: BufferGeometry, index: BufferAttribute): BufferGeom
   for (const [name, attribute] of Object.entries(base.attributes)) {
     // Its colours would tint the texture.
     if (name === 'color') continue;
-    share(attribute);
+    disown(attribute);
     geometry.setAttribute(name, attribute);
   }
   geometry.morphAttributes = base.morphAttributes;

@@ -10,7 +10,7 @@ export function own<Attribute extends object>(attribute: Attribute): Attribute {
 }
 
 /** Notes that several geometries have an attribute. */
-export const share = (attribute: object): boolean => owned.delete(attribute);
+export const disown = (attribute: object): boolean => owned.delete(attribute);
 
 /**
  * Frees the GPU buffers of a geometry, which stays as it is and may be drawn again. Buffers of attributes that others may have, as

@@ -16,7 +16,7 @@ export interface Paint {
   opacity: number;
   /** The width of the soft border, in the unit of the attribute's distances. */
   feather: number;
-  place: Place;
+  matrix: PaintMatrix;
 }
 
 const kVertex = `attribute vec4 ${paintAttribute};
@@ -29,10 +29,10 @@ varying vec4 vCagecastPaint;
 const kFragment = `#define CAGECAST_PAINT
 varying vec4 vCagecastPaint;
 uniform sampler2D cagecastMap;
-uniform mat3 cagecastPlace;
+uniform mat3 cagecastMatrix;
 vec4 cagecastTexel() {
-  vec3 amount = vec3(cagecastPlace[0].z, cagecastPlace[1].z, cagecastPlace[2].z);
-  vec4 texel = texture2D(cagecastMap, (cagecastPlace * vec3(vCagecastPaint.xy, 1.0)).xy);
+  vec3 amount = vec3(cagecastMatrix[0].z, cagecastMatrix[1].z, cagecastMatrix[2].z);
+  vec4 texel = texture2D(cagecastMap, (cagecastMatrix * vec3(vCagecastPaint.xy, 1.0)).xy);
   vec3 linear = mix(pow((texel.rgb + 0.055) / 1.055, vec3(2.4)), texel.rgb / 12.92, vec3(lessThanEqual(texel.rgb, vec3(0.04045))));
   texel.rgb = mix(texel.rgb, linear, step(abs(amount.z - 1.0), 0.5));
   texel.rgb /= amount.z > 1.5 ? max(texel.a, 1e-4) : 1.0;
@@ -68,18 +68,18 @@ export const takesPaint = (fragmentShader: string): boolean =>
 /** The uniforms of a painted material: plain objects as three's own, since engines read all uniforms slower if some are not. */
 export interface PaintUniforms {
   cagecastMap: { value: Texture | null };
-  cagecastPlace: { value: Matrix3 };
+  cagecastMatrix: { value: Matrix3 };
 }
 
 export const paintUniforms = (): PaintUniforms => ({
   cagecastMap: { value: null },
-  cagecastPlace: { value: kNoPaint },
+  cagecastMatrix: { value: kNoPaint },
 });
 
-/** Makes the uniforms of a material show a paint, or none. The matrix goes on following the paint by `Place.refresh`. */
-export function setUniforms({ cagecastMap, cagecastPlace }: PaintUniforms, paint: Paint | undefined): void {
+/** Makes the uniforms of a material show a paint, or none. The matrix goes on following the paint by `PaintMatrix.refresh`. */
+export function setUniforms({ cagecastMap, cagecastMatrix }: PaintUniforms, paint: Paint | undefined): void {
   cagecastMap.value = paint?.texture ?? null;
-  cagecastPlace.value = paint?.texture ? paint.place.matrix : kNoPaint;
+  cagecastMatrix.value = paint?.texture ? paint.matrix : kNoPaint;
 }
 
 /**
@@ -103,11 +103,10 @@ export function addPaint(shader: Shader, uniforms: PaintUniforms, alone: boolean
 }
 
 /**
- * How a texture is placed, and how much of it shows, as a matrix. It is refreshed in each frame, so it is made again only if something
- * has changed.
+ * The transform of a texture's UVs, and in its last row how much of the texture shows, for the shader. It is refreshed in each frame,
+ * so it is made again only if something has changed.
  */
-export class Place {
-  readonly matrix = new Matrix3();
+export class PaintMatrix extends Matrix3 {
   #made: readonly unknown[] = [];
 
   refresh(paint: Paint): void {
@@ -132,7 +131,7 @@ export class Place {
     if (isSame) return;
     this.#made = [texture, opacity, feather, rotation, offset.x, offset.y, repeat.x, repeat.y, center.x, center.y];
     if (matrixAutoUpdate) texture.updateMatrix();
-    const { elements } = this.matrix.copy(texture.matrix);
+    const { elements } = this.copy(texture.matrix);
     elements[2] = opacity;
     elements[5] = feather;
     // The GPU decodes all but videos. What is drawn, as by `cagecast/three/layers`, may be premultiplied; it is no video.

@@ -23,7 +23,7 @@ export function makePainting(paint: Omit<Painting, 'refresh' | 'number'>): Paint
       if (frame === lastFrame && renderer === last) return;
       last = renderer;
       lastFrame = frame;
-      painting.place.refresh(painting);
+      painting.matrix.refresh(painting);
     },
   };
   return painting;

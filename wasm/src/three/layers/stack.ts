@@ -66,9 +66,9 @@ export class LayerStack extends Emitter<StackEvents> {
 
   /** Removes a layer. */
   remove(id: number): void {
-    const place = this.#placeOf({ id });
-    this.#set(this.#layers.filter((_, index) => index !== place));
-    if (this.#selected === id) this.select(this.#layers[Math.min(place, this.#layers.length - 1)]);
+    const index = this.#indexOf({ id });
+    this.#set(this.#layers.filter((_, i) => i !== index));
+    if (this.#selected === id) this.select(this.#layers[Math.min(index, this.#layers.length - 1)]);
   }
 
   /**
@@ -99,7 +99,7 @@ export class LayerStack extends Emitter<StackEvents> {
 
   /** Moves a layer. @param place From 0, the lowest; what is out of range is clamped. */
   move(layer: Pick<Layer, 'id'>, place: number): void {
-    const from = this.#placeOf(layer);
+    const from = this.#indexOf(layer);
     if (!Number.isInteger(place))
       throw new CagecastError('badArgument', `cagecast/three/layers: the place of a layer is ${place}, not an integer`);
     const to = Math.max(0, Math.min(this.#layers.length - 1, place));
@@ -112,7 +112,7 @@ export class LayerStack extends Emitter<StackEvents> {
   /** Changes a layer's style. */
   restyle(layer: Pick<Layer, 'id'>, style: Partial<Style>): void {
     const change = readStyle(style);
-    this.#replace({ ...this.#layers[this.#placeOf(layer)]!, ...change });
+    this.#replace({ ...this.#layers[this.#indexOf(layer)]!, ...change });
   }
 
   select(layer: Layer | undefined): void {
@@ -133,15 +133,15 @@ export class LayerStack extends Emitter<StackEvents> {
     return layer;
   }
 
-  #placeOf({ id }: Pick<Layer, 'id'>): number {
-    const place = this.#layers.findIndex((layer) => layer.id === id);
-    if (place < 0) throw new CagecastError('badArgument', 'That layer was removed.');
-    return place;
+  #indexOf({ id }: Pick<Layer, 'id'>): number {
+    const index = this.#layers.findIndex((layer) => layer.id === id);
+    if (index < 0) throw new CagecastError('badArgument', 'That layer was removed.');
+    return index;
   }
 
   #replace(layer: Layer): void {
-    const place = this.#placeOf(layer);
-    this.#set(this.#layers.map((one, index) => (index === place ? layer : one)));
+    const index = this.#indexOf(layer);
+    this.#set(this.#layers.map((one, i) => (i === index ? layer : one)));
   }
 
   #set(layers: readonly Layer[]): void {

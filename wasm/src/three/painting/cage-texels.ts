@@ -1,4 +1,4 @@
-import { Line3, Triangle, Vector2, Vector3 } from 'three';
+import { Box3, Line3, Triangle, Vector2, Vector3 } from 'three';
 import type { Rect } from '../gpu/index.js';
 
 /** The arrays of a cage that painting needs. */
@@ -82,9 +82,9 @@ export class CageTexels {
     this.owners = new Int32Array(size * size).fill(-1);
     this.#patches.forEach((patch, index) => this.#fill(patch, index));
     this.#widen();
-    const { least, most } = boxOf(cage.positions);
-    this.middle = (least.x + most.x) / 2;
-    this.diagonal = least.distanceTo(most);
+    const { min, max } = new Box3().setFromArray(cage.positions);
+    this.middle = (min.x + max.x) / 2;
+    this.diagonal = min.distanceTo(max);
     this.pitch = pitchOf(this.#patches) / size;
   }
 
@@ -297,18 +297,6 @@ function pointOf({ points, u, v, shares: [bu, bv, cu, cv] }: Patch, atU: number,
   const point = new Vector3();
   [a, b, c].forEach((share, corner) => point.addScaledVector(points[corner]!, share / (a + b + c)));
   return point;
-}
-
-function boxOf(positions: Float32Array): { least: Vector3; most: Vector3 } {
-  const least = new Vector3(Infinity, Infinity, Infinity);
-  const most = new Vector3(-Infinity, -Infinity, -Infinity);
-  const point = new Vector3();
-  for (let at = 0; at < positions.length; at += 3) {
-    point.fromArray(positions, at);
-    least.min(point);
-    most.max(point);
-  }
-  return { least, most };
 }
 
 /** The mean ratio of lengths in space to lengths in the texture. */
