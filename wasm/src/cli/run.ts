@@ -2,7 +2,7 @@ import { cageGlb } from '../cages/glb.js';
 import type { Cage } from '../cages/types.js';
 import { FileModel } from '../gltf/bake/file.js';
 import { masksOf } from '../gltf/bake/masks.js';
-import { type Extracted, extract, type Part, partOf, placeOf, uvLayout } from '../gltf/extract.js';
+import { type Extracted, extract, type Part, partOf, primitivePath, uvLayout } from '../gltf/extract.js';
 import type { ReadOptions } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../gltf/read.js';
@@ -148,7 +148,7 @@ export function withUvs(model: ReadModel): ReadModel {
     (one) => file.json.meshes![one.mesh]!.primitives[one.primitive]!.attributes[setOf(one)] === undefined,
   )!;
   throw new InputError(
-    `${placeOf(part)} (${quoted(part.name)}) has no ${setOf(part)}: the texture is drawn in the cage's UVs`,
+    `${primitivePath(part)} (${quoted(part.name)}) has no ${setOf(part)}: the texture is drawn in the cage's UVs`,
   ).in(file.path);
 }
 
@@ -217,7 +217,7 @@ function inFile(
   const { parts } = isCage ? cage : target;
   const perVertex = { nonFinitePosition: 3, tooLarge: 3, nonFiniteUv: 2 }[code as string];
   const part = perVertex === undefined ? undefined : partOf(parts, Math.floor(at / perVertex));
-  const where = part ? ` (${placeOf(part)}, ${quoted(part.name)})` : '';
+  const where = part ? ` (${primitivePath(part)}, ${quoted(part.name)})` : '';
   return new InputError(`${text}${where}`).in((isCage ? cageFile : targetFile).path);
 }
 

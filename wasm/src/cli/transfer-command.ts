@@ -1,6 +1,6 @@
 import { basename, dirname, join } from 'node:path';
 import { dracoOf, meshoptView } from '../gltf/check.js';
-import { placeOf } from '../gltf/extract.js';
+import { primitivePath } from '../gltf/extract.js';
 import type { Form } from '../gltf/glb-writer.js';
 import { InputError } from '../gltf/input-error.js';
 import { diagonal, isShown, type Paint, zoneAttribute } from '../gltf/overlay.js';
@@ -325,7 +325,7 @@ function makeReport(
     ),
     parts: parts.map((part, p) => ({
       name: part.name,
-      place: placeOf(part),
+      place: primitivePath(part),
       vertices: part.vertexCount,
       triangles: part.triangleCount,
       counts: perZone(result.zones, undefined, part.firstVertex, part.firstVertex + part.vertexCount),

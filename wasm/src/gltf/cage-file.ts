@@ -1,7 +1,7 @@
 import type { CageModel, Template } from '../cages/types.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
 import { readExtras } from '../parts/template.js';
-import { type Extracted, type Part, placeNodes } from './extract.js';
+import { type Extracted, type Part, worldMatrices } from './extract.js';
 import { InputError } from './input-error.js';
 import type { GltfFile } from './read.js';
 
@@ -31,12 +31,12 @@ function jointsOf(file: GltfFile, parts: readonly Part[]) {
   const { nodes = [], extensions } = file.json;
   const parents = new Map(nodes.flatMap((node, n) => (node.children ?? []).map((child) => [child, n])));
   const bones = vrmBones(extensions as VrmExtensions | undefined);
-  const places = placeNodes(file.json);
+  const matrices = worldMatrices(file.json);
   const nameOf = (node: number) => bones.get(node) ?? nodes[node]!.name ?? `nodes[${node}]`;
   const atNode = (node: number): ReadJoint<number> => ({
     node,
     name: nameOf(node),
-    position: places[node]!.slice(12, 15) as [number, number, number],
+    position: matrices[node]!.slice(12, 15) as [number, number, number],
   });
   const joints = parts.flatMap((part) => {
     const skin = nodes[part.node]!.skin;

@@ -16,13 +16,17 @@ import {
   type Piece,
 } from './pieces.js';
 import type { GltfFile } from './read.js';
-import { transformUvs, type UvTransform } from './uv-transform.js';
+import { transformUvs, type UvLayout, uvLayoutOf } from './uv-transform.js';
 
-/** A piece, and its place in the file's JSON. */
-export interface Part extends Piece {
-  node: number;
+/** A primitive, by the numbers of its mesh and itself in the file's JSON. */
+interface PrimitiveRef {
   mesh: number;
   primitive: number;
+}
+
+/** A piece, and where it is in the file's JSON. */
+export interface Part extends Piece, PrimitiveRef {
+  node: number;
 }
 
 /** All triangles of a glTF's scene as arrays, and the parts that they come from. */
@@ -53,9 +57,9 @@ export function extract(file: GltfFile): Extracted {
   }
 }
 
-/** "meshes[0].primitives[1]", as it is found in the file's JSON. */
-export function placeOf(part: Part): string {
-  return `meshes[${part.mesh}].primitives[${part.primitive}]`;
+/** The path of a primitive in the file's JSON: "meshes[0].primitives[1]". */
+export function primitivePath({ mesh, primitive }: PrimitiveRef): string {
+  return `meshes[${mesh}].primitives[${primitive}]`;
 }
 
 /** The part that a vertex belongs to. */
@@ -69,11 +73,11 @@ function listParts(file: GltfFile): Part[] {
   let firstVertex = 0;
   let firstTriangle = 0;
   // An explicit stack: a chain of nodes may be longer than JavaScript's call stack.
-  const placeOf = placeNodes(file.json);
+  const matrices = worldMatrices(file.json);
   const stack = [...roots(file.json)].reverse();
   for (let node = stack.pop(); node !== undefined; node = stack.pop()) {
     const nodeDef = nodes[node]!;
-    let matrix = placeOf[node]!;
+    let matrix = matrices[node]!;
     for (const child of [...(nodeDef.children ?? [])].reverse()) stack.push(child);
     if (nodeDef.mesh === undefined) continue;
     const instances = nodeDef.extensions?.[instancing] as { attributes?: Record<string, unknown> } | undefined;
@@ -81,10 +85,10 @@ function listParts(file: GltfFile): Part[] {
     const meshDef = meshes[nodeDef.mesh]!;
     meshDef.primitives.forEach((primitive, p) => {
       if (isOverlay(primitive.extras)) return;
-      const place = `meshes[${nodeDef.mesh}].primitives[${p}]`;
-      const localPositions = readPositions(file, place, nodeDef.mesh!, p);
+      const ref = { mesh: nodeDef.mesh!, primitive: p };
+      const localPositions = readPositions(file, ref);
       if (localPositions === undefined) return;
-      const localIndices = readTriangles(file, place, nodeDef.mesh!, p, localPositions.length / 3);
+      const localIndices = readTriangles(file, ref, localPositions.length / 3);
       if (localIndices === undefined) return;
       const name = nodeDef.name ?? meshDef.name ?? `nodes[${node}]`;
       const material = primitive.material === undefined ? undefined : materials[primitive.material]?.name;
@@ -94,17 +98,8 @@ function listParts(file: GltfFile): Part[] {
         name: fullName,
         aliases: aliasesOf(nodeDef.name, meshDef.name, material, fullName),
         node,
-        mesh: nodeDef.mesh!,
-        primitive: p,
-        matrix:
-          nodeDef.skin === undefined
-            ? matrix
-            : matrixOfSkin(file, nodeDef.skin, placeOf, {
-                place,
-                mesh: nodeDef.mesh!,
-                primitive: p,
-                positions: localPositions,
-              }),
+        ...ref,
+        matrix: nodeDef.skin === undefined ? matrix : matrixOfSkin(file, nodeDef.skin, matrices, ref, localPositions),
         firstVertex,
         vertexCount: localPositions.length / 3,
         firstTriangle,
@@ -120,16 +115,16 @@ function listParts(file: GltfFile): Part[] {
   return parts;
 }
 
-/** The place of the first instance of a node. */
-function instanceOf(file: GltfFile, place: string, attributes: Record<string, unknown> = {}): Matrix {
+/** The matrix of the first instance of a node. */
+function instanceOf(file: GltfFile, path: string, attributes: Record<string, unknown> = {}): Matrix {
   const accessors = file.geometry.getRoot().listAccessors();
-  return firstInstance(place, (semantic) => {
+  return firstInstance(path, (semantic) => {
     const number = attributes[semantic];
     if (number === undefined) return undefined;
     const accessor = Number.isInteger(number) ? accessors[number as number] : undefined;
     if (accessor) return accessor;
     throw new InputError(
-      `${place}: ${semantic} of ${instancing} is ${show(number)}, not one of ${accessors.length} accessors`,
+      `${path}: ${semantic} of ${instancing} is ${show(number)}, not one of ${accessors.length} accessors`,
     );
   });
 }
@@ -138,12 +133,12 @@ function instanceOf(file: GltfFile, place: string, attributes: Record<string, un
 function matrixOfSkin(
   file: GltfFile,
   skin: number,
-  placeOf: readonly Matrix[],
-  of: { place: string; mesh: number; primitive: number; positions: Float32Array },
+  matrices: readonly Matrix[],
+  ref: PrimitiveRef,
+  positions: Float32Array,
 ): Matrix {
-  const { place, mesh, primitive, positions } = of;
   const { joints = [], inverseBindMatrices } = file.json.skins![skin]!;
-  const accessor = (semantic: string) => accessorOf(file, place, mesh, primitive, semantic);
+  const accessor = (semantic: string) => accessorOf(file, ref, semantic);
   const [held, weights] = [accessor('JOINTS_0')?.getArray(), accessor('WEIGHTS_0')?.getArray()];
   const inverses =
     inverseBindMatrices === undefined
@@ -151,24 +146,24 @@ function matrixOfSkin(
       : file.geometry.getRoot().listAccessors()[inverseBindMatrices]?.getArray();
   if (!held || !weights || inverses === null || (inverses && inverses.length < 16 * joints.length)) return identity;
   const products = joints.map((joint, j) =>
-    inverses ? multiply(placeOf[joint]!, Array.from(inverses.subarray(16 * j, 16 * j + 16))) : placeOf[joint]!,
+    inverses ? multiply(matrices[joint]!, Array.from(inverses.subarray(16 * j, 16 * j + 16))) : matrices[joint]!,
   );
   const isFloat = accessor('POSITION')?.getArray() instanceof Float32Array;
   return skinMatrix(products, usedJoints(held, weights), positions, isFloat, identity);
 }
 
 /** The matrix of each node to the scene, including nodes that are in no scene. */
-export function placeNodes({ nodes = [] }: GLTF.IGLTF): Matrix[] {
+export function worldMatrices({ nodes = [] }: GLTF.IGLTF): Matrix[] {
   const children = new Set(nodes.flatMap((node) => node.children ?? []));
-  const places = nodes.map(() => identity);
+  const matrices = nodes.map(() => identity);
   // Nodes in a cycle have no root and are never reached.
   const stack = nodes.flatMap((_, node) => (children.has(node) ? [] : [{ node, parent: identity }]));
   for (let next = stack.pop(); next; next = stack.pop()) {
-    const place = multiply(next.parent, localMatrix(nodes[next.node]!));
-    places[next.node] = place;
-    for (const node of nodes[next.node]!.children ?? []) stack.push({ node, parent: place });
+    const matrix = multiply(next.parent, localMatrix(nodes[next.node]!));
+    matrices[next.node] = matrix;
+    for (const node of nodes[next.node]!.children ?? []) stack.push({ node, parent: matrix });
   }
-  return places;
+  return matrices;
 }
 
 function roots({ scene, scenes = [], nodes = [] }: GLTF.IGLTF): number[] {
@@ -179,58 +174,48 @@ function roots({ scene, scenes = [], nodes = [] }: GLTF.IGLTF): number[] {
   return nodes.map((_, n) => n).filter((n) => !children.has(n));
 }
 
+const primitiveOf = ({ json }: GltfFile, { mesh, primitive }: PrimitiveRef): GLTF.IMeshPrimitive =>
+  json.meshes![mesh]!.primitives[primitive]!;
+
 /** The accessor of a primitive, decoded, and checked to have as many elements as the file says. */
-function accessorOf(
-  file: GltfFile,
-  place: string,
-  mesh: number,
-  primitive: number,
-  semantic: string,
-): Accessor | undefined {
-  const { attributes } = file.json.meshes![mesh]!.primitives[primitive]!;
+function accessorOf(file: GltfFile, ref: PrimitiveRef, semantic: string): Accessor | undefined {
+  const { attributes } = primitiveOf(file, ref);
   if (attributes[semantic] === undefined) return undefined;
   const accessor = file.geometry.getRoot().listAccessors()[attributes[semantic]];
   const expected = file.json.accessors![attributes[semantic]]!.count;
   if (accessor?.getArray() === null || accessor?.getCount() !== expected) {
     throw new InputError(
-      `${place}.attributes.${semantic} has ${accessor?.getCount() ?? 0} elements, not the ${expected} of its accessor`,
+      `${primitivePath(ref)}.attributes.${semantic} has ${accessor?.getCount() ?? 0} elements, not the ${expected} of its accessor`,
     );
   }
   return accessor;
 }
 
-function readPositions(file: GltfFile, place: string, mesh: number, primitive: number): Float32Array | undefined {
-  const accessor = accessorOf(file, place, mesh, primitive, 'POSITION');
-  if (accessor === undefined) return undefined;
-  return decodePositions(place, accessor);
+function readPositions(file: GltfFile, ref: PrimitiveRef): Float32Array | undefined {
+  const accessor = accessorOf(file, ref, 'POSITION');
+  return accessor && decodePositions(primitivePath(ref), accessor);
 }
 
 /** The triangles of a primitive, strips and fans expanded; `undefined` if it is of points or lines. */
-function readTriangles(
-  file: GltfFile,
-  place: string,
-  mesh: number,
-  primitive: number,
-  vertexCount: number,
-): Uint32Array | undefined {
-  const { indices, mode = 4 } = file.json.meshes![mesh]!.primitives[primitive]!;
+function readTriangles(file: GltfFile, ref: PrimitiveRef, vertexCount: number): Uint32Array | undefined {
+  const { indices, mode = 4 } = primitiveOf(file, ref);
   if (!hasTriangles(mode)) return undefined;
   const accessor = indices === undefined ? undefined : file.geometry.getRoot().listAccessors()[indices];
   const array = accessor?.getArray() ?? undefined;
-  if (indices !== undefined && array === undefined) throw new InputError(`${place}.indices has no data`);
-  return decodeTriangles(place, array ?? null, mode, vertexCount);
+  if (indices !== undefined && array === undefined) throw new InputError(`${primitivePath(ref)}.indices has no data`);
+  return decodeTriangles(primitivePath(ref), array ?? null, mode, vertexCount);
 }
 
 function readUvs(file: GltfFile, parts: Part[], vertexCount: number): Float32Array | undefined {
   const uvs = new Float32Array(2 * vertexCount);
   for (const part of parts) {
     const { set, transform } = uvLayout(file.json, part);
-    const accessor = accessorOf(file, placeOf(part), part.mesh, part.primitive, set);
+    const accessor = accessorOf(file, part, set);
     if (accessor === undefined) return undefined;
     if (accessor.getElementSize() !== 2)
-      throw new InputError(`${placeOf(part)}.attributes.${set} is ${accessor.getType()}, not VEC2`);
+      throw new InputError(`${primitivePath(part)}.attributes.${set} is ${accessor.getType()}, not VEC2`);
     if (accessor.getCount() !== part.vertexCount) {
-      throw new InputError(`${placeOf(part)} has ${accessor.getCount()} ${set} for ${part.vertexCount} vertices`);
+      throw new InputError(`${primitivePath(part)} has ${accessor.getCount()} ${set} for ${part.vertexCount} vertices`);
     }
     const own = decodeFloats(accessor);
     uvs.set(transform ? transformUvs(own, transform) : own, 2 * part.firstVertex);
@@ -238,13 +223,8 @@ function readUvs(file: GltfFile, parts: Part[], vertexCount: number): Float32Arr
   return parts.length > 0 ? uvs : undefined;
 }
 
-/** How the base colour texture of a part is laid on it: by which UV set, and how its UVs are transformed. */
-export function uvLayout(
-  { meshes, materials = [] }: GLTF.IGLTF,
-  { mesh, primitive }: Part,
-): { set: string; transform: Partial<UvTransform> | undefined } {
+/** How the base colour texture of a part is laid on it. */
+export function uvLayout({ meshes, materials = [] }: GLTF.IGLTF, { mesh, primitive }: Part): UvLayout {
   const material = materials[meshes![mesh]!.primitives[primitive]!.material ?? -1];
-  const info = material?.pbrMetallicRoughness?.baseColorTexture;
-  const transform = info?.extensions?.['KHR_texture_transform'] as Partial<UvTransform> | undefined;
-  return { set: `TEXCOORD_${transform?.texCoord ?? info?.texCoord ?? 0}`, transform };
+  return uvLayoutOf(material?.pbrMetallicRoughness?.baseColorTexture);
 }

@@ -1,3 +1,4 @@
+import type { GLTF } from '@gltf-transform/core';
 import { InputError } from './input-error.js';
 
 /** The members of KHR_texture_transform. */
@@ -7,6 +8,18 @@ export interface UvTransform {
   rotation: number;
   scale: number[];
   texCoord: number;
+}
+
+/** How a texture is laid on a primitive. */
+export interface UvLayout {
+  /** The UV set: "TEXCOORD_0". */
+  set: string;
+  transform: Partial<UvTransform> | undefined;
+}
+
+export function uvLayoutOf(info: GLTF.ITextureInfo | undefined): UvLayout {
+  const transform = info?.extensions?.['KHR_texture_transform'] as Partial<UvTransform> | undefined;
+  return { set: `TEXCOORD_${transform?.texCoord ?? info?.texCoord ?? 0}`, transform };
 }
 
 /**

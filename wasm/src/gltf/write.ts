@@ -79,7 +79,7 @@ export async function writeTransfer(
   const primitives = parts.map(({ primitive }, p) => meshes[p]!.primitives[primitive]!);
   const replaced = isFurther ? 0 : takeOverlays(writer, meshes);
   if (!isFurther) takeAttributes(writer, primitives);
-  const painters = paints.map((paint) => new Painter(writer, paint));
+  const overlays = paints.map((paint) => new OverlayWriter(writer, paint));
 
   const pieces = cut && { target: cut, ownCount: mesh.positions.length / 3 };
   const members = parts.map((part, p): Member => {
@@ -89,7 +89,7 @@ export async function writeTransfer(
     return { ...member, primitives: meshes[p]!.primitives, primitive: primitives[p]!, part, added };
   });
   if (form === 'draco') markForDraco(primitives);
-  for (const group of groupsOf(members)) addToGroup(writer, file, group, { painters, form, zones });
+  for (const group of groupsOf(members)) addToGroup(writer, file, group, { overlays, form, zones });
   await packDraco(writer, file);
   const added = members.map((member) => member.added);
   if (stem === undefined) return { data: writer.finish(), beside: [], added, replaced };
@@ -124,7 +124,7 @@ function addToGroup(
   writer: GlbWriter,
   file: GltfFile,
   members: readonly Member[],
-  { painters, form, zones }: { painters: readonly Painter[]; form: Form; zones: string },
+  { overlays, form, zones }: { overlays: readonly OverlayWriter[]; form: Form; zones: string },
 ): void {
   const { primitive: first, part } = members[0]!;
   const shared = shareVertices(part.vertexCount, members);
@@ -151,10 +151,10 @@ function addToGroup(
     const { primitive, primitives, cosmetic, added } = member;
     Object.assign(primitive.attributes, attributes);
     const all = cosmeticCorners(shared.indices[m]!, cosmetic);
-    for (const painter of painters) {
-      const corners = painter.cornersOf(all, shared.uvs);
+    for (const overlay of overlays) {
+      const corners = overlay.cornersOf(all, shared.uvs);
       if (corners.length === 0) continue;
-      primitives.push(painter.overlay(primitive, corners, attributes[uvSet]!));
+      primitives.push(overlay.primitive(primitive, corners, attributes[uvSet]!));
       added.overlayTriangles += corners.length / 3;
       added.fillsCutOuts = writer.json.materials?.[primitive.material ?? -1]?.alphaMode === 'MASK';
     }
@@ -233,8 +233,8 @@ function boundsOf(values: ArrayLike<number>, size: number): { min: number[]; max
   return { min, max };
 }
 
-/** Makes the overlays that show a texture. */
-class Painter {
+/** Writes overlays that show a texture. */
+class OverlayWriter {
   readonly #writer: GlbWriter;
   readonly #paint: Paint;
   #texture: number | undefined;
@@ -251,7 +251,7 @@ class Painter {
   }
 
   /** A primitive of some triangles of `base`, with the same vertices, skin and morph targets. @param uvs  Its UVs' accessor. */
-  overlay(base: GLTF.IMeshPrimitive, corners: Uint32Array, uvs: number): GLTF.IMeshPrimitive {
+  primitive(base: GLTF.IMeshPrimitive, corners: Uint32Array, uvs: number): GLTF.IMeshPrimitive {
     const attributes: Record<string, number> = { TEXCOORD_0: uvs };
     for (const [semantic, accessor] of Object.entries(base.attributes))
       if (isOverlaid(semantic)) attributes[semantic] = accessor;

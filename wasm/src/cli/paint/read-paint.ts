@@ -1,5 +1,5 @@
 import { basename } from 'node:path';
-import { placeOf } from '../../gltf/extract.js';
+import { primitivePath } from '../../gltf/extract.js';
 import { readBytes } from '../../gltf/files.js';
 import { InputError } from '../../gltf/input-error.js';
 import type { ReadLimits } from '../../gltf/limits.js';
@@ -75,7 +75,7 @@ function tilesOf({ file, extracted: { mesh, parts } }: ReadModel): number[] {
     const part = parts.find(
       ({ firstTriangle, triangleCount }) => t >= firstTriangle && t < firstTriangle + triangleCount,
     );
-    const where = part ? `${placeOf(part)} (${quoted(part.name)}), ` : '';
+    const where = part ? `${primitivePath(part)} (${quoted(part.name)}), ` : '';
     const shown = corners.map(([u, v]) => `${Number(u.toFixed(3))}, ${Number(v.toFixed(3))}`).join('; ');
     throw new InputError(
       `${where}triangle ${t - (part?.firstTriangle ?? 0)} ${isInside ? 'is in no UDIM tile' : 'is in more than one UDIM tile'}: its UVs are ${shown}`,

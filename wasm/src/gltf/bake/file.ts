@@ -7,7 +7,7 @@ import type { GlbWriter } from '../glb-writer.js';
 import { imageType } from '../image.js';
 import { decodeFloats } from '../pieces.js';
 import type { GltfFile } from '../read.js';
-import type { UvTransform } from '../uv-transform.js';
+import { uvLayoutOf } from '../uv-transform.js';
 import type { BakeModel, Slot, TextureUse } from './plan.js';
 
 /** Extensions that give a texture another image. */
@@ -80,11 +80,9 @@ export class FileModel implements BakeModel<number, number> {
     const texture = this.#json.textures?.[info.index];
     if (!texture) return undefined;
     const sampler = texture.sampler === undefined ? undefined : this.#json.samplers?.[texture.sampler];
-    const transform = info.extensions?.['KHR_texture_transform'] as Partial<UvTransform> | undefined;
     return {
       texture: info.index,
-      set: `TEXCOORD_${transform?.texCoord ?? info.texCoord ?? 0}`,
-      transform,
+      ...uvLayoutOf(info),
       wraps: [wrapOf(sampler?.wrapS), wrapOf(sampler?.wrapT)],
     };
   }

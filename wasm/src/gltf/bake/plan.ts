@@ -14,7 +14,7 @@ import { blend } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
 import { type Piece, requireFinite } from '../pieces.js';
 import { groupMember } from '../primitive-group.js';
-import { transformUvs, type UvTransform } from '../uv-transform.js';
+import { transformUvs, type UvLayout } from '../uv-transform.js';
 
 /** What of a material a paint goes to: its base colour, its normals, or occlusion, roughness and metalness. */
 export const slots = ['color', 'normal', 'orm'] as const;
@@ -22,11 +22,8 @@ export type Slot = (typeof slots)[number];
 const kindOf: Record<Slot, Kind> = { color: 'color', normal: 'normal', orm: 'data' };
 
 /** How a texture is used by a material. */
-export interface TextureUse<Texture> {
+export interface TextureUse<Texture> extends UvLayout {
   texture: Texture;
-  /** The UV set: "TEXCOORD_0". */
-  set: string;
-  transform: Partial<UvTransform> | undefined;
   wraps: readonly [Wrap, Wrap];
 }
 
@@ -249,16 +246,20 @@ async function baseOf<Material, Texture>(
     return `its ${kinds[slot]} texture (${file.mimeType}) cannot be read: ${error instanceof Error ? error.message : error}`;
   }
   if (redIsNew) image = { ...image, data: image.data.map((byte, i) => (i % 4 === 0 ? 255 : byte)) };
-  if (size === undefined) return image;
-  const scaled = (side: number) => Math.max(1, Math.round((size * side) / Math.max(image.width, image.height)));
-  return resize(image, scaled(image.width), scaled(image.height));
+  return size === undefined ? image : resize(image, ...scaledTo(image, size));
+}
+
+/** Width and height of an image whose longer side is scaled to a size, if one is given. */
+export function scaledTo({ width, height }: Image, size = Math.max(width, height)): [number, number] {
+  const scaled = (side: number) => Math.max(1, Math.round((size * side) / Math.max(width, height)));
+  return [scaled(width), scaled(height)];
 }
 
 /** The triangles of a part, cut where the result is, in the UVs of a texture and in the cage's. */
 export function layoutOf<Material, Texture>(
   model: BakeModel<Material, Texture>,
   part: Piece,
-  { set, transform }: Pick<TextureUse<Texture>, 'set' | 'transform'>,
+  { set, transform }: UvLayout,
   { result, cut }: Pick<BakeInput, 'result' | 'cut'>,
 ): Layout {
   const { split, cosmetic, blends } = groupMember(part, result, cut);

@@ -2,18 +2,9 @@ import type { Document, ExtensionProperty, Material, Texture, TextureInfo } from
 import type { Wrap } from '../../bake/index.js';
 import type { BakeModel, Paints, TextureUse } from '../bake/plan.js';
 import { decodeFloats } from '../pieces.js';
-import type { UvTransform } from '../uv-transform.js';
-import type { DocumentPart } from './read.js';
+import { type DocumentPart, uvLayoutOf } from './read.js';
 
 /** The extension of glTF-Transform, which is no dependency. */
-interface KHRTransform extends ExtensionProperty {
-  getOffset(): number[];
-  getRotation(): number;
-  getScale(): number[];
-  getTexCoord(): number | null;
-}
-
-/** Another one. */
 interface MaterialMappings extends ExtensionProperty {
   listMappings(): { getMaterial(): Material | null }[];
 }
@@ -56,12 +47,7 @@ export class DocumentModel implements BakeModel<Material, Texture> {
   useOf(material: Material, slot: keyof Paints): TextureUse<Texture> | undefined {
     const [texture, info] = textureIn(material, slot);
     if (!texture || !info) return undefined;
-    const found = info.getExtension('KHR_texture_transform') as KHRTransform | null;
-    const transform: Partial<UvTransform> | undefined = found
-      ? { offset: found.getOffset(), rotation: found.getRotation(), scale: found.getScale() }
-      : undefined;
-    const set = `TEXCOORD_${found?.getTexCoord() ?? info.getTexCoord()}`;
-    return { texture, set, transform, wraps: [wrapOf(info.getWrapS()), wrapOf(info.getWrapT())] };
+    return { texture, ...uvLayoutOf(info), wraps: [wrapOf(info.getWrapS()), wrapOf(info.getWrapT())] };
   }
 
   factorOf(material: Material, slot: keyof Paints): [number, number, number] {

@@ -6,6 +6,7 @@ import type {
   Node,
   Primitive,
   Skin,
+  TextureInfo,
 } from '@gltf-transform/core';
 import type { Mesh } from '../../index.js';
 import { skinMatrix, usedJoints } from '../../parts/skin.js';
@@ -22,7 +23,7 @@ import {
   joinPieces,
   type Piece,
 } from '../pieces.js';
-import { transformUvs, type UvTransform } from '../uv-transform.js';
+import { transformUvs, type UvLayout } from '../uv-transform.js';
 
 /** A piece, and its place in the document. */
 export interface DocumentPart extends Piece {
@@ -48,7 +49,7 @@ export interface ExtractedDocument {
 export function extractDocument(document: Document): ExtractedDocument {
   const parts = listParts(document);
   const mesh = joinPieces(parts);
-  const layouts = parts.map(({ primitive }) => uvLayout(primitive));
+  const layouts = parts.map(({ primitive }) => uvLayoutOf(primitive.getMaterial()?.getBaseColorTextureInfo()));
   const sets = parts.map(({ primitive }, p) => primitive.getAttribute(layouts[p]!.set));
   if (parts.length === 0 || sets.some((set) => set === null)) return { mesh, parts };
   const uvs = new Float32Array((mesh.positions.length / 3) * 2);
@@ -64,13 +65,14 @@ export function extractDocument(document: Document): ExtractedDocument {
   return { mesh: { ...mesh, uvs }, parts };
 }
 
-/** How the base colour texture of a primitive is laid on it: by which UV set, and how its UVs are transformed. */
-function uvLayout(primitive: Primitive): { set: string; transform?: Partial<UvTransform> } {
-  const info = primitive.getMaterial()?.getBaseColorTextureInfo();
+export function uvLayoutOf(info: TextureInfo | null | undefined): UvLayout {
   const found = info?.getExtension('KHR_texture_transform') as KHRTransform | null | undefined;
-  const set = `TEXCOORD_${found?.getTexCoord() ?? info?.getTexCoord() ?? 0}`;
-  if (!found) return { set };
-  return { set, transform: { offset: found.getOffset(), rotation: found.getRotation(), scale: found.getScale() } };
+  return {
+    set: `TEXCOORD_${found?.getTexCoord() ?? info?.getTexCoord() ?? 0}`,
+    transform: found
+      ? { offset: found.getOffset(), rotation: found.getRotation(), scale: found.getScale() }
+      : undefined,
+  };
 }
 
 /** The extension of glTF-Transform, which is no dependency. */

@@ -50,12 +50,12 @@ export function addTransfer(
   const primitiveOf = separatePrimitives(document, parts);
   takeOverlays(document, parts);
   takeAttributes(document, primitiveOf);
-  const painter = paint && new Painter(document, paint);
+  const overlay = paint && new OverlayWriter(document, paint);
   const pieces = cut && { target: cut, ownCount: mesh.positions.length / 3 };
   const members = parts.map(
     (part, p): Member => ({ ...groupMember(part, result, pieces), part, primitive: primitiveOf[p]! }),
   );
-  for (const group of groupsOf(members)) addToGroup(document, group, painter);
+  for (const group of groupsOf(members)) addToGroup(document, group, overlay);
 }
 
 /** The parts by the attributes that their primitives share. */
@@ -77,7 +77,7 @@ function groupsOf(members: readonly Member[]): Member[][] {
 }
 
 /** Adds UVs, zones and overlays to primitives that share their attributes. */
-function addToGroup(document: Document, members: readonly Member[], painter: Painter | undefined): void {
+function addToGroup(document: Document, members: readonly Member[], overlay: OverlayWriter | undefined): void {
   const { part, primitive: first } = members[0]!;
   const buffer = document.getRoot().listBuffers()[0] ?? document.createBuffer();
   const attribute = (array: AttributeArray, type: 'SCALAR' | 'VEC2' | 'VEC3', normalized = false) =>
@@ -109,9 +109,8 @@ function addToGroup(document: Document, members: readonly Member[], painter: Pai
   const uvSet = freeUvSet((semantic) => first.getAttribute(semantic) !== null);
   members.forEach(({ primitive, part: { node }, cosmetic }, m) => {
     const corners = cosmeticCorners(shared.indices[m]!, cosmetic);
-    if (painter && corners.length > 0) {
-      node.getMesh()!.addPrimitive(painter.overlay(primitive, indices(corners), uvs));
-    }
+    if (overlay && corners.length > 0)
+      node.getMesh()!.addPrimitive(overlay.primitive(primitive, indices(corners), uvs));
     primitive.setAttribute(uvSet, uvs).setAttribute(zoneAttribute, zones);
   });
 }
@@ -209,8 +208,8 @@ function separatePrimitives(document: Document, parts: readonly DocumentPart[]):
   return parts.map(({ node, primitive }) => ownOf.get(node)!.get(primitive)!);
 }
 
-/** Makes the overlays that show a texture. */
-class Painter {
+/** Writes overlays that show a texture. */
+class OverlayWriter {
   readonly #document: Document;
   readonly #paint: Paint;
   #texture: Texture | undefined;
@@ -222,7 +221,7 @@ class Painter {
   }
 
   /** A primitive of some triangles of `base`, with the same vertices, skin and morph targets. */
-  overlay(base: Primitive, indices: Accessor, uvs: Accessor): Primitive {
+  primitive(base: Primitive, indices: Accessor, uvs: Accessor): Primitive {
     const overlay = this.#document
       .createPrimitive()
       .setIndices(indices)
