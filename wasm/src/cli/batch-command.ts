@@ -9,10 +9,10 @@ import type { Verdict } from '../inspect/index.js';
 import { isWritten, type Job, writtenBy } from './batch-jobs.js';
 import type { Outcome } from './batch-worker.js';
 import { verdicts } from './inspect-command.js';
-import { placeOf, writing } from './output.js';
+import { canonicalPath, writing } from './output.js';
 import { jsonText, oneLine } from './print.js';
 import type { Progress } from './progress.js';
-import type { TransferCommand } from './transfer-command.js';
+import type { TransferCommand } from './transfer/command.js';
 
 /** The arguments of `cagecast batch`. */
 interface BatchCommand {
@@ -79,7 +79,11 @@ export async function batchCommand(
   for (const job of jobs) {
     const known = before.lines.get(job.key);
     if (job.error !== undefined) take(job, { status: 'failed', ms: 0, error: job.error });
-    else if (known && isWritten(job) && writtenBy(job).every((path) => before.writers.get(placeOf(path)) === job.key))
+    else if (
+      known &&
+      isWritten(job) &&
+      writtenBy(job).every((path) => before.writers.get(canonicalPath(path)) === job.key)
+    )
       take(job, { status: 'skipped', ...('verdict' in known && { verdict: known.verdict! }) });
     else waiting.push(job);
   }
@@ -128,7 +132,7 @@ function ask(worker: Worker, command: TransferCommand): Promise<Outcome | undefi
 interface EarlierResults {
   /** The last line of each job that was done, by its key. */
   lines: Map<string, ResultLine>;
-  /** The keys of the jobs that wrote files last, by the place of the file. */
+  /** The keys of the jobs that wrote files last, by the canonical path of the file. */
   writers: Map<string, string>;
   /** The keys of the last lines, by target; '' if that is of a job that failed. */
   last: Map<string, string>;
@@ -148,7 +152,7 @@ function readResults(path: string): EarlierResults {
       last.set(line.target, line.status === 'failed' ? '' : line.key);
       if (line.status !== 'done') continue;
       lines.set(line.key, line);
-      for (const file of [line.output, line.report]) if (file) writers.set(placeOf(file), line.key);
+      for (const file of [line.output, line.report]) if (file) writers.set(canonicalPath(file), line.key);
     } catch {
       // Cut off when the batch was killed.
     }
@@ -177,11 +181,11 @@ const append = (path: string, text: string): void => writing(path, () => appendF
 function removeLeftovers(paths: readonly (string | undefined)[]): void {
   for (const path of paths) {
     if (path === undefined) continue;
-    const place = placeOf(path);
-    const folder = dirname(place);
+    const real = canonicalPath(path);
+    const folder = dirname(real);
     if (!existsSync(folder)) continue;
     for (const name of readdirSync(folder))
-      if (name.startsWith(`.${basename(place)}.`) && name.endsWith('.tmp')) rmSync(join(folder, name), { force: true });
+      if (name.startsWith(`.${basename(real)}.`) && name.endsWith('.tmp')) rmSync(join(folder, name), { force: true });
   }
 }
 

@@ -12,7 +12,7 @@ import { boundsFault } from './paint/read-paint.js';
 import { addPrintFlags, jsonText, oneLine, type PrintFlags } from './print.js';
 import type { Progress } from './progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
-import type { Region, TransferCommand } from './transfer-command.js';
+import type { Region, TransferCommand } from './transfer/command.js';
 import { endingIn, unfit, unusable, wrongUsage } from './usage.js';
 
 interface BatchFlags

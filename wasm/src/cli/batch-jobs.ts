@@ -15,11 +15,11 @@ import {
   settingsOf,
 } from './config/settings.js';
 import { filesOf } from './glob.js';
-import { placeOf } from './output.js';
+import { canonicalPath } from './output.js';
 import { areBounds, boundsText } from './paint/cage-area.js';
 import { boundsFault } from './paint/read-paint.js';
 import { autoCage } from './run.js';
-import type { Region, TransferCommand } from './transfer-command.js';
+import type { Region, TransferCommand } from './transfer/command.js';
 
 /** A transfer of a batch. */
 export interface Job {
@@ -227,31 +227,31 @@ function sizeAndTime(path: string): (number | undefined)[] {
 function refuseClashes(jobs: Job[], { results }: JobDefaults, manifest?: string): Job[] {
   const named = (path: string | undefined) => (path === undefined || path === standard ? [] : [path]);
   const readByJob = ({ command }: Job) => [...filesReadBy(command), ...named(command.rules.config)];
-  const read = new Set([...jobs.flatMap(readByJob), ...named(manifest)].map((path) => placeOf(path)));
+  const read = new Set([...jobs.flatMap(readByJob), ...named(manifest)].map((path) => canonicalPath(path)));
   // What a `.gltf` has beside it is named after it.
   const kBeside = /(\.bin|-image\d+\.\w+)$/;
   const readBeside = new Set(
-    [...read].filter((place) => kBeside.test(place)).map((place) => place.replace(kBeside, '.gltf')),
+    [...read].filter((real) => kBeside.test(real)).map((real) => real.replace(kBeside, '.gltf')),
   );
   const written = new Map<string, string>();
   if (results !== undefined) {
-    if (read.has(placeOf(results)))
+    if (read.has(canonicalPath(results)))
       throw new InputError('is read by this batch; choose another file for results').in(results);
-    written.set(placeOf(results), 'the results');
+    written.set(canonicalPath(results), 'the results');
   }
   for (const { command, error } of jobs) {
     const { output, report } = command;
     const buffer = output !== undefined && /\.gltf$/i.test(output) ? output.replace(/\w+$/, 'bin') : undefined;
     for (const path of error === undefined ? [output, buffer, report] : []) {
       if (path === undefined) continue;
-      const place = placeOf(path);
-      const other = written.get(place);
+      const real = canonicalPath(path);
+      const other = written.get(real);
       if (other !== undefined)
         throw new InputError(`is written for ${other} and ${command.target}; use {name} or {dir} in its path`).in(path);
-      if (path === output && readBeside.has(place))
+      if (path === output && readBeside.has(real))
         throw new InputError('is written beside a file of its name that this batch reads').in(path);
-      if (read.has(place)) throw new InputError('is read and written by this batch').in(path);
-      written.set(place, command.target);
+      if (read.has(real)) throw new InputError('is read and written by this batch').in(path);
+      written.set(real, command.target);
     }
   }
   return jobs;

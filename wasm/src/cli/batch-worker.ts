@@ -6,7 +6,8 @@ import { CagecastError } from '../index.js';
 import type { Verdict } from '../inspect/index.js';
 import { Progress } from './progress.js';
 import { rememberingModels } from './run.js';
-import { type Report, type TransferCommand, transferCommand } from './transfer-command.js';
+import { type TransferCommand, transferCommand } from './transfer/command.js';
+import type { Report } from './transfer/report.js';
 
 /** What a worker found. */
 export type Outcome =

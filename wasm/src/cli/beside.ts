@@ -5,10 +5,10 @@ import { defaultReading, isOutside, localFile, type ReadOptions, standard } from
 import { InputError } from '../gltf/input-error.js';
 import { parseGltf } from '../gltf/parse.js';
 import { filesOf } from './glob.js';
-import { placeOf } from './output.js';
+import { canonicalPath } from './output.js';
 import { isTiled, tilePath } from './paint/read-paint.js';
 import type { Run, Sources } from './run.js';
-import type { Region } from './transfer-command.js';
+import type { Region } from './transfer/command.js';
 
 /** Files with more JSON hold their buffers in it, as a rule; parsing them would take long. */
 const mostBytes = 2 ** 23;
@@ -92,12 +92,12 @@ export function refuseOverwritingRead(
     ...filesNamedIn(cageFile.json, dirname(command.cage)),
     ...[command.rules.config, ...more].filter((path) => path !== undefined),
   ];
-  const read = new Set(paths.filter((path) => path !== standard).map(placeOf));
-  const places = written.map(placeOf);
+  const read = new Set(paths.filter((path) => path !== standard).map((path) => canonicalPath(path)));
+  const canonical = written.map((path) => canonicalPath(path));
   for (const [i, path] of written.entries()) {
-    if (read.has(places[i]!))
+    if (read.has(canonical[i]!))
       throw new InputError('would be overwritten, but is read by this command; choose another output').in(path);
-    if (places.indexOf(places[i]!) !== i)
+    if (canonical.indexOf(canonical[i]!) !== i)
       throw new InputError('would be written twice by this command; choose another output').in(path);
   }
 }

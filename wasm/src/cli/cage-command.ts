@@ -17,8 +17,8 @@ import type { Rules } from './options.js';
 import { writeFiles } from './output.js';
 import type { Found } from './print.js';
 import type { Progress } from './progress.js';
-import { type ReadModel, readBack, readModel, transferred, withUvs } from './run.js';
-import { integer } from './table.js';
+import { type ReadModel, readBack, readModel, transferModels, withUvs } from './run.js';
+import { integer, listed } from './table.js';
 
 interface CageOutput {
   output: string;
@@ -136,8 +136,7 @@ const certain = 0.7;
 function describeFit({ used, confidence, missing }: Fit, given: Landmarks): FitNotes {
   const all = Object.keys(used);
   const own = all.filter((name) => Object.hasOwn(given, name)).length;
-  const listed = (names: string[]) =>
-    `${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more (--json lists all)` : ''}`;
+  const list = (names: string[]) => listed(names, mostNames, ' (--json lists all)');
   const doubtful = all
     .filter((name) => confidence[name]! < certain)
     .sort((a, b) => confidence[a]! - confidence[b]!)
@@ -145,8 +144,8 @@ function describeFit({ used, confidence, missing }: Fit, given: Landmarks): FitN
   const isJoint = (name: string) => name.startsWith('joint_');
   const lines = [
     `landmarks: ${integer(all.length)} used, ${integer(own)} of them given`,
-    doubtful.length > 0 ? `found, but not certain (of 1): ${listed(doubtful)}` : '',
-    missing.length > 0 ? `not found: ${listed(missing)}` : '',
+    doubtful.length > 0 ? `found, but not certain (of 1): ${list(doubtful)}` : '',
+    missing.length > 0 ? `not found: ${list(missing)}` : '',
     missing.some(isJoint) && !all.some(isJoint)
       ? 'no joint is found: TARGET has no skeleton, or names of bones that are not known'
       : '',
@@ -163,12 +162,12 @@ async function finish(
   progress: Progress,
   notes: FitNotes = { lines: [], advice: '', report: {} },
 ): Promise<CageVerdict> {
-  const done = await transferred(model, await readBack(cage, output), { preset: 'default' }, progress);
+  const run = await transferModels(model, await readBack(cage, output), { preset: 'default' }, progress);
   progress.step('inspecting');
-  const report = inspectionReport({ target: model.file.path, cage: output, rules }, done, []);
+  const report = inspectionReport({ target: model.file.path, cage: output, rules }, run, []);
   writeFiles([
     { path: output, data: cageGlb(cage) },
-    ...(html === undefined ? [] : [{ path: html, data: inspectionPage(report, done) }]),
+    ...(html === undefined ? [] : [{ path: html, data: inspectionPage(report, run) }]),
   ]);
   const text = [
     `wrote ${output}: ${integer(report.cage.vertices)} vertices, ${integer(report.cage.triangles)} triangles, ${counted(report.uv.charts, 'chart')}, ${counted(report.holes.length, 'hole')}`,

@@ -7,7 +7,7 @@ import { parseObject } from './config/settings.js';
 import { type InspectionReport, verdicts } from './inspect-command.js';
 import { type Found, oneLine } from './print.js';
 import { cut, integer, percent, short, table } from './table.js';
-import type { Report } from './transfer-command.js';
+import type { Report } from './transfer/report.js';
 import type { PerZone } from './zones.js';
 
 /** The arguments of `cagecast diff`. */

@@ -1,6 +1,5 @@
-import { diagonal } from '../gltf/overlay.js';
 import { counted } from '../inspect/finding.js';
-import { vertexAreas } from '../inspect/geometry.js';
+import { boxOf, vertexAreas } from '../inspect/geometry.js';
 import { type Inspection, inspect, unfitFrom, usableFrom, type Verdict } from '../inspect/index.js';
 import { inspectionPage } from './inspect-page.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
@@ -8,7 +7,7 @@ import { writeFiles } from './output.js';
 import { boundsAround, type UvBounds, withinBounds } from './paint/cage-area.js';
 import { oneLine } from './print.js';
 import type { Progress } from './progress.js';
-import { type Run, run, type Sources } from './run.js';
+import { type Run, runTransfer, type Sources } from './run.js';
 import { cut, fateText, integer, percent, scoreText, short, table } from './table.js';
 import { type PerZone, perZone } from './zones.js';
 
@@ -41,12 +40,12 @@ export async function inspectCommand(
   command: InspectCommand,
   progress: Progress,
 ): Promise<{ text: string; report: InspectionReport; verdict: Verdict }> {
-  const done = await run(command, progress);
+  const run = await runTransfer(command, progress);
   progress.step('inspecting');
-  const report = inspectionReport(command, done, command.uvBounds ? [command.uvBounds] : []);
+  const report = inspectionReport(command, run, command.uvBounds ? [command.uvBounds] : []);
   if (command.html !== undefined) {
     progress.step(`writing ${command.html}`);
-    writeFiles([{ path: command.html, data: inspectionPage(report, done) }]);
+    writeFiles([{ path: command.html, data: inspectionPage(report, run) }]);
   }
   return {
     text: describe(report, command.html),
@@ -73,7 +72,7 @@ export function inspectionReport(
       vertices: mesh.positions.length / 3,
       triangles: mesh.indices.length / 3,
       points: result.segmentStats.reduce((sum, { points }) => sum + points, 0),
-      diagonal: diagonal(mesh.positions),
+      diagonal: boxOf(mesh.positions).diagonal,
     },
     cage: { file: cageFile, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
     options: effectiveOptions(rules),

@@ -3,7 +3,7 @@ import { optionFlags } from '../generated/options.js';
 import type { Extracted } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { type Lock, type Preset, type PresetOptions, presetOptions, type TransferOptions } from '../index.js';
-import { cut } from './table.js';
+import { cut, listed } from './table.js';
 
 export type Single = Partial<Omit<PresetOptions, 'steps'>>;
 
@@ -179,12 +179,8 @@ export function transferOptions(
 /** No part has the name that a flag gives. */
 export function noSuchName(flag: string, parts: readonly { aliases: string[] }[]): InputError {
   const names = [...new Set(parts.flatMap(({ aliases }) => aliases))];
-  return new InputError(
-    `${flag}: no node or material has this name; there are: ${names
-      .slice(0, mostNames)
-      .map((name) => cut(name, mostCharacters))
-      .join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`,
-  );
+  const shown = names.map((name) => cut(name, mostCharacters));
+  return new InputError(`${flag}: no node or material has this name; there are: ${listed(shown, mostNames)}`);
 }
 
 /** How many names a message lists at most. */

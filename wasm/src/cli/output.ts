@@ -26,17 +26,18 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
   const written: { path: string; temporary: string }[] = [];
   try {
     for (const { path, data } of files.filter(({ path }) => streamOf(path) === undefined)) {
-      const place = placeOf(path);
-      const temporary = join(dirname(place), `.${basename(place)}.${process.pid}.tmp`);
+      const real = canonicalPath(path);
+      const temporary = join(dirname(real), `.${basename(real)}.${process.pid}.tmp`);
       written.push({ path, temporary });
-      writing(path, () => writeAs(place, temporary, data));
+      writing(path, () => writeAs(real, temporary, data));
     }
     for (const { path, data } of files) {
       const stream = streamOf(path);
       if (stream === standard) writeStandard(data);
       else if (stream !== undefined) writing(path, () => writeFileSync(stream, data));
     }
-    for (const { path, temporary } of written.reverse()) writing(path, () => renameSync(temporary, placeOf(path)));
+    for (const { path, temporary } of written.reverse())
+      writing(path, () => renameSync(temporary, canonicalPath(path)));
   } finally {
     for (const { temporary } of written) rmSync(temporary, { force: true });
   }
@@ -55,8 +56,8 @@ export function writeStandard(data: Uint8Array | string): void {
 const isPipe = (found: Stats): boolean => found.isFIFO() || found.isSocket();
 
 /** Writes a file under a temporary name, with the permissions of the file that it will replace, if there is one. */
-function writeAs(place: string, temporary: string, data: Uint8Array | string): void {
-  const before = statSync(place, { throwIfNoEntry: false });
+function writeAs(path: string, temporary: string, data: Uint8Array | string): void {
+  const before = statSync(path, { throwIfNoEntry: false });
   if (before?.isDirectory()) throw Object.assign(new Error('is a folder'), { code: 'EISDIR' });
   const mode = before && before.mode & 0o777;
   writeFileSync(temporary, data, { mode: mode ?? 0o666 });
@@ -64,15 +65,15 @@ function writeAs(place: string, temporary: string, data: Uint8Array | string): v
 }
 
 /** The absolute path of a file, with symbolic links resolved; the file need not exist. @param links  How many links may still be followed. */
-export function placeOf(path: string, links = 40): string {
+export function canonicalPath(path: string, links = 40): string {
   try {
     return realpathSync(path);
   } catch {
-    const place = resolve(path);
-    const folder = dirname(place);
-    if (links === 0 || folder === place) return place;
-    if (isLink(place)) return placeOf(resolve(realpathSync(folder), readlinkSync(place)), links - 1);
-    return join(placeOf(folder, links), basename(place));
+    const absolute = resolve(path);
+    const folder = dirname(absolute);
+    if (links === 0 || folder === absolute) return absolute;
+    if (isLink(absolute)) return canonicalPath(resolve(realpathSync(folder), readlinkSync(absolute)), links - 1);
+    return join(canonicalPath(folder, links), basename(absolute));
   }
 }
 
@@ -94,10 +95,14 @@ function streamOf(path: string): string | number | undefined {
 
 /** The descriptor that a path such as /dev/stdout leads to. @param links  How many links may still be followed. */
 function descriptorOf(path: string, links = 40): number | undefined {
-  const place = join(placeOf(dirname(path)), basename(path));
-  const number = [`/proc/${process.pid}/fd`, '/dev/fd'].includes(dirname(place)) ? Number(basename(place)) : Number.NaN;
+  const absolute = join(canonicalPath(dirname(path)), basename(path));
+  const number = [`/proc/${process.pid}/fd`, '/dev/fd'].includes(dirname(absolute))
+    ? Number(basename(absolute))
+    : Number.NaN;
   if (Number.isInteger(number)) return number;
-  return links > 0 && isLink(place) ? descriptorOf(resolve(dirname(place), readlinkSync(place)), links - 1) : undefined;
+  return links > 0 && isLink(absolute)
+    ? descriptorOf(resolve(dirname(absolute), readlinkSync(absolute)), links - 1)
+    : undefined;
 }
 
 /** Errors of the system that mean something else than in reading. */

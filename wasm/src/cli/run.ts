@@ -55,7 +55,7 @@ export const autoCage = 'auto';
  * @param target  If it is read already.
  * @throws {InputError} that names the file at fault.
  */
-export async function run(
+export async function runTransfer(
   sources: Sources,
   progress: Progress,
   models: Models = { cage: readModel },
@@ -71,8 +71,8 @@ export async function run(
   const whole = isMade ? await madeCage(read, progress) : await cageOf(sources.cage);
   const reference = sources.referenceCage === undefined ? undefined : await cageOf(sources.referenceCage);
   const drawn = withoutLacking(whole, reference);
-  const done = await transferred(read, withinBounds(drawn, sources.uvBounds), options, progress);
-  return { ...done, wholeCage: drawn };
+  const run = await transferModels(read, withinBounds(drawn, sources.uvBounds), options, progress);
+  return { ...run, wholeCage: drawn };
 }
 
 /** The masks of a target. @throws {InputError} that names the file at fault. */
@@ -164,8 +164,8 @@ export async function readBack(cage: Cage, path: string): Promise<ReadModel> {
   return { file, extracted: extract(file) };
 }
 
-/** Runs the transfer. @throws {InputError} that names the file at fault. */
-export async function transferred(
+/** Transfers from a cage to a target that are read. @throws {InputError} that names the file at fault. */
+export async function transferModels(
   target: ReadModel,
   cage: ReadModel,
   options: TransferOptions,
@@ -222,11 +222,11 @@ function inFile(
 }
 
 /** Cuts the target. @throws {InputError} that names the file and the element at fault. */
-export function cutTarget(done: Run, progress: Progress): CutTarget {
+export function cutTarget(run: Run, progress: Progress): CutTarget {
   progress.step('cutting borders');
   try {
-    return cutBorders(done.cage.mesh, done.target.mesh, done.result, done.options);
+    return cutBorders(run.cage.mesh, run.target.mesh, run.result, run.options);
   } catch (error) {
-    throw inFile(error, done);
+    throw inFile(error, run);
   }
 }

@@ -40,6 +40,10 @@ export function cut(name: string, length: number): string {
   return text.length > length ? `${text.slice(0, length - 1)}…` : text;
 }
 
+/** The first names of a list, and how many more there are. @param hint  Where those are. */
+export const listed = (names: readonly string[], most: number, hint = ''): string =>
+  `${names.slice(0, most).join(', ')}${names.length > most ? `, and ${names.length - most} more${hint}` : ''}`;
+
 /** A segment's score: "0.93", "12", "∞" if it needs no area. */
 export function scoreText(score: number | null): string {
   return score === null ? '∞' : Number(score.toPrecision(2)).toString();

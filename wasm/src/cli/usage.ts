@@ -1,6 +1,6 @@
 import { type Command, InvalidArgumentError } from 'commander';
 import { standard } from '../gltf/files.js';
-import { placeOf } from './output.js';
+import { canonicalPath } from './output.js';
 
 /** Exit codes. */
 export const unusable = 1;
@@ -31,11 +31,11 @@ export function refuseOverwriting(
       command.error(`only one file can be the standard ${name}`, { exitCode: wrongUsage });
   const known = new Map<string, string>();
   const add = (path: string | undefined, use: string) => {
-    if (path !== undefined && path !== standard) known.set(placeOf(path), `${path}, which this command ${use}`);
+    if (path !== undefined && path !== standard) known.set(canonicalPath(path), `${path}, which this command ${use}`);
   };
   for (const path of inputs) add(path, 'reads');
   for (const path of outputs) {
-    const other = path === undefined || path === standard ? undefined : known.get(placeOf(path));
+    const other = path === undefined || path === standard ? undefined : known.get(canonicalPath(path));
     if (other !== undefined)
       command.error(`${path} would overwrite ${other}; choose another output`, { exitCode: wrongUsage });
     add(path, 'writes');

@@ -118,14 +118,3 @@ export interface Finish {
 }
 
 export const unlitExtension = 'KHR_materials_unlit';
-
-/** The diagonal of the points' box. */
-export function diagonal(positions: Float32Array): number {
-  const min = [Infinity, Infinity, Infinity];
-  const max = [-Infinity, -Infinity, -Infinity];
-  positions.forEach((value, i) => {
-    min[i % 3] = Math.min(min[i % 3]!, value);
-    max[i % 3] = Math.max(max[i % 3]!, value);
-  });
-  return positions.length > 0 ? Math.hypot(max[0]! - min[0]!, max[1]! - min[1]!, max[2]! - min[2]!) : 0;
-}

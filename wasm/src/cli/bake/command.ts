@@ -12,7 +12,7 @@ import { configLine, matcher, noSuchName, quoted } from '../options.js';
 import { writeFiles } from '../output.js';
 import type { Found } from '../print.js';
 import type { Progress } from '../progress.js';
-import { cutTarget, type Run, run, type Sources } from '../run.js';
+import { cutTarget, type Run, runTransfer, type Sources } from '../run.js';
 import { percent, takenAway } from '../table.js';
 import { decodeImage, encodePng, readImage } from './images.js';
 
@@ -44,12 +44,12 @@ export async function bakeCommand(command: BakeCommand, progress: Progress): Pro
   const [color, normals, rough] = await Promise.all(
     [paint, normal, orm].map((path) => (path === undefined ? undefined : readImage(path, reading))),
   );
-  const done = await run(command, progress);
-  const cut = command.borders === 'cut' ? cutTarget(done, progress) : undefined;
+  const run = await runTransfer(command, progress);
+  const cut = command.borders === 'cut' ? cutTarget(run, progress) : undefined;
   progress.step('baking');
   return command.output.toLowerCase().endsWith('.png')
-    ? bakePicture(command, done, cut, color)
-    : bakeFile(command, done, cut, { color, normal: normals, orm: rough });
+    ? bakePicture(command, run, cut, color)
+    : bakeFile(command, run, cut, { color, normal: normals, orm: rough });
 }
 
 /** An error of reading or baking the target, with its name. */
@@ -59,26 +59,26 @@ function inTarget(error: unknown, path: string): unknown {
 }
 
 /** Writes the output. @throws {InputError} if it would overwrite what was read. */
-function write(command: BakeCommand, done: Run, data: Uint8Array): void {
+function write(command: BakeCommand, run: Run, data: Uint8Array): void {
   const { output, paint, normal, orm } = command;
-  refuseOverwritingRead(command, done, [output], [paint, normal, orm]);
+  refuseOverwritingRead(command, run, [output], [paint, normal, orm]);
   writeFiles([{ path: output, data }]);
 }
 
 /** Writes the model with the paint in its textures. */
-async function bakeFile(command: BakeCommand, done: Run, cut: CutTarget | undefined, paints: Paints): Promise<Found> {
+async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefined, paints: Paints): Promise<Found> {
   const { output, target, size } = command;
-  const writer = await GlbWriter.from(done.targetFile, 'keep').catch((error) => {
+  const writer = await GlbWriter.from(run.targetFile, 'keep').catch((error) => {
     throw inTarget(error, target);
   });
   const overlays = takeOverlays(
     writer,
-    done.target.parts.map(({ mesh }) => writer.json.meshes![mesh]!),
+    run.target.parts.map(({ mesh }) => writer.json.meshes![mesh]!),
   );
-  const model = new FileModel(done.targetFile, done.target.parts, writer);
+  const model = new FileModel(run.targetFile, run.target.parts, writer);
   const { report } = await bakeModel(model, {
-    result: done.result,
-    cut: cut && { target: cut, ownCount: done.target.mesh.positions.length / 3 },
+    result: run.result,
+    cut: cut && { target: cut, ownCount: run.target.mesh.positions.length / 3 },
     paints,
     codec: { decode: decodeImage, encode: encodePng },
     size,
@@ -91,7 +91,7 @@ async function bakeFile(command: BakeCommand, done: Run, cut: CutTarget | undefi
       first ? `nothing can be baked: ${quoted(first.part)}: ${first.reason}` : 'nothing of it may be painted',
     ).in(target);
   }
-  write(command, done, writer.finish());
+  write(command, run, writer.finish());
   const { config } = command.rules;
   const lines = [summary(output, report), overlays > 0 ? takenAway(overlays) : '', configLine(config)];
   return {
@@ -126,12 +126,12 @@ const overlapText = ({ texels, lost, parts }: Baked['overlap']): string =>
     : `; UVs overlap: ${percent(texels)} of its texels are claimed twice, ${percent(lost)} of the paint found no room (${list(parts)})`;
 
 /** Writes the paint alone in the model's UVs, or what is painted on the model in the cage's. */
-async function bakePicture(command: BakeCommand, done: Run, cut: CutTarget | undefined, color?: Image): Promise<Found> {
+async function bakePicture(command: BakeCommand, run: Run, cut: CutTarget | undefined, color?: Image): Promise<Found> {
   const { output, target, size, back } = command;
   try {
-    const writer = await GlbWriter.from(done.targetFile, 'keep');
-    const model = new FileModel(done.targetFile, done.target.parts, writer);
-    const { parts, texture } = oneTexture(model, done, command.part);
+    const writer = await GlbWriter.from(run.targetFile, 'keep');
+    const model = new FileModel(run.targetFile, run.target.parts, writer);
+    const { parts, texture } = oneTexture(model, run, command.part);
     const file = texture === undefined ? undefined : await model.imageOf(texture);
     const own =
       file &&
@@ -140,16 +140,16 @@ async function bakePicture(command: BakeCommand, done: Run, cut: CutTarget | und
           throw new InputError(`its texture ${(error as Error).message}`, { cause: error });
         return undefined; // Only its proportions were asked for.
       }));
-    const ownCount = done.target.mesh.positions.length / 3;
-    const found = { result: done.result, cut: cut && { target: cut, ownCount } };
+    const ownCount = run.target.mesh.positions.length / 3;
+    const found = { result: run.result, cut: cut && { target: cut, ownCount } };
     const layouts = parts.map((part) => layoutOf(model, part, useOf(model, part), found));
     if (back && !own) throw new InputError('its painted parts have no texture to take the paint from');
     const [wide, high] = back || !own ? [size ?? kSide, size ?? kSide] : scaledTo(own, size);
     const whole = own && parts.every((part) => isOpaque(model, part)) ? withoutAlpha(own) : own;
     const baked = back
-      ? pictureOfCage(unrolled(whole!, layouts, uses(model, parts[0]!)!.wraps), distancesOf(parts, done, cut), wide)
+      ? pictureOfCage(unrolled(whole!, layouts, uses(model, parts[0]!)!.wraps), distancesOf(parts, run, cut), wide)
       : fill('bake', layouts, color!, { width: wide, height: high });
-    write(command, done, await encodePng(baked));
+    write(command, run, await encodePng(baked));
     const names = parts.map(({ name }) => name);
     const { overlap } = baked;
     const { config } = command.rules;

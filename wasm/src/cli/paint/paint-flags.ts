@@ -1,5 +1,5 @@
 import { type Command, InvalidArgumentError, Option } from 'commander';
-import type { Region } from '../transfer-command.js';
+import type { Region } from '../transfer/command.js';
 import { parseBounds, type UvBounds } from './cage-area.js';
 
 /** The flags about cages and textures, as commander parses them. */

@@ -9,7 +9,7 @@ import { print } from '../print.js';
 import type { Progress } from '../progress.js';
 import { readingOf } from '../read-flags.js';
 import { autoCage } from '../run.js';
-import { type Region, type TransferCommand, transferCommand } from '../transfer-command.js';
+import { type Region, type TransferCommand, transferCommand } from '../transfer/command.js';
 import { endingIn, refuseOverwriting, wrongUsage } from '../usage.js';
 import { addCommonFlags, type CommonFlags } from './common-flags.js';
 

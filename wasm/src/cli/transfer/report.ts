@@ -1,0 +1,234 @@
+import { type Extracted, type Part, primitivePath } from '../../gltf/extract.js';
+import { zoneAttribute } from '../../gltf/overlay.js';
+import type { Added } from '../../gltf/write.js';
+import type { CutTarget, TransferResult } from '../../index.js';
+import { boxOf, vertexAreas } from '../../inspect/geometry.js';
+import type { Finding, Verdict } from '../../inspect/index.js';
+import { configLine, type EffectiveOptions, effectiveOptions } from '../options.js';
+import { type Stretch, stretchOf } from '../paint/stretch.js';
+import type { Run } from '../run.js';
+import { integer, percent, table, takenAway } from '../table.js';
+import { type PerZone, perZone } from '../zones.js';
+import type { Region, RegionRun, TransferCommand } from './command.js';
+
+/** The JSON report of a transfer. Areas are in squared units of the target; lengths in its units. */
+export interface Report {
+  versions: { cagecast: string; node: string };
+  target: { file: string; vertices: number; triangles: number; diagonal: number };
+  cage: { file: string; vertices: number; triangles: number };
+  texture: string | null;
+  output: string | null;
+  borders: TransferCommand['borders'];
+  options: EffectiveOptions;
+  /** Vertices of the target in each zone. */
+  counts: PerZone;
+  /** Area of the target in each zone: a third of each triangle for each of its corners. */
+  areas: PerZone & { total: number };
+  triangles: { total: number; cosmetic: number };
+  /** How the texture is stretched where it may be painted; `null` if nowhere. */
+  stretch: Stretch | null;
+  /**
+   * The target after borders were cut and before vertices are split; `null` if borders were not cut. All other fields describe the
+   * target as it was read.
+   */
+  cut: { vertices: number; counts: PerZone; triangles: { total: number; cosmetic: number } } | null;
+  /** Every connected component of the target, in the order of their first vertices. */
+  segments: {
+    part: string;
+    vertices: number;
+    points: number;
+    area: number;
+    exposedArea: number;
+    coveredArea: number;
+    coverage: number;
+    depthWeightedArea: number;
+    /** `null` if no area is required. */
+    score: number | null;
+    culled: boolean;
+    culledBy: Run['result']['segmentStats'][number]['culledBy'];
+  }[];
+  /**
+   * Every primitive of every node, in scene order. `uvSet` is the added attribute, `splitVertices` the number of vertices that were
+   * added because corners at the same vertex have different UVs, and `cutTriangles` the number of triangles that were added by
+   * cutting borders; these three are `null` if no output was written. `fillsCutOuts` says whether the overlay paints over what the
+   * material cuts out by its alpha.
+   */
+  parts: {
+    name: string;
+    place: string;
+    vertices: number;
+    triangles: number;
+    counts: PerZone;
+    uvSet: string | null;
+    overlayTriangles: number;
+    fillsCutOuts: boolean;
+    splitVertices: number | null;
+    cutTriangles: number | null;
+  }[];
+  /** Overlays of an earlier transfer to the target, which are not in the output. */
+  replacedOverlays: number;
+  /** Further cages with textures. All other fields are about the first cage. `triangles.cosmetic` are those that no cage before paints. */
+  regions: {
+    cage: string;
+    texture: string;
+    /** The attributes that were added: UVs and zones; `null` if no output was written. */
+    uvSet: string | null;
+    zones: string;
+    counts: PerZone;
+    triangles: { total: number; cosmetic: number };
+  }[];
+  /** Whether all of the cages fit, and why not; if they were inspected. */
+  verdict?: Verdict;
+  findings?: Finding[];
+  /** Milliseconds of CPU time. */
+  timings: Run['result']['timings'];
+  peakBytes: number;
+}
+
+/** How many of some flags are 1. */
+export const countOf = (flags: Uint8Array): number => flags.reduce((sum, one) => sum + one, 0);
+
+const trianglesOf = (cosmetic: Uint8Array): Report['triangles'] => ({
+  total: cosmetic.length,
+  cosmetic: countOf(cosmetic),
+});
+
+/** The report of a transfer. @param written  What was added to the target, if an output was written. */
+export function makeReport(
+  command: TransferCommand,
+  { target, cage, result }: Run,
+  written: { added: Added[]; replaced: number } | undefined,
+  cut: CutTarget | undefined,
+): Report {
+  const { mesh, parts } = target;
+  const areas = vertexAreas(mesh);
+  return {
+    versions: { cagecast: CAGECAST_VERSION, node: process.versions.node },
+    target: {
+      file: command.target,
+      vertices: mesh.positions.length / 3,
+      triangles: mesh.indices.length / 3,
+      diagonal: boxOf(mesh.positions).diagonal,
+    },
+    cage: { file: command.cage, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
+    texture: command.texture ?? null,
+    output: command.output ?? null,
+    borders: command.borders,
+    options: effectiveOptions(command.rules),
+    counts: perZone(result.zones),
+    areas: { total: areas.reduce((sum, area) => sum + area, 0), ...perZone(result.zones, areas) },
+    triangles: trianglesOf(result.cosmeticTriangles),
+    stretch: stretchOf(mesh, result),
+    cut: cut
+      ? { vertices: cut.zones.length, counts: perZone(cut.zones), triangles: trianglesOf(cut.cosmeticTriangles) }
+      : null,
+    segments: segmentsOf(target, result),
+    parts: parts.map((part, p) => partReport(part, result, written?.added[p])),
+    replacedOverlays: written?.replaced ?? 0,
+    regions: [],
+    timings: result.timings,
+    peakBytes: result.peakBytes,
+  };
+}
+
+function segmentsOf({ parts }: Extracted, { segments, segmentStats }: TransferResult): Report['segments'] {
+  const vertices = new Uint32Array(segmentStats.length);
+  const names: string[] = []; // of the part of each segment's first vertex
+  for (const { name, firstVertex, vertexCount } of parts)
+    for (let v = firstVertex; v < firstVertex + vertexCount; ++v) {
+      const s = segments[v]!;
+      names[s] ??= name;
+      ++vertices[s]!;
+    }
+  return segmentStats.map(
+    ({ points, area, exposedArea, coveredArea, coverage, depthWeightedArea, score, culled, culledBy }, s) => ({
+      part: names[s]!,
+      vertices: vertices[s]!,
+      points,
+      area,
+      exposedArea,
+      coveredArea,
+      coverage,
+      depthWeightedArea,
+      score: Number.isFinite(score) ? score : null, // no area is required
+      culled,
+      culledBy,
+    }),
+  );
+}
+
+function partReport(part: Part, { zones }: TransferResult, added: Added | undefined): Report['parts'][number] {
+  const { name, firstVertex, vertexCount, triangleCount } = part;
+  return {
+    name,
+    place: primitivePath(part),
+    vertices: vertexCount,
+    triangles: triangleCount,
+    counts: perZone(zones, undefined, firstVertex, firstVertex + vertexCount),
+    uvSet: added?.uvSet ?? null,
+    overlayTriangles: added?.overlayTriangles ?? 0,
+    fillsCutOuts: added?.fillsCutOuts ?? false,
+    splitVertices: added?.splitVertices ?? null,
+    cutTriangles: added?.cutTriangles ?? null,
+  };
+}
+
+/** The report of a further cage. */
+export function regionReport(
+  { cage, texture, output }: Region & Pick<TransferCommand, 'output'>,
+  { run, painted, before, written, zones }: RegionRun,
+): Report['regions'][number] {
+  const sets = [...new Set(output === undefined ? [] : written?.added.map(({ uvSet }) => uvSet))];
+  return {
+    cage,
+    texture,
+    uvSet: sets.length > 0 ? sets.join(', ') : null,
+    zones,
+    counts: perZone(run.result.zones),
+    triangles: { total: painted.length, cosmetic: countOf(painted) - before },
+  };
+}
+
+/** The report for people. */
+export function summary(
+  command: TransferCommand,
+  { target, counts, areas, triangles, cut, segments, parts, replacedOverlays, regions, timings, output }: Report,
+): string {
+  const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
+  const rows = [
+    ['', 'vertices', 'area'],
+    ...zones.map((zone) => [zone, integer(counts[zone]), percent(areas.total > 0 ? areas[zone] / areas.total : 0)]),
+  ];
+  const sets = [...new Set(parts.map((part) => part.uvSet))].join(', ');
+  const splits = parts.reduce((sum, { splitVertices }) => sum + (splitVertices ?? 0), 0);
+  const culled = segments.filter((segment) => segment.culled).length;
+  const filled = [...new Set(parts.filter(({ fillsCutOuts }) => fillsCutOuts).map(({ name }) => `“${name}”`))].join(
+    ', ',
+  );
+  const hasOverlay = parts.some(({ overlayTriangles }) => overlayTriangles > 0);
+  const overlay =
+    command.texture === undefined
+      ? ''
+      : hasOverlay
+        ? ', and an overlay with the texture'
+        : '; no overlay, as the texture shows nowhere';
+  const lines = [
+    `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
+    table(rows),
+    `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted${cut ? `; cut along borders, ${integer(cut.triangles.cosmetic)} of ${integer(cut.triangles.total)}` : ''}; ${timings.total.toFixed(1)} ms`,
+    output === null
+      ? ''
+      : `wrote ${output}: ${sets}, ${zoneAttribute}${overlay}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}${replacedOverlays === 0 ? '' : `; ${takenAway(replacedOverlays)}`}`,
+    filled && `the overlay fills what the material cuts out of ${filled}; cagecast bake paints only the rest`,
+    ...regions.map(
+      ({ cage, texture, triangles: { cosmetic, total } }) =>
+        `${cage}: ${integer(cosmetic)} of ${integer(total)} triangles more may be painted, by ${texture}`,
+    ),
+    command.report === undefined ? '' : `wrote ${command.report}`,
+    configLine(command.rules.config),
+    output === null && command.report === undefined
+      ? 'nothing written; to save the result, add -o OUT.glb or --report R.json'
+      : '',
+  ];
+  return lines.filter(Boolean).join('\n');
+}
