@@ -526,6 +526,16 @@ test('no file that was read is overwritten, whoever names it', async () => {
   }
 });
 
+test('a PNG that cannot be written is named, and not the model', () => {
+  for (const args of [[at('red.png')], ['--back']]) {
+    const { status, stderr } = cagecast('bake', at('box.glb'), at('cage.glb'), ...args, '-o', at('nowhere/out.png'));
+    assert.deepEqual(
+      [status, stderr],
+      [1, `cagecast: ${at('nowhere/out.png')}: cannot be written (its folder does not exist)\n`],
+    );
+  }
+});
+
 test('another size keeps the colours under an alpha of 0, and the longer side is as long as asked', async () => {
   const clear = picture(64, (x) => [10 + x, 20, 200, 0]);
   const tall = { width: 32, height: 64, data: clear.data.subarray(0, 4 * 32 * 64) };

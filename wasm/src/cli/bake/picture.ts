@@ -1,0 +1,213 @@
+import { mostTexels } from '../../bake/image.js';
+import { type Baked, cageTexture, fill, type Image, type Layout, resize, type Wrap } from '../../bake/index.js';
+import { FileModel } from '../../gltf/bake/file.js';
+import { layoutOf, scaledTo, type TextureUse } from '../../gltf/bake/plan.js';
+import type { Part } from '../../gltf/extract.js';
+import { GlbWriter } from '../../gltf/glb-writer.js';
+import { InputError } from '../../gltf/input-error.js';
+import type { UvLayout } from '../../gltf/uv-transform.js';
+import type { CutTarget } from '../../index.js';
+import { matcher, noSuchName, quoted } from '../options.js';
+import type { Run } from '../run.js';
+import { listed } from '../table.js';
+import { decodeImage } from './images.js';
+
+/** What a picture is made for. */
+export interface PictureOptions {
+  /** Names of the parts whose texture is meant; empty for all. */
+  part: readonly string[];
+  /** Its longer side. */
+  size?: number | undefined;
+}
+
+/** A picture, and the parts that it is of. */
+export interface Picture {
+  image: Baked;
+  parts: readonly Part[];
+}
+
+/** Side of a picture if the model has no texture. */
+const kSide = 1024;
+/** How many names a message lists at most. */
+const kMostNames = 8;
+
+/** The paint alone, in the model's UVs. @throws {InputError} */
+export async function paintForModel(
+  { part, size }: PictureOptions,
+  run: Run,
+  cut: CutTarget | undefined,
+  paint: Image,
+): Promise<Picture> {
+  const model = await fileModel(run);
+  const { parts, texture } = oneTexture(model, run, part);
+  const own = await imageOf(model, texture, size === undefined);
+  const layouts = layoutsOf(model, parts, run, cut);
+  const [width, height] = own ? scaledTo(own, size) : [size ?? kSide, size ?? kSide];
+  return { image: fill('bake', layouts, paint, { width, height }), parts };
+}
+
+/** What is painted on the model, in the cage's UVs. @throws {InputError} */
+export async function paintOfModel(
+  { part, size = kSide }: PictureOptions,
+  run: Run,
+  cut: CutTarget | undefined,
+): Promise<Picture> {
+  const model = await fileModel(run);
+  const { parts, texture } = oneTexture(model, run, part);
+  const own = await imageOf(model, texture, true);
+  const layouts = layoutsOf(model, parts, run, cut);
+  if (!own) throw new InputError('its painted parts have no texture to take the paint from');
+  const shown = parts.every((part) => isOpaque(model, part)) ? withoutAlpha(own) : own;
+  const there = unrolled(shown, layouts, uses(model, parts[0]!)!.wraps);
+  return { image: cageTextureOf(there, distancesOf(parts, run, cut), size), parts };
+}
+
+async function fileModel({ targetFile, target }: Run): Promise<FileModel> {
+  return new FileModel(targetFile, target.parts, await GlbWriter.from(targetFile, 'keep'));
+}
+
+/** The image of a texture, if there is one. @param isNeeded  Whether one that cannot be decoded is an error. */
+async function imageOf(model: FileModel, texture: number | undefined, isNeeded: boolean): Promise<Image | undefined> {
+  const file = texture === undefined ? undefined : await model.imageOf(texture);
+  return (
+    file &&
+    decodeImage(file.bytes).catch((error: unknown) => {
+      if (isNeeded) throw new InputError(`its texture ${(error as Error).message}`, { cause: error });
+      return undefined;
+    })
+  );
+}
+
+/** How the triangles of parts lie in their texture and in the cage's. */
+function layoutsOf(model: FileModel, parts: readonly Part[], run: Run, cut: CutTarget | undefined): Layout[] {
+  const ownCount = run.target.mesh.positions.length / 3;
+  const found = { result: run.result, cut: cut && { target: cut, ownCount } };
+  return parts.map((part) => layoutOf(model, part, useOf(model, part), found));
+}
+
+/** An image of which all is opaque, as the materials have it that show it. */
+const withoutAlpha = (image: Image): Image => ({
+  ...image,
+  data: image.data.map((byte, i) => (i % 4 === 3 ? 255 : byte)),
+});
+
+/** Whether a part's material pays no heed to the alpha of its texture. */
+function isOpaque(model: FileModel, part: Part): boolean {
+  const material = model.materialOf(part);
+  return material !== undefined && model.isOpaque(material);
+}
+
+/** The texture of a model, and how its triangles lie in it. */
+interface ModelTexture {
+  image: Image;
+  layouts: readonly Layout[];
+}
+
+/** A texture that is mirrored or clamped where UVs leave 0..1, as one that repeats. Clamped are the corners of triangles. */
+function unrolled(image: Image, layouts: readonly Layout[], wraps: readonly [Wrap, Wrap]): ModelTexture {
+  let texture: ModelTexture = { image, layouts };
+  for (const [k, wrap] of wraps.entries()) {
+    const isInside = (at: number, i: number) => i % 2 !== k || (at >= 0 && at <= 1);
+    if (wrap === 'repeat' || layouts.every(({ to }) => to.every(isInside))) continue;
+    const middle = 0.5 / (k === 0 ? image.width : image.height); // of the first texel
+    const place = (at: number) => (wrap === 'mirror' ? at / 2 : Math.min(1 - middle, Math.max(middle, at)));
+    texture = {
+      image: wrap === 'mirror' ? withMirrorImage(texture.image, k) : texture.image,
+      layouts: texture.layouts.map((layout) => ({
+        ...layout,
+        to: layout.to.map((at, i) => (i % 2 === k ? place(at) : at)),
+      })),
+    };
+  }
+  return texture;
+}
+
+/** An image and its mirror image, side by side or one above the other; coarser if that would be too large. */
+function withMirrorImage(image: Image, axis: number): Image {
+  const most = mostTexels / 2;
+  const fits = axis === 0 ? [Math.min(image.width, most), image.height] : [image.width, Math.min(image.height, most)];
+  const { width, height, data } = resize(image, fits[0]!, fits[1]!);
+  const [wide, high] = axis === 0 ? [2 * width, height] : [width, 2 * height];
+  const out = new Uint8ClampedArray(4 * wide * high);
+  for (let y = 0; y < high; ++y)
+    for (let x = 0; x < wide; ++x) {
+      const from = 4 * (Math.min(y, 2 * height - 1 - y) * width + Math.min(x, 2 * width - 1 - x));
+      out.set(data.subarray(from, from + 4), 4 * (y * wide + x));
+    }
+  return { width: wide, height: high, data: out };
+}
+
+/** How far each triangle of the layouts of some parts is from the cage, on average. */
+function distancesOf(parts: readonly Part[], { target, result }: Run, cut: CutTarget | undefined): number[] {
+  const { indices } = target.mesh;
+  const far = 1e30; // for triangles that the cage does not reach
+  const distance = (t: number) =>
+    [0, 1, 2].reduce((sum, k) => sum + Math.min(far, result.distances[indices[3 * t + k]!]!), 0) / 3;
+  return parts.flatMap(({ firstTriangle, triangleCount }) => {
+    const isOwn = (t: number) => t >= firstTriangle && t < firstTriangle + triangleCount;
+    const own = cut
+      ? [...cut.triangles].filter(isOwn)
+      : Array.from({ length: triangleCount }, (_, t) => firstTriangle + t);
+    return own.map(distance);
+  });
+}
+
+/** The cage's texture of a painted model. @param distances  Of each triangle: the nearest ones are seen. */
+function cageTextureOf({ image, layouts }: ModelTexture, distances: readonly number[], width: number): Baked {
+  const all = (values: Layout['to'][]) => Float32Array.from(values.flatMap((one) => [...one]));
+  const painted = Uint8Array.from(layouts.flatMap((layout) => [...layout.painted]));
+  const indices = Uint32Array.from({ length: 3 * painted.length }, (_, i) => i);
+  const result = {
+    uvs: all(layouts.map(({ from }) => from)),
+    cornerUvs: new Float32Array(0),
+    cosmeticTriangles: painted,
+    distances: Float32Array.from(indices, (corner) => distances[Math.floor(corner / 3)]!),
+  };
+  return cageTexture({ indices, uvs: all(layouts.map(({ to }) => to)) }, result, image, { width });
+}
+
+/** How the texture of a part lies on it, if it has one. */
+function uses(model: FileModel, part: Part): TextureUse<number> | undefined {
+  const material = model.materialOf(part);
+  return material === undefined ? undefined : model.useOf(material, 'color');
+}
+
+/** The same; by the first UVs if it has none. */
+const useOf = (model: FileModel, part: Part): UvLayout =>
+  uses(model, part) ?? { set: 'TEXCOORD_0', transform: undefined };
+
+/** The parts that share one texture. @throws {InputError} if there are several textures, or a part has no UVs. */
+function oneTexture(model: FileModel, { result, target }: Run, names: readonly string[]) {
+  const isPainted = ({ firstTriangle, triangleCount }: Part) =>
+    result.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount).includes(1);
+  for (const name of names)
+    if (!target.parts.some(({ aliases }) => aliases.some(matcher(name))))
+      throw noSuchName(`--part ${name}`, target.parts);
+  const isChosen = ({ aliases }: Part) => names.length === 0 || names.some((name) => aliases.some(matcher(name)));
+  const chosen = target.parts.filter((part) => isPainted(part) && isChosen(part));
+  const textured = chosen.filter((part) => uses(model, part));
+  const painted = textured.length > 0 ? textured : chosen;
+  if (painted.length === 0) throw new InputError('nothing of it may be painted');
+  const withoutUvs = painted.find((part) => !model.uvsOf(part, useOf(model, part).set));
+  if (withoutUvs)
+    throw new InputError(
+      `${quoted(withoutUvs.name)} has no ${useOf(model, withoutUvs).set}: a texture can only be laid on a model that is unwrapped`,
+    );
+  const textures = new Set(painted.map((part) => uses(model, part)?.texture));
+  if (textures.size > 1)
+    throw new InputError(
+      `its painted parts have ${textures.size} textures, which a PNG cannot hold; choose parts of one by --part: ${listNames(painted.map(({ name }) => name))}`,
+    );
+  const [texture] = textures;
+  // Other parts with this texture take their place in it.
+  const parts =
+    texture === undefined || names.length > 0
+      ? painted
+      : target.parts.filter(
+          (part) => uses(model, part)?.texture === texture && model.uvsOf(part, useOf(model, part).set),
+        );
+  return { parts, texture };
+}
+
+/** Names in a message. */
+export const listNames = (names: readonly string[]): string => listed(names.map(quoted), kMostNames);
