@@ -39,7 +39,7 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
   #layer: Layer | undefined;
   #name = '';
   /** All sheets that may be shown again: in the stack, or removed and kept by the undo history. */
-  readonly sheets: WeakRef<PaintedSheet>[] = [];
+  readonly #sheets: WeakRef<PaintedSheet>[] = [];
 
   constructor(layers: PaintedLayers) {
     super();
@@ -78,6 +78,11 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
   /** Whether there is a painting of the current size. */
   get hasPainting(): boolean {
     return this.#paintedLayer() !== undefined;
+  }
+
+  /** Whether it has sheets to upload again after the graphics context was lost, also those that undo or redo may bring back. */
+  get hasSheets(): boolean {
+    return this.#sheets.length > 0;
   }
 
   /**
@@ -168,13 +173,13 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
 
   /** Uploads a sheet too, after the graphics context was lost. */
   keep(sheet: PaintedSheet): void {
-    this.sheets.push(new WeakRef(sheet));
+    this.#sheets.push(new WeakRef(sheet));
   }
 
   /** Uploads all paintings again, after the graphics context was lost. */
   restore(): void {
     const { renderer, composite, stack } = this.#layers;
-    for (const sheet of this.sheets) sheet.deref()?.restore(renderer);
+    for (const sheet of this.#sheets) sheet.deref()?.restore(renderer);
     composite.set(stack.layers);
     this.emit('change', undefined);
   }

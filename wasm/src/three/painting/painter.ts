@@ -194,7 +194,7 @@ export class Painter {
     for (const stop of this.#stops) stop();
     this.#painter.dispose();
     this.#sheet.dispose();
-    if (this.#painter.sheets.length === 0) this.#unfollow();
+    if (!this.#painter.hasSheets) this.#unfollow();
   }
 
   /** Begins what the tool does with a pointer. */
