@@ -1,12 +1,12 @@
 /** Maps the coordinate of a texel that may lie outside of the texture into it; −1 for none. */
-export type Place = (place: number) => number;
+export type Wrapping = (coordinate: number) => number;
 
 /** A texture that is being filled. */
 interface Sheet {
   width: number;
   height: number;
-  columnOf: Place;
-  rowOf: Place;
+  columnOf: Wrapping;
+  rowOf: Wrapping;
   /** 4 per texel. */
   colors: Float32Array;
 }

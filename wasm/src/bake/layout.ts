@@ -2,6 +2,7 @@ import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import { fillGutter } from './gutter.js';
 import { checkImage, checkNames, checkSize, colorByte, type Image, linearOf } from './image.js';
+import { kMostLayers } from './pattern.js';
 import { type Corners, type Kind, Raster, type Wrap } from './raster.js';
 
 /** Triangles that lie in two textures: in the one that is filled, and in the image that fills it. */
@@ -52,8 +53,6 @@ export interface Baked extends Image {
 const kGutter = 1 / 64; // of the longer side
 /** Texels beyond what is painted that a sample may reach. */
 const kBorder = 2;
-/** If the triangles cover a texture more often than this, it is a pattern; mirrored halves use it twice at most. */
-const kMostLayers = 2.5;
 /** UVs beyond this are those of a pattern, too. */
 const kFarthest = 32;
 const kinds: readonly Kind[] = ['color', 'data', 'normal'];

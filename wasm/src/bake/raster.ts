@@ -1,5 +1,5 @@
 import { CagecastError } from '../index.js';
-import { fillGutter, type Place } from './gutter.js';
+import { fillGutter, type Wrapping } from './gutter.js';
 import { type Image, linearOf, shareOf } from './image.js';
 
 /** How a texture goes on beyond its border, as in glTF. */
@@ -44,8 +44,8 @@ export class Raster {
   readonly #samples: number;
   readonly #isCoarse: boolean;
   /** Where columns and rows are that lie beyond the border. */
-  readonly columnOf: Place;
-  readonly rowOf: Place;
+  readonly columnOf: Wrapping;
+  readonly rowOf: Wrapping;
   /** What a byte of the image stands for. */
   readonly table: Float32Array;
   /** 4 per texel: premultiplied RGBA, linear; sums over samples, and means once finished. */
@@ -94,8 +94,8 @@ export class Raster {
     this.#image = image;
     this.#samples = Math.max(kFewestSamples, Math.min(kMostSamples, Math.ceil(density)));
     this.#isCoarse = density < kCoarse;
-    this.columnOf = placer(width, wraps[0]);
-    this.rowOf = placer(height, wraps[1]);
+    this.columnOf = wrapping(width, wraps[0]);
+    this.rowOf = wrapping(height, wraps[1]);
     this.table = kind === 'color' ? linearOf : shareOf;
     const texels = width * height;
     this.colors = new Float32Array(4 * texels);
@@ -352,11 +352,11 @@ function spanOf(edges: readonly number[], y: number, k: number, lefts: Float64Ar
 
 export const modulo = (a: number, b: number): number => a - b * Math.floor(a / b);
 
-function placer(size: number, wrap: Wrap): Place {
-  if (wrap === 'repeat') return (place) => (place >= 0 && place < size ? place : modulo(place, size));
-  if (wrap === 'clamp') return (place) => (place >= 0 && place < size ? place : -1);
-  return (place) => {
-    const there = modulo(place, 2 * size);
+function wrapping(size: number, wrap: Wrap): Wrapping {
+  if (wrap === 'repeat') return (at) => (at >= 0 && at < size ? at : modulo(at, size));
+  if (wrap === 'clamp') return (at) => (at >= 0 && at < size ? at : -1);
+  return (at) => {
+    const there = modulo(at, 2 * size);
     return there < size ? there : 2 * size - 1 - there;
   };
 }

@@ -22,8 +22,8 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
   const added = new Uint32Array(cut.sources.length / 3)
     .map((_, n) => n)
     .filter((n) => cut.sources[3 * n]! >= firstVertex && cut.sources[3 * n]! < firstVertex + vertexCount);
-  const newVertex = new Uint32Array(cut.sources.length / 3);
-  added.forEach((n, i) => (newVertex[n] = vertexCount + i));
+  const numberInPart = new Uint32Array(cut.sources.length / 3);
+  added.forEach((n, i) => (numberInPart[n] = vertexCount + i));
   const vertices = new Uint32Array(vertexCount + added.length).map((_, v) =>
     v < vertexCount ? firstVertex + v : ownCount + added[v - vertexCount]!,
   );
@@ -35,7 +35,7 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
   const [first, end] = [before(firstTriangle), before(firstTriangle + triangleCount)];
   const localIndices = cut.indices
     .slice(3 * first, 3 * end)
-    .map((v) => (v < ownCount ? v - firstVertex : newVertex[v - ownCount]!));
+    .map((v) => (v < ownCount ? v - firstVertex : numberInPart[v - ownCount]!));
   for (let i = 0; mirrored && i < localIndices.length; i += 3)
     [localIndices[i + 1], localIndices[i + 2]] = [localIndices[i + 2]!, localIndices[i + 1]!];
   return {

@@ -9,6 +9,7 @@ import {
   resize,
   type Wrap,
 } from '../../bake/index.js';
+import { kMostLayers } from '../../bake/pattern.js';
 import type { CutTarget, TransferResult } from '../../index.js';
 import { blend } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
@@ -83,8 +84,6 @@ interface BakeInput {
 /** If more of the paint than this has no area in the texture, it is a palette, which cannot hold paint. */
 const kMostFlat = 0.1; // of its area in the cage's UVs
 const kFlat = 0.01; // texels
-/** A texture that is repeated more often than this is a pattern; mirrored halves use it twice at most. */
-const kMostRepeats = 2.5;
 const kMostLost = 0.6; // of the paint; the same for a part of the texture
 /** Side of a texture that a material did not have. */
 const kNewSide = 1024;
@@ -291,6 +290,6 @@ function unusable(layouts: readonly Layout[], texels: number): string | undefine
       if (area * texels < kFlat) flat += own;
     });
   }
-  if (laid > kMostRepeats) return 'its texture is a pattern that repeats';
+  if (laid > kMostLayers) return 'its texture is a pattern that repeats';
   return flat > kMostFlat * drawn ? 'its texture is a palette, without room for paint' : undefined;
 }
