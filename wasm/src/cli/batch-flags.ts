@@ -36,6 +36,24 @@ function workers(text: string): number {
   return Number(text);
 }
 
+/** What its help says after the flags. */
+const kHelp = `
+A line of a manifest, with paths relative to the manifest:
+  {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
+A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
+failed or skipped), ms, counts, and error, verdict and findings (codes) if there are. After the lines, a summary goes to the
+standard error: a text, or with --json JSON. With --quiet, only the errors of jobs go there.
+With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure, or from
+another job (another cage, say).
+A job that fails does not stop the others, and leaves what an earlier run wrote. Files are complete or not there, even if the
+batch is killed; folders that are missing are made. {name} and {dir} are for -o and --report only: cages and textures that
+differ need a manifest.
+Exit codes: 0 all done, 1 a job failed, 2 wrong usage, 3 no job failed, but --fail-on found a cage that does not fit as demanded.
+
+Examples:
+  cagecast batch 'in/**/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
+  cagecast batch --manifest jobs.jsonl --results results.jsonl --resume --fail-on unfit`;
+
 /** Adds the command that runs many transfers. */
 export function addBatchCommand(program: Command, progress: Progress): void {
   const command = addPrintFlags(
@@ -87,54 +105,38 @@ export function addBatchCommand(program: Command, progress: Progress): void {
       ).choices(['usable', 'unfit']),
     )
     .addOption(new Option('--workers <N>', 'threads; 1 to 999 (default: one per processor)').argParser(workers))
-    .addHelpText(
-      'after',
-      `
-A line of a manifest, with paths relative to the manifest:
-  {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
-A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
-failed or skipped), ms, counts, and error, verdict and findings (codes) if there are. After the lines, a summary goes to the
-standard error: a text, or with --json JSON. With --quiet, only the errors of jobs go there.
-With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure, or from
-another job (another cage, say).
-A job that fails does not stop the others, and leaves what an earlier run wrote. Files are complete or not there, even if the
-batch is killed; folders that are missing are made. {name} and {dir} are for -o and --report only: cages and textures that
-differ need a manifest.
-Exit codes: 0 all done, 1 a job failed, 2 wrong usage, 3 no job failed, but --fail-on found a cage that does not fit as demanded.
+    .addHelpText('after', kHelp);
+  command.action((targets: string[], flags: BatchFlags) => runBatch(command, targets, flags, progress));
+}
 
-Examples:
-  cagecast batch 'in/**/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
-  cagecast batch --manifest jobs.jsonl --results results.jsonl --resume --fail-on unfit`,
-    );
-  command.action(async (targets: string[], flags: BatchFlags) => {
-    const { manifest, results, resume = false, failOn, workers, texture, output, report, cage } = flags;
-    const fault = faultOf(targets, flags);
-    if (fault !== undefined) command.error(fault, { exitCode: wrongUsage });
-    if (flags.quiet) progress.silence();
-    const defaults = {
-      cage,
-      uvBounds: flags.uvBounds,
-      referenceCage: flags.referenceCage,
-      texture,
-      regions: flags.region,
-      output,
-      report,
-      results,
-      inspects: failOn === undefined ? undefined : true,
-      cuts: flags.borders === 'cut',
-      settled: settler(command, flags),
-      reading: readingOf(flags),
-    };
-    const jobs =
-      manifest === undefined ? await jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
-    const summary = await batchCommand(
-      { jobs, results, resume, failOn, workers, onError: flags.quiet ? printError : undefined },
-      flags.quiet ? () => {} : writeStandard,
-      progress,
-    );
-    if (!flags.quiet) process.stderr.write(flags.json ? jsonText(summary) : `${describeBatch(summary)}\n`);
-    process.exitCode = summary.failed > 0 ? unusable : summary.misfits > 0 ? unfit : 0;
-  });
+async function runBatch(command: Command, targets: string[], flags: BatchFlags, progress: Progress): Promise<void> {
+  const { manifest, results, resume = false, failOn, workers, texture, output, report, cage } = flags;
+  const fault = faultOf(targets, flags);
+  if (fault !== undefined) command.error(fault, { exitCode: wrongUsage });
+  if (flags.quiet) progress.silence();
+  const defaults = {
+    cage,
+    uvBounds: flags.uvBounds,
+    referenceCage: flags.referenceCage,
+    texture,
+    regions: flags.region,
+    output,
+    report,
+    results,
+    inspects: failOn === undefined ? undefined : true,
+    cuts: flags.borders === 'cut',
+    settled: settler(command, flags),
+    reading: readingOf(flags),
+  };
+  const jobs =
+    manifest === undefined ? await jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
+  const summary = await batchCommand(
+    { jobs, results, resume, failOn, workers, onError: flags.quiet ? printError : undefined },
+    flags.quiet ? () => {} : writeStandard,
+    progress,
+  );
+  if (!flags.quiet) process.stderr.write(flags.json ? jsonText(summary) : `${describeBatch(summary)}\n`);
+  process.exitCode = summary.failed > 0 ? unusable : summary.misfits > 0 ? unfit : 0;
 }
 
 const printError = (error: string): void => void process.stderr.write(`cagecast: ${oneLine(error)}\n`);

@@ -7,10 +7,10 @@ import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
 import { endingIn, refuseOverwriting, unfit } from './usage.js';
 
 /** The fewest and the most triangles that a cage can be asked to have. */
-const triangleRange = [50, 20_000] as const;
+const kTriangleRange = [50, 20_000] as const;
 
 /** The least and the most that gaps can be closed by, as a share of the diagonal. */
-const closingRange = [0.0005, 0.2] as const;
+const kClosingRange = [0.0005, 0.2] as const;
 
 const output = (command: Command): Command =>
   addPrintFlags(addReadFlags(command))
@@ -35,25 +35,25 @@ const exclusion = (): Option =>
 
 function triangles(text: string): number {
   const value = Number(text);
-  if (!/^\d+$/.test(text) || value < triangleRange[0] || value > triangleRange[1])
-    throw new InvalidArgumentError(`It is not a whole number within ${triangleRange[0]}..${triangleRange[1]}.`);
+  if (!/^\d+$/.test(text) || value < kTriangleRange[0] || value > kTriangleRange[1])
+    throw new InvalidArgumentError(`It is not a whole number within ${kTriangleRange[0]}..${kTriangleRange[1]}.`);
   return value;
 }
 
 /** Adds the commands that make and fit cages. */
 export function addCageCommands(program: Command, progress: Progress): void {
-  const show = (found: CageVerdict, flags: PrintFlags & { output: string; html?: string | undefined }) => {
-    progress.clear();
-    print(found, flags, [flags.output, flags.html]);
-    if (found.verdict === 'unfit') process.exitCode = unfit;
-  };
+  addMakeCommand(program, progress);
+  addFitCommand(program, progress);
+}
+
+function addMakeCommand(program: Command, progress: Progress): void {
   output(program.command('make').argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing'))
     .description('make a cage for TARGET: a hull with holes over what is not painted, and UVs; print a verdict')
     .addOption(exclusion())
     .addOption(
       new Option(
         '--triangles <N>',
-        `triangles of the cage, about; ${triangleRange[0]} to ${triangleRange[1]} (default: by kind)`,
+        `triangles of the cage, about; ${kTriangleRange[0]} to ${kTriangleRange[1]} (default: by kind)`,
       ).argParser(triangles),
     )
     .addOption(
@@ -64,8 +64,8 @@ export function addCageCommands(program: Command, progress: Progress): void {
     .addOption(
       new Option(
         '--closing <SHARE>',
-        `bridge gaps narrower than twice this share of TARGET's diagonal; ${closingRange[0]} to ${closingRange[1]} (default: by kind)`,
-      ).argParser(numberWithin(...closingRange)),
+        `bridge gaps narrower than twice this share of TARGET's diagonal; ${kClosingRange[0]} to ${kClosingRange[1]} (default: by kind)`,
+      ).argParser(numberWithin(...kClosingRange)),
     )
     .addHelpText(
       'after',
@@ -85,9 +85,14 @@ Examples:
       ) => {
         if (flags.quiet) progress.silence();
         refuseOverwriting(command, [target], [flags.output, flags.html]);
-        show(await makeCommand({ ...flags, target, reading: readingOf(flags) }, progress), flags);
+        const found = await makeCommand({ ...flags, target, reading: readingOf(flags) }, progress);
+        progress.clear();
+        show(found, flags);
       },
     );
+}
+
+function addFitCommand(program: Command, progress: Progress): void {
   output(
     program
       .command('fit')
@@ -124,7 +129,15 @@ Examples:
         const { templateLandmarks, landmarks, output, html } = flags;
         if (flags.quiet) progress.silence();
         refuseOverwriting(command, [template, target, templateLandmarks, landmarks], [output, html]);
-        show(await fitCommand({ ...flags, template, target, reading: readingOf(flags) }, progress), flags);
+        const found = await fitCommand({ ...flags, template, target, reading: readingOf(flags) }, progress);
+        progress.clear();
+        show(found, flags);
       },
     );
+}
+
+/** Prints what `inspect` says of a cage. */
+function show(found: CageVerdict, flags: PrintFlags & { output: string; html?: string | undefined }): void {
+  print(found, flags, [flags.output, flags.html]);
+  if (found.verdict === 'unfit') process.exitCode = unfit;
 }

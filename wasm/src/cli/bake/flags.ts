@@ -23,6 +23,16 @@ function sizeOf(text: string): number {
   return value;
 }
 
+/** What its help says after the flags. */
+const kHelp = `
+A part is not painted if its material has no texture, or its UVs are not an unwrapping; the summary says which. Where UVs
+overlap, as those of mirrored halves do, the part that comes first has the texels. Overlays of an earlier transfer are taken away.
+
+Examples:
+  cagecast bake head.glb cage.glb paint.png -o painted.glb
+  cagecast bake head.glb cage.glb paint.png --normal scales.png --size 2048 -o painted.glb
+  cagecast bake head.glb cage.glb --back -o paint-of-head.png`;
+
 /** Adds the command that bakes paint into textures. */
 export function addBakeCommand(program: Command, progress: Progress): void {
   const command = program
@@ -63,17 +73,7 @@ export function addBakeCommand(program: Command, progress: Progress): void {
         .default('triangle'),
     );
   addPrintFlags(addReadFlags(addConfigFlags(addRuleFlags(command))))
-    .addHelpText(
-      'after',
-      `
-A part is not painted if its material has no texture, or its UVs are not an unwrapping; the summary says which. Where UVs
-overlap, as those of mirrored halves do, the part that comes first has the texels. Overlays of an earlier transfer are taken away.
-
-Examples:
-  cagecast bake head.glb cage.glb paint.png -o painted.glb
-  cagecast bake head.glb cage.glb paint.png --normal scales.png --size 2048 -o painted.glb
-  cagecast bake head.glb cage.glb --back -o paint-of-head.png`,
-    )
+    .addHelpText('after', kHelp)
     .action(async (target: string, cage: string, paint: string | undefined, flags: Flags, command: Command) => {
       const { normal, orm, output, part, size, back = false } = flags;
       const refuse = (text: string) => command.error(text, { exitCode: wrongUsage });

@@ -13,6 +13,32 @@ import { type Region, type TransferCommand, transferCommand } from '../transfer/
 import { endingIn, refuseOverwriting, wrongUsage } from '../usage.js';
 import { addCommonFlags, type CommonFlags } from './common-flags.js';
 
+/** What its help says after the flags. */
+const kHelp = `
+_NCZ is 0 for a vertex that may be painted. Other values say why it must not be painted:
+  1  occluded: another surface of the target lies over it
+  2  uncovered: the cage has a hole over it, or it lies outside the cage
+  3  culled: the cage covers too little of its segment (connected part), or has a hole meant for that segment
+If the triangles at a vertex need different UVs, copies of the vertex with all its attributes are added after the
+existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones. Draco changes
+the order of vertices.
+If TARGET was written by an earlier transfer, its UVs, zones and overlays are replaced. An overlay fills what a material
+cuts out by its alpha (alphaMode MASK), as between hairs; cagecast bake does not.
+Each --region adds UVs and zones of its own (_NCZ_1, …) to the same vertices. --uv-bounds and --reference-cage are about
+--cage alone. With <UDIM> in the name of a texture, each tile of the cage's UVs has its own: 1001, 1002 to its right,
+1011 above. A glTF gets OUT.bin and OUT-image0.png, … beside it. A mesh that is drawn as many instances
+(EXT_mesh_gpu_instancing) is taken once, where its first instance is; all instances show the same paint.
+A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
+--cage auto makes a cage for TARGET on the way, as cagecast make does, and excludes the parts whose names make leaves out by
+default, unless --keep names them; for a file named auto, write ./auto.
+
+Examples:
+  cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
+  cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json
+  cagecast transfer body.glb --cage cage.glb --keep skin --exclude '*eye*' -o painted.glb
+  cagecast transfer body.glb --cage face.glb --texture face.png --region arms.glb=arms.png -o painted.gltf
+  cagecast transfer body.glb --cage tiled.glb --texture 'skin.<UDIM>.png' -o painted.glb`;
+
 /** Adds the command that transfers to a file. */
 export function addTransferCommand(program: Command, progress: Progress): void {
   addRegionFlag(addCommonFlags(program.command('transfer')))
@@ -44,33 +70,7 @@ export function addTransferCommand(program: Command, progress: Progress): void {
         .default('keep'),
     )
     .option('--report <R.json>', 'where to write counts, areas, segments and timings as JSON')
-    .addHelpText(
-      'after',
-      `
-_NCZ is 0 for a vertex that may be painted. Other values say why it must not be painted:
-  1  occluded: another surface of the target lies over it
-  2  uncovered: the cage has a hole over it, or it lies outside the cage
-  3  culled: the cage covers too little of its segment (connected part), or has a hole meant for that segment
-If the triangles at a vertex need different UVs, copies of the vertex with all its attributes are added after the
-existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones. Draco changes
-the order of vertices.
-If TARGET was written by an earlier transfer, its UVs, zones and overlays are replaced. An overlay fills what a material
-cuts out by its alpha (alphaMode MASK), as between hairs; cagecast bake does not.
-Each --region adds UVs and zones of its own (_NCZ_1, …) to the same vertices. --uv-bounds and --reference-cage are about
---cage alone. With <UDIM> in the name of a texture, each tile of the cage's UVs has its own: 1001, 1002 to its right,
-1011 above. A glTF gets OUT.bin and OUT-image0.png, … beside it. A mesh that is drawn as many instances
-(EXT_mesh_gpu_instancing) is taken once, where its first instance is; all instances show the same paint.
-A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
---cage auto makes a cage for TARGET on the way, as cagecast make does, and excludes the parts whose names make leaves out by
-default, unless --keep names them; for a file named auto, write ./auto.
-
-Examples:
-  cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
-  cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json
-  cagecast transfer body.glb --cage cage.glb --keep skin --exclude '*eye*' -o painted.glb
-  cagecast transfer body.glb --cage face.glb --texture face.png --region arms.glb=arms.png -o painted.gltf
-  cagecast transfer body.glb --cage tiled.glb --texture 'skin.<UDIM>.png' -o painted.glb`,
-    )
+    .addHelpText('after', kHelp)
     .action(
       async (
         target: string,
