@@ -13,7 +13,7 @@ const functions = {
 } as Record<string, (...args: unknown[]) => unknown>;
 
 /** Milliseconds between two messages about progress: smooth for people. */
-const pause = 40;
+const kPause = 40;
 
 /**
  * Carries out a call. Its last argument are the options, to which `onProgress` is added.
@@ -24,7 +24,7 @@ export function serve(request: Request, post: (reply: Reply) => void): Promise<{
   let lastStage = '';
   const onProgress = (share: number, stage: string) => {
     const now = performance.now();
-    if (now - last < pause && stage === lastStage && share < 1) return;
+    if (now - last < kPause && stage === lastStage && share < 1) return;
     [last, lastStage] = [now, stage];
     post({ id: request.id, progress: [share, stage] });
   };

@@ -55,7 +55,7 @@ interface Json {
 }
 
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
-const float = 5126;
+const kFloat = 5126;
 
 /** Reads a GLB with one mesh of floats and 16-bit indices, as examples/assets writes templates. */
 function readTemplate(bytes: Uint8Array<ArrayBuffer>): Cage {
@@ -66,7 +66,7 @@ function readTemplate(bytes: Uint8Array<ArrayBuffer>): Cage {
   const numbersOf = (accessor: number, size: number): number[] => {
     const { bufferView, byteOffset = 0, componentType, count } = json.accessors[accessor]!;
     const { byteOffset: start = 0, byteStride } = json.bufferViews[bufferView]!;
-    const width = componentType === float ? 4 : 2;
+    const width = componentType === kFloat ? 4 : 2;
     return Array.from({ length: count * size }, (_, i) => {
       const at = binary + start + byteOffset + Math.floor(i / size) * (byteStride ?? size * width) + (i % size) * width;
       return width === 4 ? view.getFloat32(at, true) : view.getUint16(at, true);

@@ -89,9 +89,9 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
     ...(templateLandmarks !== undefined && { landmarks: await readLandmarks(templateLandmarks) }),
   };
   const count = Object.keys(template.landmarks).length;
-  if (count < leastLandmarks)
+  if (count < kLeastLandmarks)
     throw new InputError(
-      `has ${count === 0 ? 'no landmarks' : counted(count, 'landmark')} in the extras of its nodes and meshes; give at least ${leastLandmarks} of the model that it was made for: --template-landmarks T.json`,
+      `has ${count === 0 ? 'no landmarks' : counted(count, 'landmark')} in the extras of its nodes and meshes; give at least ${kLeastLandmarks} of the model that it was made for: --template-landmarks T.json`,
     ).in(templatePath);
   const landmarks = landmarksPath === undefined ? undefined : await readLandmarks(landmarksPath);
   const model = await readModel(target, reading, progress);
@@ -125,20 +125,20 @@ async function readLandmarks(path: string): Promise<Landmarks> {
 }
 
 /** How many landmarks `fitCage` needs of a template. */
-const leastLandmarks = 4;
+const kLeastLandmarks = 4;
 
 /** How many landmarks are listed at most. */
-const mostNames = 12;
+const kMostNames = 12;
 
 /** Landmarks less certain than this are listed. */
-const certain = 0.7;
+const kCertain = 0.7;
 
 function describeFit({ used, confidence, missing }: Fit, given: Landmarks): FitNotes {
   const all = Object.keys(used);
   const own = all.filter((name) => Object.hasOwn(given, name)).length;
-  const list = (names: string[]) => listed(names, mostNames, ' (--json lists all)');
+  const list = (names: string[]) => listed(names, kMostNames, ' (--json lists all)');
   const doubtful = all
-    .filter((name) => confidence[name]! < certain)
+    .filter((name) => confidence[name]! < kCertain)
     .sort((a, b) => confidence[a]! - confidence[b]!)
     .map((name) => `${name} (${confidence[name]!.toFixed(2)})`);
   const isJoint = (name: string) => name.startsWith('joint_');

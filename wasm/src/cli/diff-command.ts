@@ -75,7 +75,7 @@ async function diffFolders({ before, after, tolerance }: DiffCommand): Promise<F
   const over = gone.length + sum(reports.map((report) => report.over))!;
   const changed = reports
     .map((report) => ({ name: report.name, text: textOf(report, tolerance) }))
-    .filter(({ text }) => text !== unchanged);
+    .filter(({ text }) => text !== kUnchanged);
   const text = [
     ...changed.map((report) => `${oneLine(report.name)}\n${report.text}`),
     ...gone.map((name) => `gone: ${oneLine(name)}`),
@@ -101,7 +101,7 @@ async function diffReports({ before, after, tolerance }: DiffCommand): Promise<D
   return { over: changes.filter(({ isOver }) => isOver).length, changes };
 }
 
-const unchanged = 'nothing changed';
+const kUnchanged = 'nothing changed';
 
 /** A difference for people. */
 function textOf({ changes, over }: Difference, tolerance: number): string {
@@ -114,7 +114,7 @@ function textOf({ changes, over }: Difference, tolerance: number): string {
     ])
     // What reads the same is for programs only.
     .filter(([, was, is, isOver]) => was !== is || isOver);
-  if (rows.length === 0) return unchanged;
+  if (rows.length === 0) return kUnchanged;
   const count = `${counted(rows.length, 'change')}, ${integer(over)} over the limit (${percent(tolerance)} of a share or of a length, a worse verdict, a part or a region more or less)`;
   return `${table([['', 'before', 'after', ''], ...rows])}\n${count}`;
 }

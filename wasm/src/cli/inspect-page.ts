@@ -9,23 +9,23 @@ import type { Run } from './run.js';
 import { fateText, integer, percent, scoreText, short } from './table.js';
 
 /** Pixels along each side of a picture. */
-const size = 420;
+const kSize = 420;
 /** Colours of the zones, after Okabe and Ito, so that colour-blind eyes tell them apart; what may be painted is clay. */
-const zoneColors: readonly Rgb[] = [
+const kZoneColors: readonly Rgb[] = [
   [203, 198, 190],
   [0, 114, 178],
   [230, 159, 0],
   [204, 121, 167],
 ];
-const outsideColor: Rgb = [213, 40, 30];
-const cageColor: Rgb = [60, 70, 90];
-const borderColor: Rgb = [20, 20, 20];
+const kOutsideColor: Rgb = [213, 40, 30];
+const kCageColor: Rgb = [60, 70, 90];
+const kBorderColor: Rgb = [20, 20, 20];
 /** Distances beyond this share of the diagonal all look alike. */
-const farthest = 0.1;
+const kFarthest = 0.1;
 /** How many triangles a UV layout is drawn with at most. */
-const mostDrawn = 20000;
+const kMostDrawn = 20000;
 /** How many segments are listed at most. */
-const mostSegments = 40;
+const kMostSegments = 40;
 
 const views: readonly { name: string; view: View }[] = [
   { name: 'front', view: { right: [1, 0, 0], up: [0, 1, 0], eye: [0, 0, 1] } },
@@ -65,10 +65,10 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
 <p>${integer(report.target.triangles)} triangles under a cage of ${integer(report.cage.triangles)}; preset ${text(options.preset)}, threshold ${options.threshold}. Cagecast ${text(report.versions.cagecast)}.</p>
 ${findings.length > 0 ? `<ol>${findings.map(({ weight, sentence, advice }) => `<li><i class="${mark(weight)}"></i>${text(sentence)}.<small>${text(advice)}</small></li>`).join('')}</ol>` : '<p>No problems found.</p>'}
 <h2>Zones</h2>
-<p>${(['cosmetic', 'occluded', 'uncovered', 'culled'] as const).map((zone, z) => `<span class="key" style="background:rgb(${zoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>
+<p>${(['cosmetic', 'occluded', 'uncovered', 'culled'] as const).map((zone, z) => `<span class="key" style="background:rgb(${kZoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>
 <div class="row">${views.map(({ name, view }) => figure(name, drawZones(scene, view))).join('')}</div>
 <h2>Fit</h2>
-<p><span class="key" style="background:rgb(${outsideColor.join()})"></span>outside the cage: ${percent(placement.outside.exposedArea)} of the exposed area<span class="key" style="background:rgb(${shade(0).join()})"></span>at the cage<span class="key" style="background:rgb(${shade(farthest).join()})"></span>${percent(farthest)} of the diagonal beneath. Median ${percent(placement.distances.p50)}, 99 % within ${percent(placement.distances.p99)}. Lines: edges of the cage, open edges dark.</p>
+<p><span class="key" style="background:rgb(${kOutsideColor.join()})"></span>outside the cage: ${percent(placement.outside.exposedArea)} of the exposed area<span class="key" style="background:rgb(${shade(0).join()})"></span>at the cage<span class="key" style="background:rgb(${shade(kFarthest).join()})"></span>${percent(kFarthest)} of the diagonal beneath. Median ${percent(placement.distances.p50)}, 99 % within ${percent(placement.distances.p99)}. Lines: edges of the cage, open edges dark.</p>
 <div class="row">${views.map(({ name, view }) => figure(name, drawFit(scene, view))).join('')}</div>
 <h2>UVs</h2>
 <p>${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}; ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that more than once.</p>
@@ -92,7 +92,7 @@ ${rows(
   ['part', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
   [...segments]
     .sort((a, b) => b.exposedArea - a.exposedArea)
-    .slice(0, mostSegments)
+    .slice(0, kMostSegments)
     .map(({ part, points, exposedArea, coveredArea, coverage, score, culledBy }) => [
       part,
       integer(points),
@@ -118,14 +118,14 @@ function rows(head: readonly string[], body: readonly (readonly string[])[]): st
 }
 
 function figure(name: string, { pixels }: Picture): string {
-  const png = new PNG({ width: size, height: size });
+  const png = new PNG({ width: kSize, height: kSize });
   png.data.set(pixels);
   return `<figure><img alt="${name === 'front' || name === 'back' ? `the ${name}` : `from ${name}`}" src="data:image/png;base64,${PNG.sync.write(png).toString('base64')}"><figcaption>${name}</figcaption></figure>`;
 }
 
 function pictureOf({ targetBox: { min, max } }: Scene, view: View): Picture {
   const middle: Vector = [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, (min[2] + max[2]) / 2];
-  return new Picture(size, view, middle, 0.56 * Math.max(max[0] - min[0], max[1] - min[1], max[2] - min[2]));
+  return new Picture(kSize, view, middle, 0.56 * Math.max(max[0] - min[0], max[1] - min[1], max[2] - min[2]));
 }
 
 function drawTarget(
@@ -148,13 +148,13 @@ function drawTarget(
 function drawZones(scene: Scene, view: View): Picture {
   const picture = pictureOf(scene, view);
   const { zones } = scene.result;
-  drawTarget(picture, scene, (corners) => zoneColors[Math.max(...corners.map((v) => zones[v]!))]!);
+  drawTarget(picture, scene, (corners) => kZoneColors[Math.max(...corners.map((v) => zones[v]!))]!);
   return picture;
 }
 
 /** From white, touching the cage, to a dark green, far beneath it. */
 function shade(distance: number): Rgb {
-  const t = Math.min(1, distance / farthest);
+  const t = Math.min(1, distance / kFarthest);
   return [Math.round(245 - 215 * t), Math.round(245 - 130 * t), Math.round(238 - 138 * t)];
 }
 
@@ -164,10 +164,10 @@ function drawFit(scene: Scene, view: View): Picture {
   const { positions } = scene.cage;
   drawTarget(picture, scene, (corners) => {
     const mean = corners.reduce((sum, v) => sum + signed[v]!, 0) / 3 / scene.diagonal;
-    return mean > 0 ? outsideColor : shade(-mean);
+    return mean > 0 ? kOutsideColor : shade(-mean);
   });
   for (const { a, b, uses } of scene.surface.edges) {
-    picture.line(pointAt(positions, a), pointAt(positions, b), uses.length === 1 ? borderColor : cageColor);
+    picture.line(pointAt(positions, a), pointAt(positions, b), uses.length === 1 ? kBorderColor : kCageColor);
   }
   return picture;
 }
@@ -187,7 +187,7 @@ function drawUvs({ cage, surface }: Scene): string {
       .map((value, k) => Number((((value - (k === 0 ? left : top)) / side) * 1000).toFixed(1)))
       .join(' ');
   let paths = '';
-  for (let t = 0; t < Math.min(surface.areas.length, mostDrawn); ++t) {
+  for (let t = 0; t < Math.min(surface.areas.length, kMostDrawn); ++t) {
     paths += `<path d="M${place(cage.indices[3 * t]!)}L${place(cage.indices[3 * t + 1]!)}L${place(cage.indices[3 * t + 2]!)}Z"/>`;
   }
   const frame = `<rect x="${((0 - left) / side) * 1000}" y="${((0 - top) / side) * 1000}" width="${1000 / side}" height="${1000 / side}" fill="none" stroke="#b3261e" stroke-width="3"/>`;

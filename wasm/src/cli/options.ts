@@ -179,17 +179,17 @@ export function transferOptions(
 /** No part has the name that a flag gives. */
 export function noSuchName(flag: string, parts: readonly { aliases: string[] }[]): InputError {
   const names = [...new Set(parts.flatMap(({ aliases }) => aliases))];
-  const shown = names.map((name) => cut(name, mostCharacters));
-  return new InputError(`${flag}: no node or material has this name; there are: ${listed(shown, mostNames)}`);
+  const shown = names.map((name) => cut(name, kMostCharacters));
+  return new InputError(`${flag}: no node or material has this name; there are: ${listed(shown, kMostNames)}`);
 }
 
 /** How many names a message lists at most. */
-const mostNames = 20;
+const kMostNames = 20;
 /** How many characters of a name a message shows at most. */
-const mostCharacters = 60;
+const kMostCharacters = 60;
 
 /** A name in a message. */
-export const quoted = (name: string): string => `"${cut(name, mostCharacters)}"`;
+export const quoted = (name: string): string => `"${cut(name, kMostCharacters)}"`;
 
 /**
  * Returns a test whether a name matches a pattern, in which `*` matches any text. Takes time in proportion to name and pattern at

@@ -3,11 +3,11 @@ import { standard } from '../gltf/files.js';
 import { writeStandard } from './output.js';
 
 // What a terminal obeys instead of showing: control characters, and marks that turn the direction of text.
-const commands = /(?![\n\t])[\p{Cc}\p{Bidi_Control}]/gu;
+const kCommands = /(?![\n\t])[\p{Cc}\p{Bidi_Control}]/gu;
 
 /** A text with names from files in it, harmless to print: "\u001b" for an escape character, as in JSON, where it means the same. */
 function harmless(text: string): string {
-  return text.replace(commands, escaped);
+  return text.replace(kCommands, escaped);
 }
 
 /** The same for a text that has to stay on one line. */

@@ -1,7 +1,7 @@
 import { oneLine } from './print.js';
 
 /** Characters of a progress bar. */
-const barLength = 24;
+const kBarLength = 24;
 
 /** Shows the current step in one line of the terminal, and clears it afterwards. Silent if stderr is not a terminal. */
 export class Progress {
@@ -25,8 +25,8 @@ export class Progress {
 
   /** Shows how far a step is. @param share  0..1 */
   share(text: string, share: number): void {
-    const done = Math.round(Math.min(1, Math.max(0, share)) * barLength);
-    this.step(`${text} [${'#'.repeat(done)}${'-'.repeat(barLength - done)}] ${Math.floor(100 * share)} %`);
+    const done = Math.round(Math.min(1, Math.max(0, share)) * kBarLength);
+    this.step(`${text} [${'#'.repeat(done)}${'-'.repeat(kBarLength - done)}] ${Math.floor(100 * share)} %`);
   }
 
   /** Clears the line. */

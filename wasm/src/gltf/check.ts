@@ -5,7 +5,7 @@ import { InputError } from './input-error.js';
 const componentBytes: Record<number, number> = { 5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4 };
 const typeComponents: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16 };
 /** The maximum count of an accessor: larger ones do not fit into an array. */
-const maxCount = 2 ** 28;
+const kMaxCount = 2 ** 28;
 
 /** The bytes of one element of an accessor; NaN if its type is unknown. */
 export const bytesOf = ({ componentType, type }: GLTF.IAccessor): number =>
@@ -130,8 +130,8 @@ function checkAccessors({ bufferViews = [], accessors = [] }: GLTF.IGLTF): void 
     if (component === undefined)
       throw new InputError(`${name}.componentType = ${show(accessor.componentType)} is unknown`);
     if (components === undefined) throw new InputError(`${name}.type = ${show(accessor.type)} is unknown`);
-    if (whole(`${name}.count`, accessor.count) > maxCount)
-      throw new InputError(`${name}.count = ${accessor.count} is more than ${maxCount}`);
+    if (whole(`${name}.count`, accessor.count) > kMaxCount)
+      throw new InputError(`${name}.count = ${accessor.count} is more than ${kMaxCount}`);
     if (accessor.bufferView !== undefined)
       within(name, accessor.bufferView, accessor.byteOffset ?? 0, component * components, accessor.count);
     if (accessor.sparse) {

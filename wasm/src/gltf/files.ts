@@ -103,7 +103,7 @@ async function readStandardInput(limits: ReadLimits): Promise<Uint8Array> {
   return Buffer.concat(chunks);
 }
 
-const chunkBytes = 2 ** 20;
+const kChunkBytes = 2 ** 20;
 
 /** Reads until the end. The size that the system tells is no promise: that of a pipe is 0. */
 async function readAll(file: FileHandle, limits: ReadLimits): Promise<Uint8Array> {
@@ -116,7 +116,7 @@ async function readAll(file: FileHandle, limits: ReadLimits): Promise<Uint8Array
   let length = 0;
   for (;;) {
     if (length === bytes.length) {
-      const larger = Buffer.allocUnsafeSlow(2 * length + chunkBytes);
+      const larger = Buffer.allocUnsafeSlow(2 * length + kChunkBytes);
       larger.set(bytes);
       bytes = larger;
     }

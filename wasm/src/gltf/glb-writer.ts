@@ -13,9 +13,9 @@ import { sparseElements } from './primitive-group.js';
 import type { GltfFile } from './read.js';
 import { drop, eachAccessor, eachView, hasUnknownReferences, numbersOf } from './references.js';
 
-const arrayBuffer = 34962;
-const elementArrayBuffer = 34963;
-const clampToEdge = 33071;
+const kArrayBuffer = 34962;
+const kElementArrayBuffer = 34963;
+const kClampToEdge = 33071;
 /** The extensions by which textures have images that are neither PNG nor JPEG. */
 export const imageExtensions: Readonly<Record<string, string>> = {
   'image/webp': 'EXT_texture_webp',
@@ -167,7 +167,7 @@ export class GlbWriter {
    */
   #addData(values: AttributeArray, mode: 'ATTRIBUTES' | 'TRIANGLES' | 'INDICES', byteStride?: number): number {
     const bytes = bytesOf(values);
-    const target = mode === 'ATTRIBUTES' ? arrayBuffer : elementArrayBuffer;
+    const target = mode === 'ATTRIBUTES' ? kArrayBuffer : kElementArrayBuffer;
     const view = { target, ...(byteStride !== undefined && { byteStride }) };
     const name = this.#meshopt;
     const stride = byteStride ?? values.BYTES_PER_ELEMENT;
@@ -267,7 +267,9 @@ export class GlbWriter {
   addTexture({ bytes, mimeType, name }: Paint, isClamped = false): number {
     const { json } = this;
     const source = (json.images ??= []).push({ bufferView: this.addView(bytes), mimeType, name }) - 1;
-    const sampler = isClamped ? (json.samplers ??= []).push({ wrapS: clampToEdge, wrapT: clampToEdge }) - 1 : undefined;
+    const sampler = isClamped
+      ? (json.samplers ??= []).push({ wrapS: kClampToEdge, wrapT: kClampToEdge }) - 1
+      : undefined;
     const texture = { name, ...(sampler !== undefined && { sampler }) };
     const extension = imageExtensions[mimeType];
     if (extension === undefined) return (json.textures ??= []).push({ source, ...texture }) - 1;

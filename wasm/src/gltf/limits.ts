@@ -31,7 +31,7 @@ export const defaultLimits: Readonly<ReadLimits> = {
 };
 
 /** Data of up to this many bytes may be decoded from any file. */
-const freeBytes = 2 ** 25;
+const kFreeBytes = 2 ** 25;
 
 /** The error of a file that exceeds a limit. @param what  What exceeds it, with the number. */
 export function exceeds(what: string, limit: keyof ReadLimits, { [limit]: value }: ReadLimits): InputError {
@@ -66,7 +66,7 @@ export function checkLimits(json: GLTF.IGLTF, fileBytes: number, limits: ReadLim
   const shown = checkInstances(json, limits);
   checkImplied(json, limits);
   const decoded = shown + decodedBytes(json);
-  if (decoded > Math.max(freeBytes, limits.expansion * fileBytes)) {
+  if (decoded > Math.max(kFreeBytes, limits.expansion * fileBytes)) {
     throw exceeds(
       `decodes to ${decoded.toLocaleString('en')} bytes, ${Math.round(decoded / fileBytes).toLocaleString('en')} times its size`,
       'expansion',

@@ -25,12 +25,12 @@ export interface Piece {
 export const aliasesOf = (...names: (string | undefined)[]): string[] =>
   [...new Set(names.filter((name) => name !== undefined && name !== ''))] as string[];
 
-const triangles = 4;
-const triangleStrip = 5;
-const triangleFan = 6;
+const kTriangles = 4;
+const kTriangleStrip = 5;
+const kTriangleFan = 6;
 
 /** Whether a primitive of this mode consists of triangles: a list, a strip or a fan. */
-export const hasTriangles = (mode: number): boolean => mode >= triangles && mode <= triangleFan;
+export const hasTriangles = (mode: number): boolean => mode >= kTriangles && mode <= kTriangleFan;
 
 /**
  * Joins pieces into arrays in the scene's space, with a group for each. Vertices keep their order, transforms are applied in double
@@ -86,14 +86,14 @@ export function decodeTriangles(
   const bad = corners.findIndex((vertex) => vertex >= vertexCount);
   if (bad >= 0)
     throw new InputError(`${place}: indices[${bad}] = ${corners[bad]} is out of range (${vertexCount} vertices)`);
-  if (mode === triangles) {
+  if (mode === kTriangles) {
     if (corners.length % 3 !== 0) throw new InputError(`${place} has ${corners.length} corners, not 3 per triangle`);
     return corners;
   }
   const expanded = new Uint32Array(3 * Math.max(corners.length - 2, 0));
   for (let t = 0; t < expanded.length / 3; ++t) {
     // As the specification orders them: every other triangle of a strip turns; a fan goes round its first vertex.
-    const [a, b, c] = mode === triangleStrip ? [t, t + 1 + (t % 2), t + 2 - (t % 2)] : [t + 1, t + 2, 0];
+    const [a, b, c] = mode === kTriangleStrip ? [t, t + 1 + (t % 2), t + 2 - (t % 2)] : [t + 1, t + 2, 0];
     expanded.set([corners[a]!, corners[b]!, corners[c]!], 3 * t);
   }
   return expanded;

@@ -127,8 +127,8 @@ export function sparseElements(values: ArrayLike<number> & { BYTES_PER_ELEMENT: 
     }
   }
   const entry = bytes + (count < 65536 ? 2 : 4);
-  return found.length * entry + sparseJson < count * Math.ceil(bytes / 4) * 4 ? Uint32Array.from(found) : undefined;
+  return found.length * entry + kSparseJson < count * Math.ceil(bytes / 4) * 4 ? Uint32Array.from(found) : undefined;
 }
 
 /** The length of the JSON by which a sparse accessor differs from another, about. */
-const sparseJson = 200;
+const kSparseJson = 200;

@@ -45,11 +45,11 @@ export function eachView(json: GLTF.IGLTF, visit: Visit): void {
 }
 
 /** Extensions that refer to accessors and views as above, or not at all. */
-const known = /^(KHR_|VRM|EXT_(texture_|materials_|lights_|meshopt_compression|mesh_gpu_instancing))/;
+const kKnown = /^(KHR_|VRM|EXT_(texture_|materials_|lights_|meshopt_compression|mesh_gpu_instancing))/;
 
 /** Whether extensions may refer to accessors and views by keys that nobody knows here. */
 export const hasUnknownReferences = ({ extensionsUsed = [] }: GLTF.IGLTF): boolean =>
-  extensionsUsed.some((name) => !known.test(name));
+  extensionsUsed.some((name) => !kKnown.test(name));
 
 /** The numbers that are visited. */
 export function numbersOf(each: (json: GLTF.IGLTF, visit: Visit) => void, json: GLTF.IGLTF): Set<number> {

@@ -1,5 +1,5 @@
 /** Joints place a mesh equally if they differ by at most this share of its size. */
-const same = 1e-3;
+const kSame = 1e-3;
 
 /**
  * Returns the matrix by which a skeleton at rest places a skinned mesh in the scene. Files that are quantised, or whose rig has
@@ -30,10 +30,10 @@ export function skinMatrix<M extends ArrayLike<number>>(
   const isNear = (a: ArrayLike<number>, b: ArrayLike<number>): boolean =>
     [0, 1, 2].every((row) => {
       const off = (column: number) => Math.abs(a[4 * column + row]! - b[4 * column + row]!);
-      return (off(0) + off(1) + off(2)) * reach + off(3) <= same * scale * reach;
+      return (off(0) + off(1) + off(2)) * reach + off(3) <= kSame * scale * reach;
     });
   const isBound = others.every((other) => isNear(other, first));
-  const isAsLarge = Math.abs(scale - Math.cbrt(Math.abs(determinant(stored)))) < same * scale;
+  const isAsLarge = Math.abs(scale - Math.cbrt(Math.abs(determinant(stored)))) < kSame * scale;
   return isNear(first, stored) || (!isBound && isFloat && isAsLarge) ? stored : first;
 }
 

@@ -9,19 +9,19 @@ import type { ReadModel } from '../run.js';
 import type { UvBounds } from './cage-area.js';
 
 /** What stands for the number of a tile in the name of a texture. */
-const placeholder = '<UDIM>';
+const kPlaceholder = '<UDIM>';
 
 /** Whether a path names a texture for each tile. */
-export const isTiled = (path: string): boolean => path.includes(placeholder);
+export const isTiled = (path: string): boolean => path.includes(kPlaceholder);
 
 /** Why a texture and bounds of UVs exclude each other, if they do. */
 export const boundsFault = (texture: string | undefined, bounds: UvBounds | undefined): string | undefined =>
   texture !== undefined && isTiled(texture) && bounds
-    ? `bounds of UVs cannot be given with a texture of ${placeholder} tiles: each file covers its own tile`
+    ? `bounds of UVs cannot be given with a texture of ${kPlaceholder} tiles: each file covers its own tile`
     : undefined;
 
 /** The path of a tile's texture; with `*` for the tile, a pattern for all. */
-export const tilePath = (path: string, tile: number | '*'): string => path.replaceAll(placeholder, String(tile));
+export const tilePath = (path: string, tile: number | '*'): string => path.replaceAll(kPlaceholder, String(tile));
 
 /** The types of images that a GLB can have as a texture. */
 const types = ['image/png', 'image/jpeg', 'image/webp', 'image/ktx2'];
@@ -54,7 +54,7 @@ export async function readTiles(
 }
 
 /** How far a UV may be beyond the border of its tile, by rounding. */
-const slack = 1e-3;
+const kSlack = 1e-3;
 
 /** The tiles of UDIM that a cage's UVs are in, in order. @throws {InputError} for a triangle that is not in one of them. */
 function tilesOf({ file, extracted: { mesh, parts } }: ReadModel): number[] {
@@ -66,7 +66,7 @@ function tilesOf({ file, extracted: { mesh, parts } }: ReadModel): number[] {
     const centre = [0, 1].map((k) => (corners[0]![k]! + corners[1]![k]! + corners[2]![k]!) / 3) as [number, number];
     const [left, top] = [Math.floor(centre[0]), Math.floor(centre[1])];
     const isInside = corners.every(
-      ([u, v]) => u >= left - slack && u <= left + 1 + slack && v >= top - slack && v <= top + 1 + slack,
+      ([u, v]) => u >= left - kSlack && u <= left + 1 + kSlack && v >= top - kSlack && v <= top + 1 + kSlack,
     );
     if (isInside && left >= 0 && left < 10 && top <= 0) {
       tiles.add(tileAt(...centre));
