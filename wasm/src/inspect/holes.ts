@@ -5,11 +5,11 @@ import { partsOf, type Scene } from './scene.js';
 import { placeOfSegment, type Segment } from './segments.js';
 
 /** A hole is explained if the unpainted parts at it have at least this share of the area that it cuts off. */
-const leastExplained = 0.02;
+const kLeastExplained = 0.02;
 /** The area that a hole cuts off is reported from this share of the exposed area on. */
-const leastCut = 5e-4;
+const kLeastCut = 5e-4;
 /** A surface does not lie beneath a hole if its direction from the hole deviates from the normal by more than this sine. */
-const mostSideways = 0.7;
+const kMostSideways = 0.7;
 
 /** A hole in the cage, or a border where it ends. Lengths are shares of the target's diagonal, areas of the target's exposed area. */
 export interface Hole {
@@ -38,14 +38,14 @@ export function spanPoints({ surface, cage }: Scene): Float32Array {
   for (const { edges, centre } of surface.loops) {
     for (const { a, b } of edges) {
       const [p, q] = [pointAt(cage.positions, a), pointAt(cage.positions, b)];
-      for (const weight of spanWeights)
+      for (const weight of kSpanWeights)
         for (let k = 0; k < 3; ++k) points.push((weight * (p[k]! + q[k]!)) / 2 + (1 - weight) * centre[k]!);
     }
   }
   return Float32Array.from(points);
 }
 /** The weights of the edge in these points; the rest is the weight of the middle. Each stands for about half of the triangle. */
-const spanWeights = [0.4, 0.85];
+const kSpanWeights = [0.4, 0.85];
 
 /**
  * Finds the cage's holes, largest first, and what lies beneath them.
@@ -79,7 +79,7 @@ export function holesOf(
       const [p, q] = [pointAt(cage.positions, a), pointAt(cage.positions, b)];
       const normal = cross(minus(p, loop.centre), minus(q, loop.centre));
       const area = length(normal) / 2;
-      for (const weight of spanWeights) {
+      for (const weight of kSpanWeights) {
         total += area;
         if (reversed && isBeneath(reversed, point, at(p, q, loop.centre, weight), normal)) {
           const part = partOf[target.indices[3 * reversed.triangles[point]!]!]!;
@@ -111,13 +111,13 @@ const at = (p: Vector, q: Vector, centre: Vector, weight: number): Vector =>
 function isBeneath(reversed: Reverse, point: number, from: Vector, normal: Vector): boolean {
   const way = minus(reversed.nearest(point), from);
   const size = length(way) * length(normal);
-  return size === 0 || Math.abs(dot(way, normal)) >= Math.sqrt(1 - mostSideways ** 2) * size;
+  return size === 0 || Math.abs(dot(way, normal)) >= Math.sqrt(1 - kMostSideways ** 2) * size;
 }
 
 /** Holes that cut off paint although no unpainted part lies behind them. */
 export function checkHoles(holes: readonly Hole[], segments: readonly Segment[]): Finding[] {
   const unexplained = holes.filter(
-    ({ kind, cutOff, excluded }) => kind === 'hole' && cutOff >= leastCut && excluded < leastExplained * cutOff,
+    ({ kind, cutOff, excluded }) => kind === 'hole' && cutOff >= kLeastCut && excluded < kLeastExplained * cutOff,
   );
   if (unexplained.length === 0) return [];
   const cut = unexplained.reduce((sum, { cutOff }) => sum + cutOff, 0);

@@ -4,9 +4,9 @@ import type { Reverse } from './reverse.js';
 import type { Scene } from './scene.js';
 
 /** How deep in the target a vertex of the cage lies, as a share of the diagonal, before it counts as inside. */
-const depth = 0.0025;
+const kDepth = 0.0025;
 /** A cage is unfit if more than this share of its vertices, by area, is inside the target. */
-const mostInside = 0.15;
+const kMostInside = 0.15;
 
 /** The cage's vertices that lie inside the target. */
 export interface Inside {
@@ -39,7 +39,7 @@ export function insideOf({ surface, cage, diagonal }: Scene, reversed: Reverse |
   for (let v = 0; v < place.length; ++v) {
     if (place[v] !== v || areas[v] === 0 || loopOfVertex[v]! >= 0) continue;
     total += areas[v]!;
-    if (reversed.distances[v]! <= depth * diagonal) continue;
+    if (reversed.distances[v]! <= kDepth * diagonal) continue;
     const p = pointAt(positions, v);
     const [a, b, c] = reversed.corners(v);
     const normal = cross(minus(b, a), minus(c, a));
@@ -57,7 +57,7 @@ export function checkInside({ vertices, area }: Inside): Finding[] {
   return [
     {
       code: 'cageInsideTarget',
-      weight: area / mostInside,
+      weight: area / kMostInside,
       sentence: `${vertices} of the cage's vertices, ${percent(area)} by area, lie inside the target`,
       advice: 'Move them outwards until they lie above its surface.',
       numbers: { vertices, area },

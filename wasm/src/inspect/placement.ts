@@ -3,30 +3,30 @@ import { type Box, boxOf, cross, minus, pointAt, quantiles, type Vector } from '
 import { partsOf, type Scene } from './scene.js';
 
 /** How far outside the cage a vertex may lie, as a share of the diagonal, before it counts as poking through. */
-const pokeThrough = 0.0025;
+const kPokeThrough = 0.0025;
 /** A cage is unfit if more than this share of the exposed area pokes out of it. */
-const mostOutside = 0.1;
+const kMostOutside = 0.1;
 /** An uneven distance is reported if moving the cage by at least this share of the diagonal would even it out. */
-const unevenFrom = 0.02;
+const kUnevenFrom = 0.02;
 /** A cage is unfit if its median distance to the target exceeds this share of the diagonal. */
-const farCage = 0.15;
+const kFarCage = 0.15;
 /** A cage must lie over at least this share of the exposed area; a face is a hundredth of a body. */
-const leastBeneath = 0.002;
+const kLeastBeneath = 0.002;
 /**
  * A point that is farther outside than this share of the diagonal does not poke out, but belongs to another part of the target, if
  * the nearest triangle of the cage has some target close beneath it: the flank beside a sleeve, one leg beside the other.
  */
-const elsewhere = 0.02;
+const kElsewhere = 0.02;
 /** A triangle has target beneath it if that has at least this share of the triangle's own area. */
-const leastServed = 0.3;
+const kLeastServed = 0.3;
 /** At least this share of the cage must have target beneath it; otherwise the cage is misplaced. */
-const allServed = 0.95;
+const kAllServed = 0.95;
 /** How close the target must be beneath such a triangle, as a share of the diagonal. */
-const close = 0.04;
+const kClose = 0.04;
 /** A target that is so many times as large as what is painted of it has something in it that is not part of the model. */
-const tooLarge = 10;
+const kTooLarge = 10;
 /** A cage is unfit if the target is so many times as large. */
-const farTooLarge = 100;
+const kFarTooLarge = 100;
 
 /** How the target lies relative to the cage. Lengths are shares of the target's diagonal. */
 export interface Placement {
@@ -61,7 +61,7 @@ export function placementOf(scene: Scene): Placement {
       area += areas[v]!;
     }
     const over = sides.areUnder[v] === 1;
-    if (over && sides.signed[v]! <= 0 && sides.signed[v]! > -close * diagonal)
+    if (over && sides.signed[v]! <= 0 && sides.signed[v]! > -kClose * diagonal)
       within[result.triangles[v]!]! += areas[v]!;
     if (result.zones[v] === 1 || areas[v] === 0) continue;
     exposed += areas[v]!;
@@ -69,15 +69,15 @@ export function placementOf(scene: Scene): Placement {
     candidates.push(v);
   }
   const [there, needed] = [overNeighbours(scene, within), overNeighbours(scene, scene.surface.areas)];
-  const served = (t: number) => there[t]! >= leastServed * needed[t]!;
+  const served = (t: number) => there[t]! >= kLeastServed * needed[t]!;
   const servedShare =
     scene.surface.areas.reduce((sum, size, t) => sum + (served(t) ? size : 0), 0) / scene.surface.area;
   const beside = (v: number) =>
-    servedShare >= allServed && sides.signed[v]! > elsewhere * diagonal && served(result.triangles[v]!);
+    servedShare >= kAllServed && sides.signed[v]! > kElsewhere * diagonal && served(result.triangles[v]!);
   const judged = candidates.filter((v) => !beside(v));
   for (const v of judged) {
     beneath += areas[v]!;
-    if (sides.signed[v]! > pokeThrough * diagonal) exposedOutside += areas[v]!;
+    if (sides.signed[v]! > kPokeThrough * diagonal) exposedOutside += areas[v]!;
   }
   const { correction, remaining } = correct(scene, judged);
   const [p50 = 0, p90 = 0, p99 = 0, max = 0] = quantiles(result.distances, [0.5, 0.9, 0.99, 1]).map(
@@ -167,7 +167,7 @@ function correct(
     rowOf(v);
     let s = sides.signed[v]! / diagonal;
     for (let i = 0; i < 6; ++i) s -= x[i]! * row[i]!;
-    if (s > pokeThrough) remaining += areas[v]!;
+    if (s > kPokeThrough) remaining += areas[v]!;
   }
   const degrees = 180 / Math.PI;
   return {
@@ -205,7 +205,7 @@ function checkSize({ cage, target, diagonal, parts, result }: Scene): Finding[] 
   );
   const times = diagonal / painted.diagonal;
   const isCageFilled = painted.diagonal > boxOf(cage.positions, cage.indices).diagonal / 2;
-  if (!isCageFilled || !(times >= tooLarge)) return [];
+  if (!isCageFilled || !(times >= kTooLarge)) return [];
   const middle = centreOf(painted);
   const away = (v: number): number => Math.hypot(...minus(pointAt(target.positions, v), middle));
   const farthest = zones.reduce((far, _, v) => (away(v) > away(far) ? v : far), 0);
@@ -214,7 +214,7 @@ function checkSize({ cage, target, diagonal, parts, result }: Scene): Finding[] 
   return [
     {
       code: 'targetTooLarge',
-      weight: times / farTooLarge,
+      weight: times / kFarTooLarge,
       sentence: `The target is ${Math.round(times)} times as large as what is painted of it; "${part}" is farthest away`,
       advice:
         'Leave out what is around the model, such as a ground: lengths are measured by the size of the target, so what is small beside it is judged too coarsely.',
@@ -246,7 +246,7 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
   }
   const { outside, beneath } = placement;
   const findings = checkSize(scene);
-  if (beneath.share < leastBeneath && findings.length === 0) {
+  if (beneath.share < kLeastBeneath && findings.length === 0) {
     findings.push({
       code: 'cageElsewhere',
       weight: 50,
@@ -258,17 +258,17 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
   const share = outside.exposedArea;
   const cause = causeOf(placement);
   if (share > 0 || cause === 'cageMisplaced') {
-    const out = `${percent(share)} of the target's exposed area pokes out of the cage by more than ${percent(pokeThrough)} of the diagonal`;
+    const out = `${percent(share)} of the target's exposed area pokes out of the cage by more than ${percent(kPokeThrough)} of the diagonal`;
     const { sentence, advice } = describe(
       cause,
       placement,
       diagonal,
       share > 0 ? out : 'its distance to the target is uneven',
     );
-    const uneven = Math.hypot(...placement.correction.move) / (4 * unevenFrom);
+    const uneven = Math.hypot(...placement.correction.move) / (4 * kUnevenFrom);
     findings.push({
       code: cause,
-      weight: Math.max(share / mostOutside, cause === 'cageMisplaced' ? Math.min(0.9, uneven) : 0),
+      weight: Math.max(share / kMostOutside, cause === 'cageMisplaced' ? Math.min(0.9, uneven) : 0),
       sentence,
       advice,
       numbers: {
@@ -281,10 +281,10 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
       },
     });
   }
-  if (beneath.distance > farCage / 2) {
+  if (beneath.distance > kFarCage / 2) {
     findings.push({
       code: 'cageTooFar',
-      weight: beneath.distance / farCage,
+      weight: beneath.distance / kFarCage,
       sentence: `Half of the exposed vertices under the cage are more than ${percent(beneath.distance)} of the diagonal away from it; the cage is ${size.toPrecision(2)} times as large as the target`,
       advice:
         'Fit the cage more closely: the greater the distance, the more the texture is distorted. Check that both are in the same unit.',
@@ -299,11 +299,11 @@ type Cause = 'cageMisplaced' | 'cageTooSmall' | 'targetPokesOut';
 /** The reason why the target is outside: which correction would help most. */
 function causeOf({ outside, outsideOnceMoved, correction, room }: Placement): Cause {
   const share = outside.exposedArea;
-  if (share === 0 ? Math.hypot(...correction.move) >= unevenFrom : outsideOnceMoved < 0.5 * share)
+  if (share === 0 ? Math.hypot(...correction.move) >= kUnevenFrom : outsideOnceMoved < 0.5 * share)
     return 'cageMisplaced';
   if (correction.grow > 0 || room[0] + room[1] + room[2] < 0) return 'cageTooSmall';
   // The cage is large enough, yet much is outside: it is moved or rotated too far for an estimate.
-  return share > 2 * mostOutside ? 'cageMisplaced' : 'targetPokesOut';
+  return share > 2 * kMostOutside ? 'cageMisplaced' : 'targetPokesOut';
 }
 
 function describe(

@@ -3,13 +3,13 @@ import { counted, type Finding, type Place, percent } from './finding.js';
 import { partsOf, type Scene } from './scene.js';
 
 /** A segment is in doubt if its score is within this factor of 1. */
-const doubt = 1.25;
+const kDoubt = 1.25;
 /** Segments of a part are reported from this share of the exposed area on. */
-const leastArea = 0.001;
+const kLeastArea = 0.001;
 /** From this share of the exposed area on, culling is worth a remark. */
-const muchCulled = 0.3;
+const kMuchCulled = 0.3;
 /** At least this share of the exposed area under the cage must be paintable. */
-const leastCosmetic = 0.02;
+const kLeastCosmetic = 0.02;
 
 /** A connected component of the target. */
 export interface Segment {
@@ -84,7 +84,7 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
     if (result.zones[v] === 3) cut += areas[v]!;
   }
   const share = over > 0 ? cosmetic / over : 0;
-  if (share >= leastCosmetic) return [];
+  if (share >= kLeastCosmetic) return [];
   const only =
     cosmetic === 0 ? 'No part of the target' : `Only ${percent(share)} of the target's exposed area under the cage`;
   const largest = cut > 0.5 * over ? numbered.find(({ culled }) => culled) : undefined;
@@ -106,11 +106,11 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
 
 /** Parts with scores near 1, reported separately for painted and culled segments. */
 function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
-  const doubtful = numbered.filter(({ score }) => score !== null && score > 1 / doubt && score < doubt);
+  const doubtful = numbered.filter(({ score }) => score !== null && score > 1 / kDoubt && score < kDoubt);
   return grouped(doubtful, ({ group, part, culled }) => `${group} ${culled} ${part}`).flatMap((alike): Finding[] => {
     const [largest] = alike;
     const area = alike.reduce((sum, { exposedArea }) => sum + exposedArea, 0) / exposed;
-    if (area < leastArea) return [];
+    if (area < kLeastArea) return [];
     const { part, culled } = largest;
     const one = alike.length === 1 ? `"${part}"` : `${alike.length} segments of "${part}"`;
     const is = alike.length === 1 ? 'is' : 'are';
@@ -130,7 +130,7 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
 
 /** Segments of the same shape, of which only some are painted. */
 function checkTwins({ result }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
-  const seen = numbered.filter(({ exposedArea }) => exposedArea >= leastArea * exposed);
+  const seen = numbered.filter(({ exposedArea }) => exposedArea >= kLeastArea * exposed);
   return grouped(seen, ({ s }) => result.segmentStats[s]!.twinOf).flatMap((twins): Finding[] => {
     const culled = twins.filter((twin) => twin.culled);
     if (culled.length === 0 || culled.length === twins.length) return [];
@@ -154,7 +154,7 @@ function checkTwins({ result }: Scene, numbered: readonly Numbered[], exposed: n
 function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] {
   const all = numbered.filter(({ culled, exposedArea }) => culled && exposedArea > 0);
   const share = all.reduce((sum, { exposedArea }) => sum + exposedArea, 0) / exposed;
-  if (share <= muchCulled) return [];
+  if (share <= kMuchCulled) return [];
   const largest = all[0]!;
   return [
     {
@@ -164,7 +164,7 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
       advice: `If some of it should be painted, override this (${option(largest)}), or close the holes of the cage over it.`,
       numbers: { share },
       places: all
-        .filter(({ exposedArea }) => exposedArea >= leastArea * exposed)
+        .filter(({ exposedArea }) => exposedArea >= kLeastArea * exposed)
         .map((segment) => placeOfSegment(segment.s, segment)),
       locks: locksFor([largest]),
     },

@@ -4,13 +4,13 @@ import type { Scene } from './scene.js';
 import type { Surface } from './surface.js';
 
 /** Open edges closer together than this share of the diagonal are a crack: their vertices should be merged. */
-const crackWidth = 1e-4;
+const kCrackWidth = 1e-4;
 /** A hole is a slit if its area is less than this share of its perimeter squared (a circle has 0.08), */
-const narrow = 0.002;
+const kNarrow = 0.002;
 /** or if its box has a diagonal of less than this share of the target's. */
-const tiny = 0.004;
+const kTiny = 0.004;
 /** Finer loops are looked at for cracks one by one; beyond this many open edges it would take too long. */
-const mostCompared = 20000;
+const kMostCompared = 20000;
 
 /** What is wrong with a cage as a surface. */
 export interface Topology {
@@ -37,14 +37,14 @@ export function topologyOf({ surface, diagonal }: Scene): Topology {
     degenerateTriangles,
     doubledTriangles,
     nonManifoldEdges,
-    crackEdges: cracksIn(surface, crackWidth * diagonal),
-    slits: slitsIn(surface, tiny * diagonal),
+    crackEdges: cracksIn(surface, kCrackWidth * diagonal),
+    slits: slitsIn(surface, kTiny * diagonal),
     pieces: piecesOf(surface),
   };
 }
 
 function slitsIn({ loops }: Surface, least: number): number {
-  return loops.filter(({ diagonal, area, perimeter }) => diagonal < least || area < narrow * perimeter ** 2).length;
+  return loops.filter(({ diagonal, area, perimeter }) => diagonal < least || area < kNarrow * perimeter ** 2).length;
 }
 
 function piecesOf({ areas, doubled, edges }: Surface): number {
@@ -59,7 +59,7 @@ function cracksIn({ mesh, edges }: Surface, width: number): number {
   const ends = [...new Set(open.flatMap(({ a, b }) => [a, b]))].sort(
     (v, w) => mesh.positions[3 * v]! - mesh.positions[3 * w]!,
   );
-  if (open.length > mostCompared) return 0;
+  if (open.length > kMostCompared) return 0;
   // Each end gets the first of those beside it, swept along x.
   const twin = new Map<number, number>();
   ends.forEach((v, i) => {
@@ -114,7 +114,7 @@ export function checkTopology(
   }
   if (crackEdges > 0 || slits > 0) {
     const share = crackEdges / surface.edges.length;
-    const edges = `${counted(crackEdges, 'open edge')} ${crackEdges === 1 ? 'runs' : 'run'} along another one, less than ${percent(crackWidth)} of the diagonal away`;
+    const edges = `${counted(crackEdges, 'open edge')} ${crackEdges === 1 ? 'runs' : 'run'} along another one, less than ${percent(kCrackWidth)} of the diagonal away`;
     findings.push({
       code: 'cracks',
       weight: Math.min(0.9, 0.1 + 4 * share),

@@ -3,13 +3,13 @@ import { UnionFind } from './geometry.js';
 import type { Scene } from './scene.js';
 
 /** Samples along each side of the texture by which overlaps are found. */
-const samples = 1024;
+const kSamples = 1024;
 /** A UV triangle smaller than this, in units of the texture's area, shows nothing of it: a hundredth of a pixel of 4096². */
-const leastArea = 6e-10;
+const kLeastArea = 6e-10;
 /** A cage is unfit if more than this share of its area has no UV area. */
-const mostWithoutArea = 0.2;
+const kMostWithoutArea = 0.2;
 /** Overlaps weigh half at this share of the used area; a mirrored layout uses all of it twice. */
-const mostOverlap = 0.05;
+const kMostOverlap = 0.05;
 
 /** The properties of a cage's UVs. */
 export interface UvLayout {
@@ -42,7 +42,7 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
     const area =
       Math.abs((uvs[b]! - uvs[a]!) * (uvs[c + 1]! - uvs[a + 1]!) - (uvs[c]! - uvs[a]!) * (uvs[b + 1]! - uvs[a + 1]!)) /
       2;
-    if (area >= leastArea) continue;
+    if (area >= kLeastArea) continue;
     ++flat;
     flatArea += surface.areas[t]!;
   }
@@ -92,7 +92,7 @@ function coverageOf(
   indices: ArrayLike<number>,
   areas: Float64Array,
 ): { used: number; share: number; layers: number } {
-  const counts = new Uint16Array(samples * samples);
+  const counts = new Uint16Array(kSamples * kSamples);
   // UVs in pixels, or far outside for another reason, would take too long: then the whole layout is scaled to the grid.
   let [low, high] = [Infinity, -Infinity];
   for (const value of uvs) {
@@ -100,7 +100,7 @@ function coverageOf(
     if (value > high) high = value;
   }
   const vast = low < -8 || high > 9;
-  const scale = vast ? (samples - 1) / (high - low) : samples;
+  const scale = vast ? (kSamples - 1) / (high - low) : kSamples;
   const place = (value: number) => (vast ? value - low : value) * scale - 0.5;
   for (let t = 0; t < areas.length; ++t) {
     if (areas[t] === 0) continue;
@@ -112,7 +112,7 @@ function coverageOf(
       y.push(place(uvs[v + 1]!));
     }
     fill(x, y, (column, row) => {
-      const at = (((row % samples) + samples) % samples) * samples + (((column % samples) + samples) % samples);
+      const at = (((row % kSamples) + kSamples) % kSamples) * kSamples + (((column % kSamples) + kSamples) % kSamples);
       if (counts[at]! < 65535) ++counts[at]!;
     });
   }
@@ -154,7 +154,7 @@ export function checkUvs(
   if (withoutArea.triangles > 0) {
     findings.push({
       code: 'uvsWithoutArea',
-      weight: withoutArea.share / mostWithoutArea,
+      weight: withoutArea.share / kMostWithoutArea,
       sentence: `${percent(withoutArea.share)} of the cage's area (${counted(withoutArea.triangles, 'triangle')}) has UVs without area, so a single point of the texture is smeared over it`,
       advice: 'Unwrap these triangles.',
       numbers: { share: withoutArea.share, triangles: withoutArea.triangles },
@@ -175,7 +175,7 @@ export function checkUvs(
   if (overlap.share > 1e-4) {
     findings.push({
       code: 'uvsOverlap',
-      weight: overlap.layers > 4 && overlap.share > 0.5 ? 1.2 : Math.min(0.9, (0.5 * overlap.share) / mostOverlap),
+      weight: overlap.layers > 4 && overlap.share > 0.5 ? 1.2 : Math.min(0.9, (0.5 * overlap.share) / kMostOverlap),
       sentence: `${percent(overlap.share)} of the used area of the texture belongs to more than one triangle of the cage, at most to ${overlap.layers}`,
       advice: 'This is fine if both sides should look alike (a mirrored layout); otherwise unwrap without overlaps.',
       numbers: { share: overlap.share, layers: overlap.layers },
