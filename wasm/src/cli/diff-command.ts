@@ -8,7 +8,7 @@ import { type InspectionReport, verdicts } from './inspect-command.js';
 import { type Found, oneLine } from './print.js';
 import { cut, integer, percent, short, table } from './table.js';
 import type { Report } from './transfer/report.js';
-import type { PerZone } from './zones.js';
+import { type PerZone, zoneNames } from './zones.js';
 
 /** The arguments of `cagecast diff`. */
 interface DiffCommand {
@@ -32,7 +32,6 @@ type AnyReport = Pick<Report, 'target' | 'segments'> &
   Partial<Omit<Report, 'target' | 'segments'>> &
   Partial<Omit<InspectionReport, 'target' | 'segments' | 'cage' | 'options' | 'versions' | 'counts'>>;
 
-const zoneNames = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
 /** Two kinds of reports may round a sum differently. */
 const kRounding = 1e-9;
 

@@ -9,7 +9,7 @@ import { oneLine } from './print.js';
 import type { Progress } from './progress.js';
 import { type Run, runTransfer, type Sources } from './run.js';
 import { cut, fateText, integer, percent, scoreText, short, table } from './table.js';
-import { type PerZone, perZone } from './zones.js';
+import { type PerZone, perZone, zoneNames } from './zones.js';
 
 /** The arguments of `cagecast inspect`. */
 interface InspectCommand extends Sources {
@@ -124,7 +124,6 @@ function segmentTable(listed: (InspectionReport['segments'][number] & { s: numbe
 function describe(report: InspectionReport, html: string | undefined): string {
   const { target, cage, counts, coverage, placement, inside, inward, topology, uv, holes, segments } = report;
   const { outside, distances } = placement;
-  const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
   const listed = segments
     .map((segment, s) => ({ ...segment, s }))
     .sort((a, b) => b.exposedArea - a.exposedArea || a.s - b.s)
@@ -135,7 +134,10 @@ function describe(report: InspectionReport, html: string | undefined): string {
     `cage    ${cage.file}: ${integer(cage.vertices)} vertices, ${integer(cage.triangles)} triangles`,
     '',
     'zones',
-    table([['', 'vertices', 'area'], ...zones.map((zone) => [zone, integer(counts[zone]), percent(coverage[zone])])]),
+    table([
+      ['', 'vertices', 'area'],
+      ...zoneNames.map((zone) => [zone, integer(counts[zone]), percent(coverage[zone])]),
+    ]),
     '',
     'fit (lengths as shares of the diagonal)',
     `  outside the cage: ${percent(outside.vertices)} of the vertices, ${percent(outside.area)} of the area; ${percent(outside.exposedArea)} of the exposed area by more than 0.25 %`,

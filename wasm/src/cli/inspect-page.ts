@@ -7,6 +7,7 @@ import type { InspectionReport } from './inspect-command.js';
 import { Picture, type Rgb, type View } from './raster.js';
 import type { Run } from './run.js';
 import { fateText, integer, percent, scoreText, short } from './table.js';
+import { zoneNames } from './zones.js';
 
 /** Pixels along each side of a picture. */
 const kSize = 420;
@@ -65,7 +66,7 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
 <p>${integer(report.target.triangles)} triangles under a cage of ${integer(report.cage.triangles)}; preset ${text(options.preset)}, threshold ${options.threshold}. Cagecast ${text(report.versions.cagecast)}.</p>
 ${findings.length > 0 ? `<ol>${findings.map(({ weight, sentence, advice }) => `<li><i class="${mark(weight)}"></i>${text(sentence)}.<small>${text(advice)}</small></li>`).join('')}</ol>` : '<p>No problems found.</p>'}
 <h2>Zones</h2>
-<p>${(['cosmetic', 'occluded', 'uncovered', 'culled'] as const).map((zone, z) => `<span class="key" style="background:rgb(${kZoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>
+<p>${zoneNames.map((zone, z) => `<span class="key" style="background:rgb(${kZoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>
 <div class="row">${views.map(({ name, view }) => figure(name, drawZones(scene, view))).join('')}</div>
 <h2>Fit</h2>
 <p><span class="key" style="background:rgb(${kOutsideColor.join()})"></span>outside the cage: ${percent(placement.outside.exposedArea)} of the exposed area<span class="key" style="background:rgb(${shade(0).join()})"></span>at the cage<span class="key" style="background:rgb(${shade(kFarthest).join()})"></span>${percent(kFarthest)} of the diagonal beneath. Median ${percent(placement.distances.p50)}, 99 % within ${percent(placement.distances.p99)}. Lines: edges of the cage, open edges dark.</p>

@@ -6,7 +6,8 @@ export interface PerZone {
   culled: number;
 }
 
-const zoneNames = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
+/** In the order of their numbers. */
+export const zoneNames = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
 
 /** Adds up a weight per vertex (1 by default) for each zone, over a range of vertices. */
 export function perZone(zones: Uint8Array, weights?: Float64Array, first = 0, end = zones.length): PerZone {

@@ -8,7 +8,7 @@ import { configLine, type EffectiveOptions, effectiveOptions } from '../options.
 import { type Stretch, stretchOf } from '../paint/stretch.js';
 import type { Run } from '../run.js';
 import { integer, percent, table, takenAway } from '../table.js';
-import { type PerZone, perZone } from '../zones.js';
+import { type PerZone, perZone, zoneNames } from '../zones.js';
 import type { Region, RegionRun, TransferCommand } from './command.js';
 
 /** The JSON report of a transfer. Areas are in squared units of the target; lengths in its units. */
@@ -194,10 +194,9 @@ export function summary(
   command: TransferCommand,
   { target, counts, areas, triangles, cut, segments, parts, replacedOverlays, regions, timings, output }: Report,
 ): string {
-  const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
   const rows = [
     ['', 'vertices', 'area'],
-    ...zones.map((zone) => [zone, integer(counts[zone]), percent(areas.total > 0 ? areas[zone] / areas.total : 0)]),
+    ...zoneNames.map((zone) => [zone, integer(counts[zone]), percent(areas.total > 0 ? areas[zone] / areas.total : 0)]),
   ];
   const sets = [...new Set(parts.map((part) => part.uvSet))].join(', ');
   const splits = parts.reduce((sum, { splitVertices }) => sum + (splitVertices ?? 0), 0);
