@@ -8,7 +8,7 @@ import { boundsAround, type UvBounds, withinBounds } from './paint/cage-area.js'
 import { oneLine } from './print.js';
 import type { Progress } from './progress.js';
 import { type Run, runTransfer, type Sources } from './run.js';
-import { cut, fateText, integer, percent, scoreText, short, table } from './table.js';
+import { cut, integer, percent, segmentCells, segmentColumns, short, table } from './table.js';
 import { type PerZone, perZone, zoneNames } from './zones.js';
 
 /** The arguments of `cagecast inspect`. */
@@ -107,17 +107,8 @@ export function conclusionOf({ verdict, findings }: Inspection): string[] {
 
 function segmentTable(listed: (InspectionReport['segments'][number] & { s: number })[]): string {
   return table([
-    ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
-    ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage, score, culledBy }) => [
-      cut(part, 40),
-      String(s),
-      integer(points),
-      short(exposedArea),
-      short(coveredArea),
-      coverage.toFixed(3),
-      scoreText(score),
-      fateText(culledBy),
-    ]),
+    ['part', 'segment', ...segmentColumns],
+    ...listed.map((segment) => [cut(segment.part, 40), String(segment.s), ...segmentCells(segment)]),
   ]);
 }
 

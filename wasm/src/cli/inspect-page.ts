@@ -6,7 +6,7 @@ import { type Scene, sceneOf } from '../inspect/scene.js';
 import type { InspectionReport } from './inspect-command.js';
 import { Picture, type Rgb, type View } from './raster.js';
 import type { Run } from './run.js';
-import { fateText, integer, percent, scoreText, short } from './table.js';
+import { integer, percent, segmentCells, segmentColumns } from './table.js';
 import { zoneNames } from './zones.js';
 
 /** Pixels along each side of a picture. */
@@ -90,19 +90,11 @@ ${
 }
 <h2>Segments</h2>
 ${rows(
-  ['part', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
+  ['part', ...segmentColumns],
   [...segments]
     .sort((a, b) => b.exposedArea - a.exposedArea)
     .slice(0, kMostSegments)
-    .map(({ part, points, exposedArea, coveredArea, coverage, score, culledBy }) => [
-      part,
-      integer(points),
-      short(exposedArea),
-      short(coveredArea),
-      coverage.toFixed(3),
-      scoreText(score),
-      fateText(culledBy),
-    ]),
+    .map((segment) => [segment.part, ...segmentCells(segment)]),
 )}
 </html>
 `;

@@ -1,5 +1,4 @@
-import type { SegmentStats } from '../index.js';
-
+import type { Segment } from '../inspect/index.js';
 import { oneLine } from './print.js';
 
 export { percent } from '../inspect/finding.js';
@@ -44,12 +43,25 @@ export function cut(name: string, length: number): string {
 export const listed = (names: readonly string[], most: number, hint = ''): string =>
   `${names.slice(0, most).join(', ')}${names.length > most ? `, and ${names.length - most} more${hint}` : ''}`;
 
+/** The columns of a table of segments, after those that name it. */
+export const segmentColumns = ['points', 'exposed E', 'covered C', 'F = C/E', 'score', ''];
+
+/** A segment in these columns. */
+export const segmentCells = ({ points, exposedArea, coveredArea, coverage, score, culledBy }: Segment): string[] => [
+  integer(points),
+  short(exposedArea),
+  short(coveredArea),
+  coverage.toFixed(3),
+  scoreText(score),
+  fateText(culledBy),
+];
+
 /** A segment's score: "0.93", "12", "∞" if it needs no area. */
-export function scoreText(score: number | null): string {
+function scoreText(score: number | null): string {
   return score === null ? '∞' : Number(score.toPrecision(2)).toString();
 }
 
 /** Why a segment is not painted, if it is not. */
-export function fateText(culledBy: SegmentStats['culledBy']): string {
+function fateText(culledBy: Segment['culledBy']): string {
   return { none: '', coverage: 'culled', hole: 'culled (hole)', lock: 'culled (lock)' }[culledBy];
 }
