@@ -236,6 +236,13 @@ TEST_CASE("every code has a name of its own", "[errors]") {
     for (std::size_t j = 0; j < i; ++j) CHECK(names[i] != names[j]);
 }
 
+TEST_CASE("arguments are named as in the sentences", "[errors]") {
+  CHECK(argumentName(Argument::none) == std::string());
+  CHECK(argumentName(Argument::cage) == std::string("cage"));
+  CHECK(argumentName(Argument::target) == std::string("target"));
+  CHECK(argumentName(Argument::options) == std::string("options"));
+}
+
 TEST_CASE("a weld tolerance that nearly all vertices lie within is an error that says what to do", "[errors]") {
   Case call;
   call.options.weldTolerance = 0.01f;

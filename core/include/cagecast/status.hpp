@@ -30,6 +30,9 @@ struct [[nodiscard]] Status {
 /// The name of a code as it is spelled in codes.def ("indexOutOfRange"): stable, for programs.
 const char* codeName(Code code) noexcept;
 
+/// The name of an argument: "cage", "target", "options"; empty if there is none.
+const char* argumentName(Argument argument) noexcept;
+
 /// The name of an option as users write it after `options.`: "threshold", "steps.floor", "locks.groups".
 const char* optionName(Option option) noexcept;
 

@@ -118,6 +118,15 @@ const char* codeName(Code code) noexcept {
   return i < std::size(kCodeNames) ? kCodeNames[i] : "unknown";
 }
 
+const char* argumentName(Argument argument) noexcept {
+  switch (argument) {
+    case Argument::cage: return "cage";
+    case Argument::target: return "target";
+    case Argument::options: return "options";
+    default: return "";
+  }
+}
+
 std::string describe(const Status& status, const MeshView& cage, const MeshView& target) {
   if (status.code == Code::badOption) return describeOption(status);
   const MeshView& mesh = status.argument == Argument::cage ? cage : target;
