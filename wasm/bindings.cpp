@@ -46,15 +46,16 @@ TransferOptions presetOptions(Preset preset) {
 
 /// How a call ended, for JavaScript.
 struct Ending {
-  std::string code;     ///< `codeName`; "ok" if all went well.
-  std::string message;  ///< `describe`; empty if all went well.
+  std::string code;      ///< `codeName`; "ok" if all went well.
+  std::string message;   ///< `describe`; empty if all went well.
+  std::string argument;  ///< `argumentName`.
   std::uint32_t at = 0;
 };
 
 val ending(const Status& status, const Meshes& meshes = {}) {
   val out = val::object();
-  out.set("status", Ending{codeName(status.code),
-                           status.ok() ? "" : describe(status, meshes.cage.view(), meshes.target.view()), status.at});
+  const std::string message = status.ok() ? "" : describe(status, meshes.cage.view(), meshes.target.view());
+  out.set("status", Ending{codeName(status.code), message, argumentName(status.argument), status.at});
   return out;
 }
 
@@ -228,6 +229,7 @@ EMSCRIPTEN_BINDINGS(cagecast) {
   value_object<Ending>("Status")
       .field("code", &Ending::code)
       .field("message", &Ending::message)
+      .field("argument", &Ending::argument)
       .field("at", &Ending::at);
   value_object<SegmentStats>("SegmentStats")
       .field("points", &SegmentStats::points)

@@ -40,6 +40,9 @@ async function failure(call: () => Promise<unknown>): Promise<CagecastError> {
     await call();
   } catch (error) {
     assert.ok(error instanceof CagecastError, String(error));
+    // The sentence begins with the argument at fault, if there is one.
+    const named = /^(model|template|landmarks|options|cage)\b/.exec(error.reason);
+    if (named) assert.equal(error.argument, named[0], error.message);
     return error;
   }
   assert.fail('it did not fail');
@@ -379,6 +382,7 @@ describe('fitCage', () => {
       [[template, model, {}, { triangles: 5 }], 'badOption', /options\.triangles is unknown; there are: exclude$/],
       [[{ ...template, indices: new Uint32Array(0) }, model], 'badTemplate', /template/],
       [[template, { ...model, indices: new Uint32Array(0) }], 'badModel', /model has no triangles/],
+      [[template, model, { antler: [0, 0, 0] }], 'badLandmarks', /^fitCage: landmarks: antler is .* outside the box/],
     ] satisfies [unknown[], Code, RegExp][]) {
       const error = await failure(() => untyped(...args));
       assert.equal(error.code, code, error.message);
@@ -402,6 +406,8 @@ describe('refineCage', () => {
       cage.positions.reduce((sum, x, i) => sum + Math.abs(x - made.positions[i]!), 0) / made.positions.length;
     assert.ok(distance(back) < 0.5 * distance(off), `${distance(back)} of ${distance(off)}`);
     assert.equal((await failure(() => refineCage({ ...off, uvs: undefined }, model))).code, 'missingUvs');
+    const far = await failure(() => refineCage({ ...off, positions: made.positions.map((x) => x + 9) }, model));
+    assert.deepEqual([far.code, far.argument], ['badTemplate', 'cage'], far.message);
     assert.equal((await failure(() => refineCage(off, model, { reach: -1 }))).code, 'badOption');
   });
 });

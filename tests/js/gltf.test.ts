@@ -360,7 +360,7 @@ describe('document.transform(cagecast(…))', () => {
       /^cagecast: maskImages is .*, not \{ never, always \}/,
     );
     const refused = () => {
-      throw new CagecastError('badArgument', 'not for this model');
+      throw new CagecastError('badArgument', '', 'not for this model');
     };
     await fails(async () => ({ onResult: refused }), 'badArgument', /^not for this model$/);
   });

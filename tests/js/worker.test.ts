@@ -156,20 +156,22 @@ describe('the worker', () => {
     assert.ok((await transfer(scene.cage, scene.target)).zones.length > 0);
   });
 
-  test('errors keep their class, code and message', async () => {
+  test('errors keep their class, code, argument and message', async () => {
     const error = await failure(transfer(scene.cage, { ...scene.target, indices: new Uint32Array([0, 1, 99999]) }));
     assert.ok(error instanceof CagecastError);
     assert.equal(error.code, 'indexOutOfRange');
     assert.equal(error.at, 2);
+    assert.equal(error.argument, 'target');
     assert.match(error.message, /^transfer: target\.indices\[2\] = 99999 is out of range/);
+    assert.equal(error.message, `transfer: ${error.reason}`);
+    const cage = { positions: scene.cage.positions, indices: scene.cage.indices };
+    assert.equal(((await failure(transfer(cage, scene.target))) as CagecastError).argument, 'cage');
     const unsendable = await failure(
       transfer(scene.cage, { ...scene.target, extra: () => 0 } as unknown as typeof scene.target),
     );
     assert.ok(unsendable instanceof CagecastError && unsendable.code === 'badArgument');
-    assert.equal(
-      ((await failure(transfer(scene.cage, scene.target, { threshold: 2 }))) as CagecastError).code,
-      'badOption',
-    );
+    const high = (await failure(transfer(scene.cage, scene.target, { threshold: 2 }))) as CagecastError;
+    assert.deepEqual([high.code, high.argument], ['badOption', 'options']);
     const untyped = transfer as (...args: unknown[]) => Promise<unknown>;
     for (const [options, says] of [
       [{ signal: {} }, /^transfer: options\.signal is of type Object, not an AbortSignal/],

@@ -22,6 +22,6 @@ export type { Reuse } from './api/reuse.js';
 export { type SplitVertices, splitVertices } from './api/split-vertices.js';
 export { project, transfer } from './api/transfer.js';
 export { init } from './core/engine.js';
-export { CagecastError, type Code } from './core/error.js';
+export { CagecastError, type Code, type ErrorDetails } from './core/error.js';
 export type { HoleShare, SegmentStats, Timings } from './core/records.js';
 export { Zone } from './generated/zone.js';

@@ -29,7 +29,10 @@ export function classify(projection: Projection, options?: ClassifyOptions & Reu
 }
 
 const wrong = (text: string, at = 0) =>
-  new CagecastError('badArgument', `classify: projection${text}; pass what project() returned`, at);
+  new CagecastError('badArgument', 'classify', `projection${text}; pass what project() returned`, {
+    argument: 'projection',
+    at,
+  });
 
 /**
  * Checks that `projection` is complete and consistent, because it is plain data that may have been stored or sent. (The core checks

@@ -72,7 +72,9 @@ export function cutBorders(
 /** Checks that a result is complete and belongs to this target, and names the entry at fault, which the core cannot. */
 function checkResult(result: unknown, { positions }: CheckedMesh): CoreDecision {
   const wrong = (text: string) =>
-    new CagecastError('badArgument', `cutBorders: result${text}; pass what transfer() returned`);
+    new CagecastError('badArgument', 'cutBorders', `result${text}; pass what transfer() returned`, {
+      argument: 'result',
+    });
   if (typeof result !== 'object' || result === null) throw wrong(` is ${show(result)}`);
   const given = result as Partial<TransferResult>;
   const zones = plainArray(given.zones, 'Uint8Array');
@@ -81,7 +83,8 @@ function checkResult(result: unknown, { positions }: CheckedMesh): CoreDecision 
   if (!segments) throw wrong(`.segments is ${showArray(given.segments, 'Uint32Array')}, not a Uint32Array`);
   const { segmentStats } = given;
   if (!Array.isArray(segmentStats)) throw wrong(`.segmentStats is ${show(segmentStats)}, not an array`);
-  const mismatch = (text: string, at: number) => new CagecastError('resultMismatch', `cutBorders: result.${text}`, at);
+  const mismatch = (text: string, at: number) =>
+    new CagecastError('resultMismatch', 'cutBorders', `result.${text}`, { argument: 'result', at });
   for (const [name, { length }] of Object.entries({ zones, segments })) {
     if (length !== Math.floor(positions.length / 3))
       throw mismatch(

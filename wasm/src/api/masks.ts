@@ -24,7 +24,7 @@ export interface Masks {
  */
 export function checkMasks(fn: string, masks: unknown): Masks | undefined {
   if (masks === undefined) return undefined;
-  const wrong = (text: string, at = 0) => new CagecastError('badOption', `${fn}: options.masks${text}`, at);
+  const wrong = (text: string, at = 0) => new CagecastError('badOption', fn, `options.masks${text}`, { at });
   if (!isRecord(masks)) throw wrong(` is ${show(masks)}, not an object`);
   const out: Masks = {};
   for (const [field, value] of Object.entries(masks)) {
@@ -50,8 +50,9 @@ export function checkMaskLengths(fn: string, masks: Masks | undefined, vertices:
     if (found !== undefined && found !== Math.floor(length))
       throw new CagecastError(
         'badOption',
-        `${fn}: options.masks.${field} has ${found} entries, not 1 for each of ${count(length, one)} of target`,
-        found,
+        fn,
+        `options.masks.${field} has ${found} entries, not 1 for each of ${count(length, one)} of target`,
+        { at: found },
       );
   }
 }

@@ -22,8 +22,14 @@ const noGroups = new Uint32Array(0);
  * @throws {CagecastError} `badArgument`
  */
 export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'template', mesh: unknown): CheckedMesh {
+  const details = { argument: name };
   if (typeof mesh !== 'object' || mesh === null) {
-    throw new CagecastError('badArgument', `${fn}: ${name} is ${show(mesh)}, not a mesh { positions, indices, … }`);
+    throw new CagecastError(
+      'badArgument',
+      fn,
+      `${name} is ${show(mesh)}, not a mesh { positions, indices, … }`,
+      details,
+    );
   }
   const given = mesh as Partial<Mesh>;
   const arrayOf = <Kind extends ArrayKind>(field: keyof Mesh, type: string, ...kinds: Kind[]) => {
@@ -31,7 +37,12 @@ export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'templ
     const array = plainArray(value, ...kinds);
     if (array) return array;
     if ((field === 'uvs' || field === 'groups') && (value === undefined || value === null)) return undefined;
-    throw new CagecastError('badArgument', `${fn}: ${name}.${field} is ${showArray(value, ...kinds)}, not a ${type}`);
+    throw new CagecastError(
+      'badArgument',
+      fn,
+      `${name}.${field} is ${showArray(value, ...kinds)}, not a ${type}`,
+      details,
+    );
   };
   const positions = arrayOf('positions', 'Float32Array', 'Float32Array')!;
   const indices = arrayOf(
@@ -47,7 +58,9 @@ export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'templ
   if (groups?.length === 0 && positions.length > 0) {
     throw new CagecastError(
       'groupCountMismatch',
-      `${fn}: ${name}.groups has 0 entries, not 1 for each of ${count(positions.length / 3, 'vertex')}`,
+      fn,
+      `${name}.groups has 0 entries, not 1 for each of ${count(positions.length / 3, 'vertex')}`,
+      details,
     );
   }
   return { positions, indices, uvs: uvs ?? noUvs, groups: groups ?? noGroups };

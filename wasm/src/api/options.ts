@@ -127,7 +127,8 @@ function presetOf(fn: string, name: string, preset: unknown): CoreOptions {
   if (!presets.includes(preset as Preset))
     throw new CagecastError(
       'badOption',
-      `${fn}: ${name} = ${show(preset)} is unknown; there are: ${presets.map(show).join(', ')}`,
+      fn,
+      `${name} = ${show(preset)} is unknown; there are: ${presets.map(show).join(', ')}`,
     );
   return useCore(fn, ({ module }) => module.presetOptions(module['Preset']![preset as Preset]!));
 }
@@ -155,18 +156,15 @@ export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'de
 }
 
 function checkNames(fn: string, where: string, given: unknown = {}, known: readonly string[]): Record<string, unknown> {
-  if (!isRecord(given)) throw new CagecastError('badOption', `${fn}: ${where} is ${show(given)}, not an object`);
+  if (!isRecord(given)) throw new CagecastError('badOption', fn, `${where} is ${show(given)}, not an object`);
   const unknown = Object.keys(given).find((name) => !known.includes(name));
   if (unknown !== undefined)
-    throw new CagecastError(
-      'badOption',
-      `${fn}: ${where}.${unknown} is not an option; ${fn} takes: ${known.join(', ')}`,
-    );
+    throw new CagecastError('badOption', fn, `${where}.${unknown} is not an option; ${fn} takes: ${known.join(', ')}`);
   return given as Record<string, unknown>;
 }
 
 function checkValue(fn: string, where: string, name: OptionName, value: unknown): CoreValue {
-  const wrong = (is: string) => new CagecastError('badOption', `${fn}: ${where}.${name} = ${show(value)} is ${is}`);
+  const wrong = (is: string) => new CagecastError('badOption', fn, `${where}.${name} = ${show(value)} is ${is}`);
   const type = typeOf(name);
   if (type !== undefined) {
     const choices = useCore(fn, (core) => namesOf(core, type));
@@ -182,7 +180,7 @@ function checkValue(fn: string, where: string, name: OptionName, value: unknown)
 }
 
 function checkLocks(fn: string, locks: unknown = {}): CoreLocks {
-  const wrong = (text: string) => new CagecastError('badOption', `${fn}: options.locks${text}`);
+  const wrong = (text: string) => new CagecastError('badOption', fn, `options.locks${text}`);
   if (!isRecord(locks)) throw wrong(` is ${show(locks)}, not an object`);
   const out: CoreLocks = { segments: [], groups: [] };
   for (const [field, entries] of Object.entries(locks)) {

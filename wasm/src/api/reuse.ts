@@ -43,7 +43,7 @@ export function checkReuse(fn: keyof typeof namesOf, reuse: unknown): Reusable {
   const arrays: Reusable = {};
   if (reuse === undefined) return arrays;
   const wrong = (text: string, cause?: unknown) =>
-    new CagecastError('badOption', `${fn}: options.reuse${text}; pass an earlier result of ${fn}()`, 0, { cause });
+    new CagecastError('badOption', fn, `options.reuse${text}; pass an earlier result of ${fn}()`, { cause });
   if (typeof reuse !== 'object' || reuse === null) throw wrong(` is ${show(reuse)}`);
   const buffers: ArrayBufferLike[] = [];
   const returned: readonly string[] = namesOf[fn];

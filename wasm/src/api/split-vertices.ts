@@ -33,13 +33,16 @@ export function splitVertices(target: Mesh, cornerUvs: Float32Array): SplitVerti
   if (!uvs)
     throw new CagecastError(
       'badArgument',
-      `splitVertices: cornerUvs is ${showArray(cornerUvs, 'Float32Array')}, not a Float32Array`,
+      'splitVertices',
+      `cornerUvs is ${showArray(cornerUvs, 'Float32Array')}, not a Float32Array`,
+      { argument: 'cornerUvs' },
     );
   if (uvs.length !== 2 * mesh.indices.length) {
     throw new CagecastError(
       'cornerUvCountMismatch',
-      `splitVertices: cornerUvs has ${uvs.length} numbers, not 2 for each of ${mesh.indices.length} corners`,
-      uvs.length,
+      'splitVertices',
+      `cornerUvs has ${uvs.length} numbers, not 2 for each of ${mesh.indices.length} corners`,
+      { argument: 'cornerUvs', at: uvs.length },
     );
   }
   return callCore('splitVertices', ({ workspace }) => workspace.splitVertices(mesh, uvs));

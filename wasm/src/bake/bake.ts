@@ -92,15 +92,15 @@ function reversed({ name, to, from, positions }: Layout, order: readonly number[
 function partsOf(fn: string, { indices }: BakeTarget, { parts }: BakeOptions): readonly BakePart[] {
   const triangles = indices.length / 3;
   if (parts === undefined) return [{ name: 'target', firstTriangle: 0, triangleCount: triangles }];
-  if (!Array.isArray(parts))
-    throw new CagecastError('badOption', `${fn}: options.parts is ${show(parts)}, not an array`);
+  if (!Array.isArray(parts)) throw new CagecastError('badOption', fn, `options.parts is ${show(parts)}, not an array`);
   parts.forEach((part: Partial<BakePart> | null, p) => {
     const [first, count] = [part?.firstTriangle as number, part?.triangleCount as number];
     if (!(Number.isInteger(first) && Number.isInteger(count) && first >= 0 && count >= 0 && first + count <= triangles))
       throw new CagecastError(
         'badOption',
-        `${fn}: options.parts[${p}] is not { name, firstTriangle, triangleCount } within the ${triangles} triangles of target`,
-        p,
+        fn,
+        `options.parts[${p}] is not { name, firstTriangle, triangleCount } within the ${triangles} triangles of target`,
+        { at: p },
       );
   });
   return parts;
@@ -108,7 +108,7 @@ function partsOf(fn: string, { indices }: BakeTarget, { parts }: BakeOptions): r
 
 /** Checks target and result, and lays the triangles of each part out. */
 function layoutsOf(fn: string, target: BakeTarget, result: BakeResult, options: BakeOptions): Layout[] {
-  const wrong = (text: string, at = 0) => new CagecastError('badArgument', `${fn}: ${text}`, at);
+  const wrong = (text: string, at = 0) => new CagecastError('badArgument', fn, text, { at });
   const { kind } = checkFill(fn, options);
   if (typeof target !== 'object' || target === null)
     throw wrong(`target is ${show(target)}, not a mesh { indices, uvs }`);
@@ -138,8 +138,9 @@ function layoutsOf(fn: string, target: BakeTarget, result: BakeResult, options: 
     if (found !== length)
       throw new CagecastError(
         'resultMismatch',
-        `${fn}: result.${name} has ${found ?? 'no'} entries, the target needs ${length}`,
-        found ?? 0,
+        fn,
+        `result.${name} has ${found ?? 'no'} entries, the target needs ${length}`,
+        { at: found ?? 0 },
       );
   }
   return partsOf(fn, target, options).map(({ name, firstTriangle: first, triangleCount: count }): Layout => {

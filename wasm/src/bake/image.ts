@@ -41,7 +41,7 @@ export function colorByte(): (linear: number) => number {
 export function checkNames(fn: string, where: string, given: object, known: string): void {
   for (const name in given)
     if (!known.split(', ').includes(name))
-      throw new CagecastError('badOption', `${fn}: ${where}.${name} is not an option; there are: ${known}`);
+      throw new CagecastError('badOption', fn, `${where}.${name} is not an option; there are: ${known}`);
 }
 
 /**
@@ -52,7 +52,8 @@ export function checkSize(fn: string, name: string, value: unknown): number {
   if (!Number.isInteger(value) || (value as number) < 1 || (value as number) > mostTexels)
     throw new CagecastError(
       'badArgument',
-      `${fn}: ${name} is ${show(value)}, not a whole number of texels from 1 to ${mostTexels}`,
+      fn,
+      `${name} is ${show(value)}, not a whole number of texels from 1 to ${mostTexels}`,
     );
   return value as number;
 }
@@ -62,7 +63,7 @@ export function checkSize(fn: string, name: string, value: unknown): number {
  * @throws {CagecastError} `badArgument`
  */
 export function checkImage(fn: string, name: string, image: unknown): Image {
-  const wrong = (text: string) => new CagecastError('badArgument', `${fn}: ${name}${text}`);
+  const wrong = (text: string) => new CagecastError('badArgument', fn, `${name}${text}`);
   if (typeof image !== 'object' || image === null)
     throw wrong(` is ${show(image)}, not an image { width, height, data }`);
   const { width, height, data } = image as Partial<Image>;

@@ -70,7 +70,7 @@ interface Fill {
 /** Checks the options of a fill. @throws {CagecastError} `badOption` or `badArgument`. */
 export function checkFill(fn: string, options: FillOptions = {}): Fill {
   if (typeof options !== 'object' || options === null)
-    throw new CagecastError('badOption', `${fn}: options is ${options}, not an object`);
+    throw new CagecastError('badOption', fn, `options is ${options}, not an object`);
   checkNames(fn, 'options', options, 'width, height, kind, gutter, wrap, parts');
   const { kind = 'color', wrap = 'repeat' } = options;
   const width = checkSize(fn, 'options.width', options.width ?? 1024);
@@ -79,15 +79,17 @@ export function checkFill(fn: string, options: FillOptions = {}): Fill {
   if (!Number.isInteger(gutter) || gutter < 0 || gutter > Math.max(width, height))
     throw new CagecastError(
       'badOption',
-      `${fn}: options.gutter is ${gutter}, not a whole number of texels from 0 to ${Math.max(width, height)}`,
+      fn,
+      `options.gutter is ${gutter}, not a whole number of texels from 0 to ${Math.max(width, height)}`,
     );
   if (!kinds.includes(kind))
-    throw new CagecastError('badOption', `${fn}: options.kind is ${show(kind)}; there are: ${kinds.join(', ')}`);
+    throw new CagecastError('badOption', fn, `options.kind is ${show(kind)}; there are: ${kinds.join(', ')}`);
   const both: readonly Wrap[] = typeof wrap === 'string' ? [wrap, wrap] : wrap;
   if (!Array.isArray(both) || both.length !== 2 || !both.every((one) => wraps.includes(one)))
     throw new CagecastError(
       'badOption',
-      `${fn}: options.wrap is ${show(wrap)}; there are: ${wraps.join(', ')}, or one for each direction`,
+      fn,
+      `options.wrap is ${show(wrap)}; there are: ${wraps.join(', ')}, or one for each direction`,
     );
   return { kind, width, height, gutter, wraps: [both[0]!, both[1]!] };
 }
@@ -114,7 +116,8 @@ export function fill(fn: string, layouts: readonly Layout[], image: Image, optio
           raster.draw(to, isPainted ? { corners: from, turn } : undefined, part);
         } catch (error) {
           throw error instanceof CagecastError
-            ? new CagecastError('badArgument', `${fn}: triangle ${t} of "${layout.name}": ${error.message}`, t, {
+            ? new CagecastError('badArgument', fn, `triangle ${t} of "${layout.name}": ${error.reason}`, {
+                at: t,
                 cause: error,
               })
             : error;
@@ -269,7 +272,8 @@ export function layOver(image: Image, baked: Baked, factor: readonly [number, nu
   if (base.width !== width || base.height !== height)
     throw new CagecastError(
       'badArgument',
-      `layOver: image has ${base.width} × ${base.height} texels, what was baked ${width} × ${height}`,
+      'layOver',
+      `image has ${base.width} × ${base.height} texels, what was baked ${width} × ${height}`,
     );
   const data = new Uint8ClampedArray(base.data);
   const isPlain = factor.every((share) => share === 1);

@@ -29,7 +29,7 @@ export function maskTriangles(
   { indices, uvs }: { indices: ArrayLike<number>; uvs?: ArrayLike<number> | undefined },
   images: MaskImages,
 ): Int8Array<ArrayBuffer> {
-  if (!uvs || uvs.length === 0) throw new CagecastError('badArgument', 'maskTriangles: target has no UVs');
+  if (!uvs || uvs.length === 0) throw new CagecastError('badArgument', 'maskTriangles', 'target has no UVs');
   checkNames('maskTriangles', 'images', images, 'never, always');
   const [never, always] = (['never', 'always'] as const).map((name) =>
     images[name] === undefined ? undefined : checkImage('maskTriangles', `images.${name}`, images[name]),
@@ -75,7 +75,8 @@ export function maskVertices(colors: ArrayLike<number>, size: 3 | 4): Int8Array<
   if ((size !== 3 && size !== 4) || colors.length % size !== 0)
     throw new CagecastError(
       'badArgument',
-      `maskVertices: colors has ${colors.length} numbers, size is ${show(size)}, not 3 or 4 per vertex`,
+      'maskVertices',
+      `colors has ${colors.length} numbers, size is ${show(size)}, not 3 or 4 per vertex`,
     );
   return Int8Array.from({ length: colors.length / size }, (_, v) => {
     const lead = colors[size * v]! - colors[size * v + 1]!;

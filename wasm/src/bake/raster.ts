@@ -138,7 +138,11 @@ export class Raster {
     if (area === 0) return;
     const [top, end] = [Math.ceil(Math.min(y0, y1, y2)), Math.ceil(Math.max(y0, y1, y2))];
     if (Math.abs(area) > kMostRepeats * 2 * width * height || end - top > kMostRepeats * height)
-      throw new CagecastError('badArgument', `a triangle extends over more than ${kMostRepeats} textures in UV space`);
+      throw new CagecastError(
+        'badArgument',
+        '',
+        `a triangle extends over more than ${kMostRepeats} textures in UV space`,
+      );
     // UVs are linear on the triangle.
     let [u, ux, uy, v, vx, vy] = [0, 0, 0, 0, 0, 0];
     if (shown?.corners) {

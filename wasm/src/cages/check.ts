@@ -5,7 +5,9 @@ import { plainArray, showArray } from '../core/typed-arrays.js';
 import type { CagesModule, CoreLandmark, CoreModel, CoreOptions, CoreTemplate } from './module.js';
 import type { CageModel, Holes, Landmarks, Template } from './types.js';
 
-const wrong = (fn: string, text: string) => new CagecastError('badArgument', `${fn}: ${text}`);
+/** The error for a part of an argument. @param place  Where it is, such as `template.landmarks`. */
+const wrong = (fn: string, place: string, text: string) =>
+  new CagecastError('badArgument', fn, `${place}${text}`, { argument: place.split('.')[0] });
 
 const isPosition = (value: unknown): value is [number, number, number] =>
   Array.isArray(value) && value.length === 3 && value.every((x) => Number.isFinite(x));
@@ -18,14 +20,14 @@ export function checkModel(fn: string, model: unknown): CoreModel {
   const mesh = checkMesh(fn, 'model', model);
   const { parts = [], joints = [], marks } = model as CageModel;
   const bad = (field: string, value: unknown, type: string) =>
-    wrong(fn, `model.${field} is ${show(value)}, not ${type}`);
+    wrong(fn, `model.${field}`, ` is ${show(value)}, not ${type}`);
   if (!Array.isArray(joints)) throw bad('joints', joints, 'an array of joints { name, position, parent }');
   const plainMarks = plainArray(marks, 'Uint8Array');
   if (marks !== undefined && !plainMarks)
-    throw wrong(fn, `model.marks is ${showArray(marks, 'Uint8Array')}, not a Uint8Array`);
+    throw wrong(fn, 'model.marks', ` is ${showArray(marks, 'Uint8Array')}, not a Uint8Array`);
   // An array that was moved to a worker is empty, which C++ would take for "no marks".
   if (plainMarks?.length === 0 && mesh.indices.length > 0)
-    throw wrong(fn, `model.marks has 0 numbers, not 1 for each of ${count(mesh.indices.length / 3, 'triangle')}`);
+    throw wrong(fn, 'model.marks', ` has 0 numbers, not 1 for each of ${count(mesh.indices.length / 3, 'triangle')}`);
   return {
     mesh,
     marks: plainMarks ?? new Uint8Array(0),
@@ -42,12 +44,12 @@ export function checkModel(fn: string, model: unknown): CoreModel {
 
 /** Checks the names of parts. @returns one name for each. @throws {CagecastError} `badArgument` */
 export function checkParts(fn: string, argument: string, parts: unknown): string[] {
-  if (!Array.isArray(parts)) throw wrong(fn, `${argument} is ${show(parts)}, not an array of names`);
+  if (!Array.isArray(parts)) throw wrong(fn, argument, ` is ${show(parts)}, not an array of names`);
   return parts.map((part: unknown, p) => {
     const names = Array.isArray(part) ? part : [part];
     for (const name of names)
       if (typeof name !== 'string')
-        throw wrong(fn, `${argument}[${p}] is ${show(name)}, not a name, or an array of names`);
+        throw wrong(fn, argument, `[${p}] is ${show(name)}, not a name, or an array of names`);
     return names.join('/');
   });
 }
@@ -63,7 +65,9 @@ export function checkPatterns(patterns: unknown, bad: (type: string) => Cagecast
 function checkCage(fn: string, name: 'cage' | 'template', cage: unknown) {
   const mesh = checkMesh(fn, name, cage);
   if (mesh.uvs.length === 0)
-    throw new CagecastError('missingUvs', `${fn}: ${name}.uvs is missing: the texture is drawn in the cage's UVs`);
+    throw new CagecastError('missingUvs', fn, `${name}.uvs is missing: the texture is drawn in the cage's UVs`, {
+      argument: name,
+    });
   return mesh;
 }
 
@@ -79,18 +83,18 @@ export function checkTemplate(
   return {
     mesh,
     landmarks: checkLandmarks(fn, `${name}.landmarks`, landmarks),
-    kind: kindOf(module, kind, (kinds) => wrong(fn, `${name}.kind is ${show(kind)}, not one of ${kinds}`)),
+    kind: kindOf(module, kind, (kinds) => wrong(fn, `${name}.kind`, ` is ${show(kind)}, not one of ${kinds}`)),
   };
 }
 
 /** Checks the types of a cage's holes. @returns copies. @throws {CagecastError} `badArgument` */
 export function checkHoles(fn: string, argument: string, holes: unknown): Holes {
   if (holes === undefined || holes === null) return {};
-  if (!isRecord(holes)) throw wrong(fn, `${argument} is ${show(holes)}, not an object of names and vertices`);
+  if (!isRecord(holes)) throw wrong(fn, argument, ` is ${show(holes)}, not an object of names and vertices`);
   return Object.fromEntries(
     Object.entries(holes).map(([name, vertices]: [string, unknown]) => {
       if (!Array.isArray(vertices) && !ArrayBuffer.isView(vertices))
-        throw wrong(fn, `${argument}.${name} is ${show(vertices)}, not an array of vertices`);
+        throw wrong(fn, argument, `.${name} is ${show(vertices)}, not an array of vertices`);
       return [name, Array.from(vertices as Uint32Array)];
     }),
   );
@@ -107,10 +111,10 @@ function kindOf(module: CagesModule, kind: unknown, bad: (kinds: string) => Cage
 export function checkLandmarks(fn: string, argument: string, landmarks: unknown): CoreLandmark[] {
   if (landmarks === undefined || landmarks === null) return [];
   if (!isRecord(landmarks) || Array.isArray(landmarks))
-    throw wrong(fn, `${argument} is ${show(landmarks)}, not an object of names and positions`);
+    throw wrong(fn, argument, ` is ${show(landmarks)}, not an object of names and positions`);
   return Object.entries(landmarks as Landmarks).map(([name, position]) => {
     if (!isPosition(position))
-      throw wrong(fn, `${argument}.${name} is ${show(position)}, not 3 finite numbers [x, y, z]`);
+      throw wrong(fn, argument, `.${name} is ${show(position)}, not 3 finite numbers [x, y, z]`);
     return { name, position: [...position], confidence: 1 };
   });
 }
@@ -125,7 +129,7 @@ export function checkOptions(
   defaults: CoreOptions,
   options: Record<string, unknown>,
 ): CoreOptions {
-  const bad = (text: string) => new CagecastError('badOption', `${fn}: options${text}`);
+  const bad = (text: string) => new CagecastError('badOption', fn, `options${text}`);
   const merged = { ...defaults };
   for (const [name, value] of Object.entries(options)) {
     if (value === undefined) continue;

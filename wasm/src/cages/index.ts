@@ -42,7 +42,7 @@ const queue = new WorkerQueue(spawn);
 function unreadOf(fn: string, model: Partial<CageModel> | undefined): Promise<never> | undefined {
   if (typeof model !== 'object' || model === null || model.positions !== undefined) return undefined;
   const text = 'model has no positions; see cageModel of cagecast/gltf and cagecast/three';
-  return Promise.reject(new CagecastError('badArgument', `${fn}: ${text}`));
+  return Promise.reject(new CagecastError('badArgument', fn, text, { argument: 'model' }));
 }
 
 /**

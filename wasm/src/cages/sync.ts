@@ -129,6 +129,7 @@ export function refineCage(
   return call(options, {
     fn: 'refineCage',
     defaults: 'refineOptions',
+    template: 'cage',
     run: (module, core, report) => {
       given = checkTemplate('refineCage', 'cage', module, cage);
       return module.refineCage(given.mesh, checkModel('refineCage', model), core, report);
@@ -155,7 +156,8 @@ export function defaultExclusions(): string[] {
 export function matchingParts(parts: readonly (string | readonly string[])[], patterns: readonly string[]): boolean[] {
   const fn = 'matchingParts';
   const names = checkParts(fn, 'parts', parts);
-  const bad = (type: string) => new CagecastError('badArgument', `${fn}: patterns is ${show(patterns)}, not ${type}`);
+  const bad = (type: string) =>
+    new CagecastError('badArgument', fn, `patterns is ${show(patterns)}, not ${type}`, { argument: 'patterns' });
   return freshModule(fn).matchingParts(names, checkPatterns(patterns, bad));
 }
 
@@ -163,7 +165,7 @@ const exclusionsOf = (module: CagesModule): string[] => module.makeOptions()['ex
 
 function freshModule(fn: string): CagesModule {
   if (compiled === undefined)
-    throw new CagecastError('notInitialised', `${fn}: Cagecast is not ready; await init() once before the first call`);
+    throw new CagecastError('notInitialised', fn, 'Cagecast is not ready; await init() once before the first call');
   return instantiate<CagesModule>(createModule, compiled, 'makeCage');
 }
 
@@ -171,6 +173,8 @@ interface Call<Answer extends CagesAnswer, Result> {
   fn: string;
   /** The function that returns the options of this one. */
   defaults?: 'makeOptions' | 'fitOptions' | 'refineOptions';
+  /** What this one calls the template of C++. Default: `template` */
+  template?: 'cage';
   run(module: CagesModule, options: CoreOptions, report: Report): Answer;
   result(answer: Answer, module: CagesModule): Result;
 }
@@ -181,7 +185,7 @@ interface Call<Answer extends CagesAnswer, Result> {
  */
 function call<Answer extends CagesAnswer, Result>(given: SyncOptions, of: Call<Answer, Result>): Result {
   const { fn } = of;
-  if (!isRecord(given)) throw new CagecastError('badOption', `${fn}: options is ${show(given)}, not an object`);
+  if (!isRecord(given)) throw new CagecastError('badOption', fn, `options is ${show(given)}, not an object`);
   const { onProgress, ...rest } = given;
   const module = freshModule(fn);
   const options = checkOptions(fn, module, of.defaults ? module[of.defaults]() : {}, rest);
@@ -192,13 +196,16 @@ function call<Answer extends CagesAnswer, Result>(given: SyncOptions, of: Call<A
   } catch (cause) {
     if (cause instanceof CagecastError) throw cause;
     throw isLackOfMemory(cause)
-      ? new CagecastError('outOfMemory', `${fn}: not enough memory for this model`, 0, { cause })
-      : new CagecastError('internal', `${fn}: the WebAssembly module failed (${String(cause)})`, 0, { cause });
+      ? new CagecastError('outOfMemory', fn, 'not enough memory for this model', { cause })
+      : new CagecastError('internal', fn, `the WebAssembly module failed (${String(cause)})`, { cause });
   }
   if (reporter.failure !== undefined) throw reporter.failure;
   const code = nameOf({ module: module as never }, 'Problem', answer.problem);
-  if (code !== 'none')
-    throw new CagecastError(code as Code, `${fn}: ${code === 'aborted' ? 'cancelled by onProgress' : answer.message}`);
+  if (code !== 'none') {
+    const reason = code === 'aborted' ? 'cancelled by onProgress' : answer.message;
+    const blamed = { badModel: 'model', badTemplate: of.template ?? 'template', badLandmarks: 'landmarks' };
+    throw new CagecastError(code as Code, fn, reason, { argument: blamed[code as keyof typeof blamed] });
+  }
   reporter.end();
   return of.result(answer, module);
 }

@@ -29,7 +29,8 @@ export async function loadTemplate(name: TemplateName): Promise<Cage> {
   if (!templateNames.includes(name))
     throw new CagecastError(
       'badArgument',
-      `loadTemplate: name is ${show(name)}, not one of ${templateNames.map((known) => `"${known}"`).join(', ')}`,
+      'loadTemplate',
+      `name is ${show(name)}, not one of ${templateNames.map((known) => `"${known}"`).join(', ')}`,
     );
   const url = files[name]();
   try {
@@ -37,11 +38,9 @@ export async function loadTemplate(name: TemplateName): Promise<Cage> {
   } catch (cause) {
     throw new CagecastError(
       'unsupported',
-      `loadTemplate: the file of "${name}", ${url.href}, cannot be loaded (${String(cause)})`,
-      0,
-      {
-        cause,
-      },
+      'loadTemplate',
+      `the file of "${name}", ${url.href}, cannot be loaded (${String(cause)})`,
+      { cause },
     );
   }
 }

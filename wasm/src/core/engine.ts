@@ -49,7 +49,7 @@ export type Reusable = Record<string, Uint8Array | Uint32Array | Float32Array>;
  */
 export function useCore<A>(fn: string, use: (core: Core) => A): A {
   if (compiled === undefined) {
-    throw new CagecastError('notInitialised', `${fn}: Cagecast is not ready; await init() once before the first call`);
+    throw new CagecastError('notInitialised', fn, 'Cagecast is not ready; await init() once before the first call');
   }
   try {
     instance ??= makeCore(compiled);
@@ -57,8 +57,8 @@ export function useCore<A>(fn: string, use: (core: Core) => A): A {
   } catch (cause) {
     dropInstance();
     throw isLackOfMemory(cause)
-      ? new CagecastError('outOfMemory', `${fn}: not enough memory for this target and cage`, 0, { cause })
-      : new CagecastError('internal', `${fn}: the WebAssembly module failed (${String(cause)})`, 0, { cause });
+      ? new CagecastError('outOfMemory', fn, 'not enough memory for this target and cage', { cause })
+      : new CagecastError('internal', fn, `the WebAssembly module failed (${String(cause)})`, { cause });
   }
 }
 
@@ -78,7 +78,7 @@ export function callCore<A extends Answer>(fn: string, call: (core: Core) => A, 
   });
   if (status.code === 'ok') return answer as unknown as Own<A>;
   if (status.code === 'outOfMemory') dropInstance();
-  throw new CagecastError(status.code as Code, `${fn}: ${status.message}`, status.at);
+  throw new CagecastError(status.code as Code, fn, status.message, status);
 }
 
 /** An answer without its status, as users get it: with names in place of enumeration values. */

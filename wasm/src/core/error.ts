@@ -21,18 +21,35 @@ export type Code =
   | 'badTemplate'
   | 'badLandmarks';
 
+/** What else is known of an error. */
+export interface ErrorDetails extends ErrorOptions {
+  /** Default: 0 */
+  at?: number | undefined;
+  /** Default: `options` for `badOption`, else none. */
+  argument?: string | undefined;
+}
+
 /** The only class of errors that Cagecast throws. Its message names the function, the argument, the value and the limit. */
 export class CagecastError extends Error {
   override readonly name = 'CagecastError';
   /** What went wrong, for programs. */
   readonly code: Code;
+  /** The function, or the entry of the package, that the message begins with; empty if it begins with neither. */
+  readonly fn: string;
+  /** The message without `fn`. */
+  readonly reason: string;
+  /** The argument at fault, by its name: `cage`, `target`, `options`, …; undefined if no single one is. */
+  readonly argument: string | undefined;
   /** The index of the element at fault in the array that the message names, or a count if the number of elements is wrong; else 0. */
   readonly at: number;
 
-  constructor(code: Code, message: string, at = 0, options?: ErrorOptions) {
-    super(message, options);
+  constructor(code: Code, fn: string, reason: string, details: ErrorDetails = {}) {
+    super(fn ? `${fn}: ${reason}` : reason, details);
     this.code = code;
-    this.at = at;
+    this.fn = fn;
+    this.reason = reason;
+    this.argument = details.argument || (code === 'badOption' ? 'options' : undefined);
+    this.at = details.at ?? 0;
   }
 }
 

@@ -30,7 +30,7 @@ export function instantiate<Module extends object>(
   ).then(undefined, () => {});
   if (failure !== undefined) throw failure;
   if (glue[ready] === undefined)
-    throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
+    throw new CagecastError('internal', 'init', 'the WebAssembly module did not start at once');
   return glue as Module;
 }
 
@@ -44,6 +44,6 @@ export const isLackOfMemory = (cause: unknown): boolean =>
 export const unsupported = (cause: unknown): CagecastError =>
   cause instanceof CagecastError
     ? cause
-    : new CagecastError('unsupported', `init: this host cannot run the WebAssembly module (${String(cause)})`, 0, {
+    : new CagecastError('unsupported', 'init', `this host cannot run the WebAssembly module (${String(cause)})`, {
         cause,
       });

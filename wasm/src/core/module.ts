@@ -27,10 +27,11 @@ export interface CoreLock {
   lock: EnumValue;
 }
 
-/** How a call ended: `ok`, or the name and sentence of what went wrong. */
+/** How a call ended: `ok`, or the name and sentence of what went wrong, and the argument at fault, empty if there is none. */
 export interface Status {
   code: string;
   message: string;
+  argument: string;
   at: number;
 }
 

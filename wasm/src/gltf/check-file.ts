@@ -21,8 +21,7 @@ export interface CheckOptions {
  * @throws {CagecastError} `badArgument` that names the element, the value and the limit.
  */
 export function checkGltf(bytes: Uint8Array, { limits, otherBytes = 0, ...others }: CheckOptions = {}): void {
-  const wrong = (text: string, options?: ErrorOptions) =>
-    new CagecastError('badArgument', `checkGltf: ${text}`, 0, options);
+  const wrong = (text: string, options?: ErrorOptions) => new CagecastError('badArgument', 'checkGltf', text, options);
   if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`);
   for (const name in others) throw wrong(`${name} is not an option`);
   for (const [name, value] of Object.entries(limits ?? {}))

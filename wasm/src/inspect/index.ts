@@ -103,7 +103,7 @@ const heaviestFirst = (findings: readonly Finding[]): Finding[] => [...findings]
 /** The placement of the cage, and the findings about it and about the result. */
 function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
   if (typeof given !== 'object' || given === null)
-    throw new CagecastError('badOption', `inspect: options is ${show(given)}, not an object`);
+    throw new CagecastError('badOption', 'inspect', `options is ${show(given)}, not an object`);
   const { result, parts, ...options } = given;
   if (result !== undefined) {
     checkArrays('cage', cage, 'positions', 'indices', 'uvs');
@@ -113,7 +113,8 @@ function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
   if (parts !== undefined && !(Array.isArray(parts) && parts.every((part) => part?.vertexCount >= 0)))
     throw new CagecastError(
       'badOption',
-      `inspect: options.parts is ${show(parts)}, not an array of ranges of vertices`,
+      'inspect',
+      `options.parts is ${show(parts)}, not an array of ranges of vertices`,
     );
   const scene = sceneOf(
     cage,
@@ -149,13 +150,18 @@ function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
 function checkArrays(name: string, mesh: Mesh, ...fields: (keyof Mesh)[]): void {
   for (const field of fields)
     if (!ArrayBuffer.isView(mesh?.[field]))
-      throw new CagecastError('badArgument', `inspect: ${name}.${field} is ${show(mesh?.[field])}, not a typed array`);
+      throw new CagecastError(
+        'badArgument',
+        'inspect',
+        `${name}.${field} is ${show(mesh?.[field])}, not a typed array`,
+        { argument: name },
+      );
 }
 
 /** Checks that a result is complete and belongs to this target. */
 function checkResult(result: TransferResult, { positions }: Mesh): void {
   const wrong = (text: string) =>
-    new CagecastError('badArgument', `inspect: result${text}; pass what transfer() returned`);
+    new CagecastError('badArgument', 'inspect', `result${text}; pass what transfer() returned`, { argument: 'result' });
   if (typeof result !== 'object' || result === null) throw wrong(` is ${show(result)}`);
   const { zones, segments, triangles, distances, segmentStats, cosmeticTriangles } = result;
   if (!Array.isArray(segmentStats)) throw wrong(`.segmentStats is ${show(segmentStats)}, not an array`);
@@ -166,16 +172,18 @@ function checkResult(result: TransferResult, { positions }: Mesh): void {
     if (array.length !== positions.length / 3)
       throw new CagecastError(
         'resultMismatch',
-        `inspect: result.${name} has ${array.length} entries, not 1 for each of the ${positions.length / 3} vertices of target`,
-        array.length,
+        'inspect',
+        `result.${name} has ${array.length} entries, not 1 for each of the ${positions.length / 3} vertices of target`,
+        { argument: 'result', at: array.length },
       );
   }
   const stray = segments.findIndex((segment) => segment >= segmentStats.length);
   if (stray >= 0)
     throw new CagecastError(
       'resultMismatch',
-      `inspect: result.segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`,
-      stray,
+      'inspect',
+      `result.segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`,
+      { argument: 'result', at: stray },
     );
 }
 

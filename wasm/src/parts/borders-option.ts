@@ -8,7 +8,8 @@ export function isCut(fn: string, borders: Borders = 'triangle'): boolean {
   if (borders !== 'triangle' && borders !== 'cut')
     throw new CagecastError(
       'badOption',
-      `${fn}: options.borders = ${JSON.stringify(borders)} is unknown; there are: "triangle", "cut"`,
+      fn,
+      `options.borders = ${JSON.stringify(borders)} is unknown; there are: "triangle", "cut"`,
     );
   return borders === 'cut';
 }

@@ -56,7 +56,7 @@ export function unpack(bytes: Uint8Array): unknown {
 }
 
 const align = (length: number): number => Math.ceil(length / 8) * 8;
-const refused = (what: string): CagecastError => new CagecastError('badArgument', `deserialize: bytes ${what}`);
+const refused = (what: string): CagecastError => new CagecastError('badArgument', 'deserialize', `bytes ${what}`);
 
 const checksum = (bytes: Uint8Array): number => hash(bytes)[0]!;
 

@@ -35,7 +35,8 @@ function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
   if (free === undefined)
     throw new CagecastError(
       'badArgument',
-      'cagecast/three: target has uv1, uv2 and uv3 of its own; choose one to overwrite: options.channel',
+      'cagecast/three',
+      'target has uv1, uv2 and uv3 of its own; choose one to overwrite: options.channel',
     );
   return free;
 }
@@ -87,7 +88,8 @@ function checkMaterials(parts: readonly Part[]): void {
     if (![mesh?.material].flat().some((material) => (material as { isNodeMaterial?: true })?.isNodeMaterial)) continue;
     throw new CagecastError(
       'badOption',
-      `cagecast/three: "${name}" has a node material, which cannot show options.texture; give options.material`,
+      'cagecast/three',
+      `"${name}" has a node material, which cannot show options.texture; give options.material`,
     );
   }
 }
@@ -115,7 +117,7 @@ export function* apply(
     const isChanged = hasOthers(geometry, states[p]!) || Object.keys(geometry.attributes).some(isLate);
     // The transfer of a mesh elsewhere may change the geometry: this one gets a copy of what it was.
     if ((mesh && mesh.geometry !== geometry) || (isChanged && !(mesh && isShownElsewhere(geometry, parts))))
-      throw new CagecastError('badArgument', `cagecast/three: the geometry of "${name}" was changed meanwhile`);
+      throw new CagecastError('badArgument', 'cagecast/three', `the geometry of "${name}" was changed meanwhile`);
     return isChanged ? states[p]! : geometry;
   });
 
@@ -198,14 +200,14 @@ class Shown implements Applied {
 
   readonly setTexture = (texture: Texture | undefined): void => {
     if (texture && !texture.isTexture)
-      throw new CagecastError('badArgument', `cagecast/three: setTexture: ${nameOf(texture)} is not a Texture`);
+      throw new CagecastError('badArgument', 'setTexture', `${nameOf(texture)} is not a Texture`);
     this.#painting.texture = texture;
     this.#show();
   };
 
   readonly setOpacity = (opacity: number): void => {
     if (!(opacity >= 0 && opacity <= 1))
-      throw new CagecastError('badArgument', `cagecast/three: setOpacity: ${opacity} is not a number from 0 to 1`);
+      throw new CagecastError('badArgument', 'setOpacity', `${opacity} is not a number from 0 to 1`);
     this.#painting.opacity = opacity;
     this.#painting.matrix.refresh(this.#painting);
   };

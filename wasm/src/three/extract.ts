@@ -70,7 +70,9 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   if (!isGeometry(object) && !isObject(object)) {
     throw new CagecastError(
       'badArgument',
-      `cagecast/three: ${argument} is ${nameOf(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
+      'cagecast/three',
+      `${argument} is ${nameOf(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
+      { argument },
     );
   }
   const parts: Part[] = [];
@@ -184,8 +186,8 @@ export const isMesh = (object: Object3D): object is ThreeMesh => (object as Thre
 export const nameOf = (value: unknown): string =>
   typeof value === 'string' ? `"${value}"` : typeof value === 'object' && value ? 'an object' : String(value);
 
-const wrong = (argument: string, name: string, text: string, at = 0): CagecastError =>
-  new CagecastError('badArgument', `cagecast/three: ${argument}: "${name}" ${text}`, at);
+const wrong = (argument: string, name: string, text: string, at?: number): CagecastError =>
+  new CagecastError('badArgument', 'cagecast/three', `${argument}: "${name}" ${text}`, { argument, at });
 
 /** Whether a matrix mirrors, so that the winding of triangles must be reversed. */
 export const isMirrored = (matrix: Matrix4): boolean => matrix.determinant() < 0;

@@ -140,7 +140,7 @@ function read(
 ): Call {
   checkOptions(options);
   const cuts = isCut(fn, options.borders);
-  const extracted = extract(target, 'target');
+  const extracted = extract(target);
   const { saved, result } = options;
   const rules = transferOptions(options);
   const needsCage = !saved && (cuts || !result);

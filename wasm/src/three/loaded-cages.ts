@@ -29,7 +29,7 @@ const objectOf = (model: Loaded): Object3D | BufferGeometry => (isLoadedGltf(mod
  */
 export function cageModel(model: Loaded): cages.CageModel {
   const object = objectOf(model);
-  const { mesh, parts } = extract(object, 'target');
+  const { mesh, parts } = extract(object);
   const { positions, indices, groups } = mesh;
   const bones = isLoadedGltf(model) ? bonesOf(model) : new Map<Object3D, string>();
   return {
@@ -48,7 +48,7 @@ export function cageModel(model: Loaded): cages.CageModel {
 export function cageTemplate(model: Loaded): cages.Template {
   const { mesh, parts } = extract(objectOf(model), 'cage');
   if (mesh.uvs === undefined)
-    throw new CagecastError('missingUvs', 'cageTemplate: the cage has a mesh without the attribute uv');
+    throw new CagecastError('missingUvs', 'cageTemplate', 'the cage has a mesh without the attribute uv');
   const sources = parts.flatMap(({ name, mesh: of, geometry, matrix, firstVertex, vertexCount }) =>
     // The parent of the meshes of one glTF mesh has the extras of its node.
     [
@@ -63,7 +63,7 @@ export function cageTemplate(model: Loaded): cages.Template {
       vertexCount,
     })),
   );
-  const extras = readExtras(sources, (text) => new CagecastError('badArgument', `cageTemplate: ${text}`));
+  const extras = readExtras(sources, (text) => new CagecastError('badArgument', 'cageTemplate', text));
   return { positions: mesh.positions, indices: mesh.indices, uvs: mesh.uvs, ...extras };
 }
 

@@ -29,9 +29,10 @@ export function modelMasks(
   for (const name in others)
     throw new CagecastError(
       'badOption',
-      `modelMasks: options.${name} is not an option; there are: never, always, attribute`,
+      'modelMasks',
+      `options.${name} is not an option; there are: never, always, attribute`,
     );
-  const { mesh, parts } = extract(target, 'target');
+  const { mesh, parts } = extract(target);
   const images = { never: never && imageOf('never', never), always: always && imageOf('always', always) };
   const vertices = new Int8Array(mesh.positions.length / 3);
   const triangles = new Int8Array(mesh.indices.length / 3);
@@ -54,7 +55,7 @@ export function modelMasks(
   }
   const missing = Object.keys(wanted).find((name) => wanted[name]);
   if (missing !== undefined)
-    throw new CagecastError('badArgument', `modelMasks: no part of target has the attribute ${missing}`);
+    throw new CagecastError('badArgument', 'modelMasks', `no part of target has the attribute ${missing}`);
   return { vertices, triangles };
 }
 
@@ -62,7 +63,7 @@ export function modelMasks(
 function imageOf(name: string, given: Texture | Image): Image {
   if (!('isTexture' in given)) return given;
   const image = (given.image ?? {}) as HTMLImageElement & { data?: Image['data'] };
-  const wrong = (text: string) => new CagecastError('badArgument', `modelMasks: the texture "${name}" ${text}`);
+  const wrong = (text: string) => new CagecastError('badArgument', 'modelMasks', `the texture "${name}" ${text}`);
   // The width of an element is that of its place on the page.
   const { naturalWidth: width = image.width, naturalHeight: height = image.height } = image;
   if (!(width > 0 && height > 0)) throw wrong('is not loaded yet');

@@ -84,7 +84,8 @@ export interface Applied {
 /** @throws {CagecastError} `badOption` that names the option and its value. */
 export function checkOptions(options: ApplyOptions): void {
   const check = (fits: boolean | undefined, name: string, value: unknown, what: string) => {
-    if (!fits) throw new CagecastError('badOption', `cagecast/three: options${name} is ${nameOf(value)}, not ${what}`);
+    if (!fits)
+      throw new CagecastError('badOption', 'cagecast/three', `options${name} is ${nameOf(value)}, not ${what}`);
   };
   check(typeof options === 'object' && options !== null, '', options, 'an object');
   const { texture, material, channel = 1, opacity = 1, feather = 0, saved } = options;
@@ -109,7 +110,8 @@ export function checkLengths(name: string, given: object | null, lengths: Record
     if (found !== length)
       throw new CagecastError(
         'badArgument',
-        `cagecast/three: ${name}.${field} ${found === undefined ? 'is not an array' : `has ${found} entries`}, the target needs ${length}${hint}`,
+        'cagecast/three',
+        `${name}.${field} ${found === undefined ? 'is not an array' : `has ${found} entries`}, the target needs ${length}${hint}`,
       );
   }
 }

@@ -20,7 +20,7 @@ const made = new WeakMap<Applied, () => Saved>();
  */
 export function serialize(applied: Applied): Uint8Array<ArrayBuffer> {
   const saved = made.get(applied);
-  if (!saved) throw new CagecastError('badArgument', 'serialize: applied is not what applyTransfer returned');
+  if (!saved) throw new CagecastError('badArgument', 'serialize', 'applied is not what applyTransfer returned');
   return pack(saved());
 }
 
@@ -30,7 +30,7 @@ export function serialize(applied: Applied): Uint8Array<ArrayBuffer> {
  */
 export function deserialize(bytes: Uint8Array): Saved {
   if (!(bytes instanceof Uint8Array))
-    throw new CagecastError('badArgument', `deserialize: bytes is ${nameOf(bytes)}, not a Uint8Array`);
+    throw new CagecastError('badArgument', 'deserialize', `bytes is ${nameOf(bytes)}, not a Uint8Array`);
   return unpack(bytes) as Saved;
 }
 
@@ -52,7 +52,8 @@ export function checkSaved({ key, prepared }: Saved, target: Extracted): Prepare
   if (!key.startsWith(`${targetKey(target)}-`))
     throw new CagecastError(
       'badArgument',
-      'cagecast/three: options.saved is of another target or state of it; load and place it as it was',
+      'cagecast/three',
+      'options.saved is of another target or state of it; load and place it as it was',
     );
   return prepared;
 }

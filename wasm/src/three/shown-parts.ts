@@ -31,7 +31,8 @@ function geometryOf({ part, split }: ShownPart): BufferGeometry {
   if (found !== count)
     throw new CagecastError(
       'badArgument',
-      `cagecast/three: the geometry of "${part.name}" has ${found} vertices, it had ${count}; transfer again`,
+      'cagecast/three',
+      `the geometry of "${part.name}" has ${found} vertices, it had ${count}; transfer again`,
     );
   return geometry;
 }

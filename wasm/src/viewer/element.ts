@@ -301,7 +301,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       const given = this.getAttribute(name);
       if (given === null) return undefined;
       if (given.trim() === '' || Number.isNaN(Number(given)))
-        throw new CagecastError('badOption', `cagecast-viewer: ${name} is "${given}", not a number`);
+        throw new CagecastError('badOption', 'cagecast-viewer', `${name} is "${given}", not a number`);
       return Number(given);
     };
     const text = <T extends string>(name: string) => (this.getAttribute(name) as T | null) ?? undefined;

@@ -1,6 +1,7 @@
 import { Cache, type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from 'three';
 import type { GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { checkGltf } from '../gltf/check-file.js';
+import type { CagecastError } from '../index.js';
 
 /** A file, and where it came from. */
 export interface Fetched {
@@ -45,7 +46,7 @@ function checkCost(bytes: Uint8Array): void {
   try {
     checkGltf(bytes, { limits });
   } catch (error) {
-    throw new Error((error as Error).message.replace(/^checkGltf: /, ''), { cause: error });
+    throw new Error((error as CagecastError).reason, { cause: error });
   }
 }
 

@@ -10,9 +10,9 @@ export async function answer(
     const result = await call(fn, args);
     return { reply: { id, result }, move: [...new Set(buffersIn(result))] };
   } catch (error) {
-    const { code, message, at } =
-      error instanceof CagecastError ? error : { code: 'internal' as const, message: String(error), at: 0 };
-    return { reply: { id, error: { code, message, at } }, move: [] };
+    const known = error instanceof CagecastError ? error : new CagecastError('internal', fn, String(error));
+    const { code, reason, argument, at } = known;
+    return { reply: { id, error: [code, known.fn, reason, { argument, at }] }, move: [] };
   }
 }
 

@@ -90,7 +90,7 @@ function withOptions<T>(fn: string, args: unknown[], options: CallOptions & { re
   // The worker would overwrite its own copy of it.
   if (options?.reuse !== undefined)
     return Promise.reject(
-      new CagecastError('badOption', `${fn}: options.reuse is not for the worker, whose results are always new arrays`),
+      new CagecastError('badOption', fn, 'options.reuse is not for the worker, whose results are always new arrays'),
     );
   return queue.withOptions(fn, args, options);
 }

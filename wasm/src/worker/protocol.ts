@@ -1,4 +1,4 @@
-import type { Code } from '../index.js';
+import type { CagecastError } from '../index.js';
 
 /** A call for a worker: a function by name, and its arguments. */
 export interface Request {
@@ -7,10 +7,10 @@ export interface Request {
   args: unknown[];
 }
 
-/** The answer to a call, or, before it, how far the call is: a share 0..1, and what it does. */
+/** The answer to a call, or what makes its error; or, before it, how far the call is: a share 0..1, and what it does. */
 export type Reply =
   | { id: number; result: unknown }
-  | { id: number; error: { code: Code; message: string; at: number } }
+  | { id: number; error: ConstructorParameters<typeof CagecastError> }
   | { id: number; progress: [share: number, stage: string] };
 
 /** A worker on some host. */

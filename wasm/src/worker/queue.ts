@@ -40,7 +40,7 @@ export class WorkerQueue {
   withOptions<T>(fn: string, args: unknown[], options: CallOptions & { onProgress?: OnProgress | undefined }) {
     if (!isRecord(options)) return this.call<T>(fn, [...args, options], {});
     const { signal, move, onProgress, ...rest } = options;
-    const wrong = (text: string) => Promise.reject<T>(new CagecastError('badOption', `${fn}: options.${text}`));
+    const wrong = (text: string) => Promise.reject<T>(new CagecastError('badOption', fn, `options.${text}`));
     if (signal !== undefined && typeof signal?.addEventListener !== 'function')
       return wrong(`signal is ${show(signal)}, not an AbortSignal`);
     if (move !== undefined && typeof move !== 'boolean') return wrong(`move is ${show(move)}, not true or false`);
@@ -92,7 +92,7 @@ export class WorkerQueue {
     this.#stop();
     for (const job of this.#jobs.splice(0)) {
       job.settle();
-      job.reject(new CagecastError('aborted', `${job.request.fn}: the worker was terminated`));
+      job.reject(new CagecastError('aborted', job.request.fn, 'the worker was terminated'));
     }
   }
 
@@ -112,8 +112,8 @@ export class WorkerQueue {
     try {
       this.#thread ??= this.#start();
     } catch (cause) {
-      const message = `${request.fn}: this host cannot start the worker (${String(cause)})`;
-      return new CagecastError('unsupported', message, 0, { cause });
+      const reason = `this host cannot start the worker (${String(cause)})`;
+      return new CagecastError('unsupported', request.fn, reason, { cause });
     }
     try {
       this.#thread.setBusy(true);
@@ -138,8 +138,7 @@ export class WorkerQueue {
         if (this.#thread !== thread) return; // It was ended, and another one works now.
         this.#stop();
         const job = this.#jobs[0];
-        if (job)
-          this.#finish(job, new CagecastError('unsupported', `${job.request.fn}: the worker failed (${message})`));
+        if (job) this.#finish(job, new CagecastError('unsupported', job.request.fn, `the worker failed (${message})`));
       },
     );
     return thread;
@@ -149,8 +148,7 @@ export class WorkerQueue {
     const job = this.#jobs[0];
     if (job?.request.id !== reply.id) return;
     if ('progress' in reply) this.#tell(job, reply.progress);
-    else if ('error' in reply)
-      this.#finish(job, new CagecastError(reply.error.code, reply.error.message, reply.error.at));
+    else if ('error' in reply) this.#finish(job, new CagecastError(...reply.error));
     else this.#finish(job, undefined, reply.result);
   }
 
@@ -194,9 +192,7 @@ export class WorkerQueue {
 
 /** The error for an argument that cannot be sent, such as a function or an array that was transferred before. */
 const unsendable = (fn: string, cause: unknown): CagecastError =>
-  new CagecastError('badArgument', `${fn}: the arguments cannot be sent to the worker (${String(cause)})`, 0, {
-    cause,
-  });
+  new CagecastError('badArgument', fn, `the arguments cannot be sent to the worker (${String(cause)})`, { cause });
 
 /** Copies arrays that use a part of their buffer only: to send such an array would send the whole buffer. */
 function withOwnBuffers(value: unknown): unknown {

@@ -58,7 +58,7 @@ export class TransferClient {
       if ('retimed' in data) return data.id === this.#lastId ? this.onRetimed?.(data.retimed) : undefined;
       if (data.id !== this.#pending?.id) return;
       if ('projected' in data) return this.#pending.onProjected?.();
-      if ('code' in data) return this.#fail(new CagecastError(data.code, data.message));
+      if ('error' in data) return this.#fail(new CagecastError(...data.error));
       this.#pending.resolve(data.answer);
       this.#pending = undefined;
     };

@@ -1,5 +1,5 @@
 import type {
-  Code,
+  CagecastError,
   CutTarget,
   Mesh,
   Projection,
@@ -42,5 +42,5 @@ export type Request = {
 export type Reply =
   | { id: number; projected: true }
   | { id: number; answer: Tasks[keyof Tasks]['answer'] }
-  | { id: number; code: Code; message: string }
+  | { id: number; error: ConstructorParameters<typeof CagecastError> }
   | { id: number; retimed: Timings };

@@ -32,8 +32,9 @@ addEventListener('message', async ({ data: request }: MessageEvent<Request>) => 
     if (request.task === 'project' && 'timings' in answer && answer.timings.total < kLongest)
       timer = setTimeout(retime, kIdle, request);
   } catch (error) {
-    const code = error instanceof CagecastError ? error.code : 'internal';
-    postMessage({ id, code, message: error instanceof Error ? error.message : String(error) } satisfies Reply);
+    const known = error instanceof CagecastError ? error : new CagecastError('internal', request.task, String(error));
+    const { code, fn, reason, argument } = known;
+    postMessage({ id, error: [code, fn, reason, { argument }] } satisfies Reply);
   }
 });
 

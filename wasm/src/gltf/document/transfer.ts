@@ -62,7 +62,7 @@ export async function transferDocument(
 
 /** The error of an argument of the wrong type. */
 export const wrong = (caller: string, argument: string, value: unknown, type: string) =>
-  new CagecastError('badArgument', `${caller}: ${argument} is ${show(value)}, not ${type}`);
+  new CagecastError('badArgument', caller, `${argument} is ${show(value)}, not ${type}`, { argument });
 
 export const isDocument = (value: unknown): value is Document =>
   typeof (value as Document | null | undefined)?.getRoot === 'function';
@@ -79,7 +79,7 @@ export function within<T>(caller: string, argument: string, read: () => T): T {
     return read();
   } catch (error) {
     throw error instanceof InputError
-      ? new CagecastError('badArgument', `${caller}: ${argument}: ${error.message}`, 0, { cause: error })
+      ? new CagecastError('badArgument', caller, `${argument}: ${error.message}`, { argument, cause: error })
       : error;
   }
 }

@@ -36,7 +36,7 @@ export const plainStyle: Style = { opacity: 1, tint: '#ffffff', blend: 'normal',
 export function readStyle(style: Partial<Style>): Partial<Style> {
   const check = (fits: boolean, name: string, value: unknown, what: string): void => {
     if (!fits)
-      throw new CagecastError('badOption', `cagecast/three/layers: ${name} is ${describe(value)}, not ${what}`);
+      throw new CagecastError('badOption', 'cagecast/three/layers', `${name} is ${describe(value)}, not ${what}`);
   };
   const { opacity = 1, tint = '#ffffff', blend = 'normal', visible = true } = style;
   check(opacity >= 0 && opacity <= 1, 'opacity', opacity, 'a number from 0 to 1');
@@ -60,7 +60,11 @@ export function freeName(kind: string, layers: readonly Layer[]): string {
 /** @throws {CagecastError} `badArgument` if a value is not a texture. */
 export function checkTexture(texture: Texture, argument: string): void {
   if (texture?.isTexture !== true)
-    throw new CagecastError('badArgument', `cagecast/three/layers: ${argument} is ${describe(texture)}, not a Texture`);
+    throw new CagecastError(
+      'badArgument',
+      'cagecast/three/layers',
+      `${argument} is ${describe(texture)}, not a Texture`,
+    );
 }
 
 /** One layer of paint. A change of the stack makes a new object; the `id` stays. */

@@ -48,9 +48,9 @@ export class Layers extends Emitter<{
     super();
     // Other renderers have no such map.
     if (typeof renderer?.properties?.get !== 'function')
-      throw new CagecastError('badArgument', 'cagecast/three/layers: options.renderer is not a WebGLRenderer');
+      throw new CagecastError('badArgument', 'cagecast/three/layers', 'options.renderer is not a WebGLRenderer');
     if (size !== undefined && !kSizes.includes(size))
-      throw new CagecastError('badOption', `cagecast/three/layers: size is ${size}, not one of ${kSizes.join(', ')}`);
+      throw new CagecastError('badOption', 'cagecast/three/layers', `size is ${size}, not one of ${kSizes.join(', ')}`);
     this.renderer = renderer;
     this.composite = new Composite(size);
     this.stack.on('change', (layers) => {
@@ -154,7 +154,8 @@ export class Layers extends Emitter<{
     if (!(Number.isInteger(size) && size > 0 && size <= maxCompositeSize))
       throw new CagecastError(
         'badArgument',
-        `cagecast/three/layers: size is ${size}, not an integer from 1 to ${maxCompositeSize}`,
+        'cagecast/three/layers',
+        `size is ${size}, not an integer from 1 to ${maxCompositeSize}`,
       );
     this.update();
     return readStraight(this.renderer, this.texture, size);

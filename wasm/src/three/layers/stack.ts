@@ -7,7 +7,7 @@ export const maxLayers = 16;
 
 /** @returns the error for a layer too many. */
 const full = (): CagecastError =>
-  new CagecastError('badArgument', `There are already ${maxLayers} layers, the maximum. Remove one first.`);
+  new CagecastError('badArgument', '', `There are already ${maxLayers} layers, the maximum. Remove one first.`);
 
 export interface StackEvents {
   /** Layers were added, removed, moved or restyled. */
@@ -101,7 +101,11 @@ export class LayerStack extends Emitter<StackEvents> {
   move(layer: Pick<Layer, 'id'>, place: number): void {
     const from = this.#indexOf(layer);
     if (!Number.isInteger(place))
-      throw new CagecastError('badArgument', `cagecast/three/layers: the place of a layer is ${place}, not an integer`);
+      throw new CagecastError(
+        'badArgument',
+        'cagecast/three/layers',
+        `the place of a layer is ${place}, not an integer`,
+      );
     const to = Math.max(0, Math.min(this.#layers.length - 1, place));
     if (from === to) return;
     const layers = [...this.#layers];
@@ -135,7 +139,7 @@ export class LayerStack extends Emitter<StackEvents> {
 
   #indexOf({ id }: Pick<Layer, 'id'>): number {
     const index = this.#layers.findIndex((layer) => layer.id === id);
-    if (index < 0) throw new CagecastError('badArgument', 'That layer was removed.');
+    if (index < 0) throw new CagecastError('badArgument', '', 'That layer was removed.');
     return index;
   }
 

@@ -55,7 +55,8 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
     if (!paintingSizes.includes(size))
       throw new CagecastError(
         'badOption',
-        `cagecast/three/paint: size is ${size}, not one of ${paintingSizes.join(', ')}`,
+        'cagecast/three/paint',
+        `size is ${size}, not one of ${paintingSizes.join(', ')}`,
       );
     this.#size = size;
   }
@@ -95,8 +96,8 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
     this.cancel();
     const stroke = this.#surface();
     const painted = this.#paintedLayer();
-    if (!stroke) throw new CagecastError('badArgument', 'There is no cage to paint on yet.');
-    if (!painted && style.erases) throw new CagecastError('badArgument', 'There is no painting to erase yet.');
+    if (!stroke) throw new CagecastError('badArgument', '', 'There is no cage to paint on yet.');
+    if (!painted && style.erases) throw new CagecastError('badArgument', '', 'There is no painting to erase yet.');
     edits.begin();
     try {
       const layer = painted ?? this.addLayer();

@@ -48,7 +48,7 @@ export interface StickerPlace {
 }
 
 const check = (fits: boolean, name: string, value: unknown, what: string): void => {
-  if (!fits) throw new CagecastError('badOption', `cagecast/three/paint: ${name} is ${value}, not ${what}`);
+  if (!fits) throw new CagecastError('badOption', 'cagecast/three/paint', `${name} is ${value}, not ${what}`);
 };
 const checkShare = (name: string, value: number): void =>
   check(value >= 0 && value <= 1, name, value, 'a number from 0 to 1');
@@ -81,10 +81,11 @@ export class Painter {
       if (typeof model?.setTexture !== 'function')
         throw new CagecastError(
           'badArgument',
-          'cagecast/three/paint: options.applied is not what applyTransfer returned',
+          'cagecast/three/paint',
+          'options.applied is not what applyTransfer returned',
         );
     const { positions, indices, uvs } = extract(cage, 'cage').mesh;
-    if (!uvs) throw new CagecastError('badArgument', 'cagecast/three/paint: options.cage has no UVs');
+    if (!uvs) throw new CagecastError('badArgument', 'cagecast/three/paint', 'options.cage has no UVs');
     this.layers = layers ?? createLayers({ renderer } as LayersOptions);
     if (texture && !layers) {
       this.layers.add(texture);
@@ -278,7 +279,7 @@ export class Painter {
     const { toCage, surface, x, y } = Object(point) as Partial<Spot & { x: number; y: number }>;
     if (toCage) return surface;
     if (!Number.isFinite(x) || !Number.isFinite(y))
-      throw new CagecastError('badArgument', `cagecast/three/paint: a point is (${x}, ${y}), not a UV`);
+      throw new CagecastError('badArgument', 'cagecast/three/paint', `a point is (${x}, ${y}), not a UV`);
     return this.#painter.cageTexels?.at(x!, y!);
   }
 }
