@@ -90,7 +90,7 @@ describe('cagecast make', () => {
     assert.equal(apart.status, 1, apart.stdout);
     assert.match(
       apart.stderr,
-      /two\.glb: is in pieces that lie too far apart for one cage: .*, or raise --closing of cagecast make\n$/,
+      /two\.glb: model is in pieces that lie too far apart for one cage: .*, or bridge wider gaps\n$/,
     );
     const bridged = cagecast('make', at('two.glb'), '--closing', '0.15', '-o', at('bridged.glb'));
     assert.equal(bridged.status, 0, bridged.stderr);

@@ -56,7 +56,8 @@ Outcome wrap(const TriangleMesh& mesh, const std::vector<bool>& isMarked, const 
   }
   if (lost <= kLostAtMost) return {};
   return {Problem::badModel,
-          "model is in pieces that lie too far apart for one cage: make one for each, or raise the option closing"};
+          "model is in pieces that lie too far apart for one cage: make one for each, leave out some, or bridge wider "
+          "gaps"};
 }
 
 }  // namespace cagecast::cages

@@ -338,7 +338,7 @@ TEST_CASE("pieces that lie a little too far apart are bridged, all of them or no
   for (const Vec3& middle : {Vec3{0, 1.1, 0}, {0, 1.6, 0}, {0.4, 1.1, 0}, {-0.4, 1.1, 0}, {0.14, 0.4, 0}})
     CHECK(isInside(middle));
   const std::string apart =
-      "model is in pieces that lie too far apart for one cage: make one for each, or raise the option closing";
+      "model is in pieces that lie too far apart for one cage: make one for each, leave out some, or bridge wider gaps";
   CHECK(faultOf(robot(0.2).model()) == apart);
   MakeOptions options;
   options.closing = 0.008f;
@@ -356,7 +356,8 @@ TEST_CASE("what no cage can be made for is said in a sentence", "[cages][make]")
   CHECK(faultOf(model.model(), options) == "model has nothing to paint: all that is seen of it is excluded");
   model.add("second head", sphere({4, 0, 0}, 1));
   CHECK(faultOf(model.model()) ==
-        "model is in pieces that lie too far apart for one cage: make one for each, or raise the option closing");
+        "model is in pieces that lie too far apart for one cage: make one for each, leave out some, or bridge wider "
+        "gaps");
   CHECK(faultOf({}) == "model has no vertices");
   const OwnedModel one = head();
   options = {};

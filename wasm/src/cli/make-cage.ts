@@ -58,7 +58,7 @@ export function fitCageTo(
 
 type Told = (share: number, stage: string) => void;
 
-/** Calls a function that takes seconds, and shows how far it is. @param files  By the names that messages begin with. */
+/** Calls a function that takes seconds, and shows how far it is. @param files  By the arguments that they are given as. */
 async function calling<Result>(
   what: string,
   files: Record<string, string | undefined>,
@@ -71,11 +71,6 @@ async function calling<Result>(
     return call((share, stage) => progress.share(`${what}: ${stage}`, share));
   } catch (error) {
     if (!(error instanceof CagecastError)) throw error;
-    const text = error.message.replace(/^\w+: /, '').replace('the option closing', '--closing of cagecast make');
-    const [head = '', name = ''] = /^(?:the )?(model|template|landmarks)(?:\.| (?=is|has)|: )/.exec(text) ?? [];
-    const file = files[name];
-    throw new InputError(file === undefined ? text : text.slice(head.length), { cause: error }).in(
-      file ?? files['model']!,
-    );
+    throw new InputError(error.reason, { cause: error }).in(files[error.argument ?? 'model'] ?? files['model']!);
   }
 }

@@ -210,15 +210,12 @@ function inFile(
   { targetFile, target, cageFile, cage }: Pick<Run, 'targetFile' | 'target' | 'cageFile' | 'cage'>,
 ): unknown {
   if (!(error instanceof CagecastError)) return error;
-  const { message, code, at } = error;
-  const text = message.replace(/^\w+: /, '');
-  const isCage = text.startsWith('cage');
-  if (!isCage && !text.startsWith('target')) return new InputError(text).in(targetFile.path);
-  const { parts } = isCage ? cage : target;
+  const { reason, argument, code, at } = error;
+  const [{ path }, { parts }] = argument === 'cage' ? [cageFile, cage] : [targetFile, target];
   const perVertex = { nonFinitePosition: 3, tooLarge: 3, nonFiniteUv: 2 }[code as string];
   const part = perVertex === undefined ? undefined : partOf(parts, Math.floor(at / perVertex));
   const where = part ? ` (${primitivePath(part)}, ${quoted(part.name)})` : '';
-  return new InputError(`${text}${where}`).in((isCage ? cageFile : targetFile).path);
+  return new InputError(`${reason}${where}`).in(path);
 }
 
 /** Cuts the target. @throws {InputError} that names the file and the element at fault. */

@@ -50,7 +50,7 @@ export async function bakeCommand(command: BakeCommand, progress: Progress): Pro
 
 /** An error of reading or baking the target, with its name. */
 function inTarget(error: unknown, path: string): unknown {
-  if (error instanceof CagecastError) return new InputError(error.message, { cause: error }).in(path);
+  if (error instanceof CagecastError) return new InputError(error.reason, { cause: error }).in(path);
   return error instanceof InputError ? error.in(path) : error;
 }
 
