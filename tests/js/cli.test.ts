@@ -1658,6 +1658,13 @@ describe('inspect', () => {
     }
   });
 
+  test('an advice to override a verdict comes with the flag that does', () => {
+    const strict = ['inspect', at('target.glb'), '--cage', at('cage.glb'), '--threshold', '1'];
+    const { stdout } = cagecast(...strict);
+    assert.match(stdout, /✗ No part of the target may be painted: .*\n {2}→ .* To override: --keep "only"\n/);
+    assert.doesNotMatch(cagecast(...strict, '--keep', 'only').stdout, /No part of the target|To override/);
+  });
+
   test('--html writes a page that needs nothing else', () => {
     const page = at('inspection.html');
     const { status, stdout } = cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'), '--html', page);

@@ -113,7 +113,7 @@ describe('suggest', () => {
       assert.match(sentence, words);
       assert.deepEqual(places, [{ segment: 1, group: 1, part: 'group 1' }]);
       const isCulled = culled(options)[1]!;
-      assert.ok(advice.includes(`--${isCulled ? 'keep' : 'exclude'} "group 1"`), advice);
+      assert.match(advice, /^If that is wrong, override it, /);
       assert.equal(culled({ ...options, locks })[1], !isCulled);
     }
   });

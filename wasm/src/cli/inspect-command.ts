@@ -2,7 +2,7 @@ import { counted } from '../inspect/finding.js';
 import { boxOf, vertexAreas } from '../inspect/geometry.js';
 import { type Inspection, inspect, unfitFrom, usableFrom, type Verdict } from '../inspect/index.js';
 import { inspectionPage } from './inspect-page.js';
-import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
+import { adviceOn, configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
 import { boundsAround, type UvBounds, withinBounds } from './paint/cage-area.js';
 import { oneLine } from './print.js';
@@ -98,9 +98,9 @@ const conclusions: Record<Verdict, string> = {
 export function conclusionOf({ verdict, findings }: Inspection): string[] {
   return [
     conclusions[verdict],
-    ...findings.flatMap(({ weight, sentence, advice }) => [
-      `${weight >= unfitFrom ? '✗' : weight >= usableFrom ? '!' : '·'} ${oneLine(sentence)}.`,
-      `  → ${oneLine(advice)}`,
+    ...findings.flatMap((finding) => [
+      `${finding.weight >= unfitFrom ? '✗' : finding.weight >= usableFrom ? '!' : '·'} ${oneLine(finding.sentence)}.`,
+      `  → ${oneLine(adviceOn(finding))}`,
     ]),
   ];
 }

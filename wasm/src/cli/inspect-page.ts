@@ -4,6 +4,7 @@ import { boxOf, pointAt, type Vector } from '../inspect/geometry.js';
 import { unfitFrom, usableFrom } from '../inspect/index.js';
 import { type Scene, sceneOf } from '../inspect/scene.js';
 import type { InspectionReport } from './inspect-command.js';
+import { adviceOn } from './options.js';
 import { Picture, type Rgb, type View } from './raster.js';
 import type { Run } from './run.js';
 import { integer, percent, segmentCells, segmentColumns } from './table.js';
@@ -64,7 +65,7 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
 </style>
 <h1><span class="verdict ${verdict}">${verdict}</span> ${title}</h1>
 <p>${integer(report.target.triangles)} triangles under a cage of ${integer(report.cage.triangles)}; preset ${text(options.preset)}, threshold ${options.threshold}. Cagecast ${text(report.versions.cagecast)}.</p>
-${findings.length > 0 ? `<ol>${findings.map(({ weight, sentence, advice }) => `<li><i class="${mark(weight)}"></i>${text(sentence)}.<small>${text(advice)}</small></li>`).join('')}</ol>` : '<p>No problems found.</p>'}
+${findings.length > 0 ? `<ol>${findings.map((finding) => `<li><i class="${mark(finding.weight)}"></i>${text(finding.sentence)}.<small>${text(adviceOn(finding))}</small></li>`).join('')}</ol>` : '<p>No problems found.</p>'}
 <h2>Zones</h2>
 <p>${zoneNames.map((zone, z) => `<span class="key" style="background:rgb(${kZoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>
 <div class="row">${views.map(({ name, view }) => figure(name, drawZones(scene, view))).join('')}</div>

@@ -3,6 +3,7 @@ import { optionFlags } from '../generated/options.js';
 import type { Extracted } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { type Lock, type Preset, type PresetOptions, presetOptions, type TransferOptions } from '../index.js';
+import type { Finding } from '../inspect/finding.js';
 import { cut, listed } from './table.js';
 
 export type Single = Partial<Omit<PresetOptions, 'steps'>>;
@@ -181,6 +182,13 @@ export function noSuchName(flag: string, parts: readonly { aliases: string[] }[]
   const names = [...new Set(parts.flatMap(({ aliases }) => aliases))];
   const shown = names.map((name) => cut(name, kMostCharacters));
   return new InputError(`${flag}: no node or material has this name; there are: ${listed(shown, kMostNames)}`);
+}
+
+/** What to do about a finding, with the flags that reverse its verdicts, if there are any. */
+export function adviceOn({ advice, places = [], locks }: Finding): string {
+  const locked = places.filter(({ segment }) => locks?.segments?.[segment] !== undefined);
+  const flags = new Set(locked.map(({ segment, part }) => `--${locks!.segments![segment]} "${part}"`));
+  return flags.size === 0 ? advice : `${advice} To override: ${[...flags].join(' ')}`;
 }
 
 /** How many names a message lists at most. */

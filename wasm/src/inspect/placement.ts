@@ -315,8 +315,7 @@ function describe(
   if (cause === 'cageTooSmall')
     return {
       sentence: `The cage is too small: ${out}`,
-      advice:
-        'Enlarge it along its normals until the target is inside; if it is scaled, refineCage of cagecast/cages scales it back.',
+      advice: 'Enlarge it along its normals, or scale it back if it was scaled, until the target is inside.',
     };
   if (cause === 'targetPokesOut')
     return { sentence: out, advice: 'Move the cage outwards there, or enlarge it along its normals.' };
@@ -336,6 +335,6 @@ function describe(
   const turns = correction.turn.map((degrees) => `${degrees.toFixed(1)}°`).join(', ');
   return {
     sentence: `The cage is misplaced${how.length > 0 ? `, ${how.join(' and ')}` : ''}: ${out}`,
-    advice: `Move it by about (${moves}) and rotate it by about (${turns}) around x, y and z, or call refineCage of cagecast/cages.`,
+    advice: `Move it by about (${moves}) and rotate it by about (${turns}) around x, y and z.`,
   };
 }

@@ -96,7 +96,7 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
         ? `${only} may be painted: the cage covers ${percent(largest.coverage)} of the exposed area of "${largest.part}", ${reason(largest, threshold)}`
         : `${only} may be painted`,
       advice: largest
-        ? `If the cage should cover only a region of "${largest.part}", override this (${option(largest)}) or make that region a mesh of its own. Otherwise extend the cage.`
+        ? `If the cage should cover only a region of "${largest.part}", override this or make that region a mesh of its own. Otherwise extend the cage.`
         : 'The other findings and the zones show the reason; uncovered vertices, for example, have no cage over them.',
       numbers: { share, culled: over > 0 ? cut / over : 0 },
       ...(largest && { places: [placeOfSegment(largest.s, largest)], locks: locksFor([largest]) }),
@@ -119,7 +119,7 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
         code: 'segmentInDoubt',
         weight: Math.min(0.9, 0.2 + 2 * area),
         sentence: `${one} ${is} ${culled ? 'not painted' : 'painted'}, but only just: ${alike.length === 1 ? 'its coverage is' : 'the largest has a coverage of'} ${shownCoverage(largest, threshold)}, ${reason(largest, threshold)} (${percent(area)} of the target's exposed area)`,
-        advice: `If that is wrong, override it (${option(largest)}), or widen or close the holes over ${alike.length === 1 ? 'it' : 'them'}.`,
+        advice: `If that is wrong, override it, or widen or close the holes over ${alike.length === 1 ? 'it' : 'them'}.`,
         numbers: { segments: alike.length, area, score: largest.score! },
         places: alike.map((segment) => placeOfSegment(segment.s, segment)),
         locks: locksFor(alike),
@@ -141,7 +141,8 @@ function checkTwins({ result }: Scene, numbered: readonly Numbered[], exposed: n
         code: 'twinsDiffer',
         weight: 0.2,
         sentence: `Of ${twins.length} segments with the shape of "${largest.part}", ${painted} ${painted === 1 ? 'is' : 'are'} painted and ${unpainted} ${unpainted === 1 ? 'is' : 'are'} not`,
-        advice: 'If they should be treated alike, lock some of them, and check whether the cage covers them equally.',
+        advice:
+          'If they should be treated alike, keep or exclude some of them, and check whether the cage covers them equally.',
         numbers: { painted, bare: unpainted },
         places: twins.map((twin) => placeOfSegment(twin.s, twin)),
         locks: locksFor(culled),
@@ -161,7 +162,7 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
       code: 'muchCulled',
       weight: 0.2,
       sentence: `${percent(share)} of the target's exposed area is culled, in ${counted(all.length, 'exposed segment')}; the largest belongs to "${largest.part}"`,
-      advice: `If some of it should be painted, override this (${option(largest)}), or close the holes of the cage over it.`,
+      advice: `If some of it should be painted, override this, or close the holes of the cage over it.`,
       numbers: { share },
       places: all
         .filter(({ exposedArea }) => exposedArea >= kLeastArea * exposed)
@@ -179,7 +180,7 @@ function shownCoverage({ coverage, culled }: Segment, threshold: number): string
 
 /** Why a segment is culled or kept, as the end of a sentence about its coverage. */
 function reason({ coverage, culled, culledBy, score }: Segment, threshold: number): string {
-  if (culledBy === 'lock') return 'but a lock excludes it';
+  if (culledBy === 'lock') return 'but it is excluded by choice';
   if (culledBy === 'hole') return 'but a hole of the cage seems to be meant for it';
   const byThreshold = culled ? coverage < threshold : score !== null && Math.abs(score * threshold - coverage) <= 1e-6;
   if (byThreshold) return culled ? `less than the threshold of ${threshold}` : `and the threshold is ${threshold}`;
@@ -190,9 +191,6 @@ function reason({ coverage, culled, culledBy, score }: Segment, threshold: numbe
 
 /** Where a segment is. */
 export const placeOfSegment = (segment: number, { group, part }: Segment): Place => ({ segment, group, part });
-
-/** The lock that reverses the verdict on a segment, as an option of the command. */
-const option = ({ part, culled }: Segment): string => `--${culled ? 'keep' : 'exclude'} "${part}"`;
 
 const locksFor = (segments: readonly Numbered[]): Locks => ({
   segments: Object.fromEntries(segments.map(({ s, culled }) => [s, culled ? 'keep' : 'exclude'])),
