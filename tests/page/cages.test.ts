@@ -69,7 +69,6 @@ test('what the page says of a made cage that is poor, or that cannot be made, ca
   assert.equal(await page.getByRole('button', { name: /move the cage/i }).count(), 0, 'it is where it belongs');
   assert.ok(await page.getByTestId('stage-remedy').isHidden(), 'the same cage again is no remedy');
 
-  // What would have to be typed elsewhere is told in words of the page.
   const maker = new GlbMaker();
   for (const x of [0, 9]) maker.node({ name: 'rock', translation: [x, 0, 0], mesh: maker.mesh(tetrahedron()) });
   await drop(page, [glb('rocks.glb', maker.finish())]);
@@ -78,7 +77,7 @@ test('what the page says of a made cage that is poor, or that cannot be made, ca
   await page.getByTestId('error').waitFor();
   assert.match(
     await shownError(page),
-    /rocks\.glb: model is in pieces that lie too far apart for one cage: open each as a model of its own, or switch off/,
+    /rocks\.glb: model is in pieces that lie too far apart for one cage: make one for each, leave out some,/,
   );
   assert.deepEqual(complaints, []);
 });

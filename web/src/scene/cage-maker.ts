@@ -8,7 +8,7 @@ import { likelyTemplate } from './likely-template';
 import { loadModel, type Model } from './load-model';
 import type { Sample } from './samples';
 import type { Session } from './session';
-import { forPeople } from './wording';
+import { reasonOf } from './wording';
 
 /** What the steps of the engine are called for people. */
 const kStages: Record<string, string> = {
@@ -214,8 +214,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       this.#session.want({ cage: loadModel(file, this.#renderer) });
     } catch (error) {
       if (abort.signal.aborted) return;
-      const message = forPeople((error as Error).message.replace(/^\w+: /, ''));
-      this.#session.fail(new Error(`${target.name}: ${message}`, { cause: error }));
+      this.#session.fail(new Error(`${target.name}: ${reasonOf(error)}`, { cause: error }));
     }
   }
 

@@ -1,3 +1,4 @@
+import type { CagecastError } from 'cagecast';
 import { checkGltf } from 'cagecast/gltf';
 import type { LoadedGltf } from 'cagecast/three';
 import { type AnimationClip, Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
@@ -131,7 +132,7 @@ function checkCost(bytes: ArrayBuffer, companions: readonly File[]): void {
   try {
     checkGltf(new Uint8Array(bytes), { otherBytes: companions.reduce((sum, { size }) => sum + size, 0) });
   } catch (error) {
-    throw new Error((error as Error).message.replace(/^checkGltf: /, ''), { cause: error });
+    throw new Error((error as CagecastError).reason, { cause: error });
   }
 }
 

@@ -415,12 +415,14 @@ export class Session extends Emitter<SessionEvents> {
       return projection;
     } catch (error) {
       if (!(error instanceof CagecastError) || superseded()) throw error;
-      const blamed = /\b(cage|target)\b/.exec(error.message)?.[0] as 'cage' | 'target' | undefined;
-      // Keep a model that was accepted before: the other one does not fit it, and may be replaced.
       const files = { target, cage };
-      if (blamed && files[blamed] !== this.#shown?.[blamed]) this.#giveUp(blamed);
-      const name = blamed ? files[blamed].name : `${target.name} with ${cage.name}`;
-      throw new Error(`${name}: ${error.message.replace(/^\w+: /, '')}`, { cause: error });
+      const slots = ['target', 'cage'] as const;
+      const named = slots.filter((slot) => slot === error.argument);
+      const blamed = named.length > 0 ? named : slots;
+      // Keep a model that was accepted before: the other one does not fit it, and may be replaced.
+      for (const slot of blamed) if (files[slot] !== this.#shown?.[slot]) this.#giveUp(slot);
+      const name = blamed.map((slot) => files[slot].name).join(' with ');
+      throw new Error(`${name}: ${error.reason}`, { cause: error });
     }
   }
 

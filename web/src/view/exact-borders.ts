@@ -1,4 +1,5 @@
 import type { Classification } from 'cagecast';
+import { reasonOf } from '../scene/wording';
 import { element } from '../platform/page';
 import type { Session } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
@@ -99,11 +100,7 @@ export class ExactBorders {
     } catch (error) {
       if (error instanceof Superseded) return done();
       this.#session.setRules({ borders: 'triangle' });
-      this.#session.fail(
-        new Error(`${target.name}: ${error instanceof Error ? error.message.replace(/^\w+: /, '') : String(error)}`, {
-          cause: error,
-        }),
-      );
+      this.#session.fail(new Error(`${target.name}: ${reasonOf(error)}`, { cause: error }));
     }
   }
 }

@@ -2,6 +2,7 @@ import { classify } from 'cagecast';
 import { Emitter } from 'cagecast/three/layers';
 import { Group, type Texture } from 'three';
 import { paintableShare } from '../panels/stage-verdict';
+import { reasonOf } from '../scene/wording';
 import { showError } from '../platform/page';
 import { disposeModel, loadModel, type Model } from '../scene/load-model';
 import { haveSameUvs } from '../scene/same-uvs';
@@ -345,7 +346,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
       avatar.follows = true;
     } catch (error) {
       if (abort.signal.aborted) return;
-      showError(`${avatar.name}: ${(error as Error).message.replace(/^\w+: /, '')}`);
+      showError(`${avatar.name}: ${reasonOf(error)}`);
     } finally {
       this.#fits.delete(avatar);
     }
