@@ -126,9 +126,14 @@ class Fit {
   [[nodiscard]] bool tell(double share, const char* stage) const {
     return !progress_ || progress_(static_cast<float>(share), stage);
   }
+  [[nodiscard]] Outcome pair(const TemplateCage& cage, FittedCage& out);
+  void align();
   void readTarget();
   [[nodiscard]] std::vector<Anchor> anchorsOf(const TemplateCage& cage) const;
   [[nodiscard]] std::vector<Vec3> start(const TemplateCage& cage, const std::vector<Anchor>& anchors) const;
+  [[nodiscard]] bool draw(const TemplateCage& cage, const TriangleMesh& hull, const FitSettings& settings,
+                          std::vector<Vec3>& positions) const;
+  void write(const TemplateCage& cage, const std::vector<Vec3>& positions, FittedCage& out) const;
 
   const Template& from_;
   const Model& model_;
@@ -193,10 +198,9 @@ std::vector<Vec3> Fit::start(const TemplateCage& cage, const std::vector<Anchor>
   return positions;
 }
 
-Outcome Fit::run(FittedCage& out) {
+/// Pairs the landmarks of the template with those that were given or are found.
+Outcome Fit::pair(const TemplateCage& cage, FittedCage& out) {
   const std::vector<Landmark>& given = options_.landmarks;
-  Outcome cancelled{Problem::cancelled, "cancelled"};
-  TemplateCage cage = prepareTemplate(from_);
   FoundLandmarks found;
   const bool allGiven = std::all_of(from_.landmarks.begin(), from_.landmarks.end(), [&](const Landmark& landmark) {
     return findLandmark(given, landmark.name) != nullptr;
@@ -206,52 +210,44 @@ Outcome Fit::run(FittedCage& out) {
     if (Outcome outcome = findLandmarks(model_, finding, found); !outcome.ok()) return outcome;
   }
   if (Outcome outcome = pairLandmarks(from_, given, found.landmarks, pairs_, out); !outcome.ok()) return outcome;
-  if (Outcome outcome = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal); !outcome.ok())
-    return outcome;
-  std::vector<Vec3> a, b;
+  return checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);
+}
+
+/// Brings the target's landmarks into the template's space, and finds the bones.
+void Fit::align() {
+  std::vector<Vec3> from, to;
   for (std::size_t i = 0; i < pairs_.from.size(); ++i) {
-    a.push_back(positionOf(pairs_.from[i]));
-    b.push_back(positionOf(pairs_.to[i]));
+    from.push_back(positionOf(pairs_.from[i]));
+    to.push_back(positionOf(pairs_.to[i]));
   }
-  map_ = fitSimilarity(a, b);
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    const Vec3 p = map_.inverse(b[i]);
+  map_ = fitSimilarity(from, to);
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const Vec3 p = map_.inverse(to[i]);
     pairs_.to[i].position = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
   }
   bones_ = bonesOf(pairs_.from, pairs_.to);
-  const FitSettings& settings = bones_.empty() ? kHead : kBody;
-  cage.offset = std::max(cage.offset, kLeastOffset * cage.diagonal);
-  readTarget();
-  if (skin_.empty())
-    return {Problem::badModel, "model: all of its parts are excluded by name; at least one must be painted"};
-  const std::vector<Anchor> anchors = anchorsOf(cage);
-  if (anchors.empty())
-    return {Problem::badLandmarks, "landmarks: only " + std::to_string(a.size()) +
-                                       " joints are known, too few for a skeleton of " + std::to_string(kLeastBones) +
-                                       " bones; give more of them, or landmarks on the skin"};
-  if (!tell(kLandmarksEnd, "hull")) return cancelled;
-  TriangleMesh hull;
-  const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels, middleOf(pairs_.to)};
-  if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return cancelled;
-  if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
-  std::vector<Vec3> positions = start(cage, anchors);
+}
+
+/// Draws the cage onto the hull, and pushes it out until the target is inside. @return false if cancelled.
+bool Fit::draw(const TemplateCage& cage, const TriangleMesh& hull, const FitSettings& settings,
+               std::vector<Vec3>& positions) const {
   for (int pass = 0; pass < settings.passes; ++pass) {
     if (pass > 0) relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
     positions = tighten(cage, positions, hull, settings.tighten, [&](double share) {
       return tell(kTightenStart + (pass + share) / settings.passes * (kTightenEnd - kTightenStart), "fit");
     });
-    if (positions.empty()) return cancelled;
+    if (positions.empty()) return false;
   }
   const std::vector<Vec3> tracks = fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
-  if (!tell(kTightenEnd, "fit")) return cancelled;
+  if (!tell(kTightenEnd, "fit")) return false;
   relax(cage, tracks, positions);
-  const bool pushed = pushOut(
+  return pushOut(
       cage, {skin_, hull}, tracks,
       [&](double share) { return tell(kTightenEnd + share * (1 - kTightenEnd), "push out"); }, positions);
-  if (!pushed) return cancelled;
-  if (!isNear(positions, hull, pairs_.to, kMostBeyond * cage.diagonal))
-    return {Problem::badModel,
-            "model: the template does not fit it; if there are several figures in it, exclude all but one of them"};
+}
+
+/// Writes the cage in the target's space.
+void Fit::write(const TemplateCage& cage, const std::vector<Vec3>& positions, FittedCage& out) const {
   out.positions.clear();
   for (const std::uint32_t v : cage.vertexOf) {
     const Vec3 p = map_(positions[v]);
@@ -260,8 +256,35 @@ Outcome Fit::run(FittedCage& out) {
   out.uvs.assign(from_.cage.uvs.begin(), from_.cage.uvs.end());
   out.indices.assign(from_.cage.indices.begin(), from_.cage.indices.end());
   out.kind = from_.kind;
-  if (!tell(1, "done")) return cancelled;
-  return {};
+}
+
+Outcome Fit::run(FittedCage& out) {
+  const Outcome cancelled{Problem::cancelled, "cancelled"};
+  TemplateCage cage = prepareTemplate(from_);
+  if (Outcome outcome = pair(cage, out); !outcome.ok()) return outcome;
+  align();
+  const FitSettings& settings = bones_.empty() ? kHead : kBody;
+  cage.offset = std::max(cage.offset, kLeastOffset * cage.diagonal);
+  readTarget();
+  if (skin_.empty())
+    return {Problem::badModel, "model: all of its parts are excluded by name; at least one must be painted"};
+  const std::vector<Anchor> anchors = anchorsOf(cage);
+  if (anchors.empty())
+    return {Problem::badLandmarks, "landmarks: only " + std::to_string(pairs_.from.size()) +
+                                       " joints are known, too few for a skeleton of " + std::to_string(kLeastBones) +
+                                       " bones; give more of them, or landmarks on the skin"};
+  if (!tell(kLandmarksEnd, "hull")) return cancelled;
+  TriangleMesh hull;
+  const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels, middleOf(pairs_.to)};
+  if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return cancelled;
+  if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
+  std::vector<Vec3> positions = start(cage, anchors);
+  if (!draw(cage, hull, settings, positions)) return cancelled;
+  if (!isNear(positions, hull, pairs_.to, kMostBeyond * cage.diagonal))
+    return {Problem::badModel,
+            "model: the template does not fit it; if there are several figures in it, exclude all but one of them"};
+  write(cage, positions, out);
+  return tell(1, "done") ? Outcome{} : cancelled;
 }
 
 }  // namespace
