@@ -102,13 +102,9 @@ class Calls {
       return ending(kOutOfMemory);
     }
     options.locks = lists.view();
-    Zones& zones = result_.zones;
-    const Status status = cagecast::classify(projection.view(), indices_, options, zones);
+    const Status status = cagecast::classify(projection.view(), indices_, options, result_.zones);
     if (!status.ok()) return ending(status);
-    for (std::size_t s = 0; s < projection.segmentStats.size(); ++s) {
-      projection.segmentStats[s].culledBy = zones.culledBy[s];
-      projection.segmentStats[s].score = zones.scores[s];
-    }
+    result_.setVerdicts();
     val out = ending(status);
     out.set("segmentStats", records(projection.segmentStats));
     decided(out);

@@ -132,10 +132,7 @@ Status transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   const Status status =
       timed(times.classify, [&] { return classify(projection.view(), target.indices, options, zones); });
   if (!status.ok()) return status;
-  for (std::size_t s = 0; s < projection.segmentStats.size(); ++s) {
-    projection.segmentStats[s].culledBy = zones.culledBy[s];
-    projection.segmentStats[s].score = zones.scores[s];
-  }
+  out.setVerdicts();
   times.total += times.classify;
   projection.peakBytes +=
       bytesOf(zones.zones, zones.cosmeticTriangles, zones.culledBy, zones.scores, zones.explainedHoles);

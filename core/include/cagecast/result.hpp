@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -130,6 +131,14 @@ struct Zones {
 struct TransferResult {
   Projection projection;  ///< With `culledBy` and `score` of each segment set.
   Zones zones;
+
+  /// Sets `culledBy` and `score` of each segment in `projection` as `classify` found them.
+  void setVerdicts() noexcept {
+    for (std::size_t s = 0; s < projection.segmentStats.size(); ++s) {
+      projection.segmentStats[s].culledBy = zones.culledBy[s];
+      projection.segmentStats[s].score = zones.scores[s];
+    }
+  }
 };
 
 }  // namespace cagecast
