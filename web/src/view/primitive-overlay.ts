@@ -104,10 +104,10 @@ export class PrimitiveOverlay {
 
   /** Shows the filtered paint on the cut target. @param vertexCount Of the whole target before cutting. */
   setCut(cut: CutTarget, vertexCount: number): void {
-    const { mesh, mirrored } = this.#primitive;
+    const { mesh } = this.#primitive;
     const geometry = shareVertices(mesh.geometry);
     geometry.morphAttributes = { ...geometry.morphAttributes }; // a copy, as `cutGeometry` replaces entries
-    const { pieces, split } = cutGeometry(geometry, { ...this.#primitive, turned: mirrored }, cut, vertexCount);
+    const { pieces, split } = cutGeometry(geometry, this.#primitive, cut, vertexCount);
     geometry.setAttribute(kUvName, new BufferAttribute(split.uvs, 2));
     const { cosmeticTriangles, zones } = pieces.result;
     const triangleZones = zonesOfTriangles(cosmeticTriangles, zones, pieces.geometry.localIndices);
