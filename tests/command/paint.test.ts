@@ -21,7 +21,10 @@ const cage = ['--cage', at('cage.glb')];
 let io: NodeIO;
 
 interface Report {
-  triangles: { total: number; cosmetic: number };
+  counts: object;
+  options: { uvBounds?: number[]; referenceCage?: string };
+  triangles: { total: number; cosmetic: number; outOfBounds?: number };
+  cut: { triangles: Report['triangles'] } | null;
   regions: { cage: string; uvSet: string; zones: string; triangles: { total: number; cosmetic: number } }[];
 }
 
@@ -309,7 +312,8 @@ test('--uv-bounds: the texture covers a part of the UVs, and nothing is painted 
   const report = at('bounded.json');
   ok('transfer', target, ...cage, ...bounds, '--texture', at('paint.png'), ...region, '-o', part, '--report', report);
   const { triangles, regions } = JSON.parse(readFileSync(report, 'utf8')) as Report;
-  assert.equal(regions[0]!.triangles.cosmetic, triangles.cosmetic - after.triangles.length);
+  assert.equal(triangles.cosmetic, after.triangles.length);
+  assert.equal(triangles.cosmetic + regions[0]!.triangles.cosmetic, before.triangles.length);
   const both = overlaysOf(await io.read(part));
   assert.equal(both.length, 2);
   assert.equal(both[0]!.triangles.length + both[1]!.triangles.length, before.triangles.length);
@@ -335,6 +339,36 @@ test('--uv-bounds: the texture covers a part of the UVs, and nothing is painted 
     assert.match(stderr, says);
   }
 });
+
+for (const borders of ['triangle', 'cut'])
+  test(`the report of --uv-bounds counts what is painted (--borders ${borders})`, async () => {
+    const [whole, part, out] = [at(`whole-${borders}.json`), at(`part-${borders}.json`), at(`part-${borders}.glb`)];
+    const flags = [...cage, '--texture', at('paint.png'), '--borders', borders, '-o', out];
+    ok('transfer', target, ...flags, '--report', whole);
+    const bounds = ['--uv-bounds', '0.25,0.2,0.75,0.6', '--reference-cage', at('cage.glb')];
+    const text = ok('transfer', target, ...flags, ...bounds, '--report', part);
+    const [before, after] = [whole, part].map((path) => JSON.parse(readFileSync(path, 'utf8')) as Report);
+    const painted = (report: Report) => (report.cut ?? report).triangles;
+    assert.equal(painted(after!).cosmetic, overlaysOf(await io.read(out))[0]!.triangles.length);
+    assert.equal(after!.triangles.cosmetic + after!.triangles.outOfBounds!, before!.triangles.cosmetic);
+    assert.match(text, new RegExp(`\n${after!.triangles.cosmetic} of \\d+ triangles may be painted`));
+    assert.match(
+      text,
+      new RegExp(`\n${painted(after!).outOfBounds!.toLocaleString('en')} more are outside of the bounds of UVs, which`),
+    );
+    // The zones are the cage's.
+    assert.deepEqual(after!.counts, before!.counts);
+    assert.deepEqual(after!.options.uvBounds, [0.25, 0.2, 0.75, 0.6]);
+    assert.equal(after!.options.referenceCage, at('cage.glb'));
+    assert.ok(!('uvBounds' in before!.options || 'referenceCage' in before!.options), 'options that are not given');
+    assert.match(cagecast('diff', whole, part).stdout, /\n +triangles painted /);
+    // The same if nothing is written.
+    if (borders === 'triangle') {
+      assert.deepEqual(reportOf(...cage, ...bounds).triangles, after!.triangles);
+      const { stdout } = cagecast('batch', target, '--report', at('line.json'), ...cage, ...bounds);
+      assert.deepEqual((JSON.parse(stdout) as Report).triangles, after!.triangles);
+    }
+  });
 
 test('--uv-bounds and tiles of UVs exclude each other', () => {
   const both = ['--texture', at('tile.<UDIM>.png'), '--uv-bounds', '0,0,1,1', '-o', at('both.glb')];

@@ -11,7 +11,14 @@ import type { Report } from './transfer/report.js';
 
 /** What a worker found. */
 export type Outcome =
-  | { status: 'done'; ms: number; counts: Report['counts']; verdict?: Verdict; findings?: string[] }
+  | {
+      status: 'done';
+      ms: number;
+      counts: Report['counts'];
+      triangles: Report['triangles'];
+      verdict?: Verdict;
+      findings?: string[];
+    }
   | { status: 'failed'; ms: number; error: string };
 
 /** Answers tasks until the thread is ended. Cages are read once. */
@@ -26,11 +33,12 @@ export function serveBatch(): void {
     try {
       makeFolders(command);
       const { report } = await transferCommand(command, progress, models);
-      const { counts, verdict, findings } = report;
+      const { counts, triangles, verdict, findings } = report;
       port.postMessage({
         status: 'done',
         ms: ms(),
         counts,
+        triangles,
         ...(verdict && { verdict, findings: findings!.map(({ code }) => code) }),
       } satisfies Outcome);
     } catch (error) {

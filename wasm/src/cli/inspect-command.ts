@@ -56,7 +56,7 @@ export async function inspectCommand(
 
 /** Inspects the cage of a run. @param textures  Where its UVs have textures, besides 0..1. */
 export function inspectionReport(
-  { target: targetFile, cage: cageFile, rules }: Pick<InspectCommand, 'target' | 'cage' | 'rules'>,
+  command: Omit<Sources, 'reading'>,
   { target, wholeCage, options, result }: Run,
   textures: readonly UvBounds[],
 ): InspectionReport {
@@ -68,14 +68,14 @@ export function inspectionReport(
     ...inspect(cage.mesh, mesh, { ...options, result, parts }),
     versions: { cagecast: CAGECAST_VERSION, node: process.versions.node },
     target: {
-      file: targetFile,
+      file: command.target,
       vertices: mesh.positions.length / 3,
       triangles: mesh.indices.length / 3,
       points: result.segmentStats.reduce((sum, { points }) => sum + points, 0),
       diagonal: boxOf(mesh.positions).diagonal,
     },
-    cage: { file: cageFile, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
-    options: effectiveOptions(rules),
+    cage: { file: command.cage, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
+    options: effectiveOptions(command),
     counts: perZone(result.zones),
     coverage: {
       cosmetic: areas.cosmetic / total,

@@ -4,6 +4,7 @@ import type { Extracted } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { type Lock, type Preset, type PresetOptions, presetOptions, type TransferOptions } from '../index.js';
 import type { Finding } from '../inspect/finding.js';
+import type { Sources } from './run.js';
 import { cut, listed } from './table.js';
 
 export type Single = Partial<Omit<PresetOptions, 'steps'>>;
@@ -119,22 +120,29 @@ export function rulesOf({ preset, keep, exclude, neverMask, alwaysMask, maskColo
 export const infinite = 'Infinity';
 
 /** All options that a transfer was made with, for a report. */
-export interface EffectiveOptions extends Omit<PresetOptions, 'occlusionReach'> {
+export interface EffectiveOptions
+  extends Omit<PresetOptions, 'occlusionReach'>,
+    Pick<Sources, 'uvBounds' | 'referenceCage'> {
   preset: Preset;
   occlusionReach: number | typeof infinite;
   keep: string[];
   exclude: string[];
   /** If there are any. */
-  masks?: MaskFiles;
+  masks?: MaskFiles | undefined;
   /** The configuration file that some of them come from. */
   config: string | null;
 }
 
 /** The options in full; needs `init`. */
-export function effectiveOptions({ preset, single, keep, exclude, masks, config }: Rules): EffectiveOptions {
+export function effectiveOptions({
+  rules: { preset, single, keep, exclude, masks, config },
+  uvBounds,
+  referenceCage,
+}: Pick<Sources, 'rules' | 'uvBounds' | 'referenceCage'>): EffectiveOptions {
   const all = { ...presetOptions(preset), ...single };
   const occlusionReach = Number.isFinite(all.occlusionReach) ? all.occlusionReach : infinite;
-  return { preset, ...all, occlusionReach, keep, exclude, ...(masks && { masks }), config: config ?? null };
+  // JSON leaves out what is undefined.
+  return { preset, ...all, occlusionReach, keep, exclude, masks, uvBounds, referenceCage, config: config ?? null };
 }
 
 /** Says which configuration file settings come from; empty if there is none. */

@@ -25,12 +25,15 @@ export interface Paint {
   name: string;
   mimeType: string;
   bytes: Uint8Array;
-  /** Which triangles show it, by their UVs; by default all. */
+  /** By default, all triangles show it. */
   area?: PaintArea | undefined;
 }
 
-/** Where a texture is: in a tile of UDIM; or within 0..1 only, not repeated outside. */
-type PaintArea = { tile: number } | 'bounded';
+/**
+ * Which triangles show a texture: those whose UVs have their centre in a tile of UDIM; or those whose UVs reach into 0..1, outside of
+ * which the texture is not repeated.
+ */
+export type PaintArea = { tile: number } | 'bounded';
 
 const imageNames: Record<string, string> = {
   'image/png': 'PNG',

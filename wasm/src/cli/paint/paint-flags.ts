@@ -14,7 +14,7 @@ export const addCageAreaFlags = (command: Command): Command =>
     .addOption(
       new Option(
         '--uv-bounds <U0,V0,U1,V1>',
-        "the part of the cage's UVs that the texture covers, and outside of which nothing is painted (default: all; the texture covers 0..1)",
+        "the part of the cage's UVs that the texture covers; triangles wholly outside of it are not painted (default: all; the texture covers 0..1)",
       ).argParser(parseBounds),
     )
     .option(

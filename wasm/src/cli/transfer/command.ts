@@ -2,9 +2,9 @@ import { basename, dirname, join } from 'node:path';
 import { dracoOf, meshoptView } from '../../gltf/check.js';
 import type { Form } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
-import { isShown, type Paint, zoneAttribute } from '../../gltf/overlay.js';
+import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/overlay.js';
 import { writeTransfer } from '../../gltf/write.js';
-import type { CutTarget } from '../../index.js';
+import type { CutTarget, TransferResult } from '../../index.js';
 import type { Verdict } from '../../inspect/index.js';
 import { refuseOverwritingRead } from '../beside.js';
 import { inspectionReport, verdicts } from '../inspect-command.js';
@@ -50,7 +50,7 @@ export async function transferCommand(
 ): Promise<{ text: string; report: Report }> {
   const { output, regions = [] } = command;
   const first = await transferRegion(command, command.texture, progress, { models, isLast: regions.length === 0 });
-  const report = makeReport(command, first.run, output === undefined ? undefined : first.written, first.cut);
+  const report = makeReport(command, first);
   if (command.inspects) {
     const { verdict, findings } = inspectionReport(command, first.run, first.textures);
     Object.assign(report, { verdict, findings });
@@ -104,7 +104,10 @@ interface RegionContext {
 /** What a transfer came to. */
 export interface RegionRun {
   run: Run;
-  cut: CutTarget | undefined;
+  /** 1 per triangle of the target as it was read that may be painted, and is where a texture is. */
+  shown: TransferResult['cosmeticTriangles'];
+  /** The cut target, and the same of its triangles. */
+  cut: (CutTarget & { shown: Uint8Array }) | undefined;
   /** 1 per triangle of what was written that this or an earlier region paints. */
   painted: Uint8Array;
   /** How many of them an earlier region paints. */
@@ -128,20 +131,20 @@ async function transferRegion(
   const run = await runTransfer(command, progress, models, model);
   const cage = { file: run.cageFile, extracted: run.cage };
   const tiles = texture !== undefined && isTiled(texture) ? await readTiles(texture, cage, reading.limits) : [];
-  const paints = paint
-    ? [{ ...paint, ...(uvBounds && { area: 'bounded' as const }) }]
-    : tiles.map(({ tile, ...one }) => ({ ...one, area: { tile } }));
-  const cut = output !== undefined && command.borders === 'cut' ? cutTarget(run, progress) : undefined;
-  const { cosmeticTriangles } = cut ?? run.result;
-  const painted = Uint8Array.from(cosmeticTriangles, (_, t) => before?.painted[cut ? cut.triangles[t]! : t] ?? 0);
+  const areas: PaintArea[] = uvBounds ? ['bounded'] : tiles.map(({ tile }) => ({ tile }));
+  const paints: Paint[] = (paint ? [paint] : tiles).map((one, i) => ({ ...one, area: areas[i] }));
+  const cutMesh = output !== undefined && command.borders === 'cut' ? cutTarget(run, progress) : undefined;
+  const shown = shownTriangles(areas, run.result, run.target.mesh.indices);
+  const cut = cutMesh && { ...cutMesh, shown: shownTriangles(areas, cutMesh, cutMesh.indices) };
+  const ofOutput = cut?.shown ?? shown;
+  const painted = ofOutput.map((_, t) => before?.painted[cut ? cut.triangles[t]! : t] ?? 0);
   const earlier = countOf(painted);
-  const shows = showing(paints, cut ?? run.result, cut?.indices ?? run.target.mesh.indices);
-  const own = cosmeticTriangles.map((isCosmetic, t) => (isCosmetic && !painted[t] && shows(t) ? 1 : 0));
+  const own = ofOutput.map((isShown, t) => (isShown && !painted[t] ? 1 : 0));
   own.forEach((isPainted, t) => {
     if (isPainted) painted[t] = 1;
   });
   const textures = uvBounds ? [uvBounds] : tiles.map(({ tile }) => boundsOfTile(tile));
-  const found = { run, cut, painted, before: earlier, zones, textures };
+  const found = { run, shown, cut, painted, before: earlier, zones, textures };
   if (output === undefined && isLast) return { ...found, written: undefined };
   progress.step(`writing ${output ?? target}`);
   const finalOne = before?.form ?? command.compress;
@@ -165,17 +168,19 @@ async function transferRegion(
   return { ...found, written };
 }
 
-/** Whether a triangle shows one of some paints, if there are any. */
-function showing(
-  paints: readonly Paint[],
-  { uvs, cornerUvs }: Pick<CutTarget, 'uvs' | 'cornerUvs'>,
+/** 1 per triangle that may be painted, if its UVs are in one of some areas. @param areas  If none, they are everywhere. */
+function shownTriangles(
+  areas: readonly PaintArea[],
+  { cosmeticTriangles, uvs, cornerUvs }: Pick<TransferResult, 'cosmeticTriangles' | 'uvs' | 'cornerUvs'>,
   indices: Uint32Array,
-): (triangle: number) => boolean {
-  if (paints.every(({ area }) => area === undefined)) return () => true;
+): TransferResult['cosmeticTriangles'] {
+  if (areas.length === 0) return cosmeticTriangles;
   const isOwn = cornerUvs.length > 0;
   const vertex = (corner: number): number => (isOwn ? corner : indices[corner]!);
   const all = isOwn ? cornerUvs : uvs;
-  return (t) => paints.some(({ area }) => isShown(area, all, vertex(3 * t), vertex(3 * t + 1), vertex(3 * t + 2)));
+  const shows = (t: number) =>
+    areas.some((area) => isShown(area, all, vertex(3 * t), vertex(3 * t + 1), vertex(3 * t + 2)));
+  return cosmeticTriangles.map((isCosmetic, t) => (isCosmetic && shows(t) ? 1 : 0));
 }
 
 /** How the geometry of a target is compressed. */

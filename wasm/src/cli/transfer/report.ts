@@ -1,7 +1,7 @@
 import { type Extracted, type Part, primitivePath } from '../../gltf/extract.js';
 import { zoneAttribute } from '../../gltf/overlay.js';
 import type { Added } from '../../gltf/write.js';
-import type { CutTarget, TransferResult } from '../../index.js';
+import type { TransferResult } from '../../index.js';
 import { boxOf, vertexAreas } from '../../inspect/geometry.js';
 import type { Finding, Verdict } from '../../inspect/index.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from '../options.js';
@@ -20,18 +20,18 @@ export interface Report {
   output: string | null;
   borders: TransferCommand['borders'];
   options: EffectiveOptions;
-  /** Vertices of the target in each zone. */
+  /** Vertices of the target in each zone. The zones are the cage's, whatever part of it the texture covers. */
   counts: PerZone;
   /** Area of the target in each zone: a third of each triangle for each of its corners. */
   areas: PerZone & { total: number };
-  triangles: { total: number; cosmetic: number };
+  triangles: Triangles;
   /** How the texture is stretched where it may be painted; `null` if nowhere. */
   stretch: Stretch | null;
   /**
    * The target after borders were cut and before vertices are split; `null` if borders were not cut. All other fields describe the
    * target as it was read.
    */
-  cut: { vertices: number; counts: PerZone; triangles: { total: number; cosmetic: number } } | null;
+  cut: { vertices: number; counts: PerZone; triangles: Triangles } | null;
   /** Every connected component of the target, in the order of their first vertices. */
   segments: {
     part: string;
@@ -85,22 +85,31 @@ export interface Report {
   peakBytes: number;
 }
 
+/** Triangles of a target. */
+interface Triangles {
+  total: number;
+  /** Those that may be painted, and whose UVs are where a texture is. */
+  cosmetic: number;
+  /** With bounds of UVs: those that might be painted, but are outside of them. */
+  outOfBounds?: number;
+}
+
 /** How many of some flags are 1. */
 export const countOf = (flags: Uint8Array): number => flags.reduce((sum, one) => sum + one, 0);
 
-const trianglesOf = (cosmetic: Uint8Array): Report['triangles'] => ({
+/** @param shown  1 per triangle that is within the bounds of UVs as well, if there are any. */
+const trianglesOf = (cosmetic: Uint8Array, shown: Uint8Array, isBounded: boolean): Triangles => ({
   total: cosmetic.length,
-  cosmetic: countOf(cosmetic),
+  cosmetic: countOf(shown),
+  ...(isBounded && { outOfBounds: countOf(cosmetic) - countOf(shown) }),
 });
 
-/** The report of a transfer. @param written  What was added to the target, if an output was written. */
-export function makeReport(
-  command: TransferCommand,
-  { target, cage, result }: Run,
-  written: { added: Added[]; replaced: number } | undefined,
-  cut: CutTarget | undefined,
-): Report {
+/** The report of a transfer from the first cage. */
+export function makeReport(command: TransferCommand, { run, shown, cut, ...rest }: RegionRun): Report {
+  const { target, cage, result } = run;
   const { mesh, parts } = target;
+  const written = command.output === undefined ? undefined : rest.written;
+  const isBounded = command.uvBounds !== undefined;
   const areas = vertexAreas(mesh);
   return {
     versions: { cagecast: CAGECAST_VERSION, node: process.versions.node },
@@ -114,13 +123,17 @@ export function makeReport(
     texture: command.texture ?? null,
     output: command.output ?? null,
     borders: command.borders,
-    options: effectiveOptions(command.rules),
+    options: effectiveOptions(command),
     counts: perZone(result.zones),
     areas: { total: areas.reduce((sum, area) => sum + area, 0), ...perZone(result.zones, areas) },
-    triangles: trianglesOf(result.cosmeticTriangles),
-    stretch: stretchOf(mesh, result),
+    triangles: trianglesOf(result.cosmeticTriangles, shown, isBounded),
+    stretch: stretchOf(mesh, { ...result, cosmeticTriangles: shown }),
     cut: cut
-      ? { vertices: cut.zones.length, counts: perZone(cut.zones), triangles: trianglesOf(cut.cosmeticTriangles) }
+      ? {
+          vertices: cut.zones.length,
+          counts: perZone(cut.zones),
+          triangles: trianglesOf(cut.cosmeticTriangles, cut.shown, isBounded),
+        }
       : null,
     segments: segmentsOf(target, result),
     parts: parts.map((part, p) => partReport(part, result, written?.added[p])),
@@ -211,10 +224,12 @@ export function summary(
       : hasOverlay
         ? ', and an overlay with the texture'
         : '; no overlay, as the texture shows nowhere';
+  const { outOfBounds = 0 } = cut?.triangles ?? triangles;
   const lines = [
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
     table(rows),
     `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted${cut ? `; cut along borders, ${integer(cut.triangles.cosmetic)} of ${integer(cut.triangles.total)}` : ''}; ${timings.total.toFixed(1)} ms`,
+    outOfBounds > 0 ? `${integer(outOfBounds)} more are outside of the bounds of UVs, which change no zone` : '',
     output === null
       ? ''
       : `wrote ${output}: ${sets}, ${zoneAttribute}${overlay}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}${replacedOverlays === 0 ? '' : `; ${takenAway(replacedOverlays)}`}`,
