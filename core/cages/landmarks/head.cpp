@@ -12,6 +12,9 @@ constexpr double kEyeDistance = 0.16;
 /// Eyes that are no parts with a name may be teeth or buttons: how far apart they may be, in shares of what the head
 /// suggests.
 constexpr double kNearest = 0.55, kFarthest = 1.7;
+/// Eyes with a name may stand out far, as a crab's; farther apart than this in the same shares, they alone tell how
+/// long the head is. So what is measured around an eye, in steps of a share of that length, is bounded.
+constexpr double kFarthestNamed = 4;
 /// Wheels mirror each other, too, but are not in the upper half of a model.
 constexpr double kLowest = 0.38;
 /// How much of a figure around the eyes belongs to the head, in the head's lengths.
@@ -29,7 +32,7 @@ double headLength(const TriangleMesh& skin, double eyeDistance, const HeadFrame&
   const double rear = *std::max_element(back.heights.begin(), back.heights.end());
   const double byCrown = std::isfinite(high) ? high * guess.unit / kEyesToCrown : byEyes;
   const double byBack = std::isfinite(rear) ? rear * guess.unit / kEyesToBack : byEyes;
-  return median3(byEyes, byCrown, byBack);
+  return std::max(median3(byEyes, byCrown, byBack), byEyes / kFarthestNamed);
 }
 
 /// How high the eyes are: 0 at the model's lowest place, 1 at its highest.

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "cagecast/cages.hpp"
+#include "landmarks/head.hpp"
 #include "landmarks/rig.hpp"
 
 using namespace cagecast;
@@ -189,6 +190,22 @@ TEST_CASE("parts that are called eyes may be anywhere", "[cages][landmarks]") {
     head.add("r-eye", {-eye[0], eye[1], eye[2]}, {0.13f, 0.13f, 0.13f});
     CHECK(findLandmarks(head.model(), nullptr, found).ok());
   }
+}
+
+TEST_CASE("a head is not tiny beside the distance of its eyes", "[cages][landmarks]") {
+  const float thin = GENERATE(0.1f, 0.02f, 0.001f);
+  CAPTURE(thin);
+  Balls goggles;  // On a thin rod, which is all that is above and behind their middle.
+  goggles.add("rod", {0, 0, 0}, {0.4f, thin, thin});
+  goggles.add("body", {0, -1, 0}, {0.8f, 0.7f, 0.6f});
+  for (const float side : {0.5f, -0.5f}) goggles.add("eye", {side, 0, 0}, {0.3f, 0.3f, 0.3f});
+  const Figure figure = readFigure(goggles.model());
+  const std::optional<Eyes> eyes = findNamedEyes(figure);
+  REQUIRE(eyes);
+  const std::optional<Head> head = makeHead(figure, *eyes);
+  REQUIRE(head);
+  CHECK(head->frame.unit > 1);
+  CHECK(length(eyes->centres[0] - eyes->centres[1]) < head->frame.unit);
 }
 
 TEST_CASE("finding landmarks can be cancelled", "[cages][landmarks]") {
