@@ -34,16 +34,14 @@ Shape shapeOf(const TriangleMesh& mesh) {
 /// A shape is an eyeball, or the front of one, if it fits a sphere this well; else the middle of its box serves.
 constexpr double kBall = 0.12;
 
-/// The centre of an eyeball: of a sphere if it is one (a front half's box has its middle too far to the front), of the
-/// box if it is flat or bulges.
-Vec3 centreOf(const Shape& shape, double& radius) {
+/// The ball of an eye: a sphere if it is one (a front half's box has its middle too far to the front), else about the
+/// middle of the box if it is flat or bulges. The residual is a sphere's in any case.
+Sphere ballOf(const Shape& shape) {
   const Vec3 size = shape.bounds.size();
-  radius = 0.5 * std::max(size.y, std::min(size.x, size.z));
+  const double radius = 0.5 * std::max(size.y, std::min(size.x, size.z));
   const Sphere sphere = fitSphere(shape.points);
   const bool round = sphere.residual < kBall && sphere.radius < 1.3 * radius && sphere.radius > 0.8 * radius;
-  if (!round) return shape.bounds.middle();
-  radius = sphere.radius;
-  return sphere.centre;
+  return round ? sphere : Sphere{shape.bounds.middle(), radius, sphere.residual};
 }
 
 /// The heading that horizontal positions spread along most.
@@ -108,6 +106,44 @@ std::array<double, 2> seen(const Surface& surface, const TriangleMesh& part, con
   return out;
 }
 
+/// A component that may be an eye.
+struct Candidate {
+  Shape shape;
+  TriangleMesh mesh;
+  std::uint32_t component = 0;
+  Sphere ball;
+  std::optional<std::array<double, 2>> seen = {};  ///< What `seen` gives, once it is needed.
+};
+
+/// The components that are about as large and as round as an eye.
+std::vector<Candidate> eyeCandidates(const Figure& figure, double diagonal) {
+  constexpr std::size_t kLeastTriangles = 8;
+  constexpr double kSmallest = 0.002, kLargest = 0.15;  // Radii, as shares of the diagonal: of a figure, of a head.
+  constexpr std::size_t kMostCandidates = 500;          // The largest: a coat of mail has thousands of rings.
+  std::vector<std::vector<Triangle3>> triangles(figure.componentCount);
+  for (std::size_t t = 0; t < figure.components.size(); ++t)
+    if (figure.roles[t] == Role::surface) triangles[figure.components[t]].push_back(figure.mesh.triangles[t]);
+  std::vector<Candidate> candidates;
+  for (std::uint32_t c = 0; c < figure.componentCount; ++c) {
+    const std::size_t size = triangles[c].size();
+    if (size < kLeastTriangles || 2 * size > figure.components.size()) continue;
+    const TriangleMesh part = compact(figure.mesh, triangles[c]);
+    Shape shape = shapeOf(part);
+    const Vec3 box = shape.bounds.size();
+    const double wide = std::hypot(box.x, box.z);
+    const bool round = box.y > 0.5 * wide && box.y < 2 * wide;
+    if (!round || box.y < 2 * kSmallest * diagonal || box.y > 2 * kLargest * diagonal) continue;
+    const Sphere ball = ballOf(shape);
+    candidates.push_back({std::move(shape), part, c, ball});
+  }
+  if (candidates.size() > kMostCandidates) {
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.shape.area > b.shape.area; });
+    candidates.resize(kMostCandidates);
+  }
+  return candidates;
+}
+
 }  // namespace
 
 Sphere fitSphere(const std::vector<Vec3>& points) {
@@ -164,13 +200,13 @@ std::optional<Eyes> findNamedEyes(const Figure& figure) {
   const Shape first = shapeOf(subset(all, isFirst)), second = shapeOf(subset(all, isSecond));
   if (first.triangles == 0 || second.triangles == 0) return std::nullopt;
   Eyes eyes;
-  double radii[2] = {};
-  eyes.centres = {centreOf(first, radii[0]), centreOf(second, radii[1])};
-  eyes.radius = std::min(radii[0], radii[1]);
+  const Sphere one = ballOf(first), other = ballOf(second);
+  eyes.centres = {one.centre, other.centre};
+  eyes.radius = std::min(one.radius, other.radius);
   const Vec3 apart = eyes.centres[0] - eyes.centres[1];
   // Side by side, alike, and apart: else the parts have these names for another reason.
   if (!(length(apart) > 1.2 * eyes.radius) || std::abs(apart.y) > 0.5 * length(apart)) return std::nullopt;
-  const bool alike = std::max(radii[0], radii[1]) < 1.3 * eyes.radius;
+  const bool alike = std::max(one.radius, other.radius) < 1.3 * eyes.radius;
   eyes.confidence = alike ? 0.95 : 0.6;
   eyes.triangles.resize(figure.roles.size());
   for (std::size_t t = 0; t < figure.roles.size(); ++t) eyes.triangles[t] = figure.roles[t] == Role::eye;
@@ -179,39 +215,18 @@ std::optional<Eyes> findNamedEyes(const Figure& figure) {
 }
 
 std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane) {
-  constexpr std::size_t kLeastTriangles = 8;
-  constexpr double kSmallest = 0.002, kLargest = 0.15;  // Radii, as shares of the diagonal: of a figure, of a head.
-  constexpr double kAlike = 0.15;                       // Difference of sizes.
-  constexpr std::size_t kMostCandidates = 500;          // The largest: a coat of mail has thousands of rings.
+  constexpr double kAlike = 0.15;  // Difference of sizes.
   const double diagonal = diagonalOf(figure.mesh);
-  struct Candidate {
-    Shape shape;
-    TriangleMesh mesh;
-    std::uint32_t component;
-  };
-  std::vector<std::vector<Triangle3>> triangles(figure.componentCount);
-  for (std::size_t t = 0; t < figure.components.size(); ++t)
-    if (figure.roles[t] == Role::surface) triangles[figure.components[t]].push_back(figure.mesh.triangles[t]);
-  std::vector<Candidate> candidates;
-  for (std::uint32_t c = 0; c < figure.componentCount; ++c) {
-    const std::size_t size = triangles[c].size();
-    if (size < kLeastTriangles || 2 * size > figure.components.size()) continue;
-    const TriangleMesh part = compact(figure.mesh, triangles[c]);
-    Shape shape = shapeOf(part);
-    const Vec3 box = shape.bounds.size();
-    const double wide = std::hypot(box.x, box.z);
-    const bool round = box.y > 0.5 * wide && box.y < 2 * wide;
-    if (!round || box.y < 2 * kSmallest * diagonal || box.y > 2 * kLargest * diagonal) continue;
-    candidates.push_back({std::move(shape), part, c});
-  }
-  if (candidates.size() > kMostCandidates) {
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.shape.area > b.shape.area; });
-    candidates.resize(kMostCandidates);
-  }
-  std::optional<Surface> surface;  // Built when it is needed.
+  std::vector<Candidate> candidates = eyeCandidates(figure, diagonal);
   const Vec3 across = cross(plane.left, kUp);
+  std::optional<Surface> surface;  // Built when it is needed.
+  const auto seenOf = [&](Candidate& candidate) {
+    if (!surface) surface.emplace(figure.mesh);
+    if (!candidate.seen) candidate.seen = seen(*surface, candidate.mesh, across, diagonal);
+    return *candidate.seen;
+  };
   std::optional<Eyes> best;
+  std::array<std::uint32_t, 2> components{};
   double most = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     for (std::size_t k = i + 1; k < candidates.size(); ++k) {
@@ -220,27 +235,21 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
       const double off = length(plane.mirrored(a.bounds.middle()) - b.bounds.middle());
       if (off > 0.3 * size || std::abs(b.bounds.size().y - size) > kAlike * size) continue;
       if (std::abs(dot(plane.left, a.bounds.middle()) - plane.offset) < 0.5 * size) continue;
-      Eyes eyes;
-      double radii[2] = {};
-      eyes.centres = {centreOf(a, radii[0]), centreOf(b, radii[1])};
-      eyes.radius = 0.5 * (radii[0] + radii[1]);
-      const double residual = std::max(fitSphere(a.points).residual, fitSphere(b.points).residual);
+      const Sphere &first = candidates[i].ball, &second = candidates[k].ball;
+      const double residual = std::max(first.residual, second.residual);
       if (residual > 2 * kBall) continue;
-      if (!surface) surface.emplace(figure.mesh);
-      const auto one = seen(*surface, candidates[i].mesh, across, diagonal);
-      const auto other = seen(*surface, candidates[k].mesh, across, diagonal);
+      const std::array<double, 2> one = seenOf(candidates[i]), other = seenOf(candidates[k]);
       const double front = std::min(std::max(one[0], one[1]), std::max(other[0], other[1]));
       const double back = std::max(std::min(one[0], one[1]), std::min(other[0], other[1]));
       if (front < 0.03 || back > 0.5 * front) continue;
       const double score = a.area * (1 - residual / (2 * kBall)) * std::min(front, 0.3);
       if (score <= most) continue;
       most = score;
-      eyes.confidence = residual < kBall ? 0.85 : 0.6;
-      eyes.triangles.assign(figure.components.size(), false);
-      for (std::size_t t = 0; t < figure.components.size(); ++t)
-        eyes.triangles[t] =
-            figure.components[t] == candidates[i].component || figure.components[t] == candidates[k].component;
-      best = std::move(eyes);
+      best.emplace();
+      best->centres = {first.centre, second.centre};
+      best->radius = 0.5 * (first.radius + second.radius);
+      best->confidence = residual < kBall ? 0.85 : 0.6;
+      components = {candidates[i].component, candidates[k].component};
     }
   if (!best) return best;
   // What lies within the eyeballs belongs to them: pupils, corneas.
@@ -252,8 +261,8 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
       const double distance = std::min(length(p - eyes.centres[0]), length(p - eyes.centres[1]));
       if (distance > 1.15 * eyes.radius) inside[figure.components[t]] = false;
     }
-  for (std::size_t t = 0; t < figure.components.size(); ++t)
-    if (inside[figure.components[t]]) best->triangles[t] = true;
+  for (const std::uint32_t component : components) inside[component] = true;
+  for (const std::uint32_t component : figure.components) best->triangles.push_back(inside[component]);
   orient(figure, *best);
   return best;
 }

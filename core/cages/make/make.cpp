@@ -102,28 +102,36 @@ std::vector<bool> marksOf(const Model& model, const MakeOptions& options,
   return isMarked;
 }
 
+bool hasMarks(const std::vector<bool>& isMarked) {
+  return std::find(isMarked.begin(), isMarked.end(), true) != isMarked.end();
+}
+
 /// Marks the eyes of a head or a figure by their shape: two loose pieces.
 /// @param[in,out] isMarked  Per triangle of the model without those that have no area.
-/// @return whether there are any.
-bool markLooseEyes(const Model& model, std::vector<bool>& isMarked) {
+/// @return false if `progress` cancelled it.
+bool markLooseEyes(const Model& model, const Progress& progress, std::vector<bool>& isMarked) {
   const Figure figure = readFigure(model);
-  if (figure.componentCount < 3) return false;  // Two eyes, and what they are eyes of.
+  if (figure.componentCount < 3) return true;  // Two eyes, and what they are eyes of.
+  if (!progress(0, "landmarks")) return false;
   for (const MirrorPlane& plane : findMirrorPlanes(figure.mesh)) {
+    if (!progress(0, "landmarks")) return false;
     const std::optional<Eyes> eyes = findLooseEyes(figure, plane);
     if (!eyes || eyes->triangles.size() != isMarked.size()) continue;
     isMarked = eyes->triangles;
-    return true;
+    break;
   }
-  return false;
+  return true;
 }
 
 /// Marks eyes where neither names nor marks tell what must not be painted. What has eyes is a head, if it may be one.
-void lookForEyes(const Model& model, const MakeOptions& options, Kind& kind, std::vector<bool>& isMarked) {
-  if (options.exclude.empty() || std::find(isMarked.begin(), isMarked.end(), true) != isMarked.end()) return;
-  if (kind != Kind::prop)
-    markLooseEyes(model, isMarked);
-  else if (options.kind == Kind::automatic && isCompactProp(model) && markLooseEyes(model, isMarked))
-    kind = Kind::head;
+/// @return false if `progress` cancelled it.
+bool lookForEyes(const Model& model, const MakeOptions& options, const Progress& progress, Kind& kind,
+                 std::vector<bool>& isMarked) {
+  if (options.exclude.empty() || hasMarks(isMarked)) return true;
+  if (kind == Kind::prop && (options.kind != Kind::automatic || !isCompactProp(model))) return true;
+  if (!markLooseEyes(model, progress, isMarked)) return false;
+  if (kind == Kind::prop && hasMarks(isMarked)) kind = Kind::head;
+  return true;
 }
 
 /// Points below the hull, but in front of the model, which the cage must not fall behind.
@@ -205,7 +213,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   MakeSettings settings = settingsFor(model, options, diagonalOf(mesh));
   const double offset = settings.hull.offset;
   std::vector<bool> isMarked = marksOf(model, options, triangleOf);
-  lookForEyes(model, options, settings.kind, isMarked);
+  if (!lookForEyes(model, options, rising, settings.kind, isMarked)) return cancelled();
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
   if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return nothingToPaint();

@@ -245,6 +245,24 @@ TEST_CASE("making a cage can be cancelled, and tells how far it is", "[cages][ma
   }
 }
 
+TEST_CASE("looking for eyes by their shape can be cancelled", "[cages][make]") {
+  OwnedModel model = head();
+  std::fill(model.parts.begin(), model.parts.end(), "mesh");
+  MakeOptions options;
+  options.kind = Kind::head;
+  Cage cage;
+  std::string stage;
+  const Outcome outcome = makeCage(
+      model.model(), options,
+      [&](float, const char* what) {
+        stage = what;
+        return false;
+      },
+      cage);
+  CHECK(outcome.problem == Problem::cancelled);
+  CHECK(stage == "landmarks");
+}
+
 TEST_CASE("vertices that no triangle uses make no difference", "[cages][make]") {
   OwnedModel model = head();
   const Cage cage = made(model.model());
