@@ -100,12 +100,14 @@ Vec3 middleOf(const std::vector<Landmark>& landmarks) {
   return 1 / static_cast<double>(landmarks.size()) * sum;
 }
 
-/// Whether positions are within a distance of the box around a hull and landmarks.
-bool isNear(const std::vector<Vec3>& positions, const TriangleMesh& hull, const std::vector<Landmark>& landmarks,
+/// Whether the triangles of a cage are within a distance of the box around a hull and landmarks.
+bool isNear(const TriangleMesh& cage, const TriangleMesh& hull, const std::vector<Landmark>& landmarks,
             double distance) {
   Bounds box = boundsOf(hull);
   for (const Landmark& landmark : landmarks) box.add(positionOf(landmark));
-  return std::all_of(positions.begin(), positions.end(), [&](const Vec3& p) { return box.distance(p) < distance; });
+  return std::all_of(cage.triangles.begin(), cage.triangles.end(), [&](const Triangle3& t) {
+    return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) { return box.distance(cage.positions[v]) < distance; });
+  });
 }
 
 /// The triangles that count as the figure: not those that stick out or lie inside.
@@ -280,7 +282,7 @@ Outcome Fit::run(FittedCage& out) {
   if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
   std::vector<Vec3> positions = start(cage, anchors);
   if (!draw(cage, hull, settings, positions)) return cancelled;
-  if (!isNear(positions, hull, pairs_.to, kMostBeyond * cage.diagonal))
+  if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMostBeyond * cage.diagonal))
     return {Problem::badModel,
             "model: the template does not fit it; if there are several figures in it, exclude all but one of them"};
   write(cage, positions, out);

@@ -238,6 +238,17 @@ TEST_CASE("vertices that no triangle uses make no difference to a fit", "[cages]
   CHECK(heads.out.positions == before);
 }
 
+TEST_CASE("vertices that no triangle of a template uses may be anywhere", "[cages][fit]") {
+  Heads heads;
+  REQUIRE(heads.fit(heads.other).ok());
+  const std::vector<float> before = heads.out.positions;
+  for (const float x : {1e6f, 1e6f, 1e6f}) heads.cage.positions.push_back(x);
+  heads.cage.uvs.insert(heads.cage.uvs.end(), {0, 0});
+  REQUIRE(heads.fit(heads.other).ok());
+  heads.out.positions.resize(before.size());
+  CHECK(heads.out.positions == before);
+}
+
 TEST_CASE("a cage is fitted to what its landmarks are on, whatever else there is", "[cages][fit]") {
   Heads heads;
   REQUIRE(heads.fit(heads.other).ok());
