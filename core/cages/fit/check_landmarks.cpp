@@ -10,6 +10,8 @@ namespace {
 
 /// A landmark of a model is at most this far outside its box, in diagonals.
 constexpr double kMostOutside = 0.2;
+/// Joints of its skeleton may be farther: a figure that ends at the hips may have the joints of legs.
+constexpr double kMostOutsideJoint = 0.5;
 /// A landmark that is off by more than this share of the diagonal, after the others are aligned, may be a mistake.
 constexpr double kMostOff = 0.15;
 /// The farthest is a mistake if the residual without it is at most this share of that of all. Several are if it is at
@@ -138,6 +140,18 @@ Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* na
       if (!isJoint(a.name) && !isJoint(b.name) && length(positionOf(a) - positionOf(b)) < kOneSpot * size)
         return {problem, std::string(name) + ": " + b.name + " and " + a.name + " are on one spot; each needs its own"};
     }
+  }
+  return {};
+}
+
+Outcome checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box) {
+  for (const Landmark& landmark : landmarks) {
+    const double outside = box.distance(positionOf(landmark)) / box.diagonal();
+    if (isJoint(landmark.name) && outside > kMostOutsideJoint)
+      return {Problem::badModel, "model.joints: " + landmark.name + " is " + text("%.3g", outside) +
+                                     " diagonals outside the box of the mesh, at most " +
+                                     text("%.3g", kMostOutsideJoint) +
+                                     " are expected; joints have to be in its unit and axes"};
   }
   return {};
 }

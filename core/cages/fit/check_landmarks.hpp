@@ -12,10 +12,15 @@ namespace cagecast::cages {
 /// Two landmarks that are closer than this share of the diagonal are on one spot, and count once.
 constexpr double kOneSpot = 1e-3;
 
-/// Checks a list of landmarks by itself: finite, named, near its model, no name twice, no two on one spot.
+/// Checks a list of landmarks by itself: finite, named, near its model, no name twice, no two on one
+/// spot.
 /// @param name  What to call the list: "landmarks".
 /// @param box   Of the model.
 Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* name, const Bounds& box, Problem problem);
+
+/// Checks that joints among the landmarks of a model, which its skeleton may have told, are in the unit of its mesh.
+/// @param box  Of the mesh.
+Outcome checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box);
 
 /// Checks that landmarks of a model are where those of a template can be after turning and scaling.
 /// @param from,to  In the same order.

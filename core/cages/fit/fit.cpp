@@ -212,6 +212,7 @@ Outcome Fit::pair(const TemplateCage& cage, FittedCage& out) {
     if (Outcome outcome = findLandmarks(model_, finding, found); !outcome.ok()) return outcome;
   }
   if (Outcome outcome = pairLandmarks(from_, given, found.landmarks, pairs_, out); !outcome.ok()) return outcome;
+  if (Outcome outcome = checkJoints(pairs_.to, boundsOf(model_.mesh)); !outcome.ok()) return outcome;
   return checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);
 }
 

@@ -356,6 +356,27 @@ TEST_CASE("landmarks that contradict are named", "[cages][fit]") {
   }
 }
 
+TEST_CASE("joints of a skeleton in another unit are named", "[cages][fit]") {
+  Heads heads;
+  Template from = heads.from();
+  Model model{heads.other.view()};
+  float height = -0.9f;
+  for (const char* name : {"hips", "chest", "neck", "head", "jaw", "spine"}) {
+    from.landmarks.push_back({std::string("joint_") + name, {0, height, 0}});
+    model.joints.push_back({name, {0, height, 0}});
+    height += 0.3f;
+  }
+  for (const char* name : {"leftUpperArm", "rightUpperArm"}) model.joints.push_back({name, {0, 0, 0}});
+  CHECK(fitCage(from, model, heads.options(), {}, heads.out).ok());
+  for (Joint& joint : model.joints)
+    for (float& x : joint.position) x *= 100;
+  const Outcome outcome = fitCage(from, model, heads.options(), {}, heads.out);
+  CHECK(outcome.problem == Problem::badModel);
+  CHECK(outcome.message ==
+        "model.joints: joint_hips is 26.4 diagonals outside the box of the mesh, at most 0.5 are expected; joints have "
+        "to be in its unit and axes");
+}
+
 TEST_CASE("landmarks that are needed are those that the template has", "[cages][fit]") {
   Heads heads;
   Template from = heads.from();
