@@ -12,6 +12,8 @@ namespace {
 constexpr double kMostOutside = 0.2;
 /// Joints of its skeleton may be farther: a figure that ends at the hips may have the joints of legs.
 constexpr double kMostOutsideJoint = 0.5;
+/// Each landmark is compared with where all others put it: the time grows with the cube of their number.
+constexpr std::size_t kMostLandmarks = 300;
 /// A landmark that is off by more than this share of the diagonal, after the others are aligned, may be a mistake.
 constexpr double kMostOff = 0.15;
 /// The farthest is a mistake if the residual without it is at most this share of that of all. Several are if it is at
@@ -124,6 +126,9 @@ std::vector<Suspect> leaveOut(std::vector<Vec3> from, std::vector<Vec3> to, doub
 
 Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* name, const Bounds& box,
                           Problem problem) {
+  if (landmarks.size() > kMostLandmarks)
+    return {problem, std::string(name) + ": " + std::to_string(landmarks.size()) + " are given, at most " +
+                         std::to_string(kMostLandmarks) + " are allowed"};
   const double size = box.diagonal();
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     const Landmark& a = landmarks[i];

@@ -12,7 +12,7 @@ namespace cagecast::cages {
 /// Two landmarks that are closer than this share of the diagonal are on one spot, and count once.
 constexpr double kOneSpot = 1e-3;
 
-/// Checks a list of landmarks by itself: finite, named, near its model, no name twice, no two on one
+/// Checks a list of landmarks by itself: not too many, finite, named, near its model, no name twice, no two on one
 /// spot.
 /// @param name  What to call the list: "landmarks".
 /// @param box   Of the model.

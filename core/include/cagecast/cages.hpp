@@ -73,7 +73,7 @@ struct MakeOptions {
 
 struct FitOptions {
   std::vector<std::string> exclude = defaultExclusions();  ///< Patterns for `Model::parts`.
-  std::vector<Landmark> landmarks = {};                    ///< Of the model; these override found ones.
+  std::vector<Landmark> landmarks = {};                    ///< Of the model, at most 300; these override found ones.
 };
 
 struct RefineOptions {
@@ -119,7 +119,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
 /// A cage that was made for one model and is to be fitted to others.
 struct Template {
   MeshView cage;                    ///< With UVs.
-  std::vector<Landmark> landmarks;  ///< Of the model that it was made for.
+  std::vector<Landmark> landmarks;  ///< Of the model that it was made for: 4 to 300.
   Kind kind = Kind::automatic;      ///< The fitted cage gets it, too. The fit itself asks only for landmarks.
 };
 

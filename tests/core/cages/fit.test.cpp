@@ -377,6 +377,19 @@ TEST_CASE("joints of a skeleton in another unit are named", "[cages][fit]") {
         "to be in its unit and axes");
 }
 
+TEST_CASE("no more landmarks are taken than can be checked in a moment", "[cages][fit]") {
+  Heads heads;
+  for (int i = 0; i < 291; ++i) heads.landmarks.push_back({"spot_" + std::to_string(i), {0, 0, 0}});
+  Outcome outcome = heads.fit(heads.other);
+  CHECK(outcome.problem == Problem::badLandmarks);
+  CHECK(outcome.message == "landmarks: 301 are given, at most 300 are allowed");
+  Template from = heads.from();
+  from.landmarks = heads.landmarks;
+  outcome = fitCage(from, {heads.other.view()}, {}, {}, heads.out);
+  CHECK(outcome.problem == Problem::badTemplate);
+  CHECK(outcome.message == "template.landmarks: 301 are given, at most 300 are allowed");
+}
+
 TEST_CASE("landmarks that are needed are those that the template has", "[cages][fit]") {
   Heads heads;
   Template from = heads.from();

@@ -67,7 +67,7 @@ export function makeCage(model: CageModel, options: MakeOptions & CageCallOption
  *
  * Cost: some seconds.
  * @param template   A cage, and landmarks of the model that it was made for.
- * @param landmarks  Of the model, by the names of the template's; they override those that are found. Default: none.
+ * @param landmarks  Of the model, by the names of the template's; they override those that are found. At most 300. Default: none.
  * @returns the cage, and which landmarks were used and which are missing.
  * @throws {CagecastError} `badModel`, `badTemplate` or `badLandmarks` if the model, the template or the landmarks cannot be used,
  * with the reason; else as `makeCage`.

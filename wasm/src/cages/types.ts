@@ -56,7 +56,7 @@ export interface Cage {
 /** A cage that is to be fitted to other models. A `Cage` is one. */
 export interface Template extends Mesh {
   uvs: Float32Array;
-  /** Spots of the model that the cage was made for, by the names that docs/cages.md lists. */
+  /** Spots of the model that the cage was made for, by the names that docs/cages.md lists: 4 to 300. */
   landmarks: Landmarks;
   /** Default: none. */
   holes?: Holes | undefined;
