@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace cagecast::cages {
@@ -19,7 +20,7 @@ class MinCut {
   /// Whether each node is on the second side.
   [[nodiscard]] std::vector<bool> solve();
 
-  static constexpr double kForbidden = 1e30;
+  static constexpr double kForbidden = std::numeric_limits<double>::infinity();
 
  private:
   struct Arc {

@@ -296,3 +296,11 @@ TEST_CASE("a long chain is cut at its cheapest edge", "[cages][charts]") {
   CHECK_FALSE(second[kCheapest]);
   CHECK(second[kCheapest + 1]);
 }
+
+TEST_CASE("what is forbidden stays so on models of any unit", "[cages][charts]") {
+  MinCut cut(2, 1e29);
+  cut.addNode(0, 0, MinCut::kForbidden);
+  cut.addNode(1, MinCut::kForbidden, 0);
+  cut.addEdge(0, 1, 1e33);
+  CHECK(cut.solve() == std::vector{false, true});
+}
