@@ -185,6 +185,42 @@ describe('files stay lean', () => {
     assert.equal(Buffer.from(out.bin).readFloatLE(out.json.bufferViews![values]!.byteOffset), 42);
   });
 
+  for (const form of ['keep', 'meshopt', 'draco'])
+    test(`a file with an unknown extension does not grow by further transfers, once it is written with --compress ${form}`, () => {
+      const { json, bin } = unpackGlb(readFileSync(at('target.glb')));
+      json.extensionsUsed = [...(json.extensionsUsed ?? []), 'FB_ngon_encoding'];
+      writeFileSync(at('ngon-0.glb'), packGlb({ json, bin }));
+      const sizes = [1, 2, 3].map((n) => {
+        const [from, out] = [at(`ngon-${n - 1}.glb`), at(`ngon-${n}.glb`)];
+        const flags = ['--texture', at('paint.png'), '--compress', n === 1 ? form : 'keep'];
+        const { status, stderr } = cagecast('transfer', from, '--cage', at('cage.glb'), '-o', out, ...flags);
+        assert.deepEqual([status, stderr], [0, '']);
+        const { bufferViews, images } = unpackGlb(readFileSync(out)).json;
+        return { counts: [bufferViews!.length, images!.length], size: statSync(out).size };
+      });
+      for (const { counts, size } of sizes.slice(1)) {
+        assert.deepEqual(counts, sizes[0]!.counts);
+        assert.ok(size < 1.01 * sizes[0]!.size, `${size} bytes, ${sizes[0]!.size} at first`);
+      }
+    });
+
+  test('what an unknown extension refers to keeps its number when a transfer adds less than it replaces', () => {
+    const transferTo = (from: string, out: string, ...flags: string[]) => {
+      const { status, stderr } = cagecast('transfer', at(from), '--cage', at('cage.glb'), '-o', at(out), ...flags);
+      assert.deepEqual([status, stderr], [0, '']);
+    };
+    transferTo('target.glb', 'outline-0.glb', '--texture', at('paint.png'));
+    const { json, bin } = unpackGlb(readFileSync(at('outline-0.glb')));
+    const indices = json.accessors!.push({ componentType: 5126, count: 7, type: 'SCALAR' }) - 1;
+    json.extensionsUsed = ['CESIUM_primitive_outline'];
+    json.meshes![0]!.primitives[0]!.extensions = { CESIUM_primitive_outline: { indices } };
+    writeFileSync(at('outline-1.glb'), packGlb({ json, bin }));
+    transferTo('outline-1.glb', 'outline-2.glb');
+    const out = unpackGlb(readFileSync(at('outline-2.glb'))).json;
+    assert.equal(out.accessors![indices]!.count, 7);
+    assert.ok(out.bufferViews!.length < json.bufferViews!.length, 'the image of the overlay is gone');
+  });
+
   test('what shares a view with something that is replaced stays, without it', async () => {
     const maker = new GlbMaker();
     const other = ball([0, 0, 5], () => 0.2, 12, 16);

@@ -11,7 +11,7 @@ import { subtract } from './output/ranges.js';
 import type { Paint } from './overlay.js';
 import { sparseElements } from './primitive-group.js';
 import type { GltfFile } from './read.js';
-import { drop, eachAccessor, eachView, hasUnknownReferences, numbersOf } from './references.js';
+import { addedByTransfer, drop, eachAccessor, eachView, hasUnknownReferences, numbersOf } from './references.js';
 
 const kArrayBuffer = 34962;
 const kElementArrayBuffer = 34963;
@@ -67,7 +67,8 @@ const bytesOf = (values: AttributeArray) => new Uint8Array(values.buffer, values
 export class GlbWriter {
   /** The JSON of the file to be written; add to it freely. */
   readonly json: GLTF.IGLTF;
-  readonly #before: { accessors: Set<number>; views: Set<number>; accessorCount: number; viewCount: number };
+  /** Of the accessors and views that were read: those to be dropped once nothing refers to them, and how many keep their numbers. */
+  readonly #before: Record<'accessors' | 'views', { droppable: Set<number>; count: number; fixed: number }>;
   /** What the buffers of the file hold, one after another. */
   #bytes = new Uint8Array(0);
   readonly #added = new Map<GLTF.IBufferView, Uint8Array>();
@@ -81,11 +82,17 @@ export class GlbWriter {
   private constructor({ json, geometry }: GltfFile, form: Form) {
     this.json = structuredClone(json);
     this.#decoded = geometry.getRoot().listAccessors();
+    // Extensions may refer to all the others.
+    const isKept = hasUnknownReferences(json);
+    const known = isKept ? addedByTransfer(json) : json;
+    const before = (droppable: Set<number>, { length: count }: unknown[] = []) => ({
+      droppable,
+      count,
+      fixed: isKept ? count : 0,
+    });
     this.#before = {
-      accessors: numbersOf(eachAccessor, json),
-      views: numbersOf(eachView, json),
-      accessorCount: json.accessors?.length ?? 0,
-      viewCount: json.bufferViews?.length ?? 0,
+      accessors: before(numbersOf(eachAccessor, known), json.accessors),
+      views: before(numbersOf(eachView, known), json.bufferViews),
     };
     const own = meshoptExtensions.find((name) => json.bufferViews?.some((view) => view.extensions?.[name]));
     this.#meshopt = form === 'keep' ? own : form === 'meshopt' ? (own ?? meshoptExtensions[0]) : undefined;
@@ -292,7 +299,7 @@ export class GlbWriter {
   #splitViews(): void {
     const { accessors = [] } = this.json;
     const used = numbersOf(eachAccessor, this.json);
-    const isDropped = (a: number) => this.#before.accessors.has(a) && !used.has(a);
+    const isDropped = (a: number) => this.#before.accessors.droppable.has(a) && !used.has(a);
     const usersOf = new Map<number, number[]>();
     accessors.forEach(({ bufferView }, a) => {
       if (bufferView !== undefined) usersOf.set(bufferView, [...(usersOf.get(bufferView) ?? []), a]);
@@ -326,29 +333,20 @@ export class GlbWriter {
   }
 
   /**
-   * Drops accessors and views that nothing refers to any more. Those to which nothing referred before stay, and all old ones do if
-   * extensions that are not known here may refer to them.
+   * Drops accessors and views that nothing refers to any more. Those to which nothing referred before stay. If extensions that are not
+   * known here may refer to any, only what an earlier transfer added goes.
    */
   #dropUnused(): GLTF.IBufferView[] {
     const { json } = this;
-    const before = this.#before;
-    const accessors = numbersOf(eachAccessor, json);
-    const keepsOld = hasUnknownReferences(json); // also their numbers, as only added ones are dropped then
-    const isOld = (used: Set<number>, count: number) => (n: number) => n < count && (keepsOld || !used.has(n));
-    const wasUnused = isOld(before.accessors, before.accessorCount);
-    drop(
-      json.accessors ?? [],
-      (a) => !accessors.has(a) && !wasUnused(a),
-      (visit) => eachAccessor(json, visit),
-    );
-    const views = numbersOf(eachView, json);
-    const viewWasUnused = isOld(before.views, before.viewCount);
     const all = [...(json.bufferViews ?? [])];
-    drop(
-      json.bufferViews ?? [],
-      (v) => !views.has(v) && !viewWasUnused(v),
-      (visit) => eachView(json, visit),
-    );
+    for (const [list, each, { droppable, count, fixed }] of [
+      [json.accessors, eachAccessor, this.#before.accessors],
+      [json.bufferViews, eachView, this.#before.views],
+    ] as const) {
+      const used = numbersOf(each, json);
+      const isDropped = (n: number) => !used.has(n) && (n >= count || droppable.has(n));
+      drop<unknown>(list ?? [], isDropped, (visit) => each(json, visit), fixed);
+    }
     for (const name of meshoptExtensions) {
       const users = json.bufferViews?.filter((view) => view.extensions?.[name]) ?? [];
       if (users.some((view) => this.#added.has(view))) this.needs(name, true);

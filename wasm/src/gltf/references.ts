@@ -1,5 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import { instancing } from './instancing.js';
+import { isOfTransfer, isOverlay } from './overlay.js';
 
 /** Where the number of an accessor or of a view stands: a key of an object. */
 type Visit = (owner: Record<string, number>, key: string) => void;
@@ -51,6 +52,25 @@ const kKnown = /^(KHR_|VRM|EXT_(texture_|materials_|lights_|meshopt_compression|
 export const hasUnknownReferences = ({ extensionsUsed = [] }: GLTF.IGLTF): boolean =>
   extensionsUsed.some((name) => !kKnown.test(name));
 
+/**
+ * What an earlier transfer added, as a file of its own: attributes and the indices of overlays. And what else only this package and
+ * materials refer to: images, and geometry that Draco compressed.
+ */
+export function addedByTransfer({ meshes = [], accessors = [], images = [] }: GLTF.IGLTF): GLTF.IGLTF {
+  const isAdded = ([semantic, accessor]: [string, number]) => isOfTransfer(semantic, accessors[accessor]!.extras);
+  const primitives = meshes
+    .flatMap((mesh) => mesh.primitives)
+    .map(
+      ({ attributes, indices, extensions, extras }): GLTF.IMeshPrimitive => ({
+        attributes: Object.fromEntries(Object.entries(attributes).filter(isAdded)),
+        ...(isOverlay(extras) && indices !== undefined && { indices }),
+        ...(extensions && { extensions }),
+      }),
+    );
+  const added = { asset: { version: '2.0' }, meshes: [{ primitives }], images };
+  return { ...added, accessors: [...numbersOf(eachAccessor, added)].map((accessor) => accessors[accessor]!) };
+}
+
 /** The numbers that are visited. */
 export function numbersOf(each: (json: GLTF.IGLTF, visit: Visit) => void, json: GLTF.IGLTF): Set<number> {
   const found = new Set<number>();
@@ -61,11 +81,13 @@ export function numbersOf(each: (json: GLTF.IGLTF, visit: Visit) => void, json: 
 /**
  * Drops elements of a list: the last ones move to where they were, so that as few numbers as possible change.
  * @param isDropped  By the element's number.
+ * @param fixed  How many elements keep their numbers; if nothing can take the place of one of them, it stays.
  */
 export function drop<Element>(
   list: Element[],
   isDropped: (element: number) => boolean,
   each: (visit: Visit) => void,
+  fixed: number,
 ): void {
   const places = list.map((_, element) => element);
   const kept = places.filter((element) => !isDropped(element));
@@ -73,7 +95,7 @@ export function drop<Element>(
   const before = [...list];
   for (let to = 0; to < kept.length; ++to) {
     if (kept[to] === to) continue;
-    kept.splice(to, 0, kept.pop()!);
+    kept.splice(to, 0, kept.at(-1)! < fixed ? to : kept.pop()!);
   }
   list.splice(0, list.length, ...kept.map((element) => before[element]!));
   kept.forEach((element, to) => (places[element] = to));
