@@ -198,6 +198,7 @@ test('what is wrong in the file is one line that names file, member and value', 
     ['{"threshold": "Infinity"}', /"threshold" is "Infinity", not a number within 0\.\.1/],
     ['{"neverMask": 1}', /"neverMask" is 1, not a path/],
     ['{"neverMask": ""}', /"neverMask" is empty/],
+    ['{"maskColors": "NORMAL"}', /"maskColors" is "NORMAL", not COLOR_0, COLOR_1, … or an attribute of an own name/],
     ['{"characters": []}', /"characters" is \[\], not an object of patterns and settings/],
     ['{"characters": {"a*": 1}}', /"characters" "a\*": is 1, not an object of settings/],
     [
@@ -242,4 +243,13 @@ test('completion offers the commands, their flags and the choices of a flag; doc
   }
   const wrong = cagecast('completion', 'tcsh');
   assert.deepEqual([wrong.status, /There are: bash, zsh, fish\./.test(wrong.stderr)], [2, true]);
+});
+
+test('a configuration that is a link to nothing is an error', () => {
+  rmSync(config, { force: true });
+  symlinkSync('gone.json', config);
+  const { status, stdout, stderr } = cagecast('transfer', ada, ...cage);
+  rmSync(config);
+  assert.deepEqual([status, stdout], [1, '']);
+  assert.match(stderr, /^cagecast: [^\n]*cagecast\.config\.json: no such file\n$/);
 });

@@ -1,6 +1,6 @@
 import { readdir } from 'node:fs/promises';
 import { join } from 'node:path';
-import { isFolder, readBytes } from '../gltf/files.js';
+import { isFolder, listingError, readBytes } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
 import { parseObject } from './config/settings.js';
@@ -85,7 +85,10 @@ async function diffFolders({ before, after, tolerance }: DiffCommand): Promise<F
 }
 
 async function reportsIn(folder: string): Promise<string[]> {
-  const names = (await readdir(folder, { recursive: true })).filter((name) => name.endsWith('.json')).sort();
+  const all = await readdir(folder, { recursive: true }).catch((error) => {
+    throw listingError(error);
+  });
+  const names = all.filter((name) => name.endsWith('.json')).sort();
   if (names.length === 0) throw new InputError('has no reports (*.json)').in(folder);
   return names;
 }

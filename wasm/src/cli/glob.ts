@@ -1,10 +1,12 @@
 import { readdirSync, statSync } from 'node:fs';
+import { listingError } from '../gltf/files.js';
 import { matcher } from './options.js';
 
 /**
  * The files that a pattern names, in order: `*` matches any text within a name, `**` any folders. Names that begin with a dot are
  * only matched by patterns that do. Links to folders are followed, except by `**`, which could go round in circles. A pattern without
  * `*` is returned as it is.
+ * @throws {InputError} that names a folder that cannot be listed; one that is not there has no files.
  */
 export function filesOf(pattern: string): string[] {
   if (!pattern.includes('*')) return [pattern];
@@ -47,8 +49,9 @@ function list(folder: string): Entry[] {
       };
     });
     return entries.sort((a, b) => (a.name < b.name ? -1 : 1));
-  } catch {
-    return [];
+  } catch (error) {
+    if (['ENOENT', 'ENOTDIR'].includes((error as NodeJS.ErrnoException).code!)) return [];
+    throw listingError(error);
   }
 }
 

@@ -147,11 +147,18 @@ async function reading<Result>(read: () => Promise<Result>): Promise<Result> {
   try {
     return await read();
   } catch (error) {
-    if (error instanceof InputError) throw error;
-    const reason = reasons[(error as NodeJS.ErrnoException).code ?? ''];
-    throw new InputError(reason ?? `cannot be read (${firstLine(error)})`, { cause: error });
+    throw error instanceof InputError ? error : plain(error);
   }
 }
+
+/** An error of the system in plain words. */
+function plain(error: unknown): InputError {
+  const reason = reasons[(error as NodeJS.ErrnoException).code ?? ''];
+  return new InputError(reason ?? `cannot be read (${firstLine(error)})`, { cause: error });
+}
+
+/** Why a folder cannot be listed, with its name. */
+export const listingError = (error: unknown): InputError => plain(error).in((error as NodeJS.ErrnoException).path!);
 
 /** The file that a glTF in a folder refers to; none for a data URI or an address in the network. */
 export const localFile = (uri: string, folder: string): string | undefined =>

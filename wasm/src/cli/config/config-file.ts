@@ -1,4 +1,4 @@
-import { existsSync } from 'node:fs';
+import { lstatSync } from 'node:fs';
 import { basename, dirname, extname, join, relative, resolve } from 'node:path';
 import { type ReadOptions, readBeside, readBytes, standard } from '../../gltf/files.js';
 import { InputError } from '../../gltf/input-error.js';
@@ -81,7 +81,7 @@ export class Configuration {
     if (!this.#byFolder.has(folder)) {
       const path = join(folder, configName);
       const parent = dirname(folder);
-      this.#byFolder.set(folder, existsSync(path) ? path : parent === folder ? undefined : this.#find(parent));
+      this.#byFolder.set(folder, isThere(path) ? path : parent === folder ? undefined : this.#find(parent));
     }
     return this.#byFolder.get(folder);
   }
@@ -105,6 +105,15 @@ export class Configuration {
     } catch (error) {
       throw error instanceof InputError ? error.in(shown) : error;
     }
+  }
+}
+
+/** Whether there is a file, or a link, even one that leads nowhere. What cannot be looked up is there: reading it says what is wrong. */
+function isThere(path: string): boolean {
+  try {
+    return lstatSync(path, { throwIfNoEntry: false }) !== undefined;
+  } catch {
+    return true;
   }
 }
 
