@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
 import {
+  chmodSync,
   existsSync,
   mkdirSync,
   mkdtempSync,
@@ -182,11 +183,11 @@ test('a batch that cannot be right does not begin', () => {
     [['batch', at('in/*.glb'), ...cage, '--results', at('out')], 1, /out: cannot be written \(is a folder\)/],
     [['batch', at('in/*.glb'), ...cage, '--resume'], 2, /--resume needs --results/],
     [['batch', at('in/*.gltf'), ...cage], 1, /in\/\*\.gltf: no file has such a name/],
-    [['batch', at('in/*.glb'), ...cage, '-o', at('same.glb')], 1, /same\.glb: is written for .* and .*; use \{name\}/],
-    [['batch', at('in/*.glb'), ...cage, '-o', at('in/{name}.glb')], 1, /: is read and written by this batch/],
+    [['batch', at('in/*.glb'), ...cage, '-o', at('same.glb')], 2, /same\.glb: is written for .* and .*; use \{name\}/],
+    [['batch', at('in/*.glb'), ...cage, '-o', at('in/{name}.glb')], 2, /: is read and written by this batch/],
     [
       ['batch', at('beside/0.glb'), at('beside/second.gltf'), ...cage, '-o', at('beside/{name}.gltf')],
-      1,
+      2,
       /0\.gltf: is written beside a file of its name that this batch reads/,
     ],
   ];
@@ -194,7 +195,7 @@ test('a batch that cannot be right does not begin', () => {
   const twins = at('twins.jsonl');
   const jobs = ['gltf', 'GLTF'].map((ending) => ({ target: 'in/0.glb', cage: 'cage.glb', output: `out/e.${ending}` }));
   writeFileSync(twins, jobs.map((job) => JSON.stringify(job)).join('\n'));
-  cases.push([['batch', '--manifest', twins], 1, /e\.bin: is written for .* and /]);
+  cases.push([['batch', '--manifest', twins], 2, /e\.bin: is written for .* and /]);
   // What the batch itself reads and writes.
   const manifest = at('clash.jsonl');
   const line = `{"target": "beside/0.glb", "cage": "cage.glb"}\n`;
@@ -203,11 +204,18 @@ test('a batch that cannot be right does not begin', () => {
   writeFileSync(config, '{}');
   const one = ['batch', at('beside/0.glb'), ...cage];
   cases.push(
-    [['batch', '--manifest', manifest, '--report', manifest], 1, /clash\.jsonl: is read and written by this batch/],
-    [['batch', '--manifest', manifest, '--results', manifest], 1, /clash\.jsonl: is read by this batch/],
-    [[...one, '--results', at('cage.glb')], 1, /cage\.glb: is read by this batch/],
-    [[...one, '--config', config, '--report', config], 1, /clash\.config\.json: is read and written by this batch/],
-    [[...one, '--results', at('r.json'), '--report', at('r.json')], 1, /r\.json: is written for the results and /],
+    [['batch', '--manifest', manifest, '--report', manifest], 2, /clash\.jsonl: is read and written by this batch/],
+    [['batch', '--manifest', manifest, '--results', manifest], 2, /clash\.jsonl: is read by this batch/],
+    [[...one, '--results', at('cage.glb')], 2, /cage\.glb: is read by this batch/],
+    [[...one, '--config', config, '--report', config], 2, /clash\.config\.json: is read and written by this batch/],
+    [[...one, '--results', at('r.json'), '--report', at('r.json')], 2, /r\.json: is written for the results and /],
+    [
+      [...one, '-o', at('{name}.glb'), '--report', at('{name}.glb')],
+      2,
+      /\/0\.glb: is both output and report of .*beside\/0\.glb;/,
+    ],
+    [[...one, '-o', at('{foo}.glb')], 2, /\{foo\} is unknown; paths may hold \{name\} and \{dir\}/],
+    [[...one, '--report', at('{name}{stem}.json')], 2, /\{stem\} is unknown/],
     [[...one, '-o', '-'], 2, /the standard output has its lines/],
     [
       [...one, '--texture', 'p.<UDIM>.png', '--uv-bounds', '0,0,1,1', '-o', at('{name}.glb')],
@@ -258,6 +266,36 @@ test('patterns follow links to folders, and ** does not go round in circles', ()
     linesOf(cagecast('batch', at(pattern), '--cage', at('cage.glb')).stdout).map((line) => line.target);
   assert.deepEqual(targets('linked/*/a.glb'), [at('linked/link/a.glb')]);
   assert.deepEqual(targets('linked/**/*.glb'), [at('linked/own/b.glb')]);
+  const round = cagecast('batch', at('linked/self/*.glb'), '--cage', at('cage.glb'));
+  assert.deepEqual([round.status, round.stdout], [1, '']);
+  assert.match(round.stderr, /^cagecast: [^\n]*linked\/self: is a link that leads back to itself\n$/);
+});
+
+test('a folder that may not be read is an error that names it, of batch and of diff', (context) => {
+  const closed = mkdtempSync(join(tmpdir(), 'cagecast-closed-'));
+  context.after(() => rmSync(closed, { recursive: true }));
+  chmodSync(closed, 0o755);
+  for (const name of ['a', 'b']) {
+    mkdirSync(join(closed, name, 'deep'), { recursive: true });
+    writeFileSync(join(closed, name, 'a.glb'), target);
+    writeFileSync(join(closed, name, 'a.json'), '{}');
+  }
+  chmodSync(join(closed, 'b/deep'), 0);
+  // Root may read everything, so another user is asked.
+  const as = process.getuid?.() === 0 ? { uid: 65534 } : {};
+  const node = (...args: string[]) => spawnSync(process.execPath, args, { encoding: 'utf8', timeout: 60_000, ...as });
+  if (node('dist/cli.js', '--version').status !== 0) return context.skip('another user may not read the package');
+  if (node('-e', 'fs.readdirSync(process.argv[1])', join(closed, 'b/deep')).status === 0)
+    return context.skip('this system lets everybody read it');
+  const calls = [
+    ['batch', join(closed, '**/*.glb'), '--cage', at('cage.glb')],
+    ['diff', join(closed, 'a'), join(closed, 'b')],
+  ];
+  for (const args of calls) {
+    const { status, stdout, stderr } = node('dist/cli.js', ...args);
+    assert.deepEqual([status, stdout], [1, ''], stderr);
+    assert.match(stderr, /^cagecast: [^\n]*\/b\/deep: cannot be read: permission denied\n$/);
+  }
 });
 
 test('a * in the name of a file that is given whole is no pattern', () => {
@@ -477,7 +515,10 @@ test('an empty path fails its job, which names the member', () => {
     members.sort(),
     empty.map((name, i) => [String(i + 2), name]),
   );
-  assert.match(cagecast('batch', at('in/0.glb'), '--cage', at('cage.glb')).stderr, /^1 job: 1 done, /);
+  assert.match(
+    cagecast('batch', at('in/0.glb'), '--cage', at('cage.glb')).stderr,
+    /^1 job: 1 done, .*\nnothing written; to save the results, add -o OUT\.glb or --report R\.json\n$/,
+  );
 });
 
 test('with --fail-on reports have the verdict, which diff compares', () => {

@@ -1451,6 +1451,7 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(answer(at('percent.gltf')), expected());
     report(at('percent.gltf'), at('cage.glb'), '-o', at('percent.glb'));
     const clash = cagecast('transfer', at('percent.gltf'), '--cage', at('cage.glb'), '-o', at('head 50%.gltf'));
+    assert.equal(clash.status, 2);
     assert.match(clash.stderr, /head 50%\.bin: would be overwritten, but is read by this command/);
   });
 
@@ -1461,7 +1462,7 @@ describe('the same mesh in other forms gives the same answer', () => {
     writeFileSync(at('around.gltf'), JSON.stringify(json));
     const refused = (...args: string[]) => {
       const { status, stderr } = cagecast('transfer', at('target.glb'), ...args);
-      assert.equal(status, 1, stderr);
+      assert.equal(status, 2, stderr);
       return stderr;
     };
     assert.match(

@@ -2,7 +2,7 @@ import { type Command, InvalidArgumentError, Option } from 'commander';
 import { standard } from '../gltf/files.js';
 import { forms } from '../gltf/glb-writer.js';
 import { batchCommand, describeBatch } from './batch-command.js';
-import { jobsOfManifest, jobsOfPatterns } from './batch-jobs.js';
+import { jobsOfManifest, jobsOfPatterns, unknownPlaceholder, writtenBy } from './batch-jobs.js';
 import { addConfigFlags, type ConfigFlags, settler } from './config/config-flags.js';
 import { borderKinds } from './config/settings.js';
 import { addRuleFlags, maskInputs, type RuleFlags } from './options.js';
@@ -135,9 +135,13 @@ async function runBatch(command: Command, targets: string[], flags: BatchFlags, 
     flags.quiet ? () => {} : writeStandard,
     progress,
   );
-  if (!flags.quiet) process.stderr.write(flags.json ? jsonText(summary) : `${describeBatch(summary)}\n`);
+  const savesNothing = failOn === undefined && summary.done > 0 && jobs.every((job) => writtenBy(job).length === 0);
+  const text = savesNothing ? `${describeBatch(summary)}\n${kNothingSaved}` : describeBatch(summary);
+  if (!flags.quiet) process.stderr.write(flags.json ? jsonText(summary) : `${text}\n`);
   process.exitCode = summary.failed > 0 ? unusable : summary.misfits > 0 ? unfit : 0;
 }
+
+const kNothingSaved = 'nothing written; to save the results, add -o OUT.glb or --report R.json';
 
 const printError = (error: string): void => void process.stderr.write(`cagecast: ${oneLine(error)}\n`);
 
@@ -151,6 +155,8 @@ function faultOf(targets: readonly string[], flags: BatchFlags): string | undefi
   if (borders === 'cut' && output === undefined && manifest === undefined)
     return '--borders cut needs -o OUT.glb, the file for the cut target';
   if ([output, report, results].includes(standard)) return 'a batch writes files; the standard output has its lines';
+  const unknown = unknownPlaceholder(output) ?? unknownPlaceholder(report);
+  if (unknown !== undefined) return `${unknown} is unknown; paths may hold {name} and {dir}`;
   const ofRegions = region.flatMap((one) => [one.cage, one.texture]);
   if ([cage, referenceCage, texture, ...ofRegions, ...maskInputs(flags), ...targets].includes(standard))
     return 'a batch reads files; its jobs have no standard input';

@@ -20,6 +20,7 @@ import { areBounds, boundsText } from './paint/cage-area.js';
 import { boundsFault } from './paint/read-paint.js';
 import { autoCage } from './run.js';
 import type { Region, TransferCommand } from './transfer/command.js';
+import { UsageError } from './usage.js';
 
 /** A transfer of a batch. */
 export interface Job {
@@ -40,7 +41,7 @@ interface JobDefaults extends Omit<TransferCommand, 'target' | 'cage' | keyof Se
   cuts: boolean;
 }
 
-/** The jobs for the files that patterns name. @throws {InputError} for a pattern without files. */
+/** The jobs for the files that patterns name. @throws {InputError} for a pattern without files, or if two jobs write the same file. */
 export async function jobsOfPatterns(patterns: readonly string[], defaults: JobDefaults): Promise<Job[]> {
   const targets = patterns.flatMap((pattern) => {
     const found = filesOf(pattern);
@@ -187,6 +188,10 @@ type JobNames = Pick<TransferCommand, 'target' | 'referenceCage' | 'texture' | '
 const noOutput = (target: string): InputError =>
   new InputError('has no output, where its texture or its cut target would be written').in(target);
 
+/** What stands in a path for nothing that a batch knows, if something does. */
+export const unknownPlaceholder = (path = ''): string | undefined =>
+  path.match(/\{\w+\}/g)?.find((found) => !['{name}', '{dir}'].includes(found));
+
 /** Fills in a job's own names. `{name}` in a path is the target's name without its ending, `{dir}` its folder. */
 function jobOf({ settled: _, results: __, cuts: ___, ...given }: JobDefaults & JobNames & Settled): Job {
   const { target, cage, output, report } = given;
@@ -222,7 +227,7 @@ function sizeAndTime(path: string): (number | undefined)[] {
 }
 
 /**
- * @throws {InputError} if two jobs write the same file, or one writes what another reads, or what the batch itself reads and writes.
+ * @throws {UsageError} if a file is written twice, or a job writes what another reads, or what the batch itself reads and writes.
  */
 function refuseClashes(jobs: Job[], { results }: JobDefaults, manifest?: string): Job[] {
   const named = (path: string | undefined) => (path === undefined || path === standard ? [] : [path]);
@@ -233,25 +238,30 @@ function refuseClashes(jobs: Job[], { results }: JobDefaults, manifest?: string)
   const readBeside = new Set(
     [...read].filter((real) => kBeside.test(real)).map((real) => real.replace(kBeside, '.gltf')),
   );
-  const written = new Map<string, string>();
+  const refuse = (path: string, reason: string): never => {
+    throw new UsageError(`${path}: ${reason}`);
+  };
+  const written = new Map<string, Job | 'the results'>();
   if (results !== undefined) {
-    if (read.has(canonicalPath(results)))
-      throw new InputError('is read by this batch; choose another file for results').in(results);
+    if (read.has(canonicalPath(results))) refuse(results, 'is read by this batch; choose another file for results');
     written.set(canonicalPath(results), 'the results');
   }
-  for (const { command, error } of jobs) {
-    const { output, report } = command;
+  for (const job of jobs.filter(({ error }) => error === undefined)) {
+    const { target, output, report } = job.command;
     const buffer = output !== undefined && /\.gltf$/i.test(output) ? output.replace(/\w+$/, 'bin') : undefined;
-    for (const path of error === undefined ? [output, buffer, report] : []) {
+    for (const path of [output, buffer, report]) {
       if (path === undefined) continue;
       const real = canonicalPath(path);
       const other = written.get(real);
-      if (other !== undefined)
-        throw new InputError(`is written for ${other} and ${command.target}; use {name} or {dir} in its path`).in(path);
+      if (other === job) refuse(path, `is both output and report of ${target}; choose another file for one of them`);
+      if (other !== undefined) {
+        const whose = typeof other === 'string' ? other : other.command.target;
+        refuse(path, `is written for ${whose} and ${target}; use {name} or {dir} in its path`);
+      }
       if (path === output && readBeside.has(real))
-        throw new InputError('is written beside a file of its name that this batch reads').in(path);
-      if (read.has(real)) throw new InputError('is read and written by this batch').in(path);
-      written.set(real, command.target);
+        refuse(path, 'is written beside a file of its name that this batch reads');
+      if (read.has(real)) refuse(path, 'is read and written by this batch');
+      written.set(real, job);
     }
   }
   return jobs;

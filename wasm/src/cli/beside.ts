@@ -2,13 +2,13 @@ import { closeSync, openSync, readSync, statSync } from 'node:fs';
 import { dirname } from 'node:path';
 import type { GLTF } from '@gltf-transform/core';
 import { defaultReading, isOutside, localFile, type ReadOptions, standard } from '../gltf/files.js';
-import { InputError } from '../gltf/input-error.js';
 import { parseGltf } from '../gltf/parse.js';
 import { filesOf } from './glob.js';
 import { canonicalPath } from './output.js';
 import { isTiled, tilePath } from './paint/read-paint.js';
 import type { Run, Sources } from './run.js';
 import type { Region } from './transfer/command.js';
+import { UsageError } from './usage.js';
 
 /** Files with more JSON hold their buffers in it, as a rule; parsing them would take long. */
 const kMostBytes = 2 ** 23;
@@ -78,7 +78,7 @@ export const filesReadBy = (command: Reads): string[] =>
 /**
  * Checks what a command is about to write, once its models are read.
  * @param more  What it reads besides the files of `command`.
- * @throws {InputError} if a file would overwrite one that is read, or another one that is written.
+ * @throws {UsageError} if a file would overwrite one that is read, or another one that is written.
  */
 export function refuseOverwritingRead(
   command: Reads,
@@ -96,8 +96,8 @@ export function refuseOverwritingRead(
   const canonical = written.map((path) => canonicalPath(path));
   for (const [i, path] of written.entries()) {
     if (read.has(canonical[i]!))
-      throw new InputError('would be overwritten, but is read by this command; choose another output').in(path);
+      throw new UsageError(`${path}: would be overwritten, but is read by this command; choose another output`);
     if (canonical.indexOf(canonical[i]!) !== i)
-      throw new InputError('would be written twice by this command; choose another output').in(path);
+      throw new UsageError(`${path}: would be written twice by this command; choose another output`);
   }
 }

@@ -6,7 +6,7 @@ import { serveBatch } from './batch-worker.js';
 import { oneLine } from './print.js';
 import { makeProgram } from './program/program.js';
 import { Progress } from './progress.js';
-import { unusable, wrongUsage } from './usage.js';
+import { UsageError, unusable, wrongUsage } from './usage.js';
 
 // A reader that closes the pipe early, such as `head`, is not an error: what is left to be done is done.
 process.stdout.on('error', (error: NodeJS.ErrnoException) => {
@@ -29,7 +29,7 @@ async function main(): Promise<void> {
       const known = error instanceof InputError || error instanceof CagecastError;
       const text = known ? (error as Error).message : `failed unexpectedly (${firstLine(error)}); please report it`;
       process.stderr.write(`cagecast: ${oneLine(text)}\n`);
-      process.exitCode = unusable;
+      process.exitCode = error instanceof UsageError ? wrongUsage : unusable;
     }
   }
 }

@@ -1,5 +1,6 @@
 import { type Command, InvalidArgumentError } from 'commander';
 import { standard } from '../gltf/files.js';
+import { InputError } from '../gltf/input-error.js';
 import { canonicalPath } from './output.js';
 
 /** Exit codes. */
@@ -7,6 +8,9 @@ export const unusable = 1;
 export const wrongUsage = 2;
 export const unfit = 3;
 export const changed = 4;
+
+/** The arguments cannot be used together, as only shows once files are read. */
+export class UsageError extends InputError {}
 
 /** Returns a parser for the name of a file with one of some endings, or of the standard output. */
 export function endingIn(...endings: string[]): (text: string) => string {
