@@ -427,6 +427,9 @@ test('materials of variants are painted as well, or it is told why not: document
   assert.deepEqual([status, stderr], [0, '']);
   assert.ok(stdout.includes(`not painted: "box", with "plain" of its variants: ${reason}`), stdout);
   assertBaked(await io.read(at('out.glb')));
+  // The reason of its own material comes first, and that of a variant names it.
+  const small = ['bake', at('variants.glb'), at('cage.glb'), at('red.png'), '--size', '1', '-o', at('small.glb')];
+  assert.match(cagecast(...small).stderr, /: nothing can be baked: "box": its texture is a palette, or too small for/);
 });
 
 test('triangles without area are nothing to paint, whatever their number; surfaces without area in UVs are a palette', async () => {
@@ -520,7 +523,7 @@ test('no file that was read is overwritten, whoever names it', async () => {
       assert.match(used.stdout, /\nsettings from .*own\.json\n$/);
     }
     const { status, stderr } = cagecast('bake', target, at('cage.glb'), at('red.png'), ...more, '-o', path);
-    assert.equal(status, 1);
+    assert.equal(status, 2);
     assert.match(stderr, /^cagecast: .*\.png: would be overwritten, but is read by this command[^\n]*\n$/);
     assert.deepEqual(readFileSync(path), before);
   }
@@ -725,6 +728,7 @@ test('what cannot be baked is one line that names the file', async () => {
       /image\.glb: nothing can be baked: "box\/?.*": its texture has no image/,
     ],
     [[box, cage, ...out], 2, /there is nothing to bake/],
+    [[box, cage, paint, '--mask-colors', 'POSITION', ...out], 2, /It is not COLOR_0, COLOR_1, … or an attribute of/],
     [[box, cage, paint, '--never-mask', at('none.glb'), ...out], 2, /none\.glb would overwrite .*none\.glb, which/],
     [[box, cage, paint, '--back', '-o', at('none.png')], 2, /--back takes TARGET and CAGE only/],
     [

@@ -235,6 +235,18 @@ describe('cagecast fit', () => {
     assert.ok(Array.isArray(report.landmarks.missing));
   });
 
+  test('a template may come from the standard input', () => {
+    const { status, stderr } = spawnSync(
+      process.execPath,
+      ['dist/cli.js', 'fit', '-', target, '-o', at('piped.glb'), '--quiet'],
+      { input: readFileSync('dist/templates/human-head.glb'), encoding: 'utf8' },
+    );
+    assert.equal(stderr, '');
+    assert.equal(status, 0);
+    assert.equal(cagecast('fit', 'human-head', target, '-o', at('named.glb'), '--quiet').status, 0);
+    assert.deepEqual(readFileSync(at('piped.glb')), readFileSync(at('named.glb')));
+  });
+
   test('a folder with the name of a template does not hide it', () => {
     mkdirSync(at('human-head'));
     const { status, stderr } = spawnSync(

@@ -4,7 +4,7 @@ import { cageGlb } from '../cages/glb.js';
 import { templateNames } from '../cages/template-names.js';
 import type { Cage, Fit, Kind, Landmarks } from '../cages/types.js';
 import { templateOf } from '../gltf/cage-file.js';
-import { type ReadOptions, readBytes } from '../gltf/files.js';
+import { type ReadOptions, readBytes, standard } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
 import type { Verdict } from '../inspect/index.js';
@@ -104,7 +104,7 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
 /** The file of a template: of one that comes with the package if its name is given, and no file is called so. */
 function templateFile(path: string): string {
   const isFolder = statSync(path, { throwIfNoEntry: false })?.isDirectory();
-  if (isFolder === false || /[./\\]/.test(path)) return path;
+  if (path === standard || isFolder === false || /[./\\]/.test(path)) return path;
   if (!(templateNames as readonly string[]).includes(path))
     throw new InputError(`no such file, and no template of the package: there are ${templateNames.join(', ')}`).in(
       path,
@@ -154,6 +154,9 @@ function describeFit({ used, confidence, missing }: Fit, given: Landmarks): FitN
   return { lines, advice, report: { landmarks: { used, confidence, missing } } };
 }
 
+/** Said where findings advise flags that these commands do not have, or have for something else. */
+const kOtherFlags = '--keep and --exclude, as advised here, are flags of cagecast transfer';
+
 /** Inspects a cage and writes the files. */
 async function finish(
   { output, html }: CageOutput,
@@ -169,12 +172,14 @@ async function finish(
     { path: output, data: cageGlb(cage) },
     ...(html === undefined ? [] : [{ path: html, data: inspectionPage(report, run) }]),
   ]);
+  const conclusion = conclusionOf(report);
   const text = [
     `wrote ${output}: ${integer(report.cage.vertices)} vertices, ${integer(report.cage.triangles)} triangles, ${counted(report.uv.charts, 'chart')}, ${counted(report.holes.length, 'hole')}`,
     ...notes.lines,
     // A cage that is good needs nothing.
     ...(report.verdict === 'good' || notes.advice === '' ? [] : [notes.advice]),
-    ...conclusionOf(report),
+    ...conclusion,
+    ...(conclusion.some((line) => /--(keep|exclude) "/.test(line)) ? [kOtherFlags] : []),
     ...(html === undefined ? [] : [`wrote ${html}`]),
   ].join('\n');
   return { text, report: { ...report, ...notes.report }, verdict: report.verdict };

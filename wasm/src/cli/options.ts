@@ -83,11 +83,20 @@ export function addRuleFlags(command: Command): Command {
     )
     .option('--never-mask <IMAGE>', "never paint where this image, in TARGET's own UVs, is white")
     .option('--always-mask <IMAGE>', 'paint where this one is white, whatever the rules say')
-    .option(
-      '--mask-colors <ATTRIBUTE>',
-      'never paint red vertices, always green ones; by an attribute such as COLOR_0',
+    .addOption(
+      new Option(
+        '--mask-colors <ATTRIBUTE>',
+        'never paint red vertices, always green ones; by an attribute such as COLOR_0',
+      ).argParser((name) => {
+        if (!holdsColors(name)) throw new InvalidArgumentError(`It is not ${colorAttributes}.`);
+        return name;
+      }),
     );
 }
+
+/** What holds colours, and whether a name is of that kind. */
+export const colorAttributes = 'COLOR_0, COLOR_1, … or an attribute of an own name, which begins with _';
+export const holdsColors = (name: string): boolean => /^(COLOR_\d+|_.+)$/.test(name);
 
 /** What a flag does, its range and its defaults. Words in commander's help begin in lower case and end without a full stop. */
 function helpOf({ kind, range, standard, paper, text }: (typeof optionFlags)[number]): string {

@@ -82,10 +82,11 @@ async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefin
     throw inTarget(error, target);
   });
   if (report.textures.length === 0) {
-    const [first] = report.left;
-    throw new InputError(
-      first ? `nothing can be baked: ${quoted(first.part)}: ${first.reason}` : 'nothing of it may be painted',
-    ).in(target);
+    // The reason of a part's own material before those of variants.
+    const first = report.left.find(({ material }) => material === undefined) ?? report.left[0];
+    throw new InputError(first ? `nothing can be baked: ${leftText(first)}` : 'nothing of it may be painted').in(
+      target,
+    );
   }
   write(command, run, writer.finish());
   const { config } = command.rules;
@@ -103,12 +104,13 @@ function summary(output: string, { textures, left }: BakeReport): string {
       ({ slot, parts, width, height, overlap }) =>
         `${slot}: ${width} × ${height}, on ${listNames(parts)}${overlapText(overlap)}`,
     ),
-    ...left.map(
-      ({ part, material, reason }) =>
-        `not painted: ${quoted(part)}${material === undefined ? '' : `, with ${quoted(material)} of its variants`}: ${reason}`,
-    ),
+    ...left.map((one) => `not painted: ${leftText(one)}`),
   ].join('\n');
 }
+
+/** Which part is not painted, and why. */
+const leftText = ({ part, material, reason }: BakeReport['left'][number]): string =>
+  `${quoted(part)}${material === undefined ? '' : `, with ${quoted(material)} of its variants`}: ${reason}`;
 
 const kFewTexels = 0.001; // is due to touching edges
 

@@ -3,7 +3,7 @@ import { optionFlags } from '../../generated/options.js';
 import { type Form, forms } from '../../gltf/glb-writer.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
 import type { Preset } from '../../index.js';
-import { infinite, type MaskFiles, quoted, type Single } from '../options.js';
+import { colorAttributes, holdsColors, infinite, type MaskFiles, quoted, type Single } from '../options.js';
 
 /** How paint may end: at existing edges of triangles, or where triangles are cut. */
 export const borderKinds = ['triangle', 'cut'] as const;
@@ -75,7 +75,8 @@ export function settingsOf(given: Readonly<Record<string, unknown>>, folder: str
   }
   const [never, always] = ['neverMask', 'alwaysMask'].map((name) => pathOf(given, name, folder));
   const { maskColors: colors } = given;
-  if (colors !== undefined && typeof colors !== 'string') throw wrong('maskColors', 'the name of an attribute');
+  if (colors !== undefined && !(typeof colors === 'string' && holdsColors(colors)))
+    throw wrong('maskColors', colorAttributes);
   if ((never ?? always ?? colors) !== undefined) settings['masks'] = { never, always, colors };
   for (const { name, kind, range } of optionFlags) {
     const value = given[name] === infinite && range[1] === Infinity ? Infinity : given[name];

@@ -291,5 +291,5 @@ function unusable(layouts: readonly Layout[], texels: number): string | undefine
     });
   }
   if (laid > kMostLayers) return 'its texture is a pattern that repeats';
-  return flat > kMostFlat * drawn ? 'its texture is a palette, without room for paint' : undefined;
+  return flat > kMostFlat * drawn ? 'its texture is a palette, or too small for paint' : undefined;
 }
