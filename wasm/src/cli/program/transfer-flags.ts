@@ -22,8 +22,9 @@ _NCZ is 0 for a vertex that may be painted. Other values say why it must not be 
 If the triangles at a vertex need different UVs, copies of the vertex with all its attributes are added after the
 existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones. Draco changes
 the order of vertices.
-If TARGET was written by an earlier transfer, its UVs, zones and overlays are replaced. An overlay fills what a material
-cuts out by its alpha (alphaMode MASK), as between hairs; cagecast bake does not.
+If TARGET was written by an earlier transfer, its UVs, zones and overlays are replaced. Other data that is written anew, as by
+--compress, stays as well if the file has an extension that is not known here, which may refer to it. An overlay fills
+what a material cuts out by its alpha (alphaMode MASK), as between hairs; cagecast bake does not.
 Each --region adds UVs and zones of its own (_NCZ_1, …) to the same vertices. --uv-bounds and --reference-cage are about
 --cage alone. Within --uv-bounds, the UVs in OUT are 0..1. Zones are about the cage, whatever the bounds: vertices outside of
 them may have _NCZ 0. A triangle across the bounds is painted whole, beyond them with the edge of the texture; --borders cut
@@ -31,6 +32,8 @@ does not cut it there.
 With <UDIM> in the name of a texture, each tile of the cage's UVs has its own: 1001, 1002 to its right, 1011 above. A triangle
 shows the tile that the centre of its UVs is in. A glTF gets OUT.bin and OUT-image0.png, … beside it. A mesh that is drawn as
 many instances (EXT_mesh_gpu_instancing) is taken once, where its first instance is; all instances show the same paint.
+Of several scenes, in TARGET as in cages, only the default one is read, or the first if none is the default; the others
+stay as they are.
 A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
 --cage auto makes a cage for TARGET on the way, as cagecast make does, and excludes the parts whose names make leaves out by
 default, unless --keep names them; for a file named auto, write ./auto.
