@@ -1,9 +1,9 @@
 import type { Classification } from 'cagecast';
-import { reasonOf } from '../scene/wording';
 import { element } from '../platform/page';
 import type { Session } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
 import type { SplitProjection } from '../scene/transfer-messages';
+import { reasonOf } from '../scene/wording';
 import type { Viewer } from './viewer';
 
 const kPatience = 300; // milliseconds without a change before cutting
