@@ -20,6 +20,7 @@ class MinCut {
   /// Whether each node is on the second side.
   [[nodiscard]] std::vector<bool> solve();
 
+  /// More than all other costs together, however large the model is.
   static constexpr double kForbidden = std::numeric_limits<double>::infinity();
 
  private:

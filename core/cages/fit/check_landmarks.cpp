@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fit/bones.hpp"
+
 namespace cagecast::cages {
 
 namespace {
@@ -12,6 +14,8 @@ namespace {
 constexpr double kMostOutside = 0.2;
 /// Joints of its skeleton may be farther: a figure that ends at the hips may have the joints of legs.
 constexpr double kMostOutsideJoint = 0.5;
+/// A skeleton of several bones reaches over at least this share of the diagonal of its mesh.
+constexpr double kLeastReach = 0.05;
 /// Each landmark is compared with where all others put it: the time grows with the cube of their number.
 constexpr std::size_t kMostLandmarks = 300;
 /// A landmark that is off by more than this share of the diagonal, after the others are aligned, may be a mistake.
@@ -150,14 +154,24 @@ Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* na
 }
 
 Outcome checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box) {
+  std::size_t count = 0;
+  Bounds joints;
   for (const Landmark& landmark : landmarks) {
+    if (!isJoint(landmark.name)) continue;
+    ++count;
+    joints.add(positionOf(landmark));
     const double outside = box.distance(positionOf(landmark)) / box.diagonal();
-    if (isJoint(landmark.name) && outside > kMostOutsideJoint)
+    if (outside > kMostOutsideJoint)
       return {Problem::badModel, "model.joints: " + landmark.name + " is " + text("%.3g", outside) +
                                      " diagonals outside the box of the mesh, at most " +
                                      text("%.3g", kMostOutsideJoint) +
                                      " are expected; joints have to be in its unit and axes"};
   }
+  const double reach = joints.diagonal() / box.diagonal();
+  if (count > kLeastBones && reach < kLeastReach)
+    return {Problem::badModel, "model.joints: the box of " + std::to_string(count) + " joints is " +
+                                   text("%.3g", reach) + " as large as that of the mesh, at least " +
+                                   text("%.3g", kLeastReach) + " is expected; joints have to be in its unit"};
   return {};
 }
 

@@ -12,8 +12,8 @@ constexpr double kEyeDistance = 0.16;
 /// Eyes that are no parts with a name may be teeth or buttons: how far apart they may be, in shares of what the head
 /// suggests.
 constexpr double kNearest = 0.55, kFarthest = 1.7;
-/// Eyes with a name may stand out far, as a crab's; farther apart than this in the same shares, they alone tell how
-/// long the head is. So what is measured around an eye, in steps of a share of that length, is bounded.
+/// Eyes with a name may be far apart, as a crab's. The head is at least 1 / kFarthestNamed as long as their distance
+/// suggests: that bounds the measuring around an eye, whose steps are shares of that length.
 constexpr double kFarthestNamed = 4;
 /// Wheels mirror each other, too, but are not in the upper half of a model.
 constexpr double kLowest = 0.38;

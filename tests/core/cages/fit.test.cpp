@@ -377,6 +377,30 @@ TEST_CASE("joints of a skeleton in another unit are named", "[cages][fit]") {
         "to be in its unit and axes");
 }
 
+TEST_CASE("joints of a skeleton that is far smaller than its mesh are an error", "[cages][fit]") {
+  Heads heads;
+  Template from = heads.from();
+  Model model{heads.other.view()};
+  const std::pair<const char*, const char*> kJoints[] = {{"hips", "hips"},
+                                                         {"upperChest", "chest"},
+                                                         {"neck", "neck"},
+                                                         {"head", "head"},
+                                                         {"jaw", "jaw"},
+                                                         {"leftUpperArm", "shoulder_left"},
+                                                         {"rightUpperArm", "shoulder_right"}};
+  float height = -0.9f;
+  for (const auto& [joint, landmark] : kJoints) {
+    from.landmarks.push_back({std::string("joint_") + landmark, {0, height, 0}});
+    model.joints.push_back({joint, {0, 0.01f * height, 0}});
+    height += 0.3f;
+  }
+  const Outcome outcome = fitCage(from, model, heads.options(), {}, heads.out);
+  CHECK(outcome.problem == Problem::badModel);
+  CHECK(outcome.message ==
+        "model.joints: the box of 7 joints is 0.00532 as large as that of the mesh, at least 0.05 is expected; joints "
+        "have to be in its unit");
+}
+
 TEST_CASE("no more landmarks are taken than can be checked in a moment", "[cages][fit]") {
   Heads heads;
   for (int i = 0; i < 291; ++i) heads.landmarks.push_back({"spot_" + std::to_string(i), {0, 0, 0}});
