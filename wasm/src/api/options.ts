@@ -129,6 +129,7 @@ function presetOf(fn: string, name: string, preset: unknown): CoreOptions {
       'badOption',
       fn,
       `${name} = ${show(preset)} is unknown; there are: ${presets.map(show).join(', ')}`,
+      { argument: name.split('.')[0] },
     );
   return useCore(fn, ({ module }) => module.presetOptions(module['Preset']![preset as Preset]!));
 }

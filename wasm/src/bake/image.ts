@@ -41,8 +41,13 @@ export function colorByte(): (linear: number) => number {
 export function checkNames(fn: string, where: string, given: object, known: string): void {
   for (const name in given)
     if (!known.split(', ').includes(name))
-      throw new CagecastError('badOption', fn, `${where}.${name} is not an option; there are: ${known}`);
+      throw new CagecastError('badOption', fn, `${where}.${name} is not an option; there are: ${known}`, {
+        argument: where,
+      });
 }
+
+/** The argument that a name like `options.width` begins with. */
+const argumentOf = (name: string): string => name.split('.')[0]!;
 
 /**
  * Checks a size in texels.
@@ -54,6 +59,7 @@ export function checkSize(fn: string, name: string, value: unknown): number {
       'badArgument',
       fn,
       `${name} is ${show(value)}, not a whole number of texels from 1 to ${mostTexels}`,
+      { argument: argumentOf(name) },
     );
   return value as number;
 }
@@ -63,7 +69,8 @@ export function checkSize(fn: string, name: string, value: unknown): number {
  * @throws {CagecastError} `badArgument`
  */
 export function checkImage(fn: string, name: string, image: unknown): Image {
-  const wrong = (text: string) => new CagecastError('badArgument', fn, `${name}${text}`);
+  const wrong = (text: string) =>
+    new CagecastError('badArgument', fn, `${name}${text}`, { argument: argumentOf(name) });
   if (typeof image !== 'object' || image === null)
     throw wrong(` is ${show(image)}, not an image { width, height, data }`);
   const { width, height, data } = image as Partial<Image>;

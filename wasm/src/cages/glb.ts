@@ -25,7 +25,9 @@ export function cageGlb(
   };
   for (const [name, known] of Object.entries(types) as [keyof typeof types, string[]][])
     if (!known.includes(Object.prototype.toString.call(cage[name]).slice(8, -1)))
-      throw new CagecastError('badArgument', 'cageGlb', `cage.${name} is ${show(cage[name])}, not a ${known[0]}`);
+      throw new CagecastError('badArgument', 'cageGlb', `cage.${name} is ${show(cage[name])}, not a ${known[0]}`, {
+        argument: 'cage',
+      });
   const min = [Infinity, Infinity, Infinity];
   const max = [-Infinity, -Infinity, -Infinity];
   positions.forEach((x, i) => {

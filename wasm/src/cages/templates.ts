@@ -31,6 +31,7 @@ export async function loadTemplate(name: TemplateName): Promise<Cage> {
       'badArgument',
       'loadTemplate',
       `name is ${show(name)}, not one of ${templateNames.map((known) => `"${known}"`).join(', ')}`,
+      { argument: 'name' },
     );
   const url = files[name]();
   try {

@@ -1,4 +1,4 @@
-import { show } from '../core/error.js';
+import { type ErrorDetails, show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import { checkGeometry } from './check.js';
 import { InputError } from './input-error.js';
@@ -21,8 +21,8 @@ export interface CheckOptions {
  * @throws {CagecastError} `badArgument` that names the element, the value and the limit.
  */
 export function checkGltf(bytes: Uint8Array, { limits, otherBytes = 0, ...others }: CheckOptions = {}): void {
-  const wrong = (text: string, options?: ErrorOptions) => new CagecastError('badArgument', 'checkGltf', text, options);
-  if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`);
+  const wrong = (text: string, details?: ErrorDetails) => new CagecastError('badArgument', 'checkGltf', text, details);
+  if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`, { argument: 'bytes' });
   for (const name in others) throw wrong(`${name} is not an option`);
   for (const [name, value] of Object.entries(limits ?? {}))
     if (!(name in defaultLimits) || !(typeof value === 'number' && value >= 0))

@@ -48,7 +48,7 @@ const identity = new Matrix4();
  * @param argument  The name of the argument, for messages.
  * @throws {CagecastError} that names the part and the element.
  */
-export function extract(object: Object3D | BufferGeometry, argument: 'cage' | 'target' = 'target'): Extracted {
+export function extract(object: Object3D | BufferGeometry, argument = 'target'): Extracted {
   const parts = listParts(object, argument);
   const last = parts.at(-1);
   const positions = new Float32Array(3 * (last ? last.firstVertex + last.vertexCount : 0));

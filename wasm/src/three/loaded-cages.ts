@@ -29,7 +29,7 @@ const objectOf = (model: Loaded): Object3D | BufferGeometry => (isLoadedGltf(mod
  */
 export function cageModel(model: Loaded): cages.CageModel {
   const object = objectOf(model);
-  const { mesh, parts } = extract(object);
+  const { mesh, parts } = extract(object, 'model');
   const { positions, indices, groups } = mesh;
   const bones = isLoadedGltf(model) ? bonesOf(model) : new Map<Object3D, string>();
   return {
@@ -46,9 +46,11 @@ export function cageModel(model: Loaded): cages.CageModel {
  * @throws {CagecastError} `badArgument`, `missingUvs`
  */
 export function cageTemplate(model: Loaded): cages.Template {
-  const { mesh, parts } = extract(objectOf(model), 'cage');
+  const { mesh, parts } = extract(objectOf(model), 'template');
   if (mesh.uvs === undefined)
-    throw new CagecastError('missingUvs', 'cageTemplate', 'the cage has a mesh without the attribute uv');
+    throw new CagecastError('missingUvs', 'cageTemplate', 'the cage has a mesh without the attribute uv', {
+      argument: 'template',
+    });
   const sources = parts.flatMap(({ name, mesh: of, geometry, matrix, firstVertex, vertexCount }) =>
     // The parent of the meshes of one glTF mesh has the extras of its node.
     [

@@ -38,7 +38,9 @@ export function cageTemplate(document: Document): cages.Template {
   return read('cageTemplate', 'template', document, () => {
     const { mesh, parts } = extractDocument(document);
     if (mesh.uvs === undefined)
-      throw new CagecastError('missingUvs', 'cageTemplate', 'template has a primitive without UVs');
+      throw new CagecastError('missingUvs', 'cageTemplate', 'template has a primitive without UVs', {
+        argument: 'template',
+      });
     const sources = parts.flatMap((part) => [
       { ...part, extras: part.mesh.getExtras(), place: `mesh of "${part.name}"` },
       { ...part, extras: part.node.getExtras(), place: `"${part.name}"` },
