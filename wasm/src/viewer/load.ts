@@ -46,7 +46,7 @@ function checkCost(bytes: Uint8Array): void {
   try {
     checkGltf(bytes, { limits });
   } catch (error) {
-    throw new Error((error as CagecastError).reason, { cause: error });
+    throw new Error((error as CagecastError).reason ?? (error as Error).message, { cause: error });
   }
 }
 

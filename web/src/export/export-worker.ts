@@ -2,6 +2,7 @@ import { type Document, type JSONDocument, Logger, WebIO } from '@gltf-transform
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { type BakeReport, bake, cagecast, type ImageCodec } from 'cagecast/gltf';
 import { readGltfHead } from '../scene/gltf-file';
+import { reasonOf } from '../scene/wording';
 import { avatarExtensions } from './avatar-extensions';
 import type { Baked, ExportReply, ExportRequest } from './export-messages';
 import { readPixels, writePng } from './texture/pixels';
@@ -14,7 +15,7 @@ addEventListener('message', async ({ data }: MessageEvent<ExportRequest>) => {
     const reply = await paintModel(data);
     postMessage(reply satisfies ExportReply, { transfer: [reply.glb.buffer] });
   } catch (error) {
-    postMessage({ message: error instanceof Error ? error.message : String(error) } satisfies ExportReply);
+    postMessage({ message: reasonOf(error) } satisfies ExportReply);
   }
 });
 

@@ -4,7 +4,7 @@ import { element } from '../platform/page';
 import type { CageMaker } from '../scene/cage-maker';
 import type { Session } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
-import { forPeople } from '../scene/wording';
+import { forPeople, reasonOf } from '../scene/wording';
 import { trianglesOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
 import { type KnownVerdict, paintableShare, type Remedy, StageVerdict } from './stage-verdict';
@@ -100,8 +100,7 @@ export class FitPanel {
       this.#write(await this.#client.ask('inspect', cage, target, { preset, threshold, locks, parts }));
     } catch (error) {
       if (error instanceof Superseded) return;
-      const reason = error instanceof Error ? error.message : error;
-      this.#show('', [text('p', `The cage could not be inspected: ${reason}`)], this.#next);
+      this.#show('', [text('p', `The cage could not be inspected: ${reasonOf(error)}`)], this.#next);
     }
   }
 

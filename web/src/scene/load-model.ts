@@ -1,4 +1,3 @@
-import type { CagecastError } from 'cagecast';
 import { checkGltf } from 'cagecast/gltf';
 import type { LoadedGltf } from 'cagecast/three';
 import { type AnimationClip, Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
@@ -10,6 +9,7 @@ import { readGltfHead } from './gltf-file';
 import { damageOf } from './image-damage';
 import { adviceOn, kSniffed } from './other-formats';
 import type { Sample } from './samples';
+import { reasonOf } from './wording';
 
 /** A loaded model: the scene to show, and its triangles for the transfer. */
 export interface Model {
@@ -132,7 +132,7 @@ function checkCost(bytes: ArrayBuffer, companions: readonly File[]): void {
   try {
     checkGltf(new Uint8Array(bytes), { otherBytes: companions.reduce((sum, { size }) => sum + size, 0) });
   } catch (error) {
-    throw new Error((error as CagecastError).reason, { cause: error });
+    throw new Error(reasonOf(error), { cause: error });
   }
 }
 
