@@ -135,13 +135,17 @@ async function runBatch(command: Command, targets: string[], flags: BatchFlags, 
     flags.quiet ? () => {} : writeStandard,
     progress,
   );
-  const savesNothing = failOn === undefined && summary.done > 0 && jobs.every((job) => writtenBy(job).length === 0);
+  const savesNothing =
+    failOn === undefined &&
+    results === undefined &&
+    summary.done > 0 &&
+    jobs.every((job) => writtenBy(job).length === 0);
   const text = savesNothing ? `${describeBatch(summary)}\n${kNothingSaved}` : describeBatch(summary);
   if (!flags.quiet) process.stderr.write(flags.json ? jsonText(summary) : `${text}\n`);
   process.exitCode = summary.failed > 0 ? unusable : summary.misfits > 0 ? unfit : 0;
 }
 
-const kNothingSaved = 'nothing written; to save the results, add -o OUT.glb or --report R.json';
+const kNothingSaved = 'no model or report written; for these, add -o OUT.glb or --report R.json';
 
 const printError = (error: string): void => void process.stderr.write(`cagecast: ${oneLine(error)}\n`);
 

@@ -188,7 +188,7 @@ type JobNames = Pick<TransferCommand, 'target' | 'referenceCage' | 'texture' | '
 const noOutput = (target: string): InputError =>
   new InputError('has no output, where its texture or its cut target would be written').in(target);
 
-/** What stands in a path for nothing that a batch knows, if something does. */
+/** The first placeholder in a path that a batch does not know. */
 export const unknownPlaceholder = (path = ''): string | undefined =>
   path.match(/\{\w+\}/g)?.find((found) => !['{name}', '{dir}'].includes(found));
 

@@ -9,7 +9,7 @@ export const wrongUsage = 2;
 export const unfit = 3;
 export const changed = 4;
 
-/** The arguments cannot be used together, as only shows once files are read. */
+/** Arguments that cannot be used together, which shows only once files are read. */
 export class UsageError extends InputError {}
 
 /** Returns a parser for the name of a file with one of some endings, or of the standard output. */

@@ -2,9 +2,10 @@
 export class InputError extends Error {
   override readonly name = 'InputError';
 
-  /** The same with the file's name in front. */
+  /** The same, of the same class, with the file's name in front. */
   in(file: string): InputError {
-    return new InputError(`${file}: ${this.message}`, { cause: this.cause });
+    const { constructor, message, cause } = this;
+    return new (constructor as typeof InputError)(`${file}: ${message}`, { cause });
   }
 }
 

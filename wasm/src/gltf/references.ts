@@ -53,8 +53,8 @@ export const hasUnknownReferences = ({ extensionsUsed = [] }: GLTF.IGLTF): boole
   extensionsUsed.some((name) => !kKnown.test(name));
 
 /**
- * What an earlier transfer added, as a file of its own: attributes and the indices of overlays. And what else only this package and
- * materials refer to: images, and geometry that Draco compressed.
+ * What an earlier transfer added, as a file of its own: attributes and the indices of overlays. Also images, and geometry that Draco
+ * compressed: unknown extensions do not refer to their views.
  */
 export function addedByTransfer({ meshes = [], accessors = [], images = [] }: GLTF.IGLTF): GLTF.IGLTF {
   const isAdded = ([semantic, accessor]: [string, number]) => isOfTransfer(semantic, accessors[accessor]!.extras);

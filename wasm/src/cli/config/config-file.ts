@@ -108,12 +108,13 @@ export class Configuration {
   }
 }
 
-/** Whether there is a file, or a link, even one that leads nowhere. What cannot be looked up is there: reading it says what is wrong. */
+/** Whether there is a file, or a link, even one that leads nowhere. If that cannot be told there is: reading it says what is wrong. */
 function isThere(path: string): boolean {
   try {
     return lstatSync(path, { throwIfNoEntry: false }) !== undefined;
-  } catch {
-    return true;
+  } catch (error) {
+    // Part of the path is a file, or too long: whatever is read there has the same fault.
+    return !['ENOTDIR', 'ENAMETOOLONG'].includes((error as NodeJS.ErrnoException).code ?? '');
   }
 }
 

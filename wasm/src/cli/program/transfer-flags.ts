@@ -22,9 +22,9 @@ _NCZ is 0 for a vertex that may be painted. Other values say why it must not be 
 If the triangles at a vertex need different UVs, copies of the vertex with all its attributes are added after the
 existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones. Draco changes
 the order of vertices.
-If TARGET was written by an earlier transfer, its UVs, zones and overlays are replaced. Other data that is written anew, as by
---compress, stays as well if the file has an extension that is not known here, which may refer to it. An overlay fills
-what a material cuts out by its alpha (alphaMode MASK), as between hairs; cagecast bake does not.
+If TARGET was written by an earlier transfer, its UVs, zones and overlays are replaced. If it has an extension that is not
+known here, the old copy of what is written anew, as by --compress, stays beside the new one: the extension may refer to it.
+An overlay fills what a material cuts out by its alpha (alphaMode MASK), as between hairs; cagecast bake does not.
 Each --region adds UVs and zones of its own (_NCZ_1, …) to the same vertices. --uv-bounds and --reference-cage are about
 --cage alone. Within --uv-bounds, the UVs in OUT are 0..1. Zones are about the cage, whatever the bounds: vertices outside of
 them may have _NCZ 0. A triangle across the bounds is painted whole, beyond them with the edge of the texture; --borders cut

@@ -229,7 +229,9 @@ export function summary(
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
     table(rows),
     `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted${cut ? `; cut along borders, ${integer(cut.triangles.cosmetic)} of ${integer(cut.triangles.total)}` : ''}; ${timings.total.toFixed(1)} ms`,
-    outOfBounds > 0 ? `${integer(outOfBounds)} more are outside of the bounds of UVs, which change no zone` : '',
+    outOfBounds > 0
+      ? `${integer(outOfBounds)} more could be painted, but lie outside of --uv-bounds; zones do not depend on the bounds`
+      : '',
     output === null
       ? ''
       : `wrote ${output}: ${sets}, ${zoneAttribute}${overlay}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}${replacedOverlays === 0 ? '' : `; ${takenAway(replacedOverlays)}`}`,
