@@ -337,5 +337,10 @@ test('what cannot be baked is one clear error', () => {
       new RegExp(`options\\.width is ${size}, not a whole number of texels from 1 to 8192`),
     ]);
   for (const [call, message] of cases)
-    assert.throws(call, (error) => error instanceof CagecastError && message.test(error.message), String(message));
+    assert.throws(call, (error: unknown) => {
+      assert.ok(error instanceof CagecastError, String(error));
+      assert.match(error.message, message);
+      assert.equal(error.argument, /^(target|result|image|options)\b/.exec(error.reason)?.[0], error.message);
+      return true;
+    });
 });

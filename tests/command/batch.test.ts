@@ -515,10 +515,12 @@ test('an empty path fails its job, which names the member', () => {
     members.sort(),
     empty.map((name, i) => [String(i + 2), name]),
   );
+  const nothing = (...more: string[]) => cagecast('batch', at('in/0.glb'), '--cage', at('cage.glb'), ...more).stderr;
   assert.match(
-    cagecast('batch', at('in/0.glb'), '--cage', at('cage.glb')).stderr,
-    /^1 job: 1 done, .*\nnothing written; to save the results, add -o OUT\.glb or --report R\.json\n$/,
+    nothing(),
+    /^1 job: 1 done, .*\nno model or report written; for these, add -o OUT\.glb or --report R\.json\n$/,
   );
+  assert.match(nothing('--results', at('nothing.jsonl')), /^1 job: 1 done, .*\n$/);
 });
 
 test('with --fail-on reports have the verdict, which diff compares', () => {

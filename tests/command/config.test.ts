@@ -253,3 +253,9 @@ test('a configuration that is a link to nothing is an error', () => {
   assert.deepEqual([status, stdout], [1, '']);
   assert.match(stderr, /^cagecast: [^\n]*cagecast\.config\.json: no such file\n$/);
 });
+
+test('of a path through a file, the target is at fault, not its configuration', () => {
+  const { status, stdout, stderr } = cagecast('transfer', join(ada, 'x.glb'), ...cage);
+  assert.deepEqual([status, stdout], [1, '']);
+  assert.match(stderr, /^cagecast: [^\n]*x\.glb: [^\n]*\n$/);
+});

@@ -13,7 +13,7 @@ function fails(call: () => unknown, code: Code, message: string | RegExp, at = 0
     assert.equal(error.code, code);
     assert.equal(error.at, at);
     // The sentence begins with the argument at fault, if there is one.
-    assert.equal(error.argument, /^(cage|target|options|projection)\b/.exec(error.reason)?.[0], error.message);
+    assert.equal(error.argument, /^(cage|target|options|projection|preset)\b/.exec(error.reason)?.[0], error.message);
     assert.equal(error.message, `${error.fn}: ${error.reason}`);
     return true;
   });
