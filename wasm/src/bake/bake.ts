@@ -1,6 +1,6 @@
 import { show } from '../core/error.js';
 import { CagecastError, type Mesh, type TransferResult } from '../index.js';
-import type { Image } from './image.js';
+import { type Image, wrongArgument } from './image.js';
 import { type Baked, checkFill, type FillOptions, fill, type Layout, paintedOnly } from './layout.js';
 
 /** The model: what `transfer` was given, with UVs of its own; positions are needed for normal maps only. */
@@ -108,27 +108,27 @@ function partsOf(fn: string, { indices }: BakeTarget, { parts }: BakeOptions): r
 
 /** Checks target and result, and lays the triangles of each part out. */
 function layoutsOf(fn: string, target: BakeTarget, result: BakeResult, options: BakeOptions): Layout[] {
-  const wrong = (argument: 'target' | 'result', text: string, at = 0) =>
-    new CagecastError('badArgument', fn, `${argument}${text}`, { argument, at });
   const { kind } = checkFill(fn, options);
   if (typeof target !== 'object' || target === null)
-    throw wrong('target', ` is ${show(target)}, not a mesh { indices, uvs }`);
+    throw wrongArgument(fn, 'target', `is ${show(target)}, not a mesh { indices, uvs }`);
   if (typeof result !== 'object' || result === null)
-    throw wrong('result', ` is ${show(result)}; pass what transfer() returned`);
+    throw wrongArgument(fn, 'result', `is ${show(result)}; pass what transfer() returned`);
   const { indices, uvs, positions } = target;
-  if (!ArrayBuffer.isView(indices)) throw wrong('target', `.indices is ${show(indices)}, not a typed array`);
-  if (!ArrayBuffer.isView(uvs) || uvs.length === 0) throw wrong('target', ' has no UVs; unwrap it first');
+  if (!ArrayBuffer.isView(indices)) throw wrongArgument(fn, 'target.indices', `is ${show(indices)}, not a typed array`);
+  if (!ArrayBuffer.isView(uvs) || uvs.length === 0) throw wrongArgument(fn, 'target', 'has no UVs; unwrap it first');
   const [triangles, vertices] = [indices.length / 3, uvs.length / 2];
-  if (!Number.isInteger(triangles)) throw wrong('target', `.indices has ${indices.length} entries, not 3 per triangle`);
+  if (!Number.isInteger(triangles))
+    throw wrongArgument(fn, 'target.indices', `has ${indices.length} entries, not 3 per triangle`);
   const bad = uvs.findIndex((value) => !Number.isFinite(value));
-  if (bad >= 0) throw wrong('target', `.uvs[${bad}] is ${uvs[bad]}, not a finite number`, bad);
+  if (bad >= 0) throw wrongArgument(fn, `target.uvs[${bad}]`, `is ${uvs[bad]}, not a finite number`, bad);
   const stray = indices.findIndex((vertex) => vertex >= vertices);
   if (stray >= 0)
-    throw wrong('target', `.indices[${stray}] = ${indices[stray]} is out of range (${vertices} UVs)`, stray);
+    throw wrongArgument(fn, `target.indices[${stray}]`, `= ${indices[stray]} is out of range (${vertices} UVs)`, stray);
   if (kind === 'normal' && positions?.length !== 3 * vertices)
-    throw wrong(
-      'target',
-      `.positions has ${positions?.length ?? 0} numbers, not 3 for each of ${vertices} vertices; normal maps need them`,
+    throw wrongArgument(
+      fn,
+      'target.positions',
+      `has ${positions?.length ?? 0} numbers, not 3 for each of ${vertices} vertices; normal maps need them`,
     );
   const { cornerUvs, cosmeticTriangles } = result;
   const lengths = {

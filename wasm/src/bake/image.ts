@@ -46,8 +46,9 @@ export function checkNames(fn: string, where: string, given: object, known: stri
       });
 }
 
-/** The argument that a name like `options.width` begins with. */
-const argumentOf = (name: string): string => name.split('.')[0]!;
+/** An error of an argument, or of a member of one. @param name  As in "image.width". */
+export const wrongArgument = (fn: string, name: string, text: string, at?: number): CagecastError =>
+  new CagecastError('badArgument', fn, `${name} ${text}`, { argument: name.split('.')[0], at });
 
 /**
  * Checks a size in texels.
@@ -55,12 +56,7 @@ const argumentOf = (name: string): string => name.split('.')[0]!;
  */
 export function checkSize(fn: string, name: string, value: unknown): number {
   if (!Number.isInteger(value) || (value as number) < 1 || (value as number) > mostTexels)
-    throw new CagecastError(
-      'badArgument',
-      fn,
-      `${name} is ${show(value)}, not a whole number of texels from 1 to ${mostTexels}`,
-      { argument: argumentOf(name) },
-    );
+    throw wrongArgument(fn, name, `is ${show(value)}, not a whole number of texels from 1 to ${mostTexels}`);
   return value as number;
 }
 
@@ -69,17 +65,15 @@ export function checkSize(fn: string, name: string, value: unknown): number {
  * @throws {CagecastError} `badArgument`
  */
 export function checkImage(fn: string, name: string, image: unknown): Image {
-  const wrong = (text: string) =>
-    new CagecastError('badArgument', fn, `${name}${text}`, { argument: argumentOf(name) });
   if (typeof image !== 'object' || image === null)
-    throw wrong(` is ${show(image)}, not an image { width, height, data }`);
+    throw wrongArgument(fn, name, `is ${show(image)}, not an image { width, height, data }`);
   const { width, height, data } = image as Partial<Image>;
   checkSize(fn, `${name}.width`, width);
   checkSize(fn, `${name}.height`, height);
   if (!(data instanceof Uint8Array || data instanceof Uint8ClampedArray))
-    throw wrong(`.data is ${show(data)}, not a Uint8Array or Uint8ClampedArray`);
+    throw wrongArgument(fn, `${name}.data`, `is ${show(data)}, not a Uint8Array or Uint8ClampedArray`);
   if (data.length !== 4 * width! * height!)
-    throw wrong(`.data has ${data.length} bytes, not 4 for each of ${width} × ${height} pixels`);
+    throw wrongArgument(fn, `${name}.data`, `has ${data.length} bytes, not 4 for each of ${width} × ${height} pixels`);
   return image as Image;
 }
 

@@ -29,8 +29,7 @@ export function maskTriangles(
   { indices, uvs }: { indices: ArrayLike<number>; uvs?: ArrayLike<number> | undefined },
   images: MaskImages,
 ): Int8Array<ArrayBuffer> {
-  if (!uvs || uvs.length === 0)
-    throw new CagecastError('badArgument', 'maskTriangles', 'target has no UVs', { argument: 'target' });
+  if (!uvs || uvs.length === 0) throw new CagecastError('badArgument', 'maskTriangles', 'target has no UVs');
   checkNames('maskTriangles', 'images', images, 'never, always');
   const [never, always] = (['never', 'always'] as const).map((name) =>
     images[name] === undefined ? undefined : checkImage('maskTriangles', `images.${name}`, images[name]),

@@ -31,7 +31,6 @@ export async function loadTemplate(name: TemplateName): Promise<Cage> {
       'badArgument',
       'loadTemplate',
       `name is ${show(name)}, not one of ${templateNames.map((known) => `"${known}"`).join(', ')}`,
-      { argument: 'name' },
     );
   const url = files[name]();
   try {
