@@ -4,8 +4,8 @@ export class InputError extends Error {
 
   /** The same, of the same class, with the file's name in front. */
   in(file: string): InputError {
-    const { constructor, message, cause } = this;
-    return new (constructor as typeof InputError)(`${file}: ${message}`, { cause });
+    const Class = this.constructor as typeof InputError;
+    return new Class(`${file}: ${this.message}`, { cause: this.cause });
   }
 }
 
