@@ -38,7 +38,7 @@ export class CagecastError extends Error {
   readonly fn: string;
   /** The message without `fn`. */
   readonly reason: string;
-  /** The argument at fault, by its name: `cage`, `target`, `options`, …; undefined if no single one is. */
+  /** The argument at fault, by its name: `cage`, `target`, `options`, …; undefined if no single one is, or if only the message names it. */
   readonly argument: string | undefined;
   /** The index of the element at fault in the array that the message names, or a count if the number of elements is wrong; else 0. */
   readonly at: number;
