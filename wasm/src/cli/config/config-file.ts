@@ -108,13 +108,12 @@ export class Configuration {
   }
 }
 
-/** Whether there is a file, or a link, even one that leads nowhere. If that cannot be told there is: reading it says what is wrong. */
+/** Whether there is a file, or a link, even one that leads nowhere. If the path cannot be followed, reading the model tells why. */
 function isThere(path: string): boolean {
   try {
     return lstatSync(path, { throwIfNoEntry: false }) !== undefined;
-  } catch (error) {
-    // Part of the path is a file, or too long: whatever is read there has the same fault.
-    return !['ENOTDIR', 'ENAMETOOLONG'].includes((error as NodeJS.ErrnoException).code ?? '');
+  } catch {
+    return false;
   }
 }
 
