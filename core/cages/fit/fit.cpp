@@ -262,7 +262,7 @@ void Fit::write(const TemplateCage& cage, const std::vector<Vec3>& positions, Fi
 }
 
 Outcome Fit::run(FittedCage& out) {
-  const Outcome cancelled{Problem::cancelled, "cancelled"};
+  Outcome cancelled{Problem::cancelled, "cancelled"};
   TemplateCage cage = prepareTemplate(from_);
   if (Outcome outcome = pair(cage, out); !outcome.ok()) return outcome;
   align();
