@@ -354,7 +354,9 @@ for (const borders of ['triangle', 'cut'])
     assert.match(text, new RegExp(`\n${after!.triangles.cosmetic} of \\d+ triangles may be painted`));
     assert.match(
       text,
-      new RegExp(`\n${painted(after!).outOfBounds!.toLocaleString('en')} more could be painted, but lie outside of --uv-bounds;`),
+      new RegExp(
+        `\n${painted(after!).outOfBounds!.toLocaleString('en')} more could be painted, but lie outside of --uv-bounds;`,
+      ),
     );
     // The zones are the cage's.
     assert.deepEqual(after!.counts, before!.counts);
