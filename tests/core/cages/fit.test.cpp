@@ -356,31 +356,7 @@ TEST_CASE("landmarks that contradict are named", "[cages][fit]") {
   }
 }
 
-TEST_CASE("joints of a skeleton in another unit are named", "[cages][fit]") {
-  Heads heads;
-  Template from = heads.from();
-  Model model{heads.other.view()};
-  float height = -0.9f;
-  for (const char* name : {"hips", "chest", "neck", "head", "jaw", "spine"}) {
-    from.landmarks.push_back({std::string("joint_") + name, {0, height, 0}});
-    model.joints.push_back({name, {0, height, 0}});
-    height += 0.3f;
-  }
-  for (const char* name : {"leftUpperArm", "rightUpperArm"}) model.joints.push_back({name, {0, 0, 0}});
-  CHECK(fitCage(from, model, heads.options(), {}, heads.out).ok());
-  for (Joint& joint : model.joints)
-    for (float& x : joint.position) x *= 100;
-  const Outcome outcome = fitCage(from, model, heads.options(), {}, heads.out);
-  CHECK(outcome.problem == Problem::badModel);
-  CHECK(outcome.message ==
-        "model.joints: joint_hips is 26.4 diagonals outside the box of the mesh, at most 0.5 are expected; joints have "
-        "to be in its unit and axes");
-}
-
-TEST_CASE("joints of a skeleton that is far smaller than its mesh are an error", "[cages][fit]") {
-  Heads heads;
-  Template from = heads.from();
-  Model model{heads.other.view()};
+TEST_CASE("a skeleton in another unit than its mesh is an error", "[cages][fit]") {
   const std::pair<const char*, const char*> kJoints[] = {{"hips", "hips"},
                                                          {"upperChest", "chest"},
                                                          {"neck", "neck"},
@@ -388,15 +364,26 @@ TEST_CASE("joints of a skeleton that is far smaller than its mesh are an error",
                                                          {"jaw", "jaw"},
                                                          {"leftUpperArm", "shoulder_left"},
                                                          {"rightUpperArm", "shoulder_right"}};
-  float height = -0.9f;
-  for (const auto& [joint, landmark] : kJoints) {
-    from.landmarks.push_back({std::string("joint_") + landmark, {0, height, 0}});
-    model.joints.push_back({joint, {0, 0.01f * height, 0}});
-    height += 0.3f;
-  }
-  const Outcome outcome = fitCage(from, model, heads.options(), {}, heads.out);
-  CHECK(outcome.problem == Problem::badModel);
-  CHECK(outcome.message ==
+  const auto fitted = [&](float unit) {
+    Heads heads;
+    Template from = heads.from();
+    Model model{heads.other.view()};
+    float height = -0.9f;
+    for (const auto& [joint, landmark] : kJoints) {
+      from.landmarks.push_back({std::string("joint_") + landmark, {0, height, 0}});
+      model.joints.push_back({joint, {0, unit * height, 0}});
+      height += 0.3f;
+    }
+    return fitCage(from, model, heads.options(), {}, heads.out);
+  };
+  CHECK(fitted(1).ok());
+  const Outcome large = fitted(100), small = fitted(0.01f);
+  CHECK(large.problem == Problem::badModel);
+  CHECK(large.message ==
+        "model.joints: joint_hips is 26.4 diagonals outside the box of the mesh, at most 0.5 are expected; joints have "
+        "to be in its unit and axes");
+  CHECK(small.problem == Problem::badModel);
+  CHECK(small.message ==
         "model.joints: the box of 7 joints is 0.00532 as large as that of the mesh, at least 0.05 is expected; joints "
         "have to be in its unit");
 }

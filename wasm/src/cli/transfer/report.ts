@@ -1,7 +1,7 @@
 import { type Extracted, type Part, primitivePath } from '../../gltf/extract.js';
 import { zoneAttribute } from '../../gltf/overlay.js';
 import type { Added } from '../../gltf/write.js';
-import type { TransferResult } from '../../index.js';
+import type { SegmentStats, TransferResult } from '../../index.js';
 import { boxOf, vertexAreas } from '../../inspect/geometry.js';
 import type { Finding, Verdict } from '../../inspect/index.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from '../options.js';
@@ -33,20 +33,12 @@ export interface Report {
    */
   cut: { vertices: number; counts: PerZone; triangles: Triangles } | null;
   /** Every connected component of the target, in the order of their first vertices. */
-  segments: {
+  segments: (Omit<SegmentStats, 'group' | 'twinOf' | 'score'> & {
     part: string;
     vertices: number;
-    points: number;
-    area: number;
-    exposedArea: number;
-    coveredArea: number;
-    coverage: number;
-    depthWeightedArea: number;
     /** `null` if no area is required. */
     score: number | null;
-    culled: boolean;
-    culledBy: Run['result']['segmentStats'][number]['culledBy'];
-  }[];
+  })[];
   /**
    * Every primitive of every node, in scene order. `uvSet` is the added attribute, `splitVertices` the number of vertices that were
    * added because corners at the same vertex have different UVs, and `cutTriangles` the number of triangles that were added by
