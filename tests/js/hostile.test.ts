@@ -294,6 +294,17 @@ describe('names', () => {
     assert.doesNotMatch(readFileSync(at('page.html'), 'utf8'), /<script>alert/);
   });
 
+  test('a line that names a file stays one line', () => {
+    const target = write(whole, 'named\ngood\tcage.glb');
+    const output = at('painted\nGOOD.glb');
+    const lines = (...command: string[]) => cagecast(...command, '--cage', at('cage.glb')).stdout.split('\n');
+    assert.match(lines('transfer', target, '-o', output)[0]!, /named\\u000agood\\u0009cage\.glb: 4 vertices/);
+    assert.ok(lines('transfer', target, '-o', output).some((line) => /^wrote .*painted\\u000aGOOD\.glb: /.test(line)));
+    assert.match(lines('inspect', target)[0]!, /^target .*named\\u000agood\\u0009cage\.glb: 4 vertices/);
+    const made = cagecast('make', target, '-o', at('made\nGOOD.glb')).stdout.split('\n');
+    assert.match(made[0]!, /^wrote .*made\\u000aGOOD\.glb: /);
+  });
+
   test('a pattern with many stars is matched in time that grows with its length only', () => {
     const long = 'a'.repeat(4000);
     const target = write(

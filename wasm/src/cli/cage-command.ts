@@ -173,7 +173,7 @@ async function finish(
     ...(html === undefined ? [] : [{ path: html, data: inspectionPage(report, run) }]),
   ]);
   const conclusion = conclusionOf(report);
-  const text = [
+  const lines = [
     `wrote ${output}: ${integer(report.cage.vertices)} vertices, ${integer(report.cage.triangles)} triangles, ${counted(report.uv.charts, 'chart')}, ${counted(report.holes.length, 'hole')}`,
     ...notes.lines,
     // A cage that is good needs nothing.
@@ -181,6 +181,6 @@ async function finish(
     ...conclusion,
     ...(conclusion.some((line) => /--(keep|exclude) "/.test(line)) ? [kOtherFlags] : []),
     ...(html === undefined ? [] : [`wrote ${html}`]),
-  ].join('\n');
-  return { text, report: { ...report, ...notes.report }, verdict: report.verdict };
+  ];
+  return { lines, report: { ...report, ...notes.report }, verdict: report.verdict };
 }

@@ -5,7 +5,7 @@ import { InputError } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
 import { parseObject } from './config/settings.js';
 import { type InspectionReport, verdicts } from './inspect-command.js';
-import { type Found, oneLine } from './print.js';
+import type { Found } from './print.js';
 import { cut, integer, percent, short, table } from './table.js';
 import type { Report } from './transfer/report.js';
 import { type PerZone, zoneNames } from './zones.js';
@@ -56,7 +56,7 @@ export async function diffCommand(command: DiffCommand): Promise<Found & { over:
     );
   if (areFolders[0]) return diffFolders(command);
   const found = await diffReports(command);
-  return { text: textOf(found, command.tolerance), report: { ...command, ...found }, over: found.over };
+  return { lines: linesOf(found, command.tolerance), report: { ...command, ...found }, over: found.over };
 }
 
 /** Compares reports of the same name. One that is gone counts as a change over the limit, a new one does not. */
@@ -73,15 +73,15 @@ async function diffFolders({ before, after, tolerance }: DiffCommand): Promise<F
     });
   const over = gone.length + sum(reports.map((report) => report.over))!;
   const changed = reports
-    .map((report) => ({ name: report.name, text: textOf(report, tolerance) }))
-    .filter(({ text }) => text !== kUnchanged);
-  const text = [
-    ...changed.map((report) => `${oneLine(report.name)}\n${report.text}`),
-    ...gone.map((name) => `gone: ${oneLine(name)}`),
-    ...added.map((name) => `new: ${oneLine(name)}`),
+    .map((report) => ({ name: report.name, lines: linesOf(report, tolerance) }))
+    .filter(({ lines }) => lines[0] !== kUnchanged);
+  const lines = [
+    ...changed.flatMap((report) => [report.name, ...report.lines]),
+    ...gone.map((name) => `gone: ${name}`),
+    ...added.map((name) => `new: ${name}`),
     `${counted(both.length, 'report')} compared: ${integer(changed.length)} changed, ${integer(reports.filter((report) => report.over > 0).length)} over the limit; ${integer(gone.length)} gone, ${integer(added.length)} new`,
-  ].join('\n');
-  return { text, report: { before, after, tolerance, over, reports, gone, new: added }, over };
+  ];
+  return { lines, report: { before, after, tolerance, over, reports, gone, new: added }, over };
 }
 
 async function reportsIn(folder: string): Promise<string[]> {
@@ -106,7 +106,7 @@ async function diffReports({ before, after, tolerance }: DiffCommand): Promise<D
 const kUnchanged = 'nothing changed';
 
 /** A difference for people. */
-function textOf({ changes, over }: Difference, tolerance: number): string {
+function linesOf({ changes, over }: Difference, tolerance: number): string[] {
   const rows = changes
     .map((change) => [
       cut(change.measure, 60),
@@ -116,9 +116,9 @@ function textOf({ changes, over }: Difference, tolerance: number): string {
     ])
     // What reads the same is for programs only.
     .filter(([, was, is, isOver]) => was !== is || isOver);
-  if (rows.length === 0) return kUnchanged;
+  if (rows.length === 0) return [kUnchanged];
   const count = `${counted(rows.length, 'change')}, ${integer(over)} over the limit (${percent(tolerance)} of a share or of a length, a worse verdict, a part or a region more or less)`;
-  return `${table([['', 'before', 'after', ''], ...rows])}\n${count}`;
+  return [...table([['', 'before', 'after', ''], ...rows]), count];
 }
 
 function shown({ kind }: Change, value: Change['before']): string {

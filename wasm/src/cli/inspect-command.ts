@@ -5,7 +5,6 @@ import { inspectionPage } from './inspect-page.js';
 import { adviceOn, configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
 import { boundsAround, type UvBounds, withinBounds } from './paint/cage-area.js';
-import { oneLine } from './print.js';
 import type { Progress } from './progress.js';
 import { type Run, runTransfer, type Sources } from './run.js';
 import { cut, integer, percent, segmentCells, segmentColumns, short, table } from './table.js';
@@ -39,7 +38,7 @@ export interface InspectionReport extends Inspection {
 export async function inspectCommand(
   command: InspectCommand,
   progress: Progress,
-): Promise<{ text: string; report: InspectionReport; verdict: Verdict }> {
+): Promise<{ lines: string[]; report: InspectionReport; verdict: Verdict }> {
   const run = await runTransfer(command, progress);
   progress.step('inspecting');
   const report = inspectionReport(command, run, command.uvBounds ? [command.uvBounds] : []);
@@ -48,7 +47,7 @@ export async function inspectCommand(
     writeFiles([{ path: command.html, data: inspectionPage(report, run) }]);
   }
   return {
-    text: describe(report, command.html),
+    lines: describe(report, command.html),
     report,
     verdict: report.verdict,
   };
@@ -99,20 +98,20 @@ export function conclusionOf({ verdict, findings }: Inspection): string[] {
   return [
     conclusions[verdict],
     ...findings.flatMap((finding) => [
-      `${finding.weight >= unfitFrom ? '✗' : finding.weight >= usableFrom ? '!' : '·'} ${oneLine(finding.sentence)}.`,
-      `  → ${oneLine(adviceOn(finding))}`,
+      `${finding.weight >= unfitFrom ? '✗' : finding.weight >= usableFrom ? '!' : '·'} ${finding.sentence}.`,
+      `  → ${adviceOn(finding)}`,
     ]),
   ];
 }
 
-function segmentTable(listed: (InspectionReport['segments'][number] & { s: number })[]): string {
+function segmentTable(listed: (InspectionReport['segments'][number] & { s: number })[]): string[] {
   return table([
     ['part', 'segment', ...segmentColumns],
     ...listed.map((segment) => [cut(segment.part, 40), String(segment.s), ...segmentCells(segment)]),
   ]);
 }
 
-function describe(report: InspectionReport, html: string | undefined): string {
+function describe(report: InspectionReport, html: string | undefined): string[] {
   const { target, cage, counts, coverage, placement, inside, inward, topology, uv, holes, segments } = report;
   const { outside, distances } = placement;
   const listed = segments
@@ -125,7 +124,7 @@ function describe(report: InspectionReport, html: string | undefined): string {
     `cage    ${cage.file}: ${integer(cage.vertices)} vertices, ${integer(cage.triangles)} triangles`,
     '',
     'zones',
-    table([
+    ...table([
       ['', 'vertices', 'area'],
       ...zoneNames.map((zone) => [zone, integer(counts[zone]), percent(coverage[zone])]),
     ]),
@@ -140,8 +139,8 @@ function describe(report: InspectionReport, html: string | undefined): string {
     `  UVs: ${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}, ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that twice; ${integer(uv.outside.vertices)} vertices outside 0..1; ${integer(uv.withoutArea.triangles)} triangles without area`,
     '',
     `holes: ${integer(holes.length)}${more(holes.length)}`,
-    holes.length === 0
-      ? ''
+    ...(holes.length === 0
+      ? []
       : table([
           ['beneath', 'kind', 'size', 'perimeter', 'cut off'],
           ...holes.slice(0, kMostRows).map(({ beneath, kind, diagonal: size, perimeter, cutOff }) => [
@@ -157,16 +156,12 @@ function describe(report: InspectionReport, html: string | undefined): string {
             percent(perimeter),
             percent(cutOff),
           ]),
-        ]),
+        ])),
     '',
     `segments: ${integer(segments.length)}${more(segments.length)}`,
-    segmentTable(listed),
+    ...segmentTable(listed),
     '',
     ...conclusionOf(report),
-    html === undefined ? '' : `wrote ${html}`,
-    configLine(report.options.config),
-  ]
-    .join('\n')
-    .replace(/\n{3,}/g, '\n\n')
-    .trimEnd();
+    ...[html === undefined ? '' : `wrote ${html}`, configLine(report.options.config)].filter(Boolean),
+  ];
 }

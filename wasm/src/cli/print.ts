@@ -10,7 +10,7 @@ function harmless(text: string): string {
   return text.replace(kCommands, escaped);
 }
 
-/** The same for a text that has to stay on one line. */
+/** The same for a line: names cannot break it. */
 export function oneLine(text: string): string {
   return harmless(text).replace(/[\t\n\u2028\u2029]/g, escaped);
 }
@@ -33,7 +33,7 @@ export const addPrintFlags = (command: Command): Command =>
 
 /** What a command found: for people, and for programs. */
 export interface Found {
-  text: string;
+  lines: readonly string[];
   report: object;
 }
 
@@ -42,12 +42,12 @@ export interface Found {
  * @param outputs  The names of written files.
  */
 export function print(
-  { text, report }: Found,
+  { lines, report }: Found,
   { json = false, quiet = false }: PrintFlags,
   outputs: readonly (string | undefined)[] = [],
 ): void {
   if (quiet) return;
-  const found = json ? jsonText(report, 2) : `${harmless(text)}\n`;
+  const found = json ? jsonText(report, 2) : `${lines.map(oneLine).join('\n')}\n`;
   if (outputs.includes(standard)) process.stderr.write(found);
   else writeStandard(found);
 }

@@ -10,7 +10,7 @@ export interface ReadFlags {
 
 /** Adds the flags that say how files are read. */
 export function addReadFlags(command: Command): Command {
-  const limits = Object.entries(defaultLimits).map(([name, value]) => `${name} ${value.toLocaleString('en')}`);
+  const limits = Object.entries(defaultLimits).map(([name, value]) => `${name}=${value}`);
   return command
     .option(
       '--allow-outside',

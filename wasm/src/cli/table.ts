@@ -3,19 +3,17 @@ import { oneLine } from './print.js';
 
 export { percent } from '../inspect/finding.js';
 
-/** Lays out rows in columns; all but the first are right-aligned. */
-export function table(rows: readonly (readonly string[])[], indent = '  '): string {
+/** Lays out rows in columns, a line for each; all but the first column are right-aligned. */
+export function table(rows: readonly (readonly string[])[], indent = '  '): string[] {
   const widths = (rows[0] ?? []).map((_, column) => Math.max(...rows.map((row) => row[column]?.length ?? 0)));
-  return rows
-    .map(
-      (row) =>
-        indent +
-        row
-          .map((cell, column) => (column === 0 ? cell.padEnd(widths[0]!) : cell.padStart(widths[column]!)))
-          .join('  ')
-          .trimEnd(),
-    )
-    .join('\n');
+  return rows.map(
+    (row) =>
+      indent +
+      row
+        .map((cell, column) => (column === 0 ? cell.padEnd(widths[0]!) : cell.padStart(widths[column]!)))
+        .join('  ')
+        .trimEnd(),
+  );
 }
 
 /** "5,316" */

@@ -90,14 +90,14 @@ async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefin
   }
   write(command, run, writer.finish());
   const { config } = command.rules;
-  const lines = [summary(output, report), overlays > 0 ? takenAway(overlays) : '', configLine(config)];
+  const lines = [...summary(output, report), overlays > 0 ? takenAway(overlays) : '', configLine(config)];
   return {
-    text: lines.filter(Boolean).join('\n'),
+    lines: lines.filter(Boolean),
     report: { output, ...report, replacedOverlays: overlays, config: config ?? null },
   };
 }
 
-function summary(output: string, { textures, left }: BakeReport): string {
+function summary(output: string, { textures, left }: BakeReport): string[] {
   return [
     `wrote ${output}`,
     ...textures.map(
@@ -105,7 +105,7 @@ function summary(output: string, { textures, left }: BakeReport): string {
         `${slot}: ${width} × ${height}, on ${listNames(parts)}${overlapText(overlap)}`,
     ),
     ...left.map((one) => `not painted: ${leftText(one)}`),
-  ].join('\n');
+  ];
 }
 
 /** Which part is not painted, and why. */
@@ -132,7 +132,7 @@ async function bakePicture(command: BakeCommand, run: Run, cut: CutTarget | unde
   const { config } = command.rules;
   const use = back ? `of ${listNames(names)}` : `for ${listNames(names)}${overlapText(overlap)}`;
   return {
-    text: [`wrote ${output}: ${width} × ${height}, ${use}`, configLine(config)].filter(Boolean).join('\n'),
+    lines: [`wrote ${output}: ${width} × ${height}, ${use}`, configLine(config)].filter(Boolean),
     report: { output, parts: names, width, height, overlap, config: config ?? null },
   };
 }

@@ -47,7 +47,7 @@ export async function transferCommand(
   command: TransferCommand,
   progress: Progress,
   models?: Models,
-): Promise<{ text: string; report: Report }> {
+): Promise<{ lines: string[]; report: Report }> {
   const { output, regions = [] } = command;
   const first = await transferRegion(command, command.texture, progress, { models, isLast: regions.length === 0 });
   const report = makeReport(command, first);
@@ -84,7 +84,7 @@ export async function transferCommand(
     files.map(({ path }) => path),
   );
   writeFiles(files);
-  return { text: summary(command, report), report };
+  return { lines: summary(command, report), report };
 }
 
 /** The worse of two verdicts. */

@@ -198,7 +198,7 @@ export function regionReport(
 export function summary(
   command: TransferCommand,
   { target, counts, areas, triangles, cut, segments, parts, replacedOverlays, regions, timings, output }: Report,
-): string {
+): string[] {
   const rows = [
     ['', 'vertices', 'area'],
     ...zoneNames.map((zone) => [zone, integer(counts[zone]), percent(areas.total > 0 ? areas[zone] / areas.total : 0)]),
@@ -219,7 +219,7 @@ export function summary(
   const { outOfBounds = 0 } = cut?.triangles ?? triangles;
   const lines = [
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
-    table(rows),
+    ...table(rows),
     `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted${cut ? `; cut along borders, ${integer(cut.triangles.cosmetic)} of ${integer(cut.triangles.total)}` : ''}; ${timings.total.toFixed(1)} ms`,
     outOfBounds > 0
       ? `${integer(outOfBounds)} more could be painted, but lie outside of --uv-bounds; zones do not depend on the bounds`
@@ -238,5 +238,5 @@ export function summary(
       ? 'nothing written; to save the result, add -o OUT.glb or --report R.json'
       : '',
   ];
-  return lines.filter(Boolean).join('\n');
+  return lines.filter(Boolean);
 }
