@@ -237,6 +237,8 @@ test('a batch that cannot be right does not begin', () => {
 test('a job with a wrong output, or none where it writes something, fails', () => {
   const jobs = [
     { output: 'o.fbx' },
+    { output: 'o/{foo}.glb' },
+    { report: '{nmae}.json' },
     { texture: 'paint.png' },
     { borders: 'cut' },
     { regions: [{ cage: 'cage.glb', texture: 'paint.png' }] },
@@ -249,6 +251,8 @@ test('a job with a wrong output, or none where it writes something, fails', () =
     linesOf(stdout).map(({ error }) => error?.replace(/^.*0\.glb: /, '').replace(/ \/.*\//, ' ')),
     [
       'its output o.fbx does not end in .glb, .vrm or .gltf',
+      'line 2 of wrong.jsonl: {foo} is unknown; paths may hold {name} and {dir}',
+      'line 3 of wrong.jsonl: {nmae} is unknown; paths may hold {name} and {dir}',
       ...Array<string>(3).fill('has no output, where its texture or its cut target would be written'),
     ],
   );

@@ -204,6 +204,22 @@ describe('files stay lean', () => {
       }
     });
 
+  test('a file does not grow by further transfers, whatever the length of the texture', () => {
+    const paint = readFileSync(at('paint.png'));
+    for (const length of [1, 2, 3].map((more) => 4 * Math.ceil(paint.length / 4) + more)) {
+      writeFileSync(at('odd.png'), Buffer.concat([paint, Buffer.alloc(length - paint.length)]));
+      const sizes = ['target', 'odd-0', 'odd-1'].map((from, n) => {
+        const [target, out] = [at(`${from}.glb`), at(`odd-${n}.glb`)];
+        const { status, stderr } = cagecast(
+          ...['transfer', target, '--cage', at('cage.glb'), '--texture', at('odd.png'), '-o', out],
+        );
+        assert.deepEqual([status, stderr], [0, '']);
+        return statSync(out).size;
+      });
+      assert.deepEqual(sizes, Array<number>(3).fill(sizes[0]!), `a texture of ${length} bytes`);
+    }
+  });
+
   test('what an unknown extension refers to keeps its number when a transfer adds less than it replaces', () => {
     const transferTo = (from: string, out: string, ...flags: string[]) => {
       const { status, stderr } = cagecast('transfer', at(from), '--cage', at('cage.glb'), '-o', at(out), ...flags);

@@ -2,7 +2,7 @@ import { type Command, InvalidArgumentError, Option } from 'commander';
 import { standard } from '../gltf/files.js';
 import { forms } from '../gltf/glb-writer.js';
 import { batchCommand, describeBatch } from './batch-command.js';
-import { jobsOfManifest, jobsOfPatterns, unknownPlaceholder, writtenBy } from './batch-jobs.js';
+import { jobsOfManifest, jobsOfPatterns, placeholderFault, writtenBy } from './batch-jobs.js';
 import { addConfigFlags, type ConfigFlags, settler } from './config/config-flags.js';
 import { borderKinds } from './config/settings.js';
 import { addRuleFlags, maskInputs, type RuleFlags } from './options.js';
@@ -159,11 +159,9 @@ function faultOf(targets: readonly string[], flags: BatchFlags): string | undefi
   if (borders === 'cut' && output === undefined && manifest === undefined)
     return '--borders cut needs -o OUT.glb, the file for the cut target';
   if ([output, report, results].includes(standard)) return 'a batch writes files; the standard output has its lines';
-  const unknown = unknownPlaceholder(output) ?? unknownPlaceholder(report);
-  if (unknown !== undefined) return `${unknown} is unknown; paths may hold {name} and {dir}`;
   const ofRegions = region.flatMap((one) => [one.cage, one.texture]);
   if ([cage, referenceCage, texture, ...ofRegions, ...maskInputs(flags), ...targets].includes(standard))
     return 'a batch reads files; its jobs have no standard input';
   if (manifest === standard && flags.config === standard) return 'only one file can be the standard input';
-  return boundsFault(texture, uvBounds);
+  return placeholderFault(output, report) ?? boundsFault(texture, uvBounds);
 }

@@ -130,6 +130,8 @@ async function jobLine(
   const { uvBounds, regions } = given;
   if (uvBounds !== undefined && !areBounds(uvBounds))
     throw new InputError(`"uvBounds" is not an array of ${boundsText}`);
+  const fault = placeholderFault(given['output'], given['report']);
+  if (fault !== undefined) throw new InputError(fault);
   const own = Object.fromEntries([
     ...paths.flatMap((name) => {
       const path = pathIn(given, name, folder);
@@ -188,9 +190,12 @@ type JobNames = Pick<TransferCommand, 'target' | 'referenceCage' | 'texture' | '
 const noOutput = (target: string): InputError =>
   new InputError('has no output, where its texture or its cut target would be written').in(target);
 
-/** The first placeholder in a path that a batch does not know. */
-export const unknownPlaceholder = (path = ''): string | undefined =>
-  path.match(/\{\w+\}/g)?.find((found) => !['{name}', '{dir}'].includes(found));
+/** What is wrong with the placeholders in the paths of what a job writes, if anything is. */
+export function placeholderFault(...written: readonly unknown[]): string | undefined {
+  const found = written.flatMap((path) => (typeof path === 'string' ? (path.match(/\{\w+\}/g) ?? []) : []));
+  const unknown = found.find((one) => !['{name}', '{dir}'].includes(one));
+  return unknown && `${unknown} is unknown; paths may hold {name} and {dir}`;
+}
 
 /** Fills in a job's own names. `{name}` in a path is the target's name without its ending, `{dir}` its folder. */
 function jobOf({ settled: _, results: __, cuts: ___, ...given }: JobDefaults & JobNames & Settled): Job {

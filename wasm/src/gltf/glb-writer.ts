@@ -417,7 +417,9 @@ export class GlbWriter {
     };
     const rangesOf = (list: readonly GLTF.IBufferView[]) => list.map((view) => rangeOf(meshoptView(view) ?? view));
     const kept = (this.json.bufferViews ?? []).filter((view) => !this.#added.has(view));
-    const removed = subtract(rangesOf(views), rangesOf(kept)).map(([first, end]) => [whole(first), end - (end % 4)]);
+    // With the bytes that pad a view to a whole number of words.
+    const padded = rangesOf(views).map(([first, end]): [number, number] => [first, whole(end)]);
+    const removed = subtract(padded, rangesOf(kept)).map(([first, end]) => [whole(first), end - (end % 4)]);
     const chunks: Uint8Array[] = [];
     let from = 0;
     for (const [first, end] of removed) {
