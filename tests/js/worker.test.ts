@@ -1,5 +1,6 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
+import { getEventListeners } from 'node:events';
 import { before, describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import * as direct from 'cagecast';
@@ -143,6 +144,18 @@ describe('the worker', () => {
       assert.ok((await transfer(scene.cage, scene.target)).zones.length > 0);
       assert.equal(ended(), 1);
     });
+  });
+
+  test('a signal has one listener, however many calls have it', async () => {
+    const abort = new AbortController();
+    const { signal } = abort;
+    const call = () => transfer(scene.cage, scene.target, { signal }).catch((error: unknown) => error);
+    const [first, ...others] = Array.from({ length: 12 }, call);
+    assert.ok('zones' in ((await first) as object), 'it is carried out');
+    others.push(call());
+    assert.equal(getEventListeners(signal, 'abort').length, 1);
+    abort.abort('enough');
+    assert.equal((await Promise.all(others)).at(-1), 'enough');
   });
 
   test('many calls that cannot be sent are refused one after the other, and the next one works', async () => {

@@ -19,7 +19,7 @@ interface Job {
   /** Why it cannot be sent, if that is known. */
   failure: CagecastError | undefined;
   onProgress: OnProgress | undefined;
-  settle(): void;
+  signal: AbortSignal | undefined;
   resolve(result: unknown): void;
   reject(error: unknown): void;
 }
@@ -71,18 +71,16 @@ export class WorkerQueue {
           failure = unsendable(fn, cause);
         }
       }
-      const giveUp = () => this.#giveUp(job, signal?.reason);
-      const job: Job = {
+      this.#jobs.push({
         request: { id: ++this.#lastId, fn, args },
         move,
         failure,
         onProgress,
-        settle: () => signal?.removeEventListener('abort', giveUp),
+        signal,
         resolve: (result) => resolve(result as T),
         reject,
-      };
-      signal?.addEventListener('abort', giveUp, { once: true });
-      this.#jobs.push(job);
+      });
+      signal?.addEventListener('abort', this.#onAbort);
       if (this.#jobs.length === 1) this.#next();
     });
   }
@@ -90,10 +88,8 @@ export class WorkerQueue {
   /** Ends the worker and frees its memory. Pending calls reject with code `aborted`; the next call starts a new worker. */
   terminate(): void {
     this.#stop();
-    for (const job of this.#jobs.splice(0)) {
-      job.settle();
+    for (const job of this.#jobs.splice(0))
       job.reject(new CagecastError('aborted', job.request.fn, 'the worker was terminated'));
-    }
   }
 
   /** Hands the first job that can be sent to the worker. */
@@ -101,7 +97,8 @@ export class WorkerQueue {
     for (let job = this.#jobs[0]; job; job = this.#jobs[0]) {
       const error = this.#send(job);
       if (!error) return;
-      this.#take(job).reject(error);
+      this.#jobs.shift();
+      job.reject(error);
     }
     this.#thread?.setBusy(false);
   }
@@ -124,12 +121,10 @@ export class WorkerQueue {
     }
   }
 
-  /** Takes the first job out of the queue. */
-  #take(job: Job): Job {
-    this.#jobs.shift();
-    job.settle();
-    return job;
-  }
+  /** The only listener of a signal, however many calls have it. */
+  readonly #onAbort = (): void => {
+    for (const job of [...this.#jobs]) if (job.signal?.aborted) this.#giveUp(job, job.signal.reason);
+  };
 
   #start(): Thread {
     const thread = this.#spawn(
@@ -166,7 +161,6 @@ export class WorkerQueue {
     const place = this.#jobs.indexOf(job);
     if (place < 0) return;
     this.#jobs.splice(place, 1);
-    job.settle();
     job.reject(reason);
     if (place > 0) return;
     // A call into WebAssembly cannot be interrupted, but its worker can be ended.
@@ -178,9 +172,9 @@ export class WorkerQueue {
   }
 
   #finish(job: Job, error: CagecastError | undefined, result?: unknown): void {
-    const { reject, resolve } = this.#take(job);
-    if (error) reject(error);
-    else resolve(result);
+    this.#jobs.shift();
+    if (error) job.reject(error);
+    else job.resolve(result);
     this.#next();
   }
 
