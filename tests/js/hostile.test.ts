@@ -176,6 +176,7 @@ describe('a file that demands too much', () => {
   test('what stays within the limits is read, and limits can be set', () => {
     for (const bytes of [imply(0, 1000), imply(2, 3000), instances(1000), nested(900)]) checkGltf(bytes);
     checkGltf(instances(1001), { limits: { instances: 2000 } });
+    checkGltf(whole, { limits: { instances: undefined } });
     assert.throws(() => checkGltf(instances(3), { limits: { instances: 2 } }), /in 3 places .* "instances" is 2/);
     assert.throws(() => checkGltf(whole, { limits: { bytes: -1 } }), /checkGltf: limits\.bytes = -1 is not a number/);
     assert.throws(

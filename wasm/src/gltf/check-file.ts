@@ -8,7 +8,7 @@ import { parseGltf } from './parse.js';
 /** Options of `checkGltf`. */
 export interface CheckOptions {
   /** Limits other than the default ones. */
-  limits?: Partial<ReadLimits> | undefined;
+  limits?: { [Name in keyof ReadLimits]?: number | undefined } | undefined;
   /** Bytes of the files that this one refers to. Default: 0 */
   otherBytes?: number | undefined;
 }
@@ -20,18 +20,19 @@ export interface CheckOptions {
  * @param bytes  The whole file.
  * @throws {CagecastError} `badArgument` that names the element, the value and the limit.
  */
-export function checkGltf(bytes: Uint8Array, { limits, otherBytes = 0, ...others }: CheckOptions = {}): void {
+export function checkGltf(bytes: Uint8Array, { limits = {}, otherBytes = 0, ...others }: CheckOptions = {}): void {
   const wrong = (text: string, details?: ErrorDetails) => new CagecastError('badArgument', 'checkGltf', text, details);
   if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`, { argument: 'bytes' });
   for (const name in others) throw wrong(`${name} is not an option`);
-  for (const [name, value] of Object.entries(limits ?? {}))
-    if (!(name in defaultLimits) || !(typeof value === 'number' && value >= 0))
-      throw wrong(
-        `limits.${name} = ${show(value)} is not a number ≥ 0 of one of ${Object.keys(defaultLimits).join(', ')}`,
-      );
-  if (!(typeof otherBytes === 'number' && otherBytes >= 0))
-    throw wrong(`otherBytes = ${show(otherBytes)} is not a number ≥ 0`);
-  const all = { ...defaultLimits, ...limits };
+  const isCount = (value: unknown): value is number => typeof value === 'number' && value >= 0;
+  const all = { ...defaultLimits };
+  for (const name in limits) {
+    const value = limits[name as keyof ReadLimits] ?? all[name as keyof ReadLimits];
+    if (!(name in all && isCount(value)))
+      throw wrong(`limits.${name} = ${show(value)} is not a number ≥ 0 of one of ${Object.keys(all).join(', ')}`);
+    all[name as keyof ReadLimits] = value;
+  }
+  if (!isCount(otherBytes)) throw wrong(`otherBytes = ${show(otherBytes)} is not a number ≥ 0`);
   try {
     const { json, binary } = parseGltf(bytes, all);
     const sizes = (json.buffers ?? []).map(({ uri, byteLength }, b) =>
