@@ -232,6 +232,12 @@ describe('with a loaded model', () => {
       code: 'badArgument',
       message: 'addCage: document is of type Object, not a document of glTF-Transform',
     });
+    const document = new Document();
+    assert.throws(() => gltf.addCage(document, { cage: ball([0, 0, 0], () => 1, 5, 10) } as never), {
+      code: 'badArgument',
+      message: 'addCage: cage.positions is undefined, not an array',
+    });
+    assert.equal(document.getRoot().listBuffers().length, 0, 'nothing is added');
     await assert.rejects(async () => gltf.cagecast({ cage: {} as never })({} as never), {
       code: 'badArgument',
       message: 'cagecast: target is of type Object, not a document of glTF-Transform',

@@ -5,6 +5,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { Document, NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import { join as joinMeshes } from '@gltf-transform/functions';
 import { CagecastError, init, type Mesh, type TransferResult, transfer } from 'cagecast';
 import { type CagecastOptions, cagecast as cagecastTransform } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
@@ -298,6 +299,38 @@ describe('document.transform(cagecast(…))', () => {
       ],
       [zones, vertices],
     );
+  });
+
+  test('the overlays of an earlier transfer are known after their primitives were joined', async () => {
+    const document = await documentOf(glbOf(scene.target));
+    const whole = primitives(document)[0]!;
+    const corners = whole.getIndices()!.getArray()!;
+    const half = 3 * Math.floor(corners.length / 6);
+    const other = whole.clone().setIndices(whole.getIndices()!.clone().setArray(corners.slice(half)));
+    whole.setIndices(whole.getIndices()!.clone().setArray(corners.slice(0, half)));
+    const node = document.createNode().setMesh(document.createMesh().addPrimitive(other));
+    document.getRoot().getDefaultScene()!.addChild(node);
+    const painted: number[] = [];
+    const onResult = ({ cosmeticTriangles }: TransferResult) => {
+      painted.push(cosmeticTriangles.filter(Boolean).length);
+    };
+    const step = cagecastTransform({ cage: scene.cage, texture: paint, onResult });
+    await document.transform(step);
+    const overlays = () => primitives(document).filter((one) => one.getMaterial()?.getName() === 'Cagecast overlay');
+    assert.equal(overlays().length, 2, 'an overlay for each half');
+    await document.transform(joinMeshes());
+    assert.deepEqual(
+      [primitives(document).length, overlays().length],
+      [2, 1],
+      'the halves and the overlays are joined',
+    );
+    await io.write(at('joined.glb'), document);
+    await document.transform(step);
+    assert.deepEqual([primitives(document).length, overlays().length], [2, 1]);
+    assert.equal(painted[1], painted[0]);
+    writeFileSync(at('joined-cage.glb'), glbOf(scene.cage));
+    const { stdout } = cagecast('transfer', at('joined.glb'), '--cage', at('joined-cage.glb'), '-o', at('again.glb'));
+    assert.match(stdout, /; took away 1 overlay of an earlier transfer\n/);
   });
 
   test('unusable input is one error, and the document stays unchanged', async () => {

@@ -584,9 +584,10 @@ describe('applyTransfer', () => {
   });
 
   test('overlays that are in its file are no part of a model', () => {
-    const overlay = meshOf(scene.target);
+    const [overlay, joined] = [meshOf(scene.target), meshOf(scene.target)];
     overlay.geometry.userData = { cagecastOverlay: true }; // as GLTFLoader hands on what the command writes
-    assert.equal(extract(new Group().add(meshOf(scene.target), overlay)).parts.length, 1);
+    joined.material = new MeshStandardMaterial({ userData: { cagecastOverlay: true } }); // what is left when overlays were joined
+    assert.equal(extract(new Group().add(meshOf(scene.target), overlay, joined)).parts.length, 1);
   });
 
   test('applied again, it ignores its own overlays', () => {

@@ -17,7 +17,7 @@ export function takeAttributes({ json }: GlbWriter, primitives: readonly GLTF.IM
 export function takeOverlays(writer: GlbWriter, meshes: Iterable<GLTF.IMesh>): number {
   const { json } = writer;
   const taken = [...new Set(meshes)].flatMap(({ primitives }) => {
-    const overlays = primitives.filter(({ extras }) => isOverlay(extras));
+    const overlays = primitives.filter((primitive) => isOverlay(primitive, json));
     if (overlays.length > 0) primitives.splice(0, Infinity, ...primitives.filter((one) => !overlays.includes(one)));
     return overlays;
   });

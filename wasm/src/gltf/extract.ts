@@ -84,7 +84,7 @@ function listParts(file: GltfFile): Part[] {
     if (instances !== undefined) matrix = multiply(matrix, instanceOf(file, `nodes[${node}]`, instances.attributes));
     const meshDef = meshes[nodeDef.mesh]!;
     meshDef.primitives.forEach((primitive, p) => {
-      if (isOverlay(primitive.extras)) return;
+      if (isOverlay(primitive, file.json)) return;
       const ref = { mesh: nodeDef.mesh!, primitive: p };
       const localPositions = readPositions(file, ref);
       if (localPositions === undefined) return;

@@ -59,8 +59,12 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
  *
  * Every triangle primitive in the document's default scene gets a new `TEXCOORD` set and `_NCZ` (the `Zone`: 0 may be painted) and,
  * with a texture, an overlay primitive of its cosmetic triangles. Everything else stays unchanged; if several nodes share a mesh,
- * each gets a copy. An earlier transfer to the document is replaced. Cut borders add vertices that blend existing ones, in all attributes, skin weights and morph deltas. If the
- * transform throws, the document is unchanged.
+ * each gets a copy. An earlier transfer to the document is replaced. Cut borders add vertices that blend existing ones, in all
+ * attributes, skin weights and morph deltas. If the transform throws, the document is unchanged.
+ *
+ * Functions that change vertices, such as `simplify`, `weld` and `join`, belong before this one: simplified afterwards, an overlay
+ * no longer lies on its surface, and UVs that were written anew stay beside those of a later transfer. `prune` takes UVs that no
+ * texture uses: after a transfer without a texture, give it `keepAttributes: true`.
  * @throws {CagecastError} with the reason and the place, if target, cage, texture or options cannot be used.
  *
  * @example

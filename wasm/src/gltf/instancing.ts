@@ -15,12 +15,11 @@ export function firstInstance(place: string, attribute: (semantic: string) => Ac
   const read = (semantic: string, size: number): number[] | undefined => {
     const accessor = attribute(semantic);
     if (!accessor) return undefined;
-    if (!accessor.getArray() || accessor.getCount() === 0) throw new InputError(`${place} has no instance`);
+    if (accessor.getCount() === 0) throw new InputError(`${place} has no instance`);
     const value = accessor.getElement(0, []);
     if (accessor.getElementSize() !== size || !value.every(Number.isFinite))
       throw new InputError(`${place}: ${semantic} of ${instancing} is not of ${size} finite numbers`);
     return value;
   };
-  const [translation, rotation, scale] = [read('TRANSLATION', 3), read('ROTATION', 4), read('SCALE', 3)];
-  return localMatrix({ ...(translation && { translation }), ...(rotation && { rotation }), ...(scale && { scale }) });
+  return localMatrix({ translation: read('TRANSLATION', 3), rotation: read('ROTATION', 4), scale: read('SCALE', 3) });
 }

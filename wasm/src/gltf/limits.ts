@@ -1,7 +1,7 @@
 import type { GLTF } from '@gltf-transform/core';
 import { bytesOf, dracoOf, meshoptView } from './check.js';
 import { InputError } from './input-error.js';
-import { isOverlay } from './overlay.js';
+import { isMarked } from './overlay.js';
 import { hasTriangles } from './pieces.js';
 
 /** What reading a glTF file may cost. A few bytes can otherwise demand all memory and hours. */
@@ -95,7 +95,7 @@ function checkInstances({ accessors = [], meshes = [], nodes = [] }: GLTF.IGLTF,
     for (const { attributes, indices, mode = 4, extras } of meshes[mesh]!.primitives) {
       const positions = attributes['POSITION'];
       if (positions === undefined || !hasTriangles(mode)) continue;
-      const counts = isOverlay(extras) ? overlaid : uses;
+      const counts = isMarked(extras) ? overlaid : uses;
       const all = (counts.get(positions) ?? 0) + count;
       if (all > limits.instances)
         throw exceeds(`the positions of meshes[${mesh}] are in ${all} places of the scene`, 'instances', limits);

@@ -1,4 +1,3 @@
-import type { GLTF } from '@gltf-transform/core';
 import { determinant } from '../parts/skin.js';
 
 /** A 4×4 matrix, column by column, in double precision. */
@@ -6,8 +5,11 @@ export type Matrix = readonly number[];
 
 export const identity: Matrix = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-/** The matrix of a node: its own, or translation · rotation · scale. */
-export function localMatrix(node: GLTF.INode): Matrix {
+/** Where a node is: its matrix, or translation · rotation · scale. */
+type NodePlace = { readonly [Name in 'matrix' | 'translation' | 'rotation' | 'scale']?: number[] | undefined };
+
+/** The matrix of a node. */
+export function localMatrix(node: NodePlace): Matrix {
   if (node.matrix) return node.matrix;
   const [tx = 0, ty = 0, tz = 0] = node.translation ?? [];
   const [x = 0, y = 0, z = 0, w = 1] = node.rotation ?? [];

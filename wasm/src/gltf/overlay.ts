@@ -1,3 +1,4 @@
+import type { GLTF } from '@gltf-transform/core';
 import { imageIsWhole, imageType, ktx2Problem } from './image.js';
 import { InputError } from './input-error.js';
 
@@ -5,13 +6,18 @@ import { InputError } from './input-error.js';
 export const zoneAttribute = '_NCZ';
 
 /**
- * Marks overlays in their `extras`, so that they are skipped when the model is read again. `cagecast/three` uses the same name.
+ * Marks overlays in their `extras`, so that they are skipped when the model is read again; and their materials, as tools that join
+ * primitives keep only these. `cagecast/three` uses the same name.
  */
 export const overlayMark = { cagecastOverlay: true } as const;
 
-/** Whether a primitive with these extras is an overlay. */
-export const isOverlay = (extras: object | undefined): boolean =>
-  (extras as Partial<typeof overlayMark> | undefined)?.cagecastOverlay === true;
+/** Whether a primitive is an overlay, by the `extras` of it and of its material. */
+export const isMarked = (...extras: readonly (object | undefined)[]): boolean =>
+  extras.some((one) => (one as Partial<typeof overlayMark> | undefined)?.cagecastOverlay);
+
+/** Whether a primitive of a file is an overlay. */
+export const isOverlay = ({ extras, material = -1 }: GLTF.IMeshPrimitive, { materials }: GLTF.IGLTF): boolean =>
+  isMarked(extras, materials?.[material]?.extras);
 
 /** Marks the UVs of a transfer in the `extras` of their accessor, so that the next one can replace them. */
 export const uvsMark = { cagecastUvs: true } as const;

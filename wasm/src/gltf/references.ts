@@ -56,17 +56,19 @@ export const hasUnknownReferences = ({ extensionsUsed = [] }: GLTF.IGLTF): boole
  * What an earlier transfer added, as a file of its own: attributes and the indices of overlays. Also images, and geometry that Draco
  * compressed: unknown extensions do not refer to their views.
  */
-export function addedByTransfer({ meshes = [], accessors = [], images = [] }: GLTF.IGLTF): GLTF.IGLTF {
+export function addedByTransfer(json: GLTF.IGLTF): GLTF.IGLTF {
+  const { meshes = [], accessors = [], images = [] } = json;
   const isAdded = ([semantic, accessor]: [string, number]) => isOfTransfer(semantic, accessors[accessor]!.extras);
   const primitives = meshes
     .flatMap((mesh) => mesh.primitives)
-    .map(
-      ({ attributes, indices, extensions, extras }): GLTF.IMeshPrimitive => ({
+    .map((primitive): GLTF.IMeshPrimitive => {
+      const { attributes, indices, extensions } = primitive;
+      return {
         attributes: Object.fromEntries(Object.entries(attributes).filter(isAdded)),
-        ...(isOverlay(extras) && indices !== undefined && { indices }),
+        ...(isOverlay(primitive, json) && indices !== undefined && { indices }),
         ...(extensions && { extensions }),
-      }),
-    );
+      };
+    });
   const added = { asset: { version: '2.0' }, meshes: [{ primitives }], images };
   return { ...added, accessors: [...numbersOf(eachAccessor, added)].map((accessor) => accessors[accessor]!) };
 }

@@ -302,6 +302,7 @@ class OverlayWriter {
   #made({ roughness, doubleSided, alpha, unlit }: Finish): GLTF.IMaterial {
     return {
       name: 'Cagecast overlay',
+      extras: overlayMark,
       alphaMode: 'BLEND',
       doubleSided,
       pbrMetallicRoughness: {

@@ -81,8 +81,8 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
       throw wrong(argument, name, 'is a batch or an instanced geometry; make each instance a mesh of its own');
     const position = geometry.getAttribute('position') as Attribute | undefined;
     const vertexCount = position?.count ?? 0;
-    const corners = geometry.index ? geometry.index.count : vertexCount;
-    if (vertexCount === 0 || corners === 0) return;
+    const corners = geometry.index?.count ?? vertexCount;
+    if (!vertexCount || !corners) return;
     if (position!.itemSize !== 3) throw wrong(argument, name, `has positions of ${position!.itemSize} numbers, not 3`);
     if (corners % 3 !== 0) throw wrong(argument, name, `has ${corners} corners, not 3 per triangle`);
     const morphs = Object.entries(geometry.morphAttributes).flatMap(([of, attributes]) =>
@@ -113,7 +113,7 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
     // Its bones may be elsewhere in the scene.
     if (isSkinned(child as ThreeMesh))
       for (const bone of (child as SkinnedMesh).skeleton?.bones ?? []) bone.updateWorldMatrix(true, false);
-    if (!isMesh(child) || child.userData[overlayMark] === true || child.geometry.userData[overlayMark] === true) return;
+    if (!isMesh(child) || [child, child.geometry, child.material].flat().some(isMarked)) return;
     const name = child.name || child.parent?.name || `mesh ${parts.length}`;
     if (!isInstanced(child) || child.count > 0) add(name, child, child.geometry, placeOf(child).clone());
   });
@@ -164,10 +164,10 @@ export function valuesOf(attribute: Attribute): Float32Array {
 }
 
 /**
- * Marks overlays in their `userData`, so that `extract` skips them. GLTFLoader sets the same mark on overlays from a file, from
- * their `extras` (gltf/overlay.ts).
+ * Whether something is an overlay, by the mark in its `userData`. GLTFLoader sets the same mark on geometries and materials of
+ * overlays from a file, from their `extras` (gltf/overlay.ts).
  */
-export const overlayMark = 'cagecastOverlay';
+export const isMarked = ({ userData }: Pick<Object3D, 'userData'>): boolean => userData['cagecastOverlay'];
 
 // Tested by three's own flags, not by class, because a page may have a second copy of three.
 const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry =>
@@ -215,7 +215,7 @@ function placeIndices(
   const mirrored = isMirrored(matrix);
   for (let i = 0; i < 3 * triangleCount; ++i) {
     // Checked part by part: in the joined arrays an index too large would point into the next part.
-    const vertex = index ? index.getX(i) : i;
+    const vertex = index?.getX(i) ?? i;
     if (vertex >= vertexCount)
       throw wrong(argument, name, `has indices[${i}] = ${vertex}, which is out of range (${vertexCount} vertices)`, i);
     const corner = i % 3;
@@ -238,7 +238,7 @@ function placeGroups(
     if (!numbers.has(materialIndex)) numbers.set(materialIndex, next++);
     const group = numbers.get(materialIndex)!;
     for (let i = start; i < Math.min(start + count, 3 * triangleCount); ++i) {
-      const vertex = geometry.index ? geometry.index.getX(i) : i;
+      const vertex = geometry.index?.getX(i) ?? i;
       if (vertex >= vertexCount || taken[vertex] === 1) continue; // a vertex of two materials belongs to the first
       taken[vertex] = 1;
       out[firstVertex + vertex] = group;

@@ -8,7 +8,7 @@ import {
   MeshStandardMaterial,
   SkinnedMesh,
 } from 'three';
-import { isInstanced, isSkinned, overlayMark, type Part } from './extract.js';
+import { isInstanced, isMarked, isSkinned, type Part } from './extract.js';
 import { disown, disposeOwn, own } from './own-attributes.js';
 
 /** What an overlay has of its base at any time, not only when it was made. */
@@ -90,7 +90,7 @@ export function makeOverlay(part: Part, base: Mesh, material: Material): Mesh {
       ? new SkinnedOverlay(geometry, material)
       : new Overlay(geometry, material);
   overlay.name = `${part.name} (cosmetic)`;
-  overlay.userData[overlayMark] = true;
+  overlay.userData['cagecastOverlay'] = true;
   return overlay;
 }
 
@@ -119,7 +119,7 @@ export function removeOverlay(overlay: Mesh): void {
 
 /** Takes away the overlays that earlier transfers have given to a mesh. */
 export function removeOverlays(base: Mesh): void {
-  for (const child of base.children.filter(({ userData }) => userData[overlayMark] === true)) {
+  for (const child of base.children.filter(isMarked)) {
     child.removeFromParent();
     disposeOwn((child as Mesh).geometry);
   }

@@ -107,7 +107,9 @@ async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
   // Ignore overlays that an earlier transfer added; `cagecast transfer` marks them.
   const overlays: Object3D[] = [];
   root.traverse((object) => {
-    if (object instanceof Mesh && object.geometry.userData.cagecastOverlay === true) overlays.push(object);
+    if (!(object instanceof Mesh)) return;
+    const { geometry, material } = object as Mesh;
+    if ([geometry, material].flat().some(({ userData }) => userData.cagecastOverlay)) overlays.push(object);
   });
   for (const overlay of overlays) overlay.removeFromParent();
   return root;

@@ -33,7 +33,8 @@ export function masksOf<Material, Texture>(
   if (!last || (!shown && colors === undefined)) return given;
   const vertices = new Int8Array(last.firstVertex + last.vertexCount);
   const triangles = new Int8Array(last.firstTriangle + last.triangleCount);
-  let [hasUvs, hasColors] = [false, false];
+  let hasUvs = false;
+  let hasColors = false;
   for (const part of parts) {
     const found = colors === undefined ? undefined : model.colorsOf(part, colors);
     if (found && found.size >= 3) {

@@ -5,7 +5,8 @@ import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } 
 import { readExtras } from '../../parts/template.js';
 import { InputError } from '../input-error.js';
 import { type DocumentPart, extractDocument } from './read.js';
-import { isDocument, read } from './transfer.js';
+import { isDocument, read, wrong } from './transfer.js';
+import { createAccessor } from './write.js';
 
 /** What glTF-Transform does not keep of a file. */
 export interface FileOptions {
@@ -100,18 +101,13 @@ export function addCage<D extends Document>(
 ): { document: D; node: Node } {
   const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
   const root = read('addCage', 'document', document, () => document.getRoot());
-  const buffer = root.listBuffers()[0] ?? document.createBuffer();
-  const accessor = (array: Float32Array | Uint32Array, type: 'VEC3' | 'VEC2' | 'SCALAR') =>
-    document
-      .createAccessor()
-      .setType(type)
-      .setArray(array.slice() as Float32Array<ArrayBuffer>)
-      .setBuffer(buffer);
+  for (const [name, array] of Object.entries({ positions, uvs, indices }))
+    if (!ArrayBuffer.isView(array)) throw wrong('addCage', `cage.${name}`, array, 'an array');
   const primitive = document
     .createPrimitive()
-    .setAttribute('POSITION', accessor(positions, 'VEC3'))
-    .setAttribute('TEXCOORD_0', accessor(uvs, 'VEC2'))
-    .setIndices(accessor(indices, 'SCALAR'));
+    .setAttribute('POSITION', createAccessor(document, positions, 'VEC3'))
+    .setAttribute('TEXCOORD_0', createAccessor(document, uvs, 'VEC2'))
+    .setIndices(createAccessor(document, indices, 'SCALAR'));
   const node = document
     .createNode('cage')
     .setMesh(document.createMesh('cage').addPrimitive(primitive))

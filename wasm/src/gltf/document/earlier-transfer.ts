@@ -1,6 +1,6 @@
 import type { Document, Primitive, Property } from '@gltf-transform/core';
-import { isOfTransfer, isOverlay } from '../overlay.js';
-import type { DocumentPart } from './read.js';
+import { isOfTransfer } from '../overlay.js';
+import { type DocumentPart, isOverlay } from './read.js';
 
 /** Disposes a property that nothing in its document uses, and then what only that used. */
 export function disposeUnused(document: Document, property: Property): void {
@@ -27,7 +27,7 @@ export function takeOverlays(document: Document, parts: readonly DocumentPart[])
   for (const { node } of parts) {
     const mesh = node.getMesh()!;
     for (const primitive of mesh.listPrimitives()) {
-      if (!isOverlay(primitive.getExtras())) continue;
+      if (!isOverlay(primitive)) continue;
       mesh.removePrimitive(primitive);
       disposeUnused(document, primitive);
     }

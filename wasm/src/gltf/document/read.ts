@@ -13,7 +13,7 @@ import { skinMatrix, usedJoints } from '../../parts/skin.js';
 import { InputError } from '../input-error.js';
 import { firstInstance, instancing } from '../instancing.js';
 import { identity, localMatrix, type Matrix, multiply } from '../matrix.js';
-import { isOverlay } from '../overlay.js';
+import { isMarked } from '../overlay.js';
 import {
   aliasesOf,
   decodeFloats,
@@ -75,6 +75,10 @@ export function uvLayoutOf(info: TextureInfo | null | undefined): UvLayout {
   };
 }
 
+/** Whether a primitive is an overlay. */
+export const isOverlay = (primitive: Primitive): boolean =>
+  isMarked(primitive.getExtras(), primitive.getMaterial()?.getExtras());
+
 /** The extension of glTF-Transform, which is no dependency. */
 interface KHRTransform extends ExtensionProperty {
   getOffset(): number[];
@@ -112,7 +116,7 @@ function listParts(document: Document): DocumentPart[] {
     mesh?.listPrimitives().forEach((primitive, p) => {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');
-      if (position === null || !hasTriangles(primitive.getMode()) || isOverlay(primitive.getExtras())) return;
+      if (position === null || !hasTriangles(primitive.getMode()) || isOverlay(primitive)) return;
       const all = [primitive, ...primitive.listTargets()].flatMap((of) =>
         of.listSemantics().map((semantic) => [semantic, of.getAttribute(semantic)!.getCount()] as const),
       );

@@ -76,22 +76,22 @@ function groupsOf(members: readonly Member[]): Member[][] {
   return [...groups.values()];
 }
 
+/** Makes an accessor of some values, in the document's first buffer. */
+export const createAccessor = (document: Document, array: AttributeArray, type: 'SCALAR' | 'VEC2' | 'VEC3'): Accessor =>
+  document
+    .createAccessor()
+    .setType(type)
+    // A copy with a buffer of its own: for a view, the whole shared buffer would be written, once per view.
+    .setArray(array.slice() as TypedArray)
+    .setBuffer(document.getRoot().listBuffers()[0] ?? document.createBuffer());
+
 /** Adds UVs, zones and overlays to primitives that share their attributes. */
 function addToGroup(document: Document, members: readonly Member[], overlay: OverlayWriter | undefined): void {
   const { part, primitive: first } = members[0]!;
-  const buffer = document.getRoot().listBuffers()[0] ?? document.createBuffer();
-  const attribute = (array: AttributeArray, type: 'SCALAR' | 'VEC2' | 'VEC3', normalized = false) =>
-    // A copy with a buffer of its own: for a view, the whole shared buffer would be written, once per view.
-    document
-      .createAccessor()
-      .setType(type)
-      .setArray(array.slice() as TypedArray)
-      .setNormalized(normalized)
-      .setBuffer(buffer);
   const shared = shareVertices(part.vertexCount, members);
   const { sources, blends } = shared;
   const indices = (corners: Uint32Array) =>
-    attribute(sources.length < 65536 ? Uint16Array.from(corners) : corners, 'SCALAR');
+    createAccessor(document, sources.length < 65536 ? Uint16Array.from(corners) : corners, 'SCALAR');
   if (shared.isNew) {
     const before = members.flatMap(({ primitive }) => primitive.getIndices() ?? []);
     remakePrimitives(
@@ -104,8 +104,10 @@ function addToGroup(document: Document, members: readonly Member[], overlay: Ove
     for (const accessor of before) disposeUnused(document, accessor);
   }
   const stored = storedUvs(shared.uvs);
-  const uvs = attribute(stored, 'VEC2', stored instanceof Uint16Array).setExtras({ ...uvsMark });
-  const zones = attribute(shared.zones, 'SCALAR').setSparse(isSparse(shared.zones, 1));
+  const uvs = createAccessor(document, stored, 'VEC2')
+    .setNormalized(stored instanceof Uint16Array)
+    .setExtras({ ...uvsMark });
+  const zones = createAccessor(document, shared.zones, 'SCALAR').setSparse(isSparse(shared.zones, 1));
   const uvSet = freeUvSet((semantic) => first.getAttribute(semantic) !== null);
   members.forEach(({ primitive, part: { node }, cosmetic }, m) => {
     const corners = cosmeticCorners(shared.indices[m]!, cosmetic);
@@ -245,12 +247,7 @@ class OverlayWriter {
 
   /** Deltas that move nothing. */
   #still(like: Accessor): Accessor {
-    return this.#document
-      .createAccessor()
-      .setType('VEC3')
-      .setArray(new Float32Array(3 * like.getCount()))
-      .setSparse(true)
-      .setBuffer(like.getBuffer());
+    return createAccessor(this.#document, new Float32Array(3 * like.getCount()), 'VEC3').setSparse(true);
   }
 
   /** The texture, which the document only gets if something shows it. */
@@ -277,6 +274,7 @@ class OverlayWriter {
     if (known) return known;
     const material = this.#document
       .createMaterial('Cagecast overlay')
+      .setExtras({ ...overlayMark })
       .setAlphaMode('BLEND')
       .setAlpha(finish.alpha)
       .setDoubleSided(finish.doubleSided)
