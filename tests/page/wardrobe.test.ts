@@ -6,7 +6,7 @@ import { PNG } from 'pngjs';
 import { faults } from '../support/axe';
 import { glbOf, tetrahedron } from '../support/glb';
 import { saved, validModel } from '../support/saved';
-import { drop, glb, inRepository, Site, settled, shownError, type Upload } from '../support/site';
+import { drop, glb, inRepository, Site, settled, shownError, type Upload, type Visit } from '../support/site';
 import { unzip } from '../support/zip';
 
 const asset = (...names: string[]): Buffer => readFileSync(inRepository('build/assets', ...names));
@@ -346,4 +346,62 @@ test('an avatar whose loading was cancelled can be chosen again; the focus stays
   await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'three' }).waitFor();
   assert.ok(await page.evaluate(() => document.activeElement!.closest('.avatars') !== null));
   assert.deepEqual(complaints, []);
+});
+
+/** Holds the requests to bend a cage to a model back, until `window.letGo()`. */
+const kHeldFits = `const { postMessage } = Worker.prototype;
+const held = [];
+let holds = true;
+window.heldFits = held;
+window.letGo = () => {
+  holds = false;
+  for (const post of held.splice(0)) post();
+};
+Worker.prototype.postMessage = function (message, ...rest) {
+  const post = () => postMessage.call(this, message, ...rest);
+  if (holds && message?.fn === 'refineCage') held.push(post);
+  else post();
+}`;
+
+/** Opens the wardrobe with a model on the stage, and puts another one beside it, to which the cage is being fitted. */
+async function beingFitted(): Promise<Visit> {
+  const visit = await site.visit({}, kHeldFits);
+  const { page } = visit;
+  const model = (name: string): Upload => glb(name, asset('lizard', 'target.glb'));
+  await drop(page, [model('one.glb'), glb('cage.glb', asset('lizard', 'cage.glb'))]);
+  await page.locator('#target-name', { hasText: 'one.glb' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.getByTestId('open-wardrobe').click();
+  await drop(page, [model('two.glb')]);
+  await page.waitForFunction(() => (window as unknown as { heldFits: unknown[] }).heldFits.length === 1);
+  return visit;
+}
+
+/** Puts an avatar on the stage. @param at Its place in the row. */
+async function choose(page: Page, at: number): Promise<void> {
+  await page.locator('.avatars .avatar').nth(at).click();
+  await page.locator(`.avatars li:nth-child(${at + 1}) .avatar[aria-pressed=true]`).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+}
+
+test('an avatar that comes on the stage while a cage is fitted to it gets that cage, unless another is chosen there', async () => {
+  const { page, complaints } = await beingFitted();
+  await choose(page, 1);
+  await page.evaluate('window.letGo()');
+  await page.locator('#cage-name', { hasText: 'two-cage.glb' }).waitFor();
+  for (const name of ['one', 'two'])
+    await page.locator('.avatars .avatar', { hasText: new RegExp(`^${name}, \\d+ % paintable, `) }).waitFor();
+  assert.deepEqual(complaints, []);
+
+  const chosen = await beingFitted();
+  await choose(chosen.page, 1);
+  await drop(chosen.page, [glb('own-cage.glb', asset('human-misaligned', 'cage.glb'))]);
+  await chosen.page.locator('#cage-name', { hasText: 'own-cage.glb' }).waitFor();
+  assert.equal(await settled(chosen.page), 'ready', await shownError(chosen.page));
+  await chosen.page.evaluate('window.letGo()');
+  await avatars(chosen.page, 2);
+  await choose(chosen.page, 0);
+  await choose(chosen.page, 1);
+  assert.equal(await chosen.page.locator('#cage-name').textContent(), 'own-cage.glb');
+  assert.deepEqual(chosen.complaints, []);
 });

@@ -39,7 +39,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
   #showsAll = false;
   /** What is to be done, one after the other. */
   #work: Promise<void> = Promise.resolve();
-  /** Cancels the fit in progress. */
+  /** Cancels the fits that were asked for. */
   readonly #fits = new Map<Avatar, AbortController>();
   readonly #outdated = new Set<Avatar>();
   #picturing: ReturnType<typeof setTimeout> | undefined;
@@ -159,7 +159,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     const at = this.#avatars.indexOf(avatar);
     if (at < 0 || this.#avatars.length === 1) return;
     this.#avatars.splice(at, 1);
-    this.#fits.get(avatar)?.abort();
+    this.#giveUpFits(avatar);
     if (avatar === this.#active) {
       const next = this.#avatars
         .slice(at)
@@ -257,6 +257,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     if (came) this.#active = came;
     const active = this.#active;
     if (target.files[0] !== active.files[0]) {
+      this.#giveUpFits(active);
       this.#clear(active);
       const name = target.sample?.title ?? nameOf(target.name);
       Object.assign(active, { name, files: target.files, sample: target.sample, picture: '', follows: false });
@@ -264,6 +265,8 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     const isOther = cage !== active.cage;
     if (isOther && active.standing) this.#clear(active);
     if (isOther) Object.assign(active, { cage, verdict: '' });
+    // A cage that was chosen there stays.
+    if (isOther && !came) this.#giveUpFits(active);
     if (came && left !== came && this.#avatars.includes(left)) this.#stand(left);
     const isForeign = cage.sample !== undefined && cage.sample !== target.sample;
     for (const avatar of this.#avatars) {
@@ -318,15 +321,29 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     }
     const { shown } = this.#session;
     const isForeign = shown?.cage.sample !== undefined && shown.cage.sample !== shown.target.sample;
-    if (!avatar.cage && shown && fits && !isForeign) await this.#fit(avatar, model);
+    if (!avatar.cage && shown && fits && !isForeign) await this.#fit(avatar, model, this.#signalOf(avatar));
     await this.#place(avatar, model);
   }
 
+  /** What cancels the fits to an avatar. */
+  #signalOf(avatar: Avatar): AbortSignal {
+    const abort = this.#fits.get(avatar) ?? new AbortController();
+    this.#fits.set(avatar, abort);
+    return abort.signal;
+  }
+
+  #giveUpFits(avatar: Avatar): void {
+    this.#fits.get(avatar)?.abort();
+    this.#fits.delete(avatar);
+  }
+
   #fitLater(avatar: Avatar): void {
+    const signal = this.#signalOf(avatar);
     this.#tell(avatar, { doing: 'Waiting' });
     this.#queue(avatar, async () => {
+      if (signal.aborted) return;
       const model = await this.#load(avatar);
-      await this.#fit(avatar, model);
+      await this.#fit(avatar, model, signal);
       if (avatar === this.#active) return disposeModel(model);
       this.#clear(avatar);
       await this.#place(avatar, model);
@@ -334,21 +351,19 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
   }
 
   /** Fits the cage of the model on the stage. If that is not possible the avatar stays without. */
-  async #fit(avatar: Avatar, model: Model): Promise<void> {
+  async #fit(avatar: Avatar, model: Model, signal: AbortSignal): Promise<void> {
     const { cage } = this.#session.shown!;
-    const abort = new AbortController();
-    this.#fits.set(avatar, abort);
     const onProgress = (share: number): void => this.#tell(avatar, { doing: `Fitting ${Math.round(100 * share)} %` });
     try {
       onProgress(0);
-      const file = await fitLike(cage, model, { signal: abort.signal, onProgress });
-      avatar.cage = await loadModel(file, this.#viewer.renderer);
-      avatar.follows = true;
+      const file = await fitLike(cage, model, { signal, onProgress });
+      const fitted = await loadModel(file, this.#viewer.renderer);
+      if (signal.aborted) return;
+      Object.assign(avatar, { cage: fitted, follows: true, verdict: '' });
+      if (avatar === (this.#wanted ?? this.#active)) this.#session.want({ cage: Promise.resolve(fitted) });
     } catch (error) {
-      if (abort.signal.aborted) return;
+      if (signal.aborted) return;
       showError(`${avatar.name}: ${reasonOf(error)}`);
-    } finally {
-      this.#fits.delete(avatar);
     }
   }
 
