@@ -405,3 +405,26 @@ test('an avatar that comes on the stage while a cage is fitted to it gets that c
   assert.equal(await chosen.page.locator('#cage-name').textContent(), 'own-cage.glb');
   assert.deepEqual(chosen.complaints, []);
 });
+
+test('“Fit this cage to all” fits the cage that was on the stage then, whatever comes there meanwhile', async () => {
+  const { page, complaints } = await site.visit({}, kHeldFits);
+  await page.getByTestId('open-wardrobe').click();
+  await avatars(page, 1);
+  for (const [at, name] of ['human', 'car'].entries()) {
+    await page.getByTestId('wardrobe-sample').selectOption(name);
+    await avatars(page, at + 2);
+  }
+  await page.getByTestId('fit-all').click();
+  await page.waitForFunction(() => (window as unknown as { heldFits: unknown[] }).heldFits.length === 1);
+  await choose(page, 2);
+  await page.evaluate('window.letGo()');
+  await page.waitForFunction(
+    () => !/Waiting|Fitting|other cage/.test(document.querySelector('.avatars')!.textContent!),
+    undefined,
+    { timeout: 60_000 },
+  );
+  await choose(page, 0);
+  assert.ok(await page.getByTestId('wardrobe-note').isHidden(), 'all take its paint');
+  assert.equal(await shownError(page), '');
+  assert.deepEqual(complaints, []);
+});

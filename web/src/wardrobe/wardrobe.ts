@@ -104,13 +104,16 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     const troubles = left.length > 0 ? [fullText(left.map(({ name }) => name))] : [];
     if (left.length > 0) showError(troubles[0]!);
     this.#change();
+    let common = instead ? undefined : this.#common;
     for (const { entry, avatar } of added)
       this.#queue(avatar, async () => {
         try {
-          await this.#read(avatar, entry, instead === undefined);
-          if (instead) this.remove(instead);
+          await this.#read(avatar, entry, common);
+          if (!instead) return;
+          this.remove(instead);
           instead = undefined;
-          await this.#arrival; // the others may get the cage of what is on the stage
+          await this.#arrival;
+          common = this.#common;
         } catch (error) {
           if (!this.#avatars.includes(avatar)) return;
           this.remove(avatar);
@@ -202,7 +205,14 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
 
   /** Fits the cage of the model on the stage to all whose cages have other UVs. */
   fitAll(): void {
-    for (const avatar of this.#avatars) if (!avatar.takesPaint && avatar.files.length > 0) this.#fitLater(avatar);
+    const { cage } = this.#session.shown!;
+    for (const avatar of this.#avatars) if (!avatar.takesPaint && avatar.files.length > 0) this.#fitLater(avatar, cage);
+  }
+
+  /** The cage that avatars without one get; undefined if the one on the stage belongs to another model. */
+  get #common(): Model | undefined {
+    const { cage, target } = this.#session.shown ?? {};
+    return cage?.sample && cage.sample !== target?.sample ? undefined : cage;
   }
 
   #make(doing: string): Avatar {
@@ -268,13 +278,14 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     // A cage that was chosen there stays.
     if (isOther && !came) this.#giveUpFits(active);
     if (came && left !== came && this.#avatars.includes(left)) this.#stand(left);
-    const isForeign = cage.sample !== undefined && cage.sample !== target.sample;
+    const common = this.#common;
     for (const avatar of this.#avatars) {
       avatar.takesPaint = avatar.cage !== undefined && haveSameUvs(avatar.cage, cage);
       if (avatar.standing) avatar.standing.takesPaint = avatar.takesPaint;
-      if (avatar === active || avatar.takesPaint || isForeign || avatar.files.length === 0) continue;
-      // What was fitted to the last cage of this model follows it.
-      if (!avatar.cage || (!came && isOther && avatar.follows)) this.#fitLater(avatar);
+      if (avatar === active || avatar.takesPaint || !common || avatar.files.length === 0) continue;
+      // What waits for a cage gets the one that it waits for; what was fitted to the last cage of this model follows it.
+      const lacks = !avatar.cage && (!came || avatar.doing === '');
+      if (lacks || (!came && isOther && avatar.follows)) this.#fitLater(avatar, common);
     }
     this.#arrange();
     this.#pictureLater(this.#avatars);
@@ -305,8 +316,8 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     return loadModel(file!, this.#viewer.renderer, rest);
   }
 
-  /** Reads a new avatar and its cage. @param fits Whether the cage of the one on the stage is fitted to it if it has none. */
-  async #read(avatar: Avatar, { target, cage }: Entry, fits: boolean): Promise<void> {
+  /** Reads a new avatar and its cage. @param common A cage that is fitted to it if it has none. */
+  async #read(avatar: Avatar, { target, cage }: Entry, common: Model | undefined): Promise<void> {
     this.#tell(avatar, { doing: 'Reading' });
     const model = await target();
     if (!this.#avatars.includes(avatar)) return disposeModel(model);
@@ -319,9 +330,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
       disposeModel(model);
       throw error;
     }
-    const { shown } = this.#session;
-    const isForeign = shown?.cage.sample !== undefined && shown.cage.sample !== shown.target.sample;
-    if (!avatar.cage && shown && fits && !isForeign) await this.#fit(avatar, model, this.#signalOf(avatar));
+    if (!avatar.cage && common) await this.#fit(avatar, model, common, this.#signalOf(avatar));
     await this.#place(avatar, model);
   }
 
@@ -337,22 +346,21 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     this.#fits.delete(avatar);
   }
 
-  #fitLater(avatar: Avatar): void {
+  #fitLater(avatar: Avatar, cage: Model): void {
     const signal = this.#signalOf(avatar);
     this.#tell(avatar, { doing: 'Waiting' });
     this.#queue(avatar, async () => {
       if (signal.aborted) return;
       const model = await this.#load(avatar);
-      await this.#fit(avatar, model, signal);
+      await this.#fit(avatar, model, cage, signal);
       if (avatar === this.#active) return disposeModel(model);
       this.#clear(avatar);
       await this.#place(avatar, model);
     });
   }
 
-  /** Fits the cage of the model on the stage. If that is not possible the avatar stays without. */
-  async #fit(avatar: Avatar, model: Model, signal: AbortSignal): Promise<void> {
-    const { cage } = this.#session.shown!;
+  /** Fits a cage to an avatar. If that is not possible the avatar stays without. */
+  async #fit(avatar: Avatar, model: Model, cage: Model, signal: AbortSignal): Promise<void> {
     const onProgress = (share: number): void => this.#tell(avatar, { doing: `Fitting ${Math.round(100 * share)} %` });
     try {
       onProgress(0);
