@@ -428,3 +428,31 @@ test('“Fit this cage to all” fits the cage that was on the stage then, whate
   assert.equal(await shownError(page), '');
   assert.deepEqual(complaints, []);
 });
+
+test('what is on the stage is in the list, though avatars are removed, or models opened, before the next one has come', async () => {
+  const { page, complaints } = await site.visit();
+  await page.getByTestId('open-wardrobe').click();
+  await avatars(page, 1);
+  for (const [at, name] of ['human', 'car', 'human-fused'].entries()) {
+    await page.getByTestId('wardrobe-sample').selectOption(name);
+    await avatars(page, at + 2);
+  }
+  const names = await page.locator('.avatars .name').allTextContents();
+  const remove = `document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key: 'Delete', bubbles: true }));`;
+  await page.locator('.avatars .avatar').first().focus();
+  await page.evaluate(remove + remove);
+  await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: names[2]! }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.deepEqual(await page.locator('.avatars .name').allTextContents(), names.slice(2));
+  assert.equal(await page.getByTestId('sample-select').inputValue(), 'car');
+
+  await page.locator('.avatars .avatar').first().focus();
+  await page.evaluate(
+    `${remove} const samples = document.querySelector('#sample-select'); samples.value = 'human'; samples.dispatchEvent(new Event('change'));`,
+  );
+  await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: names[1]! }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.deepEqual(await page.locator('.avatars .name').allTextContents(), [names[1], names[3]]);
+  assert.equal(await shownError(page), '');
+  assert.deepEqual(complaints, []);
+});

@@ -163,7 +163,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     if (at < 0 || this.#avatars.length === 1) return;
     this.#avatars.splice(at, 1);
     this.#giveUpFits(avatar);
-    if (avatar === this.#active) {
+    if (avatar === (this.#wanted ?? this.#active)) {
       const next = this.#avatars
         .slice(at)
         .concat(this.#avatars)
@@ -265,6 +265,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     this.#arrived();
     const left = this.#active;
     if (came) this.#active = came;
+    this.#enlist();
     const active = this.#active;
     if (target.files[0] !== active.files[0]) {
       this.#giveUpFits(active);
@@ -295,9 +296,13 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
   #onFailure(): void {
     this.#wanted = undefined;
     this.#arrived();
-    if (this.#avatars.includes(this.#active)) return;
-    this.#avatars.unshift(this.#active);
+    this.#enlist();
     this.#arrange();
+  }
+
+  /** Takes what is on the stage into the list again, if it was removed and nothing came in its place. */
+  #enlist(): void {
+    if (!this.#avatars.includes(this.#active)) this.#avatars.unshift(this.#active);
   }
 
   /** Makes an avatar that was on the stage stand beside it. */
