@@ -330,6 +330,18 @@ test('on the stage, nothing that can be pressed is covered or cut off', async ()
   assert.deepEqual(await stageFaults(page), [], 'with a verdict that offers a remedy');
 });
 
+test('above the wardrobe, nothing on the stage is covered or cut off, on low screens too', async () => {
+  const { page } = (visit = await site.visit({ hasTouch: true }));
+  await page.getByTestId('open-wardrobe').click();
+  await page.getByTestId('wardrobe-sample').waitFor();
+  assert.deepEqual(await stageFaults(page), []);
+  await page.getByTestId('wardrobe-sample').selectOption('human');
+  await page.getByTestId('wardrobe-note').waitFor();
+  assert.deepEqual(await stageFaults(page), [], 'with a note');
+  await page.getByRole('radio', { name: 'Brush' }).check({ force: true });
+  assert.deepEqual(await stageFaults(page), [], 'while one paints');
+});
+
 test('with forced colours, chosen controls still look chosen', async () => {
   const { page } = visit;
   await page.emulateMedia({ forcedColors: 'active' });
