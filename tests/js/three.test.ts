@@ -3,6 +3,7 @@ import { before, describe, test } from 'node:test';
 import { setFlagsFromString } from 'node:v8';
 import { CagecastError, classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
 import { type ApplyOptions, applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
+import { Edits, History, LayerStack } from 'cagecast/three/layers';
 import { terminate } from 'cagecast/worker';
 import {
   BatchedMesh,
@@ -897,5 +898,33 @@ describe('applyTransferAsync', () => {
     assert.ok(geometry.hasAttribute('uv2') && !geometry.hasAttribute('uv1'));
     for (const one of Object.values(geometry.attributes)) assert.equal(one.count, heat.count);
     terminate();
+  });
+});
+
+describe('layers', () => {
+  test('a base layer that undo brings back is the base again, unless there is a newer one', () => {
+    const [stack, history] = [new LayerStack(), new History()];
+    const edits = new Edits(stack, history);
+    const sheet = { texture: new Texture() };
+    const setBase = (name: string): void => edits.do(name, () => stack.setBase(name, sheet));
+    const removeBase = (): void => edits.do('removing', () => stack.remove(stack.base!.id));
+    const state = () => [stack.base?.name, stack.layers.map(({ name }) => name)];
+    setBase('first');
+    removeBase();
+    assert.deepEqual(state(), [undefined, []]);
+    setBase('second');
+    for (let step = 0; step < 2; step++) history.undo();
+    assert.deepEqual(state(), ['first', ['first']]);
+    for (let step = 0; step < 2; step++) history.redo();
+    assert.deepEqual(state(), ['second', ['second']]);
+    for (let step = 0; step < 2; step++) history.undo();
+    setBase('third');
+    assert.deepEqual(state(), ['third', ['third']]);
+
+    // Of another model, which is no step.
+    removeBase();
+    stack.setBase('newer', sheet);
+    history.undo();
+    assert.deepEqual(state(), ['newer', ['newer', 'third']]);
   });
 });

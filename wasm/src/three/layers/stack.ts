@@ -22,7 +22,8 @@ export interface StackEvents {
 export class LayerStack extends Emitter<StackEvents> {
   #layers: readonly Layer[] = [];
   #selected: number | undefined;
-  #base: number | undefined;
+  /** The ids of all base layers so far, also of those that were removed: undo may bring them back. */
+  readonly #bases: number[] = [];
   #lastId = 0;
 
   get layers(): readonly Layer[] {
@@ -47,13 +48,13 @@ export class LayerStack extends Emitter<StackEvents> {
     }
     if (this.full) throw full();
     const layer = this.#make(name, sheet, {}, 0);
-    this.#base = layer.id;
+    this.#bases.push(layer.id);
     this.select(layer);
   }
 
-  /** The layer with the model's own paint, unless it was removed. */
+  /** The layer with the model's own paint, unless it was removed; the newest one if there are several. */
   get base(): Layer | undefined {
-    return this.#layers.find(({ id }) => id === this.#base);
+    return this.#bases.flatMap((base) => this.#layers.filter(({ id }) => id === base)).at(-1);
   }
 
   /** Adds a layer on top and selects it. @throws {CagecastError} if there are `maxLayers` already, or the style is wrong. */
