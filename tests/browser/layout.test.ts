@@ -359,3 +359,18 @@ test('with forced colours, chosen controls still look chosen', async () => {
   await page.emulateMedia({ forcedColors: null });
   for (const [chosen, other] of grounds) assert.notEqual(chosen, other);
 });
+
+test('the model has the pixels of the screen, also after the page was moved to another one', async () => {
+  const { page } = visit;
+  const session = await page.context().newCDPSession(page);
+  for (const deviceScaleFactor of [1, 0.5]) {
+    const screen = { ...page.viewportSize()!, deviceScaleFactor, mobile: false };
+    await session.send('Emulation.setDeviceMetricsOverride', screen);
+    // Chromium does not evaluate media queries for an emulated screen alone.
+    await page.emulateMedia({ colorScheme: deviceScaleFactor === 1 ? 'dark' : 'light' });
+    await page.waitForFunction((ratio) => {
+      const { width, clientWidth } = document.querySelector<HTMLCanvasElement>('#view')!;
+      return Math.abs(width - ratio * clientWidth) <= 1;
+    }, deviceScaleFactor);
+  }
+});

@@ -374,6 +374,19 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.ok(Math.abs(wide - plain) < 0.02 * plain, `${wide}, as before: ${plain}`);
   });
 
+  test('has the pixels of the screen, also where the page is zoomed or moved to another screen', async () => {
+    const session = await page.context().newCDPSession(page);
+    const pixels = () => page.evaluate<number>('part("canvas").width / part("canvas").clientWidth');
+    for (const ratio of [2, 1]) {
+      const screen = { width: 256, height: 256, deviceScaleFactor: ratio, mobile: false };
+      await session.send('Emulation.setDeviceMetricsOverride', screen);
+      // Chromium does not evaluate media queries for an emulated screen alone.
+      await page.emulateMedia({ colorScheme: ratio === 2 ? 'dark' : 'light' });
+      for (const end = Date.now() + 30_000; (await pixels()) !== ratio && Date.now() < end; ) await setTimeout(50);
+      assert.equal(await pixels(), ratio);
+    }
+  });
+
   test('tells of an opacity that is no number until it is one', async () => {
     const before = await picture();
     const error = () => page.evaluate<string>('part(".error").hidden ? "" : part(".error").textContent');

@@ -33,7 +33,8 @@ export class Stage {
   readonly #scene = new Scene();
   readonly #controls: OrbitControls;
   readonly #sizes: ResizeObserver;
-  readonly #onKey = (event: KeyboardEvent): void => this.#turn(event);
+  /** Removes the listeners. */
+  readonly #end = new AbortController();
   /** The distance from which all of the model is seen. */
   #whole = 1;
   #orbit = defaultOrbit;
@@ -51,10 +52,12 @@ export class Stage {
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#controls.enablePan = false;
     this.#controls.addEventListener('change', this.draw);
-    canvas.addEventListener('keydown', this.#onKey);
-    canvas.addEventListener('webglcontextrestored', this.draw);
+    const { signal } = this.#end;
+    canvas.addEventListener('keydown', (event) => this.#turn(event), { signal });
+    canvas.addEventListener('webglcontextrestored', this.draw, { signal });
     this.#sizes = new ResizeObserver(() => this.#resize());
     this.#sizes.observe(canvas);
+    this.#watchRatio();
     this.#camera.aspect = canvas.width / canvas.height; // of an element that is not shown yet
     this.#resize();
   }
@@ -105,8 +108,7 @@ export class Stage {
   /** Ends drawing and frees the graphics context. */
   dispose(): void {
     cancelAnimationFrame(this.#frame);
-    this.#canvas.removeEventListener('keydown', this.#onKey);
-    this.#canvas.removeEventListener('webglcontextrestored', this.draw);
+    this.#end.abort();
     this.#sizes.disconnect();
     this.#controls.dispose();
     this.#renderer.dispose();
@@ -116,6 +118,16 @@ export class Stage {
   /** How much nearer the sides of the view are than its upper and lower edge. */
   get #narrow(): number {
     return Math.min(1, this.#camera.aspect);
+  }
+
+  /** A page that is zoomed, or moved to another screen, has other pixels; the element's size may stay. */
+  #watchRatio(): void {
+    const onChange = (): void => {
+      this.#watchRatio();
+      this.#resize();
+    };
+    const { signal } = this.#end;
+    matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener('change', onChange, { once: true, signal });
   }
 
   #resize(): void {

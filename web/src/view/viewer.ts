@@ -159,6 +159,7 @@ export class Viewer {
     this.home();
     // Fires at once with the current size.
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement!);
+    this.#watchRatio();
   }
 
   /** Shows another target; call `classify` next. Frees the previous one, unless it is the same. */
@@ -591,6 +592,15 @@ export class Viewer {
     event.preventDefault();
     this.#markMoved();
     this.#withoutDamping(action);
+  }
+
+  /** On another screen the page may have other pixels, but the same size. */
+  #watchRatio(): void {
+    const onChange = (): void => {
+      this.#watchRatio();
+      this.#resize();
+    };
+    matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener('change', onChange, { once: true });
   }
 
   #resize(): void {
