@@ -544,22 +544,47 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.deepEqual(await picture(), before);
   });
 
-  test('draws again after the graphics context was lost', async () => {
-    await page.evaluate(
-      `(async () => {
-        const canvas = part('canvas');
-        const extension = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
-        // It cannot be restored before the event has ended.
-        const event = (name) => new Promise((done) => canvas.addEventListener(name, () => setTimeout(done), { once: true }));
-        const lost = event('webglcontextlost');
-        extension.loseContext();
-        await lost;
-        const restored = event('webglcontextrestored');
-        extension.restoreContext();
-        await restored;
-      })()`,
-    );
+  test('says that the graphics context is lost, and draws again once it is back', async () => {
+    const before = await picture();
+    // It cannot be restored before the event has ended.
+    await page.evaluate(`
+      globalThis.event = (name) => new Promise((done) => part('canvas').addEventListener(name, () => setTimeout(done), { once: true }));
+      globalThis.extension = part('canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
+      told.length = 0;
+      const lost = event('webglcontextlost');
+      extension.loseContext();
+      lost`);
+    const alert = page.locator('cagecast-viewer [role=alert]:visible');
+    assert.match(await alert.innerText({ timeout: 5000 }), /the browser has stopped this 3D view/);
+    assert.match(await page.evaluate('told.join()'), /^error cagecast-viewer: the browser has stopped this 3D view/);
+    assert.match(await page.evaluate('viewer.toBlob().then(() => "a picture", String)'), /has stopped this 3D view/);
+    await page.evaluate(`
+      const restored = event('webglcontextrestored');
+      extension.restoreContext();
+      restored`);
+    assert.equal(await alert.count(), 0);
     await seen(page);
+    assert.deepEqual(await picture(), before);
+  });
+
+  test('says that the page has more 3D views than the browser allows, and draws again when it is put in anew', async () => {
+    const before = await picture();
+    const alert = page.locator('cagecast-viewer [role=alert]:visible');
+    await page.evaluate(
+      'globalThis.others = Array.from({ length: 16 }, () => document.createElement("canvas").getContext("webgl2")); 0',
+    );
+    assert.match(await alert.innerText({ timeout: 5000 }), /more of them than it allows/);
+    await page.evaluate('for (const other of others) other.getExtension("WEBGL_lose_context")?.loseContext()');
+    await page.evaluate(`(async () => {
+      const place = viewer.parentNode;
+      viewer.remove();
+      await new Promise((done) => setTimeout(done));
+      place.append(viewer);
+      await next();
+    })()`);
+    assert.equal(await alert.count(), 0);
+    assert.deepEqual(await picture(), before);
+    assert.match(warnings.splice(0).join(), /too many/i);
   });
 
   test('shows what is wrong, by attribute and address; the last change wins', async () => {

@@ -20,6 +20,9 @@ export type Check = Pick<Inspection, 'verdict' | 'findings'>;
 /** Attributes of which a change means another transfer. */
 const kOfTransfer = ['target', 'cage', 'preset', 'threshold', 'borders', 'feather'];
 
+const kLost =
+  'cagecast-viewer: the browser has stopped this 3D view, as the page has more of them than it allows (16 in Chromium) or the graphics were reset';
+
 const kStyle = `
   :host { display: block; position: relative; width: 300px; height: 300px; }
   :host([hidden]) { display: none; }
@@ -63,7 +66,9 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   loader = new GLTFLoader();
   #canvas: HTMLCanvasElement;
   readonly #poster: HTMLImageElement;
-  readonly #error: HTMLElement;
+  readonly #error = newAlert();
+  /** Shown while the graphics context is lost. */
+  readonly #lost = newAlert();
   /** Whether the error that is shown is about the opacity. */
   #hasBadOpacity = false;
   #stage: Stage | undefined;
@@ -85,10 +90,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     root.adoptedStyleSheets = [style];
     this.#canvas = this.#newCanvas();
     this.#poster = Object.assign(document.createElement('img'), { className: 'poster', hidden: true, alt: '' });
-    this.#error = Object.assign(document.createElement('p'), { className: 'error', hidden: true });
-    this.#error.setAttribute('role', 'alert');
-    this.#error.setAttribute('part', 'error');
-    root.append(this.#canvas, this.#poster, this.#error);
+    root.append(this.#canvas, this.#poster, this.#error, this.#lost);
   }
 
   connectedCallback(): void {
@@ -110,10 +112,11 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
    * A picture of what is shown.
    * @param type     An image type that canvases can write. Default: `image/png`.
    * @param quality  0 to 1, for types with losses.
-   * @throws Error if nothing is shown yet.
+   * @throws Error if nothing is shown yet, or the browser has stopped the 3D view.
    */
   async toBlob(type?: string, quality?: number): Promise<Blob> {
     this.#get('toBlob');
+    if (this.#stage!.isLost) throw new Error(kLost);
     this.#stage!.drawNow();
     return new Promise((resolve, reject) =>
       this.#canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('toBlob: no picture'))), type, quality),
@@ -209,7 +212,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     const loading = new AbortController();
     this.#loading = loading;
     try {
-      this.#stage ??= new Stage(this.#canvas);
+      this.#stage ??= new Stage(this.#canvas, () => this.#tellLost());
       await work(loading.signal);
       loading.signal.throwIfAborted();
       this.#loading = undefined;
@@ -219,6 +222,13 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       this.#loading = undefined;
       this.#fail(error);
     }
+  }
+
+  #tellLost(): void {
+    const isLost = this.#stage!.isLost;
+    this.#lost.textContent = kLost;
+    this.#lost.hidden = !isLost;
+    if (isLost) this.#tell('error', new Error(kLost));
   }
 
   #fail(error: unknown): void {
@@ -350,11 +360,19 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     if (!this.#stage) return;
     this.#stage.dispose();
     this.#stage = undefined;
+    this.#lost.hidden = true;
     // A canvas never gets a second graphics context.
     const canvas = this.#newCanvas();
     this.#canvas.replaceWith(canvas);
     this.#canvas = canvas;
   }
+}
+
+function newAlert(): HTMLElement {
+  const alert = Object.assign(document.createElement('p'), { className: 'error', hidden: true });
+  alert.setAttribute('role', 'alert');
+  alert.setAttribute('part', 'error');
+  return alert;
 }
 
 /** Frees what is being loaded, once it is there. */

@@ -41,8 +41,11 @@ export class Stage {
   #model: Object3D | undefined;
   #frame = 0;
 
-  /** @throws Error if the host cannot draw. */
-  constructor(canvas: HTMLCanvasElement) {
+  /**
+   * @param onContext Is told when the browser has taken the graphics context away, and when it is back.
+   * @throws Error if the host cannot draw.
+   */
+  constructor(canvas: HTMLCanvasElement, onContext: () => void) {
     this.#canvas = canvas;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     const sun = new DirectionalLight(0xffffff, 2);
@@ -54,12 +57,19 @@ export class Stage {
     this.#controls.addEventListener('change', this.draw);
     const { signal } = this.#end;
     canvas.addEventListener('keydown', (event) => this.#turn(event), { signal });
+    canvas.addEventListener('webglcontextlost', onContext, { signal });
+    canvas.addEventListener('webglcontextrestored', onContext, { signal });
     canvas.addEventListener('webglcontextrestored', this.draw, { signal });
     this.#sizes = new ResizeObserver(() => this.#resize());
     this.#sizes.observe(canvas);
     this.#watchRatio();
     this.#camera.aspect = canvas.width / canvas.height; // of an element that is not shown yet
     this.#resize();
+  }
+
+  /** Whether the browser has taken the graphics context away. */
+  get isLost(): boolean {
+    return this.#renderer.getContext().isContextLost();
   }
 
   /** Shows a model instead of the one before, from where `orbit` says; without it, the same one again, from where the camera is. */
