@@ -165,9 +165,9 @@ export function valuesOf(attribute: Attribute): Float32Array {
 
 /**
  * Whether something is an overlay, by the mark in its `userData`. GLTFLoader sets the same mark on geometries and materials of
- * overlays from a file, from their `extras` (gltf/overlay.ts).
+ * overlays from a file, from their `extras` (gltf/overlay.ts). Lists of materials may have gaps.
  */
-export const isMarked = ({ userData }: Pick<Object3D, 'userData'>): boolean => userData['cagecastOverlay'];
+export const isMarked = (one?: Pick<Object3D, 'userData'>): boolean => one?.userData['cagecastOverlay'];
 
 // Tested by three's own flags, not by class, because a page may have a second copy of three.
 const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry =>
