@@ -20,11 +20,11 @@ const kRailTools: Record<Kind, Pick<RailTool, 'title' | 'key' | 'icon'>> = {
   brush: {
     title: 'Brush',
     key: 'b',
-    icon: 'M14 10 20.500 3.500M10.500 10.500 3.500 20.500l10-7a2.500 2.500 0 0 0-3-3z',
+    icon: 'M14 10 20.5 3.5M10.5 10.5 3.5 20.5l10-7a2.5 2.5 0 0 0-3-3z',
   },
-  eraser: { title: 'Erase', key: 'e', icon: 'M9 19h11M4.500 14.500 14 5l5 5-9 9H8zM9.500 9.500l5 5' },
+  eraser: { title: 'Erase', key: 'e', icon: 'M9 19h11M4.5 14.5 14 5l5 5-9 9H8zM9.5 9.5l5 5' },
   sticker: { title: 'Sticker', key: 's', icon: 'M5 4h14v9l-6 7H5zM13 20v-7h6' },
-  fill: { title: 'Fill', key: 'f', icon: 'M11 4 4 11l7 7 7-7-9.500-9.500M4.500 11h13M20 15c2 3 1.500 5 0 5s-2-2 0-5z' },
+  fill: { title: 'Fill', key: 'f', icon: 'M11 4 4 11l7 7 7-7-9.5-9.5M4.5 11h13M20 15c2 3 1.5 5 0 5s-2-2 0-5z' },
 };
 
 /** Adds brush, eraser, stickers and filling to the tool rail, with their options below the layers. @returns What paints. */

@@ -41,7 +41,7 @@ export class BareBrush {
     this.#offer = {
       title: 'Bare',
       key: 'n',
-      icon: 'M21 12a9 9 0 1 1-18 0 9 9 0 0 1 18 0zM5.700 5.700l12.600 12.600',
+      icon: 'M21 12a9 9 0 1 1-18 0 9 9 0 0 1 18 0zM5.7 5.7l12.6 12.6',
       tool: {
         down: (spot, event) => this.#down(spot, event),
         move: (spot, event) => this.#move(spot, event),

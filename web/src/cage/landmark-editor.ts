@@ -70,7 +70,7 @@ export class LandmarkEditor {
     this.#offer = {
       title: 'Marks',
       key: 'l',
-      icon: 'M12 21c-4-5-6-8-6-11a6 6 0 0 1 12 0c0 3-2 6-6 11zM12 12.500a2.500 2.500 0 1 0 0-5 2.500 2.500 0 0 0 0 5z',
+      icon: 'M12 21c-4-5-6-8-6-11a6 6 0 0 1 12 0c0 3-2 6-6 11zM12 12.5a2.5 2.5 0 1 0 0-5 2.5 2.5 0 0 0 0 5z',
       tool: {
         down: (_, event) => this.#down(event),
         move: (_, event) => this.#move(event),

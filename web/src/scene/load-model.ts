@@ -107,9 +107,9 @@ async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
   // Ignore overlays that an earlier transfer added; `cagecast transfer` marks them.
   const overlays: Object3D[] = [];
   root.traverse((object) => {
-    if (!(object instanceof Mesh)) return;
-    const { geometry, material } = object as Mesh;
-    if ([geometry, material].flat().some(({ userData }) => userData.cagecastOverlay)) overlays.push(object);
+    // The loader gives a mesh one material.
+    if (object instanceof Mesh && [object.geometry, object.material].some(({ userData }) => userData.cagecastOverlay))
+      overlays.push(object);
   });
   for (const overlay of overlays) overlay.removeFromParent();
   return root;

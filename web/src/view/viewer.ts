@@ -596,11 +596,9 @@ export class Viewer {
 
   /** On another screen the page may have other pixels, but the same size. */
   #watchRatio(): void {
-    const onChange = (): void => {
-      this.#watchRatio();
-      this.#resize();
-    };
-    matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener('change', onChange, { once: true });
+    this.#resize();
+    const pixels = matchMedia(`(resolution: ${devicePixelRatio}dppx)`);
+    pixels.addEventListener('change', () => this.#watchRatio(), { once: true });
   }
 
   #resize(): void {
