@@ -800,7 +800,7 @@ describe('saved transfers', () => {
     );
     refuses(
       bytes.map((byte, i) => (i === 4 ? 9 : byte)),
-      /has version 9 of the format; this one reads version 1/,
+      /has version 9 of the format; this one reads version 2/,
     );
     refuses('bytes' as unknown as Uint8Array, /bytes is "bytes", not a Uint8Array/);
     assert.throws(() => serialize({} as never), /applied is not what applyTransfer returned/);

@@ -484,7 +484,7 @@ const asyncScenes: Record<string, () => Promise<unknown>> = {
   /** A model that is applied from bytes. */
   async saved() {
     const load = async () => (await new GLTFLoader().loadAsync('target.glb')).scene;
-    const [first, again, ...others] = await Promise.all(Array.from({ length: 8 }, load));
+    const [first, again, ...others] = await Promise.all(Array.from({ length: 32 }, load));
     if (!first || !again) return undefined;
     const around = (await new GLTFLoader().loadAsync('cage.glb')).scene;
     const look = (model: Object3D) => {

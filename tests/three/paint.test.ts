@@ -348,8 +348,9 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
       apart: number;
       painted: number;
     }>('saved');
+    const median = times.toSorted((a, b) => a - b)[times.length >> 1]!;
     context.diagnostic(
-      `${bytes} bytes for ${vertices} vertices, applied in ${times.map((ms) => ms.toFixed(2)).join(', ')} ms`,
+      `${bytes} bytes for ${vertices} vertices, applied in ${median.toFixed(2)} ms (median of ${times.length}; the first ${times[0]!.toFixed(2)} ms)`,
     );
     assert.equal(apart, 0);
     assert.ok(painted > 50, `${painted}`);

@@ -2,7 +2,7 @@ import { CagecastError } from '../index.js';
 
 /** The first bytes of packed data: "CGCT", and the version of the format. */
 const kMagic = 0x54434743;
-const kVersion = 1;
+const kVersion = 2;
 
 const kTypes = { Uint8Array, Int8Array, Uint16Array, Int16Array, Uint32Array, Float32Array, Float64Array };
 type Packable = InstanceType<(typeof kTypes)[keyof typeof kTypes]>;
@@ -34,7 +34,7 @@ export function pack(data: unknown): Uint8Array<ArrayBuffer> {
   out.set(bytes, 16);
   for (const { array, at } of arrays)
     out.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), start + at);
-  new Uint32Array(out.buffer, 0, 4).set([kMagic, kVersion, bytes.length, checksum(out.subarray(16))]);
+  new Uint32Array(out.buffer, 0, 4).set([kMagic, kVersion, bytes.length, hash(out.subarray(16))]);
   return out;
 }
 
@@ -44,7 +44,7 @@ export function unpack(bytes: Uint8Array): unknown {
   const [magic, version, length, sum] = own.length >= 16 ? new Uint32Array(own.buffer, 0, 4) : [];
   if (magic !== kMagic) throw refused(`is nothing that serialize wrote (${own.length} bytes)`);
   if (version !== kVersion) throw refused(`has version ${version} of the format; this one reads version ${kVersion}`);
-  if (16 + length! > own.length || checksum(own.subarray(16)) !== sum) throw refused('is damaged or not whole');
+  if (16 + length! > own.length || hash(own.subarray(16)) !== sum) throw refused('is damaged or not whole');
   const start = align(16 + length!);
   const text = new TextDecoder().decode(own.subarray(16, 16 + length!));
   return JSON.parse(text, (_, value: (Partial<ArrayNote> & { $infinity?: true }) | null) => {
@@ -58,21 +58,15 @@ export function unpack(bytes: Uint8Array): unknown {
 const align = (length: number): number => Math.ceil(length / 8) * 8;
 const refused = (what: string): CagecastError => new CagecastError('badArgument', 'deserialize', `bytes ${what}`);
 
-const checksum = (bytes: Uint8Array): number => hash(bytes)[0]!;
-
-/** A hash of bytes, 2 × 32 bits; not for secrets. @param seed  An earlier hash, to be continued. */
-export function hash(bytes: Uint8Array, seed: readonly [number, number] = [0x9e3779b9, 0x85ebca77]): [number, number] {
+/** A hash of bytes, of 32 bits; not for secrets. @param seed  An earlier hash, to be continued; by another one, all is another hash. */
+export function hash(bytes: Uint8Array, seed = 0): number {
   const count = bytes.length >> 2;
   const words =
     bytes.byteOffset % 4 === 0
-      ? new Uint32Array(bytes.buffer, bytes.byteOffset, count)
-      : new Uint32Array(bytes.slice(0, 4 * count).buffer);
-  let [a, b] = seed;
-  for (let i = 0; i < count; ++i) {
-    a = Math.imul(a ^ words[i]!, 0x01000193);
-    b = (b + Math.imul(a ^ (a >>> 15), 0x85ebca6b)) | 0;
-  }
-  for (let i = 4 * count; i < bytes.length; ++i) a = Math.imul(a ^ bytes[i]!, 0x01000193);
-  a = Math.imul(a ^ (a >>> 16) ^ bytes.length, 0xc2b2ae35);
-  return [(a ^ (a >>> 13)) >>> 0, (Math.imul(b ^ (b >>> 15), 0x2c1b3c6d) ^ a) >>> 0];
+      ? new Int32Array(bytes.buffer, bytes.byteOffset, count)
+      : new Int32Array(bytes.slice(0, 4 * count).buffer);
+  let sum = seed ^ bytes.length;
+  for (let i = 0; i < count; ++i) sum = Math.imul(sum ^ (sum >>> 15) ^ words[i]!, 0x85ebca6b);
+  for (let i = 4 * count; i < bytes.length; ++i) sum = Math.imul(sum ^ bytes[i]!, 0x85ebca6b);
+  return (sum ^ (sum >>> 16)) >>> 0;
 }

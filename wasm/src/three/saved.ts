@@ -58,14 +58,16 @@ export function checkSaved({ key, prepared }: Saved, target: Extracted): Prepare
   return prepared;
 }
 
-const digits = (values: readonly number[]): string =>
-  values.map((value) => value.toString(16).padStart(8, '0')).join('');
+/** Two hashes of arrays, one after the other, as hexadecimal digits. */
+const digits = (arrays: readonly (ArrayBufferView | undefined)[]): string =>
+  [1, 2]
+    .map((seed) => {
+      for (const array of arrays)
+        if (array) seed = hash(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), seed);
+      return seed.toString(16).padStart(8, '0');
+    })
+    .join('');
 
-function hashOfMesh(mesh: Mesh | undefined): string {
-  let sum: [number, number] | undefined;
-  for (const array of [mesh?.positions, mesh?.indices, mesh?.groups, mesh?.uvs])
-    if (array) sum = hash(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), sum);
-  return digits(sum ?? [0, 0]);
-}
-
-const textHash = (text: string): string => digits(hash(new TextEncoder().encode(text)));
+const hashOfMesh = (mesh: Mesh | undefined): string =>
+  digits([mesh?.positions, mesh?.indices, mesh?.groups, mesh?.uvs]);
+const textHash = (text: string): string => digits([new TextEncoder().encode(text)]);
