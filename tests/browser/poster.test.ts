@@ -6,7 +6,7 @@ import { difference, modelArea, shareOfHue } from '../support/picture';
 import { Site } from '../support/site';
 
 let site: Site;
-before(async () => void (site = await Site.open()));
+before(async () => void (site = await Site.open('real')));
 after(() => site?.close());
 
 const kScript = /\/index-[^/]*\.js$/;

@@ -227,7 +227,7 @@ async function compose(site: Site, name: string, html: string): Promise<void> {
 }
 
 const wanted = process.argv.slice(2);
-const site = await Site.open();
+const site = await Site.open('real');
 try {
   await mkdir(kFolder, { recursive: true });
   for (const take of [first, compare, share, desktopAndPhone, modes, why, borders])

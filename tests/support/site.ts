@@ -9,8 +9,12 @@ const kRoot = fileURLToPath(new URL('../..', import.meta.url));
 const kConfig = path.join(kRoot, 'web/vite.config.ts');
 /** Milliseconds. Long enough for software rendering on a busy machine, but ends tests of a page that hangs. */
 const kPatience = 60_000;
-/** Antialiasing doubles the cost of software rendering, and no test depends on it. */
-const kNoAntialiasing = `
+/** No test depends on antialiasing, which doubles the cost of software rendering, nor on anisotropy, at which Mesa 22 can hang. */
+const kCheapDrawing = `
+  const { getExtension } = WebGL2RenderingContext.prototype
+  WebGL2RenderingContext.prototype.getExtension = function (name) {
+    return name === 'EXT_texture_filter_anisotropic' ? null : getExtension.call(this, name)
+  }
   const { getContext } = HTMLCanvasElement.prototype
   HTMLCanvasElement.prototype.getContext = function (type, options) {
     return getContext.call(this, type, options?.antialias ? { ...options, antialias: false } : options)
@@ -22,6 +26,8 @@ const kExpected = /^Service Worker registration blocked by Playwright$|GPU stall
 
 /** A file inside the repository. */
 export const inRepository = (...names: string[]): string => path.join(kRoot, ...names);
+
+type Look = 'cheap' | 'real';
 
 /** An open page, with its complaints and its requests to other hosts. */
 export interface Visit {
@@ -58,20 +64,22 @@ export class Site {
     /** The folder of the built page. */
     readonly folder: string,
     readonly browser: Browser,
+    private readonly look: Look,
     private readonly stop: () => Promise<void>,
   ) {}
 
   /**
    * Starts Chromium, and builds and serves the page on a free port, unless the environment variables CAGECAST_SITE and
    * CAGECAST_PAGE give the URL and the folder of a page that is served already.
+   * @param look  `real`: by Chromium's own renderer, with antialiasing and anisotropy. Default: in less time.
    */
-  static async open(): Promise<Site> {
+  static async open(look: Look = 'cheap'): Promise<Site> {
     const { CAGECAST_SITE: url, CAGECAST_PAGE: folder } = process.env;
     const [served, browser] = await Promise.all([
       url && folder ? { url, folder, stop: async () => {} } : serve(),
-      launchChromium({ drawing: true }),
+      launchChromium({ drawing: true, renderer: look === 'real' ? 'swiftshader' : undefined }),
     ]);
-    return new Site(served.url, served.folder, browser, async () => {
+    return new Site(served.url, served.folder, browser, look, async () => {
       await browser.close();
       await served.stop();
     });
@@ -114,7 +122,7 @@ export class Site {
       const { origin, protocol } = new URL(request.url());
       if (protocol.startsWith('http') && origin !== new URL(this.url).origin) visit.foreign.push(request.url());
     });
-    await page.addInitScript({ content: kNoAntialiasing });
+    if (this.look === 'cheap') await page.addInitScript({ content: kCheapDrawing });
     await page.addInitScript({ content: kSecondVisit });
     if (typeof prepare === 'string') await page.addInitScript({ content: prepare });
     else await prepare?.(page);

@@ -276,15 +276,16 @@ const scenes: Record<string, () => unknown> = {
     const model = modelOf(white());
     const { material } = model.children[0] as Mesh;
     const bare = draw(model).pixels;
-    const look = () => {
+    const look = (from = bare) => {
       const { pixels } = draw(model);
-      return [countOf(pixels, 0), countOf(pixels, 1), difference(pixels, bare)];
+      return [countOf(pixels, 0), countOf(pixels, 1), difference(pixels, from)];
     };
     const texture = halves(0xff0000, 0x00ff00);
     const applied = applyTransfer(model, cage(), { texture });
     const seen: Record<string, number[]> = { painted: look() };
+    const { pixels: painted } = draw(model);
     texture.offset.x = 0.25;
-    seen['moved'] = look();
+    seen['moved'] = look(painted);
     applied.setOpacity(0);
     seen['transparent'] = look();
     applied.setOpacity(1);

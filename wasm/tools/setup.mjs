@@ -37,6 +37,10 @@ const kNeeds = {
   'nlohmann-json3-dev': { what: 'nlohmann/json 3 (nlohmann/json.hpp)', there: header('nlohmann/json.hpp') },
   catch2: { what: 'Catch2 2.13 (catch2/catch.hpp)', there: header('catch2/catch.hpp') },
   chromium: { what: 'Chromium', there: () => Boolean(process.env.CHROMIUM) || command('chromium')() },
+  libegl1: {
+    what: "EGL with Mesa's software renderer",
+    there: () => process.platform !== 'linux' || existsSync('/usr/share/glvnd/egl_vendor.d/50_mesa.json'),
+  },
   'libembree-dev': { what: 'Embree 3 (embree3/rtcore.h)', there: header('embree3/rtcore.h') },
   valgrind: { what: 'Valgrind', there: command('valgrind') },
   'qemu-user': { what: 'QEMU user emulation (qemu-aarch64)', there: command('qemu-aarch64') },
@@ -61,6 +65,7 @@ const kTests = [
   'nlohmann-json3-dev',
   'catch2',
   'chromium',
+  'libegl1',
   'valgrind',
   'redis-server',
 ];
