@@ -61,10 +61,7 @@ function makeOptions(options) {
     const range = `[${option.range.map(quoted).join(', ')}]`;
     const [standard, paper] = [quoted(option.standard), quoted(option.paper)];
     const text = literal(option.text);
-    const inline = `    text: ${text},`;
-    return `  {\n    name: '${option.name}',\n    flag: '${flagOf(option)}',\n    kind: '${option.kind}',\n    range: ${range},\n    standard: ${standard},\n    paper: ${paper},\n${
-      inline.length > 120 ? `    text: ${text},\n` : `${inline}\n`
-    }  },\n`;
+    return `  {\n    name: '${option.name}',\n    flag: '${flagOf(option)}',\n    kind: '${option.kind}',\n    range: ${range},\n    standard: ${standard},\n    paper: ${paper},\n    text: ${text},\n  },\n`;
   };
   return [
     kHead('options.def'),
@@ -115,8 +112,8 @@ function makePage(options) {
 
 C++ (\`TransferOptions\`), JavaScript and the command have the same options with the same defaults. \`transfer\`
 reads all of them, \`project\` and \`classify\` those of their own stage. \`cutBorders\` keeps the verdicts on segments that it is
-given: of the options of \`project\` it reads all except \`weldTolerance\`, of those of \`classify\` only \`partialTriangles\`. Options that are not given have
-the value of the preset: \`default\`, or \`paper\` for the method as published.
+given: of the options of \`project\` it reads all (\`weldTolerance\` only decides which vertices take part: what is cut is not welded by it), of those of
+\`classify\` only \`partialTriangles\`. Options that are not given have the value of the preset: \`default\`, or \`paper\` for the method as published.
 
 ${head}${rows(false)}
 JavaScript also has \`preset\`, \`locks\`, \`masks\` and \`reuse\` (an earlier result whose arrays are overwritten). C++ also has

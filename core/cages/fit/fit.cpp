@@ -110,7 +110,7 @@ bool isNear(const TriangleMesh& cage, const TriangleMesh& hull, const std::vecto
   });
 }
 
-/// The triangles that count as the figure: not those that stick out or lie inside.
+/// Whether each triangle is skin: of no part that `exclude` names.
 std::vector<bool> keptTriangles(const Model& model, const std::vector<std::string>& exclude) {
   std::vector<bool> keep = trianglesOf(model.mesh, matchingParts(model.parts, exclude));
   keep.flip();

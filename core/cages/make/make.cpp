@@ -217,7 +217,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
   if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return nothingToPaint();
-  isMarked.resize(mesh.triangles.size(), false);
+  isMarked.resize(mesh.triangles.size(), false);  // `extendNecks` has added triangles; they may be painted.
   TriangleMesh hull;
   const WrapOptions wrapping{settings.hull, options.closing == 0};
   if (Outcome outcome = wrap(mesh, isMarked, wrapping, part(0, kHullEnd), hull); !outcome.ok()) return outcome;

@@ -20,7 +20,7 @@ struct CutTarget {
   Array<std::uint32_t> indices;  ///< 3 per triangle.
   Array<std::uint32_t> origins;  ///< 1 per triangle: the triangle of the target that it was cut from; ascending.
   Array<float> uvs;              ///< 2 per vertex.
-  Array<float> cornerUvs;        ///< 2 per index with `Seams::corner`; else empty.
+  Array<float> cornerUvs;        ///< 2 per index with `Seams::corner` and `ProjectionMode::nearestPoint`; else empty.
   Array<Zone> zones;             ///< 1 per vertex; vertices on the border of a hole are cosmetic.
   Array<std::uint8_t> cosmeticTriangles;  ///< 1 per triangle: 1 if it may be painted.
 };
@@ -40,7 +40,8 @@ struct DecidedTarget {
 /// @return As `transfer`; resultMismatch if the zones or segments do not belong to the mesh; bordersTooComplex if that
 /// takes more comparisons with triangles of the cage than 4,000,000, 20,000 for each triangle of the target and 100,000
 /// for each border edge of the cage.
-/// Cost: that of a transfer, and about twenty nearest-point searches per cut edge.
+/// Cost: that of a transfer, about twenty nearest-point searches per cut edge, and a search for borders that no edge
+/// meets, which takes seconds for large triangles under a finely divided cage.
 Status cutBorders(const MeshView& cage, const DecidedTarget& target, const TransferOptions& options,
                   Workspace& workspace, CutTarget& out) noexcept;
 

@@ -7,9 +7,10 @@ namespace cagecast {
 
 /// A non-owning view of a triangle mesh. The arrays belong to the caller and are only read.
 struct MeshView {
-  std::span<const float> positions;        ///< 3 per vertex (x, y, z), within ±4.2e37; one space for cage and target.
-  std::span<const std::uint32_t> indices;  ///< 3 per triangle, counter-clockwise seen from outside.
-  std::span<const float> uvs = {};         ///< 2 per vertex, finite. A target may have none.
+  /// 3 per vertex (x, y, z), within ±4.2e37 and ±5e7 diagonals of the target; one space for cage and target.
+  std::span<const float> positions;
+  std::span<const std::uint32_t> indices;      ///< 3 per triangle, counter-clockwise seen from outside.
+  std::span<const float> uvs = {};             ///< 2 per vertex, finite. A target may have none.
   std::span<const std::uint32_t> groups = {};  ///< 1 per vertex or none; vertices of different groups are never welded.
 };
 

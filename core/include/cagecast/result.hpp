@@ -26,14 +26,15 @@ enum class CulledBy : std::uint8_t {
   lock,      ///< `Lock::exclude`.
 };
 
-/// CPU time of each step in milliseconds; in WebAssembly wall time, the only clock there.
+/// CPU time of each step in milliseconds; wall time in WebAssembly and on Windows, the only clock there.
 struct Timings {
   double weld = 0;        ///< Checking the input and welding the target's vertices.
   double build = 0;       ///< Building the search trees, and the boundary loops of the cage.
   double project = 0;     ///< Step 1: the nearest point of the cage for every point of the target.
-  double occluded = 0;    ///< Step 2: self-intersection.
-  double covered = 0;     ///< Step 3: cage intersection.
-  double segments = 0;    ///< Steps 4, 5′ and 5″: connected components, their areas and twins.
+  double occluded = 0;    ///< Step 2: rays against the target.
+  double covered = 0;     ///< Steps 2′ and 3: where rays meet the cage.
+  double segments = 0;    ///< Steps 4, 5′ and 5″: connected components, their areas and twins; with steps 1 to 3 of
+                          ///< interior samples, and writing the results of all steps per vertex.
   double secondLook = 0;  ///< Step 6: more rays from occluded points.
   double holes = 0;       ///< Step 7: uncovered points and the holes over them.
   double seams = 0;       ///< Step 9: UVs per triangle corner.
@@ -102,7 +103,7 @@ struct Projection {
   Array<Zone> zones;                 ///< 1 per vertex: cosmetic (here: covered), occluded or uncovered.
   Array<std::uint32_t> triangles;    ///< 1 per vertex: the nearest cage triangle, or with
                                      ///< `ProjectionMode::nearestVertex` the first at the nearest vertex.
-  Array<float> distances;            ///< 1 per vertex: the distance to it, in units of the input.
+  Array<float> distances;            ///< 1 per vertex: the distance to it, or to that vertex, in units of the input.
   Array<std::uint32_t> segments;     ///< 1 per vertex: its segment. Segments are numbered by their first vertex.
   Array<SegmentStats> segmentStats;  ///< 1 per segment.
   Array<std::uint32_t> recovery;     ///< 1 per vertex, see `Recovery`, with `secondLook` or `holes`;
@@ -110,8 +111,8 @@ struct Projection {
   Array<HoleShare> holeShares;       ///< 1 per hole and segment near it, with `holes` and not
                                      ///< `nearestVertex`; ordered by hole.
   Timings timings;
-  /// Peak memory during the call, without the caller's inputs; with gaps, which depend on earlier calls with the
-  /// workspace.
+  /// Peak memory of the workspace during the call, and the size of the results, in bytes; with gaps, which depend on
+  /// earlier calls with the workspace. Without the caller's inputs, and what the call takes besides (`Workspace`).
   std::uint64_t peakBytes = 0;
 
   [[nodiscard]] ProjectionView view() const noexcept { return {zones, segments, segmentStats, recovery, holeShares}; }

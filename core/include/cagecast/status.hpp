@@ -21,7 +21,7 @@ enum class Argument : std::uint8_t { none, cage, target, options };
 struct [[nodiscard]] Status {
   Code code = Code::ok;
   Argument argument = Argument::none;  ///< The argument at fault.
-  std::uint32_t at = 0;                ///< The element at fault; codes.def says what it counts.
+  std::uint32_t at = 0;                ///< The element at fault, or a count: codes.def says which; else 0.
   Option option = Option::none;        ///< With an argument `options`: the option at fault.
   float value = 0;                     ///< The value that was given for it; for a choice, its number.
   [[nodiscard]] constexpr bool ok() const noexcept { return code == Code::ok; }

@@ -26,8 +26,9 @@ class Workspace {
  public:
   /// @param limit  Maximum size of the working memory in bytes; a call that needs more ends with outOfMemory. Gaps in
   ///   memory that is kept from other calls count, too. The call after such an end begins by freeing that memory, so
-  ///   the same call may work when it is repeated. `cutBorders`, and calls with a `weldTolerance`, take more besides,
-  ///   in proportion to the mesh.
+  ///   the same call may work when it is repeated. The results are not counted, nor what `cutBorders`, and calls with a
+  ///   `weldTolerance` or `ProjectionMode::nearestVertex`, take besides in proportion to the meshes. `classify` and
+  ///   `splitVertices` have no limit.
   explicit Workspace(std::size_t limit = SIZE_MAX) noexcept : limit_(limit) {}
   Workspace(Workspace&& other) noexcept;
   Workspace& operator=(Workspace&& other) noexcept;

@@ -61,7 +61,7 @@ void linkHalfEdges(const HalfEdges& halfEdges, const UvBits* uvs, std::uint32_t 
     // A hash table instead of comparing all pairs: hundreds of triangles may share one edge.
     other = fans.firstEqual(halfEdge, hashOfOrigin(halfEdge) + hashOfOrigin(HalfEdges::after(halfEdge)),
                             [&](std::uint32_t known) { return isSameEdge(halfEdge, known); });
-    std::swap(nextHalfEdge[halfEdge], nextHalfEdge[other]);
+    std::swap(nextHalfEdge[halfEdge], nextHalfEdge[other]);  // Swapping the successors of two rings joins them.
   }
 }
 

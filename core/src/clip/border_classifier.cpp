@@ -77,7 +77,7 @@ const Candidate& BorderClassifier::nearestOf(const std::uint32_t* cageTriangles,
   return cagecast::nearestOf(candidates_, candidateCount, diagonal_);
 }
 
-/// Finds, in `found_`, the cage triangles that are farther from a point than the nearest one by up to `more`.
+/// Finds the cage triangles that are no farther from a point than the nearest one plus `more`; `found_` gets them.
 /// @param distance  As in `ClosestPointSearch::widen`.
 /// @return How many there are.
 std::uint32_t BorderClassifier::findWithin(Vec3 p, double more, double distance) noexcept {

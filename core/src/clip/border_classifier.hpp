@@ -64,8 +64,9 @@ class BorderClassifier {
   /// Lists what is near a smaller part, without what surely loses a tie there.
   NearbyTriangles narrow(NearbyTriangles nearby, Hull hull) noexcept;
 
-  /// Forgets what was listed after a call of `mark`.
+  /// How much is listed now.
   [[nodiscard]] std::size_t mark() const noexcept { return listed_.size(); }
+  /// Forgets what was listed after a call of `mark`.
   void rewind(std::size_t mark) noexcept { listed_.cut(mark); }
   /// Whether there were more comparisons than the limit.
   [[nodiscard]] bool isOverLimit() const noexcept { return comparisons_ > limit_; }

@@ -63,7 +63,7 @@ void BorderTracer::follow(const Wedge& wedge, NearbyTriangles nearby, Polar from
 }
 
 /// Finds where the border is farthest from the straight line between two of its points.
-/// @param[out] distance  From the line; set only where it is greater than before.
+/// @param[in,out] distance  From the line; set only if one is found that is farther.
 BorderTracer::Polar BorderTracer::farthestBend(const Wedge& wedge, NearbyTriangles nearby, Polar from, Polar to,
                                                double& distance) noexcept {
   BorderClassifier& classifier = triangle_.classifier;

@@ -176,7 +176,9 @@ Status clipAlongLoops(const ClipCage& cage, const MeshView& target, const std::u
       !out.areBeyond.reset(pass.regions.size())) {
     return kOutOfMemory;
   }
-  // A vertex is beyond a loop if one of its triangles is, unless a triangle that was cut has it and is not.
+  // Two passes. First every vertex of a triangle beyond a loop is `beyond`. Then the vertices of triangles that were
+  // cut and lie on the covered side become `covered` again: those lie on one side, others are only where their first
+  // corner is.
   std::fill(out.loopSides.begin(), out.loopSides.end(), LoopSide::covered);
   for (std::size_t t = 0; t < pass.regions.size(); ++t) {
     out.areBeyond[t] = pass.regions[t] != 0;

@@ -49,6 +49,7 @@ TrianglePoint PieceMerger::pointOf(std::uint32_t vertex) const noexcept {
   const std::uint32_t* corners = triangle_.vertices();
   double weights[3] = {};
   const auto add = [&](std::uint32_t source, double weight) {
+    // Not among the first two: the third, as sources are corners of this triangle.
     weights[std::find(corners, corners + 2, source) - corners] += weight;
   };
   if (vertex < triangle_.vertexCount()) {
@@ -83,7 +84,7 @@ bool PieceMerger::listAround(std::uint32_t vertex) noexcept {
   for (std::uint32_t corner = vertices_[vertex - firstVertex_].firstCorner; corner != kNoCorner;
        corner = nextCorners_[corner]) {
     const std::size_t first = 3 * firstTriangle_ + corner / 3 * 3;
-    if (indices[first + corner % 3] != vertex) continue;  // Of a triangle that was taken away.
+    if (indices[first + corner % 3] != vertex) continue;  // `kNoVertex`: of a triangle that was taken away.
     around_.add({first / 3, indices[first + (corner + 1) % 3], indices[first + (corner + 2) % 3]});
     if (around_.size() > kMostAround) return false;
   }

@@ -18,8 +18,9 @@ class PieceMerger {
   void start() noexcept;
   /// Keeps a vertex, for a border that the regions beside it do not show.
   void keep(std::uint32_t vertex) noexcept { kept_.add(vertex); }
-  /// Forgets what was kept after a call of `mark`.
+  /// How many vertices are kept now.
   [[nodiscard]] std::size_t mark() const noexcept { return kept_.size(); }
+  /// Forgets what was kept after a call of `mark`.
   void rewind(std::size_t mark) noexcept { kept_.cut(mark); }
   /// Removes what is not needed of what was added since `start`.
   void merge() noexcept;

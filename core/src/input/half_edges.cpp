@@ -51,7 +51,7 @@ bool findHalfEdges(const MeshView& mesh, const Cage& cage, Arena& arena, HalfEdg
     const std::uint64_t edge = edges[halfEdge];
     const std::uint32_t known = edgeTable.firstEqual(halfEdge, HashIndex::mix(0, edge),
                                                      [&](std::uint32_t other) { return edges[other] == edge; });
-    std::swap(next[halfEdge], next[known]);
+    std::swap(next[halfEdge], next[known]);  // Swapping the successors of two rings joins them.
   }
   out = {vertexCount, origins, next};
   return true;

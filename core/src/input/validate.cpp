@@ -14,8 +14,8 @@ namespace {
 constexpr float kMaxProportion = 1e8f;
 /// Greatest coordinate: distances between any two positions still fit a float.
 constexpr float kMaxCoordinate = 0x1p125f;
-/// A ray may begin at a point that no float represents; it is rounded by some of its distance from the origin of
-/// coordinates. This much of that distance counts as the scene's size, if it is larger.
+/// Rays may begin between floats. Their origins are rounded relative to the distance from the origin of coordinates, so
+/// half of that distance counts as the scene's size if it is larger.
 constexpr float kRestReach = 0.5f;
 
 struct Box {

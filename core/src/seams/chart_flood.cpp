@@ -56,7 +56,7 @@ ChartFlood::Group& ChartFlood::groupWith(Corner* const (&corners)[3], int k, std
     std::uint32_t count = group->count;
     for (int c = 0; c < 3; ++c) {
       if (c == k) continue;
-      std::uint32_t at = count;
+      std::uint32_t at = count;  // A point that is not in the group yet gets the next free number.
       for (std::uint32_t i = kCentre + 1; i < ChartPatch::kPoints; ++i)
         at = group->points[i] == corners[c]->point ? i : at;
       inGroup[c] = static_cast<std::uint8_t>(at);

@@ -84,7 +84,11 @@ class CurveCuts {
     const std::uint32_t cut = last >> bit << bit;
     while (begin < end) {
       const std::uint32_t middle = begin + (end - begin) / 2;
-      (placeOf(middle) < cut ? begin = middle + 1 : end = middle);
+      if (placeOf(middle) < cut) {
+        begin = middle + 1;
+      } else {
+        end = middle;
+      }
     }
     return begin;
   }

@@ -4,15 +4,15 @@
 export type CoreCode =
   /** A mesh has no vertices or no triangles. */
   | 'emptyMesh'
-  /** The number of position floats is not a multiple of three. */
+  /** The number of position floats (`at`) is not a multiple of three. */
   | 'positionsNotTriples'
-  /** The number of indices is not a multiple of three. */
+  /** The number of indices (`at`; 0 from `splitVertices`) is not a multiple of three. */
   | 'indicesNotTriples'
   /** The cage has no UVs. */
   | 'missingUvs'
-  /** There are not two UV floats per vertex. */
+  /** There are not two UV floats per vertex; `at` is their number. */
   | 'uvCountMismatch'
-  /** There is not one group per vertex. */
+  /** There is not one group per vertex; `at` is their number. */
   | 'groupCountMismatch'
   /** There are not two UV floats per index; `at` is their number. */
   | 'cornerUvCountMismatch'

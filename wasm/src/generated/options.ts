@@ -8,8 +8,8 @@ export interface ProjectStage {
    */
   seams?: 'vertex' | 'corner' | undefined;
   /**
-   * Vertices closer together than this count as one point. 0 to 0.01, as a share of the target's diagonal. Default:
-   * `0`.
+   * Vertices of one group (primitive) that are closer together than this count as one point, and so do chains of them.
+   * 0 to 0.01, as a share of the target's diagonal. Default: `0`.
    */
   weldTolerance?: number | undefined;
   /**
@@ -169,7 +169,7 @@ export const optionFlags = [
     range: [0, 0.01],
     standard: 0,
     paper: 0,
-    text: 'Vertices closer together than this count as one point.',
+    text: 'Vertices of one group (primitive) that are closer together than this count as one point, and so do chains of them.',
   },
   {
     name: 'occlusionReach',

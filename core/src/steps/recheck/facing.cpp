@@ -16,7 +16,12 @@ constexpr double kSameSize = 1e-12;
 
 bool isZero(Vec3 v) { return (v.x == 0) & (v.y == 0) & (v.z == 0); }
 
-/// Sums of the area normals of the triangles at each point. Normals are rounded to 2^-33 of the area at the point
+/// How many areas of a point make the number whose last bit its normals are rounded to. An area normal is twice as long
+/// as the area of its triangle, of which the point has a third, so 6 areas are the sum of the lengths. The last bit of
+/// 2^19 times that sum is at most 2^-33 of it: sums of normals then need some 34 of the 53 bits of a double.
+constexpr double kRoundTo = 0x1.8p21;  // 6 · 2^19
+
+/// Sums of the area normals of the triangles at each point. Normals are rounded to 2^-33 of the sum of their lengths
 /// first: then the sums are exact, and do not depend on the order of the triangles.
 class NormalSums {
  public:
@@ -24,7 +29,7 @@ class NormalSums {
   NormalSums(const AreaUnit& unit, const PointData& data, Vec3* sums, Arena& arena) noexcept
       : unit_(unit), areas_(data.areas), roundTo_(arena.allocate<double>(data.points.count)), sums_(sums) {
     if (arena.failed()) return;
-    for (std::uint32_t p = 0; p < data.points.count; ++p) roundTo_[p] = unit.area(areas_[p] + 1) * 0x1.8p21;
+    for (std::uint32_t p = 0; p < data.points.count; ++p) roundTo_[p] = unit.area(areas_[p] + 1) * kRoundTo;
   }
   void add(std::uint32_t point, Vec3 areaNormal) noexcept {
     // Adding a number this large, and taking it away again, rounds to its last bit.
