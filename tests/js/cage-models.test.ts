@@ -211,7 +211,9 @@ describe('cageTemplate', () => {
     }
     const bare = gltf.addCage(new Document(), cage);
     bare.node.getMesh()!.listPrimitives()[0]!.setAttribute('TEXCOORD_0', null);
-    assert.throws(() => gltf.cageTemplate(bare.document), { code: 'missingUvs' });
+    assert.throws(() => gltf.cageTemplate(bare.document), { code: 'missingUvs', argument: 'template' });
+    const bareObject = three.cageGeometry(cage).deleteAttribute('uv');
+    assert.throws(() => three.cageTemplate(bareObject), { code: 'missingUvs', argument: 'template' });
   });
 });
 

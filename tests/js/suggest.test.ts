@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
-import { init, type Mesh, type TransferOptions, transfer } from 'cagecast';
+import { CagecastError, init, type Mesh, type TransferOptions, transfer } from 'cagecast';
 import { type Finding, inspect, suggest } from 'cagecast/inspect';
 import { ball, head, join3d, readPlain, smallHole } from './scenes.js';
 
@@ -156,6 +156,27 @@ describe('suggest', () => {
     assert.match(
       find(suggest(cage, target, options), 'segmentInDoubt').sentence,
       /"group 0" is painted, but only just: its coverage is \d\.\d\d, and it has 1\.1 times the required covered area/,
+    );
+  });
+
+  test('its errors name it', () => {
+    const result = transfer(cage, target);
+    for (const [options, expected] of [
+      [null, 'suggest: options is null, not an object'],
+      [{ parts: 5 }, 'suggest: options.parts is 5, not an array of ranges of vertices'],
+      [
+        { result: { ...result, segmentStats: 5 } },
+        'suggest: result.segmentStats is 5, not an array; pass what transfer() returned',
+      ],
+    ] as const)
+      assert.throws(
+        () => suggest(cage, target, options as never),
+        (error) => error instanceof CagecastError && error.message === expected,
+        expected,
+      );
+    assert.throws(
+      () => suggest({} as Mesh, target, { result }),
+      /^CagecastError: suggest: cage\.positions is undefined/,
     );
   });
 

@@ -31,7 +31,7 @@ export interface Scene {
 interface Sides {
   /** Distance to the cage, negative on the inner side of the nearest triangle's plane, where a target should be. */
   signed: Float64Array;
-  /** The loop of open edges on which the nearest point of the cage lies, so that the cage says nothing about the vertex; else -1. */
+  /** The loop of open edges that the nearest point of the cage lies on; -1 if on none. On a loop, `signed` means nothing. */
   loops: Int32Array;
   /** 1 per vertex that is under the cage: its nearest point is on no such loop, and no farther away than the cage is large. */
   areUnder: Uint8Array;

@@ -48,7 +48,9 @@ export function cageModel(model: Loaded): cages.CageModel {
 export function cageTemplate(model: Loaded): cages.Template {
   const { mesh, parts } = extract(objectOf(model), 'template');
   if (mesh.uvs === undefined)
-    throw new CagecastError('missingUvs', 'cageTemplate', 'the cage has a mesh without the attribute uv');
+    throw new CagecastError('missingUvs', 'cageTemplate', 'template has a mesh without the attribute uv', {
+      argument: 'template',
+    });
   const sources = parts.flatMap(({ name, mesh: of, geometry, matrix, firstVertex, vertexCount }) =>
     // The parent of the meshes of one glTF mesh has the extras of its node.
     [
