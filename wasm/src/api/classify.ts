@@ -11,7 +11,10 @@ import type { Classification, Projection } from './result.js';
 import { checkReuse, handOver, type Reuse } from './reuse.js';
 
 /**
- * Decides which segments are culled, and so the zone of every vertex, in microseconds.
+ * Decides which segments are culled, and so the zone of every vertex.
+ *
+ * Cost: linear; about a millisecond for 10,000 triangles.
+ *
  * @param options  With `reuse`, an earlier classification is overwritten and returned.
  * @throws {CagecastError} `badArgument` if `projection` is not what `project` returned; `badOption`.
  */

@@ -24,7 +24,7 @@ export interface CutTarget {
   triangles: Uint32Array<ArrayBuffer>;
   /** 2 per vertex, including new ones: its UV in the cage's texture. */
   uvs: Float32Array<ArrayBuffer>;
-  /** 2 per index, with `seams: 'corner'`; else empty. */
+  /** 2 per index, with `seams: 'corner'`; else, and with `steps.projection: 'nearestVertex'`, empty. */
   cornerUvs: Float32Array<ArrayBuffer>;
   /** 1 per vertex, a `Zone`; vertices on the border of a hole are cosmetic. */
   zones: Uint8Array<ArrayBuffer>;
@@ -37,7 +37,8 @@ export interface CutTarget {
  * texture, so that every triangle lies on one side. Which segments are culled does not change. With
  * `steps.projection: 'nearestVertex'` nothing is cut.
  *
- * Cost: that of a transfer, and about twenty nearest-point searches per cut edge.
+ * Cost: that of a transfer, about twenty nearest-point searches per cut edge, and a search for borders that no edge meets, which
+ * takes seconds for large triangles under a finely divided cage.
  *
  * @param cage     As for `transfer`.
  * @param target   As for `transfer`. The attributes of a new vertex are those of its `sources`, blended by `weights`.

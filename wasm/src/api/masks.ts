@@ -9,12 +9,15 @@ import type { Classification } from './result.js';
  * name, such as the eyes of a scan in one piece. −1 overrides 1. Segments, their scores and holes are not affected.
  *
  * A vertex of −1 gets `Zone.Culled`, and no triangle at it is painted. A vertex of 1 gets `Zone.Cosmetic`, and a triangle is painted
- * if its vertices say so then. Where the cage has no place for it, as over a hole, it shows the nearest of the cage, stretched.
+ * if its vertices say so then. Triangles are decided after vertices: the vertices of a painted triangle of 1 become cosmetic, and
+ * those all of whose triangles are −1 become culled.
+ *
+ * Where the cage has no place for what is painted, as over a hole, it shows the nearest of the cage, stretched.
  */
 export interface Masks {
   /** 1 per target vertex. Vertices that lie at the same place may differ. */
   vertices?: Int8Array | undefined;
-  /** 1 per target triangle; it is decided last. */
+  /** 1 per target triangle. */
   triangles?: Int8Array | undefined;
 }
 

@@ -4,7 +4,9 @@ import { type ArrayKind, plainArray, showArray } from '../core/typed-arrays.js';
 
 /** A triangle mesh. Its arrays are copied and never changed. */
 export interface Mesh {
-  /** 3 numbers per vertex (x, y, z), within ±4.2e37; cage and target are in the same space and unit. */
+  /**
+   * 3 numbers per vertex (x, y, z), within ±4.2e37 and ±5e7 diagonals of the target; cage and target are in the same space and unit.
+   */
   positions: Float32Array;
   /** 3 per triangle, counter-clockwise seen from outside. */
   indices: Uint32Array | Uint16Array | Uint8Array;

@@ -6,15 +6,16 @@ export interface Projected {
   /** 2 per target vertex, in every zone: its UV in the cage's texture. */
   uvs: Float32Array<ArrayBuffer>;
   /**
-   * 2 per triangle corner, in the order of `target.indices`, with `seams: 'corner'`; else empty. They differ from `uvs` only where
-   * a seam of the cage's texture runs through a triangle. `splitVertices` makes a mesh from them.
+   * 2 per triangle corner, in the order of `target.indices`, with `seams: 'corner'`; else, and with `steps.projection:
+   * 'nearestVertex'`, empty. They differ from `uvs` only where a seam of the cage's texture runs through a triangle. `splitVertices`
+   * makes a mesh from them.
    */
   cornerUvs: Float32Array<ArrayBuffer>;
   /** 1 per vertex, a `Zone`. After `project` none is `Culled`, and `Cosmetic` means covered. */
   zones: Uint8Array<ArrayBuffer>;
-  /** 1 per vertex: the nearest triangle of the cage. */
+  /** 1 per vertex: the nearest triangle of the cage; with `steps.projection: 'nearestVertex'` the first at the nearest vertex. */
   triangles: Uint32Array<ArrayBuffer>;
-  /** 1 per vertex: the distance to it, in units of the input. */
+  /** 1 per vertex: the distance to it, or to that vertex, in units of the input. */
   distances: Float32Array<ArrayBuffer>;
   /** 1 per vertex: its segment. Segments are numbered by their first vertex. */
   segments: Uint32Array<ArrayBuffer>;
@@ -22,7 +23,7 @@ export interface Projected {
   segmentStats: SegmentStats[];
   /** How long each step took. */
   timings: Timings;
-  /** Peak memory during the call in bytes, without the inputs. */
+  /** Peak memory of the core during the call, and the size of the results, in bytes; without the inputs. */
   peakBytes: number;
 }
 
@@ -31,11 +32,12 @@ export interface Projection extends Projected {
   /** The preset of the projection, which is also the default preset for `classify`. */
   preset: Preset;
   /**
-   * 1 per vertex, with `steps.secondLook` or `steps.holes`; else empty. Whether an occluded or uncovered vertex becomes cosmetic if
-   * its segment is kept: 0 never, 1 always, 2 and above if a culled segment lies behind hole number `value - 2` and explains it.
+   * 1 per vertex, with `steps.secondLook` or `steps.holes`; else, and with `nearestVertex`, empty. Whether an occluded or uncovered
+   * vertex becomes cosmetic if its segment is kept: 0 never, 1 always, 2 and above if a culled segment lies behind hole number
+   * `value - 2` and explains it.
    */
   recovery: Uint32Array<ArrayBuffer>;
-  /** 1 per hole and segment near it, with `steps.holes`; ordered by hole. */
+  /** 1 per hole and segment near it, with `steps.holes` and not `nearestVertex`; ordered by hole. */
   holeShares: HoleShare[];
   /** The target's indices, 3 per triangle. */
   indices: Uint32Array<ArrayBuffer>;

@@ -8,7 +8,7 @@ export interface Image {
   data: Uint8Array | Uint8ClampedArray;
 }
 
-/** The longest side of an image that can be baked, in texels: some 24 bytes of memory for each texel are needed. */
+/** The longest side of an image that can be baked, in texels: some 32 bytes of memory for each texel are needed. */
 export const mostTexels = 8192;
 
 /** Linear light, 0..1, for each byte of sRGB. */

@@ -5,7 +5,7 @@ import type { CoreCode } from '../generated/codes.js';
  *
  * - `badArgument`: an argument has the wrong type.
  * - `notInitialised`: `init()` has not resolved yet.
- * - `unsupported`: this host cannot run the WebAssembly module.
+ * - `unsupported`: this host cannot run the WebAssembly module or start a worker, or the worker has failed.
  * - `aborted`: the worker was terminated before the call ended.
  * - `internal`: a defect of Cagecast; please report it.
  * - `badModel`, `badTemplate`, `badLandmarks`: `cagecast/cages` cannot use the target, the template or the landmarks.
@@ -29,7 +29,10 @@ export interface ErrorDetails extends ErrorOptions {
   argument?: string | undefined;
 }
 
-/** The only class of errors that Cagecast throws. Its message names the function, the argument, the value and the limit. */
+/**
+ * The class of the errors that Cagecast throws, but for plain `Error`s of `cagecast/viewer`, and the reason of a `signal`. Its message
+ * names the function, the argument, the value and the limit.
+ */
 export class CagecastError extends Error {
   override readonly name = 'CagecastError';
   /** What went wrong, for programs. */
@@ -62,6 +65,6 @@ export function show(value: unknown): string {
   return `of type ${typeof value}`;
 }
 
-/** Whether something has its entries as fields. A map or a set, of any realm, would seem to have none. */
+/** Whether a value is an object whose fields are its entries: not null, nor a `Map` or `Set`, of any realm. */
 export const isRecord = <Value>(value: Value): value is Value & Record<string, unknown> =>
   typeof value === 'object' && value !== null && !/ (Map|Set)]$/.test(Object.prototype.toString.call(value));

@@ -1,4 +1,4 @@
-/** The time of each step, in milliseconds. */
+/** The time of each step, in milliseconds of wall time. */
 export interface Timings {
   /** Checking the input and welding the target's vertices. */
   weld: number;
@@ -6,11 +6,14 @@ export interface Timings {
   build: number;
   /** Step 1: the nearest point of the cage for every point of the target. */
   project: number;
-  /** Step 2: self-intersection. */
+  /** Step 2: rays against the target. */
   occluded: number;
-  /** Step 3: cage intersection. */
+  /** Steps 2′ and 3: where rays meet the cage. */
   covered: number;
-  /** Steps 4, 5′ and 5″: connected components, their areas and twins. */
+  /**
+   * Steps 4, 5′ and 5″: connected components, their areas and twins; with steps 1 to 3 of interior samples, and writing the results
+   * of all steps per vertex.
+   */
   segments: number;
   /** Step 6: more rays from occluded points. */
   secondLook: number;

@@ -32,7 +32,7 @@ export interface Added {
   uvSet: string;
   /** Triangles of the overlay; 0 if there is none. */
   overlayTriangles: number;
-  /** Whether the overlay lies on a material that cuts out what its texture's alpha says: it fills that. */
+  /** Whether the overlay also covers what the material beneath it cuts out by the alpha of its texture. */
   fillsCutOuts: boolean;
   /** Number of vertices added because corners at the same vertex have different UVs. */
   splitVertices: number;

@@ -38,7 +38,10 @@ export function pack(data: unknown): Uint8Array<ArrayBuffer> {
   return out;
 }
 
-/** What `pack` packed. Arrays are views of one copy of the bytes. @throws {CagecastError} `badArgument` if it did not, or not all. */
+/**
+ * What `pack` packed. Arrays are views of one copy of the bytes.
+ * @throws {CagecastError} `badArgument` if the bytes are not from `pack`, or incomplete.
+ */
 export function unpack(bytes: Uint8Array): unknown {
   const own = new Uint8Array(bytes); // `slice` of Node's Buffer is no copy.
   const [magic, version, length, sum] = own.length >= 16 ? new Uint32Array(own.buffer, 0, 4) : [];

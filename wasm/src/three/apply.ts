@@ -171,7 +171,7 @@ class Shown implements Applied {
   readonly #shown: ShownPart[];
   readonly #painting: Painting;
   readonly #material: Material | undefined;
-  /** The verdicts of the result, as `result` may not be. */
+  /** The verdicts of the result. A copy: the caller may overwrite `result` later (`reuse`). */
   readonly #culled: boolean[];
   readonly #copies = new Map<Material, Material>();
   /** Materials that were added by hand. */

@@ -1,6 +1,6 @@
 /**
- * Cagecast for three.js: adds UVs, zones and a painted overlay to the meshes of a loaded model; and the functions of
- * `cagecast/cages` for loaded models.
+ * Cagecast for three.js: adds UVs and zones to the meshes of a loaded model, and paint to their materials, or overlays where they
+ * cannot be painted; and the functions of `cagecast/cages` for loaded models.
  * @module cagecast/three
  */
 import type { BufferGeometry, Object3D } from 'three';

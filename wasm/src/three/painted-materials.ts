@@ -29,7 +29,15 @@ export function makePainting(paint: Omit<Painting, 'refresh' | 'number'>): Paint
   return painting;
 }
 
-/** What was changed about a material. The record of a material is kept for ever: programs that were compiled refer to it. */
+/**
+ * What was changed about a material. Its states:
+ *
+ * - Never painted: it has no record.
+ * - Painted: the record has a painting, and the material has the hooks that it was given.
+ * - Wrapped: others have replaced these hooks, and call them. To paint the material again, they are wrapped once more.
+ * - Unpainted: the record has no painting. The material has its own hooks again, or those of others that call the given ones, which
+ *   add nothing now. The record is kept for ever: programs that were compiled refer to its uniforms.
+ */
 interface Patch {
   painting: Painting | undefined;
   uniforms: PaintUniforms;

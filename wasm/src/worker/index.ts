@@ -46,7 +46,7 @@ export function project(cage: Mesh, target: Mesh, options: ProjectOptions & Call
   return withOptions('project', [cage, target], options);
 }
 
-/** As `classify` of `cagecast`, off the main thread. On the main thread it takes microseconds, less than the messages do. */
+/** As `classify` of `cagecast`, off the main thread. On the main thread it takes less time than the messages do. */
 export function classify(projection: Projection, options: ClassifyOptions & CallOptions = {}): Promise<Classification> {
   return withOptions('classify', [projection], options);
 }

@@ -6,7 +6,10 @@ import type { Reply, Request, Spawn, Thread } from './protocol.js';
 export interface CallOptions {
   /** Cancels the call: its promise rejects with the signal's reason, and running work ends at once. */
   signal?: AbortSignal | undefined;
-  /** Transfers the arrays of the arguments to the worker instead of copying them; the caller's arrays are empty afterwards. */
+  /**
+   * Transfers arrays to the worker instead of copying them: arguments, and fields of arguments, not what lies deeper. The caller's
+   * arrays are empty afterwards, and so are all others that share a buffer with them.
+   */
   move?: boolean | undefined;
 }
 

@@ -50,7 +50,7 @@ const kRayStart = 1e-5;
 const kOnBoundary = 1e-6;
 
 /**
- * Repeats steps 1 to 3 for one vertex, to show them.
+ * Repeats steps 2 and 3 for one vertex, to show them. The triangle of step 1 is the transfer's.
  * Cost: visits all triangles of target and cage.
  */
 export function pathOf(

@@ -51,7 +51,10 @@ export function cageTemplate(document: Document): cages.Template {
   });
 }
 
-/** As `makeCage` of `cagecast/cages`, for the default scene of a document. @throws {CagecastError} */
+/**
+ * As `makeCage` of `cagecast/cages`, for the default scene of a document.
+ * @throws {CagecastError} as `makeCage` and `cageModel`.
+ */
 export async function makeCage(
   document: Document,
   { extensions, ...options }: cages.MakeOptions & cages.CageCallOptions & FileOptions = {},
@@ -59,7 +62,10 @@ export async function makeCage(
   return cages.makeCage(cageModel(document, { extensions }), options);
 }
 
-/** As `fitCage` of `cagecast/cages`, for documents. @throws {CagecastError} */
+/**
+ * As `fitCage` of `cagecast/cages`, for documents.
+ * @throws {CagecastError} as `fitCage`, `cageModel` and `cageTemplate`.
+ */
 export async function fitCage(
   template: Document | cages.Template,
   document: Document,
@@ -70,7 +76,10 @@ export async function fitCage(
   return cages.fitCage(from, cageModel(document, { extensions }), landmarks, options);
 }
 
-/** As `findLandmarks` of `cagecast/cages`, for the default scene of a document. @throws {CagecastError} */
+/**
+ * As `findLandmarks` of `cagecast/cages`, for the default scene of a document.
+ * @throws {CagecastError} as `findLandmarks` and `cageModel`.
+ */
 export async function findLandmarks(
   document: Document,
   { extensions, ...options }: cages.CageCallOptions & FileOptions = {},
@@ -78,7 +87,10 @@ export async function findLandmarks(
   return cages.findLandmarks(cageModel(document, { extensions }), options);
 }
 
-/** As `refineCage` of `cagecast/cages`, for documents. @throws {CagecastError} */
+/**
+ * As `refineCage` of `cagecast/cages`, for documents.
+ * @throws {CagecastError} as `refineCage`, `cageModel` and `cageTemplate`.
+ */
 export async function refineCage(
   cage: Document | Mesh | cages.Cage | cages.Template,
   document: Document,
@@ -91,6 +103,7 @@ export async function refineCage(
 /**
  * Adds a cage to a document: a node named `cage` in its default scene, with landmarks, holes and kind in its `extras`, so that the
  * document is a template. `cageGlb` of `cagecast/cages` writes a file at once.
+ * @throws {CagecastError} `badArgument`
  *
  * @example
  * await new NodeIO().write('cage.glb', addCage(new Document(), await makeCage(document)).document);

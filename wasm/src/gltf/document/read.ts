@@ -79,7 +79,7 @@ export function uvLayoutOf(info: TextureInfo | null | undefined): UvLayout {
 export const isOverlay = (primitive: Primitive): boolean =>
   isMarked(primitive.getExtras(), primitive.getMaterial()?.getExtras());
 
-/** The extension of glTF-Transform, which is no dependency. */
+/** KHR_texture_transform, as glTF-Transform has it, whose extensions are no dependency. */
 interface KHRTransform extends ExtensionProperty {
   getOffset(): number[];
   getRotation(): number;
@@ -87,7 +87,7 @@ interface KHRTransform extends ExtensionProperty {
   getTexCoord(): number | null;
 }
 
-/** The other one. */
+/** EXT_mesh_gpu_instancing, as glTF-Transform has it. */
 interface InstancedMesh extends ExtensionProperty {
   getAttribute(semantic: string): Accessor | null;
 }
