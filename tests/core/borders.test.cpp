@@ -493,7 +493,7 @@ TEST_CASE("borders that take too long to find are an error that says what to do"
   CHECK(describe(status, cage.view(), target.view()) ==
         "target has borders that are too complex to cut: " + std::to_string(target.triangleCount()) +
             " triangles along " + std::to_string(status.at) +
-            " border edges of the cage; leave its triangles whole (borders: 'triangle'), or use a cage with fewer "
+            " border edges of the cage; leave its triangles whole, or use a cage with fewer "
             "holes and seams");
   const scenes::Scene next = scenes::head(8);
   CHECK(!cutOf(next.cage.view(), next.target.view(), cutting()).sources.empty());

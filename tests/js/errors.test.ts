@@ -338,9 +338,9 @@ describe('memory', () => {
   test('a mesh that does not fit is outOfMemory, and the next call works', () => {
     // 2.4 GB of zeros that are never touched: more than a WebAssembly memory can hold.
     const huge: Mesh = { positions: new Float32Array(6e8), indices: new Uint32Array([0, 1, 2]) };
-    fails(() => transfer(cage, huge), 'outOfMemory', 'transfer: not enough memory for this target and cage');
+    fails(() => transfer(cage, huge), 'outOfMemory', 'transfer: not enough memory');
     worksAgain();
-    fails(() => project(cage, huge), 'outOfMemory', 'project: not enough memory for this target and cage');
+    fails(() => project(cage, huge), 'outOfMemory', 'project: not enough memory');
     worksAgain();
   });
 
@@ -396,7 +396,7 @@ describe('memory', () => {
 
   test('a result that JavaScript cannot hold is outOfMemory, and the next call works', () => {
     whileFailing(Float32Array, 'slice', new RangeError('Array buffer allocation failed'), () =>
-      fails(() => transfer(cage, target), 'outOfMemory', 'transfer: not enough memory for this target and cage'),
+      fails(() => transfer(cage, target), 'outOfMemory', 'transfer: not enough memory'),
     );
     worksAgain();
   });

@@ -57,7 +57,7 @@ export function useCore<A>(fn: string, use: (core: Core) => A): A {
   } catch (cause) {
     dropInstance();
     throw isLackOfMemory(cause)
-      ? new CagecastError('outOfMemory', fn, 'not enough memory for this target and cage', { cause })
+      ? new CagecastError('outOfMemory', fn, 'not enough memory', { cause })
       : new CagecastError('internal', fn, `the WebAssembly module failed (${String(cause)})`, { cause });
   }
 }
