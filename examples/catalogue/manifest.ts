@@ -1,6 +1,5 @@
 import { createHash } from 'node:crypto';
-import { createReadStream } from 'node:fs';
-import { createInterface } from 'node:readline';
+import { linesOf } from './command.ts';
 import type { JobData } from './jobs.ts';
 import { kinds } from './kinds/index.ts';
 import { read } from './storage.ts';
@@ -16,11 +15,12 @@ export type Entry = { line: number } & ({ data: JobData } | { error: string });
  *
  * A list stands for one job for each of its members, several lists for all pairs. An input is a path in the input folder, a URL, or
  * {"place": …, "sha256": …}, which saves reading it now. Lines are read one by one: a manifest may be larger than the memory.
+ * @throws {Failure} if the file cannot be read.
  */
 export async function* readManifest(path: string): AsyncGenerator<Entry> {
   const hashes = new Map<string, Promise<string>>();
   let line = 0;
-  for await (const text of createInterface({ input: createReadStream(path) })) {
+  for await (const text of linesOf(path)) {
     ++line;
     if (text.trim() === '') continue;
     try {
@@ -38,6 +38,7 @@ function pairsOf(line: Line): Line[] {
   if (!(line instanceof Object) || Array.isArray(line)) throw new Error('is not a JSON object');
   const list = Object.entries(line).find(([, value]) => Array.isArray(value));
   if (!list) return [line];
+  if ((list[1] as unknown[]).length === 0) throw new Error(`"${list[0]}" is an empty list`);
   return (list[1] as unknown[]).flatMap((one) => pairsOf({ ...line, [list[0]]: one }));
 }
 

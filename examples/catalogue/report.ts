@@ -5,13 +5,14 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs, promisify } from 'node:util';
+import { command } from './command.ts';
 import { reasons } from './failure.ts';
-import { type Catalogue, type CatalogueJob, type JobData, openCatalogue, type Result } from './jobs.ts';
+import type { Catalogue, CatalogueJob, JobData, Result } from './jobs.ts';
 import { collectResults, readResults } from './results.ts';
 import { fromCaller } from './settings.ts';
 import { read, write } from './storage.ts';
 
-const command = fileURLToPath(new URL('cli.js', import.meta.resolve('cagecast')));
+const cli = fileURLToPath(new URL('cli.js', import.meta.resolve('cagecast')));
 /** How many jobs Redis forgets at once. */
 const chunk = 5000;
 /** How many changes, and how many dead letters, are listed. */
@@ -118,7 +119,7 @@ async function inspection({ inputs, settings }: JobData): Promise<string> {
       await writeFile(join(folder, `${name}.glb`), await read(inputs[name]!.place));
     const { locks, steps, ...config } = settings;
     await writeFile(join(folder, 'cagecast.config.json'), JSON.stringify(config));
-    const args = [command, 'inspect', 'target.glb', '--cage', 'cage.glb', '--html', 'page.html', '--quiet'];
+    const args = [cli, 'inspect', 'target.glb', '--cage', 'cage.glb', '--html', 'page.html', '--quiet'];
     // It exits with 3 for a cage that does not fit, and has written the page then.
     await promisify(execFile)(process.execPath, args, { cwd: folder, timeout: 60_000 }).catch(() => {});
     return await readFile(join(folder, 'page.html'), 'utf8');
@@ -158,12 +159,13 @@ if (import.meta.filename === process.argv[1]) {
   const { values } = parseArgs({
     options: { before: { type: 'string' }, worst: { type: 'string' }, forget: { type: 'boolean' } },
   });
-  const catalogue = openCatalogue();
-  const name = await report(catalogue, {
-    forget: values.forget,
-    before: values.before && fromCaller(values.before),
-    ...(values.worst && { worst: Number(values.worst) }),
+  await command(async (catalogue) => {
+    const name = await report(catalogue, {
+      forget: values.forget,
+      before: values.before && fromCaller(values.before),
+      ...(values.worst && { worst: Number(values.worst) }),
+    });
+    console.log(`wrote ${name} and results.jsonl`);
+    return 0;
   });
-  console.log(`wrote ${name} and results.jsonl`);
-  await catalogue.close();
 }

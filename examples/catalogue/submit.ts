@@ -2,8 +2,9 @@
 
 import { setTimeout } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
+import { command } from './command.ts';
 import { Failure, reasonOf } from './failure.ts';
-import { type Catalogue, type CatalogueJob, type JobData, keyOf, openCatalogue } from './jobs.ts';
+import { type Catalogue, type CatalogueJob, type JobData, keyOf } from './jobs.ts';
 import { readManifest } from './manifest.ts';
 import { doneBefore } from './results.ts';
 import { fromCaller } from './settings.ts';
@@ -19,13 +20,15 @@ export interface Submission {
   /** Failed for a reason that may pass, and tried again now. */
   again: number;
   errors: string[];
+  /** Of all jobs in the manifest. */
+  keys: Set<string>;
 }
 
 /** Turns a manifest into jobs. Those that somebody asked for before are not done again. */
 export async function submit(path: string, { queue, redis }: Catalogue): Promise<Submission> {
-  const summary: Submission = { new: 0, known: 0, again: 0, errors: [] };
-  const [before, failed] = [await doneBefore(), await failedThatMayPass(queue)];
   const seen = new Set<string>();
+  const summary: Submission = { new: 0, known: 0, again: 0, errors: [], keys: seen };
+  const [before, failed] = [await doneBefore(), await failedThatMayPass(queue)];
   let waiting: { name: string; data: JobData; opts: { jobId: string } }[] = [];
   const send = async () => {
     const known = await Promise.all(waiting.map(({ opts }) => redis.exists(queue.toKey(opts.jobId))));
@@ -76,6 +79,12 @@ export async function untilDone({ queue }: Catalogue, tell: (text: string) => vo
   }
 }
 
+/** How many jobs of a manifest have failed, tonight or earlier. */
+export async function failedOf({ queue }: Catalogue, { keys }: Submission): Promise<number> {
+  const failed = await queue.getRanges(['failed']);
+  return failed.filter((key) => keys.has(key)).length;
+}
+
 /** Shows progress where somebody looks. */
 export const onTerminal = (text: string): void => {
   if (process.stderr.isTTY) process.stderr.write(`\r${text}   `);
@@ -87,11 +96,14 @@ export const describe = ({ new: fresh, known, again, errors }: Submission): stri
 if (import.meta.filename === process.argv[1]) {
   const { positionals, values } = parseArgs({ allowPositionals: true, options: { wait: { type: 'boolean' } } });
   if (positionals.length !== 1) throw new Error('usage: npm run submit -- MANIFEST.jsonl [--wait]');
-  const catalogue = openCatalogue();
-  const summary = await submit(fromCaller(positionals[0]!), catalogue);
-  for (const error of summary.errors) console.error(error);
-  console.log(describe(summary));
-  if (values.wait) await untilDone(catalogue, onTerminal);
-  process.exitCode = summary.errors.length > 0 ? 1 : 0;
-  await catalogue.close();
+  await command(async (catalogue) => {
+    const summary = await submit(fromCaller(positionals[0]!), catalogue);
+    for (const error of summary.errors) console.error(error);
+    console.log(describe(summary));
+    if (!values.wait) return summary.errors.length > 0 ? 1 : 0;
+    await untilDone(catalogue, onTerminal);
+    const failed = await failedOf(catalogue, summary);
+    console.log(`${summary.keys.size - failed} done, ${failed} failed`);
+    return failed + summary.errors.length > 0 ? 1 : 0;
+  });
 }

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { type ChildProcess, spawn } from 'node:child_process';
 import { createHash } from 'node:crypto';
+import { once } from 'node:events';
 import {
   existsSync,
   mkdirSync,
@@ -46,6 +47,15 @@ async function submit(...lines: object[]): Promise<string[]> {
   writeFileSync(path, lines.map((line) => `${JSON.stringify(line)}\n`).join(''));
   const summary = await parts.submit(path, catalogue);
   return [parts.describe(summary), ...summary.errors];
+}
+
+/** Runs a program of the recipe. @returns its exit code, and the lines that it printed. */
+async function run(program: string, ...args: string[]): Promise<[code: number, ...lines: string[]]> {
+  const child = spawn(process.execPath, ['--import', 'tsx', program, ...args], { cwd: recipe });
+  let text = '';
+  for (const stream of [child.stdout, child.stderr]) stream.on('data', (chunk) => (text += chunk));
+  const [code] = await once(child, 'close');
+  return [code, ...text.trim().split('\n').sort()];
 }
 
 /** Workers that are started again when they die, as Kubernetes does. */
@@ -295,5 +305,45 @@ describe('the catalogue', () => {
     assert.deepEqual(await catalogue.queue.getJobCounts('completed', 'failed'), { completed: 0, failed: 15 });
     assert.deepEqual(await submit(...manifest), ['0 new jobs, 40 known']);
     assert.equal((await results()).length, 58);
+  });
+
+  test('tells a nightly run by its exit code that jobs failed, or that a file or a word is wrong', async () => {
+    const file = (name: string, ...lines: object[]) => {
+      writeFileSync(join(folder, name), lines.map((line) => `${JSON.stringify(line)}\n`).join(''));
+      return join(folder, name);
+    };
+    const good = { kind: 'slow', target: '1.glb', settings: { ms: 4 } };
+    const bad = { kind: 'inspect', target: 'broken.glb', cage: 'cage.glb', settings: { threshold: 0.41 } };
+    assert.deepEqual(await run('submit.ts', file('good.jsonl', good), '--wait'), [
+      0,
+      '1 done, 0 failed',
+      '1 new jobs, 0 known',
+    ]);
+    assert.deepEqual(await run('submit.ts', file('bad.jsonl', good, bad), '--wait'), [
+      1,
+      '1 done, 1 failed',
+      '1 new jobs, 1 known',
+    ]);
+    assert.deepEqual(await run('submit.ts', file('empty.jsonl', { ...bad, target: [] }), '--wait'), [
+      1,
+      '0 done, 0 failed',
+      '0 new jobs, 0 known, 1 lines that cannot be used',
+      'line 1: "target" is an empty list',
+    ]);
+
+    const missing = join(folder, 'yesterdy.jsonl');
+    assert.deepEqual(await run('submit.ts', missing), [2, `missing: ${missing}: ENOENT`]);
+    assert.deepEqual(await run('report.ts', '--before', missing), [2, `missing: ${missing}: ENOENT`]);
+    const cutOff = join(folder, 'cut-off.jsonl');
+    writeFileSync(cutOff, readFileSync(join(outputs, 'results.jsonl')).subarray(0, -50));
+    assert.deepEqual(await run('report.ts', '--before', cutOff), [
+      2,
+      `broken: ${cutOff}, line 58, is not a result; was the file cut off?`,
+    ]);
+    assert.deepEqual(await run('dead.ts', '--reason', 'brokn', '--retry'), [
+      2,
+      '--reason is "brokn"; there are: broken, unfit, limit, missing, refused, network, crash, unexpected',
+    ]);
+    assert.equal((await run('dead.ts', '--reason', 'broken')).length, 4);
   });
 });
