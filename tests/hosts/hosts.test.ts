@@ -232,6 +232,30 @@ describe('in Chromium', () => {
     }
   });
 
+  test('webpack, whose script is a classic one, on a page in UTF-8; on another, the error says so', async () => {
+    const classic = '<script src="program.js"></script>';
+    for (const [entry, out] of [
+      ['./program.js', 'webpack'],
+      ['./inlined/program.js', 'webpack-inlined'],
+    ]) {
+      const settings = { entry, mode: 'production', output: { path: join(user, out!), filename: 'program.js' } };
+      const script = `require(${JSON.stringify(join(hostTools, 'webpack'))})(${JSON.stringify(settings)}, (fault, stats) => {
+        if (fault || stats.hasErrors()) throw fault ?? stats.toString();
+      })`;
+      run(process.execPath, ['-e', script], user);
+      put(out!, {
+        'index.html': `<!doctype html><meta charset="utf-8">${classic}`,
+        'other.html': `<!doctype html>${classic}`,
+      });
+      assert.deepEqual(await visit(`${out}/index.html`), answer, entry);
+    }
+    const [said] = (await visit('webpack-inlined/other.html')) as string[];
+    assert.equal(
+      said,
+      'init: the script of Cagecast was read in another encoding than UTF-8; its page needs <meta charset="utf-8">',
+    );
+  });
+
   /** What `docs/hosts.md` says is to be copied beside a script that was made by esbuild or Rollup. */
   const copyFiles = (out: string) => {
     for (const name of ['cagecast.wasm', 'cagecast-cages.wasm', 'templates'])

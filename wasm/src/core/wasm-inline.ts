@@ -1,11 +1,20 @@
 import text from '#wasm-text';
+import { CagecastError } from './error.js';
 
 /**
  * Compiles the WebAssembly module that is inlined in this script. Only this form works unchanged in every bundler, server and
  * worker; `cagecast/slim` has the module as a separate file.
  */
-export function compile(): Promise<WebAssembly.Module> {
-  return WebAssembly.compile(bytesOf(text));
+export async function compile(): Promise<WebAssembly.Module> {
+  const bytes = bytesOf(text);
+  // Every WebAssembly module begins with 0. Classic scripts have the encoding of their page.
+  if (bytes[0] !== 0)
+    throw new CagecastError(
+      'unsupported',
+      'init',
+      'the script of Cagecast was read in another encoding than UTF-8; its page needs <meta charset="utf-8">',
+    );
+  return WebAssembly.compile(bytes);
 }
 
 /**
