@@ -432,6 +432,7 @@ export const layerScenes: Record<string, () => unknown> = {
       sticker({ size: -0.2 }),
       sticker({ size: 0 }),
       sticker({ size: 'big' }),
+      sticker({ size: [0.1, 0.2] }),
       sticker({ angle: Number.NaN }),
       sticker({ opacity: 2 }),
       sticker({}, { image: new Image() }),

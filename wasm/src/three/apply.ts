@@ -1,7 +1,8 @@
 import { Box3, BufferAttribute, BufferGeometry, type Material, type Mesh, type Texture, Vector3 } from 'three';
 import { CagecastError, type Classification } from '../index.js';
 import type { PartRange, Prepared } from '../parts/prepare.js';
-import { type Extracted, isMirrored, nameOf, type Part } from './extract.js';
+import { describe } from './describe.js';
+import { type Extracted, isMirrored, type Part } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths } from './options.js';
 import { removeOverlay, removeOverlays } from './overlay.js';
 import { disposeOwn, own } from './own-attributes.js';
@@ -200,7 +201,7 @@ class Shown implements Applied {
 
   readonly setTexture = (texture: Texture | undefined): void => {
     if (texture && !texture.isTexture)
-      throw new CagecastError('badArgument', 'setTexture', `${nameOf(texture)} is not a Texture`);
+      throw new CagecastError('badArgument', 'setTexture', `${describe(texture)} is not a Texture`);
     this.#painting.texture = texture;
     this.#show();
   };

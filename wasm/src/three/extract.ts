@@ -12,6 +12,7 @@ import {
 } from 'three';
 import { CagecastError, type Mesh } from '../index.js';
 import { skinMatrix, usedJoints } from '../parts/skin.js';
+import { describe } from './describe.js';
 
 /** One mesh of a scene, or a single geometry, and the ranges of its elements in the joined arrays. */
 export interface Part {
@@ -71,7 +72,7 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
     throw new CagecastError(
       'badArgument',
       'cagecast/three',
-      `${argument} is ${nameOf(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
+      `${argument} is ${describe(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
       { argument },
     );
   }
@@ -181,10 +182,6 @@ export const isOfInstances = (attribute: object): boolean =>
   ((attribute as InterleavedBufferAttribute).data as { isInstancedInterleavedBuffer?: true } | undefined)
     ?.isInstancedInterleavedBuffer === true;
 export const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
-
-/** Describes a value of the wrong type, for messages. */
-export const nameOf = (value: unknown): string =>
-  typeof value === 'string' ? `"${value}"` : typeof value === 'object' && value ? 'an object' : String(value);
 
 const wrong = (argument: string, name: string, text: string, at?: number): CagecastError =>
   new CagecastError('badArgument', 'cagecast/three', `${argument}: "${name}" ${text}`, { argument, at });

@@ -1,7 +1,8 @@
 import type { Material, Mesh, Texture } from 'three';
 import { CagecastError, type Classification, type TransferOptions, type TransferResult } from '../index.js';
 import type { Borders } from '../parts/borders-option.js';
-import { nameOf, type Part } from './extract.js';
+import { describe } from './describe.js';
+import type { Part } from './extract.js';
 import type { Saved } from './saved.js';
 
 /** Options of `applyTransfer`: those of `transfer`, and what to display. */
@@ -90,7 +91,7 @@ export interface Applied {
 export function checkOptions(options: ApplyOptions): void {
   const check = (fits: boolean | undefined, name: string, value: unknown, what: string) => {
     if (!fits)
-      throw new CagecastError('badOption', 'cagecast/three', `options${name} is ${nameOf(value)}, not ${what}`);
+      throw new CagecastError('badOption', 'cagecast/three', `options${name} is ${describe(value)}, not ${what}`);
   };
   check(typeof options === 'object' && options !== null, '', options, 'an object');
   const { texture, material, channel = 1, opacity = 1, feather = 0, saved } = options;

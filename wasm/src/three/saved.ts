@@ -1,7 +1,8 @@
 import { CagecastError, type Mesh, type TransferOptions } from '../index.js';
 import { hash, pack, unpack } from '../parts/pack.js';
 import type { Prepared } from '../parts/prepare.js';
-import { type Extracted, nameOf } from './extract.js';
+import { describe } from './describe.js';
+import type { Extracted } from './extract.js';
 import type { Applied } from './options.js';
 
 /** A transfer that was made earlier, for `applyTransfer`. */
@@ -30,7 +31,7 @@ export function serialize(applied: Applied): Uint8Array<ArrayBuffer> {
  */
 export function deserialize(bytes: Uint8Array): Saved {
   if (!(bytes instanceof Uint8Array))
-    throw new CagecastError('badArgument', 'deserialize', `bytes is ${nameOf(bytes)}, not a Uint8Array`);
+    throw new CagecastError('badArgument', 'deserialize', `bytes is ${describe(bytes)}, not a Uint8Array`);
   return unpack(bytes) as Saved;
 }
 

@@ -1,5 +1,6 @@
 import type { Texture } from 'three';
 import { CagecastError } from '../../index.js';
+import { describe } from '../describe.js';
 
 /** How a layer is blended with the layers below: as in “Compositing and Blending” of the W3C, in linear light. */
 export const blendModes = ['normal', 'multiply', 'screen', 'add'] as const;
@@ -46,9 +47,6 @@ export function readStyle(style: Partial<Style>): Partial<Style> {
   // Spread, undefined would take the place of a value.
   return Object.fromEntries(Object.entries(style).filter(([name, value]) => name in plainStyle && value !== undefined));
 }
-
-const describe = (value: unknown): string =>
-  typeof value === 'string' ? `"${value}"` : typeof value === 'object' && value ? 'an object' : String(value);
 
 /** A name that no layer has: a kind and a number. */
 export function freeName(kind: string, layers: readonly Layer[]): string {

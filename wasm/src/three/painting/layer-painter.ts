@@ -3,6 +3,7 @@ import { CagecastError } from '../../index.js';
 import { type Rect, toShares } from '../gpu/index.js';
 import { type Composite, type Edits, Emitter, freeName, type Layer, type LayerStack } from '../layers/index.js';
 import { type CageMesh, CageTexels, type Capsule, type SurfacePoint } from './cage-texels.js';
+import { check } from './check.js';
 import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';
 import { StickersSheet } from './placed-stickers.js';
 import type { StickerSheet, StickerStyle } from './sticker.js';
@@ -52,12 +53,7 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
   }
 
   set size(size: PaintingSize) {
-    if (!paintingSizes.includes(size))
-      throw new CagecastError(
-        'badOption',
-        'cagecast/three/paint',
-        `size is ${size}, not one of ${paintingSizes.join(', ')}`,
-      );
+    check(paintingSizes.includes(size), 'size', size, `one of ${paintingSizes.join(', ')}`);
     this.#size = size;
   }
 

@@ -2,7 +2,8 @@ import { type BufferGeometry, type Camera, type Object3D, Raycaster, type Textur
 import { CagecastError } from '../../index.js';
 import { type Applied, extract } from '../index.js';
 import { createLayers, type Layers, type LayersOptions } from '../layers/index.js';
-import type { CageMesh, SurfacePoint } from './cage-texels.js';
+import type { SurfacePoint } from './cage-texels.js';
+import { check } from './check.js';
 import { LayerPainter } from './layer-painter.js';
 import type { PaintingSize } from './painted-sheet.js';
 import { pickSpot, pixelsPerUnit, type Spot } from './pick.js';
@@ -47,9 +48,6 @@ export interface StickerPlace {
   up?: Vector3 | undefined;
 }
 
-const check = (fits: boolean, name: string, value: unknown, what: string): void => {
-  if (!fits) throw new CagecastError('badOption', 'cagecast/three/paint', `${name} is ${value}, not ${what}`);
-};
 const checkShare = (name: string, value: number): void =>
   check(value >= 0 && value <= 1, name, value, 'a number from 0 to 1');
 const checkSize = (size: number): void => check(size > 0 && size <= 2, 'size', size, 'a number from 0 to 2');
@@ -77,13 +75,12 @@ export class Painter {
 
   constructor({ layers, renderer, texture, applied, cage, size } = {} as PainterOptions) {
     this.#models = [applied].flat();
-    for (const model of this.#models)
-      if (typeof model?.setTexture !== 'function')
-        throw new CagecastError(
-          'badArgument',
-          'cagecast/three/paint',
-          'options.applied is not what applyTransfer returned',
-        );
+    if (this.#models.some((model) => typeof model?.setTexture !== 'function'))
+      throw new CagecastError(
+        'badArgument',
+        'cagecast/three/paint',
+        'options.applied is not what applyTransfer returned',
+      );
     const { positions, indices, uvs } = extract(cage, 'cage').mesh;
     if (!uvs) throw new CagecastError('badArgument', 'cagecast/three/paint', 'options.cage has no UVs');
     this.layers = layers ?? createLayers({ renderer } as LayersOptions);
@@ -93,8 +90,7 @@ export class Painter {
     }
     this.#painter = new LayerPainter(this.layers);
     if (size !== undefined) this.#painter.size = size;
-    const mesh: CageMesh = { positions: Float32Array.from(positions), indices, uvs: Float32Array.from(uvs) };
-    this.#painter.setCage(mesh);
+    this.#painter.setCage({ positions: Float32Array.from(positions), indices, uvs: Float32Array.from(uvs) });
     this.#unfollow = follow(this.layers, this.#painter);
     for (const model of this.#models) model.setTexture(this.layers.texture);
   }
@@ -278,7 +274,7 @@ export class Painter {
     if (point === undefined) return undefined;
     const { toCage, surface, x, y } = Object(point) as Partial<Spot & { x: number; y: number }>;
     if (toCage) return surface;
-    if (!Number.isFinite(x) || !Number.isFinite(y))
+    if (![x, y].every(Number.isFinite))
       throw new CagecastError('badArgument', 'cagecast/three/paint', `a point is (${x}, ${y}), not a UV`);
     return this.#painter.cageTexels?.at(x!, y!);
   }
@@ -292,7 +288,7 @@ function follow(layers: Layers, painter: LayerPainter): () => void {
 
 /** @throws {CagecastError} `badOption` that names the field and its value. */
 function checkBrush({ color, size, hardness, opacity }: BrushStyle): void {
-  check(/^#[0-9a-f]{6}$/i.test(color), 'color', `"${color}"`, 'a colour such as #ff8800');
+  check(/^#[0-9a-f]{6}$/i.test(color), 'color', color, 'a colour such as #ff8800');
   checkShare('opacity', opacity);
   checkShare('hardness', hardness);
   checkSize(size);
