@@ -8,7 +8,7 @@
 import createModule from '#cages-glue';
 import type { Mesh } from '../api/mesh.js';
 import { CagecastError, type Code, isRecord, show } from '../core/error.js';
-import { instantiate, isLackOfMemory, unsupported } from '../core/instantiate.js';
+import { failureOf, instantiate, notInitialised, unsupported } from '../core/instantiate.js';
 import { nameOf } from '../core/module.js';
 import { compileFile } from '../core/read-file.js';
 import {
@@ -164,8 +164,7 @@ export function matchingParts(parts: readonly (string | readonly string[])[], pa
 const exclusionsOf = (module: CagesModule): string[] => module.makeOptions()['exclude'] as string[];
 
 function freshModule(fn: string): CagesModule {
-  if (compiled === undefined)
-    throw new CagecastError('notInitialised', fn, 'Cagecast is not ready; await init() once before the first call');
+  if (compiled === undefined) throw notInitialised(fn);
   return instantiate<CagesModule>(createModule, compiled, 'makeCage');
 }
 
@@ -195,9 +194,7 @@ function call<Answer extends CagesAnswer, Result>(given: SyncOptions, of: Call<A
     answer = of.run(module, options, reporter.report);
   } catch (cause) {
     if (cause instanceof CagecastError) throw cause;
-    throw isLackOfMemory(cause)
-      ? new CagecastError('outOfMemory', fn, 'not enough memory for this model', { cause })
-      : new CagecastError('internal', fn, `the WebAssembly module failed (${String(cause)})`, { cause });
+    throw failureOf(fn, cause);
   }
   if (reporter.failure !== undefined) throw reporter.failure;
   const code = nameOf({ module: module as never }, 'Problem', answer.problem);

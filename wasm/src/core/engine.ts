@@ -1,7 +1,7 @@
 import createModule from '#glue';
 import { compile } from '#wasm';
 import { CagecastError, type Code } from './error.js';
-import { instantiate, isLackOfMemory, unsupported } from './instantiate.js';
+import { failureOf, instantiate, notInitialised, unsupported } from './instantiate.js';
 import { type Answer, type CoreModule, type CoreSegment, nameOf, type Workspace } from './module.js';
 import type { SegmentStats } from './records.js';
 import { overwrite, realLength } from './typed-arrays.js';
@@ -48,17 +48,13 @@ export type Reusable = Record<string, Uint8Array | Uint32Array | Float32Array>;
  * @throws {CagecastError} `notInitialised`, `outOfMemory`, `internal`
  */
 export function useCore<A>(fn: string, use: (core: Core) => A): A {
-  if (compiled === undefined) {
-    throw new CagecastError('notInitialised', fn, 'Cagecast is not ready; await init() once before the first call');
-  }
+  if (compiled === undefined) throw notInitialised(fn);
   try {
     instance ??= makeCore(compiled);
     return use(instance);
   } catch (cause) {
     dropInstance();
-    throw isLackOfMemory(cause)
-      ? new CagecastError('outOfMemory', fn, 'not enough memory', { cause })
-      : new CagecastError('internal', fn, `the WebAssembly module failed (${String(cause)})`, { cause });
+    throw failureOf(fn, cause);
   }
 }
 

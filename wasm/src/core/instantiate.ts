@@ -34,11 +34,17 @@ export function instantiate<Module extends object>(
   return glue as Module;
 }
 
-/** Whether what a call into WebAssembly threw means that memory ran out. */
-export const isLackOfMemory = (cause: unknown): boolean =>
+/** The error of a call before `init` has resolved. */
+export const notInitialised = (fn: string): CagecastError =>
+  new CagecastError('notInitialised', fn, 'Cagecast is not ready; await init() once before the first call');
+
+/** The error of a call into WebAssembly that threw something. */
+export const failureOf = (fn: string, cause: unknown): CagecastError =>
   // RangeError: an array for JavaScript could not be had. "Aborted", or a number (an exception of C++): C++ could not
   // allocate where it cannot say so.
-  cause instanceof RangeError || typeof cause === 'number' || String(cause).includes('Aborted');
+  cause instanceof RangeError || typeof cause === 'number' || String(cause).includes('Aborted')
+    ? new CagecastError('outOfMemory', fn, 'not enough memory', { cause })
+    : new CagecastError('internal', fn, `the WebAssembly module failed (${String(cause)})`, { cause });
 
 /** The error of an `init` that failed. */
 export const unsupported = (cause: unknown): CagecastError =>
