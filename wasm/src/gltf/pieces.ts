@@ -1,5 +1,6 @@
 import type { Accessor } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
+import { movePoints } from '../parts/points.js';
 import { InputError } from './input-error.js';
 import { identity, isMirrored, type Matrix } from './matrix.js';
 
@@ -116,13 +117,7 @@ function placePositions({ matrix: m, localPositions, firstVertex }: Piece, out: 
     out.set(localPositions, 3 * firstVertex);
     return;
   }
-  for (let at = 0; at < localPositions.length; at += 3) {
-    const [x, y, z] = [localPositions[at]!, localPositions[at + 1]!, localPositions[at + 2]!];
-    const to = 3 * firstVertex + at;
-    out[to] = m[0]! * x + m[4]! * y + m[8]! * z + m[12]!;
-    out[to + 1] = m[1]! * x + m[5]! * y + m[9]! * z + m[13]!;
-    out[to + 2] = m[2]! * x + m[6]! * y + m[10]! * z + m[14]!;
-  }
+  movePoints(m, localPositions, out, 3 * firstVertex);
 }
 
 function placeIndices({ matrix, localIndices, firstVertex, firstTriangle }: Piece, out: Uint32Array): void {

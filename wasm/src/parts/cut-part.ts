@@ -1,7 +1,7 @@
 import type { CutTarget } from '../api/cut-borders.js';
 import type { Classification } from '../api/result.js';
 import { type Blends, heaviestOf } from './blend.js';
-import { gather, type PartGeometry } from './split-part.js';
+import { gather, type PartGeometry, turnOver } from './split-part.js';
 
 /** A cut part, numbered as if it were the only one, and the result for it. */
 export interface CutPart {
@@ -36,8 +36,7 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
   const localIndices = cut.indices
     .slice(3 * first, 3 * end)
     .map((v) => (v < ownCount ? v - firstVertex : numberInPart[v - ownCount]!));
-  for (let i = 0; mirrored && i < localIndices.length; i += 3)
-    [localIndices[i + 1], localIndices[i + 2]] = [localIndices[i + 2]!, localIndices[i + 1]!];
+  if (mirrored) turnOver(localIndices);
   return {
     geometry: {
       firstVertex: 0,

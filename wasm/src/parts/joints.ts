@@ -1,3 +1,5 @@
+import { movePoints } from './points.js';
+
 /** A joint, as it is read from a model. */
 export interface ReadJoint<Node> {
   node: Node;
@@ -25,9 +27,7 @@ export function jointPlace(
     number,
   ];
   if (!Number.isFinite(x + y + z)) return undefined;
-  return [0, 1, 2].map(
-    (row) => matrix[row]! * x + matrix[4 + row]! * y + matrix[8 + row]! * z + matrix[12 + row]!,
-  ) as ReadJoint<unknown>['position'];
+  return movePoints(matrix, [x, y, z], [0, 0, 0]);
 }
 
 type Vector = readonly [number, number, number];

@@ -8,7 +8,7 @@ import {
 } from '../index.js';
 import { type CutPieces, cutPart } from './cut-part.js';
 import { separatePaint, withCopies } from './separate-paint.js';
-import { type PartGeometry, type SplitPart, splitPart } from './split-part.js';
+import { type PartGeometry, type SplitPart, splitPart, turnOver } from './split-part.js';
 
 /** Where a part is in the arrays of a target. */
 export type PartRange = Omit<PartGeometry, 'localIndices'>;
@@ -83,6 +83,6 @@ function localIndices({ firstVertex, firstTriangle, triangleCount, mirrored }: P
     indices.subarray(3 * firstTriangle, 3 * (firstTriangle + triangleCount)),
     (v) => v - firstVertex,
   );
-  for (let i = 0; mirrored && i < local.length; i += 3) [local[i + 1], local[i + 2]] = [local[i + 2]!, local[i + 1]!];
+  if (mirrored) turnOver(local);
   return local;
 }

@@ -75,3 +75,8 @@ export function gather<A extends Float32Array | Int8Array | Uint8Array | Int16Ar
     for (let k = 0; k < size; ++k) out[size * v + k] = values[size * sources[v]! + k]!;
   return out;
 }
+
+/** Turns triangles over, in place. */
+export function turnOver(indices: Uint32Array): void {
+  for (let i = 0; i < indices.length; i += 3) [indices[i + 1], indices[i + 2]] = [indices[i + 2]!, indices[i + 1]!];
+}

@@ -1,3 +1,5 @@
+import { movePoints } from './points.js';
+
 /** What a cage's node or mesh has in its extras: docs/cages.md describes the format. */
 interface ReadExtras {
   landmarks: Record<string, [number, number, number]>;
@@ -25,16 +27,11 @@ const kinds: readonly unknown[] = ['automatic', 'head', 'body', 'prop'] satisfie
  */
 export function readExtras(sources: Iterable<ExtrasSource>, wrong: (text: string) => Error): ReadExtras {
   const out: ReadExtras = { landmarks: {}, holes: {}, kind: 'automatic' };
-  for (const { extras, place, matrix: m, firstVertex, vertexCount } of sources) {
+  for (const { extras, place, matrix, firstVertex, vertexCount } of sources) {
     const { landmarks, holes, kind } = (extras ?? {}) as Record<string, unknown>;
     for (const [name, point] of entriesOf(landmarks, `${place}.extras.landmarks`, wrong)) {
       if (!isPosition(point)) throw wrong(`${place}.extras.landmarks.${name} is not 3 finite numbers [x, y, z]`);
-      const [x, y, z] = point;
-      out.landmarks[name] = [0, 1, 2].map((row) => m[row]! * x + m[4 + row]! * y + m[8 + row]! * z + m[12 + row]!) as [
-        number,
-        number,
-        number,
-      ];
+      out.landmarks[name] = movePoints(matrix, point, [0, 0, 0]);
     }
     for (const [name, loop] of entriesOf(holes, `${place}.extras.holes`, wrong)) {
       const isVertex = (v: unknown) => Number.isInteger(v) && (v as number) >= 0 && (v as number) < vertexCount;

@@ -11,6 +11,7 @@ import {
   type Mesh as ThreeMesh,
 } from 'three';
 import { CagecastError, type Mesh } from '../index.js';
+import { movePoints } from '../parts/points.js';
 import { skinMatrix, usedJoints } from '../parts/skin.js';
 import { describe } from './describe.js';
 
@@ -191,16 +192,9 @@ export const isMirrored = (matrix: Matrix4): boolean => matrix.determinant() < 0
 
 function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, out: Float32Array): void {
   // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
-  const values = valuesOf(geometry.getAttribute('position') as Attribute);
-  if (matrix.equals(identity)) {
-    out.set(values.subarray(0, 3 * vertexCount), 3 * firstVertex);
-    return;
-  }
-  const m = matrix.elements;
-  for (let v = 0; v < vertexCount; ++v) {
-    const [x, y, z] = [values[3 * v]!, values[3 * v + 1]!, values[3 * v + 2]!];
-    for (let k = 0; k < 3; ++k) out[3 * (firstVertex + v) + k] = m[k]! * x + m[4 + k]! * y + m[8 + k]! * z + m[12 + k]!;
-  }
+  const values = valuesOf(geometry.getAttribute('position') as Attribute).subarray(0, 3 * vertexCount);
+  if (matrix.equals(identity)) out.set(values, 3 * firstVertex);
+  else movePoints(matrix.elements, values, out, 3 * firstVertex);
 }
 
 function placeIndices(

@@ -3,9 +3,10 @@ import type { Mesh as Arrays, Classification } from '../index.js';
 import { CagecastError } from '../index.js';
 import { borderDistances } from '../parts/border-distance.js';
 import { decideAgain } from '../parts/cut-part.js';
+import { movePoints } from '../parts/points.js';
 import type { PartRange, PreparedPart } from '../parts/prepare.js';
 import { paintedVertices, separatePaint, withCopies } from '../parts/separate-paint.js';
-import type { Part } from './extract.js';
+import { type Part, valuesOf } from './extract.js';
 import { makeOverlay, overlayMaterial, showTriangles } from './overlay.js';
 import { own } from './own-attributes.js';
 import { paintAttribute } from './paint.js';
@@ -115,13 +116,8 @@ function distancesOf(parts: readonly ShownPart[], reach: number): Float32Array[]
   const cosmetic = new Uint8Array(corners / 3);
   let corner = 0;
   parts.forEach((shown, p) => {
-    const position = geometryOf(shown).getAttribute('position');
-    const m = shown.part.matrix.elements;
-    for (let v = 0; v < position.count; ++v) {
-      const [x, y, z] = [position.getX(v), position.getY(v), position.getZ(v)];
-      for (let k = 0; k < 3; ++k)
-        positions[3 * (firsts[p]! + v) + k] = m[k]! * x + m[4 + k]! * y + m[8 + k]! * z + m[12 + k]!;
-    }
+    const values = valuesOf(geometryOf(shown).getAttribute('position'));
+    movePoints(shown.part.matrix.elements, values, positions, 3 * firsts[p]!);
     cosmetic.set(shown.cosmetic, corner / 3);
     for (const vertex of shown.split.indices) indices[corner++] = firsts[p]! + vertex;
   });
