@@ -8,15 +8,16 @@ import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
 import { isOverlay } from './overlay.js';
 import {
   aliasesOf,
-  decodeFloats,
   decodePositions,
   decodeTriangles,
+  decodeUvs,
   hasTriangles,
   joinPieces,
   type Piece,
+  pieceName,
 } from './pieces.js';
 import type { GltfFile } from './read.js';
-import { transformUvs, type UvLayout, uvLayoutOf } from './uv-transform.js';
+import { type UvLayout, uvLayoutOf } from './uv-transform.js';
 
 /** A primitive, by the numbers of its mesh and itself in the file's JSON. */
 interface PrimitiveRef {
@@ -92,8 +93,7 @@ function listParts(file: GltfFile): Part[] {
       if (localIndices === undefined) return;
       const name = nodeDef.name ?? meshDef.name ?? `nodes[${node}]`;
       const material = primitive.material === undefined ? undefined : materials[primitive.material]?.name;
-      const fullName =
-        material !== undefined && material !== name && meshDef.primitives.length > 1 ? `${name}/${material}` : name;
+      const fullName = pieceName(name, material, meshDef.primitives.length);
       const part: Part = {
         name: fullName,
         aliases: aliasesOf(nodeDef.name, meshDef.name, material, fullName),
@@ -209,16 +209,10 @@ function readTriangles(file: GltfFile, ref: PrimitiveRef, vertexCount: number): 
 function readUvs(file: GltfFile, parts: Part[], vertexCount: number): Float32Array | undefined {
   const uvs = new Float32Array(2 * vertexCount);
   for (const part of parts) {
-    const { set, transform } = uvLayout(file.json, part);
-    const accessor = accessorOf(file, part, set);
+    const layout = uvLayout(file.json, part);
+    const accessor = accessorOf(file, part, layout.set);
     if (accessor === undefined) return undefined;
-    if (accessor.getElementSize() !== 2)
-      throw new InputError(`${primitivePath(part)}.attributes.${set} is ${accessor.getType()}, not VEC2`);
-    if (accessor.getCount() !== part.vertexCount) {
-      throw new InputError(`${primitivePath(part)} has ${accessor.getCount()} ${set} for ${part.vertexCount} vertices`);
-    }
-    const own = decodeFloats(accessor);
-    uvs.set(transform ? transformUvs(own, transform) : own, 2 * part.firstVertex);
+    uvs.set(decodeUvs(primitivePath(part), layout, accessor, part.vertexCount), 2 * part.firstVertex);
   }
   return parts.length > 0 ? uvs : undefined;
 }

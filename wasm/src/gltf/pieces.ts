@@ -3,6 +3,7 @@ import type { Mesh } from '../api/mesh.js';
 import { movePoints } from '../parts/points.js';
 import { InputError } from './input-error.js';
 import { identity, isMirrored, type Matrix } from './matrix.js';
+import { transformUvs, type UvLayout } from './uv-transform.js';
 
 /** One primitive of one node, and the ranges of its elements in the joined arrays. */
 export interface Piece {
@@ -25,6 +26,10 @@ export interface Piece {
 /** The names among some, each once. */
 export const aliasesOf = (...names: (string | undefined)[]): string[] =>
   [...new Set(names.filter((name) => name !== undefined && name !== ''))] as string[];
+
+/** The name of a piece. @param name  Of its node. @param primitives  How many its mesh has. */
+export const pieceName = (name: string, material: string | undefined, primitives: number): string =>
+  material && material !== name && primitives > 1 ? `${name}/${material}` : name;
 
 const kTriangles = 4;
 const kTriangleStrip = 5;
@@ -98,6 +103,25 @@ export function decodeTriangles(
     expanded.set([corners[a]!, corners[b]!, corners[c]!], 3 * t);
   }
   return expanded;
+}
+
+/**
+ * The UVs of a piece in the texture that they are laid on.
+ * @param place  The piece, for messages.
+ * @throws {InputError}
+ */
+export function decodeUvs(
+  place: string,
+  { set, transform }: UvLayout,
+  accessor: Accessor,
+  vertexCount: number,
+): Float32Array {
+  if (accessor.getElementSize() !== 2)
+    throw new InputError(`${place}.attributes.${set} is ${accessor.getType()}, not VEC2`);
+  if (accessor.getCount() !== vertexCount)
+    throw new InputError(`${place} has ${accessor.getCount()} ${set} for ${vertexCount} vertices`);
+  const uvs = decodeFloats(accessor);
+  return transform ? transformUvs(uvs, transform) : uvs;
 }
 
 /** All components of an accessor as 32-bit floats, with normalised integers decoded. */

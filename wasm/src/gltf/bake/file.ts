@@ -1,6 +1,5 @@
 import { dirname } from 'node:path';
 import type { GLTF } from '@gltf-transform/core';
-import type { Wrap } from '../../bake/index.js';
 import type { Part } from '../extract.js';
 import { readUri } from '../files.js';
 import type { GlbWriter } from '../glb-writer.js';
@@ -8,12 +7,10 @@ import { imageType } from '../image.js';
 import { decodeFloats } from '../pieces.js';
 import type { GltfFile } from '../read.js';
 import { uvLayoutOf } from '../uv-transform.js';
-import type { BakeModel, Slot, TextureUse } from './plan.js';
+import { type BakeModel, type Slot, type TextureUse, wrapOf } from './plan.js';
 
 /** Extensions that give a texture another image. */
 const imageExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
-
-const wrapOf = (wrap?: number): Wrap => (wrap === 33071 ? 'clamp' : wrap === 33648 ? 'mirror' : 'repeat');
 
 /** The image of a texture. */
 function sourceOf({ source, extensions }: GLTF.ITexture): number | undefined {

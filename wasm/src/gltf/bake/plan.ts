@@ -28,6 +28,9 @@ export interface TextureUse<Texture> extends UvLayout {
   wraps: readonly [Wrap, Wrap];
 }
 
+/** A wrap mode by its number in glTF. */
+export const wrapOf = (wrap?: number): Wrap => (wrap === 33071 ? 'clamp' : wrap === 33648 ? 'mirror' : 'repeat');
+
 /** A model as baking sees it: a document, or a file as it is. */
 export interface BakeModel<Material, Texture> {
   parts: readonly Piece[];

@@ -1,6 +1,5 @@
 import type { Document, ExtensionProperty, Material, Texture, TextureInfo } from '@gltf-transform/core';
-import type { Wrap } from '../../bake/index.js';
-import type { BakeModel, Paints, TextureUse } from '../bake/plan.js';
+import { type BakeModel, type Paints, type TextureUse, wrapOf } from '../bake/plan.js';
 import { decodeFloats } from '../pieces.js';
 import { type DocumentPart, uvLayoutOf } from './read.js';
 
@@ -8,8 +7,6 @@ import { type DocumentPart, uvLayoutOf } from './read.js';
 interface MaterialMappings extends ExtensionProperty {
   listMappings(): { getMaterial(): Material | null }[];
 }
-
-const wrapOf = (wrap: number): Wrap => (wrap === 33071 ? 'clamp' : wrap === 33648 ? 'mirror' : 'repeat');
 
 /** A document as baking sees it. */
 export class DocumentModel implements BakeModel<Material, Texture> {

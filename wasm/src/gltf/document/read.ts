@@ -16,14 +16,15 @@ import { identity, localMatrix, type Matrix, multiply } from '../matrix.js';
 import { isMarked } from '../overlay.js';
 import {
   aliasesOf,
-  decodeFloats,
   decodePositions,
   decodeTriangles,
+  decodeUvs,
   hasTriangles,
   joinPieces,
   type Piece,
+  pieceName,
 } from '../pieces.js';
-import { transformUvs, type UvLayout } from '../uv-transform.js';
+import type { UvLayout } from '../uv-transform.js';
 
 /** A piece, and its place in the document. */
 export interface DocumentPart extends Piece {
@@ -53,15 +54,9 @@ export function extractDocument(document: Document): ExtractedDocument {
   const sets = parts.map(({ primitive }, p) => primitive.getAttribute(layouts[p]!.set));
   if (parts.length === 0 || sets.some((set) => set === null)) return { mesh, parts };
   const uvs = new Float32Array((mesh.positions.length / 3) * 2);
-  parts.forEach((part, p) => {
-    const [accessor, { set, transform }] = [sets[p]!, layouts[p]!];
-    if (accessor.getElementSize() !== 2)
-      throw new InputError(`"${part.name}" has a ${set} of type ${accessor.getType()}, not VEC2`);
-    if (accessor.getCount() !== part.vertexCount)
-      throw new InputError(`"${part.name}" has ${accessor.getCount()} ${set} for ${part.vertexCount} vertices`);
-    const own = decodeFloats(accessor);
-    uvs.set(transform ? transformUvs(own, transform) : own, 2 * part.firstVertex);
-  });
+  parts.forEach(({ name, firstVertex, vertexCount }, p) =>
+    uvs.set(decodeUvs(`"${name}"`, layouts[p]!, sets[p]!, vertexCount), 2 * firstVertex),
+  );
   return { mesh: { ...mesh, uvs }, parts };
 }
 
@@ -130,9 +125,8 @@ function listParts(document: Document): DocumentPart[] {
         localPositions.length / 3,
       );
       const name = node.getName() || mesh.getName() || place;
-      const material = primitive.getMaterial()?.getName() ?? '';
-      const fullName =
-        material !== '' && material !== name && mesh.listPrimitives().length > 1 ? `${name}/${material}` : name;
+      const material = primitive.getMaterial()?.getName();
+      const fullName = pieceName(name, material, mesh.listPrimitives().length);
       const last = parts.at(-1);
       parts.push({
         name: fullName,
