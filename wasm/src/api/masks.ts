@@ -134,7 +134,7 @@ export function applyMasksToCut(
     if (decided(masks, indices, whole, t, isPartial) !== undefined)
       for (let i = 3 * t; i < 3 * t + 3; ++i) isMasked[indices[i]!] = 1;
   for (let v = 0; v < cut.zones.length; ++v) {
-    const source = v < ownCount ? v : heaviest(cut, v - ownCount);
+    const source = v < ownCount ? v : heaviestOf(cut, v - ownCount);
     const mask = masks.vertices?.[source] ?? 0;
     if (mask !== 0 || (v < ownCount && masks.triangles && isMasked[v] === 1)) cut.zones[v] = whole[source]!;
   }
@@ -144,7 +144,7 @@ export function applyMasksToCut(
 }
 
 /** The source of a new vertex with the greatest weight. */
-function heaviest({ sources, weights }: Cut, n: number): number {
+export function heaviestOf({ sources, weights }: Pick<Cut, 'sources' | 'weights'>, n: number): number {
   let best = 3 * n;
   for (let i = best + 1; i < 3 * n + 3; ++i) if (weights[i]! > weights[best]!) best = i;
   return sources[best]!;

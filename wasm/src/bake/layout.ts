@@ -1,5 +1,6 @@
 import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
+import { dot } from '../inspect/geometry.js';
 import { fillGutter } from './gutter.js';
 import { checkImage, checkNames, checkSize, colorByte, type Image, linearOf } from './image.js';
 import { kMostLayers } from './pattern.js';
@@ -204,7 +205,6 @@ function densityOf(layouts: readonly Layout[], texels: number, image: Image): nu
 }
 
 type Vector = [number, number, number];
-const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const sum = (s: number, a: Vector, t: number, b: Vector): Vector => [
   s * a[0] + t * b[0],
   s * a[1] + t * b[1],

@@ -2,15 +2,13 @@ import { checkMesh, count } from '../api/mesh.js';
 import { CagecastError, isRecord, show } from '../core/error.js';
 import { type EnumValue, namesOf } from '../core/module.js';
 import { plainArray, showArray } from '../core/typed-arrays.js';
+import { isPosition } from '../parts/template.js';
 import type { CagesModule, CoreLandmark, CoreModel, CoreOptions, CoreTemplate } from './module.js';
 import type { CageModel, Holes, Landmarks, Template } from './types.js';
 
 /** The error for a part of an argument. @param place  Where it is, such as `template.landmarks`. */
 const wrong = (fn: string, place: string, text: string) =>
   new CagecastError('badArgument', fn, `${place}${text}`, { argument: place.split('.')[0] });
-
-const isPosition = (value: unknown): value is [number, number, number] =>
-  Array.isArray(value) && value.length === 3 && value.every((x) => Number.isFinite(x));
 
 /**
  * Checks the types of a model, as far as C++ does not.

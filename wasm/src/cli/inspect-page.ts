@@ -1,7 +1,6 @@
 import { PNG } from 'pngjs';
-import { counted } from '../inspect/finding.js';
+import { counted, verdictOf } from '../inspect/finding.js';
 import { boxOf, pointAt, type Vector } from '../inspect/geometry.js';
-import { unfitFrom, usableFrom } from '../inspect/index.js';
 import { type Scene, sceneOf } from '../inspect/scene.js';
 import type { InspectionReport } from './inspect-command.js';
 import { adviceOn } from './options.js';
@@ -41,7 +40,6 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
   const { verdict, findings, holes, segments, placement, uv, options } = report;
   const scene = sceneOf(cage.mesh, target.mesh, result, options.threshold, target.parts);
   const title = text(`${report.cage.file} on ${report.target.file}`);
-  const mark = (weight: number): string => (weight >= unfitFrom ? 'unfit' : weight >= usableFrom ? 'usable' : 'good');
   return `<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
@@ -65,7 +63,7 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
 </style>
 <h1><span class="verdict ${verdict}">${verdict}</span> ${title}</h1>
 <p>${integer(report.target.triangles)} triangles under a cage of ${integer(report.cage.triangles)}; preset ${text(options.preset)}, threshold ${options.threshold}. Cagecast ${text(report.versions.cagecast)}.</p>
-${findings.length > 0 ? `<ol>${findings.map((finding) => `<li><i class="${mark(finding.weight)}"></i>${text(finding.sentence)}.<small>${text(adviceOn(finding))}</small></li>`).join('')}</ol>` : '<p>No problems found.</p>'}
+${findings.length > 0 ? `<ol>${findings.map((finding) => `<li><i class="${verdictOf([finding])}"></i>${text(finding.sentence)}.<small>${text(adviceOn(finding))}</small></li>`).join('')}</ol>` : '<p>No problems found.</p>'}
 <h2>Zones</h2>
 <p>${zoneNames.map((zone, z) => `<span class="key" style="background:rgb(${kZoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>
 <div class="row">${views.map(({ name, view }) => figure(name, drawZones(scene, view))).join('')}</div>

@@ -1,3 +1,5 @@
+import { heaviestOf } from '../api/masks.js';
+
 /** The vertices that cutting added to a part, in order, after the existing ones. */
 export interface Blends {
   /** 3 per new vertex: the vertices of the part that it blends. */
@@ -32,12 +34,6 @@ function extended<A extends AttributeArray>(values: A, size: number, { sources }
   const out = new (values.constructor as new (length: number) => A)(values.length + (size * sources.length) / 3);
   out.set(values);
   return out;
-}
-
-/** The source of a new vertex with the greatest weight. */
-export function heaviestOf({ sources, weights }: Blends, n: number): number {
-  const first = weights[3 * n + 1]! > weights[3 * n]! ? 3 * n + 1 : 3 * n;
-  return sources[weights[3 * n + 2]! > weights[first]! ? 3 * n + 2 : first]!;
 }
 
 /** The values of a part's vertices, `size` numbers each, and of its new ones after them. */

@@ -1,3 +1,4 @@
+import { cross, dot } from '../inspect/geometry.js';
 import { movePoints } from './points.js';
 
 /** A joint, as it is read from a model. */
@@ -29,14 +30,6 @@ export function jointPlace(
   if (!Number.isFinite(x + y + z)) return undefined;
   return movePoints(matrix, [x, y, z], [0, 0, 0]);
 }
-
-type Vector = readonly [number, number, number];
-const cross = (a: Vector, b: Vector): Vector => [
-  a[1] * b[2] - a[2] * b[1],
-  a[2] * b[0] - a[0] * b[2],
-  a[0] * b[1] - a[1] * b[0],
-];
-const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 /**
  * Numbers joints and finds their parents: the nearest joint above each.
