@@ -15,11 +15,11 @@ import type { CageMaker } from '../scene/cage-maker';
 import type { Model } from '../scene/load-model';
 import { haveSameUvs } from '../scene/same-uvs';
 import type { Session } from '../scene/session';
-import { diagonalOf } from '../scene/surface';
+import { diagonalOf, weldedVertices } from '../scene/surface';
 import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
 import { arrowStep } from './arrow-keys';
-import { changeHole, weldedVertices } from './holes';
+import { changeHole } from './holes';
 import { LandmarkDots } from './landmark-dots';
 
 type Mode = 'move' | 'turn' | 'scale' | 'corner' | 'hole';
@@ -182,7 +182,7 @@ export class CageAdjuster {
     this.#corner = corner;
     this.#viewer.moveCage(this.#matrix);
     const { positions } = this.#cage;
-    this.#size = diagonalOf({ positions, indices: [] });
+    this.#size = diagonalOf({ positions });
     this.#center.set(0, 0, 0);
     for (let i = 0; i < positions.length; i++)
       this.#center.setComponent(i % 3, this.#center.getComponent(i % 3) + positions[i]! / (positions.length / 3));

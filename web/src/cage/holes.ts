@@ -1,21 +1,12 @@
 import { type Ray, Vector3 } from 'three';
 import { firstHit } from '../explain/ray';
+import { weldedVertices } from '../scene/surface';
 
 /** A cage: UVs have a vertex for each side of a seam. */
 interface CageArrays {
   positions: Float32Array;
   indices: Uint32Array;
   uvs: Float32Array;
-}
-
-/** Equal for vertices at equal positions. */
-export function weldedVertices(positions: Float32Array): Uint32Array {
-  const first = new Map<string, number>();
-  return Uint32Array.from({ length: positions.length / 3 }, (_, vertex) => {
-    const key = positions.subarray(3 * vertex, 3 * vertex + 3).join();
-    if (!first.has(key)) first.set(key, vertex);
-    return first.get(key)!;
-  });
 }
 
 /** The vertices around each hole, in the order of the triangles beside it; with `undefined` where a UV seam ends. */
@@ -64,8 +55,7 @@ export function changeHole(cage: CageArrays, ray: Ray): HoleChange {
   let nearest = hit?.length ?? Infinity;
   let hole: (number | undefined)[] | undefined;
   const at = new Vector3();
-  const welded = loopsOf(cage);
-  for (const loop of welded) {
+  for (const loop of loopsOf(cage)) {
     const points = pointsOf(cage, loop);
     const middle = points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(points.length);
     points.forEach((point, i) => {

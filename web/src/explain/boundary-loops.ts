@@ -1,5 +1,5 @@
 import { Line3, Triangle, Vector3 } from 'three';
-import { cornersOf, type Surface } from '../scene/surface';
+import { cornersOf, type Surface, weldedVertices } from '../scene/surface';
 
 /** The boundary edges of a cage: those of exactly one triangle with area. Vertices at equal positions count as one. */
 export class BoundaryLoops {
@@ -13,13 +13,7 @@ export class BoundaryLoops {
   constructor(cage: Surface) {
     this.#cage = cage;
     const { positions, indices } = cage;
-    const seen = new Map<string, number>();
-    this.#point = Uint32Array.from({ length: positions.length / 3 }, (_, vertex) => {
-      // Adding 0 turns −0 into 0.
-      const position = [0, 1, 2].map((axis) => positions[3 * vertex + axis]! + 0).join();
-      if (!seen.has(position)) seen.set(position, vertex);
-      return seen.get(position)!;
-    });
+    this.#point = weldedVertices(positions);
     const users = new Map<string, number[]>();
     for (let triangle = 0; 3 * triangle < indices.length; triangle++) {
       if (new Triangle(...cornersOf(cage, triangle)).getArea() === 0) continue;

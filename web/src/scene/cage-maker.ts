@@ -8,6 +8,7 @@ import { likelyTemplate } from './likely-template';
 import { loadModel, type Model } from './load-model';
 import type { Sample } from './samples';
 import type { Session } from './session';
+import { type Box, boxOf, diagonalOfBox } from './surface';
 import { reasonOf } from './wording';
 
 /** What the steps of the engine are called for people. */
@@ -284,28 +285,12 @@ const kNoName = { landmarks: {}, holes: {}, kind: 'automatic' } as const;
 export function placeAround(cage: Cage, model: ArrayLike<number>): Cage {
   const [from, to] = [boxOf(cage.positions), boxOf(model)];
   const apart = from.low.some((low, axis) => low > to.high[axis]! || from.high[axis]! < to.low[axis]!);
-  const scale = diagonal(to) / diagonal(from);
+  const scale = diagonalOfBox(to) / diagonalOfBox(from);
   if (!apart && scale > 0.5 && scale < 2) return cage;
   const middle = ({ low, high }: Box, axis: number): number => (low[axis]! + high[axis]!) / 2;
   const positions = cage.positions.map((value, i) => middle(to, i % 3) + 1.05 * scale * (value - middle(from, i % 3)));
   return { ...cage, positions };
 }
-
-interface Box {
-  low: number[];
-  high: number[];
-}
-
-function boxOf(positions: ArrayLike<number>): Box {
-  const box: Box = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
-  for (let i = 0; i < positions.length; i++) {
-    box.low[i % 3] = Math.min(box.low[i % 3]!, positions[i]!);
-    box.high[i % 3] = Math.max(box.high[i % 3]!, positions[i]!);
-  }
-  return box;
-}
-
-const diagonal = ({ low, high }: Box): number => Math.hypot(...high.map((value, axis) => value - low[axis]!));
 
 interface Context {
   engine: typeof import('cagecast/cages');

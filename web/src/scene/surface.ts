@@ -24,13 +24,33 @@ export function closestPointOnTriangle(
   return { closest: corners.closestPointToPoint(point, new Vector3()), normal: corners.getNormal(new Vector3()) };
 }
 
-/** The diagonal of the bounding box. */
-export function diagonalOf({ positions }: Surface): number {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < positions.length; i++) {
-    low[i % 3] = Math.min(low[i % 3]!, positions[i]!);
-    high[i % 3] = Math.max(high[i % 3]!, positions[i]!);
-  }
-  return Math.hypot(...high.map((value, axis) => value - low[axis]!));
+/** Equal for vertices at equal positions. */
+export function weldedVertices(positions: ArrayLike<number>): Uint32Array {
+  const first = new Map<string, number>();
+  return Uint32Array.from({ length: positions.length / 3 }, (_, vertex) => {
+    const key = [0, 1, 2].map((axis) => positions[3 * vertex + axis]).join(); // −0 and 0 are the same text
+    if (!first.has(key)) first.set(key, vertex);
+    return first.get(key)!;
+  });
 }
+
+export interface Box {
+  low: number[];
+  high: number[];
+}
+
+/** The bounding box. */
+export function boxOf(positions: ArrayLike<number>): Box {
+  const box: Box = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
+  for (let i = 0; i < positions.length; i++) {
+    box.low[i % 3] = Math.min(box.low[i % 3]!, positions[i]!);
+    box.high[i % 3] = Math.max(box.high[i % 3]!, positions[i]!);
+  }
+  return box;
+}
+
+export const diagonalOfBox = ({ low, high }: Box): number =>
+  Math.hypot(...high.map((value, axis) => value - low[axis]!));
+
+/** The diagonal of the bounding box. */
+export const diagonalOf = ({ positions }: Pick<Surface, 'positions'>): number => diagonalOfBox(boxOf(positions));

@@ -33,8 +33,8 @@ addEventListener('message', async ({ data: request }: MessageEvent<Request>) => 
       timer = setTimeout(retime, kIdle, request);
   } catch (error) {
     const known = error instanceof CagecastError ? error : new CagecastError('internal', request.task, String(error));
-    const { code, fn, reason, argument } = known;
-    postMessage({ id, error: [code, fn, reason, { argument }] } satisfies Reply);
+    const { code, fn, reason, argument, at } = known;
+    postMessage({ id, error: [code, fn, reason, { argument, at }] } satisfies Reply);
   }
 });
 
