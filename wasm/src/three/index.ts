@@ -6,7 +6,7 @@
 import type { BufferGeometry, Object3D } from 'three';
 import type { TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
-import { type CutPart, decideAgain } from '../parts/cut-part.js';
+import type { CutPart } from '../parts/cut-part.js';
 import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
@@ -38,7 +38,6 @@ export {
   type Borders,
   type CutPart,
   cutGeometry,
-  decideAgain,
   deserialize,
   type Extracted,
   extract,
