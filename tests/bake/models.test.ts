@@ -14,7 +14,7 @@ import { init } from 'cagecast';
 import type { Image } from 'cagecast/bake';
 import { type BakeReport, bake, cagecast as cagecastTransform, type ImageCodec } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
-import { cagecast, packGlb, unpackGlb, validate } from '../js/glb.js';
+import { cagecast, packGlb, unpackGlb, validate } from '../support/gltf.js';
 import { ktx2Of } from '../support/ktx2';
 import { islandAt, islandCage, texturedBox } from '../support/models';
 import { picture } from './reference.js';

@@ -19,9 +19,9 @@ import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import { type OwnRedis, startRedis } from '../../examples/catalogue/redis.ts';
-import { validate } from '../js/glb.js';
 import { ball } from '../js/scenes.js';
 import { glbOf } from '../support/glb.js';
+import { validate } from '../support/gltf.js';
 
 const recipe = resolve('examples/catalogue');
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-catalogue-'));

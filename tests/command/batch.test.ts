@@ -18,8 +18,8 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { PNG } from 'pngjs';
-import { cagecast, glbOf, packGlb, unpackGlb } from '../js/glb.js';
 import { head } from '../js/scenes.js';
+import { cagecast, glbOf, packGlb, unpackGlb } from '../support/gltf.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-batch-'));
 const at = (...names: string[]) => join(folder, ...names);

@@ -5,8 +5,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { PNG } from 'pngjs';
-import { cagecast, glbOf, unpackGlb } from '../js/glb.js';
 import { head } from '../js/scenes.js';
+import { cagecast, glbOf, unpackGlb } from '../support/gltf.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-config-'));
 const at = (...names: string[]) => join(folder, ...names);

@@ -11,8 +11,8 @@ import { cagecast as cagecastTransform } from 'cagecast/gltf';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
-import { cagecast, GlbMaker, glbOf, unpackGlb, validate } from '../js/glb.js';
 import { head } from '../js/scenes.js';
+import { cagecast, GlbMaker, glbOf, unpackGlb, validate } from '../support/gltf.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-features-'));
 const at = (name: string) => join(folder, name);

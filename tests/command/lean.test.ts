@@ -10,8 +10,8 @@ import { init, type TransferResult, transfer } from 'cagecast';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder, MeshoptEncoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
-import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from '../js/glb.js';
 import { ball, head } from '../js/scenes.js';
+import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from '../support/gltf.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-lean-'));
 const at = (name: string) => join(folder, name);

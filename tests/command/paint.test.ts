@@ -9,8 +9,8 @@ import type { Mesh } from 'cagecast';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
-import { cagecast, glbOf, unpackGlb, validate } from '../js/glb.js';
 import { head } from '../js/scenes.js';
+import { cagecast, glbOf, unpackGlb, validate } from '../support/gltf.js';
 import { ktx2Of } from '../support/ktx2.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-paint-'));

@@ -6,9 +6,9 @@ import { setTimeout } from 'node:timers/promises';
 import type { Browser, Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { build, createServer } from 'vite';
-import { validate } from '../js/glb.js';
 import { launchChromium } from '../support/chromium.js';
 import { GlbMaker, tetrahedron } from '../support/glb.js';
+import { validate } from '../support/gltf.js';
 import { hostTools, installPacked, run, serve } from './install.js';
 
 const user = installPacked();

@@ -34,7 +34,7 @@ import {
   Vector3,
 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { assertNear, cagecast, GlbMaker, glbOf, storedUv, validate } from './glb.js';
+import { assertNear, cagecast, GlbMaker, glbOf, storedUv, validate } from '../support/gltf.js';
 import { head, modelFolders, random, readPlain } from './scenes.js';
 
 before(init);

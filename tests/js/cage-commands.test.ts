@@ -4,7 +4,7 @@ import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, 
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from './glb.js';
+import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from '../support/gltf.js';
 import { ball } from './scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-cages-'));

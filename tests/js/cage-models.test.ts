@@ -10,7 +10,7 @@ import * as gltf from 'cagecast/gltf';
 import * as three from 'cagecast/three';
 import type { Bone } from 'three';
 import { GLTFLoader, type GLTF as Loaded } from 'three/examples/jsm/loaders/GLTFLoader.js';
-import { GlbMaker, validate } from './glb.js';
+import { GlbMaker, validate } from '../support/gltf.js';
 import { ball } from './scenes.js';
 
 const near = (a: ArrayLike<number>, b: readonly number[], what: string) => {

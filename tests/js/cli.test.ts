@@ -31,7 +31,7 @@ import {
   storedUv,
   unpackGlb,
   validate,
-} from './glb.js';
+} from '../support/gltf.js';
 import { ball, head, join3d, modelFolders, random, readPlain } from './scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-cli-'));

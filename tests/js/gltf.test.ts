@@ -9,7 +9,7 @@ import { join as joinMeshes } from '@gltf-transform/functions';
 import { CagecastError, init, type Mesh, type TransferResult, transfer } from 'cagecast';
 import { type CagecastOptions, cagecast as cagecastTransform } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
-import { assertTransferred, cagecast, GlbMaker, glbOf, validate } from './glb.js';
+import { assertTransferred, cagecast, GlbMaker, glbOf, validate } from '../support/gltf.js';
 import { ball, head, modelFolders } from './scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-gltf-'));

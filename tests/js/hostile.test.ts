@@ -9,7 +9,7 @@ import type { GLTF } from '@gltf-transform/core';
 import { type CagecastError, init } from 'cagecast';
 import { checkGltf } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
-import { cagecast, type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from './glb.js';
+import { cagecast, type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from '../support/gltf.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-hostile-'));
 const at = (...names: string[]) => join(folder, ...names);

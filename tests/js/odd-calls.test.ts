@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { runInNewContext } from 'node:vm';
 import { type CagecastError, classify, cutBorders, init, type Mesh, project, splitVertices, transfer } from 'cagecast';
-import { tetrahedron } from './glb.js';
+import { tetrahedron } from '../support/gltf.js';
 
 const cage = tetrahedron(1);
 const target: Mesh = tetrahedron(0.9);

@@ -4,7 +4,7 @@ import { before, describe, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { CagecastError, init, transfer } from 'cagecast';
 import { loadTemplate, type TemplateName, templateNames } from 'cagecast/cages';
-import { cagecast } from './glb.js';
+import { cagecast } from '../support/gltf.js';
 import { readPlain } from './scenes.js';
 
 before(init);

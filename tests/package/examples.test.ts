@@ -4,7 +4,7 @@ import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, describe, test } from 'node:test';
-import { validate } from '../js/glb.js';
+import { validate } from '../support/gltf.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-examples-'));
 const sample = 'build/assets/lizard';

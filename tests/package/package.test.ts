@@ -17,9 +17,9 @@ import { extname, join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import { gzipSync } from 'node:zlib';
-import { glbOf } from '../js/glb.js';
 import { head } from '../js/scenes.js';
 import { launchChromium } from '../support/chromium.js';
+import { glbOf } from '../support/gltf.js';
 
 /** An empty folder of a user, into which the packed package is installed as npm does it, without a network. */
 const user = mkdtempSync(join(tmpdir(), 'cagecast-user-'));

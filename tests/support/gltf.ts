@@ -5,7 +5,7 @@ import { createRequire } from 'node:module';
 import type { Accessor, Primitive } from '@gltf-transform/core';
 import type { TransferResult } from 'cagecast';
 
-export * from '../support/glb.js';
+export * from './glb.js';
 
 /** Runs the command. */
 export function cagecast(...args: string[]): { status: number | null; stdout: string; stderr: string } {
