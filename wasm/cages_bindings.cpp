@@ -43,7 +43,7 @@ val ending(const Outcome& outcome) {
   return out;
 }
 
-const Outcome kOutOfMemory{Problem::outOfMemory, "not enough memory for this model"};
+const Outcome kOutOfMemory{Problem::outOfMemory, "not enough memory"};
 
 /// A model, copied from JavaScript.
 struct ModelArrays {

@@ -246,7 +246,7 @@ describe('makeCage', () => {
       ['findLandmarks', () => sync.findLandmarks(huge)],
       ['refineCage', () => sync.refineCage(cage, huge)],
     ] as const)
-      assert.throws(call, { code: 'outOfMemory', message: `${fn}: not enough memory for this model` });
+      assert.throws(call, { code: 'outOfMemory', message: `${fn}: not enough memory` });
     assert.deepEqual(sync.makeCage(head(), options), cage);
   });
 
