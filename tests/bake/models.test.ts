@@ -1,8 +1,6 @@
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { before, test } from 'node:test';
 import { Document, type Material, NodeIO, TextureInfo } from '@gltf-transform/core';
 import {
   ALL_EXTENSIONS,
@@ -17,10 +15,10 @@ import { PNG } from 'pngjs';
 import { cagecast, packGlb, unpackGlb, validate } from '../support/gltf.js';
 import { ktx2Of } from '../support/ktx2';
 import { islandAt, islandCage, texturedBox } from '../support/models';
+import { temporaryFolder } from '../support/temporary.js';
 import { picture } from './reference.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-bake-'));
-const at = (name: string) => join(folder, name);
+const { at } = temporaryFolder('bake');
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
 const size = 96;
 
@@ -43,7 +41,6 @@ before(async () => {
   writeFileSync(at('lean.png'), pngOf(picture(4, () => [204, 128, 230, 255])));
   writeFileSync(at('rough.png'), pngOf(picture(4, () => [255, 60, 90, 255])));
 });
-after(() => rmSync(folder, { recursive: true, force: true }));
 
 const texel = ({ data }: Image, x: number, y: number) => [...data.subarray(4 * (y * size + x), 4 * (y * size + x) + 4)];
 const imageOf = (texture: { getImage(): Uint8Array | null } | null): Image =>

@@ -15,14 +15,14 @@ import {
 } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { PNG } from 'pngjs';
 import { head } from '../js/scenes.js';
 import { cagecast, glbOf, packGlb, unpackGlb } from '../support/gltf.js';
+import { temporaryFolder } from '../support/temporary.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-batch-'));
-const at = (...names: string[]) => join(folder, ...names);
+const { at } = temporaryFolder('batch');
 const scene = head(6, 8);
 const target = glbOf({ ...scene.target, groups: undefined });
 
@@ -48,7 +48,6 @@ before(() => {
   writeFileSync(at('cage.glb'), glbOf(scene.cage));
   writeFileSync(at('away.glb'), glbOf({ ...scene.cage, positions: scene.cage.positions.map((x) => x + 9) }));
 });
-after(() => rmSync(folder, { recursive: true, force: true }));
 
 test('200 jobs, five of them broken, killed in the middle and resumed: every good job once, nothing half-written', async () => {
   const broken = [3, 40, 77, 120, 199];

@@ -1,15 +1,14 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { mkdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
 import { PNG } from 'pngjs';
 import { head } from '../js/scenes.js';
 import { cagecast, glbOf, unpackGlb } from '../support/gltf.js';
+import { temporaryFolder } from '../support/temporary.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-config-'));
-const at = (...names: string[]) => join(folder, ...names);
+const { at } = temporaryFolder('config');
 const config = at('cagecast.config.json');
 const scene = head(5, 8);
 const cage = ['--cage', at('cage.glb')];
@@ -27,7 +26,6 @@ before(() => {
   for (const name of ['ada', 'bao'])
     writeFileSync(at('assets/heads', `${name}.glb`), glbOf({ ...scene.target, groups: undefined }));
 });
-after(() => rmSync(folder, { recursive: true, force: true }));
 
 const ada = at('assets/heads/ada.glb');
 const set = (settings: object, path = config) => writeFileSync(path, JSON.stringify(settings));

@@ -1,9 +1,8 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
 import { Document, type GLTF, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS, KHRTextureTransform } from '@gltf-transform/extensions';
 import { init, transfer } from 'cagecast';
@@ -13,9 +12,9 @@ import { MeshoptDecoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
 import { head } from '../js/scenes.js';
 import { cagecast, GlbMaker, glbOf, unpackGlb, validate } from '../support/gltf.js';
+import { temporaryFolder } from '../support/temporary.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-features-'));
-const at = (name: string) => join(folder, name);
+const { at } = temporaryFolder('features');
 const scene = head(5, 12);
 const target = { ...scene.target, groups: undefined };
 const cage = ['--cage', at('cage.glb')];
@@ -30,7 +29,6 @@ before(async () => {
   writeFileSync(at('cage.glb'), glbOf(scene.cage));
   writeFileSync(at('target.glb'), glbOf(target));
 });
-after(() => rmSync(folder, { recursive: true, force: true }));
 
 const ok = (...args: string[]) => {
   const { status, stdout, stderr } = cagecast(...args);

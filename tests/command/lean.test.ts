@@ -1,8 +1,6 @@
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { readFileSync, statSync, writeFileSync } from 'node:fs';
+import { before, describe, test } from 'node:test';
 import { type Document, type GLTF, NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS, KHRDracoMeshCompression } from '@gltf-transform/extensions';
 import { meshopt, quantize } from '@gltf-transform/functions';
@@ -12,9 +10,9 @@ import { MeshoptDecoder, MeshoptEncoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
 import { ball, head } from '../js/scenes.js';
 import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from '../support/gltf.js';
+import { temporaryFolder } from '../support/temporary.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-lean-'));
-const at = (name: string) => join(folder, name);
+const { at } = temporaryFolder('lean');
 const scene = head(3, 24);
 const target = { ...scene.target, groups: undefined };
 let io: NodeIO;
@@ -33,7 +31,6 @@ before(async () => {
   writeFileSync(at('target.glb'), glbOf(target));
   writeFileSync(at('paint.png'), PNG.sync.write(new PNG({ width: 4, height: 4 })));
 });
-after(() => rmSync(folder, { recursive: true, force: true }));
 
 /** Transfers to a file and returns what is written: as it stands, and decoded. */
 async function written(name: string, ...flags: string[]) {

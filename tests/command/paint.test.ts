@@ -1,8 +1,6 @@
 import assert from 'node:assert/strict';
-import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { before, test } from 'node:test';
 import { type Document, NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import type { Mesh } from 'cagecast';
@@ -12,9 +10,9 @@ import { PNG } from 'pngjs';
 import { head } from '../js/scenes.js';
 import { cagecast, glbOf, unpackGlb, validate } from '../support/gltf.js';
 import { ktx2Of } from '../support/ktx2.js';
+import { temporaryFolder } from '../support/temporary.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-paint-'));
-const at = (...names: string[]) => join(folder, ...names);
+const { folder, at } = temporaryFolder('paint');
 const scene = head(5, 12);
 const target = at('target.glb');
 const cage = ['--cage', at('cage.glb')];
@@ -56,7 +54,6 @@ before(async () => {
   for (const [name, shade] of Object.entries({ paint: 90, other: 200, 'tile.1001': 1, 'tile.1002': 2 }))
     writeFileSync(at(`${name}.png`), png(shade));
 });
-after(() => rmSync(folder, { recursive: true, force: true }));
 
 const ok = (...args: string[]) => {
   const { status, stdout, stderr } = cagecast(...args);

@@ -1,19 +1,17 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { before, describe, test } from 'node:test';
 import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from '../support/gltf.js';
+import { temporaryFolder } from '../support/temporary.js';
 import { ball } from './scenes.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-cages-'));
-const at = (name: string) => join(folder, name);
+const { folder, at } = temporaryFolder('cages');
 const write = (name: string, data: Uint8Array | string) => {
   writeFileSync(at(name), data);
   return at(name);
 };
-after(() => rmSync(folder, { recursive: true, force: true }));
 
 const skin = () => ball([0, 0, 0], (_, theta) => 1 + 0.1 * Math.cos(theta), 12, 24);
 const eye = (x: number) => ball([x, -0.85, 0.2], () => 0.18, 8, 16);

@@ -6,16 +6,14 @@ import {
   existsSync,
   lstatSync,
   mkdirSync,
-  mkdtempSync,
   readdirSync,
   readFileSync,
   rmSync,
   symlinkSync,
   writeFileSync,
 } from 'node:fs';
-import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { before, describe, test } from 'node:test';
 import { type GLTF, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS, KHRMaterialsUnlit } from '@gltf-transform/extensions';
 import { init, type Mesh, presetOptions, transfer } from 'cagecast';
@@ -32,15 +30,14 @@ import {
   unpackGlb,
   validate,
 } from '../support/gltf.js';
+import { temporaryFolder } from '../support/temporary.js';
 import { ball, head, join3d, modelFolders, random, readPlain } from './scenes.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-cli-'));
-const at = (name: string) => join(folder, name);
+const { folder, at } = temporaryFolder('cli');
 const write = (name: string, data: Uint8Array | string) => {
   writeFileSync(at(name), data);
   return at(name);
 };
-after(() => rmSync(folder, { recursive: true, force: true }));
 
 const scene = head(1, 10);
 const paint = () => {

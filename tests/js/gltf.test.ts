@@ -1,8 +1,7 @@
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { before, describe, test } from 'node:test';
 import { Document, NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { join as joinMeshes } from '@gltf-transform/functions';
@@ -10,10 +9,10 @@ import { CagecastError, init, type Mesh, type TransferResult, transfer } from 'c
 import { type CagecastOptions, cagecast as cagecastTransform } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { assertTransferred, cagecast, GlbMaker, glbOf, validate } from '../support/gltf.js';
+import { temporaryFolder } from '../support/temporary.js';
 import { ball, head, modelFolders } from './scenes.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-gltf-'));
-const at = (name: string) => join(folder, name);
+const { at } = temporaryFolder('gltf');
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
 const scene = head(2, 10);
 const paint = PNG.sync.write(new PNG({ width: 4, height: 4 }));
@@ -29,7 +28,6 @@ before(async () => {
   await init();
   writeFileSync(at('paint.png'), paint);
 });
-after(() => rmSync(folder, { recursive: true, force: true }));
 
 describe('document.transform(cagecast(…))', () => {
   test('writes the UVs and zones of the package, and keeps the rest', async () => {

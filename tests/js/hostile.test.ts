@@ -1,23 +1,20 @@
 // Files that strangers may send: each is refused with one clear line, or read at a cost in proportion to its size.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { existsSync, mkdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { before, describe, test } from 'node:test';
 import type { GLTF } from '@gltf-transform/core';
 import { type CagecastError, init } from 'cagecast';
 import { checkGltf } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { cagecast, type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from '../support/gltf.js';
+import { temporaryFolder } from '../support/temporary.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-hostile-'));
-const at = (...names: string[]) => join(folder, ...names);
+const { at } = temporaryFolder('hostile');
 const write = (data: Uint8Array | string, ...names: string[]) => {
   writeFileSync(at(...names), data);
   return at(...names);
 };
-after(() => rmSync(folder, { recursive: true, force: true }));
 
 const whole = glbOf(tetrahedron(0.9), 'ball');
 before(async () => {
