@@ -1,15 +1,14 @@
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
-import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../support/axe';
+import { asset } from '../support/cages';
 import { filled, image, names, rows, savedTexture } from '../support/layers';
 import { modelArea } from '../support/picture';
 import { saved } from '../support/saved';
-import { drop, glb, inRepository, passed, Site, settled, shownCounts, shownError, shownParts } from '../support/site';
+import { drop, glb, passed, Site, settled, shownCounts, shownError, shownParts } from '../support/site';
 
-const asset = (name: string): Buffer => readFileSync(inRepository('build/assets/human-misaligned', name));
 const project = (name: string, buffer: Buffer) => ({ name, mimeType: '', buffer });
 
 let site: Site;
@@ -18,7 +17,10 @@ after(() => site?.close());
 
 /** Opens a model and a cage of the visitor's own. */
 async function openOwn(page: Page): Promise<void> {
-  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
+  await drop(page, [
+    glb('bust.glb', asset('human-misaligned', 'target.glb')),
+    glb('bust-cage.glb', asset('human-misaligned', 'cage.glb')),
+  ]);
   assert.equal(await settled(page), 'ready', await shownError(page));
 }
 
@@ -457,7 +459,10 @@ test('the works of open tabs are kept however many there are, and a work whose f
       await tab.goto(site.url);
       assert.equal(await settled(tab), 'ready', await shownError(tab));
     }
-    await drop(tab, [glb(`${name}.glb`, asset('target.glb')), glb(`${name}-cage.glb`, asset('cage.glb'))]);
+    await drop(tab, [
+      glb(`${name}.glb`, asset('human-misaligned', 'target.glb')),
+      glb(`${name}-cage.glb`, asset('human-misaligned', 'cage.glb')),
+    ]);
     assert.equal(await settled(tab), 'ready', await shownError(tab));
     await waitFor(tab, ...all.slice(0, at + 1));
   }

@@ -1,22 +1,11 @@
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../support/axe';
+import { asset } from '../support/cages';
 import { difference, frames, look, modelArea } from '../support/picture';
-import {
-  drop,
-  glb,
-  inRepository,
-  Site,
-  settled,
-  shownCounts,
-  shownError,
-  shownParts,
-  type Upload,
-} from '../support/site';
+import { drop, glb, Site, settled, shownCounts, shownError, shownParts, type Upload } from '../support/site';
 
-const asset = (...names: string[]): Buffer => readFileSync(inRepository('build/assets', ...names));
 const figure = (): Upload => glb('figure.glb', asset('human-body', 'model.glb'));
 
 /** The figure as a VRM 0 file, which looks the other way. */

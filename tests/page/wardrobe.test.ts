@@ -4,12 +4,12 @@ import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { faults } from '../support/axe';
+import { asset } from '../support/cages';
 import { glbOf, tetrahedron } from '../support/glb';
 import { saved, validModel } from '../support/saved';
-import { drop, glb, inRepository, Site, settled, shownError, type Upload, type Visit } from '../support/site';
+import { drop, glb, Site, settled, shownError, type Upload, type Visit } from '../support/site';
 import { unzip } from '../support/zip';
 
-const asset = (...names: string[]): Buffer => readFileSync(inRepository('build/assets', ...names));
 const figure = (name: string): Upload => glb(`${name}.glb`, asset('human-body', 'model.glb'));
 
 let site: Site;
