@@ -235,6 +235,65 @@ describe('document.transform(cagecast(…))', () => {
     assert.deepEqual(uvs, transfer(scene.cage, { ...scene.target, groups: undefined }).uvs);
   });
 
+  test('all meshes of a posed figure are taken in its bind pose, as the command takes them', async () => {
+    /** Skin held by hips and head, and an eye held by a joint on the head. @param times  How much larger they are stored. */
+    const figure = (isPosed: boolean, times: readonly [skin: number, eye: number]) => {
+      const maker = new GlbMaker();
+      const places = [0, 0.2, 0.5]; // along z, of the joints 0, 1 and 2
+      maker.node({ name: 'hips', children: [1] });
+      const turned = isPosed ? { rotation: [0, Math.sin(0.2), 0, Math.cos(0.2)] } : {};
+      maker.node({ name: 'head', translation: [0, 0, 0.2], ...turned, children: [2] }, false);
+      maker.node({ name: 'eye', translation: [0, 0, 0.3] }, false);
+      const skinned = (mesh: Mesh, joints: number[], jointAt: (z: number) => number, scale: number) => {
+        const vertices = mesh.positions.length / 3;
+        const [held, weights] = [new Uint8Array(4 * vertices), new Float32Array(4 * vertices)];
+        for (let v = 0; v < vertices; ++v) {
+          held[4 * v] = jointAt(mesh.positions[3 * v + 2]!);
+          weights[4 * v] = 1;
+        }
+        const inverses = joints.flatMap((joint) =>
+          [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -scale * places[joint]!, scale].map((x) => x / scale),
+        );
+        const number = maker.mesh({ ...mesh, positions: mesh.positions.map((x) => scale * x) });
+        Object.assign(maker.json.meshes[number]!.primitives[0]!.attributes, {
+          JOINTS_0: maker.accessor(held, 'VEC4'),
+          WEIGHTS_0: maker.accessor(weights, 'VEC4'),
+        });
+        maker.json.skins ??= [];
+        const inverseBindMatrices = maker.accessor(Float32Array.from(inverses), 'MAT4');
+        const skin = maker.json.skins.push({ joints, inverseBindMatrices }) - 1;
+        maker.node({ mesh: number, skin, translation: [9, 9, 9] });
+      };
+      skinned(scene.target, [0, 1], (z) => (z > 0.2 ? 1 : 0), times[0]);
+      // Tools that quantise give each mesh a copy of the whole skin, others only the joints that hold it.
+      const ofEye = times[1] === 1 ? [2] : [0, 1, 2];
+      const eye = ball([0.4, 0.1, 0.5], () => 0.2, 6, 9);
+      skinned(eye, ofEye, () => ofEye.length - 1, times[1]);
+      return maker.finish();
+    };
+    writeFileSync(at('cage.glb'), glbOf(scene.cage));
+    const transferred = async (glb: Uint8Array) => {
+      const document = await documentOf(glb);
+      await document.transform(cagecastTransform({ cage: scene.cage }));
+      writeFileSync(at('figure.glb'), glb);
+      const run = cagecast('transfer', at('figure.glb'), '--cage', at('cage.glb'), '-o', at('figure-out.glb'));
+      assert.equal(run.status, 0, run.stderr);
+      const [ours, theirs] = [document, await io.read(at('figure-out.glb'))].map((each) =>
+        primitives(each).map((primitive) =>
+          ['_NCZ', 'TEXCOORD_1'].map((semantic) => [...arrayOf(primitive, semantic)]),
+        ),
+      );
+      assert.deepEqual(ours, theirs, 'the function and the command');
+      return ours;
+    };
+    for (const times of [[1, 1] as const, [64, 32] as const])
+      assert.deepEqual(
+        await transferred(figure(true, times)),
+        await transferred(figure(false, times)),
+        `stored ${times} times as large`,
+      );
+  });
+
   test('skins and morph targets go with the overlay', async () => {
     const maker = new GlbMaker();
     const mesh = maker.mesh(scene.target);

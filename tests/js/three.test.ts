@@ -719,6 +719,135 @@ describe('applyTransfer', () => {
     assert.ok(painted.distanceTo(posed) < 1e-9);
   });
 
+  /**
+   * A figure as GLTFLoader makes it: its skin is held by hips and head, its eyes by a bone of their own on the head.
+   * @param times  How much larger skin and eyes are stored than they are shown.
+   */
+  const figure = (times: [skin: number, eyes: number] = [1, 1]) => {
+    const [hips, neck, eye] = [new Bone(), new Bone(), new Bone()];
+    neck.position.z = 0.2;
+    eye.position.set(0.3, 0.1, 0.3);
+    const scene3d = new Group().add(hips.add(neck.add(eye)));
+    scene3d.updateMatrixWorld(true);
+    const skinned = (mesh: Mesh, bones: Bone[], jointAt: (z: number) => number, scale: number) => {
+      const vertices = mesh.positions.length / 3;
+      const [held, weights] = [new Uint16Array(4 * vertices), new Float32Array(4 * vertices)];
+      for (let v = 0; v < vertices; ++v) {
+        held[4 * v] = jointAt(mesh.positions[3 * v + 2]!);
+        weights[4 * v] = 1;
+      }
+      const geometry = geometryOf({ ...mesh, positions: mesh.positions.map((x) => scale * x) })
+        .setAttribute('skinIndex', new BufferAttribute(held, 4))
+        .setAttribute('skinWeight', new BufferAttribute(weights, 4));
+      const child = new SkinnedMesh(geometry, new MeshStandardMaterial());
+      child.position.set(9, 9, 9); // which glTF ignores
+      const inverses = bones.map((bone) =>
+        bone.matrixWorld
+          .clone()
+          .invert()
+          .scale(new Vector3().setScalar(1 / scale)),
+      );
+      child.bind(new Skeleton(bones, inverses), new Matrix4());
+      scene3d.add(child);
+    };
+    skinned(scene.target, [hips, neck], (z) => (z > 0.2 ? 1 : 0), times[0]);
+    // Tools that quantise give each mesh a copy of the whole skin, others only the bones that hold it.
+    const ofEyes = times[1] === 1 ? [eye] : [hips, neck, eye];
+    const eyes = ball([0.4, 0.1, 0.5], () => 0.2, 6, 9);
+    skinned(eyes, ofEyes, () => ofEyes.length - 1, times[1]);
+    return { scene3d, hips, neck, eye };
+  };
+  const poses: Record<string, (of: ReturnType<typeof figure>) => void> = {
+    'the head turned': ({ neck }) => neck.rotation.set(0.3, 0.4, 0),
+    'the eyes turned as well': ({ neck, eye }) => [neck, eye].forEach((bone) => bone.rotation.set(0.1, 0.4, 0)),
+    'all in motion': ({ hips, neck, eye }) => {
+      hips.position.set(0.02, 0, 0.05);
+      [hips, neck, eye].forEach((bone) => bone.rotation.set(0.1, 0.2, 0));
+    },
+  };
+
+  test('all meshes of a posed figure are taken in its bind pose, wherever it stands', () => {
+    const places: Record<string, (of: Group) => void> = {
+      'at the origin': () => undefined,
+      'in another place': (of) => of.position.set(5, 0, 0),
+      'turned and larger': (of) => of.position.set(1, 2, 3) && of.rotation.set(0, 2, 0) && of.scale.setScalar(2),
+    };
+    for (const [where, place] of Object.entries(places))
+      for (const [how, pose] of Object.entries(poses)) {
+        const [rest, posed] = [figure(), figure()];
+        pose(posed);
+        for (const { scene3d } of [rest, posed]) place(scene3d);
+        assert.deepEqual(extract(posed.scene3d).mesh, extract(rest.scene3d).mesh, `${how}, ${where}`);
+        const around = [rest, posed].map(({ scene3d }) => new Group().add(scene3d));
+        for (const group of around) group.position.y = 3;
+        const [still, moved] = around.map((group) => extract(group).mesh);
+        assert.deepEqual(moved, still, `${how}, ${where}, in a group`);
+      }
+  });
+
+  test('so are those that are stored in another unit', () => {
+    for (const how of ['the head turned', 'the eyes turned as well']) {
+      const [rest, posed] = [figure([64, 32]), figure([64, 32])];
+      poses[how]!(posed);
+      const [expected, seen] = [rest, posed].map(({ scene3d }) => extract(scene3d).mesh.positions);
+      assert.ok(
+        seen!.every((x, i) => Math.abs(x - expected![i]!) < 1e-6),
+        how,
+      );
+    }
+  });
+
+  test('what was saved of a model is accepted while an animation plays', () => {
+    const [rest, posed] = [figure(), figure()];
+    const cage = meshOf(scene.cage);
+    const bytes = serialize(applyTransfer(rest.scene3d, cage));
+    posed.neck.rotation.x = 0.1;
+    const { result } = applyTransfer(posed.scene3d, undefined, { saved: deserialize(bytes) });
+    assert.deepEqual(result.uvs, applyTransfer(figure().scene3d, cage).result.uvs);
+  });
+
+  test('a figure that was bound where it stands, or has its bones inside, is taken there', () => {
+    const { positions } = scene.target;
+    const skinned = () => {
+      const geometry = geometryOf(scene.target)
+        .setAttribute(
+          'skinIndex',
+          new BufferAttribute(
+            Uint16Array.from({ length: (4 * positions.length) / 3 }, (_, i) => (i % 8 === 0 ? 1 : 0)),
+            4,
+          ),
+        )
+        .setAttribute(
+          'skinWeight',
+          new BufferAttribute(
+            Float32Array.from({ length: (4 * positions.length) / 3 }, (_, i) => (i % 4 === 0 ? 1 : 0)),
+            4,
+          ),
+        );
+      const [hips, neck] = [new Bone(), new Bone()];
+      return { mesh: new SkinnedMesh(geometry, new MeshStandardMaterial()), hips: hips.add(neck), neck };
+    };
+    const moved = (x: number) => positions.map((value, i) => (i % 3 === 0 ? value + x : value));
+    const inside = skinned();
+    inside.mesh.add(inside.hips);
+    inside.mesh.bind(new Skeleton([inside.hips, inside.neck]));
+    inside.mesh.position.x = 5;
+    inside.neck.rotation.x = 0.5;
+    assert.deepEqual(extract(new Group().add(inside.mesh)).mesh.positions, moved(5));
+    for (const bindMode of ['attached', 'detached'] as const) {
+      const beside = skinned();
+      const group = new Group().add(beside.mesh, beside.hips);
+      group.position.x = bindMode === 'attached' ? 5 : 0;
+      group.updateMatrixWorld(true);
+      beside.mesh.bindMode = bindMode;
+      beside.mesh.bind(new Skeleton([beside.hips, beside.neck]));
+      beside.neck.rotation.x = 0.5;
+      // Detached, the mesh alone says where it is.
+      if (bindMode === 'detached') beside.mesh.position.x = 5;
+      assert.deepEqual(extract(group).mesh.positions, moved(5), bindMode);
+    }
+  });
+
   test('the parts of a scene keep their own zones', () => {
     const skin = ball([0, 0, 0], () => 1, 12, 20);
     const tongue = ball([0, 0, 0], () => 0.3, 6, 9);

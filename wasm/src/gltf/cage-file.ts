@@ -47,8 +47,7 @@ function jointsOf(file: GltfFile, parts: readonly Part[]) {
         ? undefined
         : file.geometry.getRoot().listAccessors()[inverseBindMatrices]?.getArray();
     return held.map((node, j) => {
-      const inverse = inverses?.subarray(16 * j, 16 * j + 16);
-      const position = inverse?.length === 16 ? jointPlace(part.matrix, inverse) : undefined;
+      const position = inverses ? jointPlace(part.matrix, inverses.subarray(16 * j)) : undefined;
       return position ? { node, name: nameOf(node), position } : atNode(node);
     });
   });

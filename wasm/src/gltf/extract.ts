@@ -1,7 +1,7 @@
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
-import { skinMatrix, usedJoints } from '../parts/skin.js';
+import { type Skinned, skinMatrices } from '../parts/skin.js';
 import { InputError } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';
 import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
@@ -11,6 +11,7 @@ import {
   decodePositions,
   decodeTriangles,
   decodeUvs,
+  endOf,
   hasTriangles,
   joinPieces,
   type Piece,
@@ -71,8 +72,6 @@ export function partOf(parts: readonly Part[], vertex: number): Part | undefined
 function listParts(file: GltfFile): Part[] {
   const { meshes = [], nodes = [], materials = [] } = file.json;
   const parts: Part[] = [];
-  let firstVertex = 0;
-  let firstTriangle = 0;
   // An explicit stack: a chain of nodes may be longer than JavaScript's call stack.
   const matrices = worldMatrices(file.json);
   const stack = [...roots(file.json)].reverse();
@@ -94,24 +93,25 @@ function listParts(file: GltfFile): Part[] {
       const name = nodeDef.name ?? meshDef.name ?? `nodes[${node}]`;
       const material = primitive.material === undefined ? undefined : materials[primitive.material]?.name;
       const fullName = pieceName(name, material, meshDef.primitives.length);
-      const part: Part = {
+      const [firstVertex, firstTriangle] = endOf(parts);
+      parts.push({
         name: fullName,
         aliases: aliasesOf(nodeDef.name, meshDef.name, material, fullName),
         node,
         ...ref,
-        matrix: nodeDef.skin === undefined ? matrix : matrixOfSkin(file, nodeDef.skin, matrices, ref, localPositions),
+        matrix,
         firstVertex,
         vertexCount: localPositions.length / 3,
         firstTriangle,
         triangleCount: localIndices.length / 3,
         localPositions,
         localIndices,
-      };
-      parts.push(part);
-      firstVertex += part.vertexCount;
-      firstTriangle += part.triangleCount;
+      });
     });
   }
+  const skinned = parts.filter(({ node }) => nodes[node]!.skin !== undefined);
+  const skins = skinned.map((part) => skinOf(file, part, matrices));
+  skinMatrices(skins).forEach((matrix, s) => (skinned[s]!.matrix = matrix));
   return parts;
 }
 
@@ -129,27 +129,24 @@ function instanceOf(file: GltfFile, path: string, attributes: Record<string, unk
   });
 }
 
-/** Where a skin holds a primitive. */
-function matrixOfSkin(
-  file: GltfFile,
-  skin: number,
-  matrices: readonly Matrix[],
-  ref: PrimitiveRef,
-  positions: Float32Array,
-): Matrix {
-  const { joints = [], inverseBindMatrices } = file.json.skins![skin]!;
-  const accessor = (semantic: string) => accessorOf(file, ref, semantic);
-  const [held, weights] = [accessor('JOINTS_0')?.getArray(), accessor('WEIGHTS_0')?.getArray()];
+/** How its skin holds a part. */
+function skinOf(file: GltfFile, part: Part, matrices: readonly Matrix[]): Skinned<Matrix> {
+  const { joints = [], inverseBindMatrices } = file.json.skins![file.json.nodes![part.node]!.skin!]!;
   const inverses =
     inverseBindMatrices === undefined
       ? undefined
       : file.geometry.getRoot().listAccessors()[inverseBindMatrices]?.getArray();
-  if (!held || !weights || inverses === null || (inverses && inverses.length < 16 * joints.length)) return identity;
-  const products = joints.map((joint, j) =>
-    inverses ? multiply(matrices[joint]!, Array.from(inverses.subarray(16 * j, 16 * j + 16))) : matrices[joint]!,
-  );
-  const isFloat = accessor('POSITION')?.getArray() instanceof Float32Array;
-  return skinMatrix(products, usedJoints(held, weights), positions, isFloat, identity);
+  const arrayOf = (semantic: string) => accessorOf(file, part, semantic)?.getArray() ?? [];
+  return {
+    matrices: joints.map((joint, j) =>
+      inverses ? multiply(matrices[joint]!, inverses.subarray(16 * j)) : matrices[joint]!,
+    ),
+    held: arrayOf('JOINTS_0'),
+    weights: arrayOf('WEIGHTS_0'),
+    positions: part.localPositions,
+    isFloat: arrayOf('POSITION') instanceof Float32Array,
+    stored: [identity],
+  };
 }
 
 /** The matrix of each node to the scene, including nodes that are in no scene. */

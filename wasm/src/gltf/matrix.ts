@@ -1,4 +1,4 @@
-import { determinant } from '../parts/skin.js';
+import { determinant } from '../parts/affine.js';
 
 /** A 4×4 matrix, column by column, in double precision. */
 export type Matrix = readonly number[];
@@ -36,7 +36,7 @@ export function localMatrix(node: NodePlace): Matrix {
 }
 
 /** a · b. */
-export function multiply(a: Matrix, b: Matrix): Matrix {
+export function multiply(a: Matrix, b: ArrayLike<number>): Matrix {
   const out = new Array<number>(16);
   for (let column = 0; column < 4; ++column) {
     for (let row = 0; row < 4; ++row) {

@@ -11,7 +11,7 @@ export interface Piece {
   name: string;
   /** The names that select it: of its node, its mesh and its material, and `name`. */
   aliases: string[];
-  /** The matrix from its own space to the scene's, column-major; the identity for a skinned mesh. */
+  /** The matrix from its own space to the scene's, column-major; of a skinned mesh, in the bind pose. */
   matrix: Matrix;
   firstVertex: number;
   vertexCount: number;
@@ -21,6 +21,12 @@ export interface Piece {
   localPositions: Float32Array;
   /** Its triangles among its own vertices, with the winding that they have in the file. */
   localIndices: Uint32Array;
+}
+
+/** Where the next piece begins: how many vertices and triangles there are before it. */
+export function endOf(pieces: readonly Piece[]): [vertices: number, triangles: number] {
+  const last = pieces.at(-1);
+  return last ? [last.firstVertex + last.vertexCount, last.firstTriangle + last.triangleCount] : [0, 0];
 }
 
 /** The names among some, each once. */
@@ -43,10 +49,10 @@ export const hasTriangles = (mode: number): boolean => mode >= kTriangles && mod
  * precision and rounded once, and the winding of mirrored pieces is reversed.
  */
 export function joinPieces(pieces: readonly Piece[]): Mesh & { indices: Uint32Array } {
-  const last = pieces.at(-1);
-  const positions = new Float32Array(3 * (last ? last.firstVertex + last.vertexCount : 0));
-  const indices = new Uint32Array(3 * (last ? last.firstTriangle + last.triangleCount : 0));
-  const groups = new Uint32Array(positions.length / 3);
+  const [vertices, triangles] = endOf(pieces);
+  const positions = new Float32Array(3 * vertices);
+  const indices = new Uint32Array(3 * triangles);
+  const groups = new Uint32Array(vertices);
   pieces.forEach((piece, group) => {
     placePositions(piece, positions);
     placeIndices(piece, indices);

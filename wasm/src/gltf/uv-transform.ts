@@ -23,13 +23,12 @@ export function uvLayoutOf(info: GLTF.ITextureInfo | undefined): UvLayout {
 }
 
 /**
- * Where UVs are in the texture: scaled, rotated, then moved, as KHR_texture_transform says.
+ * Where UVs are in the texture: scaled, rotated, then moved, as KHR_texture_transform says; without it, where they are.
  * @throws {InputError} if a member is not of finite numbers.
  */
-export function transformUvs(
-  uvs: Float32Array,
-  { offset = [0, 0], rotation = 0, scale = [1, 1] }: Partial<UvTransform>,
-): Float32Array {
+export function transformUvs(uvs: Float32Array, transform: UvLayout['transform']): Float32Array {
+  if (!transform) return uvs;
+  const { offset = [0, 0], rotation = 0, scale = [1, 1] } = transform;
   for (const [name, value] of Object.entries({ offset, rotation: [rotation, 0], scale }))
     if (!(Array.isArray(value) && value.length === 2 && value.every(Number.isFinite)))
       throw new InputError(`${name} of KHR_texture_transform is not of finite numbers`);

@@ -1,4 +1,4 @@
-import { cross, dot } from '../inspect/geometry.js';
+import { column, type Vector, volume } from './affine.js';
 import { movePoints } from './points.js';
 
 /** A joint, as it is read from a model. */
@@ -12,23 +12,16 @@ export interface ReadJoint<Node> {
  * Where a joint is in the space of a skinned mesh that was extracted, in its bind pose.
  * @param matrix   From the mesh as it is stored to the space of the arrays, column by column.
  * @param inverse  The joint's inverse bind matrix: from the mesh as it is stored to the joint's space.
- * @returns `undefined` if `inverse` has no inverse.
+ * @returns `undefined` if `inverse` has no inverse, or less than 16 numbers.
  */
 export function jointPlace(
   matrix: ArrayLike<number>,
   inverse: ArrayLike<number>,
 ): ReadJoint<unknown>['position'] | undefined {
-  const column = (at: number) => [inverse[at]!, inverse[at + 1]!, inverse[at + 2]!] as const;
-  const [a, b, c, t] = [column(0), column(4), column(8), column(12)];
-  const volume = dot(a, cross(b, c));
+  const [a, b, c, t] = [0, 1, 2, 3].map((at) => column(inverse, at)) as [Vector, Vector, Vector, Vector];
   // By Cramer's rule: the point that `inverse` takes to the joint's origin.
-  const [x, y, z] = [dot(t, cross(b, c)), dot(a, cross(t, c)), dot(a, cross(b, t))].map((value) => -value / volume) as [
-    number,
-    number,
-    number,
-  ];
-  if (!Number.isFinite(x + y + z)) return undefined;
-  return movePoints(matrix, [x, y, z], [0, 0, 0]);
+  const point = [volume(t, b, c), volume(a, t, c), volume(a, b, t)].map((value) => -value / volume(a, b, c));
+  return point.every(Number.isFinite) ? movePoints(matrix, point, [0, 0, 0]) : undefined;
 }
 
 /**

@@ -78,7 +78,10 @@ function preparePart(
 }
 
 /** The triangles of a part, in its own numbers and winding. */
-function localIndices({ firstVertex, firstTriangle, triangleCount, mirrored }: PartRange, indices: Mesh['indices']) {
+export function localIndices(
+  { firstVertex, firstTriangle, triangleCount, mirrored }: PartRange,
+  indices: Mesh['indices'],
+) {
   const local = Uint32Array.from(
     indices.subarray(3 * firstTriangle, 3 * (firstTriangle + triangleCount)),
     (v) => v - firstVertex,

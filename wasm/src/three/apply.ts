@@ -1,7 +1,8 @@
 import { Box3, BufferAttribute, BufferGeometry, type Material, type Mesh, type Texture, Vector3 } from 'three';
-import { CagecastError, type Classification } from '../index.js';
+import type { Classification } from '../index.js';
 import type { PartRange, Prepared } from '../parts/prepare.js';
 import { describe } from './describe.js';
+import { wrong } from './error.js';
 import { type Extracted, isMirrored, type Part } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths } from './options.js';
 import { removeOverlay, removeOverlays } from './overlay.js';
@@ -34,11 +35,7 @@ function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
     parts.every(({ geometry }) => givenChannels.get(geometry) === channel || !geometry.hasAttribute(`uv${channel}`)),
   );
   if (free === undefined)
-    throw new CagecastError(
-      'badArgument',
-      'cagecast/three',
-      'target has uv1, uv2 and uv3 of its own; choose one to overwrite: options.channel',
-    );
+    throw wrong('target has uv1, uv2 and uv3 of its own; choose one to overwrite: options.channel');
   return free;
 }
 
@@ -85,14 +82,14 @@ const hasOthers = (geometry: BufferGeometry, state: BufferGeometry): boolean =>
 
 /** Node materials are for `WebGPURenderer`, which would show an overlay of ours without its paint. */
 function checkMaterials(parts: readonly Part[]): void {
-  for (const { name, mesh } of parts) {
-    if (![mesh?.material].flat().some((material) => (material as { isNodeMaterial?: true })?.isNodeMaterial)) continue;
-    throw new CagecastError(
-      'badOption',
-      'cagecast/three',
-      `"${name}" has a node material, which cannot show options.texture; give options.material`,
-    );
-  }
+  const isNode = (material: object | undefined) => (material as { isNodeMaterial?: true } | undefined)?.isNodeMaterial;
+  const part = parts.find(({ mesh }) => [mesh?.material].flat().some(isNode));
+  if (!part) return;
+  throw wrong(
+    `"${part.name}" has a node material, which cannot show options.texture; give options.material`,
+    undefined,
+    'badOption',
+  );
 }
 
 /**
@@ -118,7 +115,7 @@ export function* apply(
     const isChanged = hasOthers(geometry, states[p]!) || Object.keys(geometry.attributes).some(isLate);
     // The transfer of a mesh elsewhere may change the geometry: this one gets a copy of what it was.
     if ((mesh && mesh.geometry !== geometry) || (isChanged && !(mesh && isShownElsewhere(geometry, parts))))
-      throw new CagecastError('badArgument', 'cagecast/three', `the geometry of "${name}" was changed meanwhile`);
+      throw wrong(`the geometry of "${name}" was changed meanwhile`);
     return isChanged ? states[p]! : geometry;
   });
 
@@ -142,16 +139,7 @@ export function* apply(
     givenChannels.set(geometry, channel);
     paintings.set(geometry, painting);
   });
-  const ranges = rangesOf({ mesh: arrays, parts });
-  const shown = parts.map(
-    (part, p): ShownPart => ({
-      ...prepared.parts[p]!,
-      part,
-      range: ranges[p]!,
-      cosmetic: new Uint8Array(0),
-      overlay: undefined,
-    }),
-  );
+  const shown = parts.map((part, p): ShownPart => ({ ...prepared.parts[p]!, part, cosmetic: new Uint8Array(0) }));
   return new Shown(arrays, prepared, shown, { painting, material: options.material, channel });
 }
 
@@ -200,15 +188,13 @@ class Shown implements Applied {
   }
 
   readonly setTexture = (texture: Texture | undefined): void => {
-    if (texture && !texture.isTexture)
-      throw new CagecastError('badArgument', 'setTexture', `${describe(texture)} is not a Texture`);
+    if (texture && !texture.isTexture) throw wrong(`${describe(texture)} is not a Texture`, 'setTexture');
     this.#painting.texture = texture;
     this.#show();
   };
 
   readonly setOpacity = (opacity: number): void => {
-    if (!(opacity >= 0 && opacity <= 1))
-      throw new CagecastError('badArgument', 'setOpacity', `${opacity} is not a number from 0 to 1`);
+    if (!(opacity >= 0 && opacity <= 1)) throw wrong(`${opacity} is not a number from 0 to 1`, 'setOpacity');
     this.#painting.opacity = opacity;
     this.#painting.matrix.refresh(this.#painting);
   };

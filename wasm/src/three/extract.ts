@@ -10,10 +10,11 @@ import {
   type Texture,
   type Mesh as ThreeMesh,
 } from 'three';
-import { CagecastError, type Mesh } from '../index.js';
+import type { CagecastError, Mesh } from '../index.js';
 import { movePoints } from '../parts/points.js';
-import { skinMatrix, usedJoints } from '../parts/skin.js';
+import { type Skinned, skinMatrices } from '../parts/skin.js';
 import { describe } from './describe.js';
+import { wrong } from './error.js';
 
 /** One mesh of a scene, or a single geometry, and the ranges of its elements in the joined arrays. */
 export interface Part {
@@ -52,57 +53,64 @@ const identity = new Matrix4();
  */
 export function extract(object: Object3D | BufferGeometry, argument = 'target'): Extracted {
   const parts = listParts(object, argument);
-  const last = parts.at(-1);
-  const positions = new Float32Array(3 * (last ? last.firstVertex + last.vertexCount : 0));
-  const indices = new Uint32Array(3 * (last ? last.firstTriangle + last.triangleCount : 0));
-  const groups = new Uint32Array(positions.length / 3);
+  const [vertices, triangles] = endOf(parts);
+  const positions = new Float32Array(3 * vertices);
+  const indices = new Uint32Array(3 * triangles);
+  const groups = new Uint32Array(vertices);
   let group = 0;
   for (const part of parts) {
     placePositions(part, positions);
     placeIndices(part, indices, argument);
     group = placeGroups(part, groups, group);
   }
-  const uvs = readUvs(parts, positions.length / 3, argument);
+  const uvs = readUvs(parts, vertices, argument);
   return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts };
+}
+
+/** Where the next part begins: how many vertices and triangles there are before it. */
+function endOf(parts: readonly Part[]): [vertices: number, triangles: number] {
+  const last = parts.at(-1);
+  return last ? [last.firstVertex + last.vertexCount, last.firstTriangle + last.triangleCount] : [0, 0];
 }
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
 function listParts(object: Object3D | BufferGeometry, argument: string): Part[] {
   if (!isGeometry(object) && !isObject(object)) {
-    throw new CagecastError(
-      'badArgument',
-      'cagecast/three',
+    throw wrong(
       `${argument} is ${describe(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
+      undefined,
+      undefined,
       { argument },
     );
   }
   const parts: Part[] = [];
   const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
     if ((mesh && 'isBatchedMesh' in mesh) || 'isInstancedBufferGeometry' in geometry)
-      throw wrong(argument, name, 'is a batch or an instanced geometry; make each instance a mesh of its own');
+      throw wrongPart(argument, name, 'is a batch or an instanced geometry; make each instance a mesh of its own');
     const position = geometry.getAttribute('position') as Attribute | undefined;
     const vertexCount = position?.count ?? 0;
     const corners = geometry.index?.count ?? vertexCount;
     if (!vertexCount || !corners) return;
-    if (position!.itemSize !== 3) throw wrong(argument, name, `has positions of ${position!.itemSize} numbers, not 3`);
-    if (corners % 3 !== 0) throw wrong(argument, name, `has ${corners} corners, not 3 per triangle`);
+    if (position!.itemSize !== 3)
+      throw wrongPart(argument, name, `has positions of ${position!.itemSize} numbers, not 3`);
+    if (corners % 3 !== 0) throw wrongPart(argument, name, `has ${corners} corners, not 3 per triangle`);
     const morphs = Object.entries(geometry.morphAttributes).flatMap(([of, attributes]) =>
       attributes!.map((attribute): [string, { count: number }] => [`deltas of ${of}`, attribute]),
     );
     const attributes = Object.entries(geometry.attributes).filter(([, attribute]) => !isOfInstances(attribute));
     for (const [of, { count }] of [...attributes, ...morphs]) {
-      if (count < vertexCount) throw wrong(argument, name, `has ${count} ${of} for ${vertexCount} vertices`);
+      if (count < vertexCount) throw wrongPart(argument, name, `has ${count} ${of} for ${vertexCount} vertices`);
     }
-    const last = parts.at(-1);
+    const [firstVertex, firstTriangle] = endOf(parts);
     parts.push({
       name,
       mesh,
       geometry,
       matrix,
-      firstVertex: last ? last.firstVertex + last.vertexCount : 0,
+      firstVertex,
       vertexCount,
-      firstTriangle: last ? last.firstTriangle + last.triangleCount : 0,
+      firstTriangle,
       triangleCount: corners / 3,
     });
   };
@@ -111,47 +119,59 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
     return parts;
   }
   object.updateWorldMatrix(true, true);
+  const meshes: ThreeMesh[] = [];
   object.traverse((child) => {
     // Its bones may be elsewhere in the scene.
-    if (isSkinned(child as ThreeMesh))
-      for (const bone of (child as SkinnedMesh).skeleton?.bones ?? []) bone.updateWorldMatrix(true, false);
+    for (const bone of (child as SkinnedMesh).skeleton?.bones ?? []) bone.updateWorldMatrix(true, false);
     if (!isMesh(child) || [child, child.geometry, child.material].flat().some(isMarked)) return;
-    const name = child.name || child.parent?.name || `mesh ${parts.length}`;
-    if (!isInstanced(child) || child.count > 0) add(name, child, child.geometry, placeOf(child).clone());
+    if (!isInstanced(child) || child.count > 0) meshes.push(child);
+  });
+  placesOf(meshes).forEach((matrix, m) => {
+    const mesh = meshes[m]!;
+    add(mesh.name || mesh.parent?.name || `mesh ${parts.length}`, mesh, mesh.geometry, matrix);
   });
   return parts;
 }
 
 /**
- * Returns the matrix from a mesh to the scene: its world matrix; for a skinned mesh, the one by which its skeleton places it in
- * the bind pose; for an instanced mesh, that of the first instance. World matrices must be up to date. Cost: linear in the vertices
- * for a skinned mesh.
+ * Returns the matrices from meshes to the scene: their world matrices; for skinned meshes, those by which their skeletons place them
+ * in the bind pose; for instanced meshes, those of the first instance. World matrices must be up to date. Whether a skeleton has
+ * moved is told by all meshes that it holds, so give them together. Cost: linear in the vertices of skinned meshes.
  */
-export function placeOf(mesh: ThreeMesh): Matrix4 {
-  if (isInstanced(mesh)) {
-    const first = new Matrix4();
-    mesh.getMatrixAt(0, first);
-    return first.premultiply(mesh.matrixWorld);
-  }
-  if (!isSkinned(mesh)) return mesh.matrixWorld;
+export function placesOf(meshes: readonly ThreeMesh[]): Matrix4[] {
+  const held = skinMatrices(meshes.filter(isAttached).map(skinOf));
+  return meshes.map((mesh) => {
+    const place = new Matrix4();
+    if (isAttached(mesh)) return place.fromArray(held.shift()!);
+    if (isInstanced(mesh)) mesh.getMatrixAt(0, place);
+    return place.premultiply(mesh.matrixWorld);
+  });
+}
+
+/** Whether a mesh is where its skeleton is. A detached one is where it is itself. */
+const isAttached = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).bindMode === 'attached';
+
+function skinOf(mesh: SkinnedMesh): Skinned<ArrayLike<number>> {
   const { skeleton, bindMatrix, geometry } = mesh;
-  const [position, held, weights] = ['position', 'skinIndex', 'skinWeight'].map(
-    (name) => geometry.getAttribute(name) as Attribute | undefined,
-  );
+  const values = (name: string) => {
+    const attribute = geometry.getAttribute(name) as Attribute | undefined;
+    return attribute ? valuesOf(attribute) : new Float32Array();
+  };
+  const bones = skeleton?.bones ?? [];
   // Three applies the bind matrix to the vertices first.
-  if (!position || !held || !weights || !skeleton) return bindMatrix;
-  const products = skeleton.bones.map(
-    (bone, b) =>
-      new Matrix4().multiplyMatrices(bone.matrixWorld, skeleton.boneInverses[b]!).multiply(bindMatrix).elements,
-  );
-  const matrix = skinMatrix<ArrayLike<number>>(
-    products,
-    usedJoints(valuesOf(held), valuesOf(weights)),
-    valuesOf(position),
-    position.array instanceof Float32Array,
-    bindMatrix.elements,
-  );
-  return new Matrix4().fromArray(matrix);
+  const placedBy = (matrix: Matrix4) => matrix.clone().multiply(bindMatrix).elements;
+  // The model may have been moved since the mesh was bound, with all that is in it.
+  const moved: number[][] = [];
+  for (let above: Object3D | null | undefined = bones[0]; above; above = above.parent)
+    if (!('isBone' in above)) moved.push(placedBy(above.matrixWorld));
+  return {
+    matrices: bones.map((bone, b) => placedBy(bone.matrixWorld.clone().multiply(skeleton!.boneInverses[b]!))),
+    stored: [bindMatrix.elements, ...moved],
+    held: values('skinIndex'),
+    weights: values('skinWeight'),
+    positions: values('position'),
+    isFloat: geometry.getAttribute('position')?.array instanceof Float32Array,
+  };
 }
 
 /** The numbers of an attribute, decoded, to be read only: its own array if that has nothing else. */
@@ -184,13 +204,17 @@ export const isOfInstances = (attribute: object): boolean =>
     ?.isInstancedInterleavedBuffer === true;
 export const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
 
-const wrong = (argument: string, name: string, text: string, at?: number): CagecastError =>
-  new CagecastError('badArgument', 'cagecast/three', `${argument}: "${name}" ${text}`, { argument, at });
+const wrongPart = (argument: string, name: string, text: string, at?: number): CagecastError =>
+  wrong(`${argument}: "${name}" ${text}`, undefined, undefined, { argument, at });
 
 /** Whether a matrix mirrors, so that the winding of triangles must be reversed. */
 export const isMirrored = (matrix: Matrix4): boolean => matrix.determinant() < 0;
 
-function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, out: Float32Array): void {
+/** Writes the positions of a part in the scene's space. */
+export function placePositions(
+  { geometry, matrix, firstVertex, vertexCount }: Pick<Part, 'geometry' | 'matrix' | 'firstVertex' | 'vertexCount'>,
+  out: Float32Array,
+): void {
   // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
   const values = valuesOf(geometry.getAttribute('position') as Attribute).subarray(0, 3 * vertexCount);
   if (matrix.equals(identity)) out.set(values, 3 * firstVertex);
@@ -208,7 +232,12 @@ function placeIndices(
     // Checked part by part: in the joined arrays an index too large would point into the next part.
     const vertex = index?.getX(i) ?? i;
     if (vertex >= vertexCount)
-      throw wrong(argument, name, `has indices[${i}] = ${vertex}, which is out of range (${vertexCount} vertices)`, i);
+      throw wrongPart(
+        argument,
+        name,
+        `has indices[${i}] = ${vertex}, which is out of range (${vertexCount} vertices)`,
+        i,
+      );
     const corner = i % 3;
     out[3 * firstTriangle + i - corner + (mirrored && corner > 0 ? 3 - corner : corner)] = firstVertex + vertex;
   }
@@ -251,7 +280,7 @@ function readUvs(parts: readonly Part[], vertices: number, argument: string): Fl
     const { name, firstVertex, vertexCount } = part;
     const uv = uvsOf(part)!;
     if (uv.count !== vertexCount || uv.itemSize !== 2)
-      throw wrong(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers, not ${vertexCount} of 2`);
+      throw wrongPart(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers, not ${vertexCount} of 2`);
     uvs.set(valuesOf(uv), 2 * firstVertex);
   }
   return uvs;

@@ -13,7 +13,7 @@ import { prepareParts } from '../worker/index.js';
 import { apply, rangesOf, statesOf } from './apply.js';
 import { type Calling, nextTask, runInTasks } from './async.js';
 import { cutGeometry } from './cut.js';
-import { type Extracted, extract, type Part, placeOf } from './extract.js';
+import { type Extracted, extract, type Part, placesOf } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths, checkOptions, transferOptions } from './options.js';
 import { paintAttribute } from './paint.js';
 import { checkSaved, deserialize, keyOf, remember, type Saved, serialize } from './saved.js';
@@ -45,7 +45,7 @@ export {
   type PartRange,
   type Prepared,
   paintAttribute,
-  placeOf,
+  placesOf,
   type Saved,
   type SplitPart,
   serialize,

@@ -1,8 +1,9 @@
 import { BufferAttribute, BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
 import * as cages from '../cages/index.js';
-import { CagecastError, type Mesh } from '../index.js';
+import type { Mesh } from '../index.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
 import { readExtras } from '../parts/template.js';
+import { wrong } from './error.js';
 import { extract, isMesh, isSkinned, type Part } from './extract.js';
 
 /**
@@ -48,9 +49,7 @@ export function cageModel(model: Loaded): cages.CageModel {
 export function cageTemplate(model: Loaded): cages.Template {
   const { mesh, parts } = extract(objectOf(model), 'template');
   if (mesh.uvs === undefined)
-    throw new CagecastError('missingUvs', 'cageTemplate', 'template has a mesh without the attribute uv', {
-      argument: 'template',
-    });
+    throw wrong('template has a mesh without the attribute uv', 'cageTemplate', 'missingUvs', { argument: 'template' });
   const sources = parts.flatMap(({ name, mesh: of, geometry, matrix, firstVertex, vertexCount }) =>
     // The parent of the meshes of one glTF mesh has the extras of its node.
     [
@@ -65,7 +64,7 @@ export function cageTemplate(model: Loaded): cages.Template {
       vertexCount,
     })),
   );
-  const extras = readExtras(sources, (text) => new CagecastError('badArgument', 'cageTemplate', text));
+  const extras = readExtras(sources, (text) => wrong(text, 'cageTemplate'));
   return { positions: mesh.positions, indices: mesh.indices, uvs: mesh.uvs, ...extras };
 }
 

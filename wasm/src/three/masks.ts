@@ -1,6 +1,8 @@
 import type { BufferGeometry, Object3D, Texture } from 'three';
 import { type Image, maskTriangles, maskVertices } from '../bake/index.js';
-import { CagecastError, type Masks } from '../index.js';
+import type { Masks } from '../index.js';
+import { localIndices } from '../parts/prepare.js';
+import { wrong } from './error.js';
 import { extract, valuesOf } from './extract.js';
 
 /** Where the masks of a model come from. */
@@ -27,17 +29,14 @@ export function modelMasks(
   { never, always, attribute, ...others }: ModelMasks,
 ): Masks {
   for (const name in others)
-    throw new CagecastError(
-      'badOption',
-      'modelMasks',
-      `options.${name} is not an option; there are: never, always, attribute`,
-    );
+    throw wrong(`options.${name} is not an option; there are: never, always, attribute`, 'modelMasks', 'badOption');
   const { mesh, parts } = extract(target);
   const images = { never: never && imageOf('never', never), always: always && imageOf('always', always) };
   const vertices = new Int8Array(mesh.positions.length / 3);
   const triangles = new Int8Array(mesh.indices.length / 3);
   const wanted = { uv: Boolean(never || always), [attribute ?? '']: attribute !== undefined };
-  for (const { geometry, firstVertex, vertexCount, firstTriangle, triangleCount } of parts) {
+  for (const part of parts) {
+    const { geometry, firstVertex, vertexCount, firstTriangle } = part;
     const values = (name: string, ...sizes: number[]) => {
       const found = geometry.getAttribute(name);
       if (!sizes.includes(found?.itemSize)) return undefined;
@@ -48,14 +47,11 @@ export function modelMasks(
     if (colors) vertices.set(maskVertices(colors, (colors.length / vertexCount) as 3 | 4), firstVertex);
     const uvs = never || always ? values('uv', 2) : undefined;
     if (!uvs) continue;
-    const indices = mesh.indices
-      .subarray(3 * firstTriangle, 3 * (firstTriangle + triangleCount))
-      .map((v) => v - firstVertex);
+    const indices = localIndices({ ...part, mirrored: false }, mesh.indices);
     triangles.set(maskTriangles({ indices, uvs }, images), firstTriangle);
   }
   const missing = Object.keys(wanted).find((name) => wanted[name]);
-  if (missing !== undefined)
-    throw new CagecastError('badArgument', 'modelMasks', `no part of target has the attribute ${missing}`);
+  if (missing !== undefined) throw wrong(`no part of target has the attribute ${missing}`, 'modelMasks');
   return { vertices, triangles };
 }
 
@@ -63,10 +59,10 @@ export function modelMasks(
 function imageOf(name: string, given: Texture | Image): Image {
   if (!('isTexture' in given)) return given;
   const image = (given.image ?? {}) as HTMLImageElement & { data?: Image['data'] };
-  const wrong = (text: string) => new CagecastError('badArgument', 'modelMasks', `the texture "${name}" ${text}`);
+  const unreadable = (text: string) => wrong(`the texture "${name}" ${text}`, 'modelMasks');
   // The width of an element is that of its place on the page.
   const { naturalWidth: width = image.width, naturalHeight: height = image.height } = image;
-  if (!(width > 0 && height > 0)) throw wrong('is not loaded yet');
+  if (!(width > 0 && height > 0)) throw unreadable('is not loaded yet');
   let { data } = image;
   if (data === undefined) {
     try {
@@ -74,10 +70,10 @@ function imageOf(name: string, given: Texture | Image): Image {
       context.drawImage(image, 0, 0);
       data = context.getImageData(0, 0, width, height).data;
     } catch (error) {
-      throw wrong(`cannot be read: ${(error as Error).message}`);
+      throw unreadable(`cannot be read: ${(error as Error).message}`);
     }
   }
-  if (data.length !== 4 * width * height) throw wrong(`has ${data.length} values, not 4 bytes per pixel`);
+  if (data.length !== 4 * width * height) throw unreadable(`has ${data.length} values, not 4 bytes per pixel`);
   if (!given.flipY) return { width, height, data };
   const [row, flipped] = [4 * width, new Uint8Array(data.length)];
   for (let at = 0; at < data.length; at += row) flipped.set(data.subarray(at, at + row), data.length - row - at);

@@ -1,7 +1,8 @@
 import type { Material, Mesh, Texture } from 'three';
-import { CagecastError, type Classification, type TransferOptions, type TransferResult } from '../index.js';
+import type { Classification, TransferOptions, TransferResult } from '../index.js';
 import type { Borders } from '../parts/borders-option.js';
 import { describe } from './describe.js';
+import { wrong } from './error.js';
 import type { Part } from './extract.js';
 import type { Saved } from './saved.js';
 
@@ -90,8 +91,7 @@ export interface Applied {
 /** @throws {CagecastError} `badOption` that names the option and its value. */
 export function checkOptions(options: ApplyOptions): void {
   const check = (fits: boolean | undefined, name: string, value: unknown, what: string) => {
-    if (!fits)
-      throw new CagecastError('badOption', 'cagecast/three', `options${name} is ${describe(value)}, not ${what}`);
+    if (!fits) throw wrong(`options${name} is ${describe(value)}, not ${what}`, undefined, 'badOption');
   };
   check(typeof options === 'object' && options !== null, '', options, 'an object');
   const { texture, material, channel = 1, opacity = 1, feather = 0, saved } = options;
@@ -114,9 +114,7 @@ export function checkLengths(name: string, given: object | null, lengths: Record
   for (const [field, length] of Object.entries(lengths)) {
     const found = (given as Record<string, ArrayLike<unknown> | undefined> | null)?.[field]?.length;
     if (found !== length)
-      throw new CagecastError(
-        'badArgument',
-        'cagecast/three',
+      throw wrong(
         `${name}.${field} ${found === undefined ? 'is not an array' : `has ${found} entries`}, the target needs ${length}${hint}`,
       );
   }

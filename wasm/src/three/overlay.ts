@@ -13,8 +13,19 @@ import { disown, disposeOwn, own } from './own-attributes.js';
 
 /** What an overlay has of its base at any time, not only when it was made. */
 const kFollowed = [
-  ...['layers', 'renderOrder', 'frustumCulled', 'receiveShadow', 'morphTargetInfluences', 'morphTargetDictionary'],
-  ...['skeleton', 'bindMode', 'bindMatrix', 'bindMatrixInverse', 'instanceMatrix', 'instanceColor', 'count'],
+  'layers',
+  'renderOrder',
+  'frustumCulled',
+  'receiveShadow',
+  'morphTargetInfluences',
+  'morphTargetDictionary',
+  'skeleton',
+  'bindMode',
+  'bindMatrix',
+  'bindMatrixInverse',
+  'instanceMatrix',
+  'instanceColor',
+  'count',
   'morphTexture',
 ];
 

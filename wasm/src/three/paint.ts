@@ -135,8 +135,8 @@ export class PaintMatrix extends Matrix3 {
     elements[2] = opacity;
     elements[5] = feather;
     // The GPU decodes all but videos. What is drawn, as by `cagecast/three/layers`, may be premultiplied; it is no video.
-    const isDrawn = (texture as { isRenderTargetTexture?: boolean }).isRenderTargetTexture === true;
-    const isVideo = (texture as { isVideoTexture?: true }).isVideoTexture === true;
+    const isDrawn = (texture as { isRenderTargetTexture?: boolean }).isRenderTargetTexture;
+    const isVideo = (texture as { isVideoTexture?: true }).isVideoTexture;
     elements[8] = isDrawn && texture.premultiplyAlpha ? 2 : isVideo && texture.colorSpace === 'srgb' ? 1 : 0;
   }
 }

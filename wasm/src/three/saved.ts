@@ -1,7 +1,8 @@
-import { CagecastError, type Mesh, type TransferOptions } from '../index.js';
+import type { Mesh, TransferOptions } from '../index.js';
 import { hash, pack, unpack } from '../parts/pack.js';
 import type { Prepared } from '../parts/prepare.js';
 import { describe } from './describe.js';
+import { wrong } from './error.js';
 import type { Extracted } from './extract.js';
 import type { Applied } from './options.js';
 
@@ -21,7 +22,7 @@ const made = new WeakMap<Applied, () => Saved>();
  */
 export function serialize(applied: Applied): Uint8Array<ArrayBuffer> {
   const saved = made.get(applied);
-  if (!saved) throw new CagecastError('badArgument', 'serialize', 'applied is not what applyTransfer returned');
+  if (!saved) throw wrong('applied is not what applyTransfer returned', 'serialize');
   return pack(saved());
 }
 
@@ -30,8 +31,7 @@ export function serialize(applied: Applied): Uint8Array<ArrayBuffer> {
  * @throws {CagecastError} `badArgument` if the bytes are something else, damaged or of another version.
  */
 export function deserialize(bytes: Uint8Array): Saved {
-  if (!(bytes instanceof Uint8Array))
-    throw new CagecastError('badArgument', 'deserialize', `bytes is ${describe(bytes)}, not a Uint8Array`);
+  if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${describe(bytes)}, not a Uint8Array`, 'deserialize');
   return unpack(bytes) as Saved;
 }
 
@@ -51,11 +51,7 @@ const targetKey = ({ mesh, parts }: Extracted): string =>
 /** @throws {CagecastError} `badArgument` if what was saved is of another target. */
 export function checkSaved({ key, prepared }: Saved, target: Extracted): Prepared {
   if (!key.startsWith(`${targetKey(target)}-`))
-    throw new CagecastError(
-      'badArgument',
-      'cagecast/three',
-      'options.saved is of another target or state of it; load and place it as it was',
-    );
+    throw wrong('options.saved is of another target or state of it; load and place it as it was');
   return prepared;
 }
 

@@ -1,12 +1,11 @@
 import { BufferAttribute, type BufferGeometry, type Material, type Mesh } from 'three';
 import type { Mesh as Arrays, Classification } from '../index.js';
-import { CagecastError } from '../index.js';
 import { borderDistances } from '../parts/border-distance.js';
 import { decideAgain } from '../parts/cut-part.js';
-import { movePoints } from '../parts/points.js';
-import type { PartRange, PreparedPart } from '../parts/prepare.js';
+import type { PreparedPart } from '../parts/prepare.js';
 import { paintedVertices, separatePaint, withCopies } from '../parts/separate-paint.js';
-import { type Part, valuesOf } from './extract.js';
+import { wrong } from './error.js';
+import { type Part, placePositions } from './extract.js';
 import { makeOverlay, overlayMaterial, showTriangles } from './overlay.js';
 import { own } from './own-attributes.js';
 import { paintAttribute } from './paint.js';
@@ -19,10 +18,9 @@ export const zoneAttribute = '_ncz';
 /** A part of the target, and what is shown on it. */
 export interface ShownPart extends PreparedPart {
   part: Part;
-  range: PartRange;
   /** 1 per triangle: whether it may be painted now. */
   cosmetic: Uint8Array;
-  overlay: Mesh | undefined;
+  overlay?: Mesh | undefined;
 }
 
 /** The geometry of a part as it is now: three-vrm, for example, replaces those whose morph targets it combines. */
@@ -30,11 +28,7 @@ function geometryOf({ part, split }: ShownPart): BufferGeometry {
   const geometry = part.mesh?.geometry ?? part.geometry;
   const [found, count] = [geometry.getAttribute('position').count, split.sources.length];
   if (found !== count)
-    throw new CagecastError(
-      'badArgument',
-      'cagecast/three',
-      `the geometry of "${part.name}" has ${found} vertices, it had ${count}; transfer again`,
-    );
+    throw wrong(`the geometry of "${part.name}" has ${found} vertices, it had ${count}; transfer again`);
   return geometry;
 }
 
@@ -45,10 +39,10 @@ export function writeZones(
   isOther: Uint8Array,
   indices: Arrays['indices'],
 ): void {
-  const { range, pieces, split } = shown;
-  const { firstVertex, vertexCount, firstTriangle, triangleCount } = range;
+  const { part, pieces, split } = shown;
+  const { firstVertex, vertexCount, firstTriangle, triangleCount } = part;
   const { zones, cosmeticTriangles } = pieces
-    ? decideAgain(pieces, range, indices, isOther, now)
+    ? decideAgain(pieces, part, indices, isOther, now)
     : {
         zones: now.zones.subarray(firstVertex, firstVertex + vertexCount),
         cosmeticTriangles: now.cosmeticTriangles.slice(firstTriangle, firstTriangle + triangleCount),
@@ -91,12 +85,7 @@ function splitAtPaint(shown: ShownPart): void {
   const copies = separatePaint(split.indices, cosmetic, count);
   if (!copies) return;
   const geometry = geometryOf(shown);
-  const known = {
-    uvs: split.uvs,
-    sources: Uint32Array.from({ length: count }, (_, v) => v),
-    indices: split.indices,
-    copies: 0,
-  };
+  const known = { ...split, sources: Uint32Array.from({ length: count }, (_, v) => v), copies: 0 };
   const remade = atOnce(remake(geometry, { pieces: undefined, split: withCopies(known, copies) }, 0));
   if (remade) replace(geometry, remade);
   shown.split = withCopies(split, copies);
@@ -116,10 +105,11 @@ function distancesOf(parts: readonly ShownPart[], reach: number): Float32Array[]
   const cosmetic = new Uint8Array(corners / 3);
   let corner = 0;
   parts.forEach((shown, p) => {
-    const values = valuesOf(geometryOf(shown).getAttribute('position'));
-    movePoints(shown.part.matrix.elements, values, positions, 3 * firsts[p]!);
+    const { part, split } = shown;
+    const range = { firstVertex: firsts[p]!, vertexCount: split.sources.length };
+    placePositions({ geometry: geometryOf(shown), matrix: part.matrix, ...range }, positions);
     cosmetic.set(shown.cosmetic, corner / 3);
-    for (const vertex of shown.split.indices) indices[corner++] = firsts[p]! + vertex;
+    for (const vertex of split.indices) indices[corner++] = firsts[p]! + vertex;
   });
   const all = borderDistances(positions, indices, cosmetic, reach);
   return parts.map(({ split }, p) => all.subarray(firsts[p]!, firsts[p]! + split.sources.length));

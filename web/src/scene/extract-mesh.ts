@@ -1,4 +1,4 @@
-import { placeOf } from 'cagecast/three';
+import { placesOf } from 'cagecast/three';
 import {
   type BufferAttribute,
   type InterleavedBufferAttribute,
@@ -94,8 +94,10 @@ function listPrimitives(root: Object3D, nameOf: (mesh: Mesh) => string | undefin
   const primitives: Primitive[] = [];
   let firstVertex = 0;
   let firstTriangle = 0;
-  root.traverse((object) => {
-    if (!(object instanceof Mesh)) return;
+  const meshes: Mesh[] = [];
+  root.traverse((object) => object instanceof Mesh && meshes.push(object));
+  const places = placesOf(meshes);
+  meshes.forEach((object, m) => {
     const name = nameOf(object) || object.name || object.parent?.name || `part ${primitives.length}`;
     if ('isInstancedMesh' in object)
       throw new Error(`“${name}” uses instancing, which is not supported; give each instance a node of its own`);
@@ -106,7 +108,7 @@ function listPrimitives(root: Object3D, nameOf: (mesh: Mesh) => string | undefin
       throw new Error(`“${name}” has ${cornerCount} triangle corners, which is not a multiple of three`);
     }
     const triangleCount = cornerCount / 3;
-    const matrix = placeOf(object).clone();
+    const matrix = places[m]!;
     primitives.push({
       mesh: object,
       name,

@@ -1,6 +1,7 @@
 import { type MaskImages, maskTriangles, maskVertices } from '../../bake/index.js';
 import type { Masks } from '../../index.js';
 import { InputError } from '../input-error.js';
+import { endOf } from '../pieces.js';
 import { transformUvs } from '../uv-transform.js';
 import type { BakeModel } from './plan.js';
 
@@ -28,11 +29,9 @@ export function masksOf<Material, Texture>(
   { images, colors }: { images: MaskImages | undefined; colors: string | undefined },
 ): Masks | undefined {
   const { parts } = model;
-  const last = parts.at(-1);
   const shown = images?.never || images?.always ? images : undefined;
-  if (!last || (!shown && colors === undefined)) return given;
-  const vertices = new Int8Array(last.firstVertex + last.vertexCount);
-  const triangles = new Int8Array(last.firstTriangle + last.triangleCount);
+  if (parts.length === 0 || (!shown && colors === undefined)) return given;
+  const [vertices, triangles] = endOf(parts).map((count) => new Int8Array(count)) as [Int8Array, Int8Array];
   let hasUvs = false;
   let hasColors = false;
   for (const part of parts) {
@@ -46,7 +45,7 @@ export function masksOf<Material, Texture>(
     const stored = shown && model.uvsOf(part, use?.set ?? 'TEXCOORD_0');
     if (!stored) continue;
     hasUvs = true;
-    const uvs = use?.transform ? transformUvs(stored, use.transform) : stored;
+    const uvs = transformUvs(stored, use?.transform);
     triangles.set(maskTriangles({ indices: part.localIndices, uvs }, shown), part.firstTriangle);
   }
   if (colors !== undefined && !hasColors) throw new InputError(`no part has ${colors} of 3 or 4 numbers`);

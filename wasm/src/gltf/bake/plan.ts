@@ -273,7 +273,7 @@ export function layoutOf<Material, Texture>(
   };
   return {
     name: part.name,
-    to: ofCorners(transform ? transformUvs(stored, transform) : stored, 2),
+    to: ofCorners(transformUvs(stored, transform), 2),
     from: gather(split.uvs, 2, split.indices),
     painted: cosmetic,
     positions: ofCorners(part.localPositions, 3),

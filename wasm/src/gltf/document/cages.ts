@@ -142,8 +142,7 @@ function jointsOf(document: Document, parts: readonly DocumentPart[], bones: Map
     const skin = holder.getSkin();
     const inverses = skin?.getInverseBindMatrices()?.getArray();
     return (skin?.listJoints() ?? []).map((node, j) => {
-      const inverse = inverses?.subarray(16 * j, 16 * j + 16);
-      const position = inverse?.length === 16 ? jointPlace(matrix, inverse) : undefined;
+      const position = inverses ? jointPlace(matrix, inverses.subarray(16 * j)) : undefined;
       return position ? { node, name: nameOf(node), position } : atNode(node);
     });
   });

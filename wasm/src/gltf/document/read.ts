@@ -5,20 +5,20 @@ import type {
   ExtensionProperty,
   Node,
   Primitive,
-  Skin,
   TextureInfo,
 } from '@gltf-transform/core';
 import type { Mesh } from '../../index.js';
-import { skinMatrix, usedJoints } from '../../parts/skin.js';
+import { type Skinned, skinMatrices } from '../../parts/skin.js';
 import { InputError } from '../input-error.js';
 import { firstInstance, instancing } from '../instancing.js';
-import { identity, localMatrix, type Matrix, multiply } from '../matrix.js';
+import { identity, type Matrix, multiply } from '../matrix.js';
 import { isMarked } from '../overlay.js';
 import {
   aliasesOf,
   decodePositions,
   decodeTriangles,
   decodeUvs,
+  endOf,
   hasTriangles,
   joinPieces,
   type Piece,
@@ -91,24 +91,21 @@ function listParts(document: Document): DocumentPart[] {
   const root = document.getRoot();
   const meshNumbers = new Map(root.listMeshes().map((mesh, m) => [mesh, m]));
   const scene = root.getDefaultScene() ?? root.listScenes()[0];
-  const roots = scene ? scene.listChildren() : root.listNodes().filter((node) => node.getParentNode() === null);
+  const stack = scene ? scene.listChildren() : root.listNodes().filter((node) => node.getParentNode() === null);
   const parts: DocumentPart[] = [];
-  const stack = roots.map((node) => ({ node, parent: identity })).reverse();
-  for (let next = stack.pop(); next; next = stack.pop()) {
-    const { node, parent } = next;
-    let matrix = multiply(
-      parent,
-      localMatrix({ translation: node.getTranslation(), rotation: node.getRotation(), scale: node.getScale() }),
-    );
-    for (const child of node.listChildren().reverse()) stack.push({ node: child, parent: matrix });
-    const [mesh, skin] = [node.getMesh(), node.getSkin()];
+  stack.reverse();
+  for (let node = stack.pop(); node; node = stack.pop()) {
+    stack.push(...node.listChildren().reverse());
+    const mesh = node.getMesh();
+    if (!mesh) continue;
+    let matrix: Matrix = node.getWorldMatrix();
     const instances = node.getExtension(instancing) as InstancedMesh | null;
-    if (mesh && instances)
+    if (instances)
       matrix = multiply(
         matrix,
         firstInstance(`"${node.getName() || mesh.getName()}"`, (semantic) => instances.getAttribute(semantic)),
       );
-    mesh?.listPrimitives().forEach((primitive, p) => {
+    mesh.listPrimitives().forEach((primitive, p) => {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');
       if (position === null || !hasTriangles(primitive.getMode()) || isOverlay(primitive)) return;
@@ -127,40 +124,42 @@ function listParts(document: Document): DocumentPart[] {
       const name = node.getName() || mesh.getName() || place;
       const material = primitive.getMaterial()?.getName();
       const fullName = pieceName(name, material, mesh.listPrimitives().length);
-      const last = parts.at(-1);
+      const [firstVertex, firstTriangle] = endOf(parts);
       parts.push({
         name: fullName,
         aliases: aliasesOf(node.getName(), mesh.getName(), material, fullName),
         node,
         mesh,
         primitive,
-        matrix: skin === null ? matrix : matrixOfSkin(skin, primitive, localPositions),
-        firstVertex: last ? last.firstVertex + last.vertexCount : 0,
+        matrix,
+        firstVertex,
         vertexCount: localPositions.length / 3,
-        firstTriangle: last ? last.firstTriangle + last.triangleCount : 0,
+        firstTriangle,
         triangleCount: localIndices.length / 3,
         localPositions,
         localIndices,
       });
     });
   }
+  const skinned = parts.filter(({ node }) => node.getSkin());
+  skinMatrices(skinned.map(skinOf)).forEach((matrix, s) => (skinned[s]!.matrix = matrix));
   return parts;
 }
 
-/** Where a skin holds a primitive. */
-function matrixOfSkin(skin: Skin, primitive: Primitive, positions: Float32Array): Matrix {
-  const [held, weights] = [
-    primitive.getAttribute('JOINTS_0')?.getArray(),
-    primitive.getAttribute('WEIGHTS_0')?.getArray(),
-  ];
-  const joints = skin.listJoints();
+/** How its skin holds a part. */
+function skinOf({ node, primitive, localPositions: positions }: DocumentPart): Skinned<Matrix> {
+  const skin = node.getSkin()!;
   const inverses = skin.getInverseBindMatrices()?.getArray();
-  if (!held || !weights || inverses === null || (inverses && inverses.length < 16 * joints.length)) return identity;
-  const products: Matrix[] = joints.map((joint, j) =>
-    inverses
-      ? multiply(joint.getWorldMatrix(), Array.from(inverses.subarray(16 * j, 16 * j + 16)))
-      : joint.getWorldMatrix(),
-  );
-  const isFloat = primitive.getAttribute('POSITION')!.getArray() instanceof Float32Array;
-  return skinMatrix(products, usedJoints(held, weights), positions, isFloat, identity);
+  const arrayOf = (semantic: string) => primitive.getAttribute(semantic)?.getArray() ?? [];
+  return {
+    matrices: skin.listJoints().map((joint, j) => {
+      const matrix = joint.getWorldMatrix();
+      return inverses ? multiply(matrix, inverses.subarray(16 * j)) : matrix;
+    }),
+    held: arrayOf('JOINTS_0'),
+    weights: arrayOf('WEIGHTS_0'),
+    positions,
+    isFloat: arrayOf('POSITION') instanceof Float32Array,
+    stored: [identity],
+  };
 }
