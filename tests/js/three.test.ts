@@ -22,12 +22,15 @@ import {
   MeshNormalMaterial,
   MeshStandardMaterial,
   Quaternion,
+  ShaderLib,
   Skeleton,
   SkinnedMesh,
   Texture,
   Mesh as ThreeMesh,
   Uint16BufferAttribute,
   Vector3,
+  type WebGLProgramParametersWithUniforms,
+  type WebGLRenderer,
 } from 'three';
 import { ball, head, join3d } from './scenes.js';
 
@@ -397,6 +400,24 @@ describe('applyTransfer', () => {
     const [, , third, fourth] = model.children.map((mesh) => (mesh as ReturnType<typeof meshOf>).material);
     assert.equal(third!.customProgramCacheKey(), fourth!.customProgramCacheKey());
     assert.equal(isAlike(third!, fourth!), true);
+  });
+
+  test('of two copies of the module on a page, the one that paints last is seen, by programs of its own', async () => {
+    const url = import.meta.resolve('cagecast/three');
+    const copy = (await import(`${url}?copy`)) as typeof import('cagecast/three');
+    const target = meshOf(scene.target);
+    const [first, second] = [new Texture(), new Texture()];
+    const before = applyTransfer(target, meshOf(scene.cage), { texture: first });
+    const firstKey = target.material.customProgramCacheKey();
+    copy.applyTransfer(target, meshOf(scene.cage), { texture: second });
+    const { vertexShader, fragmentShader, uniforms } = ShaderLib.standard;
+    const shader = { vertexShader, fragmentShader, uniforms: { ...uniforms } } as WebGLProgramParametersWithUniforms;
+    target.material.onBeforeCompile(shader, undefined as unknown as WebGLRenderer);
+    assert.equal(shader.uniforms['cagecastMap']!.value, second);
+    const other = meshOf(scene.target);
+    copy.applyTransfer(other, meshOf(scene.cage), { texture: second });
+    assert.notEqual(other.material.customProgramCacheKey(), firstKey);
+    before.dispose();
   });
 
   test('a material that two models show is painted for the first and copied for the second', () => {

@@ -87,8 +87,9 @@ export function setUniforms({ cagecastMap, cagecastMatrix }: PaintUniforms, pain
  * @param alone  Whether the paint is all that the material shows, with the opacity of the material; else it is mixed into its colour.
  */
 export function addPaint(shader: Shader, uniforms: PaintUniforms, alone: boolean): void {
-  if (shader.vertexShader.includes(kVertex)) return;
+  // Another copy of this module may have added its own: this paint came later.
   Object.assign(shader.uniforms, uniforms);
+  if (shader.vertexShader.includes(kVertex)) return;
   shader.vertexShader =
     kVertex + shader.vertexShader.replace(kMain, (main) => `${main}\n  vCagecastPaint = ${paintAttribute};\n`);
   if (!asks(shader.fragmentShader)) {

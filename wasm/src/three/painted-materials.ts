@@ -12,6 +12,9 @@ export interface Painting extends Paint {
 
 let paintingCount = 0;
 
+/** In the keys of programs: those that another copy of this module had compiled refer to its uniforms. */
+const kCopy = `cagecast ${Math.random()}`;
+
 /** Makes a painting that is brought up to date once in each frame. */
 export function makePainting(paint: Omit<Painting, 'refresh' | 'number'>): Painting {
   let [last, lastFrame]: [unknown, number] = [undefined, -1];
@@ -128,7 +131,7 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
     customProgramCacheKey() {
       const key = customProgramCacheKey.call(material);
       // By default the key is the text of `onBeforeCompile`, which is not the material's own by now.
-      return record.painting ? `${key}|${onBeforeCompile}|cagecast${alone ? ' alone' : ''}` : key;
+      return record.painting ? `${key}|${onBeforeCompile}|${kCopy}${alone ? ' alone' : ''}` : key;
     },
     onBeforeCompile: (shader, renderer) => {
       onBeforeCompile.call(material, shader, renderer);
