@@ -2,7 +2,7 @@ import { placesOf } from 'cagecast/three';
 import {
   type BufferAttribute,
   type InterleavedBufferAttribute,
-  Matrix4,
+  type Matrix4,
   Mesh,
   type Object3D,
   type Texture,
@@ -41,7 +41,6 @@ export interface ExtractedMesh {
   primitives: Primitive[];
 }
 
-const kIdentity = new Matrix4();
 const kSlice = 16384; // vertices or triangles per slice, which takes a few milliseconds
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
@@ -60,13 +59,11 @@ export async function extractMesh(
 ): Promise<ExtractedMesh> {
   root.updateMatrixWorld(true);
   const primitives = listPrimitives(root, nameOf);
-  if (primitives.length === 0) throw new Error('the file contains no triangles, only points, lines or an empty scene');
   const last = primitives.at(-1);
-  const vertexCount = last ? last.firstVertex + last.vertexCount : 0;
-  const triangleCount = last ? last.firstTriangle + last.triangleCount : 0;
-
+  if (!last) throw new Error('the file contains no triangles, only points, lines or an empty scene');
+  const vertexCount = last.firstVertex + last.vertexCount;
   const positions = new Float32Array(3 * vertexCount);
-  const indices = new Uint32Array(3 * triangleCount);
+  const indices = new Uint32Array(3 * (last.firstTriangle + last.triangleCount));
   const groups = new Uint32Array(vertexCount);
   const pace = new Pace();
   for (const [group, primitive] of primitives.entries()) {
@@ -91,49 +88,37 @@ function* slices(count: number): Iterable<[number, number]> {
 }
 
 function listPrimitives(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): Primitive[] {
-  const primitives: Primitive[] = [];
   let firstVertex = 0;
   let firstTriangle = 0;
   const meshes: Mesh[] = [];
   root.traverse((object) => object instanceof Mesh && meshes.push(object));
-  const places = placesOf(meshes);
-  meshes.forEach((object, m) => {
-    const name = nameOf(object) || object.name || object.parent?.name || `part ${primitives.length}`;
-    if ('isInstancedMesh' in object)
+  return placesOf(meshes).map((matrix, m) => {
+    const mesh = meshes[m]!;
+    const name = nameOf(mesh) || mesh.name || mesh.parent?.name || `part ${m}`;
+    if ('isInstancedMesh' in mesh)
       throw new Error(`“${name}” uses instancing, which is not supported; give each instance a node of its own`);
-    const { index, attributes } = object.geometry as Mesh['geometry'];
+    const { index, attributes } = mesh.geometry;
     const vertexCount = attributes.position?.count ?? 0;
     const cornerCount = index ? index.count : vertexCount;
     if (cornerCount % 3 !== 0) {
       throw new Error(`“${name}” has ${cornerCount} triangle corners, which is not a multiple of three`);
     }
     const triangleCount = cornerCount / 3;
-    const matrix = places[m]!;
-    primitives.push({
-      mesh: object,
-      name,
-      firstVertex,
-      vertexCount,
-      firstTriangle,
-      triangleCount,
-      matrix,
-      mirrored: matrix.determinant() < 0,
-    });
+    const mirrored = matrix.determinant() < 0;
+    const primitive = { mesh, name, firstVertex, vertexCount, firstTriangle, triangleCount, matrix, mirrored };
     firstVertex += vertexCount;
     firstTriangle += triangleCount;
+    return primitive;
   });
-  return primitives;
 }
 
 function copyPositions({ mesh, firstVertex, matrix }: Primitive, out: Float32Array, from: number, to: number): void {
   const position = mesh.geometry.attributes.position as Attribute;
   const point = new Vector3();
-  const identity = matrix.equals(kIdentity);
   for (let i = from; i < to; i++) {
     // Decode quantised positions to floats before applying the matrix, as other glTF readers do.
     point.set(Math.fround(position.getX(i)), Math.fround(position.getY(i)), Math.fround(position.getZ(i)));
-    if (!identity) point.applyMatrix4(matrix);
-    point.toArray(out, 3 * (firstVertex + i));
+    point.applyMatrix4(matrix).toArray(out, 3 * (firstVertex + i));
   }
 }
 
