@@ -88,6 +88,20 @@ export default defineConfig({
       resolveDependencies: (_, files, { hostType }) => (hostType === 'html' ? files : []),
     },
     assetsInlineLimit: 0,
+    // Small modules that several scripts import are one file: each file costs a request and compresses by itself.
+    rolldownOptions: {
+      output: {
+        codeSplitting: {
+          includeDependenciesRecursively: false,
+          groups: [
+            {
+              name: 'shared',
+              test: /web\/src\/(platform\/page|scene\/surface|brush\/ring|explain\/ray|scene\/same-uvs|cage\/(landmark-dots|arrow-keys))\.ts$/,
+            },
+          ],
+        },
+      },
+    },
     chunkSizeWarningLimit: 900,
   },
   worker: { format: 'es', plugins: () => [slim(), basis()] },
