@@ -2,7 +2,7 @@ import { placesOf } from 'cagecast/three';
 import {
   type BufferAttribute,
   type InterleavedBufferAttribute,
-  type Matrix4,
+  Matrix4,
   Mesh,
   type Object3D,
   type Texture,
@@ -41,6 +41,7 @@ export interface ExtractedMesh {
   primitives: Primitive[];
 }
 
+const kIdentity = new Matrix4();
 const kSlice = 16384; // vertices or triangles per slice, which takes a few milliseconds
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
@@ -115,10 +116,12 @@ function listPrimitives(root: Object3D, nameOf: (mesh: Mesh) => string | undefin
 function copyPositions({ mesh, firstVertex, matrix }: Primitive, out: Float32Array, from: number, to: number): void {
   const position = mesh.geometry.attributes.position as Attribute;
   const point = new Vector3();
+  const identity = matrix.equals(kIdentity); // which would make all of a point NaN if one coordinate is
   for (let i = from; i < to; i++) {
     // Decode quantised positions to floats before applying the matrix, as other glTF readers do.
     point.set(Math.fround(position.getX(i)), Math.fround(position.getY(i)), Math.fround(position.getZ(i)));
-    point.applyMatrix4(matrix).toArray(out, 3 * (firstVertex + i));
+    if (!identity) point.applyMatrix4(matrix);
+    point.toArray(out, 3 * (firstVertex + i));
   }
 }
 
