@@ -23,7 +23,7 @@ const kGreen = 140; // the islands
 let site: Site;
 let visit: Visit;
 before(async () => {
-  site = await Site.open();
+  site = await Site.open('real');
   visit = await site.visit();
 });
 after(() => site?.close());
