@@ -23,6 +23,7 @@ const kGreen = 140; // the islands
 let site: Site;
 let visit: Visit;
 before(async () => {
+  // Pixels at edges count here.
   site = await Site.open('real');
   visit = await site.visit();
 });

@@ -56,7 +56,7 @@ export interface Inspection {
 /**
  * Checks whether a cage fits a target, and if not, why, and what to do about it.
  *
- * Cost: 5 to 15 times that of a transfer, and another transfer if triangles face inward.
+ * Cost: 3 to 15 times that of a transfer, and another transfer if triangles face inward.
  * @throws {CagecastError} as `transfer` does.
  *
  * @example

@@ -52,7 +52,7 @@ interface Shown {
  * - `opacity`, `feather`, `preset`, `threshold`, `borders`: as the options of `applyTransfer`.
  * - `camera-orbit`: degrees from the front and from above, and the distance as a share of that which shows all: `20deg 80deg 100%`.
  * - `alt`: what assistive technology says. `poster`: the address of a picture to show until the model is there.
- * - `check`: inspects the cage too, which takes 5 to 15 times as long as a transfer, on the page's thread.
+ * - `check`: inspects the cage too, which takes up to 15 times as long as a transfer, on the page's thread.
  *
  * Events: `progress` (`detail: { share, stage }`), `load`, `verdict` (`detail`: `Check`), `error` (`detail`: the `Error`, which the
  * element shows too). Arrow keys turn the model, + and - zoom, Home goes back. When it is removed from the page, it frees all it has.
