@@ -1,5 +1,6 @@
 // Measures what paint costs the processor in each frame: of a model of thirty primitives, and of the same model without paint.
-// Two models without paint show how far the ratio may be trusted on this machine. Takes five minutes.
+// Two models without paint show how far the ratio may be trusted on this machine; one with another texture of three.js, what a paint
+// costs at the least. Takes five minutes.
 //   npx tsx bench/web/frame/measure.ts        needs `npm run build`
 
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -9,7 +10,7 @@ import { join } from 'node:path';
 import { build } from 'esbuild';
 import { launchChromium } from '../../../tests/support/chromium.js';
 import { median } from '../../statistics.js';
-import type { Kind } from './page.js';
+import type { Extra, Kind } from './page.js';
 
 const kBlocks = 100;
 const kFrames = 100;
@@ -42,7 +43,7 @@ await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
 const browser = await launchChromium({ drawing: true });
 
 interface Offered {
-  make(kind: Kind, twins: boolean): Promise<void>;
+  make(kind: Kind, extra: Extra): Promise<void>;
   draw(which: 0 | 1, frames: number): number[];
 }
 
@@ -52,12 +53,12 @@ function meanOfFasterHalf(times: readonly number[]): number {
   return faster.reduce((sum, time) => sum + time, 0) / faster.length;
 }
 
-async function measure(kind: Kind, twins: boolean): Promise<void> {
+async function measure(kind: Kind, extra: Extra): Promise<void> {
   const page = await browser.newPage();
   page.on('pageerror', (error) => console.error(error));
   await page.goto(`http://127.0.0.1:${(server.address() as { port: number }).port}/`);
   await page.waitForFunction(() => 'draw' in globalThis);
-  await page.evaluate(([kind, twins]) => (globalThis as unknown as Offered).make(kind, twins), [kind, twins] as const);
+  await page.evaluate(([kind, extra]) => (globalThis as unknown as Offered).make(kind, extra), [kind, extra] as const);
   const session = await page.context().newCDPSession(page);
   await session.send('Performance.enable', { timeDomain: 'threadTicks' });
   const threadTime = async (): Promise<number> =>
@@ -86,7 +87,7 @@ async function measure(kind: Kind, twins: boolean): Promise<void> {
   };
   const { parts, morphs, maps } = kind;
   console.log(
-    `${parts} parts, ${morphs} morphs, ${maps ? 'with' : 'without'} maps${twins ? ', neither painted' : ''}: in render ${ratio(walls)}; thread ${ratio(cpus)}`,
+    `${parts} parts, ${morphs} morphs, ${maps ? 'with' : 'without'} maps; ${extra} more: in render ${ratio(walls)}; thread ${ratio(cpus)}`,
   );
 }
 
@@ -95,7 +96,8 @@ const kinds = [
   { parts: 30, morphs: 0, maps: false },
   { parts: 30, morphs: 8, maps: true },
 ];
-for (const kind of kinds) for (const twins of [true, false]) await measure(kind, twins);
+for (const kind of kinds)
+  for (const extra of ['nothing', 'a texture of three.js', 'paint'] as const) await measure(kind, extra);
 await browser.close();
 server.close();
 rmSync(folder, { recursive: true, force: true });

@@ -17,6 +17,9 @@ import {
   WebGLRenderer,
 } from 'three';
 
+/** What the second of two equal models has more than the first. */
+export type Extra = 'paint' | 'a texture of three.js' | 'nothing';
+
 /** What the model is made of. */
 export interface Kind {
   parts: number;
@@ -75,15 +78,21 @@ function model({ parts, morphs, maps }: Kind): Scene {
   return new Scene().add(group, light, new AmbientLight(0xffffff, 0.5));
 }
 
-let scenes: [bare: Scene, painted: Scene];
+let scenes: [Scene, Scene];
 
-/** Makes the scenes. @param twins  Whether neither is painted. */
-async function make(kind: Kind, twins: boolean): Promise<void> {
+/** Makes the scenes. */
+async function make(kind: Kind, extra: Extra): Promise<void> {
   await init();
   scenes = [model(kind), model(kind)];
-  if (twins) return;
-  const cage = new Mesh(new SphereGeometry(1.1, 24, 16));
-  applyTransfer(scenes[1].children[0]!, cage, { texture: flat(255, 0, 0), threshold: 0 });
+  const [texture, second] = [flat(255, 0, 0), scenes[1].children[0]!];
+  if (extra === 'paint') {
+    const cage = new Mesh(new SphereGeometry(1.1, 24, 16));
+    applyTransfer(second, cage, { texture, threshold: 0 });
+  } else if (extra === 'a texture of three.js') {
+    // The UVs are there already, and all parts have the same texture: less cannot be read for what is to be seen.
+    for (const { material } of second.children as Mesh<SphereGeometry, MeshStandardMaterial>[])
+      material[kind.maps ? 'emissiveMap' : 'map'] = texture;
+  }
 }
 
 /** Draws frames, each of which is waited for. @returns the milliseconds that each took this thread. */
