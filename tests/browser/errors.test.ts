@@ -54,7 +54,7 @@ const kBad: { what: string; input: 'target' | 'cage' | 'texture'; file: Upload; 
     what: 'an index out of range',
     input: 'target',
     file: glb('index.glb', glbOf({ ...sound, indices: Uint16Array.of(0, 2, 1, 0, 1, 9) }, 'thing')),
-    says: /index\.glb: .*indices\[5\] = 9 .*out of range \(4 vertices\)/,
+    says: /index\.glb: .*"thing" has indices\[5\] = 9, .*out of range \(4 vertices\)/,
   },
   {
     what: 'a cage without UVs',
@@ -75,7 +75,7 @@ const kBad: { what: string; input: 'target' | 'cage' | 'texture'; file: Upload; 
       'void.glb',
       glbOf({ positions: new Float32Array(), indices: new Uint16Array(), uvs: new Float32Array() }, 'thing'),
     ),
-    says: /void\.glb: .*no vertices/,
+    says: /void\.glb: .*no triangles/,
   },
   {
     what: 'a GLB cut short',

@@ -34,7 +34,7 @@ export interface Part {
 /** All triangles of a scene as arrays, and the parts that they come from. */
 export interface Extracted {
   /** With UVs if every part has those of its base colour texture, or the attribute `uv` without one. */
-  mesh: Mesh & { indices: Uint32Array };
+  mesh: Mesh & { indices: Uint32Array; groups: Uint32Array };
   /** In the order of their vertices. */
   parts: Part[];
 }

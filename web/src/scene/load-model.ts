@@ -61,7 +61,7 @@ export async function loadModel(
       const gltf = await loader.parseAsync(bytes, '');
       const scene = await sceneOf(gltf);
       const { associations, json } = gltf.parser;
-      const mesh = await extractMesh(scene, (mesh) => nameOf(mesh, gltf));
+      const mesh = extractMesh(scene, (mesh) => nameOf(mesh, gltf));
       const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer());
       return {
         name: file.name,
@@ -179,7 +179,7 @@ function messageOf(error: unknown): string {
   // The loader fails like this when it reads past the end of a buffer.
   if (error instanceof RangeError || error instanceof TypeError)
     return 'the file is damaged: it refers to data it does not contain';
-  if (error instanceof Error) return error.message.replace(/^THREE\.\w+: /, '');
+  if (error instanceof Error) return reasonOf(error).replace(/^THREE\.\w+: /, '');
   // Decoders reject with a message or an event.
   return (error as { error?: string })?.error ?? 'the file cannot be decoded';
 }
