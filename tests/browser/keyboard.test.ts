@@ -92,3 +92,25 @@ test('keyboard only: undo everything, and redo it', async () => {
     assert.equal(await focused(page), next);
   }
 });
+
+test('what is hidden while it has the focus gives it to the stage; a link that copies takes the space bar, too', async () => {
+  const { page, complaints } = await site.visit();
+  const focusedAfter = async (id: string, key: string): Promise<string> => {
+    await page.locator(`#${id}`).focus();
+    await page.keyboard.press(key);
+    await page.locator(`#${id}`).waitFor({ state: 'hidden' });
+    return focused(page);
+  };
+  await page.locator('#view-mode input[value=segments]').check({ force: true });
+  await page.locator('#view').focus();
+  await page.keyboard.press('Enter');
+  await page.locator('#part-menu').waitFor();
+  assert.equal(await focusedAfter('part-menu-close', 'Enter'), 'view', 'the menu of a part');
+  await page.getByTestId('target-input').setInputFiles({ name: 'x.glb', mimeType: '', buffer: Buffer.from('x') });
+  await page.locator('#alert-close').waitFor();
+  assert.equal(await focusedAfter('alert-close', 'Enter'), 'view', 'an error');
+  await page.locator('#share-link').focus();
+  await page.keyboard.press('Space');
+  await page.locator('#copy-note', { hasText: /copied|does not allow/ }).waitFor();
+  assert.deepEqual(complaints, []);
+});

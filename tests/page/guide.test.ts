@@ -46,5 +46,6 @@ test('a first visit is offered a way of four steps, which the keyboard can walk,
   assert.match((await guide.textContent())!, /Step 1 of 4/);
   await page.keyboard.press('Escape');
   await guide.waitFor({ state: 'detached' });
+  assert.equal(await page.evaluate(() => document.activeElement?.id), 'view');
   assert.deepEqual(complaints, []);
 });

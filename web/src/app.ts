@@ -24,6 +24,7 @@ import { setUpSectionNav } from './panels/section-nav';
 import { showStatus } from './panels/status';
 import { recordControls } from './panels/steps';
 import { ThresholdMarks } from './panels/threshold-marks';
+import { catchLostFocus } from './platform/lost-focus';
 import { element } from './platform/page';
 import { setUpUndo } from './platform/undo';
 import { fadePoster, removeOtherPoster } from './poster';
@@ -62,6 +63,7 @@ const samples = loadSamples();
 // Start early; errors are reported where the results are awaited.
 for (const early of [samples.then(([first]) => fetchAhead(first!)), init()]) early.catch(() => {});
 removeOtherPoster();
+catchLostFocus();
 await painted();
 
 const session = new Session();

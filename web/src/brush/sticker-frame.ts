@@ -39,11 +39,7 @@ export class StickerFrame {
     this.#bar.ariaLabel = 'Chosen sticker';
     this.#bar.innerHTML = kBar;
     for (const button of this.#bar.querySelectorAll('button'))
-      button.addEventListener('click', () => {
-        actions[button.name as 'mirror' | 'remove' | 'done']();
-        // The bar is gone: keep the focus on the stage.
-        if (this.#bar.hidden) element('view', HTMLCanvasElement).focus({ preventScroll: true });
-      });
+      button.addEventListener('click', actions[button.name as 'mirror' | 'remove' | 'done']);
     element('stage', HTMLElement).append(this.#outline, this.#handle, this.#bar);
     this.#listen();
     this.show(undefined);

@@ -28,6 +28,11 @@ export class ExportPanel {
       download(new Blob([zonesJson(session)], { type: 'application/json' }), `${this.#stem}-zones.json`);
     });
     this.#link.addEventListener('click', () => this.#copyLink());
+    this.#link.addEventListener('keydown', (event) => {
+      if (event.key !== ' ') return;
+      event.preventDefault(); // of scrolling: links do not take it for a click, as buttons do
+      this.#copyLink();
+    });
     // Update the link before it is used: the camera may have moved.
     for (const event of ['pointerdown', 'focus'] as const) this.#link.addEventListener(event, () => this.#refresh());
     element('copy-code', HTMLButtonElement).addEventListener('click', () =>

@@ -111,10 +111,7 @@ export class Guide {
     const isWalked = this.#box.querySelector('small') !== null;
     this.#mark(undefined);
     this.#box.remove();
-    if (isWalked) {
-      this.#session.setView(this.#before);
-      document.getElementById('view')?.focus({ preventScroll: true });
-    }
+    if (isWalked) this.#session.setView(this.#before);
     this.#ended();
   }
 }

@@ -27,7 +27,6 @@ export class PartMenu {
       if (event.key !== 'Escape') return;
       event.stopPropagation();
       this.#close();
-      canvas.focus();
     });
     element('part-menu-close', HTMLButtonElement).addEventListener('click', () => this.#close());
     for (const input of this.#box.querySelectorAll('input'))

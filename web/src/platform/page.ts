@@ -35,8 +35,4 @@ export function showNotice(id: string, text: string): void {
   notice.hidden = text === '';
 }
 
-element('alert-close', HTMLButtonElement).addEventListener('click', () => {
-  clearError();
-  // The button is gone, and with it the focus.
-  element('view', HTMLCanvasElement).focus({ preventScroll: true });
-});
+element('alert-close', HTMLButtonElement).addEventListener('click', clearError);
