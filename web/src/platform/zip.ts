@@ -21,6 +21,8 @@ function record(...fields: (number | `${number}`)[]): Uint8Array<ArrayBuffer> {
 }
 
 const kUtf8 = '2048'; // the flag for names in UTF-8
+const kByUnix = '788'; // version 2.0, made by Unix: on other systems some programs take names to be in an old code page
+const kPlainFile = 0x81a40000; // that its owner may write and all may read
 const kFirstDay = '33'; // 1 January 1980, the earliest date of the format
 
 /**
@@ -37,11 +39,21 @@ export async function zip(files: readonly { name: string; blob: Blob }[]): Promi
     const common = ['20', kUtf8, '0', '0', kFirstDay, crc, size, size, `${encoded.length}`, '0'] as const;
     const head = record(0x04034b50, ...common);
     parts.push(head, encoded, blob);
-    entries.push(record(0x02014b50, '20', ...common, '0', '0', '0', 0, at), encoded);
+    entries.push(record(0x02014b50, kByUnix, ...common, '0', '0', '0', kPlainFile, at), encoded);
     at += head.length + encoded.length + size;
   }
   const length = entries.reduce((sum, entry) => sum + entry.length, 0);
   const count = `${files.length}` as const;
   const end = record(0x06054b50, '0', '0', count, count, length, at, '0');
   return new Blob([...parts, ...entries, end], { type: 'application/zip' });
+}
+
+/** A name that no other file has, and that every system can unpack: projects come from strangers, who name their files as they like. */
+export function freeName(stem: string, ending: string, files: readonly { name: string }[]): string {
+  const plain = stem.replace(/[\p{Cc}"*/:<>?\\|]/gu, '-').replace(/^[.\s]+/, '');
+  const short = [...plain].slice(0, 50).join('') || 'avatar'; // 200 bytes at most, of 255
+  for (let number = 1; ; number++) {
+    const name = `${short}${number > 1 ? `-${number}` : ''}-painted.${ending}`;
+    if (!files.some((file) => file.name.toLowerCase() === name.toLowerCase())) return name;
+  }
 }

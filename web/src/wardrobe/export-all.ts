@@ -1,6 +1,6 @@
 import { endingOf } from '../export/ending';
 import type { PaintInto } from '../export/export-messages';
-import { zip } from '../platform/zip';
+import { freeName, zip } from '../platform/zip';
 import { choicesOf, type Session } from '../scene/session';
 import { type Avatar, nameOf } from './avatar';
 
@@ -45,11 +45,4 @@ export async function exportAll(
   }
   if (files.length === 0) throw new Error(troubles[0] ?? 'No avatar takes this paint.');
   return { file: await zip(files), count: files.length, troubles };
-}
-
-function freeName(stem: string, ending: string, files: readonly { name: string }[]): string {
-  for (let number = 1; ; number++) {
-    const name = `${stem}${number > 1 ? `-${number}` : ''}-painted.${ending}`;
-    if (!files.some((file) => file.name === name)) return name;
-  }
 }
