@@ -29,7 +29,7 @@ struct Part {
 
 /// All triangles of a file's default scene, as one mesh in world space.
 struct Model {
-  std::vector<float> positions;        ///< 3 per vertex, world transforms applied.
+  std::vector<float> positions;        ///< 3 per vertex, world transforms applied; skinned meshes in the bind pose.
   std::vector<std::uint32_t> indices;  ///< 3 per triangle; strips and fans are expanded.
   std::vector<float> uvs;              ///< 2 per vertex; empty unless every part has them.
   std::vector<std::uint32_t> groups;   ///< 1 per vertex: the number of its part.
@@ -42,9 +42,10 @@ struct Model {
 /// Reads a .glb or .gltf file: all primitives made of triangles, in scene order, one after the other.
 ///
 /// Takes sparse and quantised accessors (KHR_mesh_quantization) and buffers that are embedded, data URIs or files
-/// beside it. A mirrored node has its triangles turned round, so that they still face outward. A skinned mesh comes as
-/// it is stored, in the space of its node. UVs are of the set that the base colour texture names, of TEXCOORD_0 without
-/// a texture. Not understood: Draco and meshopt compression, KHR_texture_transform.
+/// beside it. A mirrored node has its triangles turned round, so that they still face outward. Skinned meshes are
+/// placed by their skeleton, in the bind pose; as the format demands, the transform of their node is ignored. UVs are
+/// of the set that the base colour texture names, of TEXCOORD_0 without a texture. Not understood: Draco and meshopt
+/// compression, KHR_texture_transform.
 Result read(const std::string& path, Model& out);
 
 /// Reads a .glb or .gltf file out of memory.

@@ -178,6 +178,11 @@ double component(const std::uint8_t* at, int type, bool normalized) {
 
 }  // namespace
 
+int attributeOf(const tinygltf::Primitive& primitive, const std::string& name) {
+  const auto found = primitive.attributes.find(name);
+  return found == primitive.attributes.end() ? -1 : found->second;
+}
+
 void checkIndexType(int componentType, const std::string& where) {
   if (componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
       componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT && componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)

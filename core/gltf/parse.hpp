@@ -35,6 +35,9 @@ const T& element(const std::vector<T>& items, int index, const char* kind, const
   return items[static_cast<std::size_t>(index)];
 }
 
+/// The accessor of an attribute; −1 if the primitive does not have it.
+int attributeOf(const tinygltf::Primitive& primitive, const std::string& name);
+
 /// Fails unless indices are unsigned integers.
 /// @param where  The indices.
 void checkIndexType(int componentType, const std::string& where);

@@ -7,43 +7,20 @@
 
 #include "gltf.hpp"
 #include "parse.hpp"
+#include "skin.hpp"
 
 namespace cagecast::gltf {
 namespace {
 
 constexpr const char* kNotValid = "is not valid glTF";
 
-/// A 3×4 affine transform, row by row.
-struct Transform {
-  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-
-  Transform operator*(const Transform& other) const {
-    Transform product;
-    for (std::size_t row = 0; row < 12; row += 4)
-      for (std::size_t column = 0; column < 4; ++column)
-        product.m[row + column] = m[row] * other.m[column] + m[row + 1] * other.m[4 + column] +
-                                  m[row + 2] * other.m[8 + column] + (column == 3 ? m[row + 3] : 0);
-    return product;
-  }
-  bool operator==(const Transform&) const = default;
-  bool mirrors() const {
-    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
-               m[2] * (m[4] * m[9] - m[5] * m[8]) <
-           0;
-  }
-};
-
-Transform transformOf(const tinygltf::Node& node, const std::string& where) {
+Transform localTransform(const tinygltf::Node& node, const std::string& where) {
   const auto numbers = [&](const std::vector<double>& given, std::size_t count, const char* name) {
     if (!given.empty() && given.size() != count) fail(where, ".", name, " has ", given.size(), " numbers, not ", count);
     return !given.empty();
   };
+  if (numbers(node.matrix, 16, "matrix")) return transformOf(node.matrix.data());
   Transform local;
-  if (numbers(node.matrix, 16, "matrix")) {
-    for (std::size_t row = 0; row < 3; ++row)
-      for (std::size_t column = 0; column < 4; ++column) local.m[row * 4 + column] = node.matrix[column * 4 + row];
-    return local;
-  }
   if (numbers(node.rotation, 4, "rotation")) {
     const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
     local.m = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),     0,
@@ -82,11 +59,6 @@ float toFloat(double value) {
   return static_cast<float>(value);
 }
 
-int attributeOf(const tinygltf::Primitive& primitive, const std::string& name) {
-  const auto found = primitive.attributes.find(name);
-  return found == primitive.attributes.end() ? -1 : found->second;
-}
-
 /// The UV set by which the base colour texture of a primitive lies on it; the first if it has none.
 std::string uvSetOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
   if (primitive.material < 0) return "TEXCOORD_0";
@@ -95,20 +67,10 @@ std::string uvSetOf(const tinygltf::Model& model, const tinygltf::Primitive& pri
   return "TEXCOORD_" + std::to_string(texture.index < 0 ? 0 : texture.texCoord);
 }
 
-/// A primitive in its place in the scene.
-struct Instance {
-  const tinygltf::Primitive& primitive;
-  std::string where, name;  // In the file, and for people.
-  Transform world;
-};
-
 void append(const tinygltf::Model& model, const Instance& instance, Model& out, bool& haveUvs) {
-  const auto& [primitive, where, name, world] = instance;
+  const auto& [primitive, where, name, world, skin] = instance;
   const std::string uvSet = uvSetOf(model, primitive);
   const int position = attributeOf(primitive, "POSITION"), texcoord = attributeOf(primitive, uvSet);
-  if (primitive.extensions.count(kCompressions[0].first) != 0 &&
-      element(model.accessors, position, "accessors", where).bufferView < 0)
-    failCompressed(kCompressions[0].first, kCompressions[0].second);
   const std::vector<double> local = decode(model, position, TINYGLTF_TYPE_VEC3, 3, where + ".POSITION");
   const std::size_t vertexCount = local.size() / 3;
   std::vector<std::uint32_t> corners;
@@ -125,7 +87,7 @@ void append(const tinygltf::Model& model, const Instance& instance, Model& out, 
     for (std::uint32_t i = 0; i < vertexCount; ++i) corners.push_back(i);
   }
   std::vector<std::uint32_t> triangles = trianglesOf(corners, primitive.mode);
-  if (world.mirrors())
+  if (world.determinant() < 0)
     for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) std::swap(triangles[i + 1], triangles[i + 2]);
 
   const std::size_t firstVertex = out.positions.size() / 3, firstTriangle = out.indices.size() / 3;
@@ -149,10 +111,8 @@ void append(const tinygltf::Model& model, const Instance& instance, Model& out, 
   for (const double uv : uvs) out.uvs.push_back(toFloat(uv));
 }
 
-/// The nodes that a scene begins with.
-std::vector<int> rootsOf(const tinygltf::Model& model) {
-  if (!model.scenes.empty()) return element(model.scenes, std::max(model.defaultScene, 0), "scenes", "the file").nodes;
-  // Without scenes, every node that is no one's child is a root.
+/// The nodes that are no one's child.
+std::vector<int> parentless(const tinygltf::Model& model) {
   std::vector<bool> isChild(model.nodes.size(), false);
   for (const tinygltf::Node& node : model.nodes)
     for (const int child : node.children)
@@ -164,30 +124,49 @@ std::vector<int> rootsOf(const tinygltf::Model& model) {
   return roots;
 }
 
-/// All primitives made of triangles, depth first.
-std::vector<Instance> instancesIn(const tinygltf::Model& model) {
-  struct Visit {
+/// The nodes that the scene begins with; without scenes, all roots.
+std::vector<int> rootsOf(const tinygltf::Model& model) {
+  if (model.scenes.empty()) return parentless(model);
+  return element(model.scenes, std::max(model.defaultScene, 0), "scenes", "the file").nodes;
+}
+
+/// Visits nodes and all below them, depth first.
+/// @param where  What has these roots, for errors.
+/// @param visit  Takes the number of a node and its transform to the scene.
+template <typename Visit>
+void eachNode(const tinygltf::Model& model, const std::vector<int>& roots, const char* where, Visit visit) {
+  struct Step {
     int node;
     Transform parent;
   };
-  std::vector<Visit> pending;  // The next one last.
+  std::vector<Step> pending;  // The next one last.
   const auto push = [&](const std::vector<int>& nodes, const Transform& parent) {
     for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) pending.push_back({*node, parent});
   };
-  push(rootsOf(model), {});
-  std::vector<Instance> instances;
+  push(roots, {});
   std::vector<bool> seen(model.nodes.size(), false);
   while (!pending.empty()) {
-    const Visit visit = pending.back();
+    const Step step = pending.back();
     pending.pop_back();
-    const tinygltf::Node& node = element(model.nodes, visit.node, "nodes", "the scene");
-    const std::string nodeName = "nodes[" + std::to_string(visit.node) + "]";
-    if (seen[static_cast<std::size_t>(visit.node)]) fail(nodeName, " is in the scene twice, or its own ancestor");
-    seen[static_cast<std::size_t>(visit.node)] = true;
-    const Transform world = visit.parent * transformOf(node, nodeName);
+    const tinygltf::Node& node = element(model.nodes, step.node, "nodes", where);
+    const std::string nodeName = "nodes[" + std::to_string(step.node) + "]";
+    if (seen[static_cast<std::size_t>(step.node)]) fail(nodeName, " is in ", where, " twice, or its own ancestor");
+    seen[static_cast<std::size_t>(step.node)] = true;
+    const Transform world = step.parent * localTransform(node, nodeName);
     push(node.children, world);
-    if (node.mesh < 0) continue;
+    visit(step.node, world);
+  }
+}
+
+/// All primitives made of triangles, depth first.
+std::vector<Instance> instancesIn(const tinygltf::Model& model) {
+  std::vector<Instance> instances;
+  eachNode(model, rootsOf(model), "the scene", [&](int number, const Transform& world) {
+    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(number)];
+    if (node.mesh < 0) return;
+    const std::string nodeName = "nodes[" + std::to_string(number) + "]";
     const tinygltf::Mesh& mesh = element(model.meshes, node.mesh, "meshes", nodeName);
+    if (node.skin >= 0) (void)element(model.skins, node.skin, "skins", nodeName);
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const tinygltf::Primitive& primitive = mesh.primitives[p];
       if (primitive.mode < -1 || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
@@ -199,23 +178,51 @@ std::vector<Instance> instancesIn(const tinygltf::Model& model) {
         const std::string& material = element(model.materials, primitive.material, "materials", nodeName).name;
         if (!material.empty()) name += "/" + material;
       }
-      instances.push_back(
-          {primitive, "meshes[" + std::to_string(node.mesh) + "].primitives[" + std::to_string(p) + "]", name, world});
+      const std::string where = "meshes[" + std::to_string(node.mesh) + "].primitives[" + std::to_string(p) + "]";
+      instances.push_back({primitive, where, name, world, node.skin});
     }
-  }
+  });
   return instances;
 }
 
-Model flatten(const tinygltf::Model& model) {
-  const std::vector<Instance> instances = instancesIn(model);
+/// The transform of each node to the scene, including nodes that are in no scene. Those in a cycle have the identity.
+std::vector<Transform> worldsOf(const tinygltf::Model& model) {
+  std::vector<Transform> worlds(model.nodes.size());
+  eachNode(model, parentless(model), "the file",
+           [&](int node, const Transform& world) { worlds[static_cast<std::size_t>(node)] = world; });
+  return worlds;
+}
+
+/// Fails if reading the instances costs too much, or if Draco compresses one.
+void checkElements(const tinygltf::Model& model, const std::vector<Instance>& instances) {
   std::size_t elements = 0;
+  const auto add = [&](std::size_t count) {
+    elements += std::min(count, kMaxSceneElements);
+    if (elements > kMaxSceneElements) fail("has more than ", kMaxSceneElements, " elements in its scene");
+  };
+  const auto addAccessor = [&](int index, const std::string& where) {
+    if (index >= 0) add(element(model.accessors, index, "accessors", where).count);
+  };
   for (const Instance& instance : instances) {
-    for (const int index : {attributeOf(instance.primitive, "POSITION"), instance.primitive.indices}) {
-      if (index < 0) continue;
-      elements += std::min(element(model.accessors, index, "accessors", instance.where).count, kMaxSceneElements);
-      if (elements > kMaxSceneElements) fail("has more than ", kMaxSceneElements, " elements in its scene");
-    }
+    const tinygltf::Primitive& primitive = instance.primitive;
+    const int position = attributeOf(primitive, "POSITION");
+    for (const int index : {position, primitive.indices}) addAccessor(index, instance.where);
+    if (primitive.extensions.count(kCompressions[0].first) != 0 &&
+        model.accessors[static_cast<std::size_t>(position)].bufferView < 0)
+      failCompressed(kCompressions[0].first, kCompressions[0].second);
+    if (instance.skin < 0) continue;
+    for (const char* name : {"JOINTS_0", "WEIGHTS_0"}) addAccessor(attributeOf(primitive, name), instance.where);
+    const tinygltf::Skin& skin = model.skins[static_cast<std::size_t>(instance.skin)];
+    add(skin.joints.size());
+    addAccessor(skin.inverseBindMatrices, "skins[" + std::to_string(instance.skin) + "].inverseBindMatrices");
   }
+}
+
+Model flatten(const tinygltf::Model& model) {
+  std::vector<Instance> instances = instancesIn(model);
+  checkElements(model, instances);
+  if (std::any_of(instances.begin(), instances.end(), [](const Instance& instance) { return instance.skin >= 0; }))
+    placeSkinned(model, worldsOf(model), instances);
   Model out;
   bool haveUvs = true;
   for (const Instance& instance : instances) append(model, instance, out, haveUvs);

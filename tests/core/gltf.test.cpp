@@ -45,7 +45,7 @@ Bytes glb(std::string json, Bytes bin = {}) {
 struct File {
   Bytes bin;
   std::string views, accessors, primitive = R"("attributes":{"POSITION":0})", nodes = R"({"mesh":0,"name":"thing"})";
-  std::string sceneNodes = "0", extra, buffer;  // extra: further members of the root.
+  std::string sceneNodes = "0", moreMeshes, extra, buffer;  // extra: further members of the root.
   int viewCount = 0;
 
   /// Adds values as a buffer view; returns its number.
@@ -68,7 +68,7 @@ struct File {
   std::string json() const {
     const std::string held = buffer.empty() ? R"({"byteLength":)" + std::to_string(bin.size()) + "}" : buffer;
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + sceneNodes + R"(]}],"nodes":[)" + nodes +
-           R"(],"meshes":[{"primitives":[{)" + primitive + R"(}]}],"accessors":[)" + accessors +
+           R"(],"meshes":[{"primitives":[{)" + primitive + R"(}]})" + moreMeshes + R"(],"accessors":[)" + accessors +
            R"(],"bufferViews":[)" + views + R"(],"buffers":[)" + held + "]" + extra + "}";
   }
   Bytes bytes() const { return glb(json(), bin); }
@@ -286,6 +286,335 @@ TEST_CASE("a mirrored node has the winding of its triangles reversed", "[gltf]")
   CHECK(readable(file.bytes()).indices == Indices{0, 1, 2});
 }
 
+namespace {
+
+using Matrix = std::array<float, 16>;  ///< Column by column.
+
+/// Makes smaller by `times`, then moves.
+Matrix smaller(float times, float x = 0, float y = 0, float z = 0) {
+  return {1 / times, 0, 0, 0, 0, 1 / times, 0, 0, 0, 0, 1 / times, 0, x, y, z, 1};
+}
+
+/// A skin as JSON, with inverse bind matrices in a new accessor, whose number is given.
+std::string skinOf(File& file, const std::string& joints, std::initializer_list<Matrix> inverses, int accessor) {
+  const int view = file.view<Matrix>(inverses);
+  file.accessor(view, kFloat, "MAT4", inverses.size());
+  return R"({"joints":)" + joints + R"(,"inverseBindMatrices":)" + std::to_string(accessor) + "}";
+}
+
+const Floats kPoints{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1};
+
+Floats movedPoints(float x, float y, float z) {
+  Floats moved = kPoints;
+  for (std::size_t i = 0; i < moved.size(); i += 3) {
+    moved[i] += x;
+    moved[i + 1] += y;
+    moved[i + 2] += z;
+  }
+  return moved;
+}
+
+/// The five points, stored `times` as large, as accessor 0. The first joint holds three of them, the second two; the
+/// third would hold all, with weight 0.
+File heldPoints(float times = 1) {
+  File file;
+  file.accessor(file.view<float>({0, 0, 0, times, 0, 0, times, times, 0, 0, times, 0, 0, 0, times}), kFloat, "VEC3", 5);
+  file.accessor(file.view<std::uint8_t>({0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 2, 1, 0, 0, 2, 1, 0, 0, 2}), kUnsignedByte,
+                "VEC4", 5);
+  file.accessor(file.view<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}), kFloat, "VEC4", 5);
+  file.primitive = R"("attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2})";
+  return file;
+}
+
+/// A rig of hips and a neck, 2 above, with a joint that is nowhere; and the five points, held by them.
+/// @param rig, neck  Further members of these nodes.
+File figure(float times, const std::string& rig = "", const std::string& neck = "") {
+  File file = heldPoints(times);
+  file.nodes = R"({"mesh":0,"skin":0,"translation":[9,9,9]},
+                  {"name":"rig","children":[2])" +
+               rig + R"(},
+                  {"name":"hips","children":[3]},
+                  {"name":"neck","translation":[0,2,0])" +
+               neck + R"(},
+                  {"name":"unused","scale":[0,0,0]})";
+  file.sceneNodes = "0,1,4";
+  file.extra =
+      R"(,"skins":[)" + skinOf(file, "[2,3,4]", {smaller(times), smaller(times, 0, -2, 0), smaller(1)}, 3) + "]";
+  return file;
+}
+
+const std::string kBent = R"(,"rotation":[0.6,0,0,0.8])";
+
+/// Adds eyes to a figure, as a mesh of its own, of the same points.
+/// @param joints  Children of the neck, the first of which holds three points, the second two.
+void addEyes(File& file, const std::string& joints, const std::string& nodes, std::initializer_list<Matrix> inverses) {
+  file.nodes += R"(,{"mesh":0,"skin":1})" + nodes;
+  file.sceneNodes += ",5";
+  file.extra.insert(file.extra.size() - 1, "," + skinOf(file, joints, inverses, 4));
+}
+
+void checkNear(const Floats& positions, const Floats& expected) {
+  REQUIRE(positions.size() == expected.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    INFO("positions[" << i << "]");
+    CHECK(positions[i] == Approx(expected[i]).margin(1e-6));
+  }
+}
+
+Floats doubled(Floats positions) {
+  const Floats again = positions;
+  positions.insert(positions.end(), again.begin(), again.end());
+  return positions;
+}
+
+}  // namespace
+
+TEST_CASE("a skinned mesh at rest is where its skeleton holds it, not where its node is", "[gltf]") {
+  CHECK(readable(figure(1).bytes()).positions == kPoints);
+  SECTION("without inverse bind matrices they are identities") {
+    File file = heldPoints();
+    file.nodes = R"({"mesh":0,"skin":0,"translation":[9,9,9]},{"translation":[3,0,0]})";
+    file.sceneNodes = "0,1";
+    file.extra = R"(,"skins":[{"joints":[1,1]}])";
+    CHECK(readable(file.bytes()).positions == movedPoints(3, 0, 0));
+  }
+  SECTION("joints in no scene hold it as well") {
+    File file = figure(1, R"(,"translation":[0,0,4])");
+    file.sceneNodes = "0";
+    CHECK(readable(file.bytes()).positions == movedPoints(0, 0, 4));
+  }
+  SECTION("joints that differ by less than a thousandth keep every bit of it") {
+    CHECK(readable(figure(1, R"(,"translation":[0,1e-4,0])").bytes()).positions == kPoints);
+    CHECK(readable(figure(1, "", R"(,"scale":[1.0001,1,1])").bytes()).positions == kPoints);
+  }
+  SECTION("of its size, that is") {
+    const auto hundredfold = [](const std::string& neck) {
+      File file = heldPoints(100);
+      const File one = figure(1, R"(,"translation":[5,0,0])", neck);
+      file.nodes = one.nodes;
+      file.sceneNodes = one.sceneNodes;
+      file.extra = R"(,"skins":[)" + skinOf(file, "[2,3]", {smaller(1), smaller(1, 0, -2, 0)}, 3) + "]";
+      return readable(file.bytes()).positions[0];
+    };
+    CHECK(hundredfold(R"(,"scale":[1.0005,1,1])") == 5);
+    CHECK(hundredfold(R"(,"scale":[1.002,1,1])") == 0);  // It has moved, and is taken as it is stored.
+  }
+  SECTION("those that differ by more move it") {
+    CHECK(readable(figure(1, R"(,"translation":[0,0.0078125,0])").bytes()).positions == movedPoints(0, 0.0078125f, 0));
+  }
+}
+
+TEST_CASE("a rig of another unit or axis than the scene places its mesh", "[gltf]") {
+  checkNear(readable(figure(128).bytes()).positions, kPoints);
+  SECTION("an armature in centimetres") {
+    File file = heldPoints(100);
+    file.nodes = R"({"mesh":0,"skin":0},
+                    {"name":"Armature","scale":[0.01,0.01,0.01],"children":[2,3]},
+                    {"translation":[0,50,0]},{"translation":[0,200,0]})";
+    file.sceneNodes = "1,0";
+    file.extra = R"(,"skins":[)" + skinOf(file, "[2,3]", {smaller(1, 0, -50, 0), smaller(1, 0, -200, 0)}, 3) + "]";
+    checkNear(readable(file.bytes()).positions, kPoints);
+  }
+  SECTION("turned from z to y") {
+    // A quarter round x: (x, y, z) comes to (x, z, -y).
+    const double half = std::sqrt(0.5);
+    const std::string turned = R"(,"rotation":[)" + std::to_string(-half) + ",0,0," + std::to_string(half) + "]";
+    checkNear(readable(figure(4, turned).bytes()).positions, {0, 0, 0, 1, 0, 0, 1, 0, -1, 0, 0, -1, 0, 1, 0});
+  }
+  SECTION("mirrored: triangles are turned round") {
+    const gltf::Model model = readable(figure(1, R"(,"scale":[-1,1,1])").bytes());
+    CHECK(model.positions == Floats{0, 0, 0, -1, 0, 0, -1, 1, 0, 0, 1, 0, 0, 0, 1});
+    CHECK(model.indices == Indices{0, 2, 1});
+  }
+}
+
+TEST_CASE("a quantised skinned mesh is decoded by its inverse bind matrices", "[gltf]") {
+  for (const std::string neck : {"", kBent.c_str()}) {
+    File file = figure(1, R"(,"translation":[5,0,0])", neck);
+    // As the tools do: numbers of -1 to 1, and matrices that make them twice as large and move them.
+    file.accessors.clear();
+    file.accessor(
+        file.view<std::int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 32767, 32767, 0, 0, 0, 32767, 0, 0, 0, 0, 32767, 0}, 8),
+        kShort, "VEC3", 5, R"(,"normalized":true)");
+    file.accessor(1, kUnsignedByte, "VEC4", 5);
+    file.accessor(2, kFloat, "VEC4", 5);
+    file.extra = R"(,"skins":[)" + skinOf(file, "[2,3]", {smaller(0.5f, -1, 0, 0), smaller(0.5f, -1, -2, 0)}, 3) + "]";
+    checkNear(readable(file.bytes()).positions, {4, 0, 0, 6, 0, 0, 6, 2, 0, 4, 2, 0, 4, 0, 2});
+    // Numbers that are not normalised, and matrices that only move them.
+    file.accessors.clear();
+    file.accessor(file.view<std::int8_t>({0, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 4), kByte,
+                  "VEC3", 5);
+    file.accessor(1, kUnsignedByte, "VEC4", 5);
+    file.accessor(2, kFloat, "VEC4", 5);
+    file.extra = R"(,"skins":[)" + skinOf(file, "[2,3]", {smaller(1, -1, 0, 0), smaller(1, -1, -2, 0)}, 3) + "]";
+    CHECK(readable(file.bytes()).positions == movedPoints(4, 0, 0));
+  }
+}
+
+TEST_CASE("a figure that stands elsewhere as a whole is at rest", "[gltf]") {
+  CHECK(readable(figure(1, R"(,"translation":[5,0,0])").bytes()).positions == movedPoints(5, 0, 0));
+  checkNear(readable(figure(64, R"(,"translation":[5,0,0])").bytes()).positions, movedPoints(5, 0, 0));
+}
+
+TEST_CASE("a posed figure is taken in its bind pose", "[gltf]") {
+  CHECK(readable(figure(1, "", kBent).bytes()).positions == kPoints);
+  SECTION("as it is stored, wherever the rig stands") {
+    CHECK(readable(figure(1, R"(,"translation":[5,0,0])", kBent).bytes()).positions == kPoints);
+  }
+  SECTION("by the first joint of its skin if it is stored in another unit") {
+    checkNear(readable(figure(64, R"(,"translation":[5,0,0])", kBent).bytes()).positions, movedPoints(5, 0, 0));
+  }
+  SECTION("by the first that holds it if the first has another size") {
+    File file = heldPoints(64);
+    file.nodes = R"({"mesh":0,"skin":0},{"scale":[1.05,1.05,1.05]},{"translation":[0,1,0]},{"translation":[0,2,0]})";
+    file.sceneNodes = "0,1,2,3";
+    file.accessors.clear();
+    file.accessor(0, kFloat, "VEC3", 5);
+    file.accessor(file.view<std::uint8_t>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0}), kUnsignedByte,
+                  "VEC4", 5);
+    file.accessor(2, kFloat, "VEC4", 5);
+    file.extra = R"(,"skins":[)" + skinOf(file, "[1,2,3]", {smaller(64), smaller(64), smaller(64)}, 3) + "]";
+    checkNear(readable(file.bytes()).positions, movedPoints(0, 1, 0));
+  }
+}
+
+TEST_CASE("all meshes of a figure are at rest, or none is", "[gltf]") {
+  SECTION("eyes that turn with the head") {
+    const auto withEyes = [](float times, const std::string& neck) {
+      File file = figure(times, "", neck + R"(,"children":[6])");
+      addEyes(file, "[2,6]", R"(,{"name":"eyes","translation":[0,1,0]})", {smaller(times), smaller(times, 0, -3, 0)});
+      // Of the eyes' skin, the second joint alone holds them.
+      file.accessor(file.view<std::uint8_t>({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}),
+                    kUnsignedByte, "VEC4", 5);
+      file.moreMeshes = R"(,{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":5,"WEIGHTS_0":2}}]})";
+      file.nodes.replace(file.nodes.find(R"({"mesh":0,"skin":1})"), 9, R"({"mesh":1)");
+      return readable(file.bytes()).positions;
+    };
+    CHECK(withEyes(1, "") == doubled(kPoints));
+    CHECK(withEyes(1, kBent) == doubled(kPoints));
+    checkNear(withEyes(32, kBent), doubled(kPoints));
+  }
+  SECTION("one eye has turned") {
+    const auto withEyes = [](const std::string& turned) {
+      File file = figure(1, R"(,"translation":[5,0,0])", R"(,"children":[6,7])");
+      addEyes(file, "[6,7]", R"(,{"translation":[1,1,0])" + turned + R"(},{"translation":[-1,1,0]})",
+              {smaller(1, -1, -3, 0), smaller(1, 1, -3, 0)});
+      return readable(file.bytes()).positions;
+    };
+    CHECK(withEyes("") == doubled(movedPoints(5, 0, 0)));
+    CHECK(withEyes(kBent) == doubled(kPoints));
+  }
+  SECTION("nodes that share a mesh are placed by the skin of each") {
+    File file = heldPoints();
+    file.nodes = R"({"mesh":0,"skin":0},{"mesh":0,"skin":1},{"mesh":0,"translation":[0,1,0]},
+                    {"translation":[1,0,0]},{"translation":[2,0,0]})";
+    file.sceneNodes = "0,1,2,3,4";
+    file.extra = R"(,"skins":[{"joints":[3,3]},{"joints":[4,4]}])";
+    Floats expected = movedPoints(1, 0, 0);
+    for (const Floats& more : {movedPoints(2, 0, 0), movedPoints(0, 1, 0)})
+      expected.insert(expected.end(), more.begin(), more.end());
+    CHECK(readable(file.bytes()).positions == expected);
+  }
+}
+
+TEST_CASE("joints that hold nothing do not place a mesh", "[gltf]") {
+  File file = figure(1, R"(,"translation":[5,0,0])");
+  const auto with = [&](const std::string& attributes) {
+    file.primitive = R"("attributes":{"POSITION":0)" + attributes + "}";
+    return readable(file.bytes()).positions;
+  };
+  CHECK(with("") == kPoints);
+  CHECK(with(R"(,"JOINTS_0":1)") == kPoints);
+  CHECK(with(R"(,"WEIGHTS_0":2)") == kPoints);
+  SECTION("those that a skin does not have") {
+    file.accessor(file.view<std::uint8_t>({0, 3, 0, 0, 0, 255, 0, 0, 0, 3, 0, 0, 0, 3, 0, 0, 0, 3, 0, 0}),
+                  kUnsignedByte, "VEC4", 5);
+    file.accessor(file.view<std::uint8_t>({9, 9, 0, 0, 9, 9, 0, 0, 9, 9, 0, 0, 9, 9, 0, 0, 9, 9, 0, 0}), kUnsignedByte,
+                  "VEC4", 5, R"(,"normalized":true)");
+    CHECK(with(R"(,"JOINTS_0":4,"WEIGHTS_0":5)") == movedPoints(5, 0, 0));
+  }
+  SECTION("those of the second set, as it adds little") {
+    file.accessor(file.view<std::uint16_t>({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2}),
+                  kUnsignedShort, "VEC4", 5);
+    CHECK(with(R"(,"JOINTS_0":1,"WEIGHTS_0":2,"JOINTS_1":4,"WEIGHTS_1":2)") == movedPoints(5, 0, 0));
+  }
+  SECTION("those whose inverse bind matrices are missing") {
+    file.extra = R"(,"skins":[)" + skinOf(file, "[2,3,4]", {smaller(1)}, 4) + "]";
+    CHECK(with(R"(,"JOINTS_0":1,"WEIGHTS_0":2)") == movedPoints(5, 0, 0));
+  }
+  SECTION("those in a cycle are where the scene is") {
+    file.nodes = R"({"mesh":0,"skin":0},{"children":[2]},{"children":[1]})";
+    file.sceneNodes = "0";
+    file.extra = R"(,"skins":[)" + skinOf(file, "[1,2]", {smaller(1, 3, 0, 0), smaller(1, 3, 0, 0)}, 4) + "]";
+    CHECK(with(R"(,"JOINTS_0":1,"WEIGHTS_0":2)") == movedPoints(3, 0, 0));
+  }
+  SECTION("a skin without joints") {
+    file.extra = R"(,"skins":[{"joints":[]}])";
+    CHECK(with(R"(,"JOINTS_0":1,"WEIGHTS_0":2)") == kPoints);
+  }
+}
+
+TEST_CASE("broken skins are errors that name the element", "[gltf]") {
+  File file = figure(1);
+  SECTION("no such skin") {
+    file.nodes.replace(file.nodes.find(R"("skin":0)"), 8, R"("skin":3)");
+    CHECK_THAT(errorOf(file.bytes()), Contains("nodes[0] refers to skins[3], which does not exist (there are 1)"));
+  }
+  SECTION("no such joint") {
+    file.extra = R"(,"skins":[{"joints":[2,99]}])";
+    CHECK_THAT(errorOf(file.bytes()),
+               Contains("skins[0].joints refers to nodes[99], which does not exist (there are 5"));
+  }
+  SECTION("no such matrices") {
+    file.extra = R"(,"skins":[{"joints":[2],"inverseBindMatrices":99}])";
+    CHECK_THAT(errorOf(file.bytes()), Contains("skins[0].inverseBindMatrices refers to accessors[99]"));
+  }
+  SECTION("matrices of another type") {
+    file.extra = R"(,"skins":[{"joints":[2],"inverseBindMatrices":0}])";
+    CHECK_THAT(errorOf(file.bytes()),
+               Contains("accessors[0], used by skins[0].inverseBindMatrices, does not have 16 components"));
+  }
+  SECTION("joints and weights of fewer vertices") {
+    file.accessor(1, kUnsignedByte, "VEC4", 4);
+    file.accessor(2, kFloat, "VEC4", 4);
+    file.primitive = R"("attributes":{"POSITION":0,"JOINTS_0":4,"WEIGHTS_0":2})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("primitives[0].JOINTS_0 has 4 elements for 5 vertices"));
+    file.primitive = R"("attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":5})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("primitives[0].WEIGHTS_0 has 4 elements for 5 vertices"));
+    file.primitive = R"("attributes":{"POSITION":0,"JOINTS_0":9,"WEIGHTS_0":2})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("primitives[0] refers to accessors[9]"));
+  }
+  SECTION("a joint with two parents outside of the scene") {
+    file.nodes += R"(,{"children":[6]},{},{"children":[6]})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("nodes[6] is in the file twice, or its own ancestor"));
+  }
+  SECTION("a child that does not exist outside of the scene") {
+    file.nodes += R"(,{"children":[9]})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("the file refers to nodes[9]"));
+  }
+  SECTION("many nodes with a skin of many joints") {
+    std::string joints = "2";
+    for (int i = 1; i < 100'000; ++i) joints += ",2";
+    file.extra = R"(,"skins":[{"joints":[)" + joints + "]}]";
+    for (int i = 0; i < 700; ++i) {
+      file.nodes += R"(,{"mesh":0,"skin":0})";
+      file.sceneNodes += "," + std::to_string(i + 5);
+    }
+    CHECK_THAT(errorOf(file.bytes()), Contains("more than"));
+  }
+  SECTION("many skins of one large accessor") {
+    file.accessor(-1, kFloat, "MAT4", 1u << 22);
+    file.extra.clear();
+    for (int i = 0; i < 40; ++i) {
+      file.nodes += R"(,{"mesh":0,"skin":)" + std::to_string(i) + "}";
+      file.sceneNodes += "," + std::to_string(i + 5);
+      file.extra += (i == 0 ? R"(,"skins":[)" : ",") + std::string(R"({"joints":[2],"inverseBindMatrices":4})");
+    }
+    file.extra += "]";
+    CHECK_THAT(errorOf(file.bytes()), Contains("more than"));
+  }
+}
+
 TEST_CASE("without transforms every bit of a position is kept", "[gltf]") {
   File file;
   file.accessor(file.view<float>({-0.0f, 1e-42f, 3.4e38f, 0.1f, 0.2f, 0.3f, 1, 2, 3}), kFloat, "VEC3", 3);
@@ -401,19 +730,19 @@ TEST_CASE("a GLB cut short with its header mended is an error", "[gltf]") {
 }
 
 TEST_CASE("a GLB with any byte changed is read or refused, never worse", "[gltf]") {
-  const Bytes whole = triangle().bytes();
   scenes::Random random(firstSeed());
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    for (const auto value :
-         {std::uint8_t{0}, std::uint8_t{255}, std::uint8_t{'9'}, static_cast<std::uint8_t>(random.below(256))}) {
-      Bytes changed = whole;
-      changed[i] = value;
-      gltf::Model model;
-      const gltf::Result result = gltf::readMemory(changed, "file", "", model);
-      if (!result.ok()) continue;
-      for (const std::uint32_t index : model.indices) REQUIRE(index < model.positions.size() / 3);
+  for (const Bytes& whole : {triangle().bytes(), figure(1).bytes()})
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      for (const auto value :
+           {std::uint8_t{0}, std::uint8_t{255}, std::uint8_t{'9'}, static_cast<std::uint8_t>(random.below(256))}) {
+        Bytes changed = whole;
+        changed[i] = value;
+        gltf::Model model;
+        const gltf::Result result = gltf::readMemory(changed, "file", "", model);
+        if (!result.ok()) continue;
+        for (const std::uint32_t index : model.indices) REQUIRE(index < model.positions.size() / 3);
+      }
     }
-  }
 }
 
 TEST_CASE("unsupported compression is an error that names it", "[gltf]") {

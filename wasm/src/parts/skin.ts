@@ -20,7 +20,7 @@ export interface Skinned<Matrix extends ArrayLike<number>> {
 
 /**
  * Returns the matrices by which skeletons at rest place skinned meshes in the scene. Files that are quantised, or whose rig has
- * another unit or axis than the scene, store this only in the inverse bind matrices.
+ * another unit or axis than the scene, store this only in the inverse bind matrices. `placeSkinned` in C++ has the same rules.
  *
  * In the bind pose all joints of a mesh give the same matrix, which is returned. If those of any mesh differ, the model has moved: joints
  * of other meshes may be equal only because they have turned together, as those of an eye. Then all meshes are taken as they are
