@@ -5,14 +5,15 @@ import { announce, element } from '../platform/page';
 import type { Model } from '../scene/load-model';
 import type { Session } from '../scene/session';
 import { closestPointOnTriangle, diagonalOf, type Surface } from '../scene/surface';
+import { Highlight } from '../view/highlight';
 import type { Spot } from '../view/pick';
 import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
-import { BareMarks } from './bare-marks';
 
 // The radius of the brush, as a share of the model's diagonal.
 const kLeast = 0.004;
 const kMost = 0.1;
+const kColor = '#d81b60'; // of the marks
 const kMostBetween = 8; // spots that are filled in between two positions of the pointer
 
 type Position = Pick<PointerEvent, 'clientX' | 'clientY'>;
@@ -29,7 +30,7 @@ export class BareBrush {
   readonly #offer: RailTool;
   #target: Model | undefined;
   #diagonal = 1;
-  #shown: BareMarks | undefined;
+  #shown: Highlight | undefined;
   /** The marks while the brush is down, and where it was last. */
   #stroke: { marks: Uint8Array; last: Position } | undefined;
 
@@ -92,7 +93,7 @@ export class BareBrush {
     element('bare-options', HTMLElement).hidden = !on;
     element('bare-brush', HTMLButtonElement).setAttribute('aria-pressed', String(on));
     this.#shown?.dispose();
-    this.#shown = on && this.#target ? new BareMarks(this.#target.mesh) : undefined;
+    this.#shown = on && this.#target ? new Highlight(this.#target.mesh, kColor, 0.55) : undefined;
     this.#write();
   }
 

@@ -39,7 +39,8 @@ export class MakeOptionsPanel {
         this.#change();
       });
     this.#parts.addEventListener('change', () => this.#change());
-    for (const end of ['pointerleave', 'focusout']) this.#parts.addEventListener(end, () => viewer.highlight([]));
+    for (const end of ['pointerleave', 'focusout'])
+      this.#parts.addEventListener(end, () => viewer.highlight(undefined));
     session.on('transfer', () => {
       this.#bare = session.bare;
       void this.#list();
@@ -104,10 +105,11 @@ export class MakeOptionsPanel {
       input.type = 'checkbox';
       input.checked = this.#usual[part]!;
       row.append(input, name);
-      for (const begin of ['pointerenter', 'focusin'])
-        row.addEventListener(begin, () =>
-          this.#viewer.highlight(Array.from({ length: triangleCount }, (_, i) => firstTriangle + i)),
-        );
+      const show = (): void => {
+        const marks = new Uint8Array(target.mesh.indices.length / 3);
+        this.#viewer.highlight(marks.fill(1, firstTriangle, firstTriangle + triangleCount));
+      };
+      for (const begin of ['pointerenter', 'focusin']) row.addEventListener(begin, show);
       return row;
     });
     this.#parts.replaceChildren(this.#parts.querySelector('legend')!, ...rows);

@@ -5,7 +5,7 @@ import type { CageMaker } from '../scene/cage-maker';
 import type { Session } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
 import { forPeople, reasonOf } from '../scene/wording';
-import { trianglesOf } from '../view/segments';
+import { marksOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
 import { type KnownVerdict, paintableShare, type Remedy, StageVerdict } from './stage-verdict';
 
@@ -168,7 +168,7 @@ export class FitPanel {
 
   #highlight(segments: readonly number[]): void {
     const { shown } = this.#session;
-    this.#viewer?.highlight(shown ? trianglesOf(shown, segments) : []);
+    this.#viewer?.highlight(shown && marksOf(shown, segments));
   }
 }
 

@@ -1,7 +1,7 @@
 import { element } from '../platform/page';
 import type { Choice, Session, Shown } from '../scene/session';
 import type { Spot } from '../view/pick';
-import { trianglesOf } from '../view/segments';
+import { marksOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
 
 const kMargin = 8; // pixels from the edges of the stage
@@ -45,7 +45,7 @@ export class PartMenu {
       return;
     }
     this.#segment = shown.projection.segments[shown.target.mesh.indices[3 * spot.triangle]!]!;
-    this.#viewer.highlight(trianglesOf(shown, [this.#segment]));
+    this.#viewer.highlight(marksOf(shown, [this.#segment]));
     this.#box.hidden = false;
     this.#write();
     const stage = this.#stage.getBoundingClientRect();
@@ -61,7 +61,7 @@ export class PartMenu {
     if (this.#box.hidden) return;
     this.#box.hidden = true;
     this.#segment = undefined;
-    this.#viewer.highlight([]);
+    this.#viewer.highlight(undefined);
   }
 
   #write(): void {

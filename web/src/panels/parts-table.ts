@@ -3,7 +3,7 @@ import { element, showNotice } from '../platform/page';
 import type { Primitive } from '../scene/extract-mesh';
 import type { Choice, Locks, Session, Shown } from '../scene/session';
 import { cssColor, type Rgb } from '../view/colors';
-import { segmentColors, trianglesOf } from '../view/segments';
+import { marksOf, segmentColors } from '../view/segments';
 import type { Viewer } from '../view/viewer';
 import { nameOfPart, paintedPoints } from './part-menu';
 
@@ -130,7 +130,7 @@ export class PartsTable {
   /** Highlights segments of the target. */
   #highlight(segments: readonly number[]): void {
     const { shown } = this.#session;
-    this.#viewer?.highlight(shown ? trianglesOf(shown, segments) : []);
+    this.#viewer?.highlight(shown && marksOf(shown, segments));
   }
 }
 

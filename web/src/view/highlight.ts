@@ -1,45 +1,60 @@
 import { BufferAttribute, DoubleSide, type Mesh, MeshBasicMaterial } from 'three';
 import { disposeAfterFrame } from '../platform/programs';
-import type { ExtractedMesh } from '../scene/extract-mesh';
+import type { ExtractedMesh, Primitive } from '../scene/extract-mesh';
 import { detachShared, overlayMesh, shareVertices } from './overlay-geometry';
 import { onSurface } from './overlay-materials';
 
-const kColor = '#22d3ff';
-
-/** Highlights triangles of a target; faint where something is in front of them. */
+/** Shows marked triangles of a target in a colour. */
 export class Highlight {
-  readonly #meshes: Mesh[] = [];
-  readonly #front = onSurface(new MeshBasicMaterial({ color: kColor, opacity: 0.5, side: DoubleSide }));
-  readonly #behind = onSurface(
-    new MeshBasicMaterial({ color: kColor, opacity: 0.35, side: DoubleSide, depthTest: false }),
-  );
+  readonly #indices: Uint32Array;
+  readonly #parts: { primitive: Primitive; mesh: Mesh }[];
+  readonly #materials: readonly MeshBasicMaterial[];
 
-  /** @param triangles Indices of the target's triangles. */
-  constructor({ primitives, indices }: ExtractedMesh, triangles: readonly number[]) {
-    for (const { mesh: base, firstVertex, firstTriangle, triangleCount } of primitives) {
-      const own = triangles.filter((triangle) => triangle >= firstTriangle && triangle < firstTriangle + triangleCount);
-      if (own.length === 0) continue;
-      const vertices = Uint32Array.from(
-        { length: 3 * own.length },
-        (_, i) => indices[3 * own[Math.floor(i / 3)]! + (i % 3)]! - firstVertex,
-      );
-      const geometry = shareVertices(base.geometry).setIndex(new BufferAttribute(vertices, 1));
+  /** @param behind The opacity of what other surfaces hide; by default none of it is seen. */
+  constructor({ primitives, indices }: ExtractedMesh, color: string, opacity: number, behind?: number) {
+    this.#indices = indices;
+    const look = { color, side: DoubleSide };
+    const front = onSurface(new MeshBasicMaterial({ ...look, opacity }));
+    this.#materials = behind
+      ? [onSurface(new MeshBasicMaterial({ ...look, opacity: behind, depthTest: false })), front]
+      : [front];
+    this.#parts = primitives.map((primitive) => {
+      const { mesh: base, triangleCount } = primitive;
+      const geometry = shareVertices(base.geometry);
+      geometry.setIndex(new BufferAttribute(new Uint32Array(3 * triangleCount), 1));
       detachShared(geometry, base.geometry);
-      geometry.addGroup(0, vertices.length, 0);
-      geometry.addGroup(0, vertices.length, 1);
+      this.#materials.forEach((_, i) => geometry.addGroup(0, Infinity, i));
       const mesh = overlayMesh(base, geometry);
-      mesh.material = [this.#behind, this.#front];
+      mesh.material = [...this.#materials];
       mesh.renderOrder = 3;
+      mesh.visible = false;
       base.add(mesh);
-      this.#meshes.push(mesh);
+      return { primitive, mesh };
+    });
+  }
+
+  /** @param marks 1 for each marked triangle of the target; undefined marks none. */
+  show(marks: Uint8Array | undefined): void {
+    for (const { primitive, mesh } of this.#parts) {
+      const { firstTriangle, firstVertex, triangleCount } = primitive;
+      const index = mesh.geometry.index!;
+      let count = 0;
+      if (marks)
+        for (let t = firstTriangle; t < firstTriangle + triangleCount; t++)
+          if (marks[t] === 1)
+            for (let i = 3 * t; i < 3 * t + 3; i++) index.setX(count++, this.#indices[i]! - firstVertex);
+      mesh.visible = count > 0;
+      if (count === 0) continue;
+      index.needsUpdate = true;
+      mesh.geometry.setDrawRange(0, count);
     }
   }
 
   dispose(): void {
-    for (const mesh of this.#meshes) {
+    for (const { mesh } of this.#parts) {
       mesh.removeFromParent();
       mesh.geometry.dispose();
     }
-    disposeAfterFrame([this.#front, this.#behind]);
+    disposeAfterFrame(this.#materials);
   }
 }

@@ -11,13 +11,11 @@ export function segmentColors({ projection: { segmentStats } }: Shown): Rgb[] {
   return colors;
 }
 
-/** The triangles of segments. */
-export function trianglesOf({ target, projection }: Shown, segments: readonly number[]): number[] {
-  const triangles: number[] = [];
-  if (segments.length === 0) return triangles;
+/** Marks the triangles of segments: 1 for each of them. Undefined without segments. */
+export function marksOf({ target, projection }: Shown, segments: readonly number[]): Uint8Array | undefined {
+  if (segments.length === 0) return undefined;
   const chosen = new Set(segments);
   const { indices } = target.mesh;
   // All corners of a triangle belong to one segment.
-  for (let t = 0; 3 * t < indices.length; t++) if (chosen.has(projection.segments[indices[3 * t]!]!)) triangles.push(t);
-  return triangles;
+  return new Uint8Array(indices.length / 3).map((_, t) => +chosen.has(projection.segments[indices[3 * t]!]!));
 }

@@ -47,6 +47,7 @@ const kSwaySeconds = 16; // its period
 const kLongestFrame = 0.25; // seconds: limits the rotation per frame, so that a slow frame causes no jump
 const kTurnSeconds = 12; // of a whole turn of the turntable
 const kPicturePixels = 2; // of a saved picture, per pixel of the page
+const kHighlight = '#22d3ff';
 const kKeyStep = MathUtils.degToRad(6);
 const kKeyNearer = 1 / 1.1; // of the distance
 const kKeyMove = 40; // pixels
@@ -164,7 +165,7 @@ export class Viewer {
 
   /** Shows another target; call `classify` next. Frees the previous one, unless it is the same. */
   setTarget(model: Model, projection: SplitProjection): void {
-    this.highlight([]);
+    this.highlight(undefined);
     this.#overlay?.dispose();
     if (model !== this.#model) this.#place(model);
     this.#overlay = new Overlay(model.mesh, projection, this.#paint);
@@ -174,7 +175,7 @@ export class Viewer {
   /** Updates the projection of the current target, which has moved; call `classify` next. */
   move(projection: SplitProjection): void {
     if (!this.#overlay) return;
-    this.highlight([]);
+    this.highlight(undefined);
     this.#overlay.setProjection(projection);
     this.redraw();
   }
@@ -191,11 +192,10 @@ export class Viewer {
     this.redraw();
   }
 
-  /** Highlights triangles of the target, in place of the current ones. */
-  highlight(triangles: readonly number[]): void {
-    if (triangles.length === 0 && !this.#highlight) return;
-    this.#highlight?.dispose();
-    this.#highlight = triangles.length > 0 && this.#model ? new Highlight(this.#model.mesh, triangles) : undefined;
+  /** Highlights triangles of the target. @param marks 1 for each of them; undefined highlights none. */
+  highlight(marks: Uint8Array | undefined): void {
+    if (marks && this.#model) this.#highlight ??= new Highlight(this.#model.mesh, kHighlight, 0.5, 0.35);
+    this.#highlight?.show(marks);
     this.redraw();
   }
 
@@ -523,6 +523,8 @@ export class Viewer {
   #place(model: Model): void {
     this.play(undefined);
     if (this.#model) {
+      this.#highlight?.dispose();
+      this.#highlight = undefined;
       this.#model.scene.removeFromParent();
       disposeModel(this.#model);
     }
