@@ -5,7 +5,7 @@ import { announce, element } from '../platform/page';
 import type { Model } from '../scene/load-model';
 import type { Session } from '../scene/session';
 import { closestPointOnTriangle, diagonalOf, type Surface } from '../scene/surface';
-import { Highlight } from '../view/highlight';
+import { Highlight } from '../view/overlay/highlight';
 import type { Spot } from '../view/pick';
 import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';

@@ -19,7 +19,7 @@ import type { Explanation } from './explanation';
 import type { Path } from './path';
 
 const kCageColor = '#19b394';
-/** Colours of the spot by zone, as in overlay-materials.ts; cosmetic is in the cage's colour. */
+/** Colours of the spot by zone, as in overlay/materials.ts; cosmetic is in the cage's colour. */
 const kSpotColors = [kCageColor, '#0072b2', '#e69f00', '#cc79a7'];
 /** Colours of the ray by outcome, which later steps may overrule. */
 const kRayColors: Record<Path['outcome'], string> = {

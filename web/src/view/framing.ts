@@ -1,6 +1,6 @@
 import { MathUtils, type Object3D, type PerspectiveCamera, type Spherical, Vector3 } from 'three';
 import type { Model } from '../scene/load-model';
-import type { Look } from './overlay';
+import type { Look } from './overlay/overlay';
 
 const kMargin = 1.03;
 const kMostPoints = 50_000; // more are sampled evenly

@@ -1,7 +1,7 @@
 import { Box3, Group, Vector3 } from 'three';
 import type { Model } from '../scene/load-model';
 import type { Crowd } from '../view/framing';
-import type { Look, Overlay } from '../view/overlay';
+import type { Look, Overlay } from '../view/overlay/overlay';
 
 const kGap = 1.08; // of the width of a cell
 

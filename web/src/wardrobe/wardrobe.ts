@@ -9,7 +9,7 @@ import { choicesOf, type Session, type Shown } from '../scene/session';
 import { TransferClient } from '../scene/transfer-client';
 import { reasonOf } from '../scene/wording';
 import { frontOf } from '../view/framing';
-import { type Look, Overlay } from '../view/overlay';
+import { type Look, Overlay } from '../view/overlay/overlay';
 import { pick } from '../view/pick';
 import type { Viewer } from '../view/viewer';
 import { type Avatar, type Entry, kMostAvatars, nameOf } from './avatar';

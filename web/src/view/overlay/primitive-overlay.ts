@@ -11,9 +11,8 @@ import {
   SRGBColorSpace,
   type Texture,
 } from 'three';
-import { disposeAfterFrame } from '../platform/programs';
-import { type Primitive, reverseWinding } from '../scene/extract-mesh';
-import type { Look } from './overlay';
+import { disposeAfterFrame } from '../../platform/programs';
+import { type Primitive, reverseWinding } from '../../scene/extract-mesh';
 import {
   copyVertices,
   detachShared,
@@ -23,7 +22,7 @@ import {
   shifted,
   sortByZone,
   zonesOfTriangles,
-} from './overlay-geometry';
+} from './geometry';
 import {
   clayMaterial,
   colorMaterial,
@@ -32,7 +31,8 @@ import {
   onSurface,
   paintMaterial,
   zoneMaterial,
-} from './overlay-materials';
+} from './materials';
+import type { Look } from './overlay';
 
 // The transferred UVs use a channel that glTF models leave free, so that the base maps keep theirs.
 const kUvChannel = 3;

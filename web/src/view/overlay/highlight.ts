@@ -1,8 +1,8 @@
 import { BufferAttribute, DoubleSide, type Mesh, MeshBasicMaterial } from 'three';
-import { disposeAfterFrame } from '../platform/programs';
-import type { ExtractedMesh, Primitive } from '../scene/extract-mesh';
-import { detachShared, overlayMesh, shareVertices } from './overlay-geometry';
-import { onSurface } from './overlay-materials';
+import { disposeAfterFrame } from '../../platform/programs';
+import type { ExtractedMesh, Primitive } from '../../scene/extract-mesh';
+import { detachShared, overlayMesh, shareVertices } from './geometry';
+import { onSurface } from './materials';
 
 /** Shows marked triangles of a target in a colour. */
 export class Highlight {

@@ -1,9 +1,9 @@
 import type { Classification, CutTarget } from 'cagecast';
 import type { Texture } from 'three';
-import { Pace } from '../platform/pace';
-import type { ExtractedMesh } from '../scene/extract-mesh';
-import type { SplitProjection } from '../scene/transfer-messages';
-import type { Mode } from '../scene/view-state';
+import { Pace } from '../../platform/pace';
+import type { ExtractedMesh } from '../../scene/extract-mesh';
+import type { SplitProjection } from '../../scene/transfer-messages';
+import type { Mode } from '../../scene/view-state';
 import { PrimitiveOverlay } from './primitive-overlay';
 
 /**
