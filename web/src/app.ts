@@ -80,8 +80,8 @@ let paint: Texture | undefined;
 let painter: Painter | undefined;
 if (viewer) {
   showModel(session, viewer);
-  showViewModes(session, viewer);
-  new ExactBorders(session, viewer);
+  showViewModes(session, viewer.stage);
+  new ExactBorders(session, viewer.stage);
   const composite = showComposite(viewer, stack);
   paint = composite.texture;
   const tools = new Tools(viewer, element('stage', HTMLElement));
@@ -100,13 +100,13 @@ setUpUndo(history);
 showStatus(session, viewer === undefined);
 fadePoster(session, viewer);
 showResults(session);
-new PartsTable(session, viewer);
-new FitPanel(session, viewer, maker);
+new PartsTable(session, viewer?.stage);
+new FitPanel(session, viewer?.stage, maker);
 setUpRules(session);
 new ThresholdMarks(session);
 setUpViewControls(session);
 setUpSectionNav();
-setUpStageButtons(viewer, history);
+setUpStageButtons(viewer?.controls, history);
 const live = new Live(session, viewer);
 recordControls(session, live, history);
 const opener = new Opener(session, stack, edits, viewer?.renderer);
@@ -114,7 +114,7 @@ const { png: exportPng, layers } = exportedPaint(session, stack, edits, opener, 
 const wardrobe =
   viewer && paint && setUpWardrobe({ session, viewer, stack, paint, png: exportPng, samples: () => opener.samples });
 if (wardrobe) opener.takesDrop = (files) => wardrobe.take(files);
-const linked = { session, layers, live, viewer };
+const linked = { session, layers, live, controls: viewer?.controls };
 const exportPanel = new ExportPanel(linked, exportPng);
 stack.on('change', () => exportPanel.refresh());
 const restoreWork = beginProjects({ session, stack, edits, history, away, opener, painter, live, viewer, wardrobe });

@@ -2,7 +2,7 @@ import type { PointerPosition } from 'cagecast/three/paint';
 import { element } from '../platform/page';
 import type { Spot } from '../view/pick';
 import type { Tool } from '../view/pointing';
-import type { Viewer } from '../view/viewer';
+import type { ScreenSpace } from '../view/screen-space';
 
 /** A tool that keys can apply too. */
 export interface PaintTool extends Pick<Tool, 'move' | 'cancel' | 'hover'> {
@@ -17,7 +17,7 @@ export interface PaintTool extends Pick<Tool, 'move' | 'cancel' | 'hover'> {
  * Applies the chosen tool at the centre of the view while the space bar is held. The keys that turn the model then move it
  * under the tool.
  */
-export function paintByKeys(viewer: Viewer): { use(tool: PaintTool | undefined): void } {
+export function paintByKeys(screen: ScreenSpace): { use(tool: PaintTool | undefined): void } {
   const canvas = element('view', HTMLCanvasElement);
   const cross = document.createElement('div');
   cross.className = 'cross';
@@ -34,17 +34,17 @@ export function paintByKeys(viewer: Viewer): { use(tool: PaintTool | undefined):
   // On the stage, so that it runs after the viewer has turned the model.
   element('stage', HTMLElement).addEventListener('keydown', (keyEvent) => {
     if (keyEvent.target !== canvas || !tool || keyEvent.ctrlKey || keyEvent.metaKey || keyEvent.altKey) return;
-    const { x, y } = viewer.center;
+    const { x, y } = screen.center;
     const at = { clientX: x, clientY: y };
     if (keyEvent.key === ' ') {
       keyEvent.preventDefault();
       if (keyEvent.repeat || pressed) return;
-      const spot = viewer.pick(x, y);
+      const spot = screen.pick(x, y);
       if (tool.down?.(spot, at)) pressed = tool;
       else tool.tap?.(spot);
     } else {
       // The model turned under the centre: extend the stroke to the new spot.
-      pressed?.go?.(viewer.pick(x, y), at);
+      pressed?.go?.(screen.pick(x, y), at);
     }
   });
   canvas.addEventListener('keyup', ({ key }) => key === ' ' && release());

@@ -78,7 +78,7 @@ export class Painter extends LayerPainter implements PointerView {
   }
 
   aimAt(x: number, y: number): Aim | undefined {
-    return this.aimOf(this.#viewer.pick(x, y));
+    return this.aimOf(this.#viewer.screen.pick(x, y));
   }
 
   /** Where a spot of the target takes its paint from. */
@@ -88,7 +88,7 @@ export class Painter extends LayerPainter implements PointerView {
     const isPainted = classification?.cosmeticTriangles[spot.triangle];
     return {
       surface: isPainted ? this.cageTexels?.at(...uvOf(spot, shown)) : undefined,
-      scale: this.#viewer.pixelsAt(spot.seen),
+      scale: this.#viewer.screen.pixelsAt(spot.seen),
     };
   }
 

@@ -51,7 +51,7 @@ export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, la
     sticker: eyedropper.before(sticker),
     fill: eyedropper.before(new FillTool(painter, options)),
   };
-  const keys = paintByKeys(viewer);
+  const keys = paintByKeys(viewer.screen);
   const offers = {} as Record<Kind, RailTool>;
   for (const kind of ['brush', 'eraser', 'sticker', 'fill'] as const) {
     tools.add(

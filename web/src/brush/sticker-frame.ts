@@ -57,12 +57,16 @@ export class StickerFrame {
   /** Puts it where the sticker is seen now. */
   #follow(): void {
     const frame = this.#frame?.();
-    const [center, ...corners] = frame ? this.#viewer.toStage(cornersOf(frame)) : [];
-    const isSeen = frame !== undefined && this.#viewer.faces(frame.center.point, frame.center.normal);
+    const isSeen = frame !== undefined && this.#viewer.screen.faces(frame.center.point, frame.center.normal);
     this.#outline.style.display = this.#handle.style.display = isSeen ? '' : 'none';
-    if (!center || !isSeen) return;
+    if (!isSeen) return;
+    const { left, top } = this.#handle.parentElement!.getBoundingClientRect();
+    const [center, ...corners] = cornersOf(frame).map((point) => {
+      const { x, y } = this.#viewer.screen.project(point);
+      return { x: x - left, y: y - top };
+    });
     this.#outline.firstElementChild!.setAttribute('points', corners.map(({ x, y }) => `${x},${y}`).join(' '));
-    this.#center = center;
+    this.#center = center!;
     const corner = corners[2]!;
     this.#handle.style.translate = `${corner.x}px ${corner.y}px`;
   }

@@ -125,7 +125,7 @@ export class StickerTool implements PaintTool {
           .surfaceOf(this.#change.sheet.size)
           ?.cageTexels.nearest(surface.point.clone().add(grip), surface.normal)
       : surface;
-    if (at?.uv) this.#alter({ at: at.uv, up: this.#viewer.up });
+    if (at?.uv) this.#alter({ at: at.uv, up: this.#viewer.screen.up });
   }
 
   up(): void {
@@ -180,7 +180,7 @@ export class StickerTool implements PaintTool {
 
   #make(picture: StickerPicture, { uv }: SurfacePoint): PlacedSticker {
     const { size, angle, opacity, mirrored } = this.#options;
-    return this.#stickers.make({ picture, at: uv!, up: this.#viewer.up, size, angle, opacity, mirrored });
+    return this.#stickers.make({ picture, at: uv!, up: this.#viewer.screen.up, size, angle, opacity, mirrored });
   }
 
   #nextPicture(): StickerPicture | undefined {

@@ -129,11 +129,11 @@ export class BareBrush {
     const [dx, dy] = [event.clientX - clientX, event.clientY - clientY];
     this.#stroke.last = { clientX: event.clientX, clientY: event.clientY };
     if (spot) {
-      const apart = Math.hypot(dx, dy) / Math.max(1, this.#radius * this.#viewer.pixelsAt(spot.seen));
+      const apart = Math.hypot(dx, dy) / Math.max(1, this.#radius * this.#viewer.screen.pixelsAt(spot.seen));
       const between = Math.min(kMostBetween, Math.floor(apart));
       for (let i = 1; i <= between; i++) {
         const share = i / (between + 1);
-        const other = this.#viewer.pick(clientX + share * dx, clientY + share * dy);
+        const other = this.#viewer.screen.pick(clientX + share * dx, clientY + share * dy);
         if (other) this.#mark(other);
       }
       this.#mark(spot);
@@ -157,12 +157,12 @@ export class BareBrush {
   #follow(spot: Spot | undefined, { clientX, clientY, pointerType }: PointerEvent): void {
     // A finger covers the ring.
     if (!spot || pointerType === 'touch') this.#ring.hide();
-    else this.#ring.show(clientX, clientY, 2 * this.#radius * this.#viewer.pixelsAt(spot.seen));
+    else this.#ring.show(clientX, clientY, 2 * this.#radius * this.#viewer.screen.pixelsAt(spot.seen));
   }
 
   #markCenter(): void {
-    const { x, y } = this.#viewer.center;
-    if (this.#down(this.#viewer.pick(x, y), { clientX: x, clientY: y })) this.#up();
+    const { x, y } = this.#viewer.screen.center;
+    if (this.#down(this.#viewer.screen.pick(x, y), { clientX: x, clientY: y })) this.#up();
     else announce('The model is not here.');
   }
 
@@ -173,7 +173,7 @@ export class BareBrush {
     const mark = this.#erases.checked ? 0 : 1;
     const faces = (of: number): boolean => {
       const { closest, normal } = closestPointOnTriangle(mesh, of, point);
-      return this.#viewer.faces(closest, normal);
+      return this.#viewer.screen.faces(closest, normal);
     };
     const side = faces(triangle);
     for (const near of trianglesNear(mesh, point, this.#radius)) if (faces(near) === side) marks[near] = mark;

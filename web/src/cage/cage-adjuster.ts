@@ -102,7 +102,7 @@ export class CageAdjuster {
     });
     element('view', HTMLCanvasElement).addEventListener('keydown', ({ key }) => {
       if (key !== 'Enter' || tools.chosen !== this.#offer) return;
-      const { x, y } = viewer.center;
+      const { x, y } = viewer.screen.center;
       if (this.#mode === 'hole') this.#changeHole(x, y);
       if (this.#mode !== 'corner') return;
       this.#corner = this.#cornerAt(x, y, Infinity);
@@ -148,7 +148,7 @@ export class CageAdjuster {
     this.#dots?.dispose();
     this.#lines.removeFromParent();
     this.#dots = on ? new LandmarkDots(this.#viewer.renderer.getPixelRatio(), true) : undefined;
-    if (this.#dots) this.#viewer.marks.add(this.#dots.object, this.#lines);
+    if (this.#dots) this.#viewer.stage.marks.add(this.#dots.object, this.#lines);
     if (on) this.#setMode(this.#mode);
     else if (this.#session.shown) this.#commit();
     this.#viewer.redraw();
@@ -180,7 +180,7 @@ export class CageAdjuster {
     const corner = this.#corner;
     this.#drop();
     this.#corner = corner;
-    this.#viewer.moveCage(this.#matrix);
+    this.#viewer.stage.moveCage(this.#matrix);
     const { positions } = this.#cage;
     this.#size = diagonalOf({ positions });
     this.#center.set(0, 0, 0);
@@ -240,7 +240,7 @@ export class CageAdjuster {
     this.#lines.geometry.setFromPoints(ends);
     this.#lines.geometry.setDrawRange(0, ends.length);
     const stage = this.#layer.parentElement!.getBoundingClientRect();
-    const places = handles.map(([, at]) => this.#viewer.project(at));
+    const places = handles.map(([, at]) => this.#viewer.screen.project(at));
     handles.forEach(([name], i) => {
       const button = this.#buttons.get(name);
       const { x, y } = places[i]!;
@@ -253,7 +253,7 @@ export class CageAdjuster {
     if (this.#mode === 'corner') this.#corner = this.#cornerAt(x, y, kReach);
     const near = [...this.#handles]
       .map(([handle, at]) => {
-        const place = this.#viewer.project(at);
+        const place = this.#viewer.screen.project(at);
         return { handle, at, distance: Math.hypot(place.x - x, place.y - y) };
       })
       .sort((a, b) => a.distance - b.distance)[0];
@@ -271,7 +271,7 @@ export class CageAdjuster {
   #move(x: number, y: number): void {
     if (!this.#drag) return;
     const { handle, from, center } = this.#drag;
-    const to = this.#pointed(handle, from, center, this.#viewer.rayAt(x, y));
+    const to = this.#pointed(handle, from, center, this.#viewer.screen.rayAt(x, y));
     if (!to) return;
     this.#drag.from = to.clone();
     if (this.#corner) this.#corner.at.copy(to);
@@ -328,7 +328,7 @@ export class CageAdjuster {
   #apply(change: Matrix4): void {
     if (!(Math.abs(change.determinant()) > 1e-6)) return;
     this.#matrix.premultiply(change);
-    this.#viewer.moveCage(this.#matrix);
+    this.#viewer.stage.moveCage(this.#matrix);
   }
 
   #onKey(handle: string, event: KeyboardEvent): void {
@@ -338,7 +338,7 @@ export class CageAdjuster {
     const sign = step[0] - step[1];
     if (!axis) {
       const at = this.#handles.get(handle)!;
-      const { x, y } = this.#viewer.project(at);
+      const { x, y } = this.#viewer.screen.project(at);
       this.#drag = { handle, from: at.clone(), center: this.#center.clone().applyMatrix4(this.#matrix) };
       this.#move(x + kPixels * step[0], y + kPixels * step[1]);
       this.#drag = undefined;
@@ -354,12 +354,12 @@ export class CageAdjuster {
   /** The corner of the cage nearest to a position on the screen, in front of others. */
   #cornerAt(x: number, y: number, reach: number): CageAdjuster['corner'] {
     const { positions } = this.#cage;
-    const ray = this.#viewer.rayAt(x, y);
+    const ray = this.#viewer.screen.rayAt(x, y);
     const at = new Vector3();
     let best = { cost: Infinity, vertex: -1 };
     for (let vertex = 0; 3 * vertex < positions.length; vertex++) {
       at.fromArray(positions, 3 * vertex);
-      const place = this.#viewer.project(at);
+      const place = this.#viewer.screen.project(at);
       const distance = Math.hypot(place.x - x, place.y - y);
       const cost = distance + (200 * at.sub(ray.origin).dot(ray.direction)) / this.#size;
       if (distance < reach && cost < best.cost) best = { cost, vertex };
@@ -376,7 +376,7 @@ export class CageAdjuster {
 
   #changeHole(x: number, y: number): void {
     if (!this.#isReady()) return;
-    const change = changeHole(this.#cage, this.#viewer.rayAt(x, y));
+    const change = changeHole(this.#cage, this.#viewer.screen.rayAt(x, y));
     if (!change) announce('The cage is not here.');
     else if ('seam' in change) announce('This hole cannot be closed: a seam of the UVs runs into it.');
     else this.#change(change.opened ? 'opening a hole' : 'closing a hole', { indices: change.indices });

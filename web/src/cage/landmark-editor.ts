@@ -86,7 +86,7 @@ export class LandmarkEditor {
     element('landmark-show', HTMLButtonElement).addEventListener('click', () => tools.choose(this.#offer));
     element('landmark-reset', HTMLButtonElement).addEventListener('click', () => this.#reset());
     element('view', HTMLCanvasElement).addEventListener('keydown', ({ key }) => {
-      if (key === 'Enter' && this.#placing) this.#place(viewer.center.x, viewer.center.y);
+      if (key === 'Enter' && this.#placing) this.#place(viewer.screen.center.x, viewer.screen.center.y);
     });
   }
 
@@ -118,7 +118,7 @@ export class LandmarkEditor {
     box.getCenter(this.#middle);
     this.#write();
     // What was brought back takes no other tool out of the hand; and beside other models, landmarks are too near each other.
-    if (isNew && fitting === this.#maker.latest && !this.#viewer.showsCrowd) this.#tools.choose(this.#offer);
+    if (isNew && fitting === this.#maker.latest && !this.#viewer.stage.crowd) this.#tools.choose(this.#offer);
     if (this.#tools.chosen === this.#offer && Object.keys(this.#spots).length < kLeastLandmarks) this.#askForNext();
     this.#viewer.redraw();
   }
@@ -128,7 +128,7 @@ export class LandmarkEditor {
     this.#label.hidden = true;
     this.#dots?.dispose();
     this.#dots = on ? new LandmarkDots(this.#viewer.renderer.getPixelRatio()) : undefined;
-    if (this.#dots) this.#viewer.marks.add(this.#dots.object);
+    if (this.#dots) this.#viewer.stage.marks.add(this.#dots.object);
     if (!on) this.#askFor(undefined);
     this.#viewer.redraw();
   }
@@ -183,15 +183,15 @@ export class LandmarkEditor {
   /** Moves dots and buttons to where the camera sees them. */
   #follow(): void {
     if (!this.#dots || !this.#fitting) return;
-    const { x, y } = this.#viewer.center;
-    const nearer = this.#viewer.rayAt(x, y).direction.multiplyScalar(-0.015 * this.#size);
+    const { x, y } = this.#viewer.screen.center;
+    const nearer = this.#viewer.screen.rayAt(x, y).direction.multiplyScalar(-0.015 * this.#size);
     const names = Object.keys(this.#spots);
     this.#dots.show(
       names.map((name) => ({ at: this.#at(name), color: this.#colorOf(name) })),
       nearer,
     );
     const stage = this.#layer.parentElement!.getBoundingClientRect();
-    const places = names.map((name) => this.#viewer.project(this.#at(name)));
+    const places = names.map((name) => this.#viewer.screen.project(this.#at(name)));
     names.forEach((name, i) => {
       const within = (at: number, size: number): number => Math.round(Math.max(0, Math.min(at, size)));
       const place = `${within(places[i]!.x - stage.left, stage.width)}px ${within(places[i]!.y - stage.top, stage.height)}px`;
@@ -218,7 +218,7 @@ export class LandmarkEditor {
   #nearest({ clientX, clientY }: PointerEvent): string | undefined {
     let [best, nearest] = [kReach, undefined as string | undefined];
     for (const name of Object.keys(this.#spots)) {
-      const { x, y } = this.#viewer.project(this.#at(name));
+      const { x, y } = this.#viewer.screen.project(this.#at(name));
       const distance = Math.hypot(x - clientX, y - clientY);
       if (distance < best) [best, nearest] = [distance, name];
     }
@@ -232,7 +232,7 @@ export class LandmarkEditor {
   #down(event: PointerEvent): boolean {
     const name = this.#placing ? undefined : this.#nearest(event);
     if (!name) return false;
-    const { x, y } = this.#viewer.project(this.#at(name));
+    const { x, y } = this.#viewer.screen.project(this.#at(name));
     const before = this.#state;
     this.#history.held = true;
     this.#drag = { name, dx: x - event.clientX, dy: y - event.clientY, before };
@@ -269,7 +269,7 @@ export class LandmarkEditor {
     const step = arrowStep(event);
     if (!step) return;
     const length = event.shiftKey ? 1 : kStep;
-    const { x, y } = this.#viewer.project(this.#at(name));
+    const { x, y } = this.#viewer.screen.project(this.#at(name));
     const before = this.#state;
     if (!this.#put(name, x + length * step[0], y + length * step[1])) announce('The model ends there.');
     else this.#record(`moving the ${readable(name)}`, before, this.#waiting !== undefined);
@@ -300,8 +300,8 @@ export class LandmarkEditor {
   }
 
   #pointAt(name: string, x: number, y: number): Vector3 | undefined {
-    if (!isInside(name)) return this.#viewer.pick(x, y)?.point;
-    const ray = this.#viewer.rayAt(x, y);
+    if (!isInside(name)) return this.#viewer.screen.pick(x, y)?.point;
+    const ray = this.#viewer.screen.rayAt(x, y);
     if (this.#spots[name])
       return ray.intersectPlane(
         new Plane().setFromNormalAndCoplanarPoint(ray.direction, this.#at(name)),

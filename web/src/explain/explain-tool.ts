@@ -66,8 +66,8 @@ export class Explain {
 
   #explainCenter(): void {
     this.#tools.choose(this.#offer);
-    const { x, y } = this.#viewer.center;
-    this.pin(this.#viewer.pick(x, y));
+    const { x, y } = this.#viewer.screen.center;
+    this.pin(this.#viewer.screen.pick(x, y));
   }
 
   #onChoose(chosen: boolean): void {
@@ -96,7 +96,7 @@ export class Explain {
         : undefined;
     if (explanation) {
       this.#marks = new ExplanationMarks(explanation, shown!.target.mesh, shown!.cage.mesh, this.#loops!);
-      this.#viewer.marks.add(this.#marks.object);
+      this.#viewer.stage.marks.add(this.#marks.object);
     }
     if (explanation || hadMarks) this.#viewer.redraw();
     this.#write(explanation);

@@ -1,7 +1,7 @@
 import type { Live } from '../live/live-panel';
 import type { Opener } from '../scene/opener';
 import type { Session } from '../scene/session';
-import type { Viewer } from '../view/viewer';
+import type { CameraControls } from '../view/camera-controls';
 import { type LinkedLayer, type LinkState, readLink, writeLink } from './link';
 
 /** The layers that a link can carry. */
@@ -20,7 +20,7 @@ export interface Linked {
   layers: LinkedLayers;
   live: Live;
   /** Undefined without WebGL. */
-  viewer: Viewer | undefined;
+  controls: CameraControls | undefined;
 }
 
 /** The state for a link. @returns Undefined if the model is not a sample. */
@@ -28,13 +28,13 @@ function stateOf({
   session: { shown, rules, locks, view },
   layers: { layers },
   live,
-  viewer,
+  controls,
 }: Linked): LinkState | undefined {
   const sample = shown?.target.sample;
   if (!sample || sample !== shown.cage.sample) return undefined;
   const { shape } = live;
   const rests = shape.amount === 0 && shape.morphs.size === 0;
-  return { sample: sample.name, layers, rules, locks, view, shape: rests ? undefined : shape, angle: viewer?.angle };
+  return { sample: sample.name, layers, rules, locks, view, shape: rests ? undefined : shape, angle: controls?.angle };
 }
 
 /** The URL fragment for the current state, with `#`. @returns Undefined if the model is not a sample. */
@@ -48,7 +48,7 @@ export function linkOf(linked: Linked): string | undefined {
  * @returns Whether anything is being opened.
  */
 export function followLinks(linked: Linked, opener: Opener): boolean {
-  const { session, layers, live, viewer } = linked;
+  const { session, layers, live, controls } = linked;
   const restore = (): boolean => {
     const state = readLink(location.hash);
     if (!state || !opener.samples.some(({ name }) => name === state.sample)) return false;
@@ -56,7 +56,7 @@ export function followLinks(linked: Linked, opener: Opener): boolean {
     const shown = stateOf(linked);
     if (shown && writeLink({ ...shown, angle: undefined }) === writeLink({ ...state, angle: undefined })) {
       // The state is shown already, such as after copying the link.
-      if (angle) viewer?.lookFrom(angle);
+      if (angle) controls?.lookFrom(angle);
       return true;
     }
     opener.putAside();
@@ -68,7 +68,7 @@ export function followLinks(linked: Linked, opener: Opener): boolean {
       session.on('transfer', ({ target }) => {
         end();
         if (target.sample?.name !== state.sample) return;
-        if (angle) viewer?.lookFrom(angle);
+        if (angle) controls?.lookFrom(angle);
         if (shape) live.move(shape);
       }),
       // The request failed or was cancelled.

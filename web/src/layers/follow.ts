@@ -33,7 +33,7 @@ export function followPaints(session: Session, stack: LayerStack, edits: Edits):
 /** Shows the composite of the layers on the model. */
 export function showComposite(viewer: Viewer, stack: LayerStack): Composite {
   const composite = new Composite();
-  viewer.setPaint(composite.texture);
+  viewer.stage.setPaint(composite.texture);
   viewer.beforeDraw(() => composite.update(viewer.renderer));
   stack.on('change', (layers) => {
     composite.set(layers);

@@ -1,16 +1,16 @@
 import type { AnimationClip } from 'three';
 import { element } from '../platform/page';
-import type { Viewer } from '../view/viewer';
+import type { Stage } from '../view/stage';
 
 /** Plays a model's animations. The first starts by itself, unless the user prefers reduced motion. */
 export class Animations {
-  readonly #viewer: Viewer;
+  readonly #stage: Stage;
   readonly #select = element('animation', HTMLSelectElement);
   #clips: readonly AnimationClip[] = [];
 
   /** @param onPlay Called before the user starts one. */
-  constructor(viewer: Viewer, onPlay: () => void) {
-    this.#viewer = viewer;
+  constructor(stage: Stage, onPlay: () => void) {
+    this.#stage = stage;
     this.#select.addEventListener('change', () => {
       if (this.playing) onPlay();
       this.#play();
@@ -40,6 +40,6 @@ export class Animations {
   }
 
   #play(): void {
-    this.#viewer.play(this.#clips[Number(this.#select.value)]);
+    this.#stage.play(this.#clips[Number(this.#select.value)]);
   }
 }

@@ -49,7 +49,7 @@ export class Live {
       this.#animations?.stop();
       this.#next();
     });
-    this.#animations = viewer && new Animations(viewer, () => this.#leaveMorphs());
+    this.#animations = viewer && new Animations(viewer.stage, () => this.#leaveMorphs());
     session.on('transfer', (shown) => this.#onTransfer(shown));
   }
 

@@ -6,7 +6,7 @@ import type { Session } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
 import { forPeople, reasonOf } from '../scene/wording';
 import { marksOf } from '../view/segments';
-import type { Viewer } from '../view/viewer';
+import type { Stage } from '../view/stage';
 import { type KnownVerdict, paintableShare, type Remedy, StageVerdict } from './stage-verdict';
 
 const kInspectDelay = 800; // milliseconds without a change before the cage is inspected
@@ -33,20 +33,20 @@ const kMovable: readonly Finding['code'][] = [
  */
 export class FitPanel {
   readonly #session: Session;
-  readonly #viewer: Viewer | undefined;
+  readonly #stage: Stage | undefined;
   readonly #verdict = element('fit-verdict', HTMLElement);
   readonly #findings = element('fit-findings', HTMLElement);
   readonly #button = element('fit-inspect', HTMLButtonElement);
   readonly #maker: CageMaker;
-  readonly #stage: StageVerdict;
+  readonly #stageVerdict: StageVerdict;
   #client: TransferClient | undefined;
   #waiting: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(session: Session, viewer: Viewer | undefined, maker: CageMaker) {
+  constructor(session: Session, stage: Stage | undefined, maker: CageMaker) {
     this.#session = session;
     this.#maker = maker;
-    this.#stage = new StageVerdict(session);
-    this.#viewer = viewer;
+    this.#stageVerdict = new StageVerdict(session);
+    this.#stage = stage;
     session.on('transfer', () => {
       this.#forget();
       this.#show('', [text('p', kSoon)]);
@@ -128,7 +128,7 @@ export class FitPanel {
   #show(verdict: KnownVerdict, content: HTMLElement[], remedy?: Remedy): void {
     this.#verdict.textContent = this.#verdict.dataset.verdict = verdict;
     this.#findings.replaceChildren(...content);
-    this.#stage.show(verdict, remedy);
+    this.#stageVerdict.show(verdict, remedy);
   }
 
   /** What can be done about a finding with one click. */
@@ -168,7 +168,7 @@ export class FitPanel {
 
   #highlight(segments: readonly number[]): void {
     const { shown } = this.#session;
-    this.#viewer?.highlight(shown && marksOf(shown, segments));
+    this.#stage?.highlight(shown && marksOf(shown, segments));
   }
 }
 

@@ -17,11 +17,11 @@ export class PartMenu {
   constructor(session: Session, viewer: Viewer) {
     this.#session = session;
     this.#viewer = viewer;
-    viewer.setIdleTool({ tap: (spot, { clientX, clientY }) => this.#open(spot, clientX, clientY) });
+    viewer.pointing.idle = { tap: (spot, { clientX, clientY }) => this.#open(spot, clientX, clientY) };
     const canvas = element('view', HTMLCanvasElement);
     canvas.addEventListener('keydown', ({ key }) => {
-      const { x, y } = viewer.center;
-      if (key === 'Enter' && !viewer.hasTool) this.#open(viewer.pick(x, y), x, y);
+      const { x, y } = viewer.screen.center;
+      if (key === 'Enter' && !viewer.pointing.tool) this.#open(viewer.screen.pick(x, y), x, y);
     });
     this.#box.addEventListener('keydown', (event) => {
       if (event.key !== 'Escape') return;
@@ -45,7 +45,7 @@ export class PartMenu {
       return;
     }
     this.#segment = shown.projection.segments[shown.target.mesh.indices[3 * spot.triangle]!]!;
-    this.#viewer.highlight(marksOf(shown, [this.#segment]));
+    this.#viewer.stage.highlight(marksOf(shown, [this.#segment]));
     this.#box.hidden = false;
     this.#write();
     const stage = this.#stage.getBoundingClientRect();
@@ -61,7 +61,7 @@ export class PartMenu {
     if (this.#box.hidden) return;
     this.#box.hidden = true;
     this.#segment = undefined;
-    this.#viewer.highlight(undefined);
+    this.#viewer.stage.highlight(undefined);
   }
 
   #write(): void {

@@ -4,7 +4,7 @@ import type { Primitive } from '../scene/extract-mesh';
 import type { Choice, Locks, Session, Shown } from '../scene/session';
 import { cssColor, type Rgb } from '../view/colors';
 import { marksOf, segmentColors } from '../view/segments';
-import type { Viewer } from '../view/viewer';
+import type { Stage } from '../view/stage';
 import { nameOfPart, paintedPoints } from './part-menu';
 
 /** A scan may consist of thousands of segments. */
@@ -39,12 +39,12 @@ interface Row {
 export class PartsTable {
   readonly #body = element('segment-rows', HTMLTableSectionElement);
   readonly #session: Session;
-  readonly #viewer: Viewer | undefined;
+  readonly #stage: Stage | undefined;
   #rows: Row[] = [];
 
-  constructor(session: Session, viewer: Viewer | undefined) {
+  constructor(session: Session, stage: Stage | undefined) {
     this.#session = session;
-    this.#viewer = viewer;
+    this.#stage = stage;
     // Keep the highlight of a tapped row until something else is touched.
     this.#body.addEventListener('pointerleave', ({ pointerType }) => pointerType === 'touch' || this.#highlight([]));
     addEventListener('pointerdown', ({ target }) => this.#body.contains(target as Node) || this.#highlight([]));
@@ -130,7 +130,7 @@ export class PartsTable {
   /** Highlights segments of the target. */
   #highlight(segments: readonly number[]): void {
     const { shown } = this.#session;
-    this.#viewer?.highlight(shown && marksOf(shown, segments));
+    this.#stage?.highlight(shown && marksOf(shown, segments));
   }
 }
 

@@ -1,8 +1,11 @@
 import { download } from '../platform/download';
+import { requireGraphics } from '../platform/graphics';
 import { element, showError } from '../platform/page';
 import type { Session } from '../scene/session';
 import type { LightName } from '../scene/view-state';
 import type { Viewer } from '../view/viewer';
+
+const kPicturePixels = 2; // of a saved picture, per pixel of the page
 
 /** Connects what makes a picture of the model: light, background, turntable, saving, the view in the room. */
 export function setUpPicture(session: Session, viewer: Viewer): void {
@@ -17,7 +20,7 @@ export function setUpPicture(session: Session, viewer: Viewer): void {
     own.checked = true;
     setBackground();
   });
-  turntable.addEventListener('change', () => (viewer.turntable = turntable.checked));
+  turntable.addEventListener('change', () => (viewer.controls.turntable = turntable.checked));
   session.on('view', (view) => {
     light.value = view.light;
     own.checked = view.background !== '';
@@ -25,13 +28,27 @@ export function setUpPicture(session: Session, viewer: Viewer): void {
   });
   element('save-picture', HTMLButtonElement).addEventListener('click', async () => {
     try {
-      download(await viewer.picture(), 'cagecast.png');
+      download(await screenshot(viewer), 'cagecast.png');
     } catch (error) {
       showError(`The picture could not be saved: ${(error as Error).message}`);
     }
   });
   offerRoom(session, viewer);
   element('picture', HTMLElement).hidden = false;
+}
+
+/** What is seen, without controls, as a PNG. @throws Error if the browser cannot draw or encode it. */
+async function screenshot(viewer: Viewer): Promise<Blob> {
+  const { renderer } = viewer;
+  requireGraphics(renderer);
+  const ratio = renderer.getPixelRatio();
+  renderer.setPixelRatio(Math.max(ratio, kPicturePixels));
+  viewer.draw();
+  const blob = await new Promise<Blob | null>((done) => renderer.domElement.toBlob(done));
+  renderer.setPixelRatio(ratio);
+  viewer.draw();
+  if (!blob) throw new Error('the browser cannot encode the picture');
+  return blob;
 }
 
 /** Offers to show the model in the room, where the device can. */

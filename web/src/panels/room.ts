@@ -24,16 +24,16 @@ const kLamp = 2; // intensity of the light from above
  */
 export async function showInRoom(viewer: Viewer): Promise<void> {
   const session = await navigator.xr!.requestSession('immersive-ar', { requiredFeatures: ['local-floor'] });
-  const { renderer } = viewer;
+  const { renderer, stage, studio } = viewer;
   const { xr } = renderer;
-  const { stage, model, front, environment, giveBack } = viewer.lend();
+  const giveBack = viewer.lend();
   const scene = new Scene();
-  scene.environment = environment;
+  scene.environment = studio.scene.environment;
   const place = new Group();
-  place.scale.setScalar(1 / stage.scale.x);
-  place.rotation.y = -front;
-  place.add(stage);
-  const { light, floor } = putOnFloor(model, place);
+  place.scale.setScalar(1 / stage.object.scale.x);
+  place.rotation.y = -stage.front;
+  place.add(stage.object);
+  const { light, floor } = putOnFloor(stage.model!.scene, place);
   scene.add(place, light, floor);
   const end = (): void => {
     xr.removeEventListener('sessionend', end);

@@ -38,7 +38,7 @@ export function setUpProjects(page: ProjectOfPage): Projects {
   const { session, stack, painter, history, live, viewer, wardrobe } = page;
   const project = new Project(session, scenePart(session, page.opener, viewer?.renderer));
   project.add(layersPart(page));
-  for (const part of settingsParts(session, live, viewer)) project.add(part);
+  for (const part of settingsParts(session, live, viewer?.controls)) project.add(part);
   project.add(barePart(session));
   project.add(cagePart(session, page.opener, wardrobe));
   if (wardrobe) project.add(wardrobePart(wardrobe));

@@ -3,7 +3,7 @@ import type { Live } from '../live/live-panel';
 import { element } from '../platform/page';
 import type { Locks, Session } from '../scene/session';
 import { kLightNames, kModes } from '../scene/view-state';
-import type { Viewer } from '../view/viewer';
+import type { CameraControls } from '../view/camera-controls';
 import { listOf, locksOf, numberOf, objectOf, oneOf, textOf } from './checks';
 import type { Contribution } from './project';
 
@@ -12,7 +12,7 @@ const kMostMorphs = 10_000;
 const kFields = ['color', 'size', 'hardness', 'opacity', 'mirror'].map((name) => `brush-${name}`);
 
 /** Rules, overrides of parts, the shape, the view and the brush. */
-export function settingsParts(session: Session, live: Live, viewer: Viewer | undefined): Contribution[] {
+export function settingsParts(session: Session, live: Live, controls: CameraControls | undefined): Contribution[] {
   return [
     {
       name: 'rules',
@@ -65,7 +65,7 @@ export function settingsParts(session: Session, live: Live, viewer: Viewer | und
     {
       name: 'view',
       isWork: false,
-      save: () => ({ ...session.view, angle: viewer?.angle }),
+      save: () => ({ ...session.view, angle: controls?.angle }),
       read(saved) {
         const { mode, split, paint, cage, light, background, angle } = objectOf(saved, 'view');
         const { turn, tilt, near } = (angle ?? {}) as Record<string, unknown>;
@@ -80,7 +80,7 @@ export function settingsParts(session: Session, live: Live, viewer: Viewer | und
               background: /^#[0-9a-f]{6}$/i.test(textOf(background, '')) ? (background as string) : '',
             });
             if (angle)
-              viewer?.lookFrom({
+              controls?.lookFrom({
                 turn: numberOf(turn, -360, 360, 0),
                 tilt: numberOf(tilt, 0, 180, 90),
                 near: numberOf(near, 0.01, 100, 1),

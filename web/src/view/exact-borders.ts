@@ -4,7 +4,7 @@ import type { Session } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
 import type { SplitProjection } from '../scene/transfer-messages';
 import { reasonOf } from '../scene/wording';
-import type { Viewer } from './viewer';
+import type { Stage } from './stage';
 
 const kPatience = 300; // milliseconds without a change before cutting
 
@@ -25,7 +25,7 @@ interface Basis {
  */
 export class ExactBorders {
   readonly #session: Session;
-  readonly #viewer: Viewer;
+  readonly #stage: Stage;
   readonly #note = element('borders-note', HTMLElement);
   /** Started on demand. */
   #client: TransferClient | undefined;
@@ -34,9 +34,9 @@ export class ExactBorders {
   #due: ReturnType<typeof setTimeout> | undefined;
   #cutting = false;
 
-  constructor(session: Session, viewer: Viewer) {
+  constructor(session: Session, stage: Stage) {
     this.#session = session;
-    this.#viewer = viewer;
+    this.#stage = stage;
     session.on('zones', ({ classification }) => this.#follow(classification));
     session.on('progress', ({ state }) => {
       if (state === 'working' && !this.#cutting && this.#due !== undefined) this.#clear();
@@ -73,7 +73,7 @@ export class ExactBorders {
     this.#basis = undefined;
     this.#client?.cancel();
     this.#note.textContent = '';
-    void this.#viewer.setCut(undefined);
+    void this.#stage.setCut(undefined);
   }
 
   async #cut({ zones, segmentStats }: Classification): Promise<void> {
@@ -93,7 +93,7 @@ export class ExactBorders {
         result: { zones, segments: projection.segments, segmentStats },
         rules: { preset, threshold, ...choices },
       });
-      await this.#viewer.setCut(cut);
+      await this.#stage.setCut(cut);
       const more = (cut.indices.length - target.mesh.indices.length) / 3;
       this.#note.textContent = `Adds ${more.toLocaleString('en')} triangles.`;
       done();

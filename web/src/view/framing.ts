@@ -1,6 +1,11 @@
-import { MathUtils, type Object3D, type PerspectiveCamera, type Spherical, Vector3 } from 'three';
+import { MathUtils, type Object3D, type PerspectiveCamera, Spherical, Vector3 } from 'three';
 import type { Model } from '../scene/load-model';
 import type { Look } from './overlay/overlay';
+
+/** Degrees, of the height of all views. */
+export const kFieldOfView = 28;
+/** From where a model is seen at first. */
+export const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14));
 
 const kMargin = 1.03;
 const kMostPoints = 50_000; // more are sampled evenly
@@ -66,20 +71,13 @@ export const aspectOf = (free: FreePart): number => widthOf(free) / heightOf(fre
 
 /**
  * The distance at which a whole model is in the free part of the view.
- * @param fieldOfView Degrees, of the view's height.
- * @param points      3 each, around the origin; without any, those of a ball of radius 1 are supposed.
- * @param angle       Where the camera is; its radius is ignored.
- * @param exact       Whether the model fills the part. Otherwise a compact model gets more room, so that it can be turned.
+ * @param points 3 each, around the origin; without any, those of a ball of radius 1 are supposed.
+ * @param angle  Where the camera is; its radius is ignored.
+ * @param exact  Whether the model fills the part. Otherwise a compact model gets more room, so that it can be turned.
  */
-export function fittingDistance(
-  part: FreePart,
-  fieldOfView: number,
-  points: ArrayLike<number>,
-  angle: Spherical,
-  exact: boolean,
-): number {
+export function fittingDistance(part: FreePart, points: ArrayLike<number>, angle: Spherical, exact: boolean): number {
   const { width, height, fill } = part;
-  const half = Math.tan(MathUtils.degToRad(fieldOfView / 2));
+  const half = Math.tan(MathUtils.degToRad(kFieldOfView / 2));
   const free = heightOf(part);
   // In a tall view the width limits the model.
   const loose = fill / Math.sin(Math.atan((half * Math.min(free, width)) / Math.max(1, height)));

@@ -5,16 +5,16 @@ import type { Viewer } from './viewer';
 export function showModel(session: Session, viewer: Viewer): void {
   session.on('transfer', ({ target, cage, projection }) => {
     viewer.setTarget(target, projection);
-    viewer.setCage(cage);
+    viewer.stage.setCage(cage);
   });
   session.on('frame', (projection) => {
-    viewer.move(projection);
-    viewer.followCage();
+    viewer.stage.setProjection(projection);
+    viewer.stage.followCage();
   });
-  session.on('zones', ({ classification }) => viewer.classify(classification));
+  session.on('zones', ({ classification }) => viewer.stage.classify(classification));
   session.on('view', (view) => viewer.setView(view));
 
   const reduced = matchMedia('(prefers-reduced-motion: reduce)');
-  viewer.sway(!reduced.matches);
-  reduced.addEventListener('change', () => reduced.matches && viewer.sway(false));
+  viewer.controls.sway(!reduced.matches);
+  reduced.addEventListener('change', () => reduced.matches && viewer.controls.sway(false));
 }

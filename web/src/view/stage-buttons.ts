@@ -1,11 +1,11 @@
 import type { History } from 'cagecast/three/layers';
 import { element } from '../platform/page';
-import type { Viewer } from './viewer';
+import type { CameraControls } from './camera-controls';
 
 /** Connects the buttons on the stage: the camera, saving, and colour, size, undo and redo beside the rail while one paints. */
-export function setUpStageButtons(viewer: Viewer | undefined, history: History): void {
+export function setUpStageButtons(controls: CameraControls | undefined, history: History): void {
   for (const button of element('angles', HTMLElement).querySelectorAll('button'))
-    button.addEventListener('click', () => viewer?.face(button.dataset.face as 'front' | 'side' | 'fit'));
+    button.addEventListener('click', () => controls?.face(button.dataset.face as 'front' | 'side' | 'fit'));
 
   // The panel has the same controls; these pass on what is done to them.
   const [save, exports] = [element('stage-save', HTMLButtonElement), element('export-glb', HTMLButtonElement)];

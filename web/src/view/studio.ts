@@ -1,14 +1,4 @@
-import {
-  type Camera,
-  Color,
-  DirectionalLight,
-  Group,
-  Mesh,
-  PlaneGeometry,
-  Scene,
-  ShadowMaterial,
-  Vector3,
-} from 'three';
+import { type Camera, Color, DirectionalLight, Mesh, PlaneGeometry, Scene, ShadowMaterial, Vector3 } from 'three';
 import type { LightName } from '../scene/view-state';
 import { environmentOf, kLights } from './light';
 
@@ -20,8 +10,6 @@ const kOrigin = new Vector3();
  */
 export class Studio {
   readonly scene = new Scene();
-  /** The group for the displayed objects. */
-  readonly stage = new Group();
   readonly #floor = new Mesh(new PlaneGeometry(12, 12), new ShadowMaterial({ opacity: 0.28 }));
   readonly #key = new DirectionalLight();
   #light: LightName | undefined;
@@ -40,7 +28,7 @@ export class Studio {
     shadow.camera.far = 10;
     shadow.camera.left = shadow.camera.bottom = -1.6;
     shadow.camera.right = shadow.camera.top = 1.6;
-    this.scene.add(this.stage, this.#floor, this.#key);
+    this.scene.add(this.#floor, this.#key);
   }
 
   setLight(name: LightName): void {

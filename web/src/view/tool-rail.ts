@@ -58,7 +58,8 @@ export class Tools {
     if (offer === this.#chosen) return;
     this.#chosen?.onChoose(false);
     this.#chosen = offer;
-    this.#viewer.setTool(offer?.tool);
+    this.#viewer.pointing.tool = offer?.tool;
+    if (offer) this.#viewer.controls.sway(false);
     offer?.onChoose(true);
   }
 

@@ -3,7 +3,7 @@ import type { Session, Shown } from '../scene/session';
 import type { Mode } from '../scene/view-state';
 import { type Coloring, colorByDistance, colorBySegment, colorByStretch } from './color-maps';
 import { type Legend, showLegend } from './legend';
-import type { Viewer } from './viewer';
+import type { Stage } from './stage';
 
 const kColorings: { [Name in Mode]?: (shown: Shown, classification: Classification) => Coloring } = {
   segments: colorBySegment,
@@ -14,7 +14,7 @@ const kColorings: { [Name in Mode]?: (shown: Shown, classification: Classificati
 const kZoneKeys: Legend = { keys: ['cosmetic', 'occluded', 'uncovered', 'culled'] };
 
 /** Colours the model in the view modes without paint, and shows the legend. */
-export function showViewModes(session: Session, viewer: Viewer): void {
+export function showViewModes(session: Session, stage: Stage): void {
   /** What the current colours were computed for; a change of the view alone does not recompute them. */
   let made: { mode: Mode; classification: Classification } | undefined;
 
@@ -23,9 +23,9 @@ export function showViewModes(session: Session, viewer: Viewer): void {
     const { mode } = view;
     if (!shown || !classification || (made?.mode === mode && made.classification === classification)) return;
     made = { mode, classification };
-    if (mode === 'checker') viewer.setChecker(session.checker.texture);
+    if (mode === 'checker') stage.setChecker(session.checker.texture);
     const coloring = kColorings[mode]?.(shown, classification);
-    if (coloring) viewer.setColors(coloring.colors);
+    if (coloring) stage.setColors(coloring.colors);
     showLegend(mode === 'zones' ? kZoneKeys : coloring?.scale && { scale: coloring.scale });
   };
   session.on('zones', update);

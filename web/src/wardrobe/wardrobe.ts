@@ -17,6 +17,7 @@ import { fitLike } from './fit-like';
 import type { KeptAvatar, KeptWardrobe } from './kept';
 import type { Surroundings } from './set-up-wardrobe';
 import { measure, SideBySide } from './side-by-side';
+import { drawThumbnails } from './thumbnails';
 
 const kPictureDelay = 1500; // milliseconds without a change before pictures are drawn again
 const kPicture = 128; // pixels per side
@@ -193,7 +194,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
   /** The avatar beside the one on the stage that is at a position of the view. @param x,y Client coordinates. */
   at(x: number, y: number): Avatar | undefined {
     if (!this.#showsAll) return undefined;
-    const ray = this.#viewer.eyeRay(x, y);
+    const ray = this.#viewer.screen.eyeRay(x, y);
     const far = (mesh: Model['mesh']): number => pick(mesh, ray)?.seen.distanceTo(ray.ray.origin) ?? Infinity;
     let [found, nearest]: [Avatar | undefined, number] = [undefined, far(this.#session.shown!.target.mesh)];
     for (const avatar of this.#avatars) {
@@ -502,7 +503,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
   #takePictures(): void {
     const { shown, classification } = this.#session;
     if (!shown || !classification) return; // the zones bring it up again
-    const sitters = [...this.#outdated].flatMap((avatar) => {
+    const subjects = [...this.#outdated].flatMap((avatar) => {
       const { standing, takesPaint } = avatar;
       const look: Look = takesPaint ? 'result' : 'bare';
       const { holder, overlay } = standing ?? {};
@@ -511,9 +512,9 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
       return standing ? [{ avatar, holder, overlay, front: frontOf(standing.model), look }] : [];
     });
     this.#outdated.clear();
-    if (sitters.length === 0) return;
-    const pictures = this.#viewer.takePictures(sitters, kPicture);
-    sitters.forEach(({ avatar }, index) => (avatar.picture = pictures[index]!));
+    if (subjects.length === 0) return;
+    const pictures = drawThumbnails(this.#viewer, subjects, kPicture);
+    subjects.forEach(({ avatar }, index) => (avatar.picture = pictures[index]!));
     this.#arrange(); // they were turned for the pictures
   }
 }

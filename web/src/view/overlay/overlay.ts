@@ -4,6 +4,7 @@ import { Pace } from '../../platform/pace';
 import type { ExtractedMesh } from '../../scene/extract-mesh';
 import type { SplitProjection } from '../../scene/transfer-messages';
 import type { Mode } from '../../scene/view-state';
+import { Highlight } from './highlight';
 import { PrimitiveOverlay } from './primitive-overlay';
 
 /**
@@ -23,6 +24,8 @@ export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
   stretch: 'colors',
 };
 
+const kHighlight = '#22d3ff';
+
 /**
  * The paint over a target: overlay meshes for each of its meshes, which share its skin and morphs. The naive one shares its
  * vertices. The filtered one splits them at UV seams. The colored one, made on demand, has separate vertices for each
@@ -30,8 +33,9 @@ export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
  */
 export class Overlay {
   readonly #primitives: PrimitiveOverlay[];
-  /** Number of vertices of the target. */
-  readonly #vertexCount: number;
+  readonly #target: ExtractedMesh;
+  /** Made on demand. */
+  #highlight: Highlight | undefined;
   #version = 0;
 
   /**
@@ -39,15 +43,16 @@ export class Overlay {
    * @param paint In the cage's UVs, with premultiplied alpha; it may be a render target's texture.
    */
   constructor(target: ExtractedMesh, projection: SplitProjection, paint: Texture | undefined) {
-    this.#vertexCount = target.positions.length / 3;
+    this.#target = target;
     const filled = target.primitives.filter(({ triangleCount }) => triangleCount > 0);
     this.#primitives = filled.map((primitive) => new PrimitiveOverlay(primitive, target.indices, paint));
     this.setProjection(projection);
   }
 
-  /** Updates the projection of a target that moved; removes a cut. Call `classify` next. */
+  /** Updates the projection of a target that moved; removes a cut and the highlight. Call `classify` next. */
   setProjection({ uvs, split }: SplitProjection): void {
     this.#version++;
+    this.#highlight?.show(undefined);
     for (const primitive of this.#primitives) primitive.setProjection(uvs, split);
   }
 
@@ -64,7 +69,7 @@ export class Overlay {
     const pace = new Pace();
     for (const primitive of this.#primitives) {
       if (call !== this.#version) return;
-      primitive.setCut(cut, this.#vertexCount);
+      primitive.setCut(cut, this.#target.positions.length / 3);
       await pace.rest();
     }
   }
@@ -83,6 +88,12 @@ export class Overlay {
     for (const primitive of this.#primitives) primitive.setColors(colors);
   }
 
+  /** Highlights triangles in any look. @param marks 1 for each of them; undefined highlights none. */
+  highlight(marks: Uint8Array | undefined): void {
+    if (marks) this.#highlight ??= new Highlight(this.#target, kHighlight, 0.5, 0.35);
+    this.#highlight?.show(marks);
+  }
+
   /** Sets what the next frame draws. */
   show(look: Look): void {
     for (const primitive of this.#primitives) primitive.show(look);
@@ -90,6 +101,7 @@ export class Overlay {
 
   dispose(): void {
     this.#version++;
+    this.#highlight?.dispose();
     for (const primitive of this.#primitives) primitive.dispose();
   }
 }
