@@ -5,7 +5,6 @@ import { announce, element } from '../platform/page';
 import type { Model } from '../scene/load-model';
 import type { Session } from '../scene/session';
 import { closestPointOnTriangle, diagonalOf, type Surface } from '../scene/surface';
-import { Highlight } from '../view/overlay/highlight';
 import type { Spot } from '../view/pick';
 import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
@@ -13,7 +12,6 @@ import type { Viewer } from '../view/viewer';
 // The radius of the brush, as a share of the model's diagonal.
 const kLeast = 0.004;
 const kMost = 0.1;
-const kColor = '#d81b60'; // of the marks
 const kMostBetween = 8; // spots that are filled in between two positions of the pointer
 
 type Position = Pick<PointerEvent, 'clientX' | 'clientY'>;
@@ -30,7 +28,7 @@ export class BareBrush {
   readonly #offer: RailTool;
   #target: Model | undefined;
   #diagonal = 1;
-  #shown: Highlight | undefined;
+  #isChosen = false;
   /** The marks while the brush is down, and where it was last. */
   #stroke: { marks: Uint8Array; last: Position } | undefined;
 
@@ -92,8 +90,7 @@ export class BareBrush {
     element('stage', HTMLElement).classList.toggle('explaining', on);
     element('bare-options', HTMLElement).hidden = !on;
     element('bare-brush', HTMLButtonElement).setAttribute('aria-pressed', String(on));
-    this.#shown?.dispose();
-    this.#shown = on && this.#target ? new Highlight(this.#target.mesh, kColor, 0.55) : undefined;
+    this.#isChosen = on;
     this.#write();
   }
 
@@ -101,8 +98,7 @@ export class BareBrush {
   #write(): void {
     const marks = this.#stroke?.marks ?? this.#session.bare;
     if (marks) this.#tools.offer(this.#offer, true);
-    this.#shown?.show(marks);
-    this.#viewer.redraw();
+    this.#viewer.stage.highlight('bare', this.#isChosen ? marks : undefined);
     const count = marks?.reduce((sum, mark) => sum + mark, 0) ?? 0;
     element('bare-count', HTMLElement).textContent =
       count === 0 ? '' : `${count.toLocaleString('en')} triangle${count === 1 ? ' stays' : 's stay'} bare.`;

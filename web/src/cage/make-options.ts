@@ -40,7 +40,7 @@ export class MakeOptionsPanel {
       });
     this.#parts.addEventListener('change', () => this.#change());
     for (const end of ['pointerleave', 'focusout'])
-      this.#parts.addEventListener(end, () => viewer.stage.highlight(undefined));
+      this.#parts.addEventListener(end, () => viewer.stage.highlight('parts', undefined));
     session.on('transfer', () => {
       this.#bare = session.bare;
       void this.#list();
@@ -107,7 +107,7 @@ export class MakeOptionsPanel {
       row.append(input, name);
       const show = (): void => {
         const marks = new Uint8Array(target.mesh.indices.length / 3);
-        this.#viewer.stage.highlight(marks.fill(1, firstTriangle, firstTriangle + triangleCount));
+        this.#viewer.stage.highlight('parts', marks.fill(1, firstTriangle, firstTriangle + triangleCount));
       };
       for (const begin of ['pointerenter', 'focusin']) row.addEventListener(begin, show);
       return row;

@@ -168,7 +168,7 @@ export class FitPanel {
 
   #highlight(segments: readonly number[]): void {
     const { shown } = this.#session;
-    this.#stage?.highlight(shown && marksOf(shown, segments));
+    this.#stage?.highlight('parts', shown && marksOf(shown, segments));
   }
 }
 

@@ -45,7 +45,7 @@ export class PartMenu {
       return;
     }
     this.#segment = shown.projection.segments[shown.target.mesh.indices[3 * spot.triangle]!]!;
-    this.#viewer.stage.highlight(marksOf(shown, [this.#segment]));
+    this.#viewer.stage.highlight('parts', marksOf(shown, [this.#segment]));
     this.#box.hidden = false;
     this.#write();
     const stage = this.#stage.getBoundingClientRect();
@@ -61,7 +61,7 @@ export class PartMenu {
     if (this.#box.hidden) return;
     this.#box.hidden = true;
     this.#segment = undefined;
-    this.#viewer.stage.highlight(undefined);
+    this.#viewer.stage.highlight('parts', undefined);
   }
 
   #write(): void {

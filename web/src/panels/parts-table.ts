@@ -130,7 +130,7 @@ export class PartsTable {
   /** Highlights segments of the target. */
   #highlight(segments: readonly number[]): void {
     const { shown } = this.#session;
-    this.#stage?.highlight(shown && marksOf(shown, segments));
+    this.#stage?.highlight('parts', shown && marksOf(shown, segments));
   }
 }
 

@@ -14,7 +14,7 @@ import { disposeModel, type Model } from '../scene/load-model';
 import type { SplitProjection } from '../scene/transfer-messages';
 import { CageLines } from './cage-lines';
 import { type Crowd, frontOf } from './framing';
-import { type Look, Overlay } from './overlay/overlay';
+import { type Highlighted, type Look, Overlay } from './overlay/overlay';
 import type { Studio } from './studio';
 
 /** What is shown in the studio: a target with its paint and its cage, marks of features on it, and a crowd beside it. */
@@ -130,9 +130,9 @@ export class Stage {
     this.#redraw();
   }
 
-  /** Highlights triangles of the target until it moves or is replaced. @param marks 1 for each of them; undefined highlights none. */
-  highlight(marks: Uint8Array | undefined): void {
-    this.#overlay?.highlight(marks);
+  /** Highlights triangles of the target until it is replaced, and its parts until it moves. @param marks 1 for each of them; undefined highlights none. */
+  highlight(what: Highlighted, marks: Uint8Array | undefined): void {
+    this.#overlay?.highlight(what, marks);
     this.#redraw();
   }
 

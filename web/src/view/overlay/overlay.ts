@@ -13,6 +13,9 @@ import { PrimitiveOverlay } from './primitive-overlay';
  */
 export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'checker' | 'colors';
 
+/** What can be highlighted: the parts that the user points to, and what is marked to stay bare. */
+export type Highlighted = 'parts' | 'bare';
+
 /** The overlay of each mode other than `compare`. */
 export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
   result: 'result',
@@ -24,8 +27,6 @@ export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
   stretch: 'colors',
 };
 
-const kHighlight = '#22d3ff';
-
 /**
  * The paint over a target: overlay meshes for each of its meshes, which share its skin and morphs. The naive one shares its
  * vertices. The filtered one splits them at UV seams. The colored one, made on demand, has separate vertices for each
@@ -33,9 +34,9 @@ const kHighlight = '#22d3ff';
  */
 export class Overlay {
   readonly #primitives: PrimitiveOverlay[];
-  readonly #target: ExtractedMesh;
-  /** Made on demand. */
-  #highlight: Highlight | undefined;
+  /** Number of vertices of the target. */
+  readonly #vertexCount: number;
+  readonly #highlights: Record<Highlighted, Highlight>;
   #version = 0;
 
   /**
@@ -43,16 +44,20 @@ export class Overlay {
    * @param paint In the cage's UVs, with premultiplied alpha; it may be a render target's texture.
    */
   constructor(target: ExtractedMesh, projection: SplitProjection, paint: Texture | undefined) {
-    this.#target = target;
+    this.#vertexCount = target.positions.length / 3;
+    this.#highlights = {
+      parts: new Highlight(target, '#22d3ff', 0.5, 0.35),
+      bare: new Highlight(target, '#d81b60', 0.55),
+    };
     const filled = target.primitives.filter(({ triangleCount }) => triangleCount > 0);
     this.#primitives = filled.map((primitive) => new PrimitiveOverlay(primitive, target.indices, paint));
     this.setProjection(projection);
   }
 
-  /** Updates the projection of a target that moved; removes a cut and the highlight. Call `classify` next. */
+  /** Updates the projection of a target that moved; removes a cut and the highlighted parts. Call `classify` next. */
   setProjection({ uvs, split }: SplitProjection): void {
     this.#version++;
-    this.#highlight?.show(undefined);
+    this.highlight('parts', undefined);
     for (const primitive of this.#primitives) primitive.setProjection(uvs, split);
   }
 
@@ -69,7 +74,7 @@ export class Overlay {
     const pace = new Pace();
     for (const primitive of this.#primitives) {
       if (call !== this.#version) return;
-      primitive.setCut(cut, this.#target.positions.length / 3);
+      primitive.setCut(cut, this.#vertexCount);
       await pace.rest();
     }
   }
@@ -89,9 +94,8 @@ export class Overlay {
   }
 
   /** Highlights triangles in any look. @param marks 1 for each of them; undefined highlights none. */
-  highlight(marks: Uint8Array | undefined): void {
-    if (marks) this.#highlight ??= new Highlight(this.#target, kHighlight, 0.5, 0.35);
-    this.#highlight?.show(marks);
+  highlight(what: Highlighted, marks: Uint8Array | undefined): void {
+    this.#highlights[what].show(marks);
   }
 
   /** Sets what the next frame draws. */
@@ -101,7 +105,7 @@ export class Overlay {
 
   dispose(): void {
     this.#version++;
-    this.#highlight?.dispose();
+    for (const highlight of Object.values(this.#highlights)) highlight.dispose();
     for (const primitive of this.#primitives) primitive.dispose();
   }
 }
