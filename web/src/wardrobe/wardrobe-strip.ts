@@ -56,7 +56,7 @@ export class WardrobeStrip {
       this.add(files);
     });
     this.#listSamples();
-    this.#wardrobe.on('change', () => {
+    this.#wardrobe.list.on('change', () => {
       this.#show();
       surroundings.onChange();
     });
@@ -72,13 +72,13 @@ export class WardrobeStrip {
       showError('There is no model among these files: choose GLB, glTF or VRM files.');
       return;
     }
-    const { active } = this.#wardrobe;
+    const { active } = this.#wardrobe.list;
     this.#addAll(entries, instead && active.sample ? active : undefined);
   }
 
   /** Moves the focus to the avatar on the stage, or to the first where that one is still to come. */
   focus(): void {
-    const card = this.#cards.get(this.#wardrobe.active) ?? this.#list.firstElementChild;
+    const card = this.#cards.get(this.#wardrobe.list.active) ?? this.#list.firstElementChild;
     card?.querySelector('button')?.focus({ preventScroll: true });
   }
 
@@ -119,7 +119,7 @@ export class WardrobeStrip {
   }
 
   #show(): void {
-    const { avatars, active } = this.#wardrobe;
+    const { all: avatars, active } = this.#wardrobe.list;
     for (const [avatar, card] of this.#cards) {
       if (avatars.includes(avatar)) continue;
       const focused = card.contains(document.activeElement);
@@ -182,7 +182,7 @@ export class WardrobeStrip {
     if (button.ariaBusy) return;
     button.ariaBusy = 'true';
     const { session, png } = this.#surroundings;
-    const { avatars, active } = this.#wardrobe;
+    const { all: avatars, active } = this.#wardrobe.list;
     const taking = avatars.filter(({ takesPaint, doing }) => takesPaint && doing === '');
     try {
       const tell = (done: number): void => void (button.textContent = `Saving ${done + 1} of ${taking.length}`);
