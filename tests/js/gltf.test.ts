@@ -235,6 +235,22 @@ describe('document.transform(cagecast(…))', () => {
     assert.deepEqual(uvs, transfer(scene.cage, { ...scene.target, groups: undefined }).uvs);
   });
 
+  test('a joint that is below itself, as in a damaged file, is taken for one at the origin', async () => {
+    const maker = new GlbMaker();
+    const mesh = maker.mesh(scene.target);
+    const { attributes } = maker.json.meshes[mesh]!.primitives[0]!;
+    const vertices = scene.target.positions.length / 3;
+    attributes['JOINTS_0'] = maker.accessor(new Uint8Array(4 * vertices), 'VEC4');
+    attributes['WEIGHTS_0'] = maker.accessor(new Float32Array(4 * vertices).fill(0.25), 'VEC4');
+    maker.json.skins = [{ joints: [1] }];
+    maker.node({ mesh, skin: 0 });
+    maker.json.nodes.push({ children: [2] }, { children: [1], translation: [2, 0, 0] });
+    const document = await documentOf(maker.finish());
+    let uvs: Float32Array | undefined;
+    await document.transform(cagecastTransform({ cage: scene.cage, onResult: (result) => (uvs = result.uvs) }));
+    assert.deepEqual(uvs, transfer(scene.cage, { ...scene.target, groups: undefined }).uvs);
+  });
+
   test('all meshes of a posed figure are taken in its bind pose, as the command takes them', async () => {
     /** Skin held by hips and head, and an eye held by a joint on the head. @param times  How much larger they are stored. */
     const figure = (isPosed: boolean, times: readonly [skin: number, eye: number]) => {

@@ -146,6 +146,16 @@ function listParts(document: Document): DocumentPart[] {
   return parts;
 }
 
+/** The matrix of a joint to the scene; the identity if it is below itself, which no node of a scene is. */
+function jointMatrix(joint: Node): Matrix {
+  const above = new Set<Node>();
+  for (let node: Node | null = joint; node; node = node.getParentNode()) {
+    if (above.has(node)) return identity;
+    above.add(node);
+  }
+  return joint.getWorldMatrix();
+}
+
 /** How its skin holds a part. */
 function skinOf({ node, primitive, localPositions: positions }: DocumentPart): Skinned<Matrix> {
   const skin = node.getSkin()!;
@@ -153,7 +163,7 @@ function skinOf({ node, primitive, localPositions: positions }: DocumentPart): S
   const arrayOf = (semantic: string) => primitive.getAttribute(semantic)?.getArray() ?? [];
   return {
     matrices: skin.listJoints().map((joint, j) => {
-      const matrix = joint.getWorldMatrix();
+      const matrix = jointMatrix(joint);
       return inverses ? multiply(matrix, inverses.subarray(16 * j)) : matrix;
     }),
     held: arrayOf('JOINTS_0'),
