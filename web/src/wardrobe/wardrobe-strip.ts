@@ -189,9 +189,12 @@ export class WardrobeStrip {
       const { file, count, troubles } = await exportAll(taking, session, active, await png(), tell);
       download(file, 'avatars-painted.zip');
       announce(`${count} avatars saved: ${(file.size / 1e6).toFixed(1)} megabytes.`);
-      const left = avatars.length - taking.length;
-      if (left > 0)
-        troubles.push(`${left} of the avatars ${left === 1 ? 'was' : 'were'} left out, because their cages differ.`);
+      const late = avatars.filter(({ doing }) => doing !== '').length;
+      const tellLeft = (count: number, why: string): void => {
+        if (count > 0) troubles.push(`${count} of the avatars ${count === 1 ? 'was' : 'were'} left out: ${why}.`);
+      };
+      tellLeft(late, 'not ready yet');
+      tellLeft(avatars.length - taking.length - late, 'of another cage');
       if (troubles.length > 0) showError(troubles.join(' '));
     } catch (error) {
       showError((error as Error).message);
