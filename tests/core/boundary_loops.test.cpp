@@ -219,7 +219,7 @@ TEST_CASE("the distance to the open edges is that to the nearest of them", "[bor
     LoopedCage cage(mesh.view());
     Units units;
     units.diagonal = 1;
-    units.reach = 3;
+    units.sceneSize = 3;
     CageTree tree;
     REQUIRE(buildCageTree(cage.cage, units, cage.arena, tree));
     const BoundaryLines lines(cage.cage, tree, cage.loops, cage.arena);

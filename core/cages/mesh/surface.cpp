@@ -73,7 +73,7 @@ Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
   std::frexp(diagonal, &exponent);
   trees.units.scale = static_cast<float>(std::ldexp(1.0, 1 - exponent));
   trees.units.diagonal = diagonal * static_cast<double>(trees.units.scale);
-  trees.units.reach = static_cast<float>(8 * trees.units.diagonal);
+  trees.units.sceneSize = static_cast<float>(8 * trees.units.diagonal);
   std::vector<float> positions;
   positions.reserve(3 * mesh.positions.size());
   for (const Vec3& p : mesh.positions) {
@@ -110,7 +110,7 @@ std::vector<SurfacePoint> Surface::closest(std::span<const Vec3> points) const {
   auto* found = trees.arena.allocate<std::uint32_t>(triangleCount);
   auto* candidates = trees.arena.allocate<Candidate>(triangleCount);
   // The search takes floats; the slack allows for the rounding of the points.
-  ClosestPointSearch search(trees.tree, trees.units.diagonal + static_cast<double>(trees.units.reach), trees.arena);
+  ClosestPointSearch search(trees.tree, trees.units.diagonal + static_cast<double>(trees.units.sceneSize), trees.arena);
   checkMemory(trees.arena);
   std::vector<SurfacePoint> out(points.size());
   constexpr std::uint32_t kGroup = ClosestPointSearch::kGroup;

@@ -12,7 +12,7 @@ struct Units {
   float low[3] = {};  ///< The target's bounding box, scaled.
   float high[3] = {};
   /// The longest side of the box around cage and target, scaled; more if that box is far from the origin.
-  float reach = 0;
+  float sceneSize = 0;
 
   /// What turns a scaled area into one in squared units of the input.
   [[nodiscard]] double areaToInput() const noexcept { return 1.0 / scale / scale; }

@@ -50,8 +50,8 @@ BorderClassifier::BorderClassifier(const ClipCage& cage, BorderKind kind, std::u
       charts_(kind == BorderKind::seams ? cage.charts : nullptr),
       diagonal_(cage.units.diagonal),
       slack_(1.001 * kTieDistance * cage.units.diagonal),
-      // Points are rounded to float for the search. The added reach makes it allow for more than that.
-      search_(cage.tree, cage.units.diagonal + static_cast<double>(cage.units.reach), arena),
+      // Points are rounded to float for the search. The size of the scene, added, makes it allow for more than that.
+      search_(cage.tree, cage.units.diagonal + static_cast<double>(cage.units.sceneSize), arena),
       found_(arena.allocate<std::uint32_t>(cage.cage.count)),
       candidates_(arena.allocate<Candidate>(cage.cage.count)),
       lines_(cage.cage, cage.tree, cage.loops, arena),

@@ -16,7 +16,7 @@ constexpr float kMaxProportion = 1e8f;
 constexpr float kMaxCoordinate = 0x1p125f;
 /// Rays may begin between floats. Their origins are rounded relative to the distance from the origin of coordinates, so
 /// half of that distance counts as the scene's size if it is larger.
-constexpr float kRestReach = 0.5f;
+constexpr float kSizePerDistance = 0.5f;
 
 struct Box {
   float low[4];  ///< x, y, z; the fourth is of no use.
@@ -167,7 +167,7 @@ Status checkMeshes(const MeshView& cage, const MeshView& target, Units& units) n
   if (size > 0) std::frexp(size, &exponent);
   const double scale = std::ldexp(1.0, std::clamp(1 - exponent, -126, 127));
   const double limit = std::min(static_cast<double>(kMaxProportion) / scale, static_cast<double>(kMaxCoordinate));
-  float reach = 0;
+  float sceneSize = 0;
   for (int k = 0; k < 3; ++k) {
     const auto scaled = [scale](float x) { return static_cast<float>(static_cast<double>(x) * scale); };
     for (const bool ofCage : {true, false}) {
@@ -180,11 +180,11 @@ Status checkMeshes(const MeshView& cage, const MeshView& target, Units& units) n
     units.high[k] = scaled(targetBox.high[k]);
     const float low = std::min(units.low[k], scaled(cageBox.low[k]));
     const float high = std::max(units.high[k], scaled(cageBox.high[k]));
-    reach = std::max({reach, high - low, high * kRestReach, -low * kRestReach});
+    sceneSize = std::max({sceneSize, high - low, high * kSizePerDistance, -low * kSizePerDistance});
   }
   units.scale = static_cast<float>(scale);
   units.diagonal = targetBox.diagonal() * scale;
-  units.reach = reach;
+  units.sceneSize = sceneSize;
   return {};
 }
 

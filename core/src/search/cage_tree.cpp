@@ -95,7 +95,7 @@ Box collectTriangles(const Cage& cage, OrderedTriangle* order, float* positions)
   return all;
 }
 
-void makeLeaf(const Cage& cage, std::uint32_t leaf, const float* centre, float reach, const Building& out) {
+void makeLeaf(const Cage& cage, std::uint32_t leaf, const float* centre, float sceneSize, const Building& out) {
   Box box;
   const Triangle* triangles[4];
   for (std::uint32_t lane = 0; lane < 4; ++lane) {
@@ -113,8 +113,8 @@ void makeLeaf(const Cage& cage, std::uint32_t leaf, const float* centre, float r
     else
       clearTriangle(out.leaves[leaf], lane);
   }
-  out.boxes[leaf] = box.padded(Box::kPadding * reach);
-  new (out.leafBoxes + leaf) OrientedBox(orientedBoxAround(triangles, centre, kOrientedPadding * reach));
+  out.boxes[leaf] = box.padded(Box::kPadding * sceneSize);
+  new (out.leafBoxes + leaf) OrientedBox(orientedBoxAround(triangles, centre, kOrientedPadding * sceneSize));
 }
 
 }  // namespace
@@ -138,9 +138,9 @@ bool buildCageTree(const Cage& cage, const Units& units, Arena& arena, CageTree&
   out.extent = static_cast<double>(std::max({sides[0], sides[1], sides[2]}));
   orderTriangles(order, cage.count);
   for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf)
-    makeLeaf(cage, leaf, out.centre, units.reach, {order, boxes, leaves, leafBoxes, corners});
+    makeLeaf(cage, leaf, out.centre, units.sceneSize, {order, boxes, leaves, leafBoxes, corners});
   fillNodes(boxes, nodes, out);
-  out.rays = {nodes, positions, corners, units.reach};
+  out.rays = {nodes, positions, corners, units.sceneSize};
   out.leaves = leaves;
   out.leafBoxes = leafBoxes;
   return true;

@@ -19,7 +19,7 @@ using simd::splat;
 constexpr double kParallel = 1e-10;
 
 /// The rounding error of an edge function in single precision, for a ray through the leaf's box, as a share of the
-/// scene's reach R times the size E of that box. Moved and sheared corners are off by up to 11 · 2^-24 R, of which 4
+/// scene's size R times the size E of that box. Moved and sheared corners are off by up to 11 · 2^-24 R, of which 4
 /// are for an origin that is not a float, and lie within 2 E of the ray; four of their products are off by as much,
 /// together less than 0.7 · 2^-17 R E. (It may be too small for triangles beyond the leaf's own, but those have their
 /// own leaf.)
@@ -44,8 +44,9 @@ constexpr float kMostSum = 24.0f;
 }  // namespace
 
 RayLeaf::RayLeaf(const RayTree& tree, std::uint32_t child, float size, float loose) noexcept
-    : edgeRounding(size * kEdgeRounding * tree.reach),
-      leastDistance(size * size * (std::min(loose, 0.0f) * kMostSum) - edgeRounding * kDistanceRounding * tree.reach) {
+    : edgeRounding(size * kEdgeRounding * tree.sceneSize),
+      leastDistance(size * size * (std::min(loose, 0.0f) * kMostSum) -
+                    edgeRounding * kDistanceRounding * tree.sceneSize) {
   const std::uint32_t* index = tree.corners + std::size_t{3} * firstOf(child);
   for (int i = 0; i < 3; ++i) {
     const auto row = [&](int lane) { return load(tree.positions + std::size_t{4} * index[3 * lane + i]); };
@@ -55,7 +56,7 @@ RayLeaf::RayLeaf(const RayTree& tree, std::uint32_t child, float size, float loo
   }
 }
 
-Verdict judge(const RayLeaf& leaf, const FloatRay& ray, float reach, const HitLimits& limits, float end) noexcept {
+Verdict judge(const RayLeaf& leaf, const FloatRay& ray, float sceneSize, const HitLimits& limits, float end) noexcept {
   const HitEstimate of = estimateHits(leaf, ray);
   const auto most = [](const f32x4(&a)[3]) {
     return simd::max(simd::abs(a[0]), simd::max(simd::abs(a[1]), simd::abs(a[2])));
@@ -63,10 +64,10 @@ Verdict judge(const RayLeaf& leaf, const FloatRay& ray, float reach, const HitLi
   const f32x4 depth = most(of.z);
   const f32x4 width = simd::max(most(of.x), most(of.y));
   const f32x4 rounding =
-      width * simd::multiplyAdd(depth + width, splat(kShearRounding), splat(kOriginRounding * reach));
+      width * simd::multiplyAdd(depth + width, splat(kShearRounding), splat(kOriginRounding * sceneSize));
   const f32x4 size = simd::abs(of.sum);
   const f32x4 slack =
-      simd::multiplyAdd(depth * rounding, splat(kDistanceRounding), size * splat(kDepthRounding * reach));
+      simd::multiplyAdd(depth * rounding, splat(kDistanceRounding), size * splat(kDepthRounding * sceneSize));
   const f32x4 inside = simd::max(of.least, splat(0) - of.most);
   const mask4 isHit = (rounding < inside) & (splat(limits.strict) * size + slack <= of.distance) &
                       (of.distance <= splat(end) * size - slack);

@@ -100,9 +100,9 @@ struct Verdict {
 };
 
 /// Tests again, with the rounding error of these very triangles, which is smaller than what `possibleHits` assumes.
-/// @param reach  As in `RayTree`.
+/// @param sceneSize  As in `RayTree`.
 /// @param end    Hits beyond it do not count.
-Verdict judge(const RayLeaf& leaf, const FloatRay& ray, float reach, const HitLimits& limits, float end) noexcept;
+Verdict judge(const RayLeaf& leaf, const FloatRay& ray, float sceneSize, const HitLimits& limits, float end) noexcept;
 
 /// The distance at which a ray hits a triangle, or `kNoHit`, decided in double precision.
 double hitDistance(const RayLeaf& leaf, int lane, const Ray& ray) noexcept;

@@ -171,7 +171,7 @@ void RaySearch::decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint
     FloatRay& floatRay = floatRays_[id];
     unsigned open = rays[i] & 15u;
     if (find_ == Find::any) {
-      const Verdict verdict = judge(leaf, floatRay, tree_.reach, limits_, kStrictEnd * floatRay.end);
+      const Verdict verdict = judge(leaf, floatRay, tree_.sceneSize, limits_, kStrictEnd * floatRay.end);
       if (verdict.hit != 0) {
         hit_[id] = true;
         floatRay.end = kDone;

@@ -13,7 +13,7 @@ struct RayTree {
   /// 3 positions per triangle, in the order of the leaves. A leaf is always tested with the four triangles from its
   /// first one on, even if it has fewer; after the last triangle there are enough entries to read for that.
   const std::uint32_t* corners = nullptr;
-  float reach = 0;  ///< The longest side of the box around all rays and triangles, scaled.
+  float sceneSize = 0;  ///< The longest side of the box around all rays and triangles, scaled.
 };
 
 }  // namespace cagecast

@@ -175,8 +175,8 @@ bool buildTargetTree(const Points& target, const Units& units, Arena& arena, Ray
   if (arena.failed()) return false;
   std::uint32_t used = 0;
   cuts.add(0, count, nodes, used);
-  out = {nodes, target.positions, corners, units.reach};
-  setNodeBoxes(out, Box::kPadding * units.reach, nodes, nodeCount, boxes);
+  out = {nodes, target.positions, corners, units.sceneSize};
+  setNodeBoxes(out, Box::kPadding * units.sceneSize, nodes, nodeCount, boxes);
   return true;
 }
 

@@ -76,7 +76,7 @@ void weightByDepth(const Scene& scene, const PointData& data, const InteriorSamp
   if (arena.failed()) return;
 
   // Depths are summed as shares of a bound on all of them, so that 63 bits are enough.
-  const double deepest = 2.0 * static_cast<double>(scene.units.reach);
+  const double deepest = 2.0 * static_cast<double>(scene.units.sceneSize);
   const AreaUnit unit(data.points.triangleCount);
   std::fill(ofTriangles, ofTriangles + cageCount, Covered{});
   eachCovered(data, samples, unit, [&](std::uint32_t, std::uint32_t t, double depth, std::int64_t area) {

@@ -22,7 +22,7 @@ struct SmallTree {
   RayTree tree;
 
   /// @param points  The corners of the triangles.
-  SmallTree(const std::vector<Vec3>& points, float reach) {
+  SmallTree(const std::vector<Vec3>& points, float sceneSize) {
     REQUIRE((points.size() == 12 || points.size() == 24));
     Box boxes[4] = {{}, {}, Box::farAway(), Box::farAway()};
     for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -34,12 +34,12 @@ struct SmallTree {
     }
     for (std::size_t leaf = 0; leaf < 2; ++leaf) {
       const bool isUsed = 12 * leaf < points.size();
-      boxes[leaf] = isUsed ? boxes[leaf].padded(Box::kPadding * reach) : Box::farAway();
+      boxes[leaf] = isUsed ? boxes[leaf].padded(Box::kPadding * sceneSize) : Box::farAway();
     }
     setBoxes(node, boxes);
     std::fill(node.child, node.child + 4, leafOf(0));
     node.child[1] = leafOf(4);
-    tree = {&node, positions.data(), corners.data(), reach};
+    tree = {&node, positions.data(), corners.data(), sceneSize};
   }
   [[nodiscard]] Vec3 corner(std::uint32_t i) const { return Vec3::from(positions.data() + std::size_t{4} * i); }
   /// Where a ray hits a triangle in double precision.
@@ -96,10 +96,10 @@ TEST_CASE("rays meet what double precision says, along edges and at corners of t
   for (std::uint64_t round = 0; round < 600; ++round) {
     scenes::Random random(seed + round);
     INFO("seed " << seed + round);
-    const double reach = round % 2 == 0 ? 1 : 64;
+    const double sceneSize = round % 2 == 0 ? 1 : 64;
     const double sizes[] = {1e-4, 1e-2, 0.3};
-    const double size = reach * sizes[random.below(3)];
-    const Vec3 centre = pointInCube(random, reach / 4);
+    const double size = sceneSize * sizes[random.below(3)];
+    const Vec3 centre = pointInCube(random, sceneSize / 4);
     std::vector<Vec3> points;
     for (int t = 0; t < 8; ++t) {
       // A corner far from the other two, or not.
@@ -110,18 +110,19 @@ TEST_CASE("rays meet what double precision says, along edges and at corners of t
       points.push_back(near + pointInCube(random, narrow * size));
       std::rotate(points.end() - 3, points.end() - 3 + random.below(3), points.end());
     }
-    const SmallTree tree(points, static_cast<float>(reach));
+    const SmallTree tree(points, static_cast<float>(sceneSize));
     Rays rays(64);
     for (int i = 0; i < 64; ++i) {
       const std::uint32_t t = random.below(8), k = random.below(3);
       const Vec3 a = tree.corner(3 * t + k), b = tree.corner(3 * t + (k + 1) % 3);
       const double shares[] = {0, 1e-4, numberIn(random, 0, 1)};
       const double beside[] = {0, 1e-8, 1e-7, 1e-6, 1e-5};
-      const Vec3 towards = a + shares[random.below(3)] * (b - a) + pointInCube(random, reach * beside[random.below(5)]);
-      const double away[] = {reach / 5, 3 * size, 1e-5 * reach};
+      const Vec3 towards =
+          a + shares[random.below(3)] * (b - a) + pointInCube(random, sceneSize * beside[random.below(5)]);
+      const double away[] = {sceneSize / 5, 3 * size, 1e-5 * sceneSize};
       rays.add(towards + pointInCube(random, away[random.below(3)]), towards);
     }
-    for (const double from : {1e-5 * reach, -1e-5 * reach}) {
+    for (const double from : {1e-5 * sceneSize, -1e-5 * sceneSize}) {
       std::vector<double> firsts;
       for (const Ray& ray : rays.rays) {
         double first = std::numeric_limits<double>::infinity();
