@@ -16,7 +16,7 @@ class AnyList {
   [[nodiscard]] bool failed() const noexcept { return failed_; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   /// Removes the elements from `size` on.
-  void cut(std::size_t size) noexcept { size_ = size < size_ ? size : size_; }
+  void truncate(std::size_t size) noexcept { size_ = size < size_ ? size : size_; }
 
  protected:
   /// Makes more room, if there is memory for it.

@@ -126,7 +126,7 @@ NearbyTriangles BorderClassifier::narrow(NearbyTriangles nearby, Hull hull) noex
   const std::uint32_t nearest = cagecast::nearestOf(candidates_, nearby.count, diagonal_).cageTriangle;
   // The distance to a triangle is a convex function. So, within the part, the distance to the cage is at most what is
   // interpolated between the corners' distances to one triangle,
-  limits_.cut(0);
+  limits_.truncate(0);
   for (const Vec3 corner : hull) limits_.add(closestPointOf(cage_.cage.triangles[nearest], corner).distance + slack_);
   if (failed()) return nearby;
   // and the distance to any other triangle is at least its tangent at the centre.

@@ -67,7 +67,7 @@ class BorderClassifier {
   /// How much is listed now.
   [[nodiscard]] std::size_t mark() const noexcept { return listed_.size(); }
   /// Forgets what was listed after a call of `mark`.
-  void rewind(std::size_t mark) noexcept { listed_.cut(mark); }
+  void rewind(std::size_t mark) noexcept { listed_.truncate(mark); }
   /// Whether there were more comparisons than the limit.
   [[nodiscard]] bool isOverLimit() const noexcept { return comparisons_ > limit_; }
   /// Whether memory ran out, or there were too many comparisons.

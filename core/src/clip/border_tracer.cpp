@@ -31,7 +31,7 @@ double distanceToLine(Vec3 p, Vec3 start, Vec3 end) {
 const List<TrianglePoint>& BorderTracer::trace(const TrianglePoint (&corners)[3], const TrianglePoint& from,
                                                const TrianglePoint& to) noexcept {
   const Wedge wedge{corners[0], corners[1], corners[2]};
-  line_.cut(0);
+  line_.truncate(0);
   if (from.vertex == to.vertex) return line_;
   const auto shareOf = [&](const TrianglePoint& point, const TrianglePoint& end) {
     return length(point.p - wedge.a.p) / length(end.p - wedge.a.p);

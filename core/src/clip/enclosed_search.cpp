@@ -8,7 +8,7 @@ namespace cagecast {
 bool EnclosedSearch::find(const List<Piece>& pieces, TrianglePoint& point) noexcept {
   const NearbyTriangles nearby = triangle_.nearby();
   const std::size_t mark = triangle_.classifier.mark();
-  parts_.cut(0);
+  parts_.truncate(0);
   for (std::uint32_t i = 0; i < pieces.size(); ++i) {
     const TrianglePoint(&corners)[3] = pieces[i].corners;
     addPart(pieces[i], {{corners[0], corners[1], corners[2]}, i, nearby});

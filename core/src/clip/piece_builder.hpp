@@ -17,7 +17,7 @@ class PieceBuilder {
   explicit PieceBuilder(TargetTriangle& triangle) noexcept : triangle_(triangle) {}
 
   /// Begins a polygon.
-  void startPolygon() noexcept { polygon_.cut(0); }
+  void startPolygon() noexcept { polygon_.truncate(0); }
   /// Adds a corner to the polygon, unless it is the same vertex as the one before or the first one.
   void addCorner(const TrianglePoint& point) noexcept;
   /// Triangulates the polygon.
@@ -27,7 +27,7 @@ class PieceBuilder {
 
   /// The triangles that were added since `forget`.
   [[nodiscard]] const List<Piece>& pieces() const noexcept { return pieces_; }
-  void forget() noexcept { pieces_.cut(0); }
+  void forget() noexcept { pieces_.truncate(0); }
 
   [[nodiscard]] bool failed() const noexcept { return polygon_.failed() || pieces_.failed(); }
 

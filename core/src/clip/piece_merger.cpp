@@ -9,13 +9,13 @@ namespace cagecast {
 void PieceMerger::start() noexcept {
   firstVertex_ = static_cast<std::uint32_t>(triangle_.out.onBorder.size());
   firstTriangle_ = triangle_.out.origins.size();
-  kept_.cut(0);
+  kept_.truncate(0);
 }
 
 void PieceMerger::merge() noexcept {
   ClippedTriangles& out = triangle_.out;
-  vertices_.cut(0);
-  nextCorners_.cut(0);
+  vertices_.truncate(0);
+  nextCorners_.truncate(0);
   const std::size_t count = out.onBorder.size() - firstVertex_;
   for (std::size_t i = 0; i < count; ++i) vertices_.add({kNoCorner, false, false, 0, 0});
   for (std::size_t i = 3 * firstTriangle_; i < out.indices.size(); ++i) nextCorners_.add(kNoCorner);
@@ -80,7 +80,7 @@ double PieceMerger::height(std::uint32_t a, std::uint32_t b, std::uint32_t c) co
 /// @return false if they do not close around it, or are too many.
 bool PieceMerger::listAround(std::uint32_t vertex) noexcept {
   const List<std::uint32_t>& indices = triangle_.out.indices;
-  around_.cut(0);
+  around_.truncate(0);
   for (std::uint32_t corner = vertices_[vertex - firstVertex_].firstCorner; corner != kNoCorner;
        corner = nextCorners_[corner]) {
     const std::size_t first = 3 * firstTriangle_ + corner / 3 * 3;
@@ -197,12 +197,12 @@ void PieceMerger::closeGaps() noexcept {
     }
     ++triangles;
   }
-  out.sources.cut(std::size_t{3} * (kept - triangle_.vertexCount()));
-  out.weights.cut(std::size_t{3} * (kept - triangle_.vertexCount()));
-  out.onBorder.cut(kept);
-  out.indices.cut(3 * triangles);
-  out.origins.cut(triangles);
-  out.regions.cut(triangles);
+  out.sources.truncate(std::size_t{3} * (kept - triangle_.vertexCount()));
+  out.weights.truncate(std::size_t{3} * (kept - triangle_.vertexCount()));
+  out.onBorder.truncate(kept);
+  out.indices.truncate(3 * triangles);
+  out.origins.truncate(triangles);
+  out.regions.truncate(triangles);
 }
 
 }  // namespace cagecast

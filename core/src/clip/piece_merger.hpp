@@ -21,7 +21,7 @@ class PieceMerger {
   /// How many vertices are kept now.
   [[nodiscard]] std::size_t mark() const noexcept { return kept_.size(); }
   /// Forgets what was kept after a call of `mark`.
-  void rewind(std::size_t mark) noexcept { kept_.cut(mark); }
+  void rewind(std::size_t mark) noexcept { kept_.truncate(mark); }
   /// Removes what is not needed of what was added since `start`.
   void merge() noexcept;
 

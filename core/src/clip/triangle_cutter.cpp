@@ -56,8 +56,8 @@ class TriangleCutter {
   void cut(std::uint32_t t) noexcept {
     triangle_.begin(t);
     builder_.forget();
-    polygons_.cut(0);
-    crossings_.inside.cut(0);
+    polygons_.truncate(0);
+    crossings_.inside.truncate(0);
     const TrianglePoint corners[3] = {triangle_.corner(0), triangle_.corner(1), triangle_.corner(2)};
     const std::uint32_t* v = triangle_.vertices();
     // A triangle with two equal corners is no more than an edge, and stays.
@@ -114,7 +114,7 @@ class TriangleCutter {
   /// Cuts a convex polygon, and removes it from `polygons_`.
   void divide(std::size_t first, std::size_t count) noexcept {
     const NearbyTriangles before = triangle_.nearbyIfListed();
-    hull_.cut(0);
+    hull_.truncate(0);
     for (std::size_t i = first; i < first + count; ++i) hull_.add(polygons_[i].point.p);
     if (!failed()) {
       triangle_.narrow({&hull_[0], count});
@@ -123,7 +123,7 @@ class TriangleCutter {
       else
         divideAcross(first, count);
     }
-    polygons_.cut(first);
+    polygons_.truncate(first);
     triangle_.restore(before);
   }
 
@@ -145,7 +145,7 @@ class TriangleCutter {
     crossings_.search(start, end);
     // Points between borders become corners of both parts: there must be fewer than the other part takes away.
     if (crossings_.inside.size() - begin > 2 * half - 3) {
-      crossings_.inside.cut(begin);
+      crossings_.inside.truncate(begin);
       if (mayDivideAround() && !isThin(first, count)) return divideAround(first, count, centroid(first, count));
     }
     const CrossingRange range = crossings_.addVertices(begin, start, end);
@@ -158,7 +158,7 @@ class TriangleCutter {
     addEdge({start, end}, crossings_.inside, range, true);
     divide(far, polygons_.size() - far);
     divide(near, polygons_.size() - near);
-    crossings_.inside.cut(begin);
+    crossings_.inside.truncate(begin);
   }
 
   /// The mean of a polygon's corners. Everything between it and them is smaller than the polygon.
@@ -227,20 +227,20 @@ class TriangleCutter {
       addEdge({centre, polygons_[first + i].point}, crossings_.inside, spokes_[firstSpoke + i], false);
       divide(part, polygons_.size() - part);
     }
-    spokes_.cut(firstSpoke);
-    crossings_.inside.cut(begin);
+    spokes_.truncate(firstSpoke);
+    crossings_.inside.truncate(begin);
     --depth_;
   }
 
   /// Removes the vertices and triangles that were added last.
   void forget(std::size_t vertices, std::size_t triangles) noexcept {
     ClippedTriangles& out = triangle_.out;
-    out.sources.cut(3 * (vertices - triangle_.vertexCount()));
-    out.weights.cut(3 * (vertices - triangle_.vertexCount()));
-    out.onBorder.cut(vertices);
-    out.indices.cut(3 * triangles);
-    out.origins.cut(triangles);
-    out.regions.cut(triangles);
+    out.sources.truncate(3 * (vertices - triangle_.vertexCount()));
+    out.weights.truncate(3 * (vertices - triangle_.vertexCount()));
+    out.onBorder.truncate(vertices);
+    out.indices.truncate(3 * triangles);
+    out.origins.truncate(triangles);
+    out.regions.truncate(triangles);
   }
 
   /// Triangulates a polygon as it is.
