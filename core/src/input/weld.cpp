@@ -107,7 +107,7 @@ void sortCell(Placed* begin, const Site* sites) {
 /// The points that vertices are welded to.
 struct Welded {
   std::uint32_t* firstVertex;  ///< 1 per point.
-  std::uint32_t* places;       ///< 1 per point: its cell.
+  std::uint32_t* cells;        ///< 1 per point: its cell.
   std::uint32_t* ofVertex;     ///< 1 per vertex: its point.
 };
 
@@ -133,7 +133,7 @@ std::uint32_t weldEqual(Placed* placed, std::uint32_t vertexCount, const Site* s
     out.ofVertex[v] = point;
     if (point < count) continue;
     out.firstVertex[point] = v;
-    out.places[point] = key;
+    out.cells[point] = key;
     ++count;
     // In a crowded cell equal vertices follow each other.
     if (isCrowded) first = point;
@@ -216,7 +216,7 @@ Code weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
   const auto allTriangles = static_cast<std::uint32_t>(target.indices.size() / 3);
   auto* ofVertex = arena.allocate<std::uint32_t>(vertexCount);
   auto* positions = arena.allocate<float>(Points::kStride * vertexCount);
-  auto* places = arena.allocate<std::uint32_t>(vertexCount);
+  auto* cells = arena.allocate<std::uint32_t>(vertexCount);
   auto* triangles = arena.allocate<std::uint32_t>(std::size_t{3} * allTriangles);
   auto* doubleAreas = arena.allocate<double>(allTriangles);
   const bool tolerant = tolerance > 0;
@@ -231,7 +231,7 @@ Code weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
     auto* firstVertex = arena.allocate<std::uint32_t>(vertexCount);
     if (arena.failed()) return Code::outOfMemory;
     Placed* placed = sortAlongCurve(target, units, sites, unsorted, spare);
-    pointCount = weldEqual(placed, vertexCount, sites, {firstVertex, places, ofVertex});
+    pointCount = weldEqual(placed, vertexCount, sites, {firstVertex, cells, ofVertex});
     for (std::uint32_t i = 0; i < pointCount; ++i) {
       const Site& site = sites[firstVertex[i]];
       simd::store(positions + Points::kStride * i, simd::of(site.x, site.y, site.z, 0));
@@ -245,15 +245,15 @@ Code weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
     if (arena.failed()) return Code::outOfMemory;
     const double radius = static_cast<double>(tolerance) * units.diagonal;
     if (const Code code = mergeNear(positions, groups, pointCount, radius, merged); code != Code::ok) return code;
-    // Joined points keep the order of their first members, and the places of these.
+    // Joined points keep the order of their first members, and the cells of these.
     for (std::uint32_t i = 0, next = 0; i < all; ++i) {
-      if (merged[i] == next) places[next++] = places[i];
+      if (merged[i] == next) cells[next++] = cells[i];
     }
     for (std::uint32_t v = 0; v < vertexCount; ++v) ofVertex[v] = merged[ofVertex[v]];
   }
 
   const std::uint32_t kept = weldTriangles(target.indices, ofVertex, positions, triangles, doubleAreas);
-  out = {pointCount, positions, places, ofVertex, kept, triangles, doubleAreas};
+  out = {pointCount, positions, cells, ofVertex, kept, triangles, doubleAreas};
   return Code::ok;
 }
 

@@ -16,7 +16,7 @@ struct Points {
 
   std::uint32_t count = 0;
   const float* positions = nullptr;          ///< x, y, z, 0 per point, scaled, in the order of a space-filling curve.
-  const std::uint32_t* places = nullptr;     ///< The place of each point's cell along that curve, ascending.
+  const std::uint32_t* cells = nullptr;      ///< 1 per point: its cell, numbered along that curve; ascending.
   const std::uint32_t* ofVertex = nullptr;   ///< The point of each vertex.
   std::uint32_t triangleCount = 0;           ///< Triangles with an area; the others take no part in anything.
   const std::uint32_t* triangles = nullptr;  ///< 3 points per triangle with an area.

@@ -19,8 +19,8 @@ std::uint32_t firstPointOf(const std::uint32_t* corner) { return std::min({corne
 class CurveCuts {
  public:
   /// @param corners  Of the triangles, in the order of their first points.
-  /// @param places   Positions of the points along the curve, ascending.
-  CurveCuts(const std::uint32_t* corners, const std::uint32_t* places) : corners_(corners), places_(places) {}
+  /// @param cells    As in `Points`.
+  CurveCuts(const std::uint32_t* corners, const std::uint32_t* cells) : corners_(corners), cells_(cells) {}
 
   /// An unused child, as `add` writes it.
   static constexpr std::uint32_t kNone = UINT32_MAX;
@@ -77,14 +77,14 @@ class CurveCuts {
   }
 
   [[nodiscard]] std::uint32_t cutBetween(std::uint32_t begin, std::uint32_t end) const {
-    const std::uint32_t first = placeOf(begin);
-    const std::uint32_t last = placeOf(end - 1);
+    const std::uint32_t first = cellOf(begin);
+    const std::uint32_t last = cellOf(end - 1);
     if (first == last) return begin + (end - begin) / 2;
     const auto bit = std::bit_width(first ^ last) - 1;
     const std::uint32_t cut = last >> bit << bit;
     while (begin < end) {
       const std::uint32_t middle = begin + (end - begin) / 2;
-      if (placeOf(middle) < cut) {
+      if (cellOf(middle) < cut) {
         begin = middle + 1;
       } else {
         end = middle;
@@ -93,12 +93,12 @@ class CurveCuts {
     return begin;
   }
 
-  [[nodiscard]] std::uint32_t placeOf(std::uint32_t triangle) const {
-    return places_[firstPointOf(corners_ + std::size_t{3} * triangle)];
+  [[nodiscard]] std::uint32_t cellOf(std::uint32_t triangle) const {
+    return cells_[firstPointOf(corners_ + std::size_t{3} * triangle)];
   }
 
   const std::uint32_t* corners_;
-  const std::uint32_t* places_;
+  const std::uint32_t* cells_;
 };
 
 /// Sorts triangles by their first point. Points are in curve order, so the triangles are as well then.
@@ -167,7 +167,7 @@ bool buildTargetTree(const Points& target, const Units& units, Arena& arena, Ray
   }
   std::fill_n(corners + std::size_t{3} * count, 3 * kBeyond, 0u);
 
-  const CurveCuts cuts(corners, target.places);
+  const CurveCuts cuts(corners, target.cells);
   const std::uint32_t nodeCount = cuts.count(0, count);
   auto* nodes = arena.allocate<Node>(nodeCount);
   const Arena::Scope scope(arena);
