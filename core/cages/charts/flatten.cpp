@@ -21,7 +21,7 @@ constexpr int kStepsBetweenChecks = 4;
 
 /// Closes all boundary loops but the longest with fans around a new vertex in their middle.
 void fillHoles(TriangleMesh& mesh) {
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   const auto loops = loopsOf(mesh, twins);
   for (std::size_t i = 1; i < loops.size(); ++i) {
     Vec3 middle{0, 0, 0};
@@ -58,7 +58,7 @@ double halfTangent(const Vec3& a, const Vec3& b) {
 /// The rim on a circle, all else at means of neighbours with mean value weights (Floater 2003). Never flips, save by
 /// rounding.
 bool mapToDisk(const TriangleMesh& mesh, std::vector<Uv>& uvs) {
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   const auto loops = loopsOf(mesh, twins);
   if (loops.size() != 1) return false;
   std::vector<bool> onRim(mesh.positions.size());

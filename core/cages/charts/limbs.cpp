@@ -117,7 +117,7 @@ std::vector<bool> cutOff(const TriangleMesh& mesh, const std::vector<double>& va
   const auto heightOf = [&](std::uint32_t v) {
     return (inside[v] ? value[v] - peak.level : -outside[v]) / peak.height;
   };
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   MinCut cut(mesh.triangles.size(), 1e-6 * diagonalOf(mesh));
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle3& c = mesh.triangles[t];

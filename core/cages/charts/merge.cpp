@@ -84,7 +84,7 @@ bool fits(const Chart& chart, const MergeOptions& options) {
 }  // namespace
 
 void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, Ticker& ticker, std::vector<Chart>& charts) {
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   std::set<std::pair<std::uint32_t, std::uint32_t>> failed;  // By first triangles.
   for (int tries = 0; charts.size() > options.enough;) {
     const Seams seams = seamsOf(mesh, twins, charts);

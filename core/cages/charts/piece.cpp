@@ -8,7 +8,7 @@
 
 namespace cagecast::cages {
 
-std::vector<std::uint32_t> findTwins(const TriangleMesh& mesh) {
+std::vector<std::uint32_t> halfEdgeTwins(const TriangleMesh& mesh) {
   struct Edge {
     std::uint32_t low, high, halfEdge;
   };
@@ -46,7 +46,7 @@ Piece wholeOf(const TriangleMesh& mesh) {
 
 Piece cutOpen(const Piece& piece, const std::vector<bool>& cut) {
   const TriangleMesh& mesh = piece.mesh;
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   DisjointSets corners(3 * mesh.triangles.size());
   for (std::size_t h = 0; h < twins.size(); ++h) {
     const std::uint32_t twin = twins[h];
@@ -72,7 +72,7 @@ Piece cutOpen(const Piece& piece, const std::vector<bool>& cut) {
 
 std::vector<Piece> componentsOf(const Piece& piece) {
   const TriangleMesh& mesh = piece.mesh;
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   DisjointSets sets(mesh.triangles.size());
   for (std::size_t h = 0; h < twins.size(); ++h)
     if (twins[h] != kNone) sets.join(static_cast<std::uint32_t>(h / 3), twins[h] / 3);

@@ -19,7 +19,7 @@ inline std::uint32_t endOf(const TriangleMesh& mesh, std::size_t halfEdge) {
 
 /// The half-edge on the other side of each; `kNone` where the edge is open, is shared by more than two triangles, or
 /// joins triangles that face opposite ways.
-std::vector<std::uint32_t> findTwins(const TriangleMesh& mesh);
+std::vector<std::uint32_t> halfEdgeTwins(const TriangleMesh& mesh);
 
 /// Part of a mesh with vertices of its own, each of which has one connected fan of triangles.
 struct Piece {

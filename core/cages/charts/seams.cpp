@@ -49,7 +49,7 @@ long eulerNumber(const TriangleMesh& mesh, std::span<const std::uint32_t> twins)
 /// ways from them to the boundary.
 Piece cutHandles(const Piece& piece, const SeamCost& cost) {
   const TriangleMesh& mesh = piece.mesh;
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   std::vector<std::pair<double, std::uint32_t>> order;
   for (std::uint32_t h = 0; h < twins.size(); ++h)
     if (twins[h] != kNone && twins[h] > h) {
@@ -137,8 +137,8 @@ Piece cutBetween(const Piece& piece, std::span<const std::uint32_t> starts, std:
 }
 
 Piece cutToDisk(Piece piece, const SeamCost& cost) {
-  if (loopsOf(piece.mesh, findTwins(piece.mesh)).empty()) piece = open(piece, cost);
-  const std::vector<std::uint32_t> twins = findTwins(piece.mesh);
+  if (loopsOf(piece.mesh, halfEdgeTwins(piece.mesh)).empty()) piece = open(piece, cost);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(piece.mesh);
   const auto loops = loopsOf(piece.mesh, twins);
   if (!loops.empty() && eulerNumber(piece.mesh, twins) + static_cast<long>(loops.size()) != 2)
     return cutHandles(piece, cost);
@@ -146,7 +146,7 @@ Piece cutToDisk(Piece piece, const SeamCost& cost) {
   // Each cut changes the vertices, so loops are found anew.
   const double least = kLargestHole * lengthOf(piece.mesh, loops[0]);
   for (std::size_t i = 1; i < loops.size(); ++i) {
-    const auto now = loopsOf(piece.mesh, findTwins(piece.mesh));
+    const auto now = loopsOf(piece.mesh, halfEdgeTwins(piece.mesh));
     if (now.size() < 2 || lengthOf(piece.mesh, now[1]) <= least) break;
     piece = cutBetween(piece, originsOf(piece.mesh, now[1]), originsOf(piece.mesh, now[0]), cost);
   }

@@ -94,7 +94,7 @@ bool expand(const TriangleMesh& mesh, const std::vector<std::uint32_t>& twins, c
 }  // namespace
 
 std::vector<std::uint32_t> regionsOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& labels) {
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   DisjointSets sets(mesh.triangles.size());
   for (std::size_t h = 0; h < twins.size(); ++h)
     if (twins[h] != kNone && labels[h / 3] == labels[twins[h] / 3])
@@ -117,7 +117,7 @@ void joinSmallRegions(const TriangleMesh& mesh, double least, std::size_t most, 
     double length;
   };
   std::vector<Border> borders;
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   for (std::uint32_t h = 0; h < twins.size(); ++h)
     if (twins[h] != kNone && regions[h / 3] != regions[twins[h] / 3])
       borders.push_back({h / 3, twins[h] / 3, edgeLength(mesh, h)});
@@ -156,7 +156,7 @@ void joinSmallRegions(const TriangleMesh& mesh, double least, std::size_t most, 
 
 std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& options, Ticker& ticker) {
   const TriangleMesh& mesh = piece.mesh;
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   const Vec3 side = cross(options.up, options.front);
   const std::array<Vec3, 3> axes{side, options.up, options.front};
   Prices price(mesh.triangles.size());
@@ -179,7 +179,7 @@ std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& opti
 }
 
 std::vector<std::uint32_t> frontAndBackOf(const TriangleMesh& mesh, const Vec3& front, Ticker& ticker) {
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   const double border = kBorderWidth * diagonalOf(mesh);
   MinCut cut(mesh.triangles.size(), 1e-6 * border * border);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -196,7 +196,7 @@ std::vector<std::uint32_t> frontAndBackOf(const TriangleMesh& mesh, const Vec3& 
 }
 
 std::vector<std::uint32_t> halvesOf(const TriangleMesh& mesh) {
-  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   const auto furthest = [](const std::vector<double>& distances) {
     return static_cast<std::uint32_t>(std::max_element(distances.begin(), distances.end()) - distances.begin());
   };

@@ -139,7 +139,7 @@ Chart flattenWithSeams(Piece piece, Ticker& ticker) {
     const std::uint32_t worst = mostStretched(chart);
     const TriangleMesh& mesh = chart.piece.mesh;
     std::vector<std::uint32_t> boundary;
-    for (const auto& loop : loopsOf(mesh, findTwins(mesh)))
+    for (const auto& loop : loopsOf(mesh, halfEdgeTwins(mesh)))
       for (const std::uint32_t h : loop)
         if (originOf(mesh, h) != worst) boundary.push_back(originOf(mesh, h));
     Chart next = flatten(cutToDisk(cutBetween(chart.piece, {&worst, 1}, boundary, {}), {}), ticker);
@@ -167,7 +167,7 @@ bool Unwrapper::layOut(Piece piece) {
 
 /// The border of the neck: of the long loops the lowest.
 std::vector<std::uint32_t> neckOf(const TriangleMesh& mesh, const Vec3& up) {
-  const auto loops = loopsOf(mesh, findTwins(mesh));
+  const auto loops = loopsOf(mesh, halfEdgeTwins(mesh));
   std::vector<std::uint32_t> neck;
   double lowest = 0;
   for (const auto& loop : loops) {
@@ -224,7 +224,7 @@ bool Unwrapper::layOutHead(Piece piece) {
 }
 
 bool Unwrapper::layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost) {
-  const auto loops = loopsOf(piece.mesh, findTwins(piece.mesh));
+  const auto loops = loopsOf(piece.mesh, halfEdgeTwins(piece.mesh));
   const auto start = std::find(piece.vertexOf.begin(), piece.vertexOf.end(), tip);
   if (loops.empty() || start == piece.vertexOf.end()) return layOut(piece);
   std::vector<std::uint32_t> rim;
