@@ -21,8 +21,8 @@
 namespace cagecast {
 namespace {
 
-/// Steps 1 to 3: where points lie on the cage, and what lies over them.
-void findZones(const Scene& scene, PointData& data, Timings& times) {
+/// Steps 1 to 3: where points lie on the cage, and their zones.
+void projectAndMark(const Scene& scene, PointData& data, Timings& times) {
   timed(times.project, [&] { projectPoints(scene, data); });
   timed(times.covered, [&] { findCageDistances(scene, data); });
   timed(times.occluded, [&] { markOccluded(scene, data); });
@@ -37,7 +37,7 @@ void measureSegments(const Scene& scene, PointData& data, Array<SegmentStats>& s
   InteriorSamples samples;
   if (isFiltered && steps.interiorSamples) placeInteriorSamples(scene, data, stats, samples);
   Timings ofSamples;  // Counted as a part of step 4.
-  if (samples.triangleCount > 0) findZones(scene, samples.data, ofSamples);
+  if (samples.triangleCount > 0) projectAndMark(scene, samples.data, ofSamples);
   sumAreas(scene, samples, data, stats);
   if (!isFiltered || !steps.depthWeighting) return;
   weightByDepth(scene, data, samples, stats);
@@ -103,7 +103,7 @@ Status project(const MeshView& cage, const MeshView& target, const TransferOptio
   PointData points(scene.points, options, *arena);
   if (options.steps.projection == ProjectionMode::nearestPoint) {
     timed(times.build, [&] { scene.buildTrees(); });
-    findZones(scene, points, times);
+    projectAndMark(scene, points, times);
   } else {
     timed(times.project, [&] { projectToVertices(scene, points); });
   }
