@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "cagecast/cages.hpp"
+#include "fit/anchors.hpp"
 #include "fit/bones.hpp"
 #include "fit/check_landmarks.hpp"
 #include "fit/eye_holes.hpp"
 #include "fit/finish.hpp"
 #include "fit/relax.hpp"
-#include "fit/rim.hpp"
 #include "fit/template_cage.hpp"
 #include "fit/tighten.hpp"
 #include "fit/warp.hpp"

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "cagecast/cages.hpp"
+#include "fit/anchors.hpp"
 #include "fit/relax.hpp"
-#include "fit/rim.hpp"
 #include "fit/template_cage.hpp"
 #include "fit/warp.hpp"
 #include "mesh/surface.hpp"

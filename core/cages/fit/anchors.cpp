@@ -1,4 +1,4 @@
-#include "fit/rim.hpp"
+#include "fit/anchors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +22,7 @@ constexpr double kSlack = 0.1;
 /// Where on the line from menton to the lobe of an ear the jaw is held, too.
 constexpr double kJawShare = 0.35;
 
+/// The loop where a figure ends.
 struct Rim {
   std::vector<Vec3> points;
   Vec3 centre{};
@@ -30,8 +31,30 @@ struct Rim {
 
 Vec3 perpendicular(const Vec3& v, const Vec3& to) { return v - dot(v, to) * to; }
 
-/// The loop as evenly spaced points around its normal, the ragged ends smoothed away.
-Rim sample(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, double step, const Vec3& inward) {
+/// Averages the points' heights over the plane along the rim.
+void smoothHeights(Rim& rim) {
+  std::vector<double> along(1, 0.0);
+  for (std::size_t i = 0; i < rim.points.size(); ++i)
+    along.push_back(along.back() + length(rim.points[(i + 1) % rim.points.size()] - rim.points[i]));
+  std::vector<Vec3> smooth = rim.points;
+  for (std::size_t i = 0; i < smooth.size(); ++i) {
+    double height = 0, total = 0;
+    for (std::size_t j = 0; j < smooth.size(); ++j) {
+      const double apart = std::abs(along[i] - along[j]);
+      const double share = std::min(apart, along.back() - apart) / (kSmoothing * along.back());
+      const double weight = std::exp(-share * share);
+      height += weight * dot(rim.points[j] - rim.points[i], rim.normal);
+      total += weight;
+    }
+    smooth[i] = smooth[i] + height / total * rim.normal;
+  }
+  rim.points = std::move(smooth);
+}
+
+/// A loop as evenly spaced points, counter-clockwise around the normal of the plane that fits it best; ragged ends are
+/// smoothed away.
+/// @param inward  Towards the figure, about.
+Rim sampleRim(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, double step, const Vec3& inward) {
   Rim rim;
   std::vector<Vec3> corners;
   const std::size_t stride = 1 + loop.size() / kMostSamples;
@@ -58,23 +81,7 @@ Rim sample(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, dou
   for (std::size_t i = 0; i < rim.points.size(); ++i)
     turn += dot(cross(rim.points[i] - rim.centre, rim.points[(i + 1) % rim.points.size()] - rim.centre), rim.normal);
   if (turn < 0) std::reverse(rim.points.begin(), rim.points.end());
-
-  std::vector<double> along(1, 0.0);
-  for (std::size_t i = 0; i < rim.points.size(); ++i)
-    along.push_back(along.back() + length(rim.points[(i + 1) % rim.points.size()] - rim.points[i]));
-  std::vector<Vec3> smooth = rim.points;
-  for (std::size_t i = 0; i < smooth.size(); ++i) {
-    double height = 0, total = 0;
-    for (std::size_t j = 0; j < smooth.size(); ++j) {
-      const double apart = std::abs(along[i] - along[j]);
-      const double share = std::min(apart, along.back() - apart) / (kSmoothing * along.back());
-      const double weight = std::exp(-share * share);
-      height += weight * dot(rim.points[j] - rim.points[i], rim.normal);
-      total += weight;
-    }
-    smooth[i] = smooth[i] + height / total * rim.normal;
-  }
-  rim.points = std::move(smooth);
+  smoothHeights(rim);
   return rim;
 }
 
@@ -148,8 +155,8 @@ std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& tar
   const int rim = rimOf(target, loops, cage.diagonal);
   if (!axes.known || cage.rim < 0 || rim < 0) return anchors;
   const double step = kRimStep * cage.diagonal;
-  const Rim from = sample(cage.mesh, cage.loops[static_cast<std::size_t>(cage.rim)], step, axes.up);
-  const Rim to = sample(target, loops[static_cast<std::size_t>(rim)], step, axes.up);
+  const Rim from = sampleRim(cage.mesh, cage.loops[static_cast<std::size_t>(cage.rim)], step, axes.up);
+  const Rim to = sampleRim(target, loops[static_cast<std::size_t>(rim)], step, axes.up);
   const std::vector<Vec3> a = stations(from, axes), b = stations(to, axes);
   if (a.size() != b.size()) return anchors;
   for (std::size_t i = 0; i < a.size(); ++i) {
