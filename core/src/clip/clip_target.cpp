@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "base/hash_index.hpp"
 #include "clip/triangle_cutter.hpp"
+#include "input/equal_positions.hpp"
 
 namespace cagecast {
 namespace {
@@ -50,26 +50,13 @@ struct PassClassifier {
 /// @param[in,out] takesPart  1 per vertex.
 /// @return false if memory ran out.
 bool joinEqualPositions(std::span<const float> positions, Arena& arena, std::uint8_t* takesPart) noexcept {
-  struct Position {
-    float x, y, z;
-    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): equal bits are what counts.
-    bool operator==(const Position& other) const { return std::memcmp(this, &other, sizeof(Position)) == 0; }
-  };
   const auto count = static_cast<std::uint32_t>(positions.size() / 3);
-  const auto positionOf = [&](std::uint32_t v) {
-    const float* p = positions.data() + std::size_t{3} * v;
-    return Position{p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};  // −0 becomes 0.
-  };
   const Arena::Scope scope(arena);
   HashIndex index(count, arena);
   auto* first = arena.allocate<std::uint32_t>(count);
   if (arena.failed()) return false;
-  for (std::uint32_t v = 0; v < count; ++v) {
-    const Position position = positionOf(v);
-    first[v] = index.firstEqual(v, HashIndex::hash(position),
-                                [&](std::uint32_t other) { return positionOf(other) == position; });
-    takesPart[first[v]] |= takesPart[v];
-  }
+  findFirstAtPosition(positions, index, first);
+  for (std::uint32_t v = 0; v < count; ++v) takesPart[first[v]] |= takesPart[v];
   for (std::uint32_t v = 0; v < count; ++v) takesPart[v] = takesPart[first[v]];
   return true;
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/hash_index.hpp"
+#include "input/equal_positions.hpp"
 
 namespace cagecast {
 
@@ -20,14 +21,7 @@ bool findHalfEdges(const MeshView& mesh, const Cage& cage, Arena& arena, HalfEdg
   HashIndex edgeTable(halfEdgeCount, arena);
   if (arena.failed()) return false;
 
-  for (std::uint32_t v = 0; v < vertexCount; ++v) {
-    const float* p = mesh.positions.data() + std::size_t{3} * v;
-    const float position[3] = {p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};  // −0 becomes 0.
-    vertexOf[v] = vertices.firstEqual(v, HashIndex::hash(position), [&](std::uint32_t other) {
-      const float* o = mesh.positions.data() + std::size_t{3} * other;
-      return o[0] == p[0] && o[1] == p[1] && o[2] == p[2];
-    });
-  }
+  findFirstAtPosition(mesh.positions, vertices, vertexOf);
   // In `order`, half-edges from a lower vertex to a higher one come first. Most of these are new to the table below and
   // most of the others are known to it, so the processor predicts its branches.
   std::uint32_t first = 0, last = halfEdgeCount - 1;
