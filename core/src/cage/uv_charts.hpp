@@ -32,15 +32,22 @@ struct UvCharts {
   double* stretch;              ///< 1 per triangle: the greatest ratio of UV length to length among its edges.
   float maxUv;                  ///< The greatest absolute UV coordinate.
 
+  /// Whether the texture is smeared between two points: their UVs differ more than their cage triangles explain.
+  /// @param a,b   Each with a `cageTriangle` and a `uv`.
+  /// @param path  The length of a path between the points, scaled.
+  template <typename Sample>
+  [[nodiscard]] bool isSmeared(const Sample& a, const Sample& b, double path) const noexcept {
+    const double du = b.uv.u - a.uv.u;
+    const double dv = b.uv.v - a.uv.v;
+    const double explained = std::max(stretch[a.cageTriangle], stretch[b.cageTriangle]) * path;
+    return std::sqrt(du * du + dv * dv) > kSmear * explained + kSmearSlack;
+  }
+
   /// Whether a seam separates two target vertices in the texture: their charts differ, or the edge is smeared.
   /// @param length  Of the edge between the vertices, scaled.
   [[nodiscard]] bool separates(const UvSample& a, const UvSample& b, double length) const noexcept {
-    if (charts[a.cageTriangle] != charts[b.cageTriangle]) return true;
-    const double du = b.uv.u - a.uv.u;
-    const double dv = b.uv.v - a.uv.v;
-    const double path = length + std::abs(b.distance - a.distance);
-    const double explained = std::max(stretch[a.cageTriangle], stretch[b.cageTriangle]) * path;
-    return std::sqrt(du * du + dv * dv) > kSmear * explained + kSmearSlack;
+    return charts[a.cageTriangle] != charts[b.cageTriangle] ||
+           isSmeared(a, b, length + std::abs(b.distance - a.distance));
   }
 };
 

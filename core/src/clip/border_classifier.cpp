@@ -164,11 +164,7 @@ bool BorderClassifier::losesTie(const Candidate& loser, std::span<const Candidat
 }
 
 bool BorderClassifier::separates(const BorderSample& a, const BorderSample& b) const noexcept {
-  if (a.region != b.region || charts_ == nullptr) return a.region != b.region;
-  const double du = b.uv.u - a.uv.u, dv = b.uv.v - a.uv.v;
-  const double explained =
-      std::max(charts_->stretch[a.cageTriangle], charts_->stretch[b.cageTriangle]) * length(b.closest - a.closest);
-  return std::sqrt(du * du + dv * dv) > kSmear * explained + kSmearSlack;
+  return a.region != b.region || (charts_ != nullptr && charts_->isSmeared(a, b, length(b.closest - a.closest)));
 }
 
 /// Whether all points of a part whose nearest cage triangle is a certain one are surely in a region.
