@@ -24,11 +24,6 @@ constexpr std::size_t kMostSides = 8;
 /// Joining two regions looks at each triangle so briefly that this many count as one in the ticker's work.
 constexpr std::size_t kTrianglesPerWork = 200;
 
-Vec3 centreOf(const TriangleMesh& mesh, std::size_t t) {
-  const Triangle3& c = mesh.triangles[t];
-  return 1.0 / 3 * (mesh.positions[c[0]] + mesh.positions[c[1]] + mesh.positions[c[2]]);
-}
-
 double edgeLength(const TriangleMesh& mesh, std::size_t h) {
   return length(mesh.positions[endOf(mesh, h)] - mesh.positions[originOf(mesh, h)]);
 }
@@ -47,7 +42,7 @@ std::vector<double> distancesFrom(const TriangleMesh& mesh, const std::vector<st
     for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) {
       if (twins[h] == kNone) continue;
       const std::uint32_t other = twins[h] / 3;
-      const double after = soFar + length(centreOf(mesh, t) - centreOf(mesh, other));
+      const double after = soFar + length(centroid(mesh, mesh.triangles[t]) - centroid(mesh, mesh.triangles[other]));
       if (after < distance[other]) queue.emplace(distance[other] = after, other);
     }
   }

@@ -101,9 +101,7 @@ Vec3 axisOf(const TriangleMesh& mesh, const std::vector<bool>& isEye, const Surf
     if (!isEye[t]) continue;
     const Triangle3& corners = mesh.triangles[t];
     const Vec3 normal = areaNormal(mesh, corners);
-    const Vec3 middle =
-        1.0 / 3 * (mesh.positions[corners[0]] + mesh.positions[corners[1]] + mesh.positions[corners[2]]);
-    rays.push_back({middle + kLift * diagonal * unit(normal), unit(normal)});
+    rays.push_back({centroid(mesh, corners) + kLift * diagonal * unit(normal), unit(normal)});
     normals.push_back(normal);
   }
   Vec3 sum{0, 0, 0};
@@ -222,9 +220,7 @@ void addCovers(const TriangleMesh& mesh, const std::vector<std::uint32_t>& compo
     const double area = length(areaNormal(mesh, corners));
     if (!isCover[c] || !(area > 0)) continue;
     if (pieceOf[c] == SIZE_MAX) pieceOf[c] = pieces++;
-    const Vec3 middle =
-        1.0 / 3 * (mesh.positions[corners[0]] + mesh.positions[corners[1]] + mesh.positions[corners[2]]);
-    covers.push_back({opening.flat(middle), area, pieceOf[c]});
+    covers.push_back({opening.flat(centroid(mesh, corners)), area, pieceOf[c]});
   }
 }
 

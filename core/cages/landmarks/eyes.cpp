@@ -67,7 +67,7 @@ Vec3 frontOf(const TriangleMesh& mesh, const Vec3& left, const Vec3& eyes, doubl
   Vec3 sum{0, 0, 0};
   double area = 0;
   for (const Triangle3& t : mesh.triangles) {
-    const Vec3 middle = 1.0 / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]);
+    const Vec3 middle = centroid(mesh, t);
     if (length(middle - eyes) > 3 * distance) continue;
     const double weight = length(areaNormal(mesh, t));
     sum = sum + weight * (middle - eyes);

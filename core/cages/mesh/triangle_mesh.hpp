@@ -51,6 +51,10 @@ inline Vec3 areaNormal(const TriangleMesh& mesh, const Triangle3& t) {
   return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
 }
 
+inline Vec3 centroid(const TriangleMesh& mesh, const Triangle3& t) {
+  return 1.0 / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]);
+}
+
 /// A unit normal per vertex, weighted by area; zero where it is not defined.
 std::vector<Vec3> vertexNormals(const TriangleMesh& mesh);
 

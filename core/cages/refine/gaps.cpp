@@ -41,7 +41,7 @@ std::vector<std::uint32_t> orderOf(const TriangleMesh& mesh) {
   const HilbertCurve curve(kLevels);
   std::vector<std::uint32_t> keys;
   for (const Triangle3& t : mesh.triangles) {
-    const Vec3 p = 1.0 / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) - bounds.low;
+    const Vec3 p = centroid(mesh, t) - bounds.low;
     const auto cell = [&](double x) { return static_cast<std::uint32_t>(cells * x); };
     keys.push_back(curve.key(cell(p.x), cell(p.y), cell(p.z)));
   }
