@@ -262,7 +262,6 @@ void Fit::write(const TemplateCage& cage, const std::vector<Vec3>& positions, Fi
 }
 
 Outcome Fit::run(FittedCage& out) {
-  Outcome cancelled{Problem::cancelled, "cancelled"};
   TemplateCage cage = prepareTemplate(from_);
   if (Outcome outcome = pair(cage, out); !outcome.ok()) return outcome;
   align();
@@ -276,18 +275,18 @@ Outcome Fit::run(FittedCage& out) {
     return {Problem::badLandmarks, "landmarks: only " + std::to_string(pairs_.from.size()) +
                                        " joints are known, too few for a skeleton of " + std::to_string(kLeastBones) +
                                        " bones; give more of them, or landmarks on the skin"};
-  if (!tell(kLandmarksEnd, "hull")) return cancelled;
+  if (!tell(kLandmarksEnd, "hull")) return cancelled();
   TriangleMesh hull;
   const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels, middleOf(pairs_.to)};
-  if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return cancelled;
+  if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return cancelled();
   if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
   std::vector<Vec3> positions = start(cage, anchors);
-  if (!draw(cage, hull, settings, positions)) return cancelled;
+  if (!draw(cage, hull, settings, positions)) return cancelled();
   if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMostBeyond * cage.diagonal))
     return {Problem::badModel,
             "model: the template does not fit it; if there are several figures in it, exclude all but one of them"};
   write(cage, positions, out);
-  return tell(1, "done") ? Outcome{} : cancelled;
+  return tell(1, "done") ? Outcome{} : cancelled();
 }
 
 }  // namespace

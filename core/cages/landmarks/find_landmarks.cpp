@@ -5,6 +5,7 @@
 #include "landmarks/head.hpp"
 #include "landmarks/rig.hpp"
 #include "mesh/check_model.hpp"
+#include "mesh/progress.hpp"
 
 namespace cagecast::cages {
 
@@ -55,8 +56,7 @@ Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmar
   out = {};
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
   const auto goOn = [&](float share) { return !progress || progress(share, "landmarks"); };
-  Outcome cancelled{Problem::cancelled, "cancelled"};
-  if (!goOn(0)) return cancelled;
+  if (!goOn(0)) return cancelled();
   const Figure figure = readFigure(model);
   Rig rig = recogniseRig(model.joints);
   out.rig = rig.name;
@@ -64,7 +64,7 @@ Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmar
   if (!findHead(
           figure, [&](float share) { return goOn(0.9f * share); }, head) ||
       !goOn(0.9f))
-    return cancelled;
+    return cancelled();
   if (head)
     for (const Spot& spot : head->spots)
       if (spot.confidence >= kSure)
@@ -82,7 +82,7 @@ Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmar
   if (out.kind == Kind::body)
     for (const std::string& name : jointLandmarks())
       if (have.find(name) == have.end()) out.missing.push_back(name);
-  return goOn(1) ? Outcome{} : cancelled;
+  return goOn(1) ? Outcome{} : cancelled();
 }
 
 }  // namespace cagecast::cages

@@ -151,7 +151,6 @@ struct MarkedHull {
   HoleMarker& marker;
 };
 
-Outcome cancelled() { return {Problem::cancelled, "cancelled"}; }
 Outcome nothingToPaint() {
   return {Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
 }

@@ -1,6 +1,7 @@
 #include "make/wrap.hpp"
 
 #include "landmarks/frame.hpp"
+#include "mesh/progress.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -38,9 +39,8 @@ double lostShare(const TriangleMesh& mesh, const std::vector<bool>& isMarked, co
 
 Outcome wrap(const TriangleMesh& mesh, const std::vector<bool>& isMarked, const WrapOptions& options,
              const Progress& progress, TriangleMesh& out) {
-  Outcome cancelled{Problem::cancelled, "cancelled"};
   double share = 1;  // Of the volume: less than 1 if there are pieces.
-  if (!makeHull(mesh, options.hull, progress, out, &share)) return cancelled;
+  if (!makeHull(mesh, options.hull, progress, out, &share)) return cancelled();
   if (out.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
   if (share == 1) return {};
   const double lost = lostShare(mesh, isMarked, options.hull, out);
@@ -48,7 +48,7 @@ Outcome wrap(const TriangleMesh& mesh, const std::vector<bool>& isMarked, const 
     HullOptions wider = options.hull;
     wider.closing *= kWider;
     TriangleMesh hull;
-    if (!makeHull(mesh, wider, progress, hull)) return cancelled;
+    if (!makeHull(mesh, wider, progress, hull)) return cancelled();
     if (!hull.empty() && lostShare(mesh, isMarked, wider, hull) <= kLostAtBest) {
       out = std::move(hull);
       return {};

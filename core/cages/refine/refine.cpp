@@ -201,9 +201,9 @@ Outcome refineCage(const MeshView& cage, const Model& model, const RefineOptions
   if (welded.empty()) return fault("cage has no triangle that is large enough beside the model");
   const double reach = static_cast<double>(options.reach);
   if (Outcome outcome = checkNearness(boundsOf(welded), boundsOf(target), reach); !outcome.ok()) return outcome;
-  if (progress && !progress(0, "align")) return {Problem::cancelled, "cancelled"};
+  if (progress && !progress(0, "align")) return cancelled();
   Refinement refinement(welded, target, reach, progress);
-  if (!refinement.run()) return {Problem::cancelled, "cancelled"};
+  if (!refinement.run()) return cancelled();
   if (Outcome outcome = refinement.judge(); !outcome.ok()) return outcome;
   Cage refined;  // `out` may own the cage.
   refined.positions.assign(cage.positions.begin(), cage.positions.end());
