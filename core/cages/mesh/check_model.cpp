@@ -16,7 +16,7 @@ namespace {
 constexpr double kLeastModelHeight = 1e-6;
 
 /// Farthest a coordinate may be from the origin, in diagonals of the mesh: what `Surface` can take.
-constexpr double kMaxProportion = 1e6;
+constexpr double kMostDiagonalsAway = 1e6;
 
 /// Range of sizes of a mesh: smaller coordinates would be floats of fewer digits, and a cage around larger ones would
 /// not fit a float.
@@ -84,7 +84,8 @@ std::string extentOf(const MeshView& mesh, const std::string& name) {
   if (diagonal < kLeastDiagonal) return name + " is smaller than 1e-37 across";
   const double farthest = std::max({-low.x, -low.y, -low.z, high.x, high.y, high.z});
   if (farthest > kMaxCoordinate) return name + " reaches farther than 4.2e37 from the origin";
-  if (farthest > kMaxProportion * diagonal) return name + " is more than a million times its size away from the origin";
+  if (farthest > kMostDiagonalsAway * diagonal)
+    return name + " is more than a million times its size away from the origin";
   return {};
 }
 
