@@ -8,6 +8,7 @@ namespace cagecast::cages {
 
 namespace {
 
+/// Where the field has this value a hole begins: a little outside of what is marked, which ends at ½.
 constexpr double kBorderValue = 0.4;
 /// The border keeps this share of an edge away from its ends, so that no triangle is a sliver.
 constexpr double kCutFromEnds = 0.15;

@@ -6,9 +6,9 @@
 
 namespace cagecast::cages {
 
-/// The part of a mesh in which a field is less than ½. Triangles that the border crosses are cut along it; pieces of
-/// less than a hundredth of the area are dropped.
-/// @param field  Per vertex; see `holeField`.
+/// The part of a mesh without the holes of a field, which begin at 0.4. Triangles that the border of a hole crosses are
+/// cut along it; pieces of less than a hundredth of the area are dropped.
+/// @param field  Per vertex: see `HoleMarker::field`.
 TriangleMesh cutHoles(const TriangleMesh& mesh, const std::vector<double>& field);
 
 }  // namespace cagecast::cages

@@ -192,7 +192,7 @@ bool HoleMarker::findSamples(const Progress& progress) {
   return true;
 }
 
-bool HoleMarker::markFrom(std::size_t begin, const Progress& progress) {
+bool HoleMarker::markBelow(std::size_t begin, const Progress& progress) {
   const std::vector<Vec3> normals = vertexNormals(hull_);
   below_.resize(hull_.positions.size(), false);
   const std::size_t end = hull_.positions.size();
@@ -250,13 +250,13 @@ std::vector<bool> HoleMarker::marks() const {
 }
 
 bool HoleMarker::mark(int refinements, const Progress& progress) {
-  if (!findSamples(partOf(progress, 0, 0.4f)) || !markFrom(0, partOf(progress, 0.4f, 0.8f))) return false;
+  if (!findSamples(partOf(progress, 0, 0.4f)) || !markBelow(0, partOf(progress, 0.4f, 0.8f))) return false;
   markSamples();
   for (int level = 0; level < refinements; ++level) {
     const Neighbours neighbours = neighboursIn(hull_);
     const std::size_t before = hull_.positions.size();
     refine(within(neighbours, borderOf(neighbours, marks()), kRefinedEdges), hull_, parents_);
-    if (!markFrom(before, partOf(progress, 0.8f, 0.8f))) return false;
+    if (!markBelow(before, partOf(progress, 0.8f, 0.8f))) return false;
     markSamples();
   }
   return !progress || progress(1, "holes");

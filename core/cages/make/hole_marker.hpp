@@ -32,8 +32,8 @@ class HoleMarker {
   /// @return false if `progress` cancelled it; it is told shares from 0 to 1.
   bool mark(int refinements, const Progress& progress);
 
-  /// How much the hull is to have a hole at each of its vertices: 0 not at all, 1 wholly, the border is at ½. Smooth;
-  /// marks that smoothing would remove come back.
+  /// How much the hull is to have a hole at each of its vertices: 0 not at all, 1 wholly; marks end at ½. Smooth; marks
+  /// that smoothing would remove come back.
   [[nodiscard]] std::vector<double> field() const;
 
   /// Marks more of the hull where a cage made with `field` still covers too much of a marked part; farther around each
@@ -51,10 +51,14 @@ class HoleMarker {
     std::uint32_t piece = 0;     ///< Connected piece of the marked triangles.
   };
 
+  /// Sets `samples_`.
   bool findSamples(const Progress& progress);
-  bool markFrom(std::size_t first, const Progress& progress);
+  /// Sets `below_` for the vertices from one on.
+  bool markBelow(std::size_t begin, const Progress& progress);
+  /// Sets `sampled_`.
   void markSamples();
   [[nodiscard]] std::vector<bool> marks() const;
+  /// The vertex of the hull that is nearest to each sample.
   [[nodiscard]] std::vector<std::uint32_t> verticesAbove() const;
 
   const MarkedMesh& model_;
@@ -63,7 +67,7 @@ class HoleMarker {
   std::vector<std::uint32_t> parents_;  ///< The triangle of the hull as it was, for each.
   std::vector<Sample> samples_;
   std::uint32_t pieces_ = 0;
-  std::vector<bool> below_;    ///< Per vertex: what is below or nearest is marked.
+  std::vector<bool> below_;    ///< Per vertex: what is below or nearest is marked, or `widen` has marked it.
   std::vector<bool> sampled_;  ///< Per vertex: a sample is nearest to it.
   int widened_ = 0;            ///< How far around, in edges, `widen` marked last.
 };

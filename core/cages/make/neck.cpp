@@ -17,8 +17,8 @@ constexpr double kBehind = 0.97;
 /// and its own piece reaches this far to that side of its border, in widths of the opening. A sheet, such as a strand
 /// of hair or a visor, lies within its border.
 constexpr double kLeastDepth = 0.1;
-/// A hull belongs to a neck as far as this from its axis and its plane, in radii of the opening.
-constexpr double kReach = 1.3;
+/// The hull is opened as far as this from the middle of a neck, in radii of the opening.
+constexpr double kOpenedRadius = 1.3;
 
 /// The normal of the area that a loop encloses, on either side.
 Vec3 normalOf(const TriangleMesh& head, const std::vector<std::uint32_t>& loop) {
@@ -125,13 +125,13 @@ std::vector<Neck> extendNecks(double by, TriangleMesh& head) {
 
 void openNecks(const TriangleMesh& hull, const std::vector<Neck>& necks, std::vector<double>& field) {
   if (hull.triangles.empty()) return;
-  // The field rises from 0 to 1 within about an edge on both sides of the plane.
+  // The field rises from 0 to 1 between two edges above and two edges below the plane, about.
   const double edge = std::sqrt(2 * length(areaNormal(hull, hull.triangles[0])));
   for (const Neck& neck : necks)
     for (std::size_t v = 0; v < field.size(); ++v) {
       const Vec3 offset = hull.positions[v] - neck.middle;
       const double height = dot(offset, neck.normal);
-      if (length(offset) > kReach * neck.radius) continue;
+      if (length(offset) > kOpenedRadius * neck.radius) continue;
       field[v] = std::max(field[v], std::clamp(0.5 + height / (4 * edge), 0.0, 1.0));
     }
 }

@@ -21,7 +21,7 @@ struct Neck {
 std::vector<Neck> extendNecks(double by, TriangleMesh& head);
 
 /// Opens the hull of a head at the planes of its necks.
-/// @param[in,out] field  See `holeField`.
+/// @param[in,out] field  See `HoleMarker::field`.
 void openNecks(const TriangleMesh& hull, const std::vector<Neck>& necks, std::vector<double>& field);
 
 }  // namespace cagecast::cages
