@@ -44,8 +44,7 @@ TriangleMesh cutHoles(const TriangleMesh& mesh, const std::vector<double>& field
     return kept[v];
   };
   const auto cut = [&](std::uint32_t a, std::uint32_t b) {
-    const std::uint64_t key = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-    const auto [found, isNew] = cuts.try_emplace(key, static_cast<std::uint32_t>(out.positions.size()));
+    const auto [found, isNew] = cuts.try_emplace(edgeKey(a, b), static_cast<std::uint32_t>(out.positions.size()));
     if (isNew) {
       const std::uint32_t from = std::min(a, b), to = std::max(a, b);
       const double share =

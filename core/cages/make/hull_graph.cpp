@@ -1,6 +1,5 @@
 #include "make/hull_graph.hpp"
 
-#include <algorithm>
 #include <array>
 #include <unordered_map>
 
@@ -49,14 +48,11 @@ std::vector<bool> within(const Neighbours& neighbours, std::vector<std::uint32_t
 
 void refine(const std::vector<bool>& isChosen, TriangleMesh& mesh, std::vector<std::uint32_t>& parents) {
   std::unordered_map<std::uint64_t, std::uint32_t> middles;
-  const auto keyOf = [](std::uint32_t a, std::uint32_t b) {
-    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-  };
   for (const Triangle3& t : mesh.triangles) {
     if (!isChosen[t[0]] && !isChosen[t[1]] && !isChosen[t[2]]) continue;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = t[i], b = t[(i + 1) % 3];
-      const auto [found, isNew] = middles.try_emplace(keyOf(a, b), static_cast<std::uint32_t>(mesh.positions.size()));
+      const auto [found, isNew] = middles.try_emplace(edgeKey(a, b), static_cast<std::uint32_t>(mesh.positions.size()));
       if (isNew) mesh.positions.push_back(0.5 * (mesh.positions[a] + mesh.positions[b]));
     }
   }
@@ -73,7 +69,7 @@ void refine(const std::vector<bool>& isChosen, TriangleMesh& mesh, std::vector<s
     std::array<std::uint32_t, 3> middle{};
     unsigned cuts = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto found = middles.find(keyOf(t[i], t[(i + 1) % 3]));
+      const auto found = middles.find(edgeKey(t[i], t[(i + 1) % 3]));
       middle[i] = found == middles.end() ? UINT32_MAX : found->second;
       cuts += found == middles.end() ? 0 : 1;
     }

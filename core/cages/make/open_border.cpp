@@ -20,7 +20,7 @@ OpenBorder::OpenBorder(const TriangleMesh& mesh)
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = triangles_[t][i], b = triangles_[t][(i + 1) % 3];
-      edges.emplace_back(std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), 3 * t + i);
+      edges.emplace_back(edgeKey(a, b), 3 * t + i);
     }
   std::sort(edges.begin(), edges.end());
   for (std::size_t e = 0; e < edges.size(); ++e) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -13,6 +14,11 @@ using Triangle3 = std::array<std::uint32_t, 3>;
 
 /// No vertex, no triangle, no half-edge.
 inline constexpr std::uint32_t kNone = UINT32_MAX;
+
+/// A number for the edge between two vertices, in either direction.
+inline std::uint64_t edgeKey(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
 
 /// A vector at unit length; zero stays zero.
 inline Vec3 unit(const Vec3& v) {
