@@ -212,9 +212,10 @@ Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Land
   if (areSeveral || suspects.front().rest < kRestOfOne * asGiven)
     for (const Suspect& suspect : suspects)
       if (isGiven[suspect.index])
-        return {Problem::badLandmarks,
-                "landmarks: " + names[suspect.index] + " is " + text("%.0f", 100 * suspect.off / diagonal) +
-                    " % of the diagonal away from where the others put it; at most 15 % is expected"};
+        return {Problem::badLandmarks, "landmarks: " + names[suspect.index] + " is " +
+                                           text("%.0f", 100 * suspect.off / diagonal) +
+                                           " % of the diagonal away from where the others put it; at most " +
+                                           text("%.0f", 100 * kMostOff) + " % is expected"};
   return {};
 }
 

@@ -19,6 +19,7 @@ constexpr double kHoleNear = 0.12;   ///< From the centre of an eye to the middl
 constexpr double kEyeNear = 0.04;    ///< From the landmark to the middle of the component that is the eye, at most.
 constexpr double kLargestEye = 0.3;  ///< The size of an eye, at most.
 constexpr double kLift = 1e-4;       ///< Rays from a surface start this far off it.
+/// Rays to an eye: directions from its middle, places along each of them, and places along the sides of a grid.
 constexpr int kDirections = 144, kSteps = 144, kGrid = 48;
 /// A component may be the lashes of an eye if all of it is this near to the eye's middle, across and in depth. In
 /// largest radii of what is visible of the eye.
@@ -27,7 +28,7 @@ constexpr double kCoverReach = 1.6, kCoverDepth = 4;
 constexpr double kBoxSlack = 0.2;
 /// What is this near to the middle of an eyeball, in its radii, belongs to the eye: pupils and corneas, not lashes.
 constexpr double kBallSlack = 1.15;
-/// An eye of which fewer directions show anything is hidden.
+/// An eye that is seen at fewer places of the grid is hidden.
 constexpr std::size_t kLeastSeen = 32;
 
 /// What is visible of an eye, seen along its axis.
@@ -111,60 +112,85 @@ Vec3 axisOf(const TriangleMesh& mesh, const std::vector<bool>& isEye, const Surf
   return unit(sum);
 }
 
-std::optional<EyeOpening> openingOf(const EyedFigure& figure, const Surface& surface, const std::vector<bool>& isEye,
-                                    double diagonal) {
-  EyeOpening opening;
-  opening.axis = axisOf(figure.mesh, isEye, surface, diagonal);
-  if (!(length(opening.axis) > 0)) return std::nullopt;
-  Bounds box;
-  for (std::size_t t = 0; t < isEye.size(); ++t)
-    if (isEye[t])
-      for (const std::uint32_t v : figure.mesh.triangles[t]) box.add(figure.mesh.positions[v]);
-  const Vec3 helper = std::abs(opening.axis.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
-  opening.across = unit(cross(helper, opening.axis));
-  opening.up = cross(opening.axis, opening.across);
-  const double radius = 0.5 * box.diagonal();
-  const auto seenAt = [&](const std::vector<Vec3>& places) {
+/// Looks at an eye along its axis.
+class EyeView {
+ public:
+  /// @param axis  In which the eye looks.
+  EyeView(const TriangleMesh& mesh, const Surface& surface, const std::vector<bool>& isEye, const Vec3& axis)
+      : surface_(surface), isEye_(isEye) {
+    for (std::size_t t = 0; t < isEye.size(); ++t)
+      if (isEye[t])
+        for (const std::uint32_t v : mesh.triangles[t]) box_.add(mesh.positions[v]);
+    radius_ = 0.5 * box_.diagonal();
+    const Vec3 helper = std::abs(axis.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
+    opening_.axis = axis;
+    opening_.across = unit(cross(helper, axis));
+    opening_.up = cross(axis, opening_.across);
+  }
+
+  /// What is visible of the eye; nothing if it is hidden.
+  std::optional<EyeOpening> opening() {
+    if (!findMiddle()) return std::nullopt;
+    findContour();
+    return opening_;
+  }
+
+ private:
+  /// Whether the eye is the first thing that is seen at each of some places.
+  [[nodiscard]] std::vector<bool> seenAt(const std::vector<Vec3>& places) const {
     std::vector<SurfaceRay> rays;
     rays.reserve(places.size());
-    for (const Vec3& p : places) rays.push_back({p + 2 * radius * opening.axis, -1.0 * opening.axis});
-    const std::vector<RayHit> hits = surface.trace(rays);
+    for (const Vec3& p : places) rays.push_back({p + 2 * radius_ * opening_.axis, -1.0 * opening_.axis});
+    const std::vector<RayHit> hits = surface_.trace(rays);
     std::vector<bool> seen;
     seen.reserve(hits.size());
-    for (const RayHit& hit : hits) seen.push_back(!std::isinf(hit.distance) && isEye[hit.triangle]);
+    for (const RayHit& hit : hits) seen.push_back(!std::isinf(hit.distance) && isEye_[hit.triangle]);
     return seen;
-  };
-  // The middle of what is visible, on a square grid.
-  std::vector<Vec3> grid;
-  for (int i = -kGrid / 2; i <= kGrid / 2; ++i)
-    for (int k = -kGrid / 2; k <= kGrid / 2; ++k)
-      grid.push_back(box.middle() + 2 * radius / kGrid * (i * opening.across + k * opening.up));
-  std::vector<bool> seen = seenAt(grid);
-  double count = 0;
-  for (std::size_t i = 0; i < grid.size(); ++i)
-    if (seen[i]) {
-      opening.middle = opening.middle + grid[i];
-      ++count;
+  }
+
+  /// The middle of what is visible, on a square grid.
+  /// @return false if too little of it is.
+  bool findMiddle() {
+    std::vector<Vec3> grid;
+    for (int i = -kGrid / 2; i <= kGrid / 2; ++i)
+      for (int k = -kGrid / 2; k <= kGrid / 2; ++k)
+        grid.push_back(box_.middle() + 2 * radius_ / kGrid * (i * opening_.across + k * opening_.up));
+    const std::vector<bool> seen = seenAt(grid);
+    double count = 0;
+    for (std::size_t i = 0; i < grid.size(); ++i)
+      if (seen[i]) {
+        opening_.middle = opening_.middle + grid[i];
+        ++count;
+      }
+    if (count < static_cast<double>(kLeastSeen)) return false;
+    opening_.middle = 1 / count * opening_.middle;
+    return true;
+  }
+
+  /// The farthest visible spot in each direction; lashes of the same mesh may cover what is nearer.
+  void findContour() {
+    const double step = 2 * radius_ / kSteps;
+    std::vector<Vec3> spokes;
+    for (int d = 0; d < kDirections; ++d) {
+      const double angle = 2 * std::numbers::pi * d / kDirections;
+      for (int k = 0; k < kSteps; ++k)
+        spokes.push_back(opening_.place({step * k * std::cos(angle), step * k * std::sin(angle)}));
     }
-  if (count < static_cast<double>(kLeastSeen)) return std::nullopt;
-  opening.middle = 1 / count * opening.middle;
-  // The farthest visible spot in each direction; lashes of the same mesh may cover what is nearer.
-  const double step = 2 * radius / kSteps;
-  std::vector<Vec3> spokes;
-  for (int d = 0; d < kDirections; ++d) {
-    const double angle = 2 * std::numbers::pi * d / kDirections;
-    for (int k = 0; k < kSteps; ++k)
-      spokes.push_back(opening.place({step * k * std::cos(angle), step * k * std::sin(angle)}));
+    const std::vector<bool> seen = seenAt(spokes);
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      std::size_t last = 0;
+      for (std::size_t k = 0; k < kSteps; ++k)
+        if (seen[d * kSteps + k]) last = k;
+      opening_.contour.push_back(step * (static_cast<double>(last) + 0.5));
+    }
   }
-  seen = seenAt(spokes);
-  for (std::size_t d = 0; d < kDirections; ++d) {
-    std::size_t last = 0;
-    for (std::size_t k = 0; k < kSteps; ++k)
-      if (seen[d * kSteps + k]) last = k;
-    opening.contour.push_back(step * (static_cast<double>(last) + 0.5));
-  }
-  return opening;
-}
+
+  const Surface& surface_;
+  const std::vector<bool>& isEye_;
+  Bounds box_;
+  double radius_ = 0;
+  EyeOpening opening_;
+};
 
 /// The hole of an eye: the loop around its landmark; -1 if there is none of its own.
 int holeAt(const TemplateCage& cage, const Vec3& centre, const Vec3& other) {
@@ -294,24 +320,26 @@ std::optional<Vec3> centreOf(const std::vector<Landmark>& landmarks, const std::
 
 std::vector<Vec3> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
                               const std::vector<Landmark>& to, std::vector<Vec3>& positions) {
-  std::vector<Vec3> moves(positions.size(), Vec3{0, 0, 0});
+  std::vector<Vec3> tracks(positions.size(), Vec3{0, 0, 0});
   const std::optional<Vec3> own[2] = {centreOf(from, "left"), centreOf(from, "right")};
   const std::optional<Vec3> there[2] = {centreOf(to, "left"), centreOf(to, "right")};
-  if (!own[0] || !own[1] || !there[0] || !there[1]) return moves;
+  if (!own[0] || !own[1] || !there[0] || !there[1]) return tracks;
   const Surface surface(figure.mesh);
   for (std::size_t side = 0; side < 2; ++side) {
     const int hole = holeAt(cage, *own[side], *own[1 - side]);
     if (hole < 0) continue;
     const std::vector<bool> isEye = eyeAt(figure, *there[side], *there[1 - side], cage.diagonal);
     if (std::find(isEye.begin(), isEye.end(), true) == isEye.end()) continue;
-    std::optional<EyeOpening> opening = openingOf(figure, surface, isEye, cage.diagonal);
+    const Vec3 axis = axisOf(figure.mesh, isEye, surface, cage.diagonal);
+    if (!(length(axis) > 0)) continue;
+    std::optional<EyeOpening> opening = EyeView(figure.mesh, surface, isEye, axis).opening();
     if (!opening) continue;
     addCovers(figure.mesh, figure.components, isEye, *opening);
     addCovers(figure.covers, figure.coverComponents, {}, *opening);
     drawTo(cage, cage.loops[static_cast<std::size_t>(hole)], *opening, surface, positions);
-    for (const std::uint32_t v : cage.loops[static_cast<std::size_t>(hole)]) moves[v] = opening->axis;
+    for (const std::uint32_t v : cage.loops[static_cast<std::size_t>(hole)]) tracks[v] = opening->axis;
   }
-  return moves;
+  return tracks;
 }
 
 }  // namespace cagecast::cages

@@ -19,8 +19,7 @@ struct EyedFigure {
 /// they look, with lashes as far as there is room. Where a model has no eyes of their own, holes stay where they are.
 /// @param from,to  Landmarks of the template and of the target, both in the template's space.
 /// @return Per vertex of the cage: the direction in which its eye looks if it is on the border of a hole that was
-/// drawn,
-///   else zero.
+///   drawn, else zero.
 std::vector<Vec3> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
                               const std::vector<Landmark>& to, std::vector<Vec3>& positions);
 

@@ -50,7 +50,7 @@ constexpr float kLandmarksEnd = 0.3f, kTightenStart = 0.6f, kTightenEnd = 0.85f;
 /// What is known of both models.
 struct Pairs {
   std::vector<Landmark> from, to;  ///< In the same order; `to` in the target's space, then in the template's.
-  std::vector<bool> given;
+  std::vector<bool> given;         ///< Whether a person gave it.
 };
 
 std::string listed(const std::vector<std::string>& names) {
@@ -142,10 +142,10 @@ class Fit {
   const FitOptions& options_;
   const Progress& progress_;
   Pairs pairs_;
-  Similarity map_;
-  std::vector<Bone> bones_;
-  TriangleMesh skin_;  ///< The target without excluded parts, in the template's space.
-  EyedFigure figure_;  ///< Eyes fill their sockets.
+  Similarity map_;           ///< From the template's space to the target's.
+  std::vector<Bone> bones_;  ///< None for heads.
+  TriangleMesh skin_;        ///< The target without excluded parts, in the template's space.
+  EyedFigure figure_;        ///< Eyes fill their sockets.
 };
 
 void Fit::readTarget() {

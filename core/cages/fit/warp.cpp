@@ -21,7 +21,7 @@ constexpr double kNear = 0.03;
 Eigen::Vector3d eigen(const Vec3& v) { return {v.x, v.y, v.z}; }
 Vec3 vec3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// A multiquadric: conditionally negative definite, so that the system has one solution.
+/// A multiquadric, negated: conditionally positive definite, so that the system has one solution.
 double kernel(double distance) { return -std::sqrt(distance * distance + kKernelRounding * kKernelRounding); }
 
 Vec3 meanOf(std::span<const Vec3> points, std::span<const double> weights = {}) {
