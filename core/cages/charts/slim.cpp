@@ -143,17 +143,17 @@ double Slim::longestStep(const std::vector<Uv>& uvs, const std::vector<Uv>& dire
   return std::min(1.0, kStepToFlip * least);
 }
 
-double Slim::step(std::vector<Uv>& uvs) {
+double Slim::assemble(const std::vector<Uv>& uvs) {
   Eigen::Map<Eigen::VectorXd> values(solver_->matrix.valuePtr(), solver_->matrix.nonZeros());
   values.setZero();
   solver_->right.setZero();
-  double before = 0;
+  double sum = 0;
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const Triangle3& triangle = mesh_.triangles[t];
     const RestShapes::Gradients& g = rest_.gradients[t];
     const Jacobian j = jacobianOf(g, triangle, uvs);
     const double weight = rest_.weights[t] / weight_;
-    before += weight * j.energy();
+    sum += weight * j.energy();
     const auto [s1, s2] = j.singularValues();
     // The proxy weighs |J - R|^2 by a matrix with the axes of J J^T and these values.
     const auto weightOf = [](double s) { return (s + 1) * (s * s + 1) / (s * s * s); };
@@ -186,6 +186,11 @@ double Slim::step(std::vector<Uv>& uvs) {
       solver_->matrix.coeffRef(row, row) += proximity;
       solver_->right[row] += proximity * uvs[v][k];
     }
+  return sum;
+}
+
+double Slim::step(std::vector<Uv>& uvs) {
+  const double before = assemble(uvs);
   solver_->factors.factorize(solver_->matrix);
   if (solver_->factors.info() != Eigen::Success) return 0;
   const Eigen::VectorXd solution = solver_->factors.solve(solver_->right);

@@ -54,6 +54,10 @@ class Slim {
   RestShapes rest_;
   double weight_ = 0;
   std::unique_ptr<Solver> solver_;
+
+  /// Sets up the system of a step: a quadratic proxy of the energy.
+  /// @return the energy.
+  double assemble(const std::vector<Uv>& uvs);
   [[nodiscard]] double longestStep(const std::vector<Uv>& uvs, const std::vector<Uv>& direction) const;
 };
 
