@@ -198,9 +198,7 @@ int holeAt(const TemplateCage& cage, const Vec3& centre, const Vec3& other) {
   double least = kHoleNear * cage.diagonal;
   for (std::size_t i = 0; i < cage.loops.size(); ++i) {
     if (static_cast<int>(i) == cage.rim) continue;
-    Vec3 middle{0, 0, 0};
-    for (const std::uint32_t v : cage.loops[i])
-      middle = middle + 1 / static_cast<double>(cage.loops[i].size()) * cage.mesh.positions[v];
+    const Vec3 middle = middleOf(cage.mesh, cage.loops[i]);
     const double distance = length(middle - centre);
     if (distance >= least || distance >= length(middle - other)) continue;
     least = distance;

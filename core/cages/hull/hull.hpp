@@ -32,7 +32,7 @@ struct Opening {
 TriangleMesh closeOpenings(const TriangleMesh& mesh, double width, std::vector<Opening>* openings = nullptr);
 
 /// A closed surface around a mesh, at a distance, that bridges gaps and mouths: one component, a manifold
-/// with its normals outwards and no triangle without an area. Openings wider than `closing` are closed, as by
+/// with its normals outwards and no triangle without an area. Openings wider than twice `closing` are closed, as by
 /// `closeOpenings`.
 /// Cost: a head at 140 voxels takes half a second and 30 MB.
 /// @param mesh  At least one triangle; positions finite.

@@ -23,7 +23,7 @@ class Curve {
   [[nodiscard]] double step() const { return step_; }
   /// Interpolated; `HeightMap::kNone` where there is nothing.
   [[nodiscard]] double at(double place) const;
-  /// The change of the height per step of the place, over +-reach.
+  /// The change of the height by that of the place, over +-reach.
   [[nodiscard]] double slope(double place, double reach) const;
   /// How much higher the curve is on both sides than here: positive in grooves.
   [[nodiscard]] double hollow(double place, double reach) const {

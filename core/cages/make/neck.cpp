@@ -33,8 +33,7 @@ Vec3 normalOf(const TriangleMesh& head, const std::vector<std::uint32_t>& loop) 
 Neck planeOf(const TriangleMesh& head, const Opening& opening) {
   const std::vector<std::uint32_t>& loop = opening.loop;
   Neck neck;
-  for (const std::uint32_t v : loop)
-    neck.middle = neck.middle + 1 / static_cast<double>(loop.size()) * head.positions[v];
+  neck.middle = middleOf(head, loop);
   neck.normal = normalOf(head, loop);
   // Away from most of the head, also where its triangles are turned inside out.
   std::size_t before = 0;

@@ -53,10 +53,8 @@ std::size_t farthestFrom(const TriangleMesh& mesh, const std::vector<std::uint32
 /// (Ramer 1972; Douglas, Peucker 1973).
 void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, double tolerance,
               std::vector<unsigned char>& locks) {
-  Vec3 middle{0, 0, 0};
-  for (const std::uint32_t v : loop) middle = middle + 1 / static_cast<double>(loop.size()) * mesh.positions[v];
   const auto at = [&](std::size_t i) -> const Vec3& { return mesh.positions[loop[i % loop.size()]]; };
-  std::vector<std::size_t> chosen = {farthestFrom(mesh, loop, middle)};
+  std::vector<std::size_t> chosen = {farthestFrom(mesh, loop, middleOf(mesh, loop))};
   chosen.push_back(farthestFrom(mesh, loop, at(chosen[0])));
   const double size = length(at(chosen[0]) - at(chosen[1]));
   while (chosen.size() < std::min(kMostLocks, loop.size())) {

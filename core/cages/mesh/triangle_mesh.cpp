@@ -104,6 +104,12 @@ std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32
 
 double diagonalOf(const TriangleMesh& mesh) { return boundsOf(mesh).diagonal(); }
 
+Vec3 middleOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& vertices) {
+  Vec3 middle{0, 0, 0};
+  for (const std::uint32_t v : vertices) middle = middle + 1 / static_cast<double>(vertices.size()) * mesh.positions[v];
+  return middle;
+}
+
 std::vector<Vec3> vertexNormals(const TriangleMesh& mesh) {
   std::vector<Vec3> normals(mesh.positions.size(), Vec3{0, 0, 0});
   for (const Triangle3& t : mesh.triangles) {

@@ -61,6 +61,9 @@ inline Vec3 centroid(const TriangleMesh& mesh, const Triangle3& t) {
   return 1.0 / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]);
 }
 
+/// The mean of the positions of some vertices, such as those of a loop.
+Vec3 middleOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& vertices);
+
 /// A unit normal per vertex, weighted by area; zero where it is not defined.
 std::vector<Vec3> vertexNormals(const TriangleMesh& mesh);
 

@@ -39,12 +39,6 @@ Cage made(const Model& model, MakeOptions options = {}) {
   return cage;
 }
 
-Vec3 middleOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop) {
-  Vec3 middle{0, 0, 0};
-  for (const std::uint32_t v : loop) middle = middle + 1.0 / static_cast<double>(loop.size()) * mesh.positions[v];
-  return middle;
-}
-
 bool hasHoleAt(const TriangleMesh& mesh, const Vec3& spot, double within) {
   const auto loops = boundaryLoops(mesh);
   return std::any_of(loops.begin(), loops.end(),
