@@ -91,20 +91,22 @@ std::uint32_t ClosestPointSearch::leafNear(f32x4 point) const noexcept {
   }
 }
 
+inline unsigned ClosestPointSearch::candidatesIn(const FlatLeaf& leaf, std::uint32_t i, float& least) noexcept {
+  const f32x4 squared = squaredDistances(leaf, splat(points_[i][0]), splat(points_[i][1]), splat(points_[i][2]));
+  const f32x4 lowest = simd::lowest(squared);
+  const f32x4 limit = simd::min(simd::multiplyAdd(lowest, splat(growth_), splat(fixedSlack_)), splat(limits_[i]));
+  limits_[i] = simd::lane<0>(limit);
+  least = simd::lane<0>(lowest);
+  return simd::bits(squared <= limit);
+}
+
 void ClosestPointSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexcept {
   const FlatLeaf& leaf = tree_.leaves[leafIndex];
-  const f32x4 growth = splat(growth_);
-  const f32x4 slack = splat(fixedSlack_);
   for (; members != 0; members &= members - 1) {
-    const int i = std::countr_zero(members);
-    const f32x4 squared = squaredDistances(leaf, splat(points_[i][0]), splat(points_[i][1]), splat(points_[i][2]));
-    const f32x4 least = simd::lowest(squared);
-    const f32x4 limit = simd::min(simd::multiplyAdd(least, growth, slack), splat(limits_[i]));
-    const unsigned lanes = simd::bits(squared <= limit);
-    limits_[i] = simd::lane<0>(limit);
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(members));
     // Without a branch, which could not be predicted: a leaf without candidates is overwritten by the next.
     const std::uint32_t count = nearCount_[i];
-    squaredDistances_[count % kRoom][i] = simd::lane<0>(least);
+    const unsigned lanes = candidatesIn(leaf, i, squaredDistances_[count % kRoom][i]);
     lanes_[count % kRoom][i] = leafIndex << 4 | lanes;
     nearCount_[i] = count + (lanes != 0);
   }
@@ -199,37 +201,32 @@ std::uint32_t ClosestPointSearch::onlyCandidate(std::uint32_t i) const noexcept 
 
 std::uint32_t ClosestPointSearch::candidates(std::uint32_t i, std::uint32_t* found) noexcept {
   std::uint32_t count = 0;
-  const auto take = [&](std::uint32_t leafOfPoint) {
-    const FlatLeaf& leaf = tree_.leaves[lanes_[leafOfPoint][i] >> 4];
-    for (unsigned lanes = lanes_[leafOfPoint][i] & 15; lanes != 0; lanes &= lanes - 1)
-      found[count++] = leaf.cageTriangles[std::countr_zero(lanes)];
+  const auto take = [&](const FlatLeaf& leaf, unsigned lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) found[count++] = leaf.cageTriangles[std::countr_zero(lanes)];
   };
   if (nearCount_[i] < kRoom) {
     for (std::uint32_t j = 0; j < nearCount_[i]; ++j) {
-      if (squaredDistances_[j][i] <= limits_[i]) take(j);
+      if (squaredDistances_[j][i] <= limits_[i]) take(tree_.leaves[lanes_[j][i] >> 4], lanes_[j][i] & 15);
     }
     return count;
   }
+  const auto takeFrom = [&](const FlatLeaf& leaf) {
+    float least;
+    take(leaf, candidatesIn(leaf, i, least));
+  };
   // A fan around a corner, or a stack of copies: search again, with the limit that is known by now.
   const f32x4 point = load(positions_ + Points::kStride * i);
   const f32x4 box[3] = {simd::splatLane<0>(point), simd::splatLane<1>(point), simd::splatLane<2>(point)};
   std::uint32_t* leaves;
   const std::uint32_t leafCount = listLeaves(box, box, splat(limits_[i]), leaves);
-  for (std::uint32_t j = 0; j < leafCount; ++j) {
-    nearCount_[i] = 0;  // So `searchLeaf` writes entry 0.
-    searchLeaf(leaves[j], 1u << i);
-    take(0);
-  }
+  for (std::uint32_t j = 0; j < leafCount; ++j) takeFrom(tree_.leaves[leaves[j]]);
   if (count == 0) {
     // A needle, whose distance in floats is arbitrary, seemed nearer than its box is: take the nearest of every leaf.
     for (std::uint32_t leaf = 0; leaf < tree_.leafCount; ++leaf) {
-      nearCount_[i] = 0;
       limits_[i] = std::numeric_limits<float>::max();
-      searchLeaf(leaf, 1u << i);
-      take(0);
+      takeFrom(tree_.leaves[leaf]);
     }
   }
-  nearCount_[i] = kRoom;
   return count;
 }
 

@@ -55,7 +55,11 @@ class ClosestPointSearch {
   [[nodiscard]] std::uint32_t leafNear(simd::f32x4 point) const noexcept;
   /// Tests points against those leaves whose oriented boxes are close enough to them.
   void searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount) noexcept;
-  /// Tests points of the group, a bit each, against a leaf.
+  /// Tests a point of the group against a leaf, and lowers the point's limit.
+  /// @param[out] least  The least squared distance.
+  /// @return The candidates, a bit each.
+  unsigned candidatesIn(const FlatLeaf& leaf, std::uint32_t i, float& least) noexcept;
+  /// Tests points of the group, a bit each, against a leaf, and remembers it for those that have candidates there.
   void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
 
   const CageTree& tree_;
