@@ -4,11 +4,11 @@ import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { faults } from '../support/axe';
-import { head, middleOf, ready, worked } from '../support/cages';
+import { asset, fitted, head, middleOf, ready, worked } from '../support/cages';
 import { GlbMaker, tetrahedron } from '../support/glb';
 import { names, rows } from '../support/layers';
 import { validModel } from '../support/saved';
-import { drop, glb, Site, shownError, shownParts } from '../support/site';
+import { drop, glb, passed, Site, shownError, shownParts } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -113,6 +113,57 @@ test('a sample whose cage was moved into place keeps its paints, over a reload t
   await ready(page);
   assert.equal(await page.locator('#cage-name').textContent(), 'target-cage.glb');
   assert.deepEqual(await names(), before.slice(-1), 'a cage with other UVs has the checker alone');
+  assert.deepEqual(complaints, []);
+});
+
+test('a cage made for one model never reaches another that is loading, or that waits for its own cage', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await page.locator('#target-name', { hasText: 'bust.glb' }).waitFor();
+  await ready(page);
+  await fitted(page);
+  await page.locator('[data-landmark=nose_tip]').press('ArrowDown');
+  await worked(page);
+  const sample = page.getByTestId('sample-select');
+  const bustAgain = async (): Promise<void> => {
+    await drop(page, [head(), glb('bust-cage.glb', asset('human', 'cage.glb'))]);
+    await page.locator('#target-name', { hasText: 'bust.glb' }).waitFor();
+    await ready(page);
+  };
+  for (const work of ['undo', 'fit-cage', 'make-cage']) {
+    let letGo = (): void => {};
+    const held = new Promise<void>((done) => (letGo = done));
+    await page.route(/car/, (route) => held.then(() => route.continue()));
+    await sample.selectOption('car');
+    await page.getByTestId(work).click();
+    await passed(page, 500); // for work that must not begin
+    letGo();
+    await page.locator('#target-name', { hasText: 'target.glb' }).waitFor();
+    await ready(page);
+    await passed(page, 1000);
+    await ready(page);
+    assert.equal(await page.locator('#cage-name').textContent(), 'cage.glb', `${work} while the car was loading`);
+    assert.equal(await sample.inputValue(), 'car');
+    await page.unroute(/car/);
+    await bustAgain();
+  }
+
+  await drop(page, [glb('lizard.glb', asset('lizard', 'target.glb')), glb('own.glb', asset('lizard', 'cage.glb'))]);
+  await page.getByTestId('make-cage').click();
+  await page.locator('#target-name', { hasText: 'lizard.glb' }).waitFor();
+  await ready(page);
+  await passed(page, 1000);
+  await ready(page);
+  assert.match((await page.locator('#cage-name').textContent())!, /^(own|lizard-cage)\.glb$/);
+
+  // A model whose cage cannot be read waits for another one.
+  await bustAgain();
+  await drop(page, [glb('lizard.glb', asset('lizard', 'target.glb')), glb('own-cage.glb', Buffer.from('glTF'))]);
+  await page.getByTestId('error').waitFor();
+  await page.getByTestId('make-cage').click();
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  await ready(page);
+  assert.equal(await page.locator('#target-name').textContent(), 'bust.glb');
   assert.deepEqual(complaints, []);
 });
 

@@ -406,6 +406,22 @@ test('an avatar that comes on the stage while a cage is fitted to it gets that c
   assert.deepEqual(chosen.complaints, []);
 });
 
+test('a cage fitted to the avatar on the stage does not reach a sample that is loading', async () => {
+  const { page, complaints } = await beingFitted();
+  await choose(page, 1);
+  let letGo = (): void => {};
+  const held = new Promise<void>((done) => (letGo = done));
+  await page.route(/car/, (route) => held.then(() => route.continue()));
+  await page.getByTestId('sample-select').selectOption('car');
+  await page.evaluate('window.letGo()');
+  await page.waitForFunction(() => !/Waiting|Fitting/.test(document.querySelector('.avatars')!.textContent!));
+  letGo();
+  await page.locator('#target-name', { hasText: 'target.glb' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.equal(await page.locator('#cage-name').textContent(), 'cage.glb');
+  assert.deepEqual(complaints, []);
+});
+
 test('“Fit this cage to all” fits the cage that was on the stage then, whatever comes there meanwhile', async () => {
   const { page, complaints } = await site.visit({}, kHeldFits);
   await page.getByTestId('open-wardrobe').click();

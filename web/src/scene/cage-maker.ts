@@ -3,7 +3,7 @@ import { cageModel } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
 import { download } from '../platform/download';
-import { element } from '../platform/page';
+import { announce, element } from '../platform/page';
 import { likelyTemplate } from './likely-template';
 import { loadModel, type Model } from './load-model';
 import type { Sample } from './samples';
@@ -158,6 +158,11 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     return this.#run('Moving the cage', this.#move);
   }
 
+  /** Shows a cage that was made for the current target, unless another target is being loaded. */
+  show(cage: Promise<Model>): void {
+    if (this.#session.staysOnTarget()) this.#session.want({ cage });
+  }
+
   /** Shows the current cage with other positions or triangles. @returns It. */
   async change(change: { positions?: Float32Array; indices?: Uint32Array }): Promise<Model> {
     const { target, cage: current } = this.#session.shown!;
@@ -171,7 +176,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     const note = 'The cage was changed. Save it if it is right.';
     made.set(file, { target: target.files[0]!, fitting, sample: sampleOf(current), note });
     const cage = loadModel(file, this.#renderer);
-    this.#session.want({ cage });
+    this.show(cage);
     return cage;
   }
 
@@ -184,8 +189,9 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     });
   }
 
-  /** Does cancellable work on the current target, and shows the cage that it comes to. */
+  /** Does cancellable work on the current target, and shows the cage that it comes to; not while another target is being loaded. */
   async #run(title: string, work: (context: Context) => Promise<Result | undefined>): Promise<void> {
+    if (!this.#session.staysOnTarget()) return announce('Another model is being loaded.');
     const { target, cage: current } = this.#session.shown!;
     const abort = new AbortController();
     const giveUp = (): void => abort.abort();
@@ -212,7 +218,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       made.set(file, { target: target.files[0]!, fitting, sample, note, isNew });
       this.latest = fitting;
       done();
-      this.#session.want({ cage: loadModel(file, this.#renderer) });
+      this.show(loadModel(file, this.#renderer));
     } catch (error) {
       if (abort.signal.aborted) return;
       this.#session.fail(new Error(`${target.name}: ${reasonOf(error)}`, { cause: error }));

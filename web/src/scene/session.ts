@@ -124,6 +124,8 @@ export class Session extends Emitter<SessionEvents> {
   #locks: Locks = {};
   /** Locks of the requested target. */
   #wantedLocks: Locks = {};
+  /** Whether the requested target is another one than the current. */
+  #wantsTarget = false;
   /** What stays bare of each target, by its file: it comes back with the target. */
   readonly #bare = new WeakMap<File, Uint8Array>();
   #view = kFirstView;
@@ -183,12 +185,24 @@ export class Session extends Emitter<SessionEvents> {
    * @param together Whether all files are dropped if one of them fails. Otherwise the others wait for a replacement.
    */
   want(change: Wanted, locks: Locks = {}, together = false): void {
-    if (change.target) this.#wantedLocks = locks;
+    if (change.target) {
+      this.#wantedLocks = locks;
+      this.#wantsTarget = true;
+    }
     if (!change.target && !change.cage) this.#giveUpRest();
     if (together) this.#together = change;
     for (const slot of Object.values(change)) slot.catch(() => {}); // reported where it is awaited
     this.#wanted = { paint: Promise.resolve(this.checker), ...this.#wanted, ...change };
     void this.#run();
+  }
+
+  /**
+   * Call this before you request a cage that was made for the current target.
+   * @returns Whether that target stays; false while another one is being loaded. One that waits for a cage is given up.
+   */
+  staysOnTarget(): boolean {
+    if (!this.#working) this.#giveUp('target');
+    return !this.#wantsTarget;
   }
 
   /** Exchanges target and cage. */
@@ -361,6 +375,7 @@ export class Session extends Emitter<SessionEvents> {
       // Too late to cancel from here on.
       this.#working = false;
       this.#shown = { ...scene, projection };
+      this.#wantsTarget = false;
       if (!same) {
         // The zones belong to the previous scene.
         this.#classification = this.#inspection = undefined;
@@ -428,6 +443,7 @@ export class Session extends Emitter<SessionEvents> {
 
   /** Falls back to the current file of a slot. */
   #giveUp(slot: keyof Scene): void {
+    if (slot === 'target') this.#wantsTarget = false;
     const { [slot]: _, ...rest } = this.#wanted;
     this.#wanted = rest;
     if (this.#shown) this.#wanted = { ...rest, [slot]: Promise.resolve(this.#shown[slot]) };

@@ -311,7 +311,8 @@ export class Wardrobe {
       const fitted = await loadModel(file, this.#viewer.renderer);
       if (signal.aborted) return;
       Object.assign(avatar, { cage: fitted, follows: true, verdict: '' });
-      if (avatar === (this.#wanted ?? this.list.active)) this.#session.want({ cage: Promise.resolve(fitted) });
+      if (avatar === this.#wanted || (avatar === this.list.active && this.#session.staysOnTarget()))
+        this.#session.want({ cage: Promise.resolve(fitted) });
     } catch (error) {
       if (signal.aborted) return;
       showError(`${avatar.name}: ${reasonOf(error)}`);
