@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { faults } from '../support/axe';
-import { drag, fitted, head, placeOf, ready, savedCage, worked } from '../support/cages';
+import { asset, drag, fitted, head, placeOf, ready, savedCage, worked } from '../support/cages';
 import { difference, look, modelArea } from '../support/picture';
 import { saved } from '../support/saved';
-import { drop, Site } from '../support/site';
+import { drop, glb, passed, Site } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -174,4 +174,28 @@ test('a fit and the landmarks of the user are there after a reload, and in the p
     .locator('#error', { hasText: 'x.cagecast: the project is damaged: it has an unknown template' })
     .waitFor();
   assert.deepEqual([...complaints, ...fresh.complaints], []);
+});
+
+test('landmarks stay while too few are placed, whatever rules are chosen meanwhile', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [glb('car.glb', asset('car', 'target.glb'))]);
+  await page.locator('#target-name', { hasText: 'car.glb' }).waitFor();
+  await ready(page);
+  await page.locator('#template-select').selectOption('human-head');
+  await page.getByTestId('fit-cage').click();
+  const note = page.locator('#cage-note', { hasText: 'place more on the model' });
+  await note.waitFor();
+  await page.getByTestId('landmark-ask').waitFor();
+  await page.locator('#view').press('Enter');
+  const count = page.locator('#landmark-count', { hasText: 'by you' });
+  const placed = await count.textContent();
+  assert.doesNotMatch(placed!, /, 0 by you/, 'the model is under the cross');
+  for (const preset of ['paper', 'default']) {
+    await page.getByTestId('preset').selectOption(preset);
+    await passed(page, 500);
+    await ready(page);
+    assert.equal(await count.textContent(), placed, preset);
+    for (const what of [page.getByTestId('landmarks'), note]) assert.ok(await what.isVisible(), preset);
+  }
+  assert.deepEqual(complaints, []);
 });

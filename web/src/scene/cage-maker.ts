@@ -34,6 +34,8 @@ export interface Fitting extends Omit<Fit, 'cage'> {
 /** A fit needs so many landmarks. */
 export const kLeastLandmarks = 4;
 
+const lacksLandmarks = (known: Landmarks): boolean => Object.keys(known).length < kLeastLandmarks;
+
 /** How a cage was made here. */
 interface Made {
   /** What it was made for. */
@@ -95,10 +97,13 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       const [file] = session.shown!.cage.files;
       download(file!, file!.name);
     });
-    let shown: Model | undefined;
+    let shown: { target?: Model; cage?: Model } = {};
     session.on('transfer', ({ target, cage }) => {
-      if (target !== shown) this.#template.value = likelyTemplate(target.mesh.positions);
-      shown = target;
+      const { latest } = this;
+      // While landmarks are asked for, those that were placed are of no cage yet: by other rules, they stay.
+      if (target === shown.target && cage === shown.cage && latest && lacksLandmarks(latest.used)) return;
+      if (target !== shown.target) this.#template.value = likelyTemplate(target.mesh.positions);
+      shown = { target, cage };
       element('no-cage', HTMLElement).hidden = target.sample !== undefined && target.sample === cage.sample;
       // Of several files, saving the first would not do.
       this.#save.hidden = cage.sample !== undefined || cage.files.length > 1;
@@ -269,11 +274,10 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       const names = Object.keys(template.landmarks);
       const all = { ...found.landmarks, ...given };
       const used = Object.fromEntries(names.flatMap((known) => (all[known] ? [[known, all[known]]] : [])));
-      const count = Object.keys(used).length;
-      if (count >= kLeastLandmarks) throw error;
+      if (!lacksLandmarks(used)) throw error;
       const missing = names.filter((known) => !used[known]);
       this.#missing.textContent = '';
-      this.#note.textContent = `Of ${kLeastLandmarks} landmarks that are needed, ${count} were found: place more on the model.`;
+      this.#note.textContent = `Of ${kLeastLandmarks} landmarks that are needed, ${Object.keys(used).length} were found: place more on the model.`;
       this.latest = { ...found, template: name, given, used, missing };
       this.emit('fitting', this.latest);
       return undefined;
