@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { faults } from '../support/axe';
-import { asset, dragBy, head, ready, savedCage } from '../support/cages';
+import { asset, dragBy, head, ready, savedCage, workedFor } from '../support/cages';
 import { difference, look, modelArea } from '../support/picture';
 import { saved, validModel } from '../support/saved';
 import { drop, glb, passed, Site, setThreshold, shownCounts, shownParts } from '../support/site';
@@ -59,9 +59,9 @@ test('the cage can be moved, turned and scaled by handles and keys, its corners 
   const handle = (name: string) => page.locator(`[data-handle=${name}]`);
   await handle('x').waitFor();
   assert.deepEqual(await faults(page), []);
-  const did = async (what: string) => {
-    await page.locator(`#undo[title="Undo: ${what}"]`).waitFor();
-    await ready(page);
+  const does = async (what: string, act: () => Promise<unknown>) => {
+    await workedFor(page, act);
+    assert.equal(await page.getByTestId('undo').getAttribute('title'), `Undo: ${what}`);
   };
   const undone = async () => {
     await page.getByTestId('undo').click();
@@ -69,11 +69,12 @@ test('the cage can be moved, turned and scaled by handles and keys, its corners 
     assert.deepEqual(await shownCounts(page), start);
   };
   // At once: what is pressed later is a step of its own.
-  await handle('x').evaluate((dot) => {
-    const press = { key: 'ArrowRight', bubbles: true, cancelable: true };
-    for (let i = 0; i < 9; i++) dot.dispatchEvent(new KeyboardEvent('keydown', press));
-  });
-  await did('moving the cage');
+  await does('moving the cage', () =>
+    handle('x').evaluate((dot) => {
+      const press = { key: 'ArrowRight', bubbles: true, cancelable: true };
+      for (let i = 0; i < 9; i++) dot.dispatchEvent(new KeyboardEvent('keydown', press));
+    }),
+  );
   assert.notDeepEqual(await shownCounts(page), start, 'moved by keys');
   await undone();
   for (const [mode, name] of [
@@ -81,8 +82,7 @@ test('the cage can be moved, turned and scaled by handles and keys, its corners 
     ['scale', 'y'],
   ] as const) {
     await page.locator(`#adjust input[value=${mode}]`).check({ force: true });
-    await dragBy(page, handle(name), 10, -30);
-    await did('moving the cage');
+    await does('moving the cage', () => dragBy(page, handle(name), 10, -30));
     assert.notDeepEqual(await shownCounts(page), start, mode);
     await undone();
   }
@@ -92,8 +92,7 @@ test('the cage can be moved, turned and scaled by handles and keys, its corners 
   assert.deepEqual(await faults(page), []);
   const area = await modelArea(page);
   const bare = await look(page, area);
-  await dragBy(page, handle('corner'), 40, 60);
-  await did('moving a corner');
+  await does('moving a corner', () => dragBy(page, handle('corner'), 40, 60));
   assert.ok(difference(bare, await look(page, area)) > 0.0005);
   await undone();
 
@@ -101,12 +100,10 @@ test('the cage can be moved, turned and scaled by handles and keys, its corners 
   const { indices } = JSON.parse(
     (await page.locator('#sizes').textContent())!.replace(/.*cage (\d+).*/, '{"indices":$1}'),
   );
-  await page.locator('#view').press('Enter');
-  await did('opening a hole');
+  await does('opening a hole', () => page.locator('#view').press('Enter'));
   assert.match((await page.locator('#sizes').textContent())!, new RegExp(`cage ${indices - 1} `));
   assert.ok(await page.getByTestId('put-away').isHidden());
-  await page.locator('#view').press('Enter');
-  await did('closing a hole');
+  await does('closing a hole', () => page.locator('#view').press('Enter'));
   assert.deepEqual(await shownCounts(page), start, 'the hole is closed');
   await savedCage(page);
   await page.locator('#adjust-done').press('Enter');
@@ -124,17 +121,18 @@ test('a change of the cage waits for the one before, and none reaches a cage tha
   await open();
   const start = await page.locator('#sizes').textContent();
   const undo = page.getByTestId('undo');
-  const did = async (what: string) => {
-    await page.locator(`#undo[title="Undo: ${what}"]`).waitFor();
-    await ready(page);
+  const does = async (what: string, act: () => Promise<unknown>) => {
+    await workedFor(page, act);
+    assert.equal(await page.getByTestId('undo').getAttribute('title'), `Undo: ${what}`);
   };
   await page.getByTestId('adjust-cage').click();
   await page.locator('[data-handle=x]').waitFor();
   await page.locator('#adjust input[value=hole]').check({ force: true });
-  await page.locator('#view').evaluate((view) => {
-    for (let i = 0; i < 2; i++) view.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter' }));
-  });
-  await did('opening a hole');
+  await does('opening a hole', () =>
+    page.locator('#view').evaluate((view) => {
+      for (let i = 0; i < 2; i++) view.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter' }));
+    }),
+  );
   await undo.click();
   await ready(page);
   assert.equal(await page.locator('#sizes').textContent(), start);
@@ -142,8 +140,7 @@ test('a change of the cage waits for the one before, and none reaches a cage tha
 
   await page.locator('#adjust input[value=corner]').check({ force: true });
   await page.locator('#view').press('Enter');
-  await dragBy(page, page.locator('[data-handle=corner]'), 40, 60);
-  await did('moving a corner');
+  await does('moving a corner', () => dragBy(page, page.locator('[data-handle=corner]'), 40, 60));
   await page.locator('[data-handle=corner]').waitFor();
   await drop(page, [glb('other-cage.glb', asset('lizard', 'cage.glb'))]);
   await page.locator('[data-handle=corner]').waitFor({ state: 'detached' });
@@ -154,5 +151,46 @@ test('a change of the cage waits for the one before, and none reaches a cage tha
   await passed(page, 1000);
   await ready(page);
   assert.ok(await undo.isDisabled(), 'nothing was done to the cage that came');
+  assert.deepEqual(complaints, []);
+});
+
+test('what keys did to the cage is undone at once, before the steps that came before it, and done again', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head(), glb('bust-cage.glb', asset('human', 'cage.glb'))]);
+  await ready(page);
+  const start = await shownCounts(page);
+  await page.getByTestId('add-painting').click();
+  await page.getByTestId('adjust-cage').click();
+  await page.locator('[data-handle=x]').waitFor();
+  // At once: what is pressed later waits for the change.
+  const titles = await page.locator('[data-handle=x]').evaluate((dot) => {
+    const keys = [...Array(9).fill('ArrowRight'), 'z'];
+    return keys.map((key) => {
+      dot.dispatchEvent(new KeyboardEvent('keydown', { key, ctrlKey: key === 'z', bubbles: true, cancelable: true }));
+      return document.querySelector<HTMLElement>('#undo')!.title;
+    });
+  });
+  assert.deepEqual(titles.slice(-2), ['Undo: moving the cage', 'Undo: adding a painting']);
+  await passed(page, 1000);
+  await ready(page);
+  assert.deepEqual(await shownCounts(page), start);
+  await workedFor(page, () => page.keyboard.press('Control+Shift+z'));
+  assert.notDeepEqual(await shownCounts(page), start);
+  assert.equal(await page.getByTestId('undo').getAttribute('title'), 'Undo: moving the cage');
+  await workedFor(page, () => page.keyboard.press('Control+z'));
+  assert.deepEqual(await shownCounts(page), start);
+
+  // While the cage is being changed.
+  await page.evaluate(() => {
+    new MutationObserver((_, observer) => {
+      observer.disconnect();
+      dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, cancelable: true }));
+    }).observe(document.querySelector('#status')!, { attributeFilter: ['data-state'] });
+  });
+  await workedFor(page, () => page.locator('[data-handle=x]').press('ArrowRight'));
+  await passed(page, 1000);
+  await ready(page);
+  assert.deepEqual(await shownCounts(page), start);
+  assert.equal(await page.getByTestId('undo').getAttribute('title'), 'Undo: adding a painting');
   assert.deepEqual(complaints, []);
 });

@@ -20,6 +20,19 @@ export async function worked(page: Page): Promise<void> {
   await ready(page);
 }
 
+/** Does something, and waits until the page has worked for it, however briefly. */
+export async function workedFor(page: Page, act: () => Promise<unknown>): Promise<void> {
+  const works = page.evaluate(
+    () =>
+      new Promise<void>((done) => {
+        const observer = new MutationObserver(() => done());
+        observer.observe(document.querySelector('#status')!, { attributeFilter: ['data-state'] });
+      }),
+  );
+  await Promise.all([works, act()]);
+  await ready(page);
+}
+
 export async function fitted(page: Page): Promise<void> {
   await page.getByTestId('fit-cage').click();
   await page.locator('#cage-note', { hasText: 'was fitted' }).waitFor();

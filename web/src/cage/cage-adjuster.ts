@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/layers';
+import type { Command, History } from 'cagecast/three/layers';
 import {
   BufferGeometry,
   LineBasicMaterial,
@@ -23,6 +23,11 @@ import { changeHole } from './holes';
 import { LandmarkDots } from './landmark-dots';
 
 type Mode = 'move' | 'turn' | 'scale' | 'corner' | 'hole';
+
+interface Change {
+  positions: Float32Array;
+  indices: Uint32Array;
+}
 
 const kReach = 24; // pixels around a handle in which it is meant
 const kChangeDelay = 600; // milliseconds after the last key before the cage is changed
@@ -67,8 +72,12 @@ export class CageAdjuster {
   #center = new Vector3();
   #size = 1;
   #waiting: ReturnType<typeof setTimeout> | undefined;
+  /** What keys have done since the cage was last changed. */
+  #pending: CageStep | undefined;
   /** Whether a change is not shown yet. */
   #isChanging = false;
+  /** Fulfilled when the last change is made, or has failed. */
+  #changed: Promise<unknown> = Promise.resolve();
   /** The cages that steps lead to, forwards or backwards. */
   readonly #stepped = new WeakSet<Model>();
 
@@ -165,8 +174,16 @@ export class CageAdjuster {
   /** Drops what is not done to the cage yet. */
   #drop(): void {
     clearTimeout(this.#waiting);
-    this.#drag = this.#corner = undefined;
+    const pending = this.#pending;
+    this.#pending = this.#corner = undefined;
+    if (pending) this.#history.forget((command) => command === pending);
+    this.#letGo();
     this.#matrix.identity();
+  }
+
+  #letGo(): void {
+    if (this.#drag) this.#history.held = false;
+    this.#drag = undefined;
   }
 
   /** Whether the last change is shown, so that the next one can build on it; tells if not. */
@@ -260,6 +277,7 @@ export class CageAdjuster {
     this.#place();
     if (!near || near.distance > kReach) return false;
     clearTimeout(this.#waiting);
+    this.#history.held = true;
     this.#drag = {
       handle: near.handle,
       from: near.at.clone(),
@@ -347,6 +365,7 @@ export class CageAdjuster {
     else if (this.#mode === 'turn') this.#about(new Matrix4().makeRotationAxis(axis, sign * kTurn));
     else this.#about(new Matrix4().makeScale(kGrow ** sign, kGrow ** sign, kGrow ** sign));
     this.#viewer.redraw();
+    this.#record();
     clearTimeout(this.#waiting);
     this.#waiting = setTimeout(() => this.#commit(), kChangeDelay);
   }
@@ -379,14 +398,11 @@ export class CageAdjuster {
     const change = changeHole(this.#cage, this.#viewer.screen.rayAt(x, y));
     if (!change) announce('The cage is not here.');
     else if ('seam' in change) announce('This hole cannot be closed: a seam of the UVs runs into it.');
-    else this.#change(change.opened ? 'opening a hole' : 'closing a hole', { indices: change.indices });
+    else this.#make(this.#add(change.opened ? 'opening a hole' : 'closing a hole', { indices: change.indices }));
   }
 
-  /** Changes the cage to what is shown. */
-  #commit(): void {
-    clearTimeout(this.#waiting);
-    this.#drag = undefined;
-    if (this.#isChanging) return; // it is done already
+  /** Makes what was done to the cage a step that can be undone. */
+  #record(): void {
     const { positions: old } = this.#cage;
     const positions = old.slice();
     const point = new Vector3();
@@ -394,42 +410,82 @@ export class CageAdjuster {
     else
       for (let i = 0; i < positions.length; i += 3)
         point.fromArray(positions, i).applyMatrix4(this.#matrix).toArray(positions, i);
-    if (positions.some((value, i) => value !== old[i]))
-      this.#change(this.#corner ? 'moving a corner' : 'moving the cage', { positions });
+    if (this.#pending) this.#pending.change.positions = positions;
+    else if (positions.some((value, i) => value !== old[i]))
+      this.#pending = this.#add(this.#corner ? 'moving a corner' : 'moving the cage', { positions });
   }
 
-  #change(name: string, change: { positions?: Float32Array; indices?: Uint32Array }): void {
-    const before = this.#session.shown!.cage;
+  #add(name: string, change: Partial<Change>): CageStep {
+    const { cage } = this.#session.shown!;
+    const { positions, indices } = this.#cage;
+    const step = new CageStep(name, cage, { positions, indices, ...change }, () => this.#put(step));
+    this.#stepped.add(cage);
+    this.#history.add(step);
+    return step;
+  }
+
+  /** Changes the cage to what is shown. */
+  #commit(): void {
+    clearTimeout(this.#waiting);
+    this.#letGo();
+    if (this.#isChanging) return; // it is done already
+    this.#record();
+    const step = this.#pending;
+    this.#pending = undefined;
+    if (step) this.#make(step);
+  }
+
+  #make(step: CageStep): void {
     this.#isChanging = true;
-    const show = (cage: Model): void => this.#session.want({ cage: Promise.resolve(cage) });
-    this.#maker
-      .change(change)
-      .then((after) => {
-        this.#stepped.add(before).add(after);
-        this.#history.add(new CageStep(name, before, after, show));
-      })
-      .catch((error) => this.#session.fail(error));
+    step.after = this.#maker.change(step.change);
+    this.#changed = step.after.then(
+      (after) => this.#stepped.add(after),
+      (error) => {
+        this.#history.forget((command) => command === step);
+        this.#session.fail(error);
+      },
+    );
+  }
+
+  /** Shows the cage before or after a step. */
+  #put(step: CageStep): void {
+    const { before, after, isUndone } = step;
+    if (after) {
+      // Only then can no change that is being made come after it.
+      void this.#changed.then(() => {
+        this.#reset();
+        this.#session.want({ cage: isUndone ? Promise.resolve(before) : after });
+      });
+    } else if (isUndone) {
+      this.#pending = undefined;
+      this.#reset();
+    } else this.#make(step);
   }
 }
 
 /** A change of the cage. */
-class CageStep {
+class CageStep implements Command {
   readonly bytes: number;
+  /** The changed cage; undefined while it waits for more keys. */
+  after: Promise<Model> | undefined;
+  isUndone = false;
 
   constructor(
     readonly name: string,
-    private readonly before: Model,
-    private readonly after: Model,
-    private readonly show: (cage: Model) => void,
+    readonly before: Model,
+    readonly change: Change,
+    private readonly put: () => void,
   ) {
-    this.bytes = 2 * after.files[0]!.size;
+    this.bytes = 2 * (change.positions.byteLength + change.indices.byteLength);
   }
 
   undo(): void {
-    this.show(this.before);
+    this.isUndone = true;
+    this.put();
   }
 
   redo(): void {
-    this.show(this.after);
+    this.isUndone = false;
+    this.put();
   }
 }
