@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { faults } from '../support/axe';
-import { asset, drag, fitted, head, placeOf, ready, savedCage, worked } from '../support/cages';
+import { asset, drag, fitted, head, placeOf, ready, savedCage, worked, workedFor } from '../support/cages';
 import { difference, look, modelArea } from '../support/picture';
 import { saved } from '../support/saved';
 import { drop, glb, passed, Site } from '../support/site';
@@ -40,12 +40,10 @@ test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit
 
   // One step back, the pair and the fit are as they were found; and one step on as they were moved.
   assert.equal(await page.getByTestId('undo').getAttribute('title'), 'Undo: moving the left mouth corner');
-  await page.keyboard.press('Control+z');
-  await worked(page);
+  await workedFor(page, () => page.keyboard.press('Control+z'));
   assert.deepEqual(await savedCage(page), found);
   assert.equal(await label('mouth_corner_left'), 'left mouth corner, found');
-  await page.keyboard.press('Control+Shift+z');
-  await worked(page);
+  await workedFor(page, () => page.keyboard.press('Control+Shift+z'));
   assert.deepEqual(await savedCage(page), moved);
 
   // By the keyboard, and without the other of the pair; what was not found is asked for.
@@ -84,8 +82,7 @@ test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit
   const undo = page.getByTestId('undo');
   for (const name of ['forgetting your landmarks', 'placing the nape', 'moving the left mouth corner']) {
     assert.equal(await undo.getAttribute('title'), `Undo: ${name}`);
-    await page.keyboard.press('Control+z');
-    await worked(page);
+    await workedFor(page, () => page.keyboard.press('Control+z'));
   }
   assert.deepEqual(await savedCage(page), moved, 'keys in quick succession are one step');
   await page.locator('#tools input[data-key=t]').check({ force: true });
@@ -197,5 +194,73 @@ test('landmarks stay while too few are placed, whatever rules are chosen meanwhi
     assert.equal(await count.textContent(), placed, preset);
     for (const what of [page.getByTestId('landmarks'), note]) assert.ok(await what.isVisible(), preset);
   }
+  assert.deepEqual(complaints, []);
+});
+
+test('an avatar’s landmarks are out of reach for undo and redo once another one is on the stage', async () => {
+  const { page, complaints } = await site.visit();
+  const names = ['one', 'two', 'three'];
+  await drop(
+    page,
+    names.map((name) => glb(`${name}.glb`, asset('human', 'target.glb'))),
+  );
+  const cards = page.locator('.avatars .avatar');
+  await cards.nth(2).waitFor();
+  await page.locator('#template-select').selectOption('human-head');
+  await page.getByTestId('fit-cage').click();
+  await page.waitForFunction(
+    () => !/no cage|other cage|Reading|Fitting|Waiting/.test(document.querySelector('.avatars')!.textContent!),
+    undefined,
+    { timeout: 60_000 },
+  );
+  await ready(page);
+  const go = async (name: string) => {
+    await cards.nth(names.indexOf(name)).click();
+    await page.locator('#target-name', { hasText: name }).waitFor();
+    await ready(page);
+  };
+  const move = async (landmark: string) => {
+    await page.locator('#landmark-show').click();
+    await workedFor(page, () => page.locator(`[data-landmark=${landmark}]`).press('ArrowDown'));
+  };
+  await go('two');
+  await move('menton');
+  const two = await savedCage(page);
+  await go('one');
+  await move('nose_tip');
+  await go('two');
+  const title = () => page.getByTestId('undo').getAttribute('title');
+  await page.waitForFunction(() => !/moving/.test(document.querySelector<HTMLElement>('#undo')!.title));
+  for (const keys of ['Control+z', 'Control+z', 'Control+Shift+z', 'Control+Shift+z']) {
+    await page.keyboard.press(keys);
+    await ready(page);
+    assert.doesNotMatch((await title())!, /moving/);
+  }
+  assert.deepEqual(await savedCage(page), two);
+  assert.deepEqual(complaints, []);
+});
+
+test('undoing what was done to a landmark brings the cage back that was there, though it had been changed by hand', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await ready(page);
+  await fitted(page);
+  const cage = async () => (await saved(page, 'save-cage')).bytes.toString('base64');
+  await page.getByTestId('adjust-cage').click();
+  await workedFor(page, () => page.locator('[data-handle=x]').press('ArrowRight'));
+  const changed = await cage();
+  await page.locator('#landmark-show').click();
+  await workedFor(page, () => page.locator('[data-landmark=nose_tip]').press('ArrowDown'));
+  const moved = await cage();
+  assert.ok(moved !== changed, 'it is fitted again');
+  await workedFor(page, () => page.keyboard.press('Control+z'));
+  assert.ok((await cage()) === changed, 'the changed cage is back');
+  assert.equal(
+    await page.locator('[data-landmark=nose_tip]').getAttribute('aria-label'),
+    'nose tip, found',
+    'and the landmark',
+  );
+  await workedFor(page, () => page.keyboard.press('Control+Shift+z'));
+  assert.ok((await cage()) === moved, 'the fit is back');
   assert.deepEqual(complaints, []);
 });

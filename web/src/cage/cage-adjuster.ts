@@ -454,7 +454,7 @@ export class CageAdjuster {
       // Only then can no change that is being made come after it.
       void this.#changed.then(() => {
         this.#reset();
-        this.#session.want({ cage: isUndone ? Promise.resolve(before) : after });
+        this.#maker.show(isUndone ? Promise.resolve(before) : after);
       });
     } else if (isUndone) {
       this.#pending = undefined;

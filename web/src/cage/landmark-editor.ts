@@ -2,7 +2,8 @@ import type { Command, History } from 'cagecast/three/layers';
 import { Box3, Plane, Vector3 } from 'three';
 import { firstHit } from '../explain/ray';
 import { announce, element } from '../platform/page';
-import { type CageMaker, type Fitting, kLeastLandmarks, readable } from '../scene/cage-maker';
+import { type CageMaker, type Fitting, kLeastLandmarks, madeOf, readable } from '../scene/cage-maker';
+import type { Model } from '../scene/load-model';
 import type { Session } from '../scene/session';
 import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
@@ -12,10 +13,11 @@ import { Mirror, otherSide } from './mirror';
 
 type Position = readonly [number, number, number];
 
-/** All landmarks that are known, and those of the user. */
+/** All landmarks that are known, those of the user, and the cage that was fitted to them, once there is one. */
 interface Spots {
   spots: Readonly<Record<string, Position>>;
-  given: Readonly<Record<string, Position>>;
+  readonly given: Readonly<Record<string, Position>>;
+  cage?: Model | undefined;
 }
 
 const kReach = 24; // pixels around a dot in which it is meant: half a finger
@@ -49,10 +51,8 @@ export class LandmarkEditor {
   readonly #offer: RailTool;
   #dots: LandmarkDots | undefined;
   #fitting: Fitting | undefined;
-  /** All that are known. */
-  #spots: Record<string, Position> = {};
-  /** Those of the user. */
-  #given: Record<string, Position> = {};
+  #target: Model | undefined;
+  #state: Spots = { spots: {}, given: {} };
   /** The one that the next click places. */
   #placing: string | undefined;
   #drag: { name: string; dx: number; dy: number; before: Spots } | undefined;
@@ -91,35 +91,39 @@ export class LandmarkEditor {
   }
 
   get spots(): Readonly<Record<string, Position>> {
-    return this.#spots;
+    return this.#state.spots;
   }
 
   get given(): Readonly<Record<string, Position>> {
-    return this.#given;
+    return this.#state.given;
   }
 
   /** Shows the landmarks of a fit; undefined ends. */
   edit(fitting: Fitting | undefined): void {
     const isNew = fitting !== undefined && !this.#fitting;
+    const { target, cage } = this.#session.shown!;
     // Steps on another model or template do not apply any more.
-    if (fitting?.template !== this.#fitting?.template)
+    if (target !== this.#target || fitting?.template !== this.#fitting?.template)
       this.#history.forget((command) => command instanceof LandmarkStep);
+    this.#target = target;
     this.#fitting = fitting;
-    clearTimeout(this.#waiting);
-    this.#waiting = undefined;
+    this.#stopWaiting();
     element('landmarks', HTMLElement).hidden = !fitting;
     this.#tools.offer(this.#offer, fitting !== undefined);
     this.#letGo();
-    this.#spots = { ...fitting?.used };
-    this.#given = { ...fitting?.given };
+    const { used = {}, given = {} } = fitting ?? {};
+    const fitted = fitting && madeOf(cage.files[0]!)?.fitting === fitting ? cage : undefined;
+    // The steps before and after a state get the cage that was fitted to it.
+    if (given === this.#state.given && !this.#state.cage) Object.assign(this.#state, { spots: used, cage: fitted });
+    else this.#state = { spots: used, given, cage: fitted };
     if (!fitting) return;
-    const box = new Box3().setFromArray(this.#session.shown!.target.mesh.positions);
+    const box = new Box3().setFromArray(target.mesh.positions);
     this.#size = box.getSize(new Vector3()).length();
     box.getCenter(this.#middle);
     this.#write();
     // What was brought back takes no other tool out of the hand; and beside other models, landmarks are too near each other.
     if (isNew && fitting === this.#maker.latest && !this.#viewer.stage.crowd) this.#tools.choose(this.#offer);
-    if (this.#tools.chosen === this.#offer && Object.keys(this.#spots).length < kLeastLandmarks) this.#askForNext();
+    if (this.#tools.chosen === this.#offer && Object.keys(this.spots).length < kLeastLandmarks) this.#askForNext();
     this.#viewer.redraw();
   }
 
@@ -136,10 +140,10 @@ export class LandmarkEditor {
   /** Writes which landmarks there are, in the panel and as buttons on the stage. */
   #write(): void {
     const { missing = [], used = {} } = this.#fitting!;
-    const unknown = [...Object.keys(used), ...missing].filter((name) => !this.#spots[name]);
+    const unknown = [...Object.keys(used), ...missing].filter((name) => !this.spots[name]);
     unknown.sort((a, b) => Number(kFirst.test(b)) - Number(kFirst.test(a)));
-    const own = Object.keys(this.#given).length;
-    const known = Object.keys(this.#spots);
+    const own = Object.keys(this.given).length;
+    const known = Object.keys(this.spots);
     element('landmark-count', HTMLElement).textContent = `${known.length}, ${own} by you`;
     element('landmark-missing', HTMLElement).hidden = unknown.length === 0;
     element('landmark-reset', HTMLButtonElement).disabled = own === 0;
@@ -147,7 +151,7 @@ export class LandmarkEditor {
     this.#choice.replaceChildren(...unknown.map((name) => new Option(readable(name), name)));
     if (unknown.includes(chosen)) this.#choice.value = chosen;
     for (const [name, button] of this.#buttons)
-      if (!this.#spots[name]) {
+      if (!this.spots[name]) {
         button.remove();
         this.#buttons.delete(name);
       }
@@ -171,12 +175,12 @@ export class LandmarkEditor {
   }
 
   #stateOf(name: string): string {
-    if (this.#given[name]) return 'placed by you';
+    if (this.given[name]) return 'placed by you';
     return (this.#fitting!.confidence[name] ?? 1) < kUncertain ? 'uncertain' : 'found';
   }
 
   #colorOf(name: string): string {
-    if (this.#given[name]) return kColors.given;
+    if (this.given[name]) return kColors.given;
     return this.#stateOf(name) === 'found' ? kColors.found : kColors.uncertain;
   }
 
@@ -185,7 +189,7 @@ export class LandmarkEditor {
     if (!this.#dots || !this.#fitting) return;
     const { x, y } = this.#viewer.screen.center;
     const nearer = this.#viewer.screen.rayAt(x, y).direction.multiplyScalar(-0.015 * this.#size);
-    const names = Object.keys(this.#spots);
+    const names = Object.keys(this.spots);
     this.#dots.show(
       names.map((name) => ({ at: this.#at(name), color: this.#colorOf(name) })),
       nearer,
@@ -202,7 +206,7 @@ export class LandmarkEditor {
   }
 
   #at(name: string): Vector3 {
-    return new Vector3(...this.#spots[name]!);
+    return new Vector3(...this.spots[name]!);
   }
 
   /** Shows the name of a landmark beside it. */
@@ -217,7 +221,7 @@ export class LandmarkEditor {
   /** The landmark that is meant by a position on the screen. */
   #nearest({ clientX, clientY }: PointerEvent): string | undefined {
     let [best, nearest] = [kReach, undefined as string | undefined];
-    for (const name of Object.keys(this.#spots)) {
+    for (const name of Object.keys(this.spots)) {
       const { x, y } = this.#viewer.screen.project(this.#at(name));
       const distance = Math.hypot(x - clientX, y - clientY);
       if (distance < best) [best, nearest] = [distance, name];
@@ -249,7 +253,7 @@ export class LandmarkEditor {
   #up(): void {
     const drag = this.#drag;
     this.#letGo();
-    if (drag && drag.before.spots !== this.#spots) {
+    if (drag && drag.before !== this.#state) {
       this.#record(`moving the ${readable(drag.name)}`, drag.before);
       this.#fit();
     }
@@ -258,8 +262,7 @@ export class LandmarkEditor {
 
   #cancel(): void {
     if (!this.#drag) return;
-    this.#spots = { ...this.#drag.before.spots };
-    this.#given = { ...this.#drag.before.given };
+    this.#state = this.#drag.before;
     this.#letGo();
     this.#tell(undefined);
     this.#viewer.redraw();
@@ -281,18 +284,17 @@ export class LandmarkEditor {
   #put(name: string, x: number, y: number): boolean {
     const point = this.#pointAt(name, x, y)?.toArray();
     if (!point) return false;
-    const before = this.#spots[name];
+    const before = this.spots[name];
     const change: Record<string, Position> = { [name]: point };
     const other = otherSide(name);
     const { used, missing } = this.#fitting!;
     if (this.#mirror.checked && other && (used[other] || missing.includes(other))) {
-      const mirror = new Mirror(this.#spots, this.#middle, name);
-      const there = this.#spots[other];
+      const mirror = new Mirror(this.spots, this.#middle, name);
+      const there = this.spots[other];
       // What is not symmetric, such as a bent arm, moves alone.
       if (!there || !before || mirror.holds(before, there)) change[other] = mirror.image(point);
     }
-    this.#spots = { ...this.#spots, ...change };
-    this.#given = { ...this.#given, ...change };
+    this.#state = { spots: { ...this.spots, ...change }, given: { ...this.given, ...change } };
     this.#write();
     this.#tell(undefined);
     this.#tell(name);
@@ -302,7 +304,7 @@ export class LandmarkEditor {
   #pointAt(name: string, x: number, y: number): Vector3 | undefined {
     if (!isInside(name)) return this.#viewer.screen.pick(x, y)?.point;
     const ray = this.#viewer.screen.rayAt(x, y);
-    if (this.#spots[name])
+    if (this.spots[name])
       return ray.intersectPlane(
         new Plane().setFromNormalAndCoplanarPoint(ray.direction, this.#at(name)),
         new Vector3(),
@@ -338,7 +340,7 @@ export class LandmarkEditor {
     if (!name || !this.#put(name, x, y)) return;
     this.#record(`placing the ${readable(name)}`, before);
     this.#tell(undefined);
-    if (Object.keys(this.#spots).length < kLeastLandmarks) this.#askForNext();
+    if (Object.keys(this.spots).length < kLeastLandmarks) this.#askForNext();
     else {
       this.#askFor(undefined);
       this.#fit();
@@ -347,13 +349,9 @@ export class LandmarkEditor {
 
   #reset(): void {
     const before = this.#state;
-    this.#given = {};
+    this.#state = { spots: before.spots, given: {} };
     this.#record('forgetting your landmarks', before);
-    void this.#maker.fit({}, this.#fitting!.template);
-  }
-
-  get #state(): Spots {
-    return { spots: this.#spots, given: this.#given };
+    void this.#maker.fit(this.given, this.#fitting!.template);
   }
 
   #letGo(): void {
@@ -368,32 +366,39 @@ export class LandmarkEditor {
     else this.#history.add(new LandmarkStep(name, before, this.#state, (state) => this.#restore(state)));
   }
 
-  #restore({ spots, given }: Spots): void {
-    this.#spots = { ...spots };
-    this.#given = { ...given };
+  #restore(state: Spots): void {
+    this.#state = state;
     this.#write();
     this.#tell(undefined);
     this.#viewer.redraw();
-    this.#fit();
+    this.#stopWaiting();
+    if (state.cage) this.#maker.show(Promise.resolve(state.cage));
+    else this.#fit();
+  }
+
+  #stopWaiting(): void {
+    clearTimeout(this.#waiting);
+    this.#waiting = undefined;
   }
 
   #fit(): void {
-    clearTimeout(this.#waiting);
-    this.#waiting = undefined;
-    if (this.#fitting && Object.keys(this.#spots).length >= kLeastLandmarks)
-      void this.#maker.fit(this.#given, this.#fitting.template);
+    this.#stopWaiting();
+    if (this.#fitting && Object.keys(this.spots).length >= kLeastLandmarks)
+      void this.#maker.fit(this.given, this.#fitting.template);
   }
 }
 
 class LandmarkStep implements Command {
-  readonly bytes = 0;
-
   constructor(
     readonly name: string,
     private readonly before: Spots,
     public after: Spots,
     private readonly put: (state: Spots) => void,
   ) {}
+
+  get bytes(): number {
+    return this.before.cage?.files[0]?.size ?? 0;
+  }
 
   undo(): void {
     this.put(this.before);
