@@ -240,6 +240,27 @@ test('an avatar’s landmarks are out of reach for undo and redo once another on
   assert.deepEqual(complaints, []);
 });
 
+test('keys that leave a dot for another tool leave the focus on the stage, where more of them are heard', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await ready(page);
+  await fitted(page);
+  const dot = page.locator('[data-landmark=nose_tip]');
+  const focus = () => page.evaluate(() => document.activeElement!.id);
+  await dot.press('Escape');
+  assert.equal(await focus(), 'view');
+  await page.keyboard.press('l');
+  await dot.press('b');
+  await page.keyboard.press('e');
+  assert.ok(await page.locator('#tools input[data-key=e]').isChecked(), 'the eraser is chosen');
+  assert.equal(await focus(), 'view');
+
+  await page.getByTestId('adjust-cage').click();
+  await page.locator('[data-handle=x]').press('Escape');
+  assert.equal(await focus(), 'view');
+  assert.deepEqual(complaints, []);
+});
+
 test('undoing what was done to a landmark brings the cage back that was there, though it had been changed by hand', async () => {
   const { page, complaints } = await site.visit();
   await drop(page, [head()]);
