@@ -261,6 +261,24 @@ test('keys that leave a dot for another tool leave the focus on the stage, where
   assert.deepEqual(complaints, []);
 });
 
+test('a key that finds no model beside a landmark leaves the cage as it was changed by hand', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await ready(page);
+  await fitted(page);
+  const cage = async () => (await saved(page, 'save-cage')).bytes.toString('base64');
+  await page.getByTestId('adjust-cage').click();
+  await workedFor(page, () => page.locator('[data-handle=x]').press('ArrowRight'));
+  const changed = await cage();
+  await page.locator('#landmark-show').click();
+  await page.locator('[data-landmark=crown]').press('ArrowUp');
+  await page.locator('#summary', { hasText: 'The model ends there.' }).waitFor({ state: 'attached' });
+  await passed(page, 1000);
+  await ready(page);
+  assert.ok((await cage()) === changed, 'it is not fitted again');
+  assert.deepEqual(complaints, []);
+});
+
 test('undoing what was done to a landmark brings the cage back that was there, though it had been changed by hand', async () => {
   const { page, complaints } = await site.visit();
   await drop(page, [head()]);

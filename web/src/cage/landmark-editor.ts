@@ -274,8 +274,11 @@ export class LandmarkEditor {
     const length = event.shiftKey ? 1 : kStep;
     const { x, y } = this.#viewer.screen.project(this.#at(name));
     const before = this.#state;
-    if (!this.#put(name, x + length * step[0], y + length * step[1])) announce('The model ends there.');
-    else this.#record(`moving the ${readable(name)}`, before, this.#waiting !== undefined);
+    if (!this.#put(name, x + length * step[0], y + length * step[1])) {
+      announce('The model ends there.');
+      return;
+    }
+    this.#record(`moving the ${readable(name)}`, before, this.#waiting !== undefined);
     clearTimeout(this.#waiting);
     this.#waiting = setTimeout(() => this.#fit(), kFitDelay);
   }
