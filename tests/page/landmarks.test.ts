@@ -1,5 +1,6 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
 import { faults } from '../support/axe';
 import { asset, drag, fitted, head, placeOf, ready, savedCage, worked, workedFor } from '../support/cages';
 import { difference, look, modelArea } from '../support/picture';
@@ -261,8 +262,8 @@ test('keys that leave a dot for another tool leave the focus on the stage, where
   assert.deepEqual(complaints, []);
 });
 
-test('a key that finds no model beside a landmark leaves the cage as it was changed by hand', async () => {
-  const { page, complaints } = await site.visit();
+/** Fits a cage and moves it by hand. @returns What the cage is now, as asked, and what it is after the move. */
+async function changedByHand(page: Page) {
   await drop(page, [head()]);
   await ready(page);
   await fitted(page);
@@ -271,6 +272,12 @@ test('a key that finds no model beside a landmark leaves the cage as it was chan
   await workedFor(page, () => page.locator('[data-handle=x]').press('ArrowRight'));
   const changed = await cage();
   await page.locator('#landmark-show').click();
+  return { cage, changed };
+}
+
+test('a key that finds no model beside a landmark leaves the cage as it was changed by hand', async () => {
+  const { page, complaints } = await site.visit();
+  const { cage, changed } = await changedByHand(page);
   await page.locator('[data-landmark=crown]').press('ArrowUp');
   await page.locator('#summary', { hasText: 'The model ends there.' }).waitFor({ state: 'attached' });
   await passed(page, 1000);
@@ -281,14 +288,7 @@ test('a key that finds no model beside a landmark leaves the cage as it was chan
 
 test('undoing what was done to a landmark brings the cage back that was there, though it had been changed by hand', async () => {
   const { page, complaints } = await site.visit();
-  await drop(page, [head()]);
-  await ready(page);
-  await fitted(page);
-  const cage = async () => (await saved(page, 'save-cage')).bytes.toString('base64');
-  await page.getByTestId('adjust-cage').click();
-  await workedFor(page, () => page.locator('[data-handle=x]').press('ArrowRight'));
-  const changed = await cage();
-  await page.locator('#landmark-show').click();
+  const { cage, changed } = await changedByHand(page);
   await workedFor(page, () => page.locator('[data-landmark=nose_tip]').press('ArrowDown'));
   const moved = await cage();
   assert.ok(moved !== changed, 'it is fitted again');

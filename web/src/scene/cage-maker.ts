@@ -165,7 +165,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
 
   /** Shows a cage that was made for the current target, unless another target is being loaded. */
   show(cage: Promise<Model>): void {
-    if (this.#session.staysOnTarget()) this.#session.want({ cage });
+    if (this.#session.keepTarget()) this.#session.want({ cage });
   }
 
   /** Shows the current cage with other positions or triangles. @returns It. */
@@ -196,7 +196,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
 
   /** Does cancellable work on the current target, and shows the cage that it comes to; not while another target is being loaded. */
   async #run(title: string, work: (context: Context) => Promise<Result | undefined>): Promise<void> {
-    if (!this.#session.staysOnTarget()) return announce('Another model is being loaded.');
+    if (!this.#session.keepTarget()) return announce('Another model is being loaded.');
     const { target, cage: current } = this.#session.shown!;
     const abort = new AbortController();
     const giveUp = (): void => abort.abort();

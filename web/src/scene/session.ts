@@ -197,10 +197,10 @@ export class Session extends Emitter<SessionEvents> {
   }
 
   /**
-   * Call this before you request a cage that was made for the current target.
-   * @returns Whether that target stays; false while another one is being loaded. One that waits for a cage is given up.
+   * Keeps the current target, for a cage that was made for it and is requested next. One that waits for another cage is given up.
+   * @returns false if another target is being loaded: the cage is not for that one.
    */
-  staysOnTarget(): boolean {
+  keepTarget(): boolean {
     if (!this.#working) this.#giveUp('target');
     return !this.#wantsTarget;
   }

@@ -311,7 +311,7 @@ export class Wardrobe {
       const fitted = await loadModel(file, this.#viewer.renderer);
       if (signal.aborted) return;
       Object.assign(avatar, { cage: fitted, follows: true, verdict: '' });
-      if (avatar === this.#wanted || (avatar === this.list.active && this.#session.staysOnTarget()))
+      if (avatar === this.#wanted || (avatar === this.list.active && this.#session.keepTarget()))
         this.#session.want({ cage: Promise.resolve(fitted) });
     } catch (error) {
       if (signal.aborted) return;
