@@ -20,7 +20,6 @@ interface Sheet {
 export function fillGutter(sheet: Sheet, covered: Uint8Array, rings: number): void {
   const { colors } = sheet;
   const near = new Int32Array(8);
-  const sums = new Float64Array(4);
   const found = new Uint8Array(covered.length);
   let ring = new Int32Array(covered.length);
   let count = 0;
@@ -42,14 +41,21 @@ export function fillGutter(sheet: Sheet, covered: Uint8Array, rings: number): vo
   for (let step = 0; step < rings && count > 0; ++step) {
     for (let i = 0; i < count; ++i) {
       const neighbours = neighboursOf(sheet, ring[i]!, near);
-      let inner = 0;
-      sums.fill(0);
+      let [red, green, blue, alpha, inner] = [0, 0, 0, 0, 0];
       for (let n = 0; n < neighbours; ++n) {
         if (covered[near[n]!] === 0) continue;
-        for (let k = 0; k < 4; ++k) sums[k]! += colors[4 * near[n]! + k]!;
+        const at = 4 * near[n]!;
+        red += colors[at]!;
+        green += colors[at + 1]!;
+        blue += colors[at + 2]!;
+        alpha += colors[at + 3]!;
         ++inner;
       }
-      for (let k = 0; k < 4; ++k) colors[4 * ring[i]! + k] = sums[k]! / inner;
+      const to = 4 * ring[i]!;
+      colors[to] = red / inner;
+      colors[to + 1] = green / inner;
+      colors[to + 2] = blue / inner;
+      colors[to + 3] = alpha / inner;
     }
     for (let i = 0; i < count; ++i) covered[ring[i]!] = 1;
     let end = 0;

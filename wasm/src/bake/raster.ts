@@ -65,14 +65,14 @@ export class Raster {
   /** Spans of the rows of samples in a row of texels. */
   readonly #lefts = new Float64Array(kMostSamples);
   readonly #rights = new Float64Array(kMostSamples);
+  /** Premultiplied RGBA, linear, of the last sample. */
+  readonly #sum = new Float64Array(4);
   /** What a cubic sample works on. */
   readonly #cubic = {
     across: new Float64Array(4),
     down: new Float64Array(4),
     columns: new Int32Array(4),
-    sums: new Float64Array(4),
-    lows: new Float64Array(4),
-    highs: new Float64Array(4),
+    rows: new Int32Array(4),
   };
   #refused = 0;
   #laid = 0;
@@ -246,21 +246,12 @@ export class Raster {
     const wd = (right * down * data[d + 3]!) / 255;
     const alpha = wa + wb + wc + wd;
     if (alpha === 0) return;
-    const [table, colors] = [this.table, this.colors];
-    let red = wa * table[data[a]!]! + wb * table[data[b]!]! + wc * table[data[c]!]! + wd * table[data[d]!]!;
-    let green =
-      wa * table[data[a + 1]!]! + wb * table[data[b + 1]!]! + wc * table[data[c + 1]!]! + wd * table[data[d + 1]!]!;
-    const blue =
-      wa * table[data[a + 2]!]! + wb * table[data[b + 2]!]! + wc * table[data[c + 2]!]! + wd * table[data[d + 2]!]!;
-    if (turn) {
-      const [across, up] = [red - 0.5 * alpha, green - 0.5 * alpha];
-      red = turn[0] * across + turn[1] * up + 0.5 * alpha;
-      green = turn[2] * across + turn[3] * up + 0.5 * alpha;
-    }
-    colors[to]! += red;
-    colors[to + 1]! += green;
-    colors[to + 2]! += blue;
-    colors[to + 3]! += alpha;
+    const [table, sum] = [this.table, this.#sum];
+    for (let k = 0; k < 3; ++k)
+      sum[k] =
+        wa * table[data[a + k]!]! + wb * table[data[b + k]!]! + wc * table[data[c + k]!]! + wd * table[data[d + k]!]!;
+    sum[3] = alpha;
+    this.#add(to, 1, turn);
   }
 
   /**
@@ -269,44 +260,57 @@ export class Raster {
    */
   #addCubic(to: number, u: number, v: number, times: number, turn: Shown['turn']): void {
     const { width, height, data } = this.#image;
-    const { across, down, columns, sums, lows, highs } = this.#cubic;
+    const { across, down, columns, rows } = this.#cubic;
+    const table = this.table;
     const [x, y] = [u * width - 0.5, v * height - 0.5];
     const [column, row] = [Math.floor(x), Math.floor(y)];
     cubicWeights(x - column, across);
     cubicWeights(y - row, down);
-    for (let i = 0; i < 4; ++i) columns[i] = 4 * modulo(column - 1 + i, width);
-    sums.fill(0);
-    lows.fill(1);
-    highs.fill(0);
+    for (let i = 0; i < 4; ++i) {
+      columns[i] = 4 * modulo(column - 1 + i, width);
+      rows[i] = 4 * width * modulo(row - 1 + i, height);
+    }
+    let [red, green, blue, alpha] = [0, 0, 0, 0];
     for (let j = 0; j < 4; ++j) {
-      const first = 4 * width * modulo(row - 1 + j, height);
       for (let i = 0; i < 4; ++i) {
-        const at = first + columns[i]!;
-        const weight = across[i]! * down[j]!;
-        const isNear = (i === 1 || i === 2) && (j === 1 || j === 2);
-        const alpha = data[at + 3]! / 255;
-        for (let k = 0; k < 4; ++k) {
-          const value = k === 3 ? alpha : alpha * this.table[data[at + k]!]!;
-          sums[k]! += weight * value;
-          if (!isNear) continue;
-          if (value < lows[k]!) lows[k] = value;
-          if (value > highs[k]!) highs[k] = value;
-        }
+        const at = rows[j]! + columns[i]!;
+        const weight = (across[i]! * down[j]! * data[at + 3]!) / 255;
+        red += weight * table[data[at]!]!;
+        green += weight * table[data[at + 1]!]!;
+        blue += weight * table[data[at + 2]!]!;
+        alpha += weight;
       }
     }
-    // From alpha to colours, none of which is more than alpha.
-    for (let k = 3; k >= 0; --k) {
-      if (k < 3 && highs[k]! > sums[3]!) highs[k] = sums[3]!;
-      sums[k] = Math.min(highs[k]!, Math.max(lows[k]!, sums[k]!));
-    }
-    for (let k = 0; k < 4; ++k) sums[k]! *= times;
+    const [a, b, c, d] = [
+      rows[1]! + columns[1]!,
+      rows[1]! + columns[2]!,
+      rows[2]! + columns[1]!,
+      rows[2]! + columns[2]!,
+    ];
+    const valueAt = (at: number, k: number): number => (data[at + 3]! / 255) * (k === 3 ? 1 : table[data[at + k]!]!);
+    /** Keeps a sum between the four nearest values, and a colour below its alpha. */
+    const clamp = (sum: number, most: number, k: number): number => {
+      const p = valueAt(a, k);
+      const q = valueAt(b, k);
+      const r = valueAt(c, k);
+      const s = valueAt(d, k);
+      return Math.min(most, Math.max(p, q, r, s), Math.max(Math.min(p, q, r, s), sum));
+    };
+    const share = clamp(alpha, 1, 3);
+    this.#sum.set([clamp(red, share, 0), clamp(green, share, 1), clamp(blue, share, 2), share]);
+    this.#add(to, times, turn);
+  }
+
+  /** Adds what was sampled last, turned if it is a normal. */
+  #add(to: number, times: number, turn: Shown['turn']): void {
+    const [sum, colors] = [this.#sum, this.colors];
     if (turn) {
-      const half = 0.5 * sums[3]!;
-      const [right, up] = [sums[0]! - half, sums[1]! - half];
-      sums[0] = turn[0] * right + turn[1] * up + half;
-      sums[1] = turn[2] * right + turn[3] * up + half;
+      const half = 0.5 * sum[3]!;
+      const [across, up] = [sum[0]! - half, sum[1]! - half];
+      sum[0] = turn[0] * across + turn[1] * up + half;
+      sum[1] = turn[2] * across + turn[3] * up + half;
     }
-    for (let k = 0; k < 4; ++k) this.colors[to + k]! += sums[k]!;
+    for (let k = 0; k < 4; ++k) colors[to + k]! += times * sum[k]!;
   }
 
   /**
