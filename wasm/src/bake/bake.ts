@@ -29,7 +29,7 @@ export interface BakeOptions extends FillOptions {
  *
  * A normal map is turned from the tangent space of the cage's UVs into that of the model's, a triangle at a time.
  *
- * Cost: 4 to 16 samples a texel, or one from 4 × 4 texels if the image is no finer; about 0.3 s for 1024². Memory: 32 bytes a texel.
+ * Cost: 4 to 16 samples a texel, or one from 4 × 4 texels if the image is no finer; 0.3 to 0.5 s for 1024². Memory: 32 bytes a texel.
  *
  * @param paint  In the cage's UVs; it repeats.
  * @throws {CagecastError} `badArgument` if the target has no UVs, or one that is not finite, if the result does not belong to it,

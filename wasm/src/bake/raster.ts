@@ -270,6 +270,14 @@ export class Raster {
       columns[i] = 4 * modulo(column - 1 + i, width);
       rows[i] = 4 * width * modulo(row - 1 + i, height);
     }
+    const [a, b, c, d] = [
+      rows[1]! + columns[1]!,
+      rows[1]! + columns[2]!,
+      rows[2]! + columns[1]!,
+      rows[2]! + columns[2]!,
+    ];
+    // Between four transparent texels lies nothing.
+    if (data[a + 3]! + data[b + 3]! + data[c + 3]! + data[d + 3]! === 0) return;
     let [red, green, blue, alpha] = [0, 0, 0, 0];
     for (let j = 0; j < 4; ++j) {
       for (let i = 0; i < 4; ++i) {
@@ -281,12 +289,6 @@ export class Raster {
         alpha += weight;
       }
     }
-    const [a, b, c, d] = [
-      rows[1]! + columns[1]!,
-      rows[1]! + columns[2]!,
-      rows[2]! + columns[1]!,
-      rows[2]! + columns[2]!,
-    ];
     const valueAt = (at: number, k: number): number => (data[at + 3]! / 255) * (k === 3 ? 1 : table[data[at + k]!]!);
     /** Keeps a sum between the four nearest values, and a colour below its alpha. */
     const clamp = (sum: number, most: number, k: number): number => {

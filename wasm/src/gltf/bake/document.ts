@@ -39,7 +39,7 @@ export interface BakeOptions extends TransferOptions, MaskSources {
  *
  * If `encode` fails, textures before that one are baked already.
  *
- * Memory: 32 bytes a texel of the largest texture, and the images. Cost: 0.3 s for 1024², and reading and writing images.
+ * Memory: 32 bytes a texel of the largest texture, and the images. Cost: 0.3 to 0.5 s for 1024², and reading and writing images.
  * @throws {CagecastError} with the reason and the place, if target, cage, paints or options cannot be used.
  *
  * @example
