@@ -406,19 +406,45 @@ test('an avatar that comes on the stage while a cage is fitted to it gets that c
   assert.deepEqual(chosen.complaints, []);
 });
 
-test('a cage fitted to the avatar on the stage does not reach a sample that is loading', async () => {
-  const { page, complaints } = await beingFitted();
-  await choose(page, 1);
+/** Chooses the sample of a car. @returns Lets it come. */
+async function chooseHeldCar(page: Page): Promise<() => void> {
   let letGo = (): void => {};
   const held = new Promise<void>((done) => (letGo = done));
   await page.route(/car/, (route) => held.then(() => route.continue()));
-  await page.getByTestId('sample-select').selectOption('car');
-  await page.evaluate('window.letGo()');
-  await page.waitForFunction(() => !/Waiting|Fitting/.test(document.querySelector('.avatars')!.textContent!));
+  await page.evaluate(() => {
+    const samples = document.querySelector<HTMLSelectElement>('#sample-select')!;
+    samples.value = 'car';
+    samples.dispatchEvent(new Event('change'));
+  });
+  return letGo;
+}
+
+test('a cage fitted to an avatar does not reach a sample that is loading, whether that avatar had come or not', async () => {
+  for (const comes of [true, false]) {
+    const { page, complaints } = await beingFitted();
+    if (comes) await choose(page, 1);
+    else await page.evaluate("document.querySelectorAll('.avatars .avatar')[1].click()");
+    const letGo = await chooseHeldCar(page);
+    await page.evaluate('window.letGo()');
+    await page.waitForFunction(() => !/Waiting|Fitting/.test(document.querySelector('.avatars')!.textContent!));
+    letGo();
+    await page.locator('#target-name', { hasText: 'target.glb' }).waitFor();
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    assert.equal(await page.locator('#cage-name').textContent(), 'cage.glb');
+    assert.deepEqual(complaints, []);
+  }
+});
+
+test('an avatar that was chosen, and then a sample, can be chosen again before that has come', async () => {
+  const { page, complaints } = await beingFitted();
+  const second = page.locator('.avatars .avatar').nth(1);
+  await page.evaluate("document.querySelectorAll('.avatars .avatar')[1].click()");
+  const letGo = await chooseHeldCar(page);
+  await second.click();
+  await page.locator('.avatars li:nth-child(2) .avatar[aria-pressed=true]').waitFor();
   letGo();
-  await page.locator('#target-name', { hasText: 'target.glb' }).waitFor();
   assert.equal(await settled(page), 'ready', await shownError(page));
-  assert.equal(await page.locator('#cage-name').textContent(), 'cage.glb');
+  assert.equal(await page.locator('#target-name').textContent(), 'two.glb');
   assert.deepEqual(complaints, []);
 });
 

@@ -26,6 +26,8 @@ export interface Scene {
   paint: Paint;
 }
 
+const slots = ['target', 'cage', 'paint'] as const;
+
 /** A scene and its transfer. */
 export interface Shown extends Scene {
   projection: SplitProjection;
@@ -179,12 +181,19 @@ export class Session extends Emitter<SessionEvents> {
     return this.#wanted[slot] !== undefined;
   }
 
+  /** Whether a target is the one that was requested last. */
+  awaits(target: Promise<Model>): boolean {
+    return this.#wanted.target === target;
+  }
+
   /**
    * Requests other files; supersedes a request in progress. Without a paint the checker is used.
    * @param locks    Locks of the new target; those of segments it does not have are ignored.
    * @param together Whether all files are dropped if one of them fails. Otherwise the others wait for a replacement.
    */
   want(change: Wanted, locks: Locks = {}, together = false): void {
+    // What is being loaded together with another model is not for this one.
+    if (change.target && this.#shown) for (const slot of this.#slotsTogether) this.#giveUp(slot);
     if (change.target) {
       this.#wantedLocks = locks;
       this.#wantsTarget = true;
@@ -305,7 +314,7 @@ export class Session extends Emitter<SessionEvents> {
     this.#runs++;
     this.#client.cancel();
     this.#endWork('cancelled');
-    for (const slot of ['target', 'cage', 'paint'] as const) this.#giveUp(slot);
+    for (const slot of slots) this.#giveUp(slot);
     this.#giveUpPreset();
     this.emit('progress', this.#shown ? { state: 'ready' } : { state: 'waiting', missing: ['target', 'cage'] });
   }
@@ -404,9 +413,8 @@ export class Session extends Emitter<SessionEvents> {
     const results = await Promise.allSettled([target, cage, paint]);
     const failed = results.find((result) => result.status === 'rejected');
     if (failed && !superseded()) {
-      const slots = ['target', 'cage', 'paint'] as const;
       const lost = slots.filter((_, index) => results[index]!.status === 'rejected');
-      const together = slots.filter((slot) => this.#wanted[slot] === this.#together[slot]);
+      const together = this.#slotsTogether;
       const isTorn = this.#shown !== undefined && lost.some((slot) => together.includes(slot));
       for (const slot of slots) if (lost.includes(slot) || (isTorn && together.includes(slot))) this.#giveUp(slot);
       throw failed.reason;
@@ -431,14 +439,19 @@ export class Session extends Emitter<SessionEvents> {
     } catch (error) {
       if (!(error instanceof CagecastError) || superseded()) throw error;
       const files = { target, cage };
-      const slots = ['target', 'cage'] as const;
-      const named = slots.filter((slot) => slot === error.argument);
-      const blamed = named.length > 0 ? named : slots;
+      const both = ['target', 'cage'] as const;
+      const named = both.filter((slot) => slot === error.argument);
+      const blamed = named.length > 0 ? named : both;
       // Keep a model that was accepted before: the other one does not fit it, and may be replaced.
       for (const slot of blamed) if (files[slot] !== this.#shown?.[slot]) this.#giveUp(slot);
       const name = blamed.map((slot) => files[slot].name).join(' with ');
       throw new Error(`${name}: ${error.reason}`, { cause: error });
     }
+  }
+
+  /** The slots whose requested files are useless without each other. */
+  get #slotsTogether(): readonly (keyof Scene)[] {
+    return slots.filter((slot) => this.#wanted[slot] === this.#together[slot]);
   }
 
   /** Falls back to the current file of a slot. */
@@ -451,7 +464,7 @@ export class Session extends Emitter<SessionEvents> {
 
   /** Falls back to the current files where a request still waits for one that failed. */
   #giveUpRest(): void {
-    if (this.#shown && !this.#working) for (const slot of ['target', 'cage', 'paint'] as const) this.#giveUp(slot);
+    if (this.#shown && !this.#working) for (const slot of slots) this.#giveUp(slot);
   }
 
   /** Falls back to the preset of the current scene. */

@@ -24,8 +24,8 @@ export class Wardrobe {
   readonly #transfers: AvatarTransfers;
   readonly #thumbnails: Thumbnails;
   readonly #crowd = new SideBySide();
-  /** The one that is to be on the stage. */
-  #wanted: Avatar | undefined;
+  /** The avatar that was chosen last, and its model, until something comes on the stage. */
+  #chosen: { avatar: Avatar; target: Promise<Model> } | undefined;
   /** Resolves once it is there, or cannot be. */
   #arrival: Promise<void> | undefined;
   #arrived: () => void = () => {};
@@ -50,11 +50,16 @@ export class Wardrobe {
     stack.on('change', () => this.#thumbnails.refresh(this.list.all));
     stack.on('pictures', () => this.#thumbnails.refresh(this.list.all));
     session.on('progress', ({ state }) => {
-      // With something still wanted, loading it was cancelled.
-      if (state === 'failed' || (state !== 'working' && this.#wanted)) this.#onFailure();
+      // With one still chosen, loading it was cancelled.
+      if (state === 'failed' || (state !== 'working' && this.#chosen)) this.#onFailure();
     });
     this.#onZones();
     this.list.active.verdict = session.inspection?.verdict ?? '';
+  }
+
+  /** The avatar that is to be on the stage; undefined if another model was opened since it was chosen. */
+  get #coming(): Avatar | undefined {
+    return this.#chosen && this.#session.awaits(this.#chosen.target) ? this.#chosen.avatar : undefined;
   }
 
   /** Whether the stage shows all, side by side. */
@@ -146,7 +151,7 @@ export class Wardrobe {
     if (at < 0 || this.list.all.length === 1) return;
     this.list.all.splice(at, 1);
     this.#giveUpFits(avatar);
-    if (avatar === (this.#wanted ?? this.list.active)) {
+    if (avatar === (this.#coming ?? this.list.active)) {
       const next = this.list.all
         .slice(at)
         .concat(this.list.all)
@@ -160,12 +165,12 @@ export class Wardrobe {
 
   /** Puts an avatar on the stage. */
   activate(avatar: Avatar): void {
-    if (avatar === (this.#wanted ?? this.list.active) || avatar.files.length === 0) return;
-    this.#wanted = avatar;
+    if (avatar === (this.#coming ?? this.list.active) || avatar.files.length === 0) return;
     this.#arrived();
     this.#arrival = new Promise((done) => (this.#arrived = done));
     const { cage, sample, locks } = avatar;
     const target = this.#load(avatar).then((model) => ({ ...model, ...(sample && { sample }) }));
+    this.#chosen = { avatar, target };
     this.#session.want({ target, ...(cage && { cage: Promise.resolve(cage) }) }, { ...locks }, true);
   }
 
@@ -196,9 +201,9 @@ export class Wardrobe {
 
   /** Another model or cage is on the stage. */
   #show({ target, cage }: Shown): void {
-    const wanted = this.#wanted;
-    const came = wanted && target.files[0] === wanted.files[0] ? wanted : undefined;
-    this.#wanted = undefined;
+    const coming = this.#coming;
+    const came = coming && target.files[0] === coming.files[0] ? coming : undefined;
+    this.#chosen = undefined;
     this.#arrived();
     const left = this.list.active;
     if (came) this.list.active = came;
@@ -231,7 +236,7 @@ export class Wardrobe {
 
   /** What was to be on the stage is not there: the one that is stays. */
   #onFailure(): void {
-    this.#wanted = undefined;
+    this.#chosen = undefined;
     this.#arrived();
     this.#enlist();
     this.#arrange();
@@ -311,7 +316,7 @@ export class Wardrobe {
       const fitted = await loadModel(file, this.#viewer.renderer);
       if (signal.aborted) return;
       Object.assign(avatar, { cage: fitted, follows: true, verdict: '' });
-      if (avatar === this.#wanted || (avatar === this.list.active && this.#session.keepTarget()))
+      if (avatar === this.#coming || (avatar === this.list.active && this.#session.keepTarget()))
         this.#session.want({ cage: Promise.resolve(fitted) });
     } catch (error) {
       if (signal.aborted) return;
