@@ -2,7 +2,19 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../support/axe';
-import { asset, drag, fitted, head, placeOf, ready, savedCage, worked, workedFor } from '../support/cages';
+import {
+  asset,
+  drag,
+  fitted,
+  head,
+  heldBack,
+  holdingBack,
+  placeOf,
+  ready,
+  savedCage,
+  worked,
+  workedFor,
+} from '../support/cages';
 import { difference, look, modelArea } from '../support/picture';
 import { saved } from '../support/saved';
 import { drop, glb, passed, Site } from '../support/site';
@@ -301,5 +313,30 @@ test('undoing what was done to a landmark brings the cage back that was there, t
   );
   await workedFor(page, () => page.keyboard.press('Control+Shift+z'));
   assert.ok((await cage()) === moved, 'the fit is back');
+  assert.deepEqual(complaints, []);
+});
+
+test('a landmark that is being dragged when an earlier fit comes is not lost', async () => {
+  const { page, complaints } = await site.visit({}, holdingBack('fitCage'));
+  await page.evaluate('window.holds = false');
+  await drop(page, [head()]);
+  await ready(page);
+  await fitted(page);
+  const found = await savedCage(page);
+  await page.evaluate('window.holds = true');
+  await drag(page, 'nose_tip', 0, 8);
+  await heldBack(page);
+  const { x, y } = await placeOf(page, 'mouth_corner_left');
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y + 6);
+  await page.mouse.move(x, y + 12);
+  await workedFor(page, () => page.evaluate('window.letGo()') as Promise<void>);
+  const stays = await placeOf(page, 'mouth_corner_left');
+  assert.ok(Math.abs(stays.y - y - 12) < 4, `it is where it was dragged: from ${y} to ${stays.y}`);
+  await workedFor(page, () => page.mouse.up());
+  const { landmarks } = await savedCage(page);
+  for (const name of ['nose_tip', 'mouth_corner_left', 'mouth_corner_right'])
+    assert.notDeepEqual(landmarks[name], found.landmarks[name], name);
   assert.deepEqual(complaints, []);
 });

@@ -4,7 +4,7 @@ import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { faults } from '../support/axe';
-import { asset } from '../support/cages';
+import { asset, heldBack, holdingBack } from '../support/cages';
 import { glbOf, tetrahedron } from '../support/glb';
 import { saved, validModel } from '../support/saved';
 import { drop, glb, Site, settled, shownError, type Upload, type Visit } from '../support/site';
@@ -348,24 +348,9 @@ test('an avatar whose loading was cancelled can be chosen again; the focus stays
   assert.deepEqual(complaints, []);
 });
 
-/** Holds the requests to bend a cage to a model back, until `window.letGo()`. */
-const kHeldFits = `const { postMessage } = Worker.prototype;
-const held = [];
-let holds = true;
-window.heldFits = held;
-window.letGo = () => {
-  holds = false;
-  for (const post of held.splice(0)) post();
-};
-Worker.prototype.postMessage = function (message, ...rest) {
-  const post = () => postMessage.call(this, message, ...rest);
-  if (holds && message?.fn === 'refineCage') held.push(post);
-  else post();
-}`;
-
 /** Opens the wardrobe with a model on the stage, and puts another one beside it, to which the cage is being fitted. */
 async function beingFitted(): Promise<Visit> {
-  const visit = await site.visit({}, kHeldFits);
+  const visit = await site.visit({}, holdingBack('refineCage'));
   const { page } = visit;
   const model = (name: string): Upload => glb(name, asset('lizard', 'target.glb'));
   await drop(page, [model('one.glb'), glb('cage.glb', asset('lizard', 'cage.glb'))]);
@@ -373,7 +358,7 @@ async function beingFitted(): Promise<Visit> {
   assert.equal(await settled(page), 'ready', await shownError(page));
   await page.getByTestId('open-wardrobe').click();
   await drop(page, [model('two.glb')]);
-  await page.waitForFunction(() => (window as unknown as { heldFits: unknown[] }).heldFits.length === 1);
+  await heldBack(page);
   return visit;
 }
 
@@ -449,7 +434,7 @@ test('an avatar that was chosen, and then a sample, can be chosen again before t
 });
 
 test('“Fit this cage to all” fits the cage that was on the stage then, whatever comes there meanwhile', async () => {
-  const { page, complaints } = await site.visit({}, kHeldFits);
+  const { page, complaints } = await site.visit({}, holdingBack('refineCage'));
   await page.getByTestId('open-wardrobe').click();
   await avatars(page, 1);
   for (const [at, name] of ['human', 'car'].entries()) {
@@ -457,7 +442,7 @@ test('“Fit this cage to all” fits the cage that was on the stage then, whate
     await avatars(page, at + 2);
   }
   await page.getByTestId('fit-all').click();
-  await page.waitForFunction(() => (window as unknown as { heldFits: unknown[] }).heldFits.length === 1);
+  await heldBack(page);
   await choose(page, 2);
   await page.evaluate('window.letGo()');
   await page.waitForFunction(

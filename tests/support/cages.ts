@@ -69,6 +69,25 @@ export async function dragBy(page: Page, button: Locator, dx: number, dy: number
   await page.mouse.up();
 }
 
+/** A script that holds calls of a function of the engine back while `window.holds` is set, as it is at first, until `window.letGo()`. */
+export const holdingBack = (fn: 'fitCage' | 'refineCage'): string => `const { postMessage } = Worker.prototype;
+window.held = [];
+window.holds = true;
+window.letGo = () => {
+  window.holds = false;
+  for (const post of window.held.splice(0)) post();
+};
+Worker.prototype.postMessage = function (message, ...rest) {
+  const post = () => postMessage.call(this, message, ...rest);
+  if (window.holds && message?.fn === '${fn}') window.held.push(post);
+  else post();
+}`;
+
+/** Waits until a call is held back. */
+export async function heldBack(page: Page): Promise<void> {
+  await page.waitForFunction(() => (window as unknown as { held: unknown[] }).held.length === 1);
+}
+
 /** The `extras` of the cage that the page saves. */
 export async function savedCage(page: Page): Promise<{ landmarks: Record<string, number[]> }> {
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('save-cage').click()]);

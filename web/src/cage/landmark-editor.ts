@@ -102,11 +102,13 @@ export class LandmarkEditor {
   edit(fitting: Fitting | undefined): void {
     const isNew = fitting !== undefined && !this.#fitting;
     const { target, cage } = this.#session.shown!;
+    const isOther = target !== this.#target || fitting?.template !== this.#fitting?.template;
     // Steps on another model or template do not apply any more.
-    if (target !== this.#target || fitting?.template !== this.#fitting?.template)
-      this.#history.forget((command) => command instanceof LandmarkStep);
+    if (isOther) this.#history.forget((command) => command instanceof LandmarkStep);
     this.#target = target;
     this.#fitting = fitting;
+    // Landmarks that were moved since this fit began are fitted next.
+    if (fitting && !isOther && (this.#drag || this.#waiting)) return;
     this.#stopWaiting();
     element('landmarks', HTMLElement).hidden = !fitting;
     this.#tools.offer(this.#offer, fitting !== undefined);
