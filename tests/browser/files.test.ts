@@ -9,8 +9,8 @@ import { promisify } from 'node:util';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { type Report, report, reportedCounts } from '../support/command';
-import { glbOf, tetrahedron } from '../support/glb';
-import { difference, look, modelArea, shareOfHue } from '../support/picture';
+import { GlbMaker, glbOf, tetrahedron } from '../support/glb';
+import { columns, difference, look, modelArea, shareOfHue } from '../support/picture';
 import {
   drop,
   glb,
@@ -237,6 +237,30 @@ test('an own paint, PNG or JPEG, is drawn on the model', async () => {
   assert.equal(await settled(page), 'ready', await shownError(page));
   const green = shareOfHue(await look(page, area), 140);
   assert.ok(green > 0.1, `${green} of the picture is green`);
+  assert.deepEqual(complaints, []);
+});
+
+test('of a mesh with instances the first one lies in the cage, and all of them show its paint', async () => {
+  const { page, complaints } = await fresh();
+  await page.locator('input[value=result]').check({ force: true });
+  const area = await modelArea(page);
+  const maker = new GlbMaker();
+  const TRANSLATION = maker.accessor(new Float32Array([0, 0, 0, 1.8, 0, 0]), 'VEC3');
+  const extensions = { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION } } };
+  maker.node({ mesh: maker.mesh(tetrahedron()), name: 'thing', extensions });
+  maker.json.extensionsUsed = Object.keys(extensions);
+  await drop(page, [glb('things.glb', maker.finish()), glb('cage.glb', glbOf(tetrahedron(2), 'thing'))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
+  const png = new PNG({ width: 8, height: 8 });
+  for (let at = 0; at < png.data.length; at += 4) png.data.set([200, 0, 220, 255], at);
+  await page
+    .getByTestId('texture-input')
+    .setInputFiles({ name: 'violet.png', mimeType: 'image/png', buffer: PNG.sync.write(png) });
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  const picture = await look(page, area);
+  const [first, second] = [columns(picture, 0.3, 0.6), columns(picture, 0.8, 1)].map((part) => shareOfHue(part, 295));
+  assert.ok(first! > 0.1 && second! > 0.1, `${first} of the first and ${second} of the second are violet`);
   assert.deepEqual(complaints, []);
 });
 

@@ -38,8 +38,6 @@ export function extractMesh(
   const primitives = parts.map(({ geometry, ...part }): Primitive => {
     const mesh = part.mesh as Mesh;
     const name = nameOf(mesh) || part.name;
-    if ('isInstancedMesh' in mesh)
-      throw new Error(`“${name}” uses instancing, which is not supported; give each instance a node of its own`);
     return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0 };
   });
   return { ...mesh, primitives };

@@ -1,4 +1,4 @@
-import { type Intersection, type Raycaster, Triangle, Vector3 } from 'three';
+import { InstancedMesh, type Intersection, Matrix4, type Raycaster, Triangle, Vector3 } from 'three';
 import type { ExtractedMesh, Primitive } from '../scene/extract-mesh';
 
 /** A spot on the surface of the target. */
@@ -31,13 +31,15 @@ export function pick(target: ExtractedMesh, raycaster: Raycaster): Spot | undefi
 function spotOf(
   { positions, indices }: ExtractedMesh,
   { mesh, firstVertex, firstTriangle }: Primitive,
-  { faceIndex, point: seen }: Intersection,
+  { faceIndex, instanceId, point: seen }: Intersection,
 ): Spot {
   const triangle = firstTriangle + faceIndex!;
+  const instance = new Matrix4();
+  if (mesh instanceof InstancedMesh) mesh.getMatrixAt(instanceId!, instance);
   const corners = [0, 1, 2].map((corner) => indices[3 * triangle + corner]!) as [number, number, number];
   // In the order of the target's indices, whose winding is reversed if the primitive is mirrored.
   const posed = corners.map((vertex) =>
-    mesh.localToWorld(mesh.getVertexPosition(vertex - firstVertex, new Vector3())),
+    mesh.localToWorld(mesh.getVertexPosition(vertex - firstVertex, new Vector3()).applyMatrix4(instance)),
   ) as [Vector3, Vector3, Vector3];
   const weights = Triangle.getBarycoord(seen, ...posed, new Vector3()) ?? new Vector3(1, 0, 0);
   const stored = corners.map((vertex) => new Vector3().fromArray(positions, 3 * vertex)) as [Vector3, Vector3, Vector3];

@@ -1,4 +1,4 @@
-import { BufferAttribute, BufferGeometry, Mesh, SkinnedMesh } from 'three';
+import { BufferAttribute, BufferGeometry, InstancedMesh, Mesh, SkinnedMesh } from 'three';
 
 /** Zones in the order of the triangles in the index: cosmetic first, then occluded, uncovered and culled. */
 export const kZones = [0, 1, 2, 3] as const;
@@ -97,7 +97,7 @@ export function copyVertices(source: BufferGeometry, sources: Uint32Array): Buff
   return copy;
 }
 
-/** Makes a mesh that follows the skin and the morphs of `base`. */
+/** Makes a mesh that follows the skin, the morphs and the instances of `base`. */
 export function overlayMesh(base: Mesh, geometry: BufferGeometry): Mesh {
   let mesh: Mesh;
   if (base instanceof SkinnedMesh) {
@@ -105,6 +105,9 @@ export function overlayMesh(base: Mesh, geometry: BufferGeometry): Mesh {
     skinned.bindMode = base.bindMode;
     skinned.bind(base.skeleton, base.bindMatrix);
     mesh = skinned;
+  } else if (base instanceof InstancedMesh) {
+    mesh = new InstancedMesh(geometry, undefined, 0);
+    Object.assign(mesh, { count: base.count, instanceMatrix: base.instanceMatrix });
   } else {
     mesh = new Mesh(geometry);
   }
