@@ -42,6 +42,7 @@ struct Instance {
   const tinygltf::Primitive& primitive;
   std::string where, name;  ///< In the file, and for people.
   Transform world;
+  int node;
   int skin;  ///< −1: none.
 };
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -13,6 +14,11 @@ namespace cagecast::gltf {
 namespace {
 
 constexpr const char* kNotValid = "is not valid glTF";
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+constexpr std::array kInstanceAttributes{"TRANSLATION", "ROTATION", "SCALE"};
+
+/// What a node is called in errors.
+std::string nodeAt(int node) { return "nodes[" + std::to_string(node) + "]"; }
 
 Transform localTransform(const tinygltf::Node& node, const std::string& where) {
   const auto numbers = [&](const std::vector<double>& given, std::size_t count, const char* name) {
@@ -68,7 +74,7 @@ std::string uvSetOf(const tinygltf::Model& model, const tinygltf::Primitive& pri
 }
 
 void append(const tinygltf::Model& model, const Instance& instance, Model& out, bool& haveUvs) {
-  const auto& [primitive, where, name, world, skin] = instance;
+  const auto& [primitive, where, name, world, node, skin] = instance;
   const std::string uvSet = uvSetOf(model, primitive);
   const int position = attributeOf(primitive, "POSITION"), texcoord = attributeOf(primitive, uvSet);
   const std::vector<double> local = decode(model, position, TINYGLTF_TYPE_VEC3, 3, where + ".POSITION");
@@ -149,7 +155,7 @@ void eachNode(const tinygltf::Model& model, const std::vector<int>& roots, const
     const Step step = pending.back();
     pending.pop_back();
     const tinygltf::Node& node = element(model.nodes, step.node, "nodes", where);
-    const std::string nodeName = "nodes[" + std::to_string(step.node) + "]";
+    const std::string nodeName = nodeAt(step.node);
     if (seen[static_cast<std::size_t>(step.node)]) fail(nodeName, " is in ", where, " twice, or its own ancestor");
     seen[static_cast<std::size_t>(step.node)] = true;
     const Transform world = step.parent * localTransform(node, nodeName);
@@ -158,13 +164,48 @@ void eachNode(const tinygltf::Model& model, const std::vector<int>& roots, const
   }
 }
 
+/// Whether a transfer added a mesh to show its paint: `extras` of the mesh or its material tell. It is no part of the
+/// model.
+bool isOverlay(const tinygltf::Value& extras) {
+  if (!extras.IsObject() || !extras.Has("cagecastOverlay")) return false;
+  const tinygltf::Value& mark = extras.Get("cagecastOverlay");
+  return mark.IsBool() && mark.Get<bool>();
+}
+
+/// The accessor of an attribute of a node's instances; −1 if it does not have it.
+int instanceAttribute(const tinygltf::Node& node, const char* name) {
+  const auto extension = node.extensions.find(kInstancing);
+  if (extension == node.extensions.end() || !extension->second.IsObject()) return -1;
+  const tinygltf::Value& attributes = extension->second.Get("attributes");
+  if (!attributes.IsObject() || !attributes.Has(name)) return -1;
+  const tinygltf::Value& accessor = attributes.Get(name);
+  return accessor.IsInt() ? accessor.Get<int>() : -1;
+}
+
+/// The place of a node's first instance in the space of the node. All instances share their paint: it is made for that
+/// one.
+Transform firstInstance(const tinygltf::Model& model, const tinygltf::Node& node, const std::string& where) {
+  tinygltf::Node first;
+  const std::array<std::vector<double>*, 3> places{&first.translation, &first.rotation, &first.scale};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int accessor = instanceAttribute(node, kInstanceAttributes[i]);
+    if (accessor < 0) continue;
+    const std::size_t size = i == 1 ? 4 : 3;
+    const int type = i == 1 ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;
+    *places[i] = decode(model, accessor, type, size, where + "." + kInstanceAttributes[i]);
+    if (places[i]->empty()) fail(where, " has no instance");
+    places[i]->resize(size);
+  }
+  return localTransform(first, where);
+}
+
 /// All primitives made of triangles, depth first.
 std::vector<Instance> instancesIn(const tinygltf::Model& model) {
   std::vector<Instance> instances;
   eachNode(model, rootsOf(model), "the scene", [&](int number, const Transform& world) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(number)];
     if (node.mesh < 0) return;
-    const std::string nodeName = "nodes[" + std::to_string(number) + "]";
+    const std::string nodeName = nodeAt(number);
     const tinygltf::Mesh& mesh = element(model.meshes, node.mesh, "meshes", nodeName);
     if (node.skin >= 0) (void)element(model.skins, node.skin, "skins", nodeName);
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
@@ -173,13 +214,15 @@ std::vector<Instance> instancesIn(const tinygltf::Model& model) {
         fail("meshes[", node.mesh, "].primitives[", p, "].mode = ", primitive.mode, " is not within 0..6");
       if (primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES) continue;  // Points and lines.
       if (attributeOf(primitive, "POSITION") < 0) continue;  // glTF allows it, and asks to draw nothing.
+      if (isOverlay(primitive.extras)) continue;
       std::string name = !node.name.empty() ? node.name : !mesh.name.empty() ? mesh.name : nodeName;
       if (primitive.material >= 0) {
-        const std::string& material = element(model.materials, primitive.material, "materials", nodeName).name;
-        if (!material.empty()) name += "/" + material;
+        const tinygltf::Material& material = element(model.materials, primitive.material, "materials", nodeName);
+        if (isOverlay(material.extras)) continue;
+        if (!material.name.empty()) name += "/" + material.name;
       }
       const std::string where = "meshes[" + std::to_string(node.mesh) + "].primitives[" + std::to_string(p) + "]";
-      instances.push_back({primitive, where, name, world, node.skin});
+      instances.push_back({primitive, where, name, world, number, node.skin});
     }
   });
   return instances;
@@ -210,6 +253,8 @@ void checkElements(const tinygltf::Model& model, const std::vector<Instance>& in
     if (primitive.extensions.count(kCompressions[0].first) != 0 &&
         model.accessors[static_cast<std::size_t>(position)].bufferView < 0)
       failCompressed(kCompressions[0].first, kCompressions[0].second);
+    for (const char* name : kInstanceAttributes)
+      addAccessor(instanceAttribute(model.nodes[static_cast<std::size_t>(instance.node)], name), nodeAt(instance.node));
     if (instance.skin < 0) continue;
     for (const char* name : {"JOINTS_0", "WEIGHTS_0"}) addAccessor(attributeOf(primitive, name), instance.where);
     const tinygltf::Skin& skin = model.skins[static_cast<std::size_t>(instance.skin)];
@@ -221,6 +266,11 @@ void checkElements(const tinygltf::Model& model, const std::vector<Instance>& in
 Model flatten(const tinygltf::Model& model) {
   std::vector<Instance> instances = instancesIn(model);
   checkElements(model, instances);
+  for (Instance& instance : instances) {
+    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(instance.node)];
+    if (node.extensions.count(kInstancing) != 0)
+      instance.world = instance.world * firstInstance(model, node, nodeAt(instance.node));
+  }
   if (std::any_of(instances.begin(), instances.end(), [](const Instance& instance) { return instance.skin >= 0; }))
     placeSkinned(model, worldsOf(model), instances);
   Model out;

@@ -276,6 +276,39 @@ TEST_CASE("world transforms are applied down the tree, in scene order", "[gltf]"
   CHECK(model.indices == Indices{0, 1, 2, 5, 6, 7, 10, 11, 12});
 }
 
+TEST_CASE("a mesh with instances is where its first instance is", "[gltf]") {
+  File file = triangle();
+  file.accessor(file.view<float>({0, 4, 0, 9, 9, 9}), kFloat, "VEC3", 2);
+  file.accessor(file.view<float>({2, 2, 2, 1, 1, 1}), kFloat, "VEC3", 2);
+  const auto instanced = [](const std::string& attributes) {
+    return R"({"mesh":0,"translation":[1,0,0],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":)" + attributes +
+           "}}}";
+  };
+  file.nodes = instanced(R"({"TRANSLATION":2,"SCALE":3})");
+  const gltf::Model model = readable(file.bytes());
+  CHECK(Floats(model.positions.begin(), model.positions.begin() + 6) == Floats{1, 4, 0, 3, 4, 0});
+  CHECK(model.parts.size() == 1);
+
+  file.nodes = instanced(R"({"TRANSLATION":99})");
+  CHECK_THAT(errorOf(file.bytes()), Contains("nodes[0] refers to accessors[99]"));
+  file.nodes = instanced(R"({"ROTATION":2})");
+  CHECK_THAT(errorOf(file.bytes()), Contains("used by nodes[0].ROTATION, does not have 4 components"));
+  file.accessor(-1, kFloat, "VEC3", 0);
+  file.nodes = instanced(R"({"TRANSLATION":4})");
+  CHECK_THAT(errorOf(file.bytes()), Contains("nodes[0] has no instance"));
+}
+
+TEST_CASE("overlays of an earlier transfer are passed over", "[gltf]") {
+  File file = triangle();
+  const std::string own = R"("attributes":{"POSITION":0},"indices":1)";
+  const std::string mark = R"("extras":{"cagecastOverlay":true})";
+  file.extra = R"(,"materials":[{},{)" + mark + "}]";
+  for (const std::string& overlay : {own + "," + mark, own + R"(,"material":1)"}) {
+    file.primitive = own + R"(,"material":0},{)" + overlay;
+    CHECK(readable(file.bytes()).indices == Indices{0, 1, 2});
+  }
+}
+
 TEST_CASE("a mirrored node has the winding of its triangles reversed", "[gltf]") {
   File file = triangle();
   for (const char* scale : {"[-1,1,1]", "[1,1,-2]", "[-1,-1,-1]"}) {
