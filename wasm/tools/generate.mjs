@@ -118,8 +118,8 @@ given: of the options of \`project\` it reads all (\`weldTolerance\` only decide
 ${head}${rows(false)}
 JavaScript also has \`preset\`, \`locks\`, \`masks\` and \`reuse\` (an earlier result whose arrays are overwritten). C++ also has
 \`locks\`, and \`TransferOptions::paper()\` in place of \`preset\`. For example, in JavaScript,
-\`locks: { segments: { 7: 'keep' }, groups: { 3: 'exclude' } }\` never culls segment 7 and always culls the segments of
-group 3. \`keep\` only prevents culling: occluded and uncovered points of a kept segment stay unpainted unless step 6 or 7
+\`locks: { segments: { 7: 'keep' }, groups: { 3: 'exclude' } }\` never culls segment 7 and always culls the other segments
+of group 3: the lock of a segment overrides that of its group. \`keep\` only prevents culling: occluded and uncovered points of a kept segment stay unpainted unless step 6 or 7
 recovers them. The command has ${flags.join(', ')}, \`--preset\`, \`--keep\` and \`--exclude\`.
 
 ## Masks

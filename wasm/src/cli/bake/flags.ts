@@ -31,7 +31,7 @@ overlap, as those of mirrored halves do, the part that comes first has the texel
 Examples:
   cagecast bake head.glb cage.glb paint.png -o painted.glb
   cagecast bake head.glb cage.glb paint.png --normal scales.png --size 2048 -o painted.glb
-  cagecast bake head.glb cage.glb --back -o paint-of-head.png`;
+  cagecast bake head.glb cage.glb --back -o paint-again.png`;
 
 /** Adds the command that bakes paint into textures. */
 export function addBakeCommand(program: Command, progress: Progress): void {
