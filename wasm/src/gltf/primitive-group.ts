@@ -16,18 +16,20 @@ export interface GroupMember {
   cosmetic: Uint8Array;
 }
 
-/** What a result makes of one part of a target. */
+/** What a result makes of one part of a target. @param cut  The whole target with cut borders, if they are cut. */
 export function groupMember(
   part: Piece,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
-  cut: { target: CutTarget; ownCount: number } | undefined,
+  cut: CutTarget | undefined,
 ): GroupMember {
   const whole = { ...part, mirrored: isMirrored(part.matrix) };
   const {
     geometry,
     result: own,
     blends,
-  } = cut ? cutPart(whole, cut.target, cut.ownCount) : { geometry: whole, result, blends: noBlends };
+  } = cut
+    ? cutPart(whole, cut, cut.zones.length - cut.sources.length / 3)
+    : { geometry: whole, result, blends: noBlends };
   const { firstVertex, vertexCount, firstTriangle, triangleCount } = geometry;
   return {
     split: splitPart(geometry, own),

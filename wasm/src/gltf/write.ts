@@ -68,7 +68,7 @@ interface Writing {
  */
 export async function writeTransfer(
   file: GltfFile,
-  { mesh, parts }: Extracted,
+  { parts }: Extracted,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
   { paints = [], cut, form = 'keep', zones = zoneAttribute, isFurther = false, stem }: Writing = {},
 ): Promise<{ data: Uint8Array; beside: NamedFile[]; added: Added[]; replaced: number }> {
@@ -81,9 +81,8 @@ export async function writeTransfer(
   if (!isFurther) takeAttributes(writer, primitives);
   const overlays = paints.map((paint) => new OverlayWriter(writer, paint));
 
-  const pieces = cut && { target: cut, ownCount: mesh.positions.length / 3 };
   const members = parts.map((part, p): Member => {
-    const member = groupMember(part, result, pieces);
+    const member = groupMember(part, result, cut);
     const cutTriangles = member.cosmetic.length - part.triangleCount;
     const added = { uvSet: '', overlayTriangles: 0, fillsCutOuts: false, splitVertices: 0, cutTriangles };
     return { ...member, primitives: meshes[p]!.primitives, primitive: primitives[p]!, part, added };

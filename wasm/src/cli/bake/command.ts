@@ -74,7 +74,7 @@ async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefin
   const model = new FileModel(run.targetFile, run.target.parts, writer);
   const { report } = await bakeModel(model, {
     result: run.result,
-    cut: cut && { target: cut, ownCount: run.target.mesh.positions.length / 3 },
+    cut,
     paints,
     codec: { decode: decodeImage, encode: encodePng },
     size,

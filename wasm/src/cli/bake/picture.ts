@@ -80,9 +80,7 @@ async function imageOf(model: FileModel, texture: number | undefined, isNeeded: 
 
 /** How the triangles of parts lie in their texture and in the cage's. */
 function layoutsOf(model: FileModel, parts: readonly Part[], run: Run, cut: CutTarget | undefined): Layout[] {
-  const ownCount = run.target.mesh.positions.length / 3;
-  const found = { result: run.result, cut: cut && { target: cut, ownCount } };
-  return parts.map((part) => layoutOf(model, part, useOf(model, part), found));
+  return parts.map((part) => layoutOf(model, part, useOf(model, part), { result: run.result, cut }));
 }
 
 /** An image of which all is opaque, as the materials have it that show it. */

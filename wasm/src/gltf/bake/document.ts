@@ -66,7 +66,7 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
     const { target, model, result, cut, paint } = await transferDocument('bake', document, own, cuts);
     const { report, baked } = await bakeModel(model, {
       result,
-      cut: cut && { target: cut, ownCount: target.mesh.positions.length / 3 },
+      cut,
       paints,
       codec: images,
       size,

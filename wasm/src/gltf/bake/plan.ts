@@ -77,7 +77,7 @@ export interface BakeReport {
 /** What is baked. */
 interface BakeInput {
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>;
-  cut?: { target: CutTarget; ownCount: number } | undefined;
+  cut: CutTarget | undefined;
   paints: Paints;
   codec: ImageCodec;
   /** The longer side of new textures; that of the model's own by default. */

@@ -42,7 +42,7 @@ interface Member extends GroupMember {
  */
 export function addTransfer(
   document: Document,
-  { mesh, parts }: ExtractedDocument,
+  { parts }: ExtractedDocument,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
   paint?: Paint,
   cut?: CutTarget,
@@ -51,9 +51,8 @@ export function addTransfer(
   takeOverlays(document, parts);
   takeAttributes(document, primitiveOf);
   const overlay = paint && new OverlayWriter(document, paint);
-  const pieces = cut && { target: cut, ownCount: mesh.positions.length / 3 };
   const members = parts.map(
-    (part, p): Member => ({ ...groupMember(part, result, pieces), part, primitive: primitiveOf[p]! }),
+    (part, p): Member => ({ ...groupMember(part, result, cut), part, primitive: primitiveOf[p]! }),
   );
   for (const group of groupsOf(members)) addToGroup(document, group, overlay);
 }
