@@ -42,10 +42,7 @@ function jointsOf(file: GltfFile, parts: readonly Part[]) {
     const skin = nodes[part.node]!.skin;
     if (skin === undefined) return [];
     const { joints: held = [], inverseBindMatrices } = file.json.skins![skin]!;
-    const inverses =
-      inverseBindMatrices === undefined
-        ? undefined
-        : file.geometry.getRoot().listAccessors()[inverseBindMatrices]?.getArray();
+    const inverses = file.accessors[inverseBindMatrices ?? -1]?.getArray();
     return held.map((node, j) => {
       const position = inverses ? jointPlace(part.matrix, inverses.subarray(16 * j)) : undefined;
       return position ? { node, name: nameOf(node), position } : atNode(node);

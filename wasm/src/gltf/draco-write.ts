@@ -71,17 +71,16 @@ export async function packDraco(writer: GlbWriter, file: GltfFile): Promise<void
 function writePlain(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive): void {
   const inStream = (accessor: number) =>
     !writer.stored(accessor) && writer.json.accessors![accessor]!.bufferView === undefined;
-  const decodedOf = (accessor: number) => file.geometry.getRoot().listAccessors()[accessor]!;
   for (const [semantic, accessor] of Object.entries(primitive.attributes)) {
     if (!inStream(accessor)) continue;
     const { normalized, min, max } = writer.json.accessors![accessor]!;
     const more = { ...(normalized && { normalized }), ...(min && { min }), ...(max && { max }) };
-    const decoded = decodedOf(accessor);
+    const decoded = file.accessors[accessor]!;
     primitive.attributes[semantic] = writer.addAttribute(decoded.getArray()!, decoded.getElementSize(), more);
   }
   if (primitive.indices !== undefined && inStream(primitive.indices)) {
     const count = writer.json.accessors![primitive.attributes['POSITION']!]!.count;
-    primitive.indices = writer.addIndices(Uint32Array.from(decodedOf(primitive.indices).getArray()!), count);
+    primitive.indices = writer.addIndices(Uint32Array.from(file.accessors[primitive.indices]!.getArray()!), count);
   }
   unmarkDraco([primitive]);
 }
@@ -95,7 +94,7 @@ function withoutView({ bufferView: _, byteOffset: __, ...accessor }: GLTF.IAcces
 function documentOf(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive): Document {
   const document = new Document().setLogger(silent);
   const values = (accessor: number): TypedArray =>
-    writer.stored(accessor)?.values ?? file.geometry.getRoot().listAccessors()[accessor]!.getArray()!;
+    writer.stored(accessor)?.values ?? file.accessors[accessor]!.getArray()!;
   const compression = document.createExtension(KHRDracoMeshCompression).setRequired(true);
   // These may be numbers of things. With 0 bits, they are not rounded.
   const isOwn = ([semantic, accessor]: [string, number]) =>

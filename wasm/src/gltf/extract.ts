@@ -117,7 +117,7 @@ function listParts(file: GltfFile): Part[] {
 
 /** The matrix of the first instance of a node. */
 function instanceOf(file: GltfFile, path: string, attributes: Record<string, unknown> = {}): Matrix {
-  const accessors = file.geometry.getRoot().listAccessors();
+  const { accessors } = file;
   return firstInstance(path, (semantic) => {
     const number = attributes[semantic];
     if (number === undefined) return undefined;
@@ -132,10 +132,7 @@ function instanceOf(file: GltfFile, path: string, attributes: Record<string, unk
 /** How its skin holds a part. */
 function skinOf(file: GltfFile, part: Part, matrices: readonly Matrix[]): Skinned<Matrix> {
   const { joints = [], inverseBindMatrices } = file.json.skins![file.json.nodes![part.node]!.skin!]!;
-  const inverses =
-    inverseBindMatrices === undefined
-      ? undefined
-      : file.geometry.getRoot().listAccessors()[inverseBindMatrices]?.getArray();
+  const inverses = file.accessors[inverseBindMatrices ?? -1]?.getArray();
   const arrayOf = (semantic: string) => accessorOf(file, part, semantic)?.getArray() ?? [];
   return {
     matrices: joints.map((joint, j) =>
@@ -178,7 +175,7 @@ const primitiveOf = ({ json }: GltfFile, { mesh, primitive }: PrimitiveRef): GLT
 function accessorOf(file: GltfFile, ref: PrimitiveRef, semantic: string): Accessor | undefined {
   const { attributes } = primitiveOf(file, ref);
   if (attributes[semantic] === undefined) return undefined;
-  const accessor = file.geometry.getRoot().listAccessors()[attributes[semantic]];
+  const accessor = file.accessors[attributes[semantic]];
   const expected = file.json.accessors![attributes[semantic]]!.count;
   if (accessor?.getArray() === null || accessor?.getCount() !== expected) {
     throw new InputError(
@@ -197,10 +194,9 @@ function readPositions(file: GltfFile, ref: PrimitiveRef): Float32Array | undefi
 function readTriangles(file: GltfFile, ref: PrimitiveRef, vertexCount: number): Uint32Array | undefined {
   const { indices, mode = 4 } = primitiveOf(file, ref);
   if (!hasTriangles(mode)) return undefined;
-  const accessor = indices === undefined ? undefined : file.geometry.getRoot().listAccessors()[indices];
-  const array = accessor?.getArray() ?? undefined;
-  if (indices !== undefined && array === undefined) throw new InputError(`${primitivePath(ref)}.indices has no data`);
-  return decodeTriangles(primitivePath(ref), array ?? null, mode, vertexCount);
+  const array = file.accessors[indices ?? -1]?.getArray() ?? null;
+  if (indices !== undefined && array === null) throw new InputError(`${primitivePath(ref)}.indices has no data`);
+  return decodeTriangles(primitivePath(ref), array, mode, vertexCount);
 }
 
 function readUvs(file: GltfFile, parts: Part[], vertexCount: number): Float32Array | undefined {

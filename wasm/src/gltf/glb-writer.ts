@@ -79,9 +79,9 @@ export class GlbWriter {
   /** The accessors of the file, decoded. */
   readonly #decoded: Accessor[];
 
-  private constructor({ json, geometry }: GltfFile, form: Form) {
+  private constructor({ json, accessors }: GltfFile, form: Form) {
     this.json = structuredClone(json);
-    this.#decoded = geometry.getRoot().listAccessors();
+    this.#decoded = accessors;
     // Extensions may refer to all the others.
     const isKept = hasUnknownReferences(json);
     const known = isKept ? addedByTransfer(json) : json;

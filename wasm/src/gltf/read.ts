@@ -1,5 +1,5 @@
 import { dirname } from 'node:path';
-import { type Document, type GLTF, type JSONDocument, Logger, NodeIO } from '@gltf-transform/core';
+import { type Accessor, type GLTF, type JSONDocument, Logger, NodeIO } from '@gltf-transform/core';
 import { EXTMeshoptCompression, KHRDracoMeshCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { checkGeometry, dracoOf, meshoptView } from './check.js';
@@ -10,7 +10,7 @@ import { firstLine, InputError } from './input-error.js';
 import { checkLimits, exceeds } from './limits.js';
 import { parseGltf } from './parse.js';
 
-/** A glTF file as it is, and its geometry decoded. */
+/** A glTF file as it is, and its accessors decoded. */
 export interface GltfFile {
   /** As the caller named it, for messages. */
   path: string;
@@ -18,8 +18,8 @@ export interface GltfFile {
   json: GLTF.IGLTF;
   /** The bytes of each buffer; `undefined` for one that has none (a fallback for compressed views). */
   buffers: (Uint8Array | undefined)[];
-  /** The meshes and accessors, in the file's order, decompressed and decoded. */
-  geometry: Document;
+  /** The accessors, in the file's order, decompressed and decoded. */
+  accessors: Accessor[];
   /** How it was read, for what is read later. */
   reading: ReadOptions;
 }
@@ -47,7 +47,7 @@ export async function readGltf(
     checkRest(json);
     const all = sizes.reduce<number>((sum, size) => sum + (size ?? 0), content.byteLength - (binary?.byteLength ?? 0));
     checkLimits(json, all, reading.limits);
-    return { path, json, buffers, geometry: await decode(json, buffers), reading };
+    return { path, json, buffers, accessors: await decode(json, buffers), reading };
   } catch (error) {
     if (error instanceof InputError) throw error.in(path);
     throw new InputError(`${path}: cannot be decoded (${firstLine(error)})`, { cause: error });
@@ -76,8 +76,8 @@ async function readBuffers(
   return buffers;
 }
 
-/** Decodes meshes and accessors by glTF-Transform. It gets nothing else of the file, so that nothing else can make it fail. */
-async function decode(json: GLTF.IGLTF, buffers: (Uint8Array | undefined)[]): Promise<Document> {
+/** Decodes accessors by glTF-Transform. It gets no more of the file than their meshes, so that nothing else can make it fail. */
+async function decode(json: GLTF.IGLTF, buffers: (Uint8Array | undefined)[]): Promise<Accessor[]> {
   const { asset, bufferViews = [], accessors = [], meshes = [] } = json;
   const names = (list: string[] | undefined) => list?.filter((name) => geometryExtensionNames.includes(name)) ?? [];
   const used = new Set(names(json.extensionsUsed));
@@ -94,7 +94,7 @@ async function decode(json: GLTF.IGLTF, buffers: (Uint8Array | undefined)[]): Pr
   io.registerDependencies({ 'meshopt.decoder': MeshoptDecoder });
   if (usesDraco) io.registerDependencies({ 'draco3d.decoder': await createDracoDecoder() });
   await MeshoptDecoder.ready;
-  return io.readJSON({
+  const document = await io.readJSON({
     json: {
       asset: { ...asset, version: '2.0' },
       buffers: bufferDefs,
@@ -116,4 +116,5 @@ async function decode(json: GLTF.IGLTF, buffers: (Uint8Array | undefined)[]): Pr
     } as GLTF.IGLTF,
     resources,
   } as JSONDocument);
+  return document.getRoot().listAccessors();
 }

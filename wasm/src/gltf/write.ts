@@ -175,16 +175,15 @@ function rewriteAttributes(
   { sources, blends }: SharedVertices,
 ): void {
   const { attributes, targets } = primitives[0]!;
-  const decodedOf = (accessor: number) => file.geometry.getRoot().listAccessors()[accessor]!;
   const skin = blendSkin(
-    (semantic) => (attributes[semantic] === undefined ? undefined : decodedOf(attributes[semantic]).getArray()!),
+    (semantic) => (attributes[semantic] === undefined ? undefined : file.accessors[attributes[semantic]]!.getArray()!),
     blends,
   );
   // With other forms, primitives are marked that were not compressed.
   const fromDraco = primitives.some((primitive) => (dracoOf(primitive)?.bufferView ?? -1) >= 0);
   const made = new Map<string, number>();
   const rewrite = (accessor: number, semantic: string, isDelta: boolean): number => {
-    const decoded = decodedOf(accessor);
+    const decoded = file.accessors[accessor]!;
     const { normalized, min, name, extras, sparse, bufferView } = file.json.accessors![accessor]!;
     const size = decoded.getElementSize();
     const array = decoded.getArray()!;

@@ -59,7 +59,7 @@ export class FileModel implements BakeModel<number, number> {
 
   uvsOf(part: Part, set: string): Float32Array | undefined {
     const number = this.#primitive(part).attributes[set];
-    const accessor = number === undefined ? undefined : this.#file.geometry.getRoot().listAccessors()[number];
+    const accessor = number === undefined ? undefined : this.#file.accessors[number];
     return accessor?.getElementSize() === 2 && accessor.getCount() === part.vertexCount
       ? decodeFloats(accessor)
       : undefined;
@@ -67,7 +67,7 @@ export class FileModel implements BakeModel<number, number> {
 
   colorsOf(part: Part, semantic: string): { values: Float32Array; size: number } | undefined {
     const number = this.#primitive(part).attributes[semantic];
-    const accessor = number === undefined ? undefined : this.#file.geometry.getRoot().listAccessors()[number];
+    const accessor = number === undefined ? undefined : this.#file.accessors[number];
     return accessor ? { values: decodeFloats(accessor), size: accessor.getElementSize() } : undefined;
   }
 
