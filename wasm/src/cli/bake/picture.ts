@@ -1,7 +1,7 @@
 import { mostTexels } from '../../bake/image.js';
 import { type Baked, cageTexture, fill, type Image, type Layout, resize, type Wrap } from '../../bake/index.js';
 import { FileModel } from '../../gltf/bake/file.js';
-import { layoutOf, scaledTo, type TextureUse } from '../../gltf/bake/plan.js';
+import { layoutOf, scaledTo, type TextureUse, uvsOf } from '../../gltf/bake/plan.js';
 import type { Part } from '../../gltf/extract.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
@@ -186,7 +186,7 @@ function oneTexture(model: FileModel, { result, target }: Run, names: readonly s
   const textured = chosen.filter((part) => uses(model, part));
   const painted = textured.length > 0 ? textured : chosen;
   if (painted.length === 0) throw new InputError('nothing of it may be painted');
-  const withoutUvs = painted.find((part) => !model.uvsOf(part, useOf(model, part).set));
+  const withoutUvs = painted.find((part) => !uvsOf(model, part, useOf(model, part).set));
   if (withoutUvs)
     throw new InputError(
       `${quoted(withoutUvs.name)} has no ${useOf(model, withoutUvs).set}: a texture can only be laid on a model that is unwrapped`,
@@ -202,7 +202,7 @@ function oneTexture(model: FileModel, { result, target }: Run, names: readonly s
     texture === undefined || names.length > 0
       ? painted
       : target.parts.filter(
-          (part) => uses(model, part)?.texture === texture && model.uvsOf(part, useOf(model, part).set),
+          (part) => uses(model, part)?.texture === texture && uvsOf(model, part, useOf(model, part).set),
         );
   return { parts, texture };
 }

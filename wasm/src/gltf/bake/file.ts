@@ -1,10 +1,9 @@
 import { dirname } from 'node:path';
-import type { GLTF } from '@gltf-transform/core';
+import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Part } from '../extract.js';
 import { readUri } from '../files.js';
 import type { GlbWriter } from '../glb-writer.js';
 import { imageType } from '../image.js';
-import { decodeFloats } from '../pieces.js';
 import type { GltfFile } from '../read.js';
 import { uvLayoutOf } from '../uv-transform.js';
 import { type BakeModel, type Slot, type TextureUse, wrapOf } from './plan.js';
@@ -57,18 +56,8 @@ export class FileModel implements BakeModel<number, number> {
     return this.#material(material).name ?? `materials[${material}]`;
   }
 
-  uvsOf(part: Part, set: string): Float32Array | undefined {
-    const number = this.#primitive(part).attributes[set];
-    const accessor = number === undefined ? undefined : this.#file.accessors[number];
-    return accessor?.getElementSize() === 2 && accessor.getCount() === part.vertexCount
-      ? decodeFloats(accessor)
-      : undefined;
-  }
-
-  colorsOf(part: Part, semantic: string): { values: Float32Array; size: number } | undefined {
-    const number = this.#primitive(part).attributes[semantic];
-    const accessor = number === undefined ? undefined : this.#file.accessors[number];
-    return accessor ? { values: decodeFloats(accessor), size: accessor.getElementSize() } : undefined;
+  attributeOf(part: Part, semantic: string): Accessor | undefined {
+    return this.#file.accessors[this.#primitive(part).attributes[semantic] ?? -1];
   }
 
   useOf(material: number, slot: Slot): TextureUse<number> | undefined {

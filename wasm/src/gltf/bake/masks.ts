@@ -3,7 +3,7 @@ import type { Masks } from '../../index.js';
 import { InputError } from '../input-error.js';
 import { endOf } from '../pieces.js';
 import { transformUvs } from '../uv-transform.js';
-import type { BakeModel } from './plan.js';
+import { type BakeModel, colorsOf, uvsOf } from './plan.js';
 
 /** Where masks can come from, beside arrays. */
 export interface MaskSources {
@@ -35,14 +35,14 @@ export function masksOf<Material, Texture>(
   let hasUvs = false;
   let hasColors = false;
   for (const part of parts) {
-    const found = colors === undefined ? undefined : model.colorsOf(part, colors);
+    const found = colors === undefined ? undefined : colorsOf(model, part, colors);
     if (found && found.size >= 3) {
       hasColors = true;
       vertices.set(maskVertices(found.values, found.size as 3 | 4), part.firstVertex);
     }
     const material = model.materialOf(part);
     const use = material === undefined ? undefined : model.useOf(material, 'color');
-    const stored = shown && model.uvsOf(part, use?.set ?? 'TEXCOORD_0');
+    const stored = shown && uvsOf(model, part, use?.set ?? 'TEXCOORD_0');
     if (!stored) continue;
     hasUvs = true;
     const uvs = transformUvs(stored, use?.transform);

@@ -1,3 +1,4 @@
+import type { Accessor } from '@gltf-transform/core';
 import {
   areaOf,
   type Baked,
@@ -13,7 +14,7 @@ import { kMostLayers } from '../../bake/pattern.js';
 import type { CutTarget, TransferResult } from '../../index.js';
 import { blend } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
-import { type Piece, requireFinite } from '../pieces.js';
+import { decodeFloats, type Piece, requireFinite } from '../pieces.js';
 import { groupMember } from '../primitive-group.js';
 import { transformUvs, type UvLayout } from '../uv-transform.js';
 
@@ -38,10 +39,7 @@ export interface BakeModel<Material, Texture> {
   /** The materials that variants give a part instead of its own. */
   variantsOf(part: Piece): Material[];
   nameOf(material: Material): string;
-  /** The values of a set of UVs, decoded. */
-  uvsOf(part: Piece, set: string): Float32Array | undefined;
-  /** The values of an attribute of colours, decoded, and how many a vertex has. */
-  colorsOf(part: Piece, semantic: string): { values: Float32Array; size: number } | undefined;
+  attributeOf(part: Piece, semantic: string): Accessor | undefined;
   useOf(material: Material, slot: Slot): TextureUse<Texture> | undefined;
   /** By what the values of the texture are multiplied. */
   factorOf(material: Material, slot: Slot): readonly [number, number, number];
@@ -50,6 +48,24 @@ export interface BakeModel<Material, Texture> {
   imageOf(texture: Texture): Promise<{ bytes: Uint8Array; mimeType: string } | undefined>;
   /** Gives materials a new texture in a slot, a PNG with the factor in it. @param use  Whose UVs and wrap modes it has. */
   replace(materials: readonly Material[], slot: Slot, png: Uint8Array, use: TextureUse<Texture>): void;
+}
+
+/** The UVs of a part in a set, if it has one that is complete. */
+export function uvsOf(model: BakeModel<unknown, unknown>, part: Piece, set: string): Float32Array | undefined {
+  const accessor = model.attributeOf(part, set);
+  return accessor?.getElementSize() === 2 && accessor.getCount() === part.vertexCount
+    ? decodeFloats(accessor)
+    : undefined;
+}
+
+/** The colours of a part by an attribute, and how many numbers each has. */
+export function colorsOf(
+  model: BakeModel<unknown, unknown>,
+  part: Piece,
+  semantic: string,
+): { values: Float32Array; size: number } | undefined {
+  const accessor = model.attributeOf(part, semantic);
+  return accessor && { values: decodeFloats(accessor), size: accessor.getElementSize() };
 }
 
 /** Reads and writes image files. */
@@ -164,7 +180,7 @@ function listSheets<Material, Texture>(
     const use = own ?? model.useOf(material, 'color');
     const reason = !use
       ? 'its material has no texture'
-      : parts.some((part) => !model.uvsOf(part, use.set))
+      : parts.some((part) => !uvsOf(model, part, use.set))
         ? `it has no ${use.set}, the UVs of its texture`
         : slot === 'color' && parts.some((part) => isTinted(model, part))
           ? 'its vertices have colours'
@@ -187,7 +203,7 @@ function listSheets<Material, Texture>(
 
 /** Whether its vertices have colours, by which its texture is multiplied. Many programs write white ones. */
 function isTinted<Material, Texture>(model: BakeModel<Material, Texture>, part: Piece): boolean | undefined {
-  const colors = model.colorsOf(part, 'COLOR_0');
+  const colors = colorsOf(model, part, 'COLOR_0');
   return colors?.values.some((value, i) => i % colors.size < 3 && value !== 1);
 }
 
@@ -265,7 +281,7 @@ export function layoutOf<Material, Texture>(
   { result, cut }: Pick<BakeInput, 'result' | 'cut'>,
 ): Layout {
   const { split, cosmetic, blends } = groupMember(part, result, cut);
-  const stored = model.uvsOf(part, set)!;
+  const stored = uvsOf(model, part, set)!;
   requireFinite(`"${part.name}"`, set, stored, 2);
   const ofCorners = (values: Float32Array, size: number) => {
     const all = gather(blend(values, size, blends), size, split.sources);

@@ -1,6 +1,5 @@
-import type { Document, ExtensionProperty, Material, Texture, TextureInfo } from '@gltf-transform/core';
+import type { Accessor, Document, ExtensionProperty, Material, Texture, TextureInfo } from '@gltf-transform/core';
 import { type BakeModel, type Paints, type TextureUse, wrapOf } from '../bake/plan.js';
-import { decodeFloats } from '../pieces.js';
 import { type DocumentPart, uvLayoutOf } from './read.js';
 
 /** The extension of glTF-Transform, which is no dependency. */
@@ -31,14 +30,8 @@ export class DocumentModel implements BakeModel<Material, Texture> {
     return material.getName();
   }
 
-  uvsOf({ primitive, vertexCount }: DocumentPart, set: string): Float32Array | undefined {
-    const accessor = primitive.getAttribute(set);
-    return accessor?.getElementSize() === 2 && accessor.getCount() === vertexCount ? decodeFloats(accessor) : undefined;
-  }
-
-  colorsOf({ primitive }: DocumentPart, semantic: string): { values: Float32Array; size: number } | undefined {
-    const accessor = primitive.getAttribute(semantic);
-    return accessor ? { values: decodeFloats(accessor), size: accessor.getElementSize() } : undefined;
+  attributeOf({ primitive }: DocumentPart, semantic: string): Accessor | undefined {
+    return primitive.getAttribute(semantic) ?? undefined;
   }
 
   useOf(material: Material, slot: keyof Paints): TextureUse<Texture> | undefined {
