@@ -689,6 +689,34 @@ test('overlapping UVs are told by the command', () => {
   );
 });
 
+test('a document is unchanged if its second texture cannot be written, or is read as something else than RGBA', async () => {
+  const document = await io.read(at('box.glb'));
+  const before = await io.writeBinary(document);
+  let encoded = 0;
+  const full: ImageCodec = {
+    ...images,
+    encode: async (image) => {
+      if (++encoded === 2) throw new Error('the disk is full');
+      return pngOf(image);
+    },
+  };
+  await assert.rejects(baked(document, { paints: { color: red, normal: red }, images: full }), /the disk is full/);
+  assert.equal(encoded, 2);
+  assert.deepEqual(await io.writeBinary(document), before);
+  const withoutAlpha: ImageCodec = {
+    ...images,
+    decode: async (bytes) => {
+      const { width, height, data } = PNG.sync.read(Buffer.from(bytes));
+      return { width, height, data: data.filter((_, i) => i % 4 !== 3) };
+    },
+  };
+  await assert.rejects(
+    baked(document, { images: withoutAlpha }),
+    /^CagecastError: bake: images\.decode gave 27648 bytes for 96 × 96 pixels, not 4 for each$/,
+  );
+  assert.deepEqual(await io.writeBinary(document), before);
+});
+
 test('what cannot be baked is one line that names the file', async () => {
   const bare = await io.read(at('box.glb'));
   for (const primitive of bare.getRoot().listMeshes()[0]!.listPrimitives()) primitive.setAttribute('TEXCOORD_0', null);

@@ -37,7 +37,7 @@ export interface BakeOptions extends TransferOptions, MaskSources {
  * not painted if its material has no texture, if the part has no UVs for it or vertex colours that are not white, or if its UVs are not
  * an unwrapping; `onBaked` says which. Where UVs overlap, as mirrored halves do, the part that comes first has the texels.
  *
- * If `encode` fails, textures before that one are baked already.
+ * If the transform throws, the document is unchanged.
  *
  * Memory: 32 bytes a texel of the largest texture, and the images. Cost: 0.3 to 0.5 s for 1024², and reading and writing images.
  * @throws {CagecastError} with the reason and the place, if target, cage, paints or options cannot be used.

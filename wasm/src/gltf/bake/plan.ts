@@ -11,7 +11,7 @@ import {
   type Wrap,
 } from '../../bake/index.js';
 import { kMostLayers } from '../../bake/pattern.js';
-import type { CutTarget, TransferResult } from '../../index.js';
+import { CagecastError, type CutTarget, type TransferResult } from '../../index.js';
 import { blend } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
 import { decodeFloats, type Piece, requireFinite } from '../pieces.js';
@@ -129,13 +129,17 @@ interface Sheet<Material, Texture> {
   users: (User<Material> & { material: Material })[];
 }
 
-/** Bakes paints into the textures of a model; see `bake` of cagecast/gltf. @returns what was done, and the parts that are baked. */
+/**
+ * Bakes paints into the textures of a model; see `bake` of cagecast/gltf. If it throws, the model is unchanged.
+ * @returns what was done, and the parts that are baked.
+ */
 export async function bakeModel<Material, Texture>(
   model: BakeModel<Material, Texture>,
   input: BakeInput,
 ): Promise<{ report: BakeReport; baked: Set<Piece> }> {
   const report: BakeReport = { textures: [], left: [] };
   const baked = new Set<Piece>();
+  const replacements: (() => void)[] = [];
   const { cosmeticTriangles } = input.result;
   const isPainted = ({ firstTriangle, triangleCount }: Piece) =>
     cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount).includes(1);
@@ -146,13 +150,15 @@ export async function bakeModel<Material, Texture>(
     for (const sheet of listSheets(model, slot, refused)) {
       const painted = new Set(sheet.users.map(({ part }) => part).filter(isPainted));
       if (painted.size === 0) continue;
-      const done = await bakeSheet(model, sheet, paint, input);
-      if (typeof done === 'string') {
-        for (const user of sheet.users) refused.set(user, done);
+      const made = await bakeSheet(model, sheet, paint, input);
+      if (typeof made === 'string') {
+        for (const user of sheet.users) refused.set(user, made);
         continue;
       }
+      const { width, height, overlap, png } = made;
+      const materials = [...new Set(sheet.users.map(({ material }) => material))];
+      replacements.push(() => model.replace(materials, slot, png, sheet.use));
       for (const { part, material } of sheet.users) if (material === model.materialOf(part)) baked.add(part);
-      const { width, height, overlap } = done;
       report.textures.push({ slot, parts: [...painted].map(({ name }) => name), width, height, overlap });
     }
     for (const [{ part, material }, reason] of refused) {
@@ -160,6 +166,7 @@ export async function bakeModel<Material, Texture>(
       if (isPainted(part)) report.left.push({ part: part.name, ...ofVariant, reason });
     }
   }
+  for (const replace of replacements) replace();
   return { report, baked };
 }
 
@@ -192,7 +199,8 @@ function listSheets<Material, Texture>(
     const factor = model.factorOf(material, slot);
     const isNew = !own;
     const redIsNew = slot === 'orm' && !model.hasOcclusion(material);
-    const key = JSON.stringify([isNew, redIsNew, factor, use.wraps]);
+    // A new texture lies as that of the colours, which are painted once for each factor.
+    const key = JSON.stringify([isNew && model.factorOf(material, 'color'), redIsNew, factor, use.wraps]);
     const known = sheets.find((sheet) => sheet.key === key && sheet.use.texture === use.texture);
     const sheet = known ?? { key, slot, use, isNew, redIsNew, factor, users: [] };
     if (!known) sheets.push(sheet);
@@ -207,13 +215,13 @@ function isTinted<Material, Texture>(model: BakeModel<Material, Texture>, part: 
   return colors?.values.some((value, i) => i % colors.size < 3 && value !== 1);
 }
 
-/** Paints the texture of a sheet. @returns what was baked, or why not. */
+/** Bakes the texture of a sheet. @returns what was baked, and the whole texture as a PNG; or why not. */
 async function bakeSheet<Material, Texture>(
   model: BakeModel<Material, Texture>,
   sheet: Sheet<Material, Texture>,
   paint: Image,
   input: BakeInput,
-): Promise<Baked | string> {
+): Promise<(Baked & { png: Uint8Array }) | string> {
   const { slot, use, factor } = sheet;
   const base = await baseOf(model, sheet, input);
   if (typeof base === 'string') return base;
@@ -224,8 +232,7 @@ async function bakeSheet<Material, Texture>(
   const baked = fill('bake', layouts, paint, { width, height, wrap: use.wraps, kind: kindOf[slot] });
   if (baked.overlap.lost > kMostLost) return 'most of its paint would lie on that of others';
   const image = layOver(base, baked, slot === 'normal' ? [1, 1, 1] : factor);
-  model.replace([...new Set(sheet.users.map(({ material }) => material))], slot, await input.codec.encode(image), use);
-  return baked;
+  return { ...baked, png: await input.codec.encode(image) };
 }
 
 /** The triangles on a sheet; those of a part that several materials lay on it in the same way only once. */
@@ -263,7 +270,15 @@ async function baseOf<Material, Texture>(
   } catch (error) {
     return `its ${kinds[slot]} texture (${file.mimeType}) cannot be read: ${error instanceof Error ? error.message : error}`;
   }
-  if (redIsNew) image = { ...image, data: image.data.map((byte, i) => (i % 4 === 0 ? 255 : byte)) };
+  const { width, height, data } = image;
+  if (data.length !== 4 * width * height)
+    throw new CagecastError(
+      'badArgument',
+      'bake',
+      `images.decode gave ${data.length} bytes for ${width} × ${height} pixels, not 4 for each`,
+      { argument: 'images' },
+    );
+  if (redIsNew) image = { ...image, data: data.map((byte, i) => (i % 4 === 0 ? 255 : byte)) };
   return size === undefined ? image : resize(image, ...scaledTo(image, size));
 }
 
