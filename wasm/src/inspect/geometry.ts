@@ -96,6 +96,18 @@ export function firstInPlace(positions: Float32Array): Uint32Array {
   return place;
 }
 
+/** Things with the same key together, in the order of the first of each. */
+export function grouped<T, Key>(things: readonly T[], keyOf: (thing: T) => Key): [T, ...T[]][] {
+  const groups = new Map<Key, [T, ...T[]]>();
+  for (const thing of things) {
+    const key = keyOf(thing);
+    const group = groups.get(key);
+    if (group) group.push(thing);
+    else groups.set(key, [thing]);
+  }
+  return [...groups.values()];
+}
+
 /** Sets of things by number that grow together. */
 export class UnionFind {
   readonly #parents: Uint32Array;

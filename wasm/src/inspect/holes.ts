@@ -38,8 +38,7 @@ export function spanPoints({ surface, cage }: Scene): Float32Array {
   for (const { edges, centre } of surface.loops) {
     for (const { a, b } of edges) {
       const [p, q] = [pointAt(cage.positions, a), pointAt(cage.positions, b)];
-      for (const weight of kSpanWeights)
-        for (let k = 0; k < 3; ++k) points.push((weight * (p[k]! + q[k]!)) / 2 + (1 - weight) * centre[k]!);
+      for (const weight of kSpanWeights) points.push(...spanPoint(p, q, centre, weight));
     }
   }
   return Float32Array.from(points);
@@ -81,7 +80,7 @@ export function holesOf(
       const area = length(normal) / 2;
       for (const weight of kSpanWeights) {
         total += area;
-        if (reversed && isBeneath(reversed, point, at(p, q, loop.centre, weight), normal)) {
+        if (reversed && isBeneath(reversed, point, spanPoint(p, q, loop.centre, weight), normal)) {
           const part = partOf[target.indices[3 * reversed.triangles[point]!]!]!;
           beneath.set(part, (beneath.get(part) ?? 0) + area);
         } else sideways += area;
@@ -105,7 +104,7 @@ export function holesOf(
   return holes.sort((x, y) => y.diagonal - x.diagonal);
 }
 
-const at = (p: Vector, q: Vector, centre: Vector, weight: number): Vector =>
+const spanPoint = (p: Vector, q: Vector, centre: Vector, weight: number): Vector =>
   [0, 1, 2].map((k) => (weight * (p[k]! + q[k]!)) / 2 + (1 - weight) * centre[k]!) as unknown as Vector;
 
 function isBeneath(reversed: Reverse, point: number, from: Vector, normal: Vector): boolean {

@@ -1,5 +1,5 @@
 import { type Finding, percent } from './finding.js';
-import { cross, dot, minus, pointAt, type Vector } from './geometry.js';
+import { dot, doubleAreaNormal, minus, pointAt, type Vector } from './geometry.js';
 import type { Reverse } from './reverse.js';
 import type { Scene } from './scene.js';
 
@@ -29,7 +29,7 @@ export function insideOf({ surface, cage, diagonal }: Scene, reversed: Reverse |
   for (let t = 0; t < surface.areas.length; ++t) {
     const corners = [0, 1, 2].map((k) => place[indices[3 * t + k]!]!) as [number, number, number];
     const [a, b, c] = corners.map((v) => pointAt(positions, v)) as [Vector, Vector, Vector];
-    const normal = cross(minus(b, a), minus(c, a));
+    const normal = doubleAreaNormal(a, b, c);
     for (const v of corners) {
       areas[v]! += surface.areas[t]! / 3;
       for (let k = 0; k < 3; ++k) normals[3 * v + k]! += normal[k]!;
@@ -42,7 +42,7 @@ export function insideOf({ surface, cage, diagonal }: Scene, reversed: Reverse |
     if (reversed.distances[v]! <= kDepth * diagonal) continue;
     const p = pointAt(positions, v);
     const [a, b, c] = reversed.corners(v);
-    const normal = cross(minus(b, a), minus(c, a));
+    const normal = doubleAreaNormal(a, b, c);
     const beneath = dot(normal, minus(a, p)) > 0;
     if (!beneath || dot(normal, pointAt(normals, v)) <= 0) continue;
     ++vertices;

@@ -1,5 +1,5 @@
 import { type Finding, percent } from './finding.js';
-import { type Box, boxOf, cross, minus, pointAt, quantiles, type Vector } from './geometry.js';
+import { type Box, boxOf, cross, doubleAreaNormal, minus, pointAt, quantiles, type Vector } from './geometry.js';
 import { partsOf, type Scene } from './scene.js';
 
 /** How far outside the cage a vertex may lie, as a share of the diagonal, before it counts as poking through. */
@@ -136,7 +136,7 @@ function correct(
   const rowOf = (v: number) => {
     const t = 3 * result.triangles[v]!;
     const [a, b, c] = [0, 1, 2].map((k) => pointAt(cage.positions, cage.indices[t + k]!)) as [Vector, Vector, Vector];
-    const normal = cross(minus(b, a), minus(c, a));
+    const normal = doubleAreaNormal(a, b, c);
     const size = Math.hypot(...normal);
     const n: Vector = [normal[0] / size, normal[1] / size, normal[2] / size];
     const p = pointAt(target.positions, v);

@@ -1,5 +1,6 @@
 import type { Locks, SegmentStats } from '../index.js';
 import { counted, type Finding, type Place, percent } from './finding.js';
+import { grouped } from './geometry.js';
 import { partsOf, type Scene } from './scene.js';
 
 /** A segment is in doubt if its score is within this factor of 1. */
@@ -195,15 +196,3 @@ export const placeOfSegment = (segment: number, { group, part }: Segment): Place
 const locksFor = (segments: readonly Numbered[]): Locks => ({
   segments: Object.fromEntries(segments.map(({ s, culled }) => [s, culled ? 'keep' : 'exclude'])),
 });
-
-/** Things with the same key together, in the order of the first of each. */
-function grouped<T, Key>(things: readonly T[], keyOf: (thing: T) => Key): [T, ...T[]][] {
-  const groups = new Map<Key, [T, ...T[]]>();
-  for (const thing of things) {
-    const key = keyOf(thing);
-    const group = groups.get(key);
-    if (group) group.push(thing);
-    else groups.set(key, [thing]);
-  }
-  return [...groups.values()];
-}

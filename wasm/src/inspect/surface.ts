@@ -1,5 +1,5 @@
 import type { Mesh } from '../api/mesh.js';
-import { boxOf, doubleAreaNormal, firstInPlace, length, pointAt, UnionFind, type Vector } from './geometry.js';
+import { boxOf, doubleAreaNormal, firstInPlace, grouped, length, pointAt, UnionFind, type Vector } from './geometry.js';
 
 /** An edge between two positions, and its triangles. */
 export interface Edge {
@@ -78,14 +78,7 @@ export function surfaceOf(mesh: Mesh): Surface {
   const open = edges.filter(({ uses }) => uses.length === 1);
   const sets = new UnionFind(count);
   for (const { a, b } of open) sets.join(a, b);
-  const groups = new Map<number, Edge[]>();
-  for (const edge of open) {
-    const root = sets.root(edge.a);
-    const group = groups.get(root);
-    if (group) group.push(edge);
-    else groups.set(root, [edge]);
-  }
-  const loops = [...groups.values()].map((group) => loopOf(positions, group));
+  const loops = grouped(open, ({ a }) => sets.root(a)).map((group) => loopOf(positions, group));
   const loopOfVertex = new Int32Array(count).fill(-1);
   const loopOfEdge = new Map<number, number>();
   loops.forEach((loop, l) => {
@@ -108,6 +101,10 @@ export function surfaceOf(mesh: Mesh): Surface {
     edgeKey,
   };
 }
+
+/** How many sets there are of triangles that are not ignored. */
+export const countSets = ({ areas, doubled }: Surface, sets: UnionFind): number =>
+  areas.reduce((sum, area, t) => sum + (area > 0 && doubled[t] === 0 && sets.root(t) === t ? 1 : 0), 0);
 
 /** The middle of a chain of edges, weighted by length. */
 export function middleOf(positions: Float32Array, edges: readonly Edge[]): Vector {

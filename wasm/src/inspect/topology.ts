@@ -1,7 +1,7 @@
 import { counted, type Finding, percent } from './finding.js';
 import { length, minus, pointAt, UnionFind } from './geometry.js';
 import type { Scene } from './scene.js';
-import type { Surface } from './surface.js';
+import { countSets, type Surface } from './surface.js';
 
 /** Open edges closer together than this share of the diagonal are a crack: their vertices should be merged. */
 const kCrackWidth = 1e-4;
@@ -9,8 +9,8 @@ const kCrackWidth = 1e-4;
 const kNarrow = 0.002;
 /** or if its box has a diagonal of less than this share of the target's. */
 const kTiny = 0.004;
-/** Finer loops are looked at for cracks one by one; beyond this many open edges it would take too long. */
-const kMostCompared = 20000;
+/** A cage with more open edges than this is not searched for cracks, which would take too long. */
+const kMostOpenEdges = 20000;
 
 /** What is wrong with a cage as a surface. */
 export interface Topology {
@@ -47,19 +47,19 @@ function slitsIn({ loops }: Surface, least: number): number {
   return loops.filter(({ diagonal, area, perimeter }) => diagonal < least || area < kNarrow * perimeter ** 2).length;
 }
 
-function piecesOf({ areas, doubled, edges }: Surface): number {
-  const sets = new UnionFind(areas.length);
-  for (const { uses } of edges) for (const { triangle } of uses) sets.join(triangle, uses[0]!.triangle);
-  return areas.reduce((sum, area, t) => sum + (area > 0 && doubled[t] === 0 && sets.root(t) === t ? 1 : 0), 0);
+function piecesOf(surface: Surface): number {
+  const sets = new UnionFind(surface.areas.length);
+  for (const { uses } of surface.edges) for (const { triangle } of uses) sets.join(triangle, uses[0]!.triangle);
+  return countSets(surface, sets);
 }
 
 /** Counts open edges both ends of which lie within `width` of the ends of another. */
 function cracksIn({ mesh, edges }: Surface, width: number): number {
   const open = edges.filter(({ uses }) => uses.length === 1);
+  if (open.length > kMostOpenEdges) return 0;
   const ends = [...new Set(open.flatMap(({ a, b }) => [a, b]))].sort(
     (v, w) => mesh.positions[3 * v]! - mesh.positions[3 * w]!,
   );
-  if (open.length > kMostCompared) return 0;
   // Each end gets the first of those beside it, swept along x.
   const twin = new Map<number, number>();
   ends.forEach((v, i) => {

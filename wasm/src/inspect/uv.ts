@@ -1,6 +1,7 @@
 import { counted, type Finding, percent } from './finding.js';
 import { UnionFind } from './geometry.js';
 import type { Scene } from './scene.js';
+import { countSets } from './surface.js';
 
 /** Samples along each side of the texture by which overlaps are found. */
 const kSamples = 1024;
@@ -74,14 +75,14 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
     outside: { vertices: outside, share: uvs.length > 0 ? outside / (uvs.length / 2) : 0 },
     withoutArea: { triangles: flat, share: surface.area > 0 ? flatArea / surface.area : 0 },
     overlap: { share, layers },
-    charts: surface.areas.reduce(
-      (sum, area, t) => sum + (area > 0 && surface.doubled[t] === 0 && charts.root(t) === t ? 1 : 0),
-      0,
-    ),
+    charts: countSets(surface, charts),
     seams: { edges: seams, share: innerLength > 0 ? seamLength / innerLength : 0 },
     used,
   };
 }
+
+/** Whether UVs are so far outside of 0 … 1 that they may be in pixels. */
+const areVast = (uvs: Float32Array): boolean => uvs.some((value) => value < -8 || value > 9);
 
 /**
  * Counts, at the centres of a grid of pixels over the texture, which repeats, how many UV triangles use each.
@@ -93,13 +94,13 @@ function coverageOf(
   areas: Float64Array,
 ): { used: number; share: number; layers: number } {
   const counts = new Uint16Array(kSamples * kSamples);
-  // UVs in pixels, or far outside for another reason, would take too long: then the whole layout is scaled to the grid.
+  // UVs in pixels would take too long: then the whole layout is scaled to the grid.
   let [low, high] = [Infinity, -Infinity];
   for (const value of uvs) {
     if (value < low) low = value;
     if (value > high) high = value;
   }
-  const vast = low < -8 || high > 9;
+  const vast = areVast(uvs);
   const scale = vast ? (kSamples - 1) / (high - low) : kSamples;
   const place = (value: number) => (vast ? value - low : value) * scale - 0.5;
   for (let t = 0; t < areas.length; ++t) {
@@ -161,8 +162,7 @@ export function checkUvs(
     });
   }
   if (outside.vertices > 0) {
-    let vast = false;
-    for (const value of cage.uvs!) if (value < -8 || value > 9) vast = true;
+    const vast = areVast(cage.uvs!);
     findings.push({
       code: 'uvsOutside',
       weight: vast ? 1.5 : 0.1 + 0.8 * outside.share,
