@@ -5,7 +5,7 @@ import { blend, blendSkin, ruleOf } from '../parts/blend.js';
 import { gather } from '../parts/split-part.js';
 import { dracoOf } from './check.js';
 import { dracoExtension, markForDraco, packDraco, unmarkDraco } from './draco-write.js';
-import { takeAttributes, takeOverlays } from './earlier-transfer.js';
+import { removeAttributes, removeOverlays } from './earlier-transfer.js';
 import type { Extracted, Part } from './extract.js';
 import { type Form, GlbWriter } from './glb-writer.js';
 import type { NamedFile } from './output/pack.js';
@@ -77,8 +77,8 @@ export async function writeTransfer(
   const meshOfNode = separateMeshes(json, parts);
   const meshes = parts.map(({ node }) => json.meshes![meshOfNode.get(node)!]!);
   const primitives = parts.map(({ primitive }, p) => meshes[p]!.primitives[primitive]!);
-  const replaced = isFurther ? 0 : takeOverlays(writer, meshes);
-  if (!isFurther) takeAttributes(writer, primitives);
+  const replaced = isFurther ? 0 : removeOverlays(writer, meshes);
+  if (!isFurther) removeAttributes(writer, primitives);
   const overlays = paints.map((paint) => new OverlayWriter(writer, paint));
 
   const members = parts.map((part, p): Member => {

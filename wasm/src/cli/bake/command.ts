@@ -1,7 +1,7 @@
 import type { Baked, Image } from '../../bake/index.js';
 import { FileModel } from '../../gltf/bake/file.js';
 import { type BakeReport, bakeModel, type Paints } from '../../gltf/bake/plan.js';
-import { takeOverlays } from '../../gltf/earlier-transfer.js';
+import { removeOverlays } from '../../gltf/earlier-transfer.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
 import { CagecastError, type CutTarget } from '../../index.js';
@@ -67,7 +67,7 @@ async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefin
   const writer = await GlbWriter.from(run.targetFile, 'keep').catch((error) => {
     throw inTarget(error, target);
   });
-  const overlays = takeOverlays(
+  const overlays = removeOverlays(
     writer,
     run.target.parts.map(({ mesh }) => writer.json.meshes![mesh]!),
   );

@@ -2,7 +2,7 @@ import type { Document } from '@gltf-transform/core';
 import { mostTexels } from '../../bake/index.js';
 import type { Mesh, TransferOptions } from '../../index.js';
 import { type Borders, isCut } from '../../parts/borders-option.js';
-import { takeOverlays } from '../document/earlier-transfer.js';
+import { removeOverlays } from '../document/earlier-transfer.js';
 import { transferDocument, within, wrong } from '../document/transfer.js';
 import { addTransfer } from '../document/write.js';
 import type { MaskSources } from './masks.js';
@@ -75,7 +75,7 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
         throw error;
       }),
     );
-    takeOverlays(document, target.parts);
+    removeOverlays(document, target.parts);
     if (paint) {
       // What is baked is not shown twice.
       const isLeft = result.cosmeticTriangles.slice().fill(1);

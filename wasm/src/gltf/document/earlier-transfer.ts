@@ -10,8 +10,8 @@ export function disposeUnused(document: Document, property: Property): void {
   for (const child of used) disposeUnused(document, child);
 }
 
-/** Takes the UVs and zones of an earlier transfer from primitives. */
-export function takeAttributes(document: Document, primitives: readonly Primitive[]): void {
+/** Removes the UVs and zones of an earlier transfer from primitives. */
+export function removeAttributes(document: Document, primitives: readonly Primitive[]): void {
   for (const primitive of primitives) {
     for (const semantic of primitive.listSemantics()) {
       const accessor = primitive.getAttribute(semantic)!;
@@ -22,8 +22,8 @@ export function takeAttributes(document: Document, primitives: readonly Primitiv
   }
 }
 
-/** Takes the overlays of earlier transfers out of the meshes of parts, with all that only they used. */
-export function takeOverlays(document: Document, parts: readonly DocumentPart[]): void {
+/** Removes the overlays of earlier transfers from the meshes of parts, with all that only they used. */
+export function removeOverlays(document: Document, parts: readonly DocumentPart[]): void {
   for (const { node } of parts) {
     const mesh = node.getMesh()!;
     for (const primitive of mesh.listPrimitives()) {

@@ -26,7 +26,7 @@ import {
   zoneAttribute,
 } from '../overlay.js';
 import { type GroupMember, groupMember, shareVertices, sparseElements, storedUvs } from '../primitive-group.js';
-import { disposeUnused, takeAttributes, takeOverlays } from './earlier-transfer.js';
+import { disposeUnused, removeAttributes, removeOverlays } from './earlier-transfer.js';
 import type { DocumentPart, ExtractedDocument } from './read.js';
 
 /** A part, and what it becomes. */
@@ -48,8 +48,8 @@ export function addTransfer(
   cut?: CutTarget,
 ): void {
   const primitiveOf = separatePrimitives(document, parts);
-  takeOverlays(document, parts);
-  takeAttributes(document, primitiveOf);
+  removeOverlays(document, parts);
+  removeAttributes(document, primitiveOf);
   const overlay = paint && new OverlayWriter(document, paint);
   const members = parts.map(
     (part, p): Member => ({ ...groupMember(part, result, cut), part, primitive: primitiveOf[p]! }),
