@@ -32,8 +32,8 @@ export function unmarkDraco(primitives: readonly GLTF.IMeshPrimitive[]): void {
  */
 export async function packDraco(writer: GlbWriter, file: GltfFile): Promise<void> {
   const all = (writer.json.meshes ?? []).flatMap((mesh) => mesh.primitives);
-  const isUsed = all.some(dracoOf);
-  if (isUsed || writer.json.extensionsUsed?.includes(dracoExtension)) writer.needs(dracoExtension, isUsed);
+  if (all.some(dracoOf)) writer.requireExtension(dracoExtension);
+  else writer.unlistExtension(dracoExtension);
   const primitives = all.filter(
     (primitive) => dracoOf(primitive) && Object.values(primitive.attributes).some((a) => writer.stored(a)),
   );

@@ -49,7 +49,7 @@ export function removeOverlays(writer: GlbWriter, meshes: Iterable<GLTF.IMesh>):
       textures.some(({ extensions }) => extensions?.[extension]) &&
       !json.textures?.some(({ extensions }) => extensions?.[extension])
     )
-      writer.needs(extension, false);
+      writer.unlistExtension(extension);
   return removed.length;
 }
 

@@ -23,6 +23,7 @@ export const imageExtensions: Readonly<Record<string, string>> = {
 };
 /** Media types of images that textures can have by extensions, by the endings of their files. */
 const typesByEnding: Readonly<Record<string, string>> = { dds: 'image/vnd-ms.dds', avif: 'image/avif' };
+const extensionLists = ['extensionsUsed', 'extensionsRequired'] as const;
 const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4' } as const;
 
 type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
@@ -280,18 +281,22 @@ export class GlbWriter {
     const texture = { name, ...(sampler !== undefined && { sampler }) };
     const extension = imageExtensions[mimeType];
     if (extension === undefined) return (json.textures ??= []).push({ source, ...texture }) - 1;
-    this.needs(extension, true);
+    this.requireExtension(extension);
     return (json.textures ??= []).push({ ...texture, extensions: { [extension]: { source } } }) - 1;
   }
 
-  /** Lists an extension as one without which the file cannot be shown, or does not list it. What is optional in a file stays so. */
-  needs(name: string, isNeeded: boolean): void {
+  /** Lists an extension as one without which the file cannot be shown. */
+  requireExtension(name: string): void {
+    for (const list of extensionLists) if (!this.json[list]?.includes(name)) (this.json[list] ??= []).push(name);
+  }
+
+  /** Takes an extension that nothing uses off the lists. */
+  unlistExtension(name: string): void {
     const { json } = this;
-    for (const list of ['extensionsUsed', 'extensionsRequired'] as const) {
-      const others = json[list]?.filter((other) => other !== name) ?? [];
-      if (isNeeded && !json[list]?.includes(name)) json[list] = [...others, name];
-      else if (!isNeeded && others.length > 0) json[list] = others;
-      else if (!isNeeded) delete json[list];
+    for (const list of extensionLists) {
+      if (!json[list]?.includes(name)) continue;
+      json[list] = json[list].filter((other) => other !== name);
+      if (json[list].length === 0) delete json[list];
     }
   }
 
@@ -349,8 +354,8 @@ export class GlbWriter {
     }
     for (const name of meshoptExtensions) {
       const users = json.bufferViews?.filter((view) => view.extensions?.[name]) ?? [];
-      if (users.some((view) => this.#added.has(view))) this.needs(name, true);
-      else if (users.length === 0 && all.some((view) => view.extensions?.[name])) this.needs(name, false);
+      if (users.some((view) => this.#added.has(view))) this.requireExtension(name);
+      else if (users.length === 0 && all.some((view) => view.extensions?.[name])) this.unlistExtension(name);
     }
     // The buffer that stands for uncompressed views goes with the last of them.
     if (

@@ -133,7 +133,7 @@ export class FileModel implements BakeModel<number, number> {
         before.source = source;
       }
       for (const extension of imageExtensions)
-        if (!json.textures!.some((texture) => texture.extensions?.[extension])) writer.needs(extension, false);
+        if (!json.textures!.some((texture) => texture.extensions?.[extension])) writer.unlistExtension(extension);
     }
     for (const material of materials) {
       if (isOwn && slot === 'color') this.#followInExtensions(material, use.texture, number);
