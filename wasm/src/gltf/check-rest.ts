@@ -1,8 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
-import { listOf } from './check.js';
+import { isObject, requireList } from './check.js';
 import { InputError } from './input-error.js';
-
-const isObject = (item: unknown) => typeof item === 'object' && item !== null;
 
 /**
  * Checks the shape of what a glTF has besides geometry, as far as it is read here: names, animations, materials, instances.
@@ -13,13 +11,18 @@ export function checkRest(json: GLTF.IGLTF): void {
     json[list]?.forEach(({ name }: { name?: unknown }, i) => {
       if (name !== undefined && typeof name !== 'string') throw new InputError(`${list}[${i}].name is not a string`);
     });
-  listOf('animations', json.animations, isObject, 'objects');
+  requireList('animations', json.animations, isObject, 'objects');
   json.animations?.forEach((animation, a) => {
     for (const list of ['channels', 'samplers'] as const)
-      listOf(`animations[${a}].${list}`, animation[list], isObject, 'objects');
+      requireList(`animations[${a}].${list}`, animation[list], isObject, 'objects');
   });
   json.materials?.forEach(({ pbrMetallicRoughness: pbr }, m) =>
-    listOf(`materials[${m}].pbrMetallicRoughness.baseColorFactor`, pbr?.baseColorFactor, Number.isFinite, 'numbers'),
+    requireList(
+      `materials[${m}].pbrMetallicRoughness.baseColorFactor`,
+      pbr?.baseColorFactor,
+      Number.isFinite,
+      'numbers',
+    ),
   );
   json.nodes?.forEach(({ extensions }, n) => objectIn(extensions, `nodes[${n}]`, 'EXT_mesh_gpu_instancing'));
   json.meshes?.forEach(({ primitives }, m) =>
@@ -27,7 +30,7 @@ export function checkRest(json: GLTF.IGLTF): void {
       const name = `meshes[${m}].primitives[${p}]`;
       if (!Number.isInteger(mode)) throw new InputError(`${name}.mode is not a whole number`);
       const variants = objectIn(extensions, name, 'KHR_materials_variants') as { mappings?: unknown } | undefined;
-      listOf(`${name}: mappings of KHR_materials_variants`, variants?.mappings, isObject, 'objects');
+      requireList(`${name}: mappings of KHR_materials_variants`, variants?.mappings, isObject, 'objects');
     }),
   );
 }

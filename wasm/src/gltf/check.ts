@@ -29,12 +29,13 @@ export function meshoptView(view: GLTF.IBufferView): MeshoptView | undefined {
   return meshoptExtensions.map((name) => extensions?.[name]).find((found) => found !== undefined);
 }
 
+export const isObject = (item: unknown): boolean => typeof item === 'object' && item !== null;
+
 /**
  * Checks that all arrays of a glTF are arrays, so that they can be iterated.
  * @throws {InputError}
  */
 export function checkLists(json: GLTF.IGLTF): void {
-  const isObject = (item: unknown) => typeof item === 'object' && item !== null;
   for (const name of [
     'buffers',
     'bufferViews',
@@ -47,29 +48,29 @@ export function checkLists(json: GLTF.IGLTF): void {
     'textures',
     'images',
   ] as const) {
-    listOf(name, json[name], isObject, 'objects');
+    requireList(name, json[name], isObject, 'objects');
   }
   const isText = (item: unknown) => typeof item === 'string';
-  listOf('extensionsUsed', json.extensionsUsed, isText, 'names');
-  listOf('extensionsRequired', json.extensionsRequired, isText, 'names');
+  requireList('extensionsUsed', json.extensionsUsed, isText, 'names');
+  requireList('extensionsRequired', json.extensionsRequired, isText, 'names');
   for (const name of ['buffers', 'images'] as const) {
     json[name]?.forEach(({ uri }: { uri?: unknown }, i) => {
       if (uri !== undefined && !isText(uri)) throw new InputError(`${name}[${i}].uri is not a string`);
     });
   }
   json.meshes?.forEach((mesh, m) => {
-    listOf(`meshes[${m}].primitives`, mesh.primitives ?? null, isObject, 'objects');
+    requireList(`meshes[${m}].primitives`, mesh.primitives ?? null, isObject, 'objects');
     mesh.primitives.forEach(({ targets }, p) =>
-      listOf(`meshes[${m}].primitives[${p}].targets`, targets, isObject, 'objects'),
+      requireList(`meshes[${m}].primitives[${p}].targets`, targets, isObject, 'objects'),
     );
   });
-  json.nodes?.forEach((node, n) => listOf(`nodes[${n}].children`, node.children, Number.isInteger, 'numbers'));
-  json.skins?.forEach((skin, s) => listOf(`skins[${s}].joints`, skin.joints, Number.isInteger, 'numbers'));
-  json.scenes?.forEach((scene, s) => listOf(`scenes[${s}].nodes`, scene.nodes, Number.isInteger, 'numbers'));
+  json.nodes?.forEach((node, n) => requireList(`nodes[${n}].children`, node.children, Number.isInteger, 'numbers'));
+  json.skins?.forEach((skin, s) => requireList(`skins[${s}].joints`, skin.joints, Number.isInteger, 'numbers'));
+  json.scenes?.forEach((scene, s) => requireList(`scenes[${s}].nodes`, scene.nodes, Number.isInteger, 'numbers'));
 }
 
 /** @throws {InputError} if a value is there, but no array of what fits. */
-export function listOf(name: string, value: unknown, fits: (item: unknown) => boolean, what: string): void {
+export function requireList(name: string, value: unknown, fits: (item: unknown) => boolean, what: string): void {
   if (value !== undefined && !(Array.isArray(value) && value.every(fits)))
     throw new InputError(`${name} is not an array of ${what}`);
 }

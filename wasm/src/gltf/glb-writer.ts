@@ -6,7 +6,7 @@ import { type MeshoptView, meshoptExtensions, meshoptView } from './check.js';
 import { localFile, type ReadOptions, readUri } from './files.js';
 import { imageType } from './image.js';
 import { InputError } from './input-error.js';
-import { type Contents, imageFile, type NamedFile, packGlb, packGltf, whole } from './output/pack.js';
+import { type Contents, imageFile, type NamedFile, packGlb, packGltf, paddedLength } from './output/pack.js';
 import { subtract } from './output/ranges.js';
 import type { Paint } from './overlay.js';
 import { sparseElements } from './primitive-group.js';
@@ -117,7 +117,7 @@ export class GlbWriter {
     let length = 0;
     const offsets = buffers.map((bytes, b) => {
       if (!bytes) return 0;
-      const offset = whole(length);
+      const offset = paddedLength(length);
       chunks.push(new Uint8Array(offset - length), bytes.subarray(0, json.buffers![b]!.byteLength));
       length = offset + json.buffers![b]!.byteLength;
       return offset;
@@ -199,7 +199,7 @@ export class GlbWriter {
     const buffers = this.json.buffers!;
     if (buffers.length === 1)
       buffers.push({ byteLength: 0, extensions: { [this.#meshopt!]: { fallback: true } } } as GLTF.IBuffer);
-    const byteOffset = whole(buffers[1]!.byteLength);
+    const byteOffset = paddedLength(buffers[1]!.byteLength);
     buffers[1]!.byteLength = byteOffset + length;
     return { buffer: 1, byteOffset };
   }
@@ -401,12 +401,12 @@ export class GlbWriter {
     for (const view of json.bufferViews ?? []) {
       const bytes = this.#added.get(view);
       if (bytes === undefined) continue;
-      const byteOffset = whole(length);
+      const byteOffset = paddedLength(length);
       chunks.push(new Uint8Array(byteOffset - length), bytes);
       length = byteOffset + bytes.byteLength;
       (meshoptView(view) ?? view).byteOffset = byteOffset;
     }
-    chunks.push(new Uint8Array(whole(length) - length));
+    chunks.push(new Uint8Array(paddedLength(length) - length));
     if (length > 0) json.buffers![0]!.byteLength = length;
     else json.buffers!.shift();
     for (const name of ['accessors', 'bufferViews', 'buffers'] as const)
@@ -423,8 +423,8 @@ export class GlbWriter {
     const rangesOf = (list: readonly GLTF.IBufferView[]) => list.map((view) => rangeOf(meshoptView(view) ?? view));
     const kept = (this.json.bufferViews ?? []).filter((view) => !this.#added.has(view));
     // With the bytes that pad a view to a whole number of words.
-    const padded = rangesOf(views).map(([first, end]): [number, number] => [first, whole(end)]);
-    const removed = subtract(padded, rangesOf(kept)).map(([first, end]) => [whole(first), end - (end % 4)]);
+    const padded = rangesOf(views).map(([first, end]): [number, number] => [first, paddedLength(end)]);
+    const removed = subtract(padded, rangesOf(kept)).map(([first, end]) => [paddedLength(first), end - (end % 4)]);
     const chunks: Uint8Array[] = [];
     let from = 0;
     for (const [first, end] of removed) {

@@ -41,7 +41,7 @@ export function packGltf({ json, chunks, images }: Contents, stem: string): { te
 export function packGlb({ json, chunks }: Contents): Uint8Array {
   const binLength = chunks.reduce((sum, { byteLength }) => sum + byteLength, 0);
   const text = new TextEncoder().encode(JSON.stringify(json));
-  const textLength = whole(text.byteLength);
+  const textLength = paddedLength(text.byteLength);
   const total = 12 + 8 + textLength + (binLength > 0 ? 8 + binLength : 0);
   const out = new Uint8Array(total);
   const view = new DataView(out.buffer);
@@ -62,4 +62,4 @@ export function packGlb({ json, chunks }: Contents): Uint8Array {
 }
 
 /** The next multiple of four. */
-export const whole = (length: number): number => Math.ceil(length / 4) * 4;
+export const paddedLength = (length: number): number => Math.ceil(length / 4) * 4;
