@@ -2,7 +2,7 @@ import { createHash } from 'node:crypto';
 import { existsSync, statSync } from 'node:fs';
 import { basename, dirname, extname, resolve } from 'node:path';
 import { readBytes, standard } from '../gltf/files.js';
-import { firstLine, InputError } from '../gltf/input-error.js';
+import { firstLine, InputError, withName } from '../gltf/input-error.js';
 import { filesBeside, filesReadBy } from './beside.js';
 import type { Settled } from './config/config-flags.js';
 import {
@@ -71,7 +71,7 @@ export async function jobsOfManifest(path: string, defaults: JobDefaults): Promi
   try {
     text = new TextDecoder().decode(await readBytes(path));
   } catch (error) {
-    throw error instanceof InputError ? error.in(path) : error;
+    throw withName(error, path);
   }
   const folder = path === standard ? '.' : dirname(path);
   const lines = text.split('\n').map((line, i) => ({ line: line.trim(), place: `line ${i + 1} of ${path}` }));

@@ -5,7 +5,7 @@ import { templateNames } from '../cages/template-names.js';
 import type { Cage, Fit, Kind, Landmarks } from '../cages/types.js';
 import { templateOf } from '../gltf/cage-file.js';
 import { type ReadOptions, readBytes, standard } from '../gltf/files.js';
-import { InputError } from '../gltf/input-error.js';
+import { InputError, withName } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
 import type { Verdict } from '../inspect/index.js';
 import { isPosition } from '../parts/template.js';
@@ -120,7 +120,7 @@ async function readLandmarks(path: string): Promise<Landmarks> {
       if (!isPosition(position)) throw new InputError(`"${name}" is not 3 numbers [x, y, z]`);
     return landmarks as Landmarks;
   } catch (error) {
-    throw error instanceof InputError ? error.in(path) : error;
+    throw withName(error, path);
   }
 }
 

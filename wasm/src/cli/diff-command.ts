@@ -1,7 +1,7 @@
 import { readdir } from 'node:fs/promises';
 import { join } from 'node:path';
 import { isFolder, listingError, readBytes } from '../gltf/files.js';
-import { InputError } from '../gltf/input-error.js';
+import { InputError, withName } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
 import { parseObject } from './config/settings.js';
 import { type InspectionReport, verdicts } from './inspect-command.js';
@@ -142,7 +142,7 @@ async function naming<Result>(path: string, read: () => Promise<Result>): Promis
   try {
     return await read();
   } catch (error) {
-    throw error instanceof InputError ? error.in(path) : error;
+    throw withName(error, path);
   }
 }
 

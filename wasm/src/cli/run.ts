@@ -4,7 +4,7 @@ import { FileModel } from '../gltf/bake/file.js';
 import { masksOf } from '../gltf/bake/masks.js';
 import { type Extracted, extract, type Part, partOf, primitivePath, uvLayout } from '../gltf/extract.js';
 import type { ReadOptions } from '../gltf/files.js';
-import { InputError } from '../gltf/input-error.js';
+import { InputError, withName } from '../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../gltf/read.js';
 import {
   CagecastError,
@@ -88,7 +88,7 @@ async function readMasks(
       if (path === undefined) return undefined;
       if (!configMasks.includes(kind)) return readImage(path, reading);
       return readImage(path, reading, maskFolder).catch((error: unknown) => {
-        throw error instanceof InputError ? error.in(`${config}: "${kind}Mask"`) : error;
+        throw withName(error, `${config}: "${kind}Mask"`);
       });
     }),
   );
@@ -96,7 +96,7 @@ async function readMasks(
     const images = never || always ? { never, always } : undefined;
     return masksOf(new FileModel(file, extracted.parts), undefined, { images, colors: masks.colors });
   } catch (error) {
-    throw error instanceof InputError ? error.in(file.path) : error;
+    throw withName(error, file.path);
   }
 }
 
@@ -191,7 +191,7 @@ function optionsFor({ file, extracted }: ReadModel, rules: Rules, leftOut: reado
   try {
     return transferOptions(rules, extracted, leftOut);
   } catch (error) {
-    throw error instanceof InputError ? error.in(file.path) : error;
+    throw withName(error, file.path);
   }
 }
 

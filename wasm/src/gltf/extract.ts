@@ -2,7 +2,7 @@ import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
 import { type Skinned, skinMatrices } from '../parts/skin.js';
-import { InputError } from './input-error.js';
+import { InputError, withName } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';
 import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
 import { isOverlay } from './overlay.js';
@@ -55,7 +55,7 @@ export function extract(file: GltfFile): Extracted {
     const uvs = readUvs(file, parts, mesh.positions.length / 3);
     return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts };
   } catch (error) {
-    throw error instanceof InputError ? error.in(file.path) : error;
+    throw withName(error, file.path);
   }
 }
 

@@ -9,6 +9,10 @@ export class InputError extends Error {
   }
 }
 
+/** An error with a name in front, such as a file's, if it is an `InputError`; any other as it is. */
+export const withName = (error: unknown, name: string): unknown =>
+  error instanceof InputError ? error.in(name) : error;
+
 /** The first line of any error's message. */
 export function firstLine(error: unknown): string {
   return (error instanceof Error ? error.message : String(error)).split('\n', 1)[0] ?? '';

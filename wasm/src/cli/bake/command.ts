@@ -3,7 +3,7 @@ import { FileModel } from '../../gltf/bake/file.js';
 import { type BakeReport, bakeModel, type Paints } from '../../gltf/bake/plan.js';
 import { removeOverlays } from '../../gltf/earlier-transfer.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
-import { InputError } from '../../gltf/input-error.js';
+import { InputError, withName } from '../../gltf/input-error.js';
 import { CagecastError, type CutTarget } from '../../index.js';
 import { refuseOverwritingRead } from '../beside.js';
 import { configLine, quoted } from '../options.js';
@@ -50,8 +50,7 @@ export async function bakeCommand(command: BakeCommand, progress: Progress): Pro
 
 /** An error of reading or baking the target, with its name. */
 function inTarget(error: unknown, path: string): unknown {
-  if (error instanceof CagecastError) return new InputError(error.reason, { cause: error }).in(path);
-  return error instanceof InputError ? error.in(path) : error;
+  return withName(error instanceof CagecastError ? new InputError(error.reason, { cause: error }) : error, path);
 }
 
 /** Writes the output. @throws {InputError} if it would overwrite what was read. */

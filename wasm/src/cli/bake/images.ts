@@ -2,7 +2,7 @@ import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
 import { type ReadOptions, readBeside, readBytes } from '../../gltf/files.js';
 import { imageIsWhole, imageType, pngLength } from '../../gltf/image.js';
-import { firstLine, InputError } from '../../gltf/input-error.js';
+import { firstLine, InputError, withName } from '../../gltf/input-error.js';
 
 /**
  * Reads an image file.
@@ -15,7 +15,7 @@ export async function readImage(path: string, reading: ReadOptions, folder?: str
       await (folder === undefined ? readBytes(path, reading.limits) : readBeside(path, folder, reading)),
     );
   } catch (error) {
-    throw error instanceof InputError ? error.in(path) : error;
+    throw withName(error, path);
   }
 }
 

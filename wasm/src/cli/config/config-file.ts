@@ -1,7 +1,7 @@
 import { lstatSync } from 'node:fs';
 import { basename, dirname, extname, join, relative, resolve } from 'node:path';
 import { type ReadOptions, readBeside, readBytes, standard } from '../../gltf/files.js';
-import { InputError } from '../../gltf/input-error.js';
+import { InputError, withName } from '../../gltf/input-error.js';
 import { matcher, type Rules } from '../options.js';
 import {
   isObject,
@@ -103,7 +103,7 @@ export class Configuration {
           : await readBytes(path, this.#reading.limits);
       return { path: shown, ...parseConfig(new TextDecoder().decode(bytes), folder) };
     } catch (error) {
-      throw error instanceof InputError ? error.in(shown) : error;
+      throw withName(error, shown);
     }
   }
 }
@@ -132,7 +132,7 @@ function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
         refuseUnknown(given, settingNames);
         return { matches: matcher(pattern), settings: settingsOf(given, folder) };
       } catch (error) {
-        throw error instanceof InputError ? error.in(`"characters" "${pattern}"`) : error;
+        throw withName(error, `"characters" "${pattern}"`);
       }
     }),
   };

@@ -1,7 +1,7 @@
 import { basename } from 'node:path';
 import { primitivePath } from '../../gltf/extract.js';
 import { readBytes } from '../../gltf/files.js';
-import { InputError } from '../../gltf/input-error.js';
+import { InputError, withName } from '../../gltf/input-error.js';
 import type { ReadLimits } from '../../gltf/limits.js';
 import { type Paint, paintOf, tileAt } from '../../gltf/overlay.js';
 import { quoted } from '../options.js';
@@ -31,7 +31,7 @@ export async function readPaint(path: string, limits: ReadLimits): Promise<Paint
   try {
     return paintOf(await readBytes(path, limits), basename(path), types);
   } catch (error) {
-    throw error instanceof InputError ? error.in(path) : error;
+    throw withName(error, path);
   }
 }
 

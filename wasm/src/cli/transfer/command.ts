@@ -1,7 +1,7 @@
 import { basename, dirname, join } from 'node:path';
 import { dracoOf, meshoptView } from '../../gltf/check.js';
 import type { Form } from '../../gltf/glb-writer.js';
-import { InputError } from '../../gltf/input-error.js';
+import { withName } from '../../gltf/input-error.js';
 import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/overlay.js';
 import { writeTransfer } from '../../gltf/write.js';
 import type { CutTarget, TransferResult } from '../../index.js';
@@ -163,7 +163,7 @@ async function transferRegion(
       stem: isText ? basename(output).slice(0, -'.gltf'.length) : undefined,
     },
   ).catch((error: unknown) => {
-    throw error instanceof InputError ? error.in(target) : error;
+    throw withName(error, target);
   });
   return { ...found, written };
 }
