@@ -1,11 +1,11 @@
-import { type Command, InvalidArgumentError, Option } from 'commander';
+import { type Command, Option } from 'commander';
 import { standard } from '../gltf/files.js';
 import { forms } from '../gltf/glb-writer.js';
 import { batchCommand, describeBatch } from './batch-command.js';
 import { jobsOfManifest, jobsOfPatterns, placeholderFault, writtenBy } from './batch-jobs.js';
 import { addConfigFlags, type ConfigFlags, settler } from './config/config-flags.js';
 import { borderKinds } from './config/settings.js';
-import { addRuleFlags, maskInputs, type RuleFlags } from './options.js';
+import { addRuleFlags, maskInputs, type RuleFlags, wholeNumberWithin } from './options.js';
 import { writeStandard } from './output.js';
 import { addCageAreaFlags, addRegionFlag, type CageFlags } from './paint/paint-flags.js';
 import { boundsFault } from './paint/read-paint.js';
@@ -29,11 +29,6 @@ interface BatchFlags
   resume?: boolean;
   failOn?: 'usable' | 'unfit';
   workers?: number;
-}
-
-function workers(text: string): number {
-  if (!/^[1-9]\d{0,2}$/.test(text)) throw new InvalidArgumentError('It is not a whole number within 1..999.');
-  return Number(text);
 }
 
 /** What its help says after the flags. */
@@ -104,7 +99,11 @@ export function addBatchCommand(program: Command, progress: Progress): void {
         'inspect each cage, and exit 3 if one is no better than this; reports have the verdict then',
       ).choices(['usable', 'unfit']),
     )
-    .addOption(new Option('--workers <N>', 'threads; 1 to 999 (default: one per processor)').argParser(workers))
+    .addOption(
+      new Option('--workers <N>', 'threads; 1 to 999 (default: one per processor)').argParser(
+        wholeNumberWithin(1, 999),
+      ),
+    )
     .addHelpText('after', kHelp);
   command.action((targets: string[], flags: BatchFlags) => runBatch(command, targets, flags, progress));
 }

@@ -1,6 +1,6 @@
-import { type Command, InvalidArgumentError, Option } from 'commander';
+import { type Command, Option } from 'commander';
 import { type CageVerdict, type FitCommand, fitCommand, type MakeCommand, makeCommand } from './cage-command.js';
-import { numberWithin } from './options.js';
+import { numberWithin, wholeNumberWithin } from './options.js';
 import { addPrintFlags, type PrintFlags, print } from './print.js';
 import type { Progress } from './progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
@@ -33,13 +33,6 @@ const exclusion = (): Option =>
     'do not paint parts whose node or material has this name, or this word in its name (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair; an empty name excludes nothing',
   ).argParser((name: string, before: string[] = []) => (name === '' ? before : [...before, name]));
 
-function triangles(text: string): number {
-  const value = Number(text);
-  if (!/^\d+$/.test(text) || value < kTriangleRange[0] || value > kTriangleRange[1])
-    throw new InvalidArgumentError(`It is not a whole number within ${kTriangleRange[0]}..${kTriangleRange[1]}.`);
-  return value;
-}
-
 /** Adds the commands that make and fit cages. */
 export function addCageCommands(program: Command, progress: Progress): void {
   addMakeCommand(program, progress);
@@ -54,7 +47,7 @@ function addMakeCommand(program: Command, progress: Progress): void {
       new Option(
         '--triangles <N>',
         `triangles of the cage, about; ${kTriangleRange[0]} to ${kTriangleRange[1]} (default: by kind)`,
-      ).argParser(triangles),
+      ).argParser(wholeNumberWithin(...kTriangleRange)),
     )
     .addOption(
       new Option('--kind <KIND>', 'what TARGET is, which decides how tight the cage is and where its seams are')

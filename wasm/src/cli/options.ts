@@ -108,6 +108,16 @@ function helpOf({ kind, range, standard, paper, text }: (typeof optionFlags)[num
   ].join('; ');
 }
 
+/** Returns a parser for a whole number within two others. @param unit  What is counted, for its message: " of texels". */
+export function wholeNumberWithin(least: number, most: number, unit = ''): (text: string) => number {
+  return (text) => {
+    const value = Number(text);
+    if (!/^\d+$/.test(text) || value < least || value > most)
+      throw new InvalidArgumentError(`It is not a whole number${unit} within ${least}..${most}.`);
+    return value;
+  };
+}
+
 /** Returns a parser for a number within two others. */
 export function numberWithin(least: number, most: number): (text: string) => number {
   return (text) => {

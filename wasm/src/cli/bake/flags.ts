@@ -1,8 +1,8 @@
-import { type Command, InvalidArgumentError, Option } from 'commander';
+import { type Command, Option } from 'commander';
 import { mostTexels } from '../../bake/index.js';
 import { addConfigFlags, type ConfigFlags, settler } from '../config/config-flags.js';
 import { borderKinds } from '../config/settings.js';
-import { addRuleFlags, maskInputs, type RuleFlags } from '../options.js';
+import { addRuleFlags, maskInputs, type RuleFlags, wholeNumberWithin } from '../options.js';
 import { addPrintFlags, type PrintFlags, print } from '../print.js';
 import type { Progress } from '../progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from '../read-flags.js';
@@ -15,13 +15,6 @@ type Flags = Pick<BakeCommand, 'normal' | 'orm' | 'output' | 'part' | 'size' | '
   ConfigFlags &
   ReadFlags &
   PrintFlags & { back?: boolean };
-
-function sizeOf(text: string): number {
-  const value = Number(text);
-  if (!/^\d+$/.test(text) || value < 1 || value > mostTexels)
-    throw new InvalidArgumentError(`It is not a whole number of texels within 1..${mostTexels}.`);
-  return value;
-}
 
 /** What its help says after the flags. */
 const kHelp = `
@@ -65,7 +58,7 @@ export function addBakeCommand(program: Command, progress: Progress): void {
       new Option(
         '--size <TEXELS>',
         `the longer side of painted textures; 1 to ${mostTexels} (default: as before)`,
-      ).argParser(sizeOf),
+      ).argParser(wholeNumberWithin(1, mostTexels, ' of texels')),
     )
     .addOption(
       new Option('--borders <HOW>', 'triangle: the paint ends at triangle edges; cut: exactly at holes and seams')
