@@ -15,6 +15,7 @@ import {
   settingsOf,
 } from './config/settings.js';
 import { filesOf } from './glob.js';
+import { defaultRules } from './options.js';
 import { canonicalPath } from './output.js';
 import { areBounds, boundsText } from './paint/cage-area.js';
 import { boundsFault } from './paint/read-paint.js';
@@ -113,7 +114,7 @@ const paths = ['target', 'cage', 'referenceCage', 'texture', 'output', 'report']
 
 /** Stands for those of a job that cannot be started. */
 const noSettings: Settled = {
-  rules: { preset: 'default', single: {}, keep: [], exclude: [] },
+  rules: defaultRules,
   borders: 'triangle',
   compress: 'keep',
 };

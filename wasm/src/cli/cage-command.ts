@@ -13,7 +13,7 @@ import { parseObject } from './config/settings.js';
 import { conclusionOf, inspectionReport } from './inspect-command.js';
 import { inspectionPage } from './inspect-page.js';
 import { checkExclusions, fitCageTo, landmarksOf, makeCageFor } from './make-cage.js';
-import type { Rules } from './options.js';
+import { defaultRules } from './options.js';
 import { writeFiles } from './output.js';
 import type { Found } from './print.js';
 import type { Progress } from './progress.js';
@@ -59,9 +59,6 @@ interface FitNotes {
 export interface CageVerdict extends Found {
   verdict: Verdict;
 }
-
-/** The cage is judged as `inspect` does without flags. */
-const rules: Rules = { preset: 'default', single: {}, keep: [], exclude: [] };
 
 /**
  * Makes a cage for a model and inspects it.
@@ -167,7 +164,8 @@ async function finish(
 ): Promise<CageVerdict> {
   const run = await transferModels(model, await readBack(cage, output), { preset: 'default' }, progress);
   progress.step('inspecting');
-  const report = inspectionReport({ target: model.file.path, cage: output, rules }, run, []);
+  // As `inspect` does without flags.
+  const report = inspectionReport({ target: model.file.path, cage: output, rules: defaultRules }, run, []);
   writeFiles([
     { path: output, data: cageGlb(cage) },
     ...(html === undefined ? [] : [{ path: html, data: inspectionPage(report, run) }]),

@@ -7,6 +7,8 @@ import type { Finding } from '../inspect/finding.js';
 import type { Sources } from './run.js';
 import { cut, listed } from './table.js';
 
+export const presets: readonly Preset[] = ['default', 'paper'];
+
 export type Single = Partial<Omit<PresetOptions, 'steps'>>;
 
 /** Where the target is never or always painted: files of images in its own UVs, and an attribute of colours. */
@@ -38,6 +40,9 @@ export interface Rules {
   maskFolder?: string;
 }
 
+/** The options if nothing is said. */
+export const defaultRules: Rules = { preset: 'default', single: {}, keep: [], exclude: [] };
+
 /** The flags of these options, as commander parses them. */
 export interface RuleFlags extends Single {
   preset: Preset;
@@ -55,9 +60,7 @@ export const maskInputs = ({ neverMask, alwaysMask }: RuleFlags): (string | unde
 export function addRuleFlags(command: Command): Command {
   const oneMore = (name: string, before: string[]) => [...before, name];
   command.addOption(
-    new Option('--preset <NAME>', 'values of the options that are not given')
-      .choices(['default', 'paper'])
-      .default('default'),
+    new Option('--preset <NAME>', 'values of the options that are not given').choices(presets).default('default'),
   );
   for (const option of optionFlags) {
     const { flag, kind, range } = option;

@@ -5,6 +5,7 @@ import { removeOverlays } from '../../gltf/earlier-transfer.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError, withName } from '../../gltf/input-error.js';
 import { CagecastError, type CutTarget } from '../../index.js';
+import type { Borders } from '../../parts/borders-option.js';
 import { refuseOverwritingRead } from '../beside.js';
 import { configLine, quoted } from '../options.js';
 import { writeFiles } from '../output.js';
@@ -28,7 +29,7 @@ export interface BakeCommand extends Sources {
   /** Names of the parts whose texture is meant, for a PNG; empty for all. */
   part: string[];
   size?: number | undefined;
-  borders: 'triangle' | 'cut';
+  borders: Borders;
 }
 
 /**

@@ -3,16 +3,16 @@ import { optionFlags } from '../../generated/options.js';
 import { type Form, forms } from '../../gltf/glb-writer.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
 import type { Preset } from '../../index.js';
-import { colorAttributes, holdsColors, infinite, type MaskFiles, quoted, type Single } from '../options.js';
+import type { Borders } from '../../parts/borders-option.js';
+import { colorAttributes, holdsColors, infinite, type MaskFiles, presets, quoted, type Single } from '../options.js';
 
 /** How paint may end: at existing edges of triangles, or where triangles are cut. */
-export const borderKinds = ['triangle', 'cut'] as const;
-const presets = ['default', 'paper'] as const;
+export const borderKinds: readonly Borders[] = ['triangle', 'cut'];
 
 /** What can be said of a transfer besides its files: by flags, in a configuration file, in a line of a manifest. */
 export interface Settings {
   preset?: Preset;
-  borders?: (typeof borderKinds)[number];
+  borders?: Borders;
   compress?: Form;
   keep?: string[];
   exclude?: string[];

@@ -6,6 +6,7 @@ import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/o
 import { writeTransfer } from '../../gltf/write.js';
 import type { CutTarget, TransferResult } from '../../index.js';
 import type { Verdict } from '../../inspect/index.js';
+import type { Borders } from '../../parts/borders-option.js';
 import { refuseOverwritingRead } from '../beside.js';
 import { inspectionReport, verdicts } from '../inspect-command.js';
 import { writeFiles } from '../output.js';
@@ -22,7 +23,7 @@ export interface TransferCommand extends Sources {
   output?: string | undefined;
   report?: string | undefined;
   /** Whether the paint ends at existing triangle edges, or triangles are cut where it ends. */
-  borders: 'triangle' | 'cut';
+  borders: Borders;
   /** How the geometry of the output is compressed. */
   compress: Form;
   /** Further cages with textures: each paints only what none before it does. */
