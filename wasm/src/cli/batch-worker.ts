@@ -1,13 +1,12 @@
 import { mkdirSync } from 'node:fs';
 import { dirname } from 'node:path';
 import { parentPort } from 'node:worker_threads';
-import { firstLine, InputError } from '../gltf/input-error.js';
-import { CagecastError } from '../index.js';
 import type { Verdict } from '../inspect/index.js';
 import { Progress } from './progress.js';
 import { rememberingModels } from './run.js';
 import { type TransferCommand, transferCommand } from './transfer/command.js';
 import type { Report } from './transfer/report.js';
+import { messageOf } from './usage.js';
 
 /** What a worker found. */
 export type Outcome =
@@ -42,9 +41,7 @@ export function serveBatch(): void {
         ...(verdict && { verdict, findings: findings!.map(({ code }) => code) }),
       } satisfies Outcome);
     } catch (error) {
-      const known = error instanceof InputError || error instanceof CagecastError;
-      const text = known ? error.message : `failed unexpectedly (${firstLine(error)}); please report it`;
-      port.postMessage({ status: 'failed', ms: ms(), error: text } satisfies Outcome);
+      port.postMessage({ status: 'failed', ms: ms(), error: messageOf(error) } satisfies Outcome);
     }
   });
 }

@@ -1,12 +1,11 @@
 import { isMainThread } from 'node:worker_threads';
 import { CommanderError } from 'commander';
-import { firstLine, InputError } from '../gltf/input-error.js';
-import { CagecastError } from '../index.js';
+import { firstLine } from '../gltf/input-error.js';
 import { serveBatch } from './batch-worker.js';
 import { oneLine } from './print.js';
 import { makeProgram } from './program/program.js';
 import { Progress } from './progress.js';
-import { UsageError, unusable, wrongUsage } from './usage.js';
+import { messageOf, UsageError, unusable, wrongUsage } from './usage.js';
 
 // A reader that closes the pipe early, such as `head`, is not an error: what is left to be done is done.
 process.stdout.on('error', (error: NodeJS.ErrnoException) => {
@@ -26,9 +25,7 @@ async function main(): Promise<void> {
       // Help that is printed because no command was given is wrong usage.
       process.exitCode = error.exitCode === 0 ? 0 : wrongUsage;
     } else {
-      const known = error instanceof InputError || error instanceof CagecastError;
-      const text = known ? (error as Error).message : `failed unexpectedly (${firstLine(error)}); please report it`;
-      process.stderr.write(`cagecast: ${oneLine(text)}\n`);
+      process.stderr.write(`cagecast: ${oneLine(messageOf(error))}\n`);
       process.exitCode = error instanceof UsageError ? wrongUsage : unusable;
     }
   }

@@ -1,6 +1,7 @@
 import { type Command, InvalidArgumentError } from 'commander';
 import { standard } from '../gltf/files.js';
-import { InputError } from '../gltf/input-error.js';
+import { firstLine, InputError } from '../gltf/input-error.js';
+import { CagecastError } from '../index.js';
 import { canonicalPath } from './output.js';
 
 /** Exit codes. */
@@ -11,6 +12,12 @@ export const changed = 4;
 
 /** Arguments that cannot be used together, which shows only once files are read. */
 export class UsageError extends InputError {}
+
+/** What an error says of what went wrong. Others than those of files and of the package are defects. */
+export const messageOf = (error: unknown): string =>
+  error instanceof InputError || error instanceof CagecastError
+    ? error.message
+    : `failed unexpectedly (${firstLine(error)}); please report it`;
 
 /** Returns a parser for the name of a file with one of some endings, or of the standard output. */
 export function endingIn(...endings: string[]): (text: string) => string {
