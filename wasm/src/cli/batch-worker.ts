@@ -3,7 +3,7 @@ import { dirname } from 'node:path';
 import { parentPort } from 'node:worker_threads';
 import type { Verdict } from '../inspect/index.js';
 import { Progress } from './progress.js';
-import { rememberingModels } from './run.js';
+import { cachedReading } from './run.js';
 import { type TransferCommand, transferCommand } from './transfer/command.js';
 import type { Report } from './transfer/report.js';
 import { messageOf } from './usage.js';
@@ -20,18 +20,18 @@ export type Outcome =
     }
   | { status: 'failed'; ms: number; error: string };
 
-/** Answers tasks until the thread is ended. Cages are read once. */
+/** Runs the jobs that the thread is sent, until it is ended. A cage of many jobs is read once. */
 export function serveBatch(): void {
   const port = parentPort!;
   const progress = new Progress();
   progress.silence();
-  const models = rememberingModels();
+  const readCage = cachedReading();
   port.on('message', async (command: TransferCommand) => {
     const began = performance.now();
     const ms = () => Math.round(performance.now() - began);
     try {
       makeFolders(command);
-      const { report } = await transferCommand(command, progress, models);
+      const { report } = await transferCommand(command, progress, readCage);
       const { counts, triangles, verdict, findings } = report;
       port.postMessage({
         status: 'done',

@@ -56,14 +56,12 @@ export function fitCageTo(
   );
 }
 
-type Told = (share: number, stage: string) => void;
-
 /** Calls a function that takes seconds, and shows how far it is. @param files  By the arguments that they are given as. */
 async function calling<Result>(
   what: string,
   files: Record<string, string | undefined>,
   progress: Progress,
-  call: (onProgress: Told) => Result,
+  call: (onProgress: (share: number, stage: string) => void) => Result,
 ): Promise<Result> {
   progress.step(what);
   await init();

@@ -52,13 +52,14 @@ export const autoCage = 'auto';
 
 /**
  * Reads target and cage, or makes a cage, and runs the transfer.
- * @param target  If it is read already.
+ * @param readCage  How cages are read.
+ * @param target    If it is read already.
  * @throws {InputError} that names the file at fault.
  */
 export async function runTransfer(
   sources: Sources,
   progress: Progress,
-  models: Models = { cage: readModel },
+  readCage: typeof readModel = readModel,
   target?: ReadModel,
 ): Promise<Run> {
   const { rules, reading } = sources;
@@ -67,7 +68,7 @@ export async function runTransfer(
   const isMade = sources.cage === autoCage;
   const leftOut = isMade ? await partsLeftOut(read) : [];
   const options = { ...optionsFor(read, rules, leftOut), ...(masks && { masks }) };
-  const cageOf = async (path: string) => withUvs(await models.cage(path, reading, progress));
+  const cageOf = async (path: string) => withUvs(await readCage(path, reading, progress));
   const whole = isMade ? await madeCage(read, progress) : await cageOf(sources.cage);
   const reference = sources.referenceCage === undefined ? undefined : await cageOf(sources.referenceCage);
   const drawn = withoutLacking(whole, reference);
@@ -100,24 +101,17 @@ async function readMasks(
   }
 }
 
-/** How cages are read. */
-export interface Models {
-  cage: typeof readModel;
-}
-
-/** Reads cages once, and forgets them when it has read some others. */
-export function rememberingModels(): Models {
+/** Returns a `readModel` that keeps the last models that it was asked for. */
+export function cachedReading(): typeof readModel {
   const most = 8;
   const known = new Map<string, Promise<ReadModel>>();
-  return {
-    cage: (path, reading, progress) => {
-      const key = JSON.stringify([path, reading]);
-      const model = known.get(key) ?? readModel(path, reading, progress);
-      known.delete(key);
-      known.set(key, model);
-      for (const [oldest] of known) if (known.size > most) known.delete(oldest);
-      return model;
-    },
+  return (path, reading, progress) => {
+    const key = JSON.stringify([path, reading]);
+    const model = known.get(key) ?? readModel(path, reading, progress);
+    known.delete(key);
+    known.set(key, model);
+    for (const [oldest] of known) if (known.size > most) known.delete(oldest);
+    return model;
   };
 }
 

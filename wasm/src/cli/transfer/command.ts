@@ -14,7 +14,7 @@ import { boundsOfTile, type UvBounds } from '../paint/cage-area.js';
 import { isTiled, readPaint, readTiles } from '../paint/read-paint.js';
 import { jsonText } from '../print.js';
 import type { Progress } from '../progress.js';
-import { cutTarget, type Models, type Run, readModel, runTransfer, type Sources } from '../run.js';
+import { cutTarget, type Run, readModel, runTransfer, type Sources } from '../run.js';
 import { countOf, makeReport, type Report, regionReport, summary } from './report.js';
 
 /** The arguments of `cagecast transfer`. */
@@ -40,17 +40,17 @@ export interface Region {
 
 /**
  * Runs the transfer and writes the requested files.
- * @param models  How the cage is read.
+ * @param readCage  How cages are read.
  * @returns a summary for people, and the report.
  * @throws {InputError} that names the file at fault; then no file is written.
  */
 export async function transferCommand(
   command: TransferCommand,
   progress: Progress,
-  models?: Models,
+  readCage?: typeof readModel,
 ): Promise<{ lines: string[]; report: Report }> {
   const { output, regions = [] } = command;
-  const first = await transferRegion(command, command.texture, progress, { models, isLast: regions.length === 0 });
+  const first = await transferRegion(command, command.texture, progress, { readCage, isLast: regions.length === 0 });
   const report = makeReport(command, first);
   if (command.inspects) {
     const { verdict, findings } = inspectionReport(command, first.run, first.textures);
@@ -60,7 +60,7 @@ export async function transferCommand(
   for (const [r, { cage, texture }] of regions.entries()) {
     const { uvBounds: _, referenceCage: __, ...same } = command;
     last = await transferRegion({ ...same, cage }, texture, progress, {
-      models,
+      readCage,
       isLast: r === regions.length - 1,
       before: { painted: last.painted, bytes: last.written!.data, form: finalForm(command, first.run) },
       zones: `${zoneAttribute}_${r + 1}`,
@@ -93,7 +93,7 @@ const worse = (a: Verdict, b: Verdict): Verdict => (verdicts.indexOf(a) < verdic
 
 /** What a region's transfer is given besides its files. */
 interface RegionContext {
-  models: Models | undefined;
+  readCage: typeof readModel | undefined;
   /** Whether what it writes is the output. */
   isLast: boolean;
   /** What earlier regions made of the target: 1 per triangle that they paint, the bytes of a GLB, and the form of the output. */
@@ -124,12 +124,12 @@ async function transferRegion(
   command: TransferCommand,
   texture: string | undefined,
   progress: Progress,
-  { models, isLast, before, zones = zoneAttribute }: RegionContext,
+  { readCage, isLast, before, zones = zoneAttribute }: RegionContext,
 ): Promise<RegionRun> {
   const { target, output, reading, uvBounds } = command;
   const paint = texture === undefined || isTiled(texture) ? undefined : await readPaint(texture, reading.limits);
   const model = before && (await readModel(target, reading, progress, before.bytes));
-  const run = await runTransfer(command, progress, models, model);
+  const run = await runTransfer(command, progress, readCage, model);
   const cage = { file: run.cageFile, extracted: run.cage };
   const tiles = texture !== undefined && isTiled(texture) ? await readTiles(texture, cage, reading.limits) : [];
   const areas: PaintArea[] = uvBounds ? ['bounded'] : tiles.map(({ tile }) => ({ tile }));
