@@ -3,12 +3,12 @@ import { oneLine } from './print.js';
 
 export { percent } from '../inspect/finding.js';
 
-/** Lays out rows in columns, a line for each; all but the first column are right-aligned. */
-export function table(rows: readonly (readonly string[])[], indent = '  '): string[] {
+/** Lays out rows in columns, an indented line for each; all but the first column are right-aligned. */
+export function table(rows: readonly (readonly string[])[]): string[] {
   const widths = (rows[0] ?? []).map((_, column) => Math.max(...rows.map((row) => row[column]?.length ?? 0)));
   return rows.map(
     (row) =>
-      indent +
+      '  ' +
       row
         .map((cell, column) => (column === 0 ? cell.padEnd(widths[0]!) : cell.padStart(widths[column]!)))
         .join('  ')

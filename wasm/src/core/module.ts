@@ -22,13 +22,13 @@ export interface CoreLocks {
   segments: CoreLock[];
   groups: CoreLock[];
 }
-export interface CoreLock {
+interface CoreLock {
   id: number;
   lock: EnumValue;
 }
 
 /** How a call ended: `ok`, or the name and sentence of what went wrong, and the argument at fault, empty if there is none. */
-export interface Status {
+interface Status {
   code: string;
   message: string;
   argument: string;
@@ -47,7 +47,7 @@ type U8 = Uint8Array<ArrayBuffer>;
 type U32 = Uint32Array<ArrayBuffer>;
 type F32 = Float32Array<ArrayBuffer>;
 
-export interface ProjectedAnswer extends Answer {
+interface ProjectedAnswer extends Answer {
   uvs: F32;
   cornerUvs: F32;
   zones: U8;
@@ -58,23 +58,23 @@ export interface ProjectedAnswer extends Answer {
   timings: Timings;
   peakBytes: number;
 }
-export interface ProjectAnswer extends ProjectedAnswer {
+interface ProjectAnswer extends ProjectedAnswer {
   recovery: U32;
   holeShares: HoleShare[];
   indices: U32;
 }
-export interface ClassifyAnswer extends Answer {
+interface ClassifyAnswer extends Answer {
   zones: U8;
   cosmeticTriangles: U8;
   segmentStats: CoreSegment[];
 }
-export interface TransferAnswer extends ProjectedAnswer, ClassifyAnswer {}
-export interface SplitAnswer extends Answer {
+interface TransferAnswer extends ProjectedAnswer, ClassifyAnswer {}
+interface SplitAnswer extends Answer {
   sources: U32;
   indices: U32;
   uvs: F32;
 }
-export interface CutAnswer extends Answer {
+interface CutAnswer extends Answer {
   sources: U32;
   weights: F32;
   indices: U32;

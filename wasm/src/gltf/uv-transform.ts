@@ -2,7 +2,7 @@ import type { GLTF } from '@gltf-transform/core';
 import { InputError } from './input-error.js';
 
 /** The members of KHR_texture_transform. */
-export interface UvTransform {
+interface UvTransform {
   offset: number[];
   /** Radians, counter-clockwise. */
   rotation: number;

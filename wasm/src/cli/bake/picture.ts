@@ -13,7 +13,7 @@ import { listed } from '../table.js';
 import { decodeImage } from './images.js';
 
 /** What a picture is made for. */
-export interface PictureOptions {
+interface PictureOptions {
   /** Names of the parts whose texture is meant; empty for all. */
   part: readonly string[];
   /** Its longer side. */
@@ -21,7 +21,7 @@ export interface PictureOptions {
 }
 
 /** A picture, and the parts that it is of. */
-export interface Picture {
+interface Picture {
   image: Baked;
   parts: readonly Part[];
 }

@@ -28,7 +28,7 @@ const withChoices = (options: readonly Option[]) => options.filter(({ argChoices
 const quoted = (text: string): string => `'${text.replaceAll("'", "'\\''")}'`;
 
 /** A script by which a shell completes the command. All of them offer files where no flag begins. */
-export function completion(program: Command, shell: Shell): string {
+function completion(program: Command, shell: Shell): string {
   return { bash, zsh, fish }[shell](knownOf(program));
 }
 

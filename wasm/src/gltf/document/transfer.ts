@@ -23,7 +23,7 @@ interface DocumentTransferOptions extends TransferOptions, MaskSources {
 }
 
 /** A transfer to a document, which is not changed by it. */
-export interface DocumentTransfer {
+interface DocumentTransfer {
   target: ExtractedDocument;
   model: DocumentModel;
   result: TransferResult;
