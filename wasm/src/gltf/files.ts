@@ -24,7 +24,7 @@ export const standard = '-';
  */
 export async function readBytes(path: string, limits: ReadLimits = defaultLimits): Promise<Uint8Array> {
   if (path === standard) return readStandardInput(limits);
-  return reading(async () => {
+  return withPlainErrors(async () => {
     const file = await open(path);
     try {
       const found = await file.stat();
@@ -66,7 +66,7 @@ function readDataUri(name: string, uri: string): Uint8Array {
  * @throws {InputError} with a message that does not name the file.
  */
 export function readBeside(path: string, folder: string, { limits, allowOutside }: ReadOptions): Promise<Uint8Array> {
-  return reading(async () => {
+  return withPlainErrors(async () => {
     const refuseOutside = (to: string, from: string) => {
       if (!allowOutside && isOutside(to, from))
         throw new InputError('is outside the folder of the file that refers to it; --allow-outside permits it');
@@ -97,21 +97,21 @@ async function readStandardInput(limits: ReadLimits): Promise<Uint8Array> {
   for await (const chunk of process.stdin as AsyncIterable<Buffer>) {
     chunks.push(chunk);
     length += chunk.length;
-    if (length > limits.bytes)
-      throw exceeds(`has more than ${limits.bytes.toLocaleString('en')} bytes`, 'bytes', limits);
+    checkSize(length, limits);
   }
   return Buffer.concat(chunks);
+}
+
+function checkSize(bytes: number, limits: ReadLimits): void {
+  if (bytes > limits.bytes) throw exceeds(`has more than ${limits.bytes.toLocaleString('en')} bytes`, 'bytes', limits);
 }
 
 const kChunkBytes = 2 ** 20;
 
 /** Reads until the end. The size that the system tells is no promise: that of a pipe is 0. */
 async function readAll(file: FileHandle, limits: ReadLimits): Promise<Uint8Array> {
-  const check = (size: number) => {
-    if (size > limits.bytes) throw exceeds(`has more than ${limits.bytes.toLocaleString('en')} bytes`, 'bytes', limits);
-  };
   const { size } = await file.stat();
-  check(size);
+  checkSize(size, limits);
   let bytes = Buffer.allocUnsafeSlow(size + 1); // one more, to see the end without another allocation
   let length = 0;
   for (;;) {
@@ -123,7 +123,7 @@ async function readAll(file: FileHandle, limits: ReadLimits): Promise<Uint8Array
     const { bytesRead } = await file.read(bytes, length, bytes.length - length);
     if (bytesRead === 0) return bytes.subarray(0, length);
     length += bytesRead;
-    check(length);
+    checkSize(length, limits);
   }
 }
 
@@ -139,11 +139,11 @@ export const reasons: Readonly<Record<string, string>> = {
 
 /** Whether a path leads to a folder. @throws {InputError} if it leads nowhere. */
 export async function isFolder(path: string): Promise<boolean> {
-  return path !== standard && (await reading(() => stat(path))).isDirectory();
+  return path !== standard && (await withPlainErrors(() => stat(path))).isDirectory();
 }
 
-/** Turns errors of the system into plain ones. */
-async function reading<Result>(read: () => Promise<Result>): Promise<Result> {
+/** Reads, and turns errors of the system into plain ones. */
+async function withPlainErrors<Result>(read: () => Promise<Result>): Promise<Result> {
   try {
     return await read();
   } catch (error) {

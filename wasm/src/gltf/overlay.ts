@@ -113,7 +113,7 @@ export function cosmeticCorners(indices: Uint32Array, cosmetic: Uint8Array): Uin
 export const isOverlaid = (semantic: string): boolean =>
   semantic === 'POSITION' || semantic === 'NORMAL' || /^(JOINTS|WEIGHTS)_\d+$/.test(semantic);
 
-/** Whether an overlay copies the deltas of an attribute from its base: if it has the attribute, but not for UVs, which differ. */
+/** Whether an overlay has the deltas of an attribute from the morph targets of its base: of positions, and of normals if it has these. */
 export const isMorphed = (semantic: string, hasNormals: boolean): boolean =>
   semantic === 'POSITION' || (semantic === 'NORMAL' && hasNormals);
 

@@ -107,7 +107,7 @@ const kMostLost = 0.6; // of the paint; the same for a part of the texture
 /** Side of a texture that a material did not have. */
 const kNewSide = 1024;
 
-const kinds: Record<Slot, string> = { color: 'base colour', normal: 'normal', orm: 'metallic-roughness' };
+const slotNames: Record<Slot, string> = { color: 'base colour', normal: 'normal', orm: 'metallic-roughness' };
 
 /** A part, and its material or one that a variant gives it. */
 interface User<Material> {
@@ -268,7 +268,7 @@ async function baseOf<Material, Texture>(
   try {
     image = await codec.decode(file.bytes, file.mimeType);
   } catch (error) {
-    return `its ${kinds[slot]} texture (${file.mimeType}) cannot be read: ${error instanceof Error ? error.message : error}`;
+    return `its ${slotNames[slot]} texture (${file.mimeType}) cannot be read: ${error instanceof Error ? error.message : error}`;
   }
   const { width, height, data } = image;
   if (data.length !== 4 * width * height)
