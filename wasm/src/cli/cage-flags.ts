@@ -12,7 +12,8 @@ const kTriangleRange = [50, 20_000] as const;
 /** The least and the most that gaps can be closed by, as a share of the diagonal. */
 const kClosingRange = [0.0005, 0.2] as const;
 
-const output = (command: Command): Command =>
+/** Adds the flags that both commands have. */
+const addOutputFlags = (command: Command): Command =>
   addPrintFlags(addReadFlags(command))
     .addOption(
       new Option('-o, --output <CAGE.glb>', 'where to write the cage; - for the standard output')
@@ -40,7 +41,7 @@ export function addCageCommands(program: Command, progress: Progress): void {
 }
 
 function addMakeCommand(program: Command, progress: Progress): void {
-  output(program.command('make').argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing'))
+  addOutputFlags(program.command('make').argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing'))
     .description('make a cage for TARGET: a hull with holes over what is not painted, and UVs; print a verdict')
     .addOption(exclusion())
     .addOption(
@@ -86,7 +87,7 @@ Examples:
 }
 
 function addFitCommand(program: Command, progress: Progress): void {
-  output(
+  addOutputFlags(
     program
       .command('fit')
       .argument(

@@ -130,7 +130,7 @@ export async function readModel(
 ): Promise<ReadModel> {
   progress.step(`reading ${path}`);
   const file = await readGltf(path, reading, bytes);
-  return { file, extracted: usable(file, extract(file)) };
+  return { file, extracted: withTriangles(file, extract(file)) };
 }
 
 /** The same if it has UVs, as a cage must. @throws {InputError} that names the file and the primitive. */
@@ -189,7 +189,8 @@ function optionsFor({ file, extracted }: ReadModel, rules: Rules, leftOut: reado
   }
 }
 
-function usable(file: GltfFile, extracted: Extracted): Extracted {
+/** The same if it has triangles. @throws {InputError} that names the file. */
+function withTriangles(file: GltfFile, extracted: Extracted): Extracted {
   if (extracted.mesh.indices.length === 0) {
     throw new InputError(
       `has no ${(file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene'}; at least one triangle is needed`,

@@ -1,13 +1,8 @@
-/** A number for each zone. */
-export interface PerZone {
-  cosmetic: number;
-  occluded: number;
-  uncovered: number;
-  culled: number;
-}
-
 /** In the order of their numbers. */
 export const zoneNames = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
+
+/** A number for each zone. */
+export type PerZone = Record<(typeof zoneNames)[number], number>;
 
 /** Adds up a weight per vertex (1 by default) for each zone, over a range of vertices. */
 export function perZone(zones: Uint8Array, weights?: Float64Array, first = 0, end = zones.length): PerZone {

@@ -112,7 +112,7 @@ export interface RegionRun {
   /** 1 per triangle of what was written that this or an earlier region paints. */
   painted: Uint8Array;
   /** How many of them an earlier region paints. */
-  before: number;
+  paintedBefore: number;
   written: Awaited<ReturnType<typeof writeTransfer>> | undefined;
   zones: string;
   /** Where the cage's UVs have textures. */
@@ -139,16 +139,16 @@ async function transferRegion(
   const cut = cutMesh && { ...cutMesh, shown: shownTriangles(areas, cutMesh, cutMesh.indices) };
   const ofOutput = cut?.shown ?? shown;
   const painted = ofOutput.map((_, t) => before?.painted[cut ? cut.triangles[t]! : t] ?? 0);
-  const earlier = countOf(painted);
+  const paintedBefore = countOf(painted);
   const own = ofOutput.map((isShown, t) => (isShown && !painted[t] ? 1 : 0));
   own.forEach((isPainted, t) => {
     if (isPainted) painted[t] = 1;
   });
   const textures = uvBounds ? [uvBounds] : tiles.map(({ tile }) => boundsOfTile(tile));
-  const found = { run, shown, cut, painted, before: earlier, zones, textures };
+  const found = { run, shown, cut, painted, paintedBefore, zones, textures };
   if (output === undefined && isLast) return { ...found, written: undefined };
   progress.step(`writing ${output ?? target}`);
-  const finalOne = before?.form ?? command.compress;
+  const form = before?.form ?? command.compress;
   const isText = isLast && output !== undefined && /\.gltf$/i.test(output);
   const written = await writeTransfer(
     run.targetFile,
@@ -158,7 +158,7 @@ async function transferRegion(
       paints,
       cut: cut && { ...cut, cosmeticTriangles: own },
       // Draco changes the order of triangles, which says what is painted already.
-      form: isLast ? finalOne : compressionOf(run) === undefined ? 'keep' : 'none',
+      form: isLast ? form : compressionOf(run) === undefined ? 'keep' : 'none',
       zones,
       isFurther: before !== undefined,
       stem: isText ? basename(output).slice(0, -'.gltf'.length) : undefined,

@@ -72,7 +72,7 @@ export interface Report {
   /** Whether all of the cages fit, and why not; if they were inspected. */
   verdict?: Verdict;
   findings?: Finding[];
-  /** Milliseconds of CPU time. */
+  /** Milliseconds of wall time. */
   timings: Run['result']['timings'];
   peakBytes: number;
 }
@@ -181,7 +181,7 @@ function partReport(part: Part, { zones }: TransferResult, added: Added | undefi
 /** The report of a further cage. */
 export function regionReport(
   { cage, texture, output }: Region & Pick<TransferCommand, 'output'>,
-  { run, painted, before, written, zones }: RegionRun,
+  { run, painted, paintedBefore, written, zones }: RegionRun,
 ): Report['regions'][number] {
   const sets = [...new Set(output === undefined ? [] : written?.added.map(({ uvSet }) => uvSet))];
   return {
@@ -190,7 +190,7 @@ export function regionReport(
     uvSet: sets.length > 0 ? sets.join(', ') : null,
     zones,
     counts: perZone(run.result.zones),
-    triangles: { total: painted.length, cosmetic: countOf(painted) - before },
+    triangles: { total: painted.length, cosmetic: countOf(painted) - paintedBefore },
   };
 }
 
