@@ -233,6 +233,12 @@ function checkNodes(json: GLTF.IGLTF): void {
   });
 }
 
+/** The nodes that are children of none. */
+export function topNodes(nodes: readonly GLTF.INode[]): number[] {
+  const children = new Set(nodes.flatMap((node) => node.children ?? []));
+  return [...nodes.keys()].filter((node) => !children.has(node));
+}
+
 /** The Draco form of a primitive, if it has one. */
 export function dracoOf(
   primitive: GLTF.IMeshPrimitive,

@@ -2,6 +2,7 @@ import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
 import { type Skinned, skinMatrices } from '../parts/skin.js';
+import { topNodes } from './check.js';
 import { InputError, withName } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';
 import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
@@ -148,10 +149,9 @@ function skinOf(file: GltfFile, part: Part, matrices: readonly Matrix[]): Skinne
 
 /** The matrix of each node to the scene, including nodes that are in no scene. */
 export function worldMatrices({ nodes = [] }: GLTF.IGLTF): Matrix[] {
-  const children = new Set(nodes.flatMap((node) => node.children ?? []));
   const matrices = nodes.map(() => identity);
   // Nodes in a cycle have no root and are never reached.
-  const stack = nodes.flatMap((_, node) => (children.has(node) ? [] : [{ node, parent: identity }]));
+  const stack = topNodes(nodes).map((node) => ({ node, parent: identity }));
   for (let next = stack.pop(); next; next = stack.pop()) {
     const matrix = multiply(next.parent, localMatrix(nodes[next.node]!));
     matrices[next.node] = matrix;
@@ -162,10 +162,8 @@ export function worldMatrices({ nodes = [] }: GLTF.IGLTF): Matrix[] {
 
 function roots({ scene, scenes = [], nodes = [] }: GLTF.IGLTF): number[] {
   const chosen = scenes[scene ?? 0];
-  if (chosen) return chosen.nodes ?? [];
   // A file without scenes is a library of nodes; all of them are used.
-  const children = new Set(nodes.flatMap((node) => node.children ?? []));
-  return nodes.map((_, n) => n).filter((n) => !children.has(n));
+  return chosen ? (chosen.nodes ?? []) : topNodes(nodes);
 }
 
 const primitiveOf = ({ json }: GltfFile, { mesh, primitive }: PrimitiveRef): GLTF.IMeshPrimitive =>

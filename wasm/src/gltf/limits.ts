@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { bytesOf, dracoOf, meshoptView } from './check.js';
+import { bytesOf, dracoOf, meshoptView, topNodes } from './check.js';
 import { InputError } from './input-error.js';
 import { isMarked } from './overlay.js';
 import { hasTriangles } from './pieces.js';
@@ -76,8 +76,7 @@ export function checkLimits(json: GLTF.IGLTF, fileBytes: number, limits: ReadLim
 }
 
 function checkNodeDepth({ nodes = [] }: GLTF.IGLTF, limits: ReadLimits): void {
-  const children = new Set(nodes.flatMap(({ children = [] }) => children));
-  let level = nodes.flatMap((_, node) => (children.has(node) ? [] : [node]));
+  let level = topNodes(nodes);
   for (let depth = 1; level.length > 0; ++depth) {
     if (depth > limits.nesting) throw exceeds(`nodes[${level[0]}] is on level ${depth}`, 'nesting', limits);
     level = level.flatMap((node) => nodes[node]!.children ?? []);
