@@ -3,7 +3,7 @@ import { mostTexels } from '../../bake/index.js';
 import type { Mesh, TransferOptions } from '../../index.js';
 import { type Borders, isCut } from '../../parts/borders-option.js';
 import { removeOverlays } from '../document/earlier-transfer.js';
-import { transferDocument, within, wrong } from '../document/transfer.js';
+import { ofArgument, transferDocument, wrong } from '../document/transfer.js';
 import { addTransfer } from '../document/write.js';
 import type { MaskSources } from './masks.js';
 import { type BakeReport, bakeModel, type ImageCodec, type Paints, type Slot, slots } from './plan.js';
@@ -70,11 +70,9 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
       paints,
       codec: images,
       size,
-    }).catch((error) =>
-      within('bake', 'target', () => {
-        throw error;
-      }),
-    );
+    }).catch((error) => {
+      throw ofArgument('bake', 'target', error);
+    });
     removeOverlays(document, target.parts);
     if (paint) {
       // What is baked is not shown twice.

@@ -78,8 +78,12 @@ export function within<T>(caller: string, argument: string, read: () => T): T {
   try {
     return read();
   } catch (error) {
-    throw error instanceof InputError
-      ? new CagecastError('badArgument', caller, `${argument}: ${error.message}`, { argument, cause: error })
-      : error;
+    throw ofArgument(caller, argument, error);
   }
 }
+
+/** An error that names the argument, if it is of a file or document; any other as it is. */
+export const ofArgument = (caller: string, argument: string, error: unknown): unknown =>
+  error instanceof InputError
+    ? new CagecastError('badArgument', caller, `${argument}: ${error.message}`, { argument, cause: error })
+    : error;
