@@ -51,24 +51,12 @@ Examples:
 
 /** Adds the command that runs many transfers. */
 export function addBatchCommand(program: Command, progress: Progress): void {
-  const command = addPrintFlags(
-    addReadFlags(
-      addConfigFlags(
-        addRuleFlags(
-          addRegionFlag(
-            addCageAreaFlags(
-              program
-                .command('batch')
-                .argument(
-                  '[TARGETS...]',
-                  'GLB, glTF or VRM; * in a name matches any text, ** any folders but linked ones',
-                ),
-            ),
-          ),
-        ),
-      ),
-    ),
-  )
+  const command = program
+    .command('batch')
+    .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders but linked ones');
+  for (const add of [addCageAreaFlags, addRegionFlag, addRuleFlags, addConfigFlags, addReadFlags, addPrintFlags])
+    add(command);
+  command
     .description('transfer to many files, in threads; print a line of JSON for each')
     .option(
       '--manifest <JOBS.jsonl>',
@@ -104,8 +92,8 @@ export function addBatchCommand(program: Command, progress: Progress): void {
         wholeNumberWithin(1, 999),
       ),
     )
-    .addHelpText('after', kHelp);
-  command.action((targets: string[], flags: BatchFlags) => runBatch(command, targets, flags, progress));
+    .addHelpText('after', kHelp)
+    .action((targets: string[], flags: BatchFlags) => runBatch(command, targets, flags, progress));
 }
 
 async function runBatch(command: Command, targets: string[], flags: BatchFlags, progress: Progress): Promise<void> {

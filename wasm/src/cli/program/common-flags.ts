@@ -11,21 +11,11 @@ export interface CommonFlags extends RuleFlags, CageFlags, ConfigFlags, ReadFlag
 }
 
 /** Adds TARGET, and the flags of the commands that transfer to it. */
-export const addCommonFlags = (command: Command): Command =>
-  addPrintFlags(
-    addReadFlags(
-      addConfigFlags(
-        addRuleFlags(
-          addCageAreaFlags(
-            command
-              .argument('<TARGET>', 'GLB, glTF or VRM that receives the texture')
-              .requiredOption(
-                '--cage <CAGE>',
-                'GLB or glTF that the texture was drawn for; it must have UVs; auto makes one',
-              )
-              .allowExcessArguments(false),
-          ),
-        ),
-      ),
-    ),
-  );
+export function addCommonFlags(command: Command): Command {
+  command
+    .argument('<TARGET>', 'GLB, glTF or VRM that receives the texture')
+    .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it must have UVs; auto makes one')
+    .allowExcessArguments(false);
+  for (const add of [addCageAreaFlags, addRuleFlags, addConfigFlags, addReadFlags, addPrintFlags]) add(command);
+  return command;
+}
