@@ -8,7 +8,7 @@ import { counted } from '../inspect/finding.js';
 import type { Verdict } from '../inspect/index.js';
 import { isWritten, type Job, writtenBy } from './batch-jobs.js';
 import type { Outcome } from './batch-worker.js';
-import { verdicts } from './inspect-command.js';
+import { isWorse } from './inspect-command.js';
 import { canonicalPath, writing } from './output.js';
 import { jsonText, oneLine } from './print.js';
 import type { Progress } from './progress.js';
@@ -67,7 +67,7 @@ export async function batchCommand(
     const line: ResultLine = { target, output, ...(report && { report }), key: job.key, ...outcome };
     ++summary[line.status];
     if (line.status === 'failed') onError?.(line.error);
-    if (failOn && 'verdict' in line && verdicts.indexOf(line.verdict!) <= verdicts.indexOf(failOn)) ++summary.misfits;
+    if (failOn && 'verdict' in line && !isWorse(failOn, line.verdict!)) ++summary.misfits;
     const text = jsonText(line);
     if (results === undefined) write(text);
     // A job that was done before has its line, but another one may stand below it.

@@ -4,7 +4,7 @@ import { isFolder, listingError, readBytes } from '../gltf/files.js';
 import { InputError, withName } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
 import { parseObject } from './config/settings.js';
-import { type InspectionReport, verdicts } from './inspect-command.js';
+import { type InspectionReport, isWorse } from './inspect-command.js';
 import type { Found } from './print.js';
 import { cut, integer, percent, short, table } from './table.js';
 import type { Report } from './transfer/report.js';
@@ -222,6 +222,5 @@ function compare(before: Measures, after: Measures, tolerance: number): Change[]
 
 function compareVerdicts({ verdict: before }: AnyReport, { verdict: after }: AnyReport): Change[] {
   if (before === undefined || after === undefined) return [];
-  const isOver = verdicts.indexOf(after) < verdicts.indexOf(before);
-  return [{ measure: 'verdict', kind: 'verdict', before, after, isOver }];
+  return [{ measure: 'verdict', kind: 'verdict', before, after, isOver: isWorse(after, before) }];
 }

@@ -15,8 +15,10 @@ interface InspectCommand extends Sources {
   html?: string | undefined;
 }
 
-/** Verdicts, from bad to good. */
-export const verdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
+const verdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
+
+/** Whether one verdict is worse than another. */
+export const isWorse = (a: Verdict, b: Verdict): boolean => verdicts.indexOf(a) < verdicts.indexOf(b);
 
 /** The JSON output of `inspect`: the inspection, and its inputs. */
 export interface InspectionReport extends Inspection {

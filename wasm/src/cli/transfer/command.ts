@@ -5,10 +5,9 @@ import { withName } from '../../gltf/input-error.js';
 import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/overlay.js';
 import { writeTransfer } from '../../gltf/write.js';
 import type { CutTarget, TransferResult } from '../../index.js';
-import type { Verdict } from '../../inspect/index.js';
 import type { Borders } from '../../parts/borders-option.js';
 import { refuseOverwritingRead } from '../beside.js';
-import { inspectionReport, verdicts } from '../inspect-command.js';
+import { inspectionReport, isWorse } from '../inspect-command.js';
 import { writeFiles } from '../output.js';
 import { boundsOfTile, type UvBounds } from '../paint/cage-area.js';
 import { isTiled, readPaint, readTiles } from '../paint/read-paint.js';
@@ -68,7 +67,7 @@ export async function transferCommand(
     report.regions.push(regionReport({ cage, texture, output }, last));
     if (command.inspects) {
       const { verdict, findings } = inspectionReport({ ...command, cage }, last.run, last.textures);
-      report.verdict = worse(report.verdict!, verdict);
+      if (isWorse(verdict, report.verdict!)) report.verdict = verdict;
       report.findings!.push(...findings.map((finding) => ({ ...finding, sentence: `${cage}: ${finding.sentence}` })));
     }
   }
@@ -87,9 +86,6 @@ export async function transferCommand(
   writeFiles(files);
   return { lines: summary(command, report), report };
 }
-
-/** The worse of two verdicts. */
-const worse = (a: Verdict, b: Verdict): Verdict => (verdicts.indexOf(a) < verdicts.indexOf(b) ? a : b);
 
 /** What a region's transfer is given besides its files. */
 interface RegionContext {
