@@ -93,25 +93,16 @@ function withNames(core: Core, answer: { segmentStats?: CoreSegment[] }): object
 }
 
 /** Replaces the views of WebAssembly memory in an answer by copies of them. */
-function copyViews(views: object, reusable: Reusable): object {
+function copyViews(views: Record<string, unknown>, reusable: Reusable): object {
   // Allocate first: if that fails, no array of the caller is overwritten.
-  const entries = Object.entries(views).map(([name, value]) => {
-    const isReused = ArrayBuffer.isView(value) && fits(reusable[name], value as Uint8Array);
-    return {
-      name,
-      value,
-      isReused,
-      own: ArrayBuffer.isView(value) && !isReused ? (value as Uint8Array).slice() : value,
-    };
+  const copies = Object.entries(views).map(([name, view]) => {
+    if (!ArrayBuffer.isView(view)) return [name, view] as const;
+    const earlier = reusable[name];
+    return [name, fits(earlier, view as Uint8Array) ? earlier : (view as Uint8Array).slice()] as const;
   });
-  return Object.fromEntries(
-    entries.map(({ name, value, isReused, own }) => {
-      if (!isReused) return [name, own];
-      const array = reusable[name]!;
-      overwrite(array, value);
-      return [name, array];
-    }),
-  );
+  for (const [name, copy] of copies)
+    if (ArrayBuffer.isView(copy) && copy === reusable[name]) overwrite(copy, views[name] as Uint8Array);
+  return Object.fromEntries(copies);
 }
 
 /** Whether there is room in an array for just what a view shows. An empty one may be what is left of one that was moved away. */
