@@ -1,7 +1,7 @@
 import { mostTexels } from '../../bake/image.js';
 import { type Baked, cageTexture, fill, type Image, type Layout, resize, type Wrap } from '../../bake/index.js';
 import { FileModel } from '../../gltf/bake/file.js';
-import { layoutOf, scaledTo, type TextureUse, uvsOf } from '../../gltf/bake/plan.js';
+import { colorUseOf, isPainted, layoutOf, scaledTo, uvsOf } from '../../gltf/bake/plan.js';
 import type { Part } from '../../gltf/extract.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
@@ -58,7 +58,7 @@ export async function paintOfModel(
   const layouts = layoutsOf(model, parts, run, cut);
   if (!own) throw new InputError('its painted parts have no texture to take the paint from');
   const shown = parts.every((part) => isOpaque(model, part)) ? withoutAlpha(own) : own;
-  const there = unrolled(shown, layouts, uses(model, parts[0]!)!.wraps);
+  const there = unrolled(shown, layouts, colorUseOf(model, parts[0]!)!.wraps);
   return { image: cageTextureOf(there, distancesOf(parts, run, cut), size), parts };
 }
 
@@ -80,7 +80,7 @@ async function imageOf(model: FileModel, texture: number | undefined, isNeeded: 
 
 /** How the triangles of parts lie in their texture and in the cage's. */
 function layoutsOf(model: FileModel, parts: readonly Part[], run: Run, cut: CutTarget | undefined): Layout[] {
-  return parts.map((part) => layoutOf(model, part, useOf(model, part), { result: run.result, cut }));
+  return parts.map((part) => layoutOf(model, part, uvLayoutOf(model, part), { result: run.result, cut }));
 }
 
 /** An image of which all is opaque, as the materials have it that show it. */
@@ -164,34 +164,26 @@ function cageTextureOf({ image, layouts }: ModelTexture, distances: readonly num
   return cageTexture({ indices, uvs: all(layouts.map(({ to }) => to)) }, result, image, { width });
 }
 
-/** How the texture of a part lies on it, if it has one. */
-function uses(model: FileModel, part: Part): TextureUse<number> | undefined {
-  const material = model.materialOf(part);
-  return material === undefined ? undefined : model.useOf(material, 'color');
-}
-
-/** The same; by the first UVs if it has none. */
-const useOf = (model: FileModel, part: Part): UvLayout =>
-  uses(model, part) ?? { set: 'TEXCOORD_0', transform: undefined };
+/** The UVs by which a texture lies on a part: those of its own, else the first. */
+const uvLayoutOf = (model: FileModel, part: Part): UvLayout =>
+  colorUseOf(model, part) ?? { set: 'TEXCOORD_0', transform: undefined };
 
 /** The parts that share one texture. @throws {InputError} if there are several textures, or a part has no UVs. */
 function oneTexture(model: FileModel, { result, target }: Run, names: readonly string[]) {
-  const isPainted = ({ firstTriangle, triangleCount }: Part) =>
-    result.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount).includes(1);
   for (const name of names)
     if (!target.parts.some(({ aliases }) => aliases.some(matcher(name))))
       throw noSuchName(`--part ${name}`, target.parts);
   const isChosen = ({ aliases }: Part) => names.length === 0 || names.some((name) => aliases.some(matcher(name)));
-  const chosen = target.parts.filter((part) => isPainted(part) && isChosen(part));
-  const textured = chosen.filter((part) => uses(model, part));
+  const chosen = target.parts.filter((part) => isPainted(part, result) && isChosen(part));
+  const textured = chosen.filter((part) => colorUseOf(model, part));
   const painted = textured.length > 0 ? textured : chosen;
   if (painted.length === 0) throw new InputError('nothing of it may be painted');
-  const withoutUvs = painted.find((part) => !uvsOf(model, part, useOf(model, part).set));
+  const withoutUvs = painted.find((part) => !uvsOf(model, part, uvLayoutOf(model, part).set));
   if (withoutUvs)
     throw new InputError(
-      `${quoted(withoutUvs.name)} has no ${useOf(model, withoutUvs).set}: a texture can only be laid on a model that is unwrapped`,
+      `${quoted(withoutUvs.name)} has no ${uvLayoutOf(model, withoutUvs).set}: a texture can only be laid on a model that is unwrapped`,
     );
-  const textures = new Set(painted.map((part) => uses(model, part)?.texture));
+  const textures = new Set(painted.map((part) => colorUseOf(model, part)?.texture));
   if (textures.size > 1)
     throw new InputError(
       `its painted parts have ${textures.size} textures, which a PNG cannot hold; choose parts of one by --part: ${listNames(painted.map(({ name }) => name))}`,
@@ -202,7 +194,7 @@ function oneTexture(model: FileModel, { result, target }: Run, names: readonly s
     texture === undefined || names.length > 0
       ? painted
       : target.parts.filter(
-          (part) => uses(model, part)?.texture === texture && uvsOf(model, part, useOf(model, part).set),
+          (part) => colorUseOf(model, part)?.texture === texture && uvsOf(model, part, uvLayoutOf(model, part).set),
         );
   return { parts, texture };
 }

@@ -3,7 +3,7 @@ import type { Masks } from '../../index.js';
 import { InputError } from '../input-error.js';
 import { endOf } from '../pieces.js';
 import { transformUvs } from '../uv-transform.js';
-import { type BakeModel, colorsOf, uvsOf } from './plan.js';
+import { type BakeModel, colorsOf, colorUseOf, uvsOf } from './plan.js';
 
 /** Where masks can come from, beside arrays. */
 export interface MaskSources {
@@ -40,8 +40,7 @@ export function masksOf<Material, Texture>(
       hasColors = true;
       vertices.set(maskVertices(found.values, found.size as 3 | 4), part.firstVertex);
     }
-    const material = model.materialOf(part);
-    const use = material === undefined ? undefined : model.useOf(material, 'color');
+    const use = colorUseOf(model, part);
     const stored = shown && uvsOf(model, part, use?.set ?? 'TEXCOORD_0');
     if (!stored) continue;
     hasUvs = true;

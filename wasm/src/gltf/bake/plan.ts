@@ -68,6 +68,21 @@ export function colorsOf(
   return accessor && { values: decodeFloats(accessor), size: accessor.getElementSize() };
 }
 
+/** How the texture of its base colour lies on a part, if it has one. */
+export function colorUseOf<Material, Texture>(
+  model: BakeModel<Material, Texture>,
+  part: Piece,
+): TextureUse<Texture> | undefined {
+  const material = model.materialOf(part);
+  return material === undefined ? undefined : model.useOf(material, 'color');
+}
+
+/** Whether a triangle of a part may be painted. */
+export const isPainted = (
+  { firstTriangle, triangleCount }: Piece,
+  { cosmeticTriangles }: Pick<TransferResult, 'cosmeticTriangles'>,
+): boolean => cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount).includes(1);
+
 /** Reads and writes image files. */
 export interface ImageCodec {
   /** @throws {Error} if it cannot read such a file; the parts with this texture are not baked then. */
@@ -140,15 +155,12 @@ export async function bakeModel<Material, Texture>(
   const report: BakeReport = { textures: [], left: [] };
   const baked = new Set<Piece>();
   const replacements: (() => void)[] = [];
-  const { cosmeticTriangles } = input.result;
-  const isPainted = ({ firstTriangle, triangleCount }: Piece) =>
-    cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount).includes(1);
   for (const slot of slots) {
     const paint = input.paints[slot];
     if (!paint) continue;
     const refused = new Map<User<Material>, string>();
     for (const sheet of listSheets(model, slot, refused)) {
-      const painted = new Set(sheet.users.map(({ part }) => part).filter(isPainted));
+      const painted = new Set(sheet.users.map(({ part }) => part).filter((part) => isPainted(part, input.result)));
       if (painted.size === 0) continue;
       const made = await bakeSheet(model, sheet, paint, input);
       if (typeof made === 'string') {
@@ -163,7 +175,7 @@ export async function bakeModel<Material, Texture>(
     }
     for (const [{ part, material }, reason] of refused) {
       const ofVariant = material !== model.materialOf(part) && { material: model.nameOf(material!) };
-      if (isPainted(part)) report.left.push({ part: part.name, ...ofVariant, reason });
+      if (isPainted(part, input.result)) report.left.push({ part: part.name, ...ofVariant, reason });
     }
   }
   for (const replace of replacements) replace();
