@@ -214,6 +214,7 @@ describe('masks of loaded models', () => {
         /^maskTriangles: images\.width is not an option; .*: never, always$/,
       ],
       [() => maskTriangles(mesh, { nevr: image } as object), /^maskTriangles: images\.nevr is not an option/],
+      [() => maskTriangles(mesh, null as never), /^maskTriangles: images is null, not an object$/],
       [
         () => modelMasks(plane(), { nevr: texture(image) } as object),
         /^modelMasks: options\.nevr is not an option; there are: never, always, attribute$/,

@@ -37,13 +37,12 @@ export function colorByte(): (linear: number) => number {
   return (linear) => table[linear <= 0 ? 0 : linear >= 1 ? kSteps : (linear * kSteps + 0.5) | 0]!;
 }
 
-/** @throws {CagecastError} `badOption` for a name that is unknown. */
-export function checkNames(fn: string, where: string, given: object, known: string): void {
+/** @throws {CagecastError} `badOption` for what is no object, and for a name that is unknown. */
+export function checkNames(fn: string, argument: string, given: unknown, known: string): void {
+  const wrong = (text: string) => new CagecastError('badOption', fn, argument + text, { argument });
+  if (typeof given !== 'object' || given === null) throw wrong(` is ${show(given)}, not an object`);
   for (const name in given)
-    if (!known.split(', ').includes(name))
-      throw new CagecastError('badOption', fn, `${where}.${name} is not an option; there are: ${known}`, {
-        argument: where,
-      });
+    if (!known.split(', ').includes(name)) throw wrong(`.${name} is not an option; there are: ${known}`);
 }
 
 /** An error of an argument, or of a member of one. @param name  As in "image.width". */

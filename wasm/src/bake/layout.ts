@@ -70,8 +70,6 @@ interface Fill {
 
 /** Checks the options of a fill. @throws {CagecastError} `badOption` or `badArgument`. */
 export function checkFill(fn: string, options: FillOptions = {}): Fill {
-  if (typeof options !== 'object' || options === null)
-    throw new CagecastError('badOption', fn, `options is ${options}, not an object`);
   checkNames(fn, 'options', options, 'width, height, kind, gutter, wrap, parts');
   const { kind = 'color', wrap = 'repeat' } = options;
   const width = checkSize(fn, 'options.width', options.width ?? 1024);
