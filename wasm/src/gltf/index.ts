@@ -92,6 +92,6 @@ export function cagecast(options: CagecastOptions): Transform {
         triangleCount,
       })),
     );
-    addTransfer(document, target, result, paint, cut);
+    addTransfer(document, target, result, { paint, cut });
   };
 }

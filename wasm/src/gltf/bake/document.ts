@@ -74,18 +74,7 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
       throw ofArgument('bake', 'target', error);
     });
     removeOverlays(document, target.parts);
-    if (paint) {
-      // What is baked is not shown twice.
-      const isLeft = result.cosmeticTriangles.slice().fill(1);
-      for (const { firstTriangle, triangleCount } of baked)
-        isLeft.fill(0, firstTriangle, firstTriangle + triangleCount);
-      const shown = { ...result, cosmeticTriangles: result.cosmeticTriangles.map((is, t) => is && isLeft[t]!) };
-      const shownCut = cut && {
-        ...cut,
-        cosmeticTriangles: cut.cosmeticTriangles.map((is, t) => is && isLeft[cut.triangles[t]!]!),
-      };
-      addTransfer(document, target, shown, paint, shownCut);
-    }
+    if (paint) addTransfer(document, target, result, { paint, cut, baked });
     onBaked?.(report);
   };
 }

@@ -25,6 +25,7 @@ import {
   uvsMark,
   zoneAttribute,
 } from '../overlay.js';
+import type { Piece } from '../pieces.js';
 import { type GroupMember, groupMember, shareVertices, sparseElements, storedUvs } from '../primitive-group.js';
 import { disposeUnused, removeAttributes, removeOverlays } from './earlier-transfer.js';
 import type { DocumentPart, ExtractedDocument } from './read.js';
@@ -33,28 +34,35 @@ import type { DocumentPart, ExtractedDocument } from './read.js';
 interface Member extends GroupMember {
   part: DocumentPart;
   primitive: Primitive;
+  /** What shows the texture on it, if anything does. */
+  overlay: OverlayWriter | undefined;
 }
 
 /**
  * Adds the result of a transfer to a document, as the command does to a file: every primitive gets a new UV set and `_NCZ` and, with
  * a texture, an overlay primitive of its cosmetic triangles. New vertices at cut borders, and copies of vertices whose triangles
  * need different UVs, are added after the existing ones. It replaces an earlier transfer. If several nodes share a mesh, each gets a copy.
+ * @param baked  Parts that show the texture already, and get no overlay.
  */
 export function addTransfer(
   document: Document,
   { parts }: ExtractedDocument,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
-  paint?: Paint,
-  cut?: CutTarget,
+  { paint, cut, baked }: { paint: Paint | undefined; cut: CutTarget | undefined; baked?: ReadonlySet<Piece> },
 ): void {
   const primitiveOf = separatePrimitives(document, parts);
   removeOverlays(document, parts);
   removeAttributes(document, primitiveOf);
   const overlay = paint && new OverlayWriter(document, paint);
   const members = parts.map(
-    (part, p): Member => ({ ...groupMember(part, result, cut), part, primitive: primitiveOf[p]! }),
+    (part, p): Member => ({
+      ...groupMember(part, result, cut),
+      part,
+      primitive: primitiveOf[p]!,
+      overlay: baked?.has(part) ? undefined : overlay,
+    }),
   );
-  for (const group of groupsOf(members)) addToGroup(document, group, overlay);
+  for (const group of groupsOf(members)) addToGroup(document, group);
 }
 
 /** The parts by the attributes that their primitives share. */
@@ -85,7 +93,7 @@ export const createAccessor = (document: Document, array: AttributeArray, type: 
     .setBuffer(document.getRoot().listBuffers()[0] ?? document.createBuffer());
 
 /** Adds UVs, zones and overlays to primitives that share their attributes. */
-function addToGroup(document: Document, members: readonly Member[], overlay: OverlayWriter | undefined): void {
+function addToGroup(document: Document, members: readonly Member[]): void {
   const { part, primitive: first } = members[0]!;
   const shared = shareVertices(part.vertexCount, members);
   const { sources, blends } = shared;
@@ -108,7 +116,7 @@ function addToGroup(document: Document, members: readonly Member[], overlay: Ove
     .setExtras({ ...uvsMark });
   const zones = createAccessor(document, shared.zones, 'SCALAR').setSparse(isSparse(shared.zones, 1));
   const uvSet = freeUvSet((semantic) => first.getAttribute(semantic) !== null);
-  members.forEach(({ primitive, part: { node }, cosmetic }, m) => {
+  members.forEach(({ primitive, part: { node }, cosmetic, overlay }, m) => {
     const corners = cosmeticCorners(shared.indices[m]!, cosmetic);
     if (overlay && corners.length > 0)
       node.getMesh()!.addPrimitive(overlay.primitive(primitive, indices(corners), uvs));
