@@ -113,7 +113,6 @@ export function applyMasks(
 interface Cut {
   sources: Uint32Array;
   weights: Float32Array;
-  indices: Uint32Array;
   triangles: Uint32Array;
   zones: Uint8Array;
   cosmeticTriangles: Uint8Array;

@@ -53,8 +53,8 @@ export const hasUnknownReferences = ({ extensionsUsed = [] }: GLTF.IGLTF): boole
   extensionsUsed.some((name) => !kKnown.test(name));
 
 /**
- * What an earlier transfer added, as a file of its own: attributes and the indices of overlays. Also images, and geometry that Draco
- * compressed: unknown extensions do not refer to their views.
+ * A glTF of what an earlier transfer added, attributes and the indices of overlays, and of what no unknown extension refers to: images,
+ * and geometry that Draco compressed.
  */
 export function addedByTransfer(json: GLTF.IGLTF): GLTF.IGLTF {
   const { meshes = [], accessors = [], images = [] } = json;
