@@ -2,7 +2,7 @@ import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import { dot } from '../inspect/geometry.js';
 import { fillGutter } from './gutter.js';
-import { checkImage, checkNames, checkSize, colorByte, type Image, linearOf } from './image.js';
+import { checkImage, checkNames, checkSize, colorByte, type Image, linearOf, wrongArgument } from './image.js';
 import { kMostLayers } from './pattern.js';
 import { type Corners, type Kind, Raster, type Wrap } from './raster.js';
 
@@ -71,25 +71,17 @@ interface Fill {
 /** Checks the options of a fill. @throws {CagecastError} `badOption` or `badArgument`. */
 export function checkFill(fn: string, options: FillOptions = {}): Fill {
   checkNames(fn, 'options', options, 'width, height, kind, gutter, wrap, parts');
+  const wrong = (text: string) => new CagecastError('badOption', fn, `options.${text}`);
   const { kind = 'color', wrap = 'repeat' } = options;
   const width = checkSize(fn, 'options.width', options.width ?? 1024);
   const height = checkSize(fn, 'options.height', options.height ?? width);
   const gutter = options.gutter ?? Math.ceil(kGutter * Math.max(width, height));
   if (!Number.isInteger(gutter) || gutter < 0 || gutter > Math.max(width, height))
-    throw new CagecastError(
-      'badOption',
-      fn,
-      `options.gutter is ${gutter}, not a whole number of texels from 0 to ${Math.max(width, height)}`,
-    );
-  if (!kinds.includes(kind))
-    throw new CagecastError('badOption', fn, `options.kind is ${show(kind)}; there are: ${kinds.join(', ')}`);
+    throw wrong(`gutter is ${gutter}, not a whole number of texels from 0 to ${Math.max(width, height)}`);
+  if (!kinds.includes(kind)) throw wrong(`kind is ${show(kind)}; there are: ${kinds.join(', ')}`);
   const both: readonly Wrap[] = typeof wrap === 'string' ? [wrap, wrap] : wrap;
   if (!Array.isArray(both) || both.length !== 2 || !both.every((one) => wraps.includes(one)))
-    throw new CagecastError(
-      'badOption',
-      fn,
-      `options.wrap is ${show(wrap)}; there are: ${wraps.join(', ')}, or one for each direction`,
-    );
+    throw wrong(`wrap is ${show(wrap)}; there are: ${wraps.join(', ')}, or one for each direction`);
   return { kind, width, height, gutter, wraps: [both[0]!, both[1]!] };
 }
 
@@ -268,10 +260,10 @@ export function layOver(image: Image, baked: Baked, factor: readonly [number, nu
   const base = checkImage('layOver', 'image', image);
   const { width, height, data: over, kind } = baked;
   if (base.width !== width || base.height !== height)
-    throw new CagecastError(
-      'badArgument',
+    throw wrongArgument(
       'layOver',
-      `image has ${base.width} × ${base.height} texels, what was baked ${width} × ${height}`,
+      'image',
+      `has ${base.width} × ${base.height} texels, what was baked ${width} × ${height}`,
     );
   const data = new Uint8ClampedArray(base.data);
   const isPlain = factor.every((share) => share === 1);

@@ -1,7 +1,6 @@
 import { show } from '../core/error.js';
-import { CagecastError } from '../index.js';
 import { cornersOf } from './bake.js';
-import { checkImage, checkNames, type Image } from './image.js';
+import { checkImage, checkNames, type Image, wrongArgument } from './image.js';
 import { modulo } from './raster.js';
 
 /** Images in a model's own UVs: white where it is never, or always, painted; black or transparent elsewhere. */
@@ -29,7 +28,7 @@ export function maskTriangles(
   { indices, uvs }: { indices: ArrayLike<number>; uvs?: ArrayLike<number> | undefined },
   images: MaskImages,
 ): Int8Array<ArrayBuffer> {
-  if (!uvs || uvs.length === 0) throw new CagecastError('badArgument', 'maskTriangles', 'target has no UVs');
+  if (!uvs || uvs.length === 0) throw wrongArgument('maskTriangles', 'target', 'has no UVs');
   checkNames('maskTriangles', 'images', images, 'never, always');
   const [never, always] = (['never', 'always'] as const).map((name) =>
     images[name] === undefined ? undefined : checkImage('maskTriangles', `images.${name}`, images[name]),
@@ -73,10 +72,10 @@ function maskedShare({ width, height, data }: Image, uvs: ArrayLike<number>): nu
  */
 export function maskVertices(colors: ArrayLike<number>, size: 3 | 4): Int8Array<ArrayBuffer> {
   if ((size !== 3 && size !== 4) || colors.length % size !== 0)
-    throw new CagecastError(
-      'badArgument',
+    throw wrongArgument(
       'maskVertices',
-      `colors has ${colors.length} numbers, size is ${show(size)}, not 3 or 4 per vertex`,
+      'colors',
+      `has ${colors.length} numbers, size is ${show(size)}, not 3 or 4 per vertex`,
     );
   return Int8Array.from({ length: colors.length / size }, (_, v) => {
     const lead = colors[size * v]! - colors[size * v + 1]!;
