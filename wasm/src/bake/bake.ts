@@ -67,14 +67,13 @@ export function cageTexture(target: BakeTarget, result: BakeResult, atlas: Image
   return fill('cageTexture', layouts, image, options);
 }
 
-/** Triangles of a part by their mean distance from the cage. */
+/** Triangles of a part by their mean distance from the cage; as they were, where it is the same. */
 function nearestFirst(order: number[], { indices }: BakeTarget, distances: Float32Array, part: BakePart): number[] {
   const distance = (t: number) => {
     const at = 3 * (part.firstTriangle + t);
     return distances[indices[at]!]! + distances[indices[at + 1]!]! + distances[indices[at + 2]!]!;
   };
-  const known = new Map(order.map((t) => [t, distance(t)]));
-  return order.sort((a, b) => known.get(a)! - known.get(b)! || a - b);
+  return order.sort((a, b) => distance(a) - distance(b));
 }
 
 /** The layout that fills the cage's texture by that of the model, with some triangles, all painted. */

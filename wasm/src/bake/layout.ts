@@ -65,7 +65,7 @@ interface Fill {
   height: number;
   kind: Kind;
   gutter: number;
-  wraps: [Wrap, Wrap];
+  wraps: readonly [Wrap, Wrap];
 }
 
 /** Checks the options of a fill. @throws {CagecastError} `badOption` or `badArgument`. */
@@ -79,10 +79,10 @@ export function checkFill(fn: string, options: FillOptions = {}): Fill {
   if (!Number.isInteger(gutter) || gutter < 0 || gutter > Math.max(width, height))
     throw wrong(`gutter is ${gutter}, not a whole number of texels from 0 to ${Math.max(width, height)}`);
   if (!kinds.includes(kind)) throw wrong(`kind is ${show(kind)}; there are: ${kinds.join(', ')}`);
-  const both: readonly Wrap[] = typeof wrap === 'string' ? [wrap, wrap] : wrap;
+  const both: readonly [Wrap, Wrap] = typeof wrap === 'string' ? [wrap, wrap] : wrap;
   if (!Array.isArray(both) || both.length !== 2 || !both.every((one) => wraps.includes(one)))
     throw wrong(`wrap is ${show(wrap)}; there are: ${wraps.join(', ')}, or one for each direction`);
-  return { kind, width, height, gutter, wraps: [both[0]!, both[1]!] };
+  return { kind, width, height, gutter, wraps: both };
 }
 
 /**
@@ -117,7 +117,6 @@ export function fill(fn: string, layouts: readonly Layout[], image: Image, optio
     });
   }
   const { share, parts } = raster.claimedTwice();
-  const lost = raster.lost;
   const mask = raster.finish(gutter);
   return {
     width,
@@ -125,7 +124,7 @@ export function fill(fn: string, layouts: readonly Layout[], image: Image, optio
     kind,
     data: bytesOf(raster.colors, kind, new Uint8ClampedArray(4 * width * height)),
     mask,
-    overlap: { texels: share, lost, parts: parts.map((part) => layouts[part]!.name) },
+    overlap: { texels: share, lost: raster.lost, parts: parts.map((part) => layouts[part]!.name) },
   };
 }
 
