@@ -948,6 +948,12 @@ describe('saved transfers', () => {
       bytes.map((byte, i) => (i === 5000 ? byte ^ 1 : byte)),
       /is damaged or not whole/,
     );
+    // Of the length of its text.
+    for (const bit of [1, 128])
+      refuses(
+        bytes.map((byte, i) => (i === 8 ? byte ^ bit : byte)),
+        /is damaged or not whole/,
+      );
     refuses(
       bytes.map((byte, i) => (i === 4 ? 9 : byte)),
       /has version 9 of the format; this one reads version 2/,

@@ -50,12 +50,16 @@ export function unpack(bytes: Uint8Array): unknown {
   if (16 + length! > own.length || hash(own.subarray(16)) !== sum) throw refused('is damaged or not whole');
   const start = align(16 + length!);
   const text = new TextDecoder().decode(own.subarray(16, 16 + length!));
-  return JSON.parse(text, (_, value: (Partial<ArrayNote> & { $infinity?: true }) | null) => {
-    if (value?.$infinity) return Infinity;
-    if (!value?.$array) return value;
-    const [type, at, count] = value.$array;
-    return new kTypes[type](own.buffer, start + at, count);
-  });
+  try {
+    return JSON.parse(text, (_, value: (Partial<ArrayNote> & { $infinity?: true }) | null) => {
+      if (value?.$infinity) return Infinity;
+      if (!value?.$array) return value;
+      const [type, at, count] = value.$array;
+      return new kTypes[type](own.buffer, start + at, count);
+    });
+  } catch {
+    throw refused('is damaged or not whole'); // The sum does not cover the length of the text.
+  }
 }
 
 const align = (length: number): number => Math.ceil(length / 8) * 8;
