@@ -328,6 +328,17 @@ const scenes: Record<string, () => unknown> = {
     return [one, some, count()].map((now) => now - first);
   },
 
+  /** Opaque overlays whose material was made before that of the model, and after it; of the model, and of a copy. */
+  opaqueOverlays() {
+    const [first, base, last] = [new MeshBasicMaterial(), white(), new MeshBasicMaterial()];
+    return [first, last].map((material) => {
+      material.color.set(0xff0000);
+      const model = modelOf(base);
+      applyTransfer(model, cage(), { material });
+      return [red(model), red(clone(model))];
+    });
+  },
+
   /** A soft border: the paint fades towards it, and is whole far from it. */
   feather() {
     const around = ball(1.1);

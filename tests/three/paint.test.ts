@@ -194,6 +194,15 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
     assert.deepEqual(await run<number[]>('updatedOverlay'), [0, 0, -1]);
   });
 
+  test('an opaque overlay is seen whenever its material was made', async () => {
+    const [before, after] = await run<number[][]>('opaqueOverlays');
+    assert.ok(
+      after!.every((count) => count > 100),
+      `${after}`,
+    );
+    assert.deepEqual(before, after);
+  });
+
   test('a soft border fades inside the painted zone', async () => {
     const [hard, soft] = (await run<number[][]>('feather')) as [number[], number[]];
     const [first, last] = [hard.indexOf(255), hard.lastIndexOf(255)];

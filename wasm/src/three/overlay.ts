@@ -29,6 +29,12 @@ const kFollowed = [
   'morphTexture',
 ];
 
+/**
+ * Added to the render order of an opaque overlay. Three.js draws opaque meshes in the order in which their materials were made, so
+ * that the base could come later, and hide it.
+ */
+const kLater = 1e-4;
+
 /** Makes a class of meshes whose properties are those of the mesh that holds them. Their copies are such meshes too. */
 function following<C extends typeof Mesh | typeof SkinnedMesh | typeof InstancedMesh>(Base: C): C {
   type Fields = Record<string, unknown> & { parent: (Mesh & Record<string, unknown>) | null; ownFields?: Fields };
@@ -44,7 +50,10 @@ function following<C extends typeof Mesh | typeof SkinnedMesh | typeof Instanced
   for (const name of kFollowed) {
     Object.defineProperty(Follower.prototype, name, {
       get(this: Fields) {
-        return this.parent ? this.parent[name] : fieldsOf(this)[name];
+        const value = (this.parent ?? fieldsOf(this))[name];
+        return name === 'renderOrder' && !(this['material'] as Material).transparent
+          ? (value as number) + kLater
+          : value;
       },
       set(this: Fields, value: unknown) {
         if (!this.parent) fieldsOf(this)[name] = value;
