@@ -68,19 +68,15 @@ export function fillGutter(sheet: Sheet, covered: Uint8Array, rings: number): vo
 function neighboursOf({ width, height, columnOf, rowOf }: Sheet, texel: number, out: Int32Array): number {
   const x = texel % width;
   const y = (texel - x) / width;
-  if (x > 0 && x < width - 1 && y > 0 && y < height - 1) {
-    for (let i = 0; i < 3; ++i) {
-      out[i] = texel - width - 1 + i;
-      out[3 + i] = texel + width - 1 + i;
-    }
-    out[6] = texel - 1;
-    out[7] = texel + 1;
-    return 8;
-  }
   let count = 0;
+  const isInner = x > 0 && x < width - 1 && y > 0 && y < height - 1;
   for (let down = -1; down <= 1; ++down) {
     for (let right = -1; right <= 1; ++right) {
       if (down === 0 && right === 0) continue;
+      if (isInner) {
+        out[count++] = texel + down * width + right;
+        continue;
+      }
       const [column, row] = [columnOf(x + right), rowOf(y + down)];
       if (column >= 0 && row >= 0) out[count++] = row * width + column;
     }

@@ -2,7 +2,7 @@ import { type ErrorDetails, show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import { checkGeometry } from './check.js';
 import { InputError } from './input-error.js';
-import { checkLimits, defaultLimits, exceeds, type ReadLimits } from './limits.js';
+import { checkBytes, checkLimits, defaultLimits, type ReadLimits } from './limits.js';
 import { parseGltf } from './parse.js';
 
 /** Options of `checkGltf`. */
@@ -33,21 +33,15 @@ export function checkGltf(bytes: Uint8Array, { limits = {}, otherBytes = 0, ...o
     all[name as keyof ReadLimits] = value;
   }
   if (!isCount(otherBytes)) throw wrong(`otherBytes = ${show(otherBytes)} is not a number ≥ 0`);
-  const checkBytes = (what: string, size: number): void => {
-    if (size > all.bytes) throw exceeds(`${what} ${size.toLocaleString('en')} bytes`, 'bytes', all);
-  };
   try {
-    checkBytes('has', bytes.byteLength);
+    const fileBytes = bytes.byteLength + otherBytes;
+    checkBytes(fileBytes, all);
     const { json, binary } = parseGltf(bytes, all);
     const sizes = (json.buffers ?? []).map(({ uri, byteLength }, b) =>
       uri === undefined ? (b === 0 ? binary?.byteLength : undefined) : byteLength,
     );
-    checkBytes(
-      'its buffers have',
-      sizes.reduce<number>((sum, size = 0) => sum + size, 0),
-    );
     checkGeometry(json, sizes);
-    checkLimits(json, bytes.byteLength + otherBytes, all);
+    checkLimits(json, fileBytes, all);
   } catch (error) {
     throw error instanceof InputError ? wrong(error.message, { cause: error }) : error;
   }

@@ -3,7 +3,7 @@ import { type FileHandle, open, realpath, stat } from 'node:fs/promises';
 import { isAbsolute, relative, resolve } from 'node:path';
 import { show } from '../core/error.js';
 import { firstLine, InputError } from './input-error.js';
-import { defaultLimits, exceeds, type ReadLimits } from './limits.js';
+import { checkBytes, defaultLimits, type ReadLimits } from './limits.js';
 
 /** How files are read. */
 export interface ReadOptions {
@@ -97,13 +97,9 @@ async function readStandardInput(limits: ReadLimits): Promise<Uint8Array> {
   for await (const chunk of process.stdin as AsyncIterable<Buffer>) {
     chunks.push(chunk);
     length += chunk.length;
-    checkSize(length, limits);
+    checkBytes(length, limits);
   }
   return Buffer.concat(chunks);
-}
-
-function checkSize(bytes: number, limits: ReadLimits): void {
-  if (bytes > limits.bytes) throw exceeds(`has more than ${limits.bytes.toLocaleString('en')} bytes`, 'bytes', limits);
 }
 
 const kChunkBytes = 2 ** 20;
@@ -111,7 +107,7 @@ const kChunkBytes = 2 ** 20;
 /** Reads until the end. The size that the system tells is no promise: that of a pipe is 0. */
 async function readAll(file: FileHandle, limits: ReadLimits): Promise<Uint8Array> {
   const { size } = await file.stat();
-  checkSize(size, limits);
+  checkBytes(size, limits);
   let bytes = Buffer.allocUnsafeSlow(size + 1); // one more, to see the end without another allocation
   let length = 0;
   for (;;) {
@@ -123,7 +119,7 @@ async function readAll(file: FileHandle, limits: ReadLimits): Promise<Uint8Array
     const { bytesRead } = await file.read(bytes, length, bytes.length - length);
     if (bytesRead === 0) return bytes.subarray(0, length);
     length += bytesRead;
-    checkSize(length, limits);
+    checkBytes(length, limits);
   }
 }
 

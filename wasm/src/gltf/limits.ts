@@ -38,6 +38,11 @@ export function exceeds(what: string, limit: keyof ReadLimits, { [limit]: value 
   return new InputError(`${what}; the limit "${limit}" is ${value.toLocaleString('en')}`);
 }
 
+/** Checks the size of a file. @throws {InputError} */
+export function checkBytes(bytes: number, limits: ReadLimits): void {
+  if (bytes > limits.bytes) throw exceeds(`has more than ${limits.bytes.toLocaleString('en')} bytes`, 'bytes', limits);
+}
+
 /** Checks how deep JSON is nested, before it is parsed. @throws {InputError} */
 export function checkNesting(text: Uint8Array, limits: ReadLimits): void {
   const [quote, backslash, openList, closeList, openObject, closeObject] = [0x22, 0x5c, 0x5b, 0x5d, 0x7b, 0x7d];
