@@ -312,8 +312,8 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     await page.evaluate(`viewer.removeAttribute("opacity"); viewer.setAttribute("target", "${target}"); next()`);
   });
 
-  test('frees the pictures of what is not shown any more, and of what could not be loaded', async () => {
-    const live = await page.evaluate(`(async () => {
+  test('frees pictures and buffers of what is not shown any more, and of what could not be loaded', async () => {
+    const { live, buffers } = await page.evaluate<{ live: string[]; buffers: number[] }>(`(async () => {
       let live = 0;
       const make = createImageBitmap;
       const { close } = ImageBitmap.prototype;
@@ -322,20 +322,31 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
         if (this.width > 0) --live;
         close.call(this);
       };
+      let held = 0;
+      const buffers = [];
+      const { createBuffer, deleteBuffer } = WebGL2RenderingContext.prototype;
+      WebGL2RenderingContext.prototype.createBuffer = function () { ++held; return createBuffer.call(this); };
+      WebGL2RenderingContext.prototype.deleteBuffer = function (buffer) {
+        if (buffer) --held;
+        deleteBuffer.call(this, buffer);
+      };
       const seen = [];
       for (const threshold of ['0.4', 'none', '0.5', 'some', '0.6']) {
         viewer.setAttribute('threshold', threshold);
         const said = await next();
         await new Promise((done) => setTimeout(done, 200));
         seen.push(said.split(' ')[0] + ' ' + live);
+        buffers.push(held);
       }
       globalThis.createImageBitmap = make;
       ImageBitmap.prototype.close = close;
+      Object.assign(WebGL2RenderingContext.prototype, { createBuffer, deleteBuffer });
       viewer.removeAttribute('threshold');
       await next();
-      return seen;
+      return { live: seen, buffers };
     })()`);
     assert.deepEqual(live, ['load 0', 'error 0', 'load 0', 'error 0', 'load 0']);
+    assert.equal(buffers[4], buffers[2], 'as many buffers as with the model before');
   });
 
   test('stays as it is where it is moved, even if its address leads nowhere by now', async () => {

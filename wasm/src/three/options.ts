@@ -84,7 +84,10 @@ export interface Applied {
    * @throws {CagecastError} `badArgument` if the classification is of another target, or a geometry has changed since.
    */
   update(classification: Classification): void;
-  /** Removes the paint and the overlays, and makes the materials what they were. The UVs and zones stay. */
+  /**
+   * Removes the paint and the overlays, and makes the materials what they were. The UVs and zones stay. Geometries that are disposed
+   * of as well come first, so that their buffers are freed at once.
+   */
   dispose(): void;
 }
 

@@ -345,9 +345,10 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   /** Frees what is shown. */
   #drop(): void {
     this.#stage?.clear();
+    // Geometries first: a transfer that ends takes away what three.js would free with them.
+    if (this.#shown) disposeModel(this.#shown.gltf.scene);
     this.#shown?.applied?.dispose();
     this.#shown?.paint?.dispose();
-    if (this.#shown) disposeModel(this.#shown.gltf.scene);
     this.#shown = undefined;
     this.#isOutdated = true;
     this.#poster.hidden = !this.getAttribute('poster');
