@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -15,7 +14,6 @@ namespace {
 
 constexpr const char* kNotValid = "is not valid glTF";
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
-constexpr std::array kInstanceAttributes{"TRANSLATION", "ROTATION", "SCALE"};
 
 /// What a node is called in errors.
 std::string nodeAt(int node) { return "nodes[" + std::to_string(node) + "]"; }
@@ -164,8 +162,7 @@ void eachNode(const tinygltf::Model& model, const std::vector<int>& roots, const
   }
 }
 
-/// Whether a transfer added a mesh to show its paint: `extras` of the mesh or its material tell. It is no part of the
-/// model.
+/// Whether the `extras` of a primitive or its material say that a transfer added it, to show its paint.
 bool isOverlay(const tinygltf::Value& extras) {
   if (!extras.IsObject() || !extras.Has("cagecastOverlay")) return false;
   const tinygltf::Value& mark = extras.Get("cagecastOverlay");
@@ -182,20 +179,20 @@ int instanceAttribute(const tinygltf::Node& node, const char* name) {
   return accessor.IsInt() ? accessor.Get<int>() : -1;
 }
 
-/// The place of a node's first instance in the space of the node. All instances share their paint: it is made for that
-/// one.
+/// The place of a node's first instance in the space of the node. All instances share the paint that is made for it.
 Transform firstInstance(const tinygltf::Model& model, const tinygltf::Node& node, const std::string& where) {
+  const auto read = [&](const char* name, int type, std::size_t size) {
+    const int accessor = instanceAttribute(node, name);
+    if (accessor < 0) return std::vector<double>{};
+    std::vector<double> values = decode(model, accessor, type, size, where + "." + name);
+    if (values.empty()) fail(where, " has no instance");
+    values.resize(size);
+    return values;
+  };
   tinygltf::Node first;
-  const std::array<std::vector<double>*, 3> places{&first.translation, &first.rotation, &first.scale};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const int accessor = instanceAttribute(node, kInstanceAttributes[i]);
-    if (accessor < 0) continue;
-    const std::size_t size = i == 1 ? 4 : 3;
-    const int type = i == 1 ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;
-    *places[i] = decode(model, accessor, type, size, where + "." + kInstanceAttributes[i]);
-    if (places[i]->empty()) fail(where, " has no instance");
-    places[i]->resize(size);
-  }
+  first.translation = read("TRANSLATION", TINYGLTF_TYPE_VEC3, 3);
+  first.rotation = read("ROTATION", TINYGLTF_TYPE_VEC4, 4);
+  first.scale = read("SCALE", TINYGLTF_TYPE_VEC3, 3);
   return localTransform(first, where);
 }
 
@@ -253,7 +250,7 @@ void checkElements(const tinygltf::Model& model, const std::vector<Instance>& in
     if (primitive.extensions.count(kCompressions[0].first) != 0 &&
         model.accessors[static_cast<std::size_t>(position)].bufferView < 0)
       failCompressed(kCompressions[0].first, kCompressions[0].second);
-    for (const char* name : kInstanceAttributes)
+    for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"})
       addAccessor(instanceAttribute(model.nodes[static_cast<std::size_t>(instance.node)], name), nodeAt(instance.node));
     if (instance.skin < 0) continue;
     for (const char* name : {"JOINTS_0", "WEIGHTS_0"}) addAccessor(attributeOf(primitive, name), instance.where);

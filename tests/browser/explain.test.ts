@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { PNG } from 'pngjs';
+import type { PNG } from 'pngjs';
 import { type Report, report } from '../support/command';
 import { glbOf, tetrahedron } from '../support/glb';
 import { ball, islandCage } from '../support/models';
@@ -16,6 +16,7 @@ import {
   shownError,
   type Upload,
   type Visit,
+  violetPaint,
 } from '../support/site';
 
 let site: Site;
@@ -43,11 +44,7 @@ async function ask(page: Page, x: number, y: number): Promise<string> {
 test('the explanation of a spot agrees with the view', async () => {
   const { page, complaints } = visit;
   const area = await modelArea(page);
-  const violet = new PNG({ width: 8, height: 8 });
-  for (let at = 0; at < violet.data.length; at += 4) violet.data.set([200, 0, 220, 255], at);
-  await page
-    .getByTestId('texture-input')
-    .setInputFiles({ name: 'violet.png', mimeType: 'image/png', buffer: PNG.sync.write(violet) });
+  await page.getByTestId('texture-input').setInputFiles(violetPaint());
   assert.equal(await settled(page), 'ready', await shownError(page));
   await mode(page, 'zones');
   const zones = await look(page, area);

@@ -7,7 +7,7 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { promisify } from 'node:util';
 import type { Page } from 'playwright-core';
-import { PNG } from 'pngjs';
+import type { PNG } from 'pngjs';
 import { type Report, report, reportedCounts } from '../support/command';
 import { GlbMaker, glbOf, tetrahedron } from '../support/glb';
 import { columns, difference, look, modelArea, shareOfHue } from '../support/picture';
@@ -23,6 +23,7 @@ import {
   shownParts,
   type Upload,
   type Visit,
+  violetPaint,
 } from '../support/site';
 
 /** Pairs of a target and its cage: the samples, and the folders of env CAGECAST_ASSETS that hold one. */
@@ -213,12 +214,8 @@ test('an own paint, PNG or JPEG, is drawn on the model', async () => {
   const { page, complaints } = await fresh();
   await page.locator('input[value=result]').check({ force: true });
   const area = await modelArea(page);
-  const png = new PNG({ width: 8, height: 8 });
-  for (let at = 0; at < png.data.length; at += 4) png.data.set([200, 0, 220, 255], at);
   assert.ok(shareOfHue(await look(page, area), 295) < 0.01);
-  await page
-    .getByTestId('texture-input')
-    .setInputFiles({ name: 'violet.png', mimeType: 'image/png', buffer: PNG.sync.write(png) });
+  await page.getByTestId('texture-input').setInputFiles(violetPaint());
   assert.equal(await settled(page), 'ready', await shownError(page));
   const violet = shareOfHue(await look(page, area), 295);
   assert.ok(violet > 0.1, `${violet} of the picture is violet`);
@@ -252,11 +249,7 @@ test('of a mesh with instances the first one lies in the cage, and all of them s
   await drop(page, [glb('things.glb', maker.finish()), glb('cage.glb', glbOf(tetrahedron(2), 'thing'))]);
   assert.equal(await settled(page), 'ready', await shownError(page));
   assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
-  const png = new PNG({ width: 8, height: 8 });
-  for (let at = 0; at < png.data.length; at += 4) png.data.set([200, 0, 220, 255], at);
-  await page
-    .getByTestId('texture-input')
-    .setInputFiles({ name: 'violet.png', mimeType: 'image/png', buffer: PNG.sync.write(png) });
+  await page.getByTestId('texture-input').setInputFiles(violetPaint());
   assert.equal(await settled(page), 'ready', await shownError(page));
   const picture = await look(page, area);
   const [first, second] = [columns(picture, 0.3, 0.6), columns(picture, 0.8, 1)].map((part) => shareOfHue(part, 295));

@@ -3,6 +3,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import type { Browser, BrowserContext, BrowserContextOptions, Page } from 'playwright-core';
+import { PNG } from 'pngjs';
 import { launchChromium } from './chromium';
 
 const kRoot = fileURLToPath(new URL('../..', import.meta.url));
@@ -216,6 +217,13 @@ export interface Upload {
 /** A GLB to give to the page. */
 export function glb(name: string, buffer: Buffer): Upload {
   return { name, mimeType: 'model/gltf-binary', buffer };
+}
+
+/** A violet paint, of hue 295°, as a PNG to give to the page. */
+export function violetPaint(): Upload {
+  const png = new PNG({ width: 8, height: 8 });
+  for (let at = 0; at < png.data.length; at += 4) png.data.set([200, 0, 220, 255], at);
+  return { name: 'violet.png', mimeType: 'image/png', buffer: PNG.sync.write(png) };
 }
 
 /** Drops files on the page together. */
