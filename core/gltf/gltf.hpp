@@ -41,17 +41,17 @@ struct Model {
 
 /// Reads a .glb or .gltf file: all primitives made of triangles, in scene order, one after the other.
 ///
-/// Takes sparse and quantised accessors (KHR_mesh_quantization) and buffers that are embedded, data URIs or files
-/// beside it. A mirrored node has its triangles turned round, so that they still face outward. Skinned meshes are
-/// placed by their skeleton, in the bind pose; as the format demands, the transform of their node is ignored. UVs are
-/// of the set that the base colour texture names, of TEXCOORD_0 without a texture. A mesh with instances
-/// (EXT_mesh_gpu_instancing) is taken once, where its first instance is; overlays of an earlier transfer are left out.
-/// Not understood: Draco and meshopt compression, KHR_texture_transform.
+/// Takes sparse and quantised accessors (KHR_mesh_quantization) and buffers that are embedded, data URIs or regular
+/// files in its folder, links followed. A mirrored node has its triangles turned round, so that they still face
+/// outward. Skinned meshes are placed by their skeleton, in the bind pose; as the format demands, the transform of
+/// their node is ignored. UVs are of the set that the base colour texture names, of TEXCOORD_0 without a texture. A
+/// mesh with instances (EXT_mesh_gpu_instancing) is taken once, where its first instance is; overlays of an earlier
+/// transfer are left out. Not understood: Draco and meshopt compression, KHR_texture_transform.
 Result read(const std::string& path, Model& out);
 
 /// Reads a .glb or .gltf file out of memory.
 /// @param name    What to call the file in errors.
-/// @param folder  Where files that it refers to are looked for.
+/// @param folder  Where the files that it refers to must be; empty if it may refer to none.
 Result readMemory(std::span<const std::uint8_t> bytes, const std::string& name, const std::string& folder, Model& out);
 
 /// What to write: one mesh.

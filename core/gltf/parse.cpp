@@ -4,6 +4,7 @@
 #include <bit>
 #include <cctype>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <string_view>
 
@@ -72,6 +73,40 @@ void checkDepth(std::string_view json) {
   }
 }
 
+/// Reads a file for tinygltf, which would look anywhere, and wait for pipes for ever.
+/// @param folder  The `std::string` that names the folder in which the file must be, links followed.
+bool readBeside(std::vector<unsigned char>* bytes, std::string* error, const std::string& path, void* folder) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path real = fs::canonical(path, ignored), root = fs::canonical(*static_cast<std::string*>(folder), ignored);
+  if (root.empty() || std::mismatch(root.begin(), root.end(), real.begin(), real.end()).first != root.end() ||
+      !fs::is_regular_file(real, ignored)) {
+    *error = "not a regular file in the folder of the model";
+    return false;
+  }
+  return tinygltf::ReadWholeFile(bytes, error, path, nullptr);
+}
+
+/// tinygltf's functions for files. Versions after 2.8 have one more, for a limit that is not used here, and demand all.
+template <typename Callbacks>
+Callbacks filesBeside(std::string& folder) {
+  Callbacks callbacks{};
+  callbacks.FileExists = [](const std::string& path, void*) {
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored);
+  };
+  callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  callbacks.ReadWholeFile = readBeside;
+  callbacks.WriteWholeFile = tinygltf::WriteWholeFile;
+  if constexpr (requires { callbacks.GetFileSizeInBytes; })
+    callbacks.GetFileSizeInBytes = [](std::size_t* size, std::string*, const std::string&, void*) {
+      *size = 0;
+      return true;
+    };
+  callbacks.user_data = &folder;
+  return callbacks;
+}
+
 }  // namespace
 
 void failCompressed(const char* extension, const char* name) {
@@ -87,6 +122,8 @@ tinygltf::Model parse(std::span<const std::uint8_t> bytes, const std::string& fo
   loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
                            void*) { return true; },
                         nullptr);
+  std::string root = folder;  // tinygltf takes what can be changed.
+  loader.SetFsCallbacks(filesBeside<tinygltf::FsCallbacks>(root));
   tinygltf::Model model;
   std::string error, warning;
   const unsigned size = static_cast<unsigned>(bytes.size());
@@ -104,6 +141,7 @@ tinygltf::Model parse(std::span<const std::uint8_t> bytes, const std::string& fo
   if (!good) {
     error = error.substr(0, error.find('\n'));
     if (error.rfind("File not found : ", 0) == 0) fail("refers to a file that is missing: ", error.substr(17));
+    if (error.rfind("File read error : ", 0) == 0) fail("refers to a file that cannot be read: ", error.substr(18));
     fail("is not valid glTF (", error.empty() ? "cannot be parsed" : error, ")");
   }
   if (model.asset.version.rfind("2.", 0) != 0) fail("is glTF version ", model.asset.version, ", not 2");

@@ -24,7 +24,7 @@ inline constexpr std::array kCompressions{std::pair{"KHR_draco_mesh_compression"
 [[noreturn]] void failCompressed(const char* extension, const char* name);
 
 /// Parses a file.
-/// @param folder  Where other files that it refers to are.
+/// @param folder  Where other files that it refers to must be; empty if it may refer to none.
 tinygltf::Model parse(std::span<const std::uint8_t> bytes, const std::string& folder);
 
 /// An element of one of the file's arrays; the place that refers to it is named if there is no such element.

@@ -296,7 +296,8 @@ Result read(const std::string& path, Model& out) {
       fail("cannot be read (", std::strerror(errno), ")");
   });
   if (!result.ok()) return result;
-  return readMemory(bytes, path, std::filesystem::path(path).parent_path().string(), out);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return readMemory(bytes, path, folder.empty() ? "." : folder, out);
 }
 
 }  // namespace cagecast::gltf

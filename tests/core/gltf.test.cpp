@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -720,6 +722,41 @@ TEST_CASE("a .gltf file with a buffer beside it is read, and a missing one is na
   CHECK(result.ok());
   CHECK(model.indices == Indices{0, 1, 2});
   std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("a .gltf file refers to regular files in its folder alone", "[gltf]") {
+  const std::filesystem::path outside = ownPath("cagecast-gltf-outside"), folder = outside / "model";
+  std::filesystem::remove_all(outside);
+  std::filesystem::create_directories(folder / "below");
+  File file = triangle();
+  const auto errorFor = [&](const std::string& uri) {
+    file.buffer = R"({"byteLength":)" + std::to_string(file.bin.size()) + R"(,"uri":")" + uri + R"("})";
+    std::ofstream(folder / "thing.gltf") << file.json();
+    gltf::Model model;
+    return gltf::read((folder / "thing.gltf").string(), model).error;
+  };
+  for (const std::filesystem::path& path : {outside / "out.bin", folder / "below" / "in.bin"})
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(file.bin.data()), static_cast<std::streamsize>(file.bin.size()));
+  std::filesystem::create_symlink(outside / "out.bin", folder / "link.bin");
+  REQUIRE(mkfifo((folder / "pipe.bin").c_str(), 0600) == 0);
+
+  CHECK(errorFor("below/in.bin").empty());
+  for (const char* uri : {"../out.bin", "link.bin", "pipe.bin", "below"})
+    CHECK_THAT(errorFor(uri), Contains("thing.gltf: refers to ") && Contains(uri) &&
+                                  Contains("not a regular file in the folder of the model"));
+  std::filesystem::remove_all(outside);
+}
+
+TEST_CASE("a .gltf file in memory without a folder refers to no files", "[gltf]") {
+  const std::string name = ownPath("here.bin").filename().string();
+  File file = triangle();
+  std::ofstream(name, std::ios::binary)
+      .write(reinterpret_cast<const char*>(file.bin.data()), static_cast<std::streamsize>(file.bin.size()));
+  file.buffer = R"({"byteLength":)" + std::to_string(file.bin.size()) + R"(,"uri":")" + name + R"("})";
+  const std::string json = file.json();
+  CHECK_THAT(errorOf({json.begin(), json.end()}), Contains("not a regular file in the folder of the model"));
+  std::filesystem::remove(name);
 }
 
 TEST_CASE("images are not read", "[gltf]") {
