@@ -98,6 +98,12 @@ describe('TypeScript before 5.7', () => {
         assert.doesNotMatch(readFileSync(join(dist, name), 'utf8'), /\b(\w+\d+Array|DataView)<Array/, name);
   });
 
+  test('no declaration has a type that was inferred from those of three.js, which have other parameters in r165', () => {
+    for (const name of readdirSync(dist, { recursive: true, encoding: 'utf8' }))
+      if (name.endsWith('.d.ts'))
+        assert.doesNotMatch(readFileSync(join(dist, name), 'utf8'), /import\("three"\)/, name);
+  });
+
   for (const [version, module, moduleResolution] of checked)
     test(`${version} sees no any, with moduleResolution ${moduleResolution}`, () => {
       const folder = `types-${version}-${moduleResolution}`;

@@ -71,7 +71,7 @@ export function canBePainted(material: Material): boolean {
 }
 
 /** What a material was copied from, to show another painting. */
-export const originals = new WeakMap<Material, Material>();
+export const originals: WeakMap<Material, Material> = new WeakMap();
 
 /** Whether a material shows a painting. */
 export const isPainted = (material: Material): boolean => patches.get(material)?.painting !== undefined;

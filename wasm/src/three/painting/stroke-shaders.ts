@@ -1,4 +1,4 @@
-import { type Texture, Vector2, Vector3 } from 'three';
+import { type IUniform, type Texture, Vector2, Vector3 } from 'three';
 import { kErased } from '../gpu/index.js';
 import { kFacing, kPatchTexels } from './cage-texels.js';
 
@@ -141,8 +141,8 @@ void main() { color = vec4(0.0); }
 export function brushUniforms(owners: Texture, patches: Texture) {
   const vectors = (): Vector3[] => Array.from({ length: kMostCapsules }, () => new Vector3());
   return {
-    owners: { value: owners },
-    patches: { value: patches },
+    owners: { value: owners } as IUniform<Texture>,
+    patches: { value: patches } as IUniform<Texture>,
     from: { value: vectors() },
     to: { value: vectors() },
     fromNormal: { value: vectors() },
@@ -157,8 +157,8 @@ export function brushUniforms(owners: Texture, patches: Texture) {
 
 export function stickerUniforms(owners: Texture, patches: Texture) {
   return {
-    owners: { value: owners },
-    patches: { value: patches },
+    owners: { value: owners } as IUniform<Texture>,
+    patches: { value: patches } as IUniform<Texture>,
     picture: { value: null as Texture | null },
     center: { value: new Vector3() },
     outward: { value: new Vector3() },
