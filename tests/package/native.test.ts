@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, describe, test } from 'node:test';
@@ -44,6 +44,18 @@ describe('examples/native', () => {
     // What a consumer does not ask for is not built.
     const targets = run('cmake', '--build', out, '--target', 'help');
     assert.doesNotMatch(targets, /cagecast_tests|cagecast_bench/);
+  });
+
+  test('builds one library, the core, in a project that adds its folder as the README says', () => {
+    const lines = [
+      'cmake_minimum_required(VERSION 3.25)',
+      'project(user LANGUAGES CXX)',
+      `add_subdirectory("${process.cwd()}" cagecast)`,
+    ];
+    writeFileSync(join(prefix, 'CMakeLists.txt'), lines.join('\n'));
+    const out = join(prefix, 'build');
+    run('cmake', '-S', prefix, '-B', out, '-G', 'Ninja', '--log-level=WARNING');
+    assert.deepEqual(run('ninja', '-C', out, '-n').match(/\w+(?=\.a$)/gm), ['libcagecast']);
   });
 
   test('uses the installed library, by find_package', () => {
