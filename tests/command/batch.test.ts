@@ -392,6 +392,20 @@ test('--resume does again what another job has overwritten since, and the last l
   assert.equal(last().status, 'skipped');
 });
 
+test('--resume adds no line for jobs of the same target that are all done', () => {
+  writeFileSync(at('other-cage.glb'), glbOf(scene.cage));
+  const jobs = ['cage', 'other-cage'].map((name) =>
+    JSON.stringify({ target: 'in/0.glb', cage: `${name}.glb`, output: `${name}-out.glb` }),
+  );
+  writeFileSync(at('same-target.jsonl'), jobs.join('\n'));
+  const results = at('same-target-results.jsonl');
+  for (const done of ['2 done', '0 done', '0 done']) {
+    const { stderr } = cagecast('batch', '--manifest', at('same-target.jsonl'), '--results', results, '--resume');
+    assert.match(stderr, new RegExp(`^2 jobs: ${done}, 0 failed`));
+    assert.equal(linesOf(readFileSync(results, 'utf8')).length, 2, done);
+  }
+});
+
 test('--resume minds what a glTF has beside it, as it is read and as it is written', () => {
   mkdirSync(at('text'));
   for (const [name, bytes] of [

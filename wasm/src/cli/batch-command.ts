@@ -62,6 +62,12 @@ export async function batchCommand(
   const before = resume ? readResults(results!) : noResults();
   const configs = [...new Set(jobs.flatMap(({ command }) => command.rules.config ?? []))];
   const summary: BatchSummary = { jobs: jobs.length, done: 0, failed: 0, skipped: 0, misfits: 0, configs, seconds: 0 };
+  const keys = new Set(jobs.map(({ key }) => key));
+  /** Whether the last line about the target of a job that was done is of this job, or of another one of this batch. */
+  const isLast = ({ key, command }: Job) => {
+    const last = before.last.get(command.target);
+    return last && (last.key === key ? last.status !== 'failed' : keys.has(last.key));
+  };
   const take = (job: Job, outcome: Outcome | { status: 'skipped'; verdict?: Verdict }) => {
     const { target, output = null, report } = job.command;
     const line: ResultLine = { target, output, ...(report && { report }), key: job.key, ...outcome };
@@ -70,8 +76,7 @@ export async function batchCommand(
     if (failOn && 'verdict' in line && !isWorse(failOn, line.verdict!)) ++summary.misfits;
     const text = jsonText(line);
     if (results === undefined) write(text);
-    // A job that was done before has its line, but another one may stand below it.
-    else if (line.status !== 'skipped' || before.last.get(target) !== job.key) append(results, text);
+    else if (line.status !== 'skipped' || !isLast(job)) append(results, text);
     const ended = summary.done + summary.failed + summary.skipped;
     progress.share(`${ended} of ${jobs.length} jobs, ${summary.failed} failed`, ended / jobs.length);
   };
@@ -134,8 +139,8 @@ interface EarlierResults {
   lines: Map<string, ResultLine>;
   /** The keys of the jobs that wrote files last, by the canonical path of the file. */
   writers: Map<string, string>;
-  /** The keys of the last lines, by target; '' if that is of a job that failed. */
-  last: Map<string, string>;
+  /** The last lines, by target. */
+  last: Map<string, ResultLine>;
 }
 
 const noResults = (): EarlierResults => ({ lines: new Map(), writers: new Map(), last: new Map() });
@@ -149,7 +154,7 @@ function readResults(path: string): EarlierResults {
     try {
       const line = JSON.parse(one) as ResultLine;
       if (typeof line.key !== 'string') continue;
-      last.set(line.target, line.status === 'failed' ? '' : line.key);
+      last.set(line.target, line);
       if (line.status !== 'done') continue;
       lines.set(line.key, line);
       for (const file of [line.output, line.report]) if (file) writers.set(canonicalPath(file), line.key);

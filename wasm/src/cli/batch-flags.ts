@@ -38,8 +38,8 @@ A line of a manifest, with paths relative to the manifest:
 A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
 failed or skipped), ms, counts, triangles, and error, verdict and findings (codes) if there are. After the lines, a summary goes
 to the standard error: a text, or with --json JSON. With --quiet, only the errors of jobs go there.
-With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure, or from
-another job (another cage, say).
+With --resume, a skipped job adds no line to --results, unless the last line about its target is of its failure, or from
+a job that is not in this batch (another cage, say).
 A job that fails does not stop the others, and leaves what an earlier run wrote. Files are complete or not there, even if the
 batch is killed; folders that are missing are made. {name} and {dir} are for -o and --report only: cages and textures that
 differ need a manifest.
