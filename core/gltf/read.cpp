@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +15,7 @@ namespace {
 
 constexpr const char* kNotValid = "is not valid glTF";
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+constexpr const char* kTextureTransform = "KHR_texture_transform";
 
 /// What a node is called in errors.
 std::string nodeAt(int node) { return "nodes[" + std::to_string(node) + "]"; }
@@ -63,18 +65,66 @@ float toFloat(double value) {
   return static_cast<float>(value);
 }
 
-/// The UV set by which the base colour texture of a primitive lies on it; the first if it has none.
-std::string uvSetOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
-  if (primitive.material < 0) return "TEXCOORD_0";
+/// How a texture lies on a primitive: by the first UVs, as they are.
+struct UvLayout {
+  std::string set = "TEXCOORD_0";
+  bool isTransformed = false;
+  std::array<double, 2> offset{0, 0}, scale{1, 1};
+  double rotation = 0;
+};
+
+double numberOf(const tinygltf::Value& value, const char* member) {
+  if (!value.IsNumber()) fail(member, " of ", kTextureTransform, " is not of numbers");
+  return value.GetNumberAsDouble();
+}
+
+/// Reads a pair of numbers, if it is there.
+void readPair(const tinygltf::Value& transform, const char* member, std::array<double, 2>& out) {
+  if (!transform.Has(member)) return;
+  const tinygltf::Value& pair = transform.Get(member);
+  if (pair.ArrayLen() != 2) fail(member, " of ", kTextureTransform, " is not of two numbers");
+  out = {numberOf(pair.Get(0), member), numberOf(pair.Get(1), member)};
+}
+
+/// How the base colour texture of a primitive lies on it.
+UvLayout uvLayoutOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+  UvLayout layout;
+  if (primitive.material < 0) return layout;
   const tinygltf::TextureInfo& texture =
       model.materials[static_cast<std::size_t>(primitive.material)].pbrMetallicRoughness.baseColorTexture;
-  return "TEXCOORD_" + std::to_string(texture.index < 0 ? 0 : texture.texCoord);
+  if (texture.index < 0) return layout;
+  int set = texture.texCoord;
+  if (const auto found = texture.extensions.find(kTextureTransform); found != texture.extensions.end()) {
+    const tinygltf::Value& transform = found->second;
+    layout.isTransformed = true;
+    readPair(transform, "offset", layout.offset);
+    readPair(transform, "scale", layout.scale);
+    if (transform.Has("rotation")) layout.rotation = numberOf(transform.Get("rotation"), "rotation");
+    if (transform.Has("texCoord") && transform.Get("texCoord").IsInt()) set = transform.Get("texCoord").Get<int>();
+  }
+  layout.set = "TEXCOORD_" + std::to_string(set);
+  return layout;
+}
+
+/// Appends UVs as they are in the texture: scaled, rotated, then moved.
+void appendUvs(const std::vector<double>& uvs, const UvLayout& layout, std::vector<float>& out) {
+  const double cosine = std::cos(layout.rotation), sine = std::sin(layout.rotation);
+  for (std::size_t i = 0; i < uvs.size(); i += 2) {
+    double u = uvs[i], v = uvs[i + 1];
+    if (layout.isTransformed) {
+      const double across = layout.scale[0] * u, down = layout.scale[1] * v;
+      u = layout.offset[0] + cosine * across + sine * down;
+      v = layout.offset[1] - sine * across + cosine * down;
+    }
+    out.push_back(toFloat(u));
+    out.push_back(toFloat(v));
+  }
 }
 
 void append(const tinygltf::Model& model, const Instance& instance, Model& out, bool& haveUvs) {
   const auto& [primitive, where, name, world, node, skin] = instance;
-  const std::string uvSet = uvSetOf(model, primitive);
-  const int position = attributeOf(primitive, "POSITION"), texcoord = attributeOf(primitive, uvSet);
+  const UvLayout layout = uvLayoutOf(model, primitive);
+  const int position = attributeOf(primitive, "POSITION"), texcoord = attributeOf(primitive, layout.set);
   const std::vector<double> local = decode(model, position, TINYGLTF_TYPE_VEC3, 3, where + ".POSITION");
   const std::size_t vertexCount = local.size() / 3;
   std::vector<std::uint32_t> corners;
@@ -109,10 +159,10 @@ void append(const tinygltf::Model& model, const Instance& instance, Model& out, 
   out.groups.resize(firstVertex + vertexCount, part);
   haveUvs = haveUvs && texcoord >= 0;
   if (!haveUvs) return;
-  const std::vector<double> uvs = decode(model, texcoord, TINYGLTF_TYPE_VEC2, 2, where + "." + uvSet);
+  const std::vector<double> uvs = decode(model, texcoord, TINYGLTF_TYPE_VEC2, 2, where + "." + layout.set);
   if (uvs.size() != vertexCount * 2)
-    fail(where, ".", uvSet, " has ", uvs.size() / 2, " elements for ", vertexCount, " vertices");
-  for (const double uv : uvs) out.uvs.push_back(toFloat(uv));
+    fail(where, ".", layout.set, " has ", uvs.size() / 2, " elements for ", vertexCount, " vertices");
+  appendUvs(uvs, layout, out.uvs);
 }
 
 /// The nodes that are no one's child.

@@ -241,6 +241,29 @@ TEST_CASE("UVs are those of the base colour texture, the first ones without a te
   CHECK(withMaterial(R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":2}})").empty());
 }
 
+TEST_CASE("UVs are where the transform of the base colour texture puts them", "[gltf]") {
+  File file = triangle();
+  file.accessor(file.view<float>({0, 0, 1, 0, 0, 1, 0.5f, 0.25f, 2, -1}), kFloat, "VEC2", 5);
+  file.accessor(file.view<float>({3, 3, 3, 3, 3, 3, 3, 3, 3, 3}), kFloat, "VEC2", 5);
+  file.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":2,"TEXCOORD_1":3},"indices":1,"material":0)";
+  const auto withTransform = [&](const std::string& members) {
+    file.extra = R"(,"textures":[{}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":)"
+                 R"({"KHR_texture_transform":{)" +
+                 members + "}}}}}]";
+    return file.bytes();
+  };
+  CHECK(readable(withTransform("")).uvs == Floats{0, 0, 1, 0, 0, 1, 0.5f, 0.25f, 2, -1});
+  // Scaled, a quarter turned and moved: (0.5 + 0.25 v, 0.75 - 0.5 u), but for the rounding of the cosine.
+  const Floats turned =
+      readable(withTransform(R"("offset":[0.5,0.75],"rotation":1.5707963267948966,"scale":[0.5,0.25])")).uvs;
+  const Floats expected{0.5f, 0.75f, 0.5f, 0.25f, 0.75f, 0.75f, 0.5625f, 0.5f, 0.25f, -0.25f};
+  REQUIRE(turned.size() == expected.size());
+  for (std::size_t i = 0; i < turned.size(); ++i) CHECK(std::abs(turned[i] - expected[i]) < 1e-6f);
+  CHECK(readable(withTransform(R"("texCoord":1,"offset":[1,0])")).uvs == Floats{4, 3, 4, 3, 4, 3, 4, 3, 4, 3});
+  for (const char* members : {R"("offset":[1])", R"("scale":"x")", R"("rotation":[0])", R"("scale":[1,"y"])"})
+    CHECK_THAT(errorOf(withTransform(members)), Contains("of KHR_texture_transform is not"));
+}
+
 TEST_CASE("sparse accessors are read, over values or over nothing", "[gltf]") {
   for (const bool over : {true, false}) {
     File file;

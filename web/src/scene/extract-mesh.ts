@@ -1,5 +1,5 @@
 import { extract, type Part } from 'cagecast/three';
-import type { Mesh, Object3D } from 'three';
+import type { Mesh, MeshStandardMaterial, Object3D, Texture } from 'three';
 
 /** One triangle mesh of the scene, and the ranges of its elements in the concatenated arrays; its name is for people. */
 export interface Primitive extends Omit<Part, 'geometry'> {
@@ -16,7 +16,7 @@ export interface ExtractedMesh {
   rest?: Float32Array;
   /** 3 per triangle, counter-clockwise seen from outside. */
   indices: Uint32Array;
-  /** 2 per vertex, of the set of the base colour texture, else of the first; absent unless every primitive has it. */
+  /** 2 per vertex: where it is in its base colour texture; without one, the first set. Absent unless every primitive has UVs. */
   uvs?: Float32Array | undefined;
   /** 1 per vertex: the index of its primitive. Only vertices of the same primitive are welded. */
   groups: Uint32Array;
@@ -40,7 +40,21 @@ export function extractMesh(
     const name = nameOf(mesh) || part.name;
     return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0 };
   });
+  for (const { mesh: one, firstVertex, vertexCount } of mesh.uvs ? primitives : []) {
+    const { map } = one.material as Partial<MeshStandardMaterial>;
+    if (map) transformUvs(mesh.uvs!.subarray(2 * firstVertex, 2 * (firstVertex + vertexCount)), map);
+  }
   return { ...mesh, primitives };
+}
+
+/** Moves UVs to where they are in a texture, as KHR_texture_transform says: scaled, rotated, then moved. */
+function transformUvs(uvs: Float32Array, { offset, rotation, repeat }: Texture): void {
+  const [cos, sin] = [Math.cos(rotation), Math.sin(rotation)];
+  for (let i = 0; i < uvs.length; i += 2) {
+    const [u, v] = [repeat.x * uvs[i]!, repeat.y * uvs[i + 1]!];
+    uvs[i] = offset.x + cos * u + sin * v;
+    uvs[i + 1] = offset.y - sin * u + cos * v;
+  }
 }
 
 /** Swaps the last two corners of every triangle. */
