@@ -569,6 +569,8 @@ interface Strip {
   z: number;
   from?: number;
   to?: number;
+  /** How many rectangles it has. Default: 16 */
+  count?: number;
   u(x: number): number;
 }
 
@@ -585,8 +587,8 @@ async function strips(path: string, parts: readonly Strip[], wrapS?: keyof typeo
     material.setBaseColorTexture(document.createTexture().setImage(image).setMimeType('image/png'));
     material.getBaseColorTextureInfo()!.setWrapS(TextureInfo.WrapMode[wrapS]!);
   }
-  for (const { name, z, from = 0, to = 2, u } of parts) {
-    const columns = Array.from({ length: 17 }, (_, i) => from + ((to - from) * i) / 16);
+  for (const { name, z, from = 0, to = 2, count = 16, u } of parts) {
+    const columns = Array.from({ length: count + 1 }, (_, i) => from + ((to - from) * i) / count);
     const corners = columns.flatMap((x) => [0, 1].map((y) => [x, y] as const));
     const primitive = document
       .createPrimitive()
@@ -613,6 +615,7 @@ test('the way back shows what the model shows: what is nearest to the cage, and 
   await strips(at('mirror.glb'), [{ name: 'body', z: 0, u: (x) => x }], 'MIRRORED_REPEAT');
   await strips(at('repeat.glb'), [{ name: 'body', z: 0, u: (x) => x }], 'REPEAT');
   await strips(at('clamp.glb'), [{ name: 'body', z: 0, u: (x) => x - 0.5 }], 'CLAMP_TO_EDGE');
+  await strips(at('crossing.glb'), [{ name: 'body', z: 0, count: 1, u: (x) => 0.75 * x - 0.5 }], 'CLAMP_TO_EDGE');
   const [r, b] = ['red', 'blue'];
   const expected = {
     'skin-first': [r, b, b, r],
@@ -620,6 +623,7 @@ test('the way back shows what the model shows: what is nearest to the cage, and 
     mirror: [r, b, b, r],
     repeat: [r, b, r, b],
     clamp: [r, r, b, b],
+    crossing: [r, r, r, b],
   };
   for (const [name, colors] of Object.entries(expected))
     for (const borders of ['triangle', 'cut']) {

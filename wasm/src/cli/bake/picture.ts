@@ -101,36 +101,60 @@ interface ModelTexture {
   layouts: readonly Layout[];
 }
 
-/** A texture that is mirrored or clamped where UVs leave 0..1, as one that repeats. Clamped are the corners of triangles. */
+/** A texture that is mirrored or clamped where UVs leave 0..1, as one that repeats. */
 function unrolled(image: Image, layouts: readonly Layout[], wraps: readonly [Wrap, Wrap]): ModelTexture {
   let texture: ModelTexture = { image, layouts };
-  for (const [k, wrap] of wraps.entries()) {
-    const isInside = (at: number, i: number) => i % 2 !== k || (at >= 0 && at <= 1);
+  for (const [axis, wrap] of wraps.entries()) {
+    const isInside = (at: number, i: number) => i % 2 !== axis || (at >= 0 && at <= 1);
     if (wrap === 'repeat' || layouts.every(({ to }) => to.every(isInside))) continue;
-    const middle = 0.5 / (k === 0 ? image.width : image.height); // of the first texel
-    const place = (at: number) => (wrap === 'mirror' ? at / 2 : Math.min(1 - middle, Math.max(middle, at)));
-    texture = {
-      image: wrap === 'mirror' ? withMirrorImage(texture.image, k) : texture.image,
-      layouts: texture.layouts.map((layout) => ({
-        ...layout,
-        to: layout.to.map((at, i) => (i % 2 === k ? place(at) : at)),
-      })),
-    };
+    texture = wrap === 'mirror' ? mirrored(texture, axis) : clamped(texture, axis);
   }
   return texture;
 }
 
-/** An image and its mirror image, side by side or one above the other; coarser if that would be too large. */
-function withMirrorImage(image: Image, axis: number): Image {
+/** A texture and its mirror image, side by side or one above the other; coarser if that would be too large. */
+function mirrored({ image, layouts }: ModelTexture, axis: number): ModelTexture {
   const most = mostTexels / 2;
   const fits = axis === 0 ? [Math.min(image.width, most), image.height] : [image.width, Math.min(image.height, most)];
-  const { width, height, data } = resize(image, fits[0]!, fits[1]!);
-  const [wide, high] = axis === 0 ? [2 * width, height] : [width, 2 * height];
+  const length = fits[axis]!;
+  return {
+    image: extended(resize(image, fits[0]!, fits[1]!), axis, 2 * length, (at) => Math.min(at, 2 * length - 1 - at)),
+    layouts: placed(layouts, axis, (at) => at / 2),
+  };
+}
+
+/**
+ * A texture with its outer texels repeated as far as UVs reach beyond them, but half its length at most, and not if that would be too
+ * large. Corners of triangles that reach further are clamped.
+ */
+function clamped({ image, layouts }: ModelTexture, axis: number): ModelTexture {
+  const length = axis === 0 ? image.width : image.height;
+  const most = Math.floor(Math.min(length, mostTexels - length) / 2);
+  let [low, high] = [0, 1];
+  for (const { to } of layouts)
+    for (let i = axis; i < to.length; i += 2) [low, high] = [Math.min(low, to[i]!), Math.max(high, to[i]!)];
+  const before = Math.min(most, Math.ceil(-low * length));
+  const all = before + length + Math.min(most, Math.ceil((high - 1) * length));
+  const middle = 0.5 / all; // of the first texel
+  return {
+    image: extended(image, axis, all, (at) => Math.min(length - 1, Math.max(0, at - before))),
+    layouts: placed(layouts, axis, (at) => Math.min(1 - middle, Math.max(middle, (before + at * length) / all))),
+  };
+}
+
+/** Layouts whose UVs along an axis are elsewhere. */
+const placed = (layouts: readonly Layout[], axis: number, place: (at: number) => number): Layout[] =>
+  layouts.map((layout) => ({ ...layout, to: layout.to.map((at, i) => (i % 2 === axis ? place(at) : at)) }));
+
+/** An image of another length along an axis. @param from  The place of each of its texels in the image before. */
+function extended(image: Image, axis: number, length: number, from: (at: number) => number): Image {
+  const { width, height, data } = image;
+  const [wide, high] = axis === 0 ? [length, height] : [width, length];
   const out = new Uint8ClampedArray(4 * wide * high);
   for (let y = 0; y < high; ++y)
     for (let x = 0; x < wide; ++x) {
-      const from = 4 * (Math.min(y, 2 * height - 1 - y) * width + Math.min(x, 2 * width - 1 - x));
-      out.set(data.subarray(from, from + 4), 4 * (y * wide + x));
+      const there = axis === 0 ? y * width + from(x) : from(y) * width + x;
+      out.set(data.subarray(4 * there, 4 * there + 4), 4 * (y * wide + x));
     }
   return { width: wide, height: high, data: out };
 }
