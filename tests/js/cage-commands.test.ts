@@ -68,6 +68,11 @@ describe('cagecast make', () => {
     const words = cagecast(...['make', at('head.glb'), '--exclude', 'eye', '--triangles', '300', '-o', at('two.glb')]);
     assert.equal(words.status, 0, words.stderr);
     assert.match(words.stdout, /, 2 holes$/m);
+    const { json, bin } = unpackGlb(headFile());
+    json.scenes![0]!.nodes = [0, json.nodes!.push({ name: 'The Lookers', children: [1, 2] }) - 1];
+    const held = write('held.glb', packGlb({ json, bin }));
+    const all = cagecast(...['make', held, '--exclude', 'lookers', '--triangles', '300', '-o', at('held-cage.glb')]);
+    assert.deepEqual([all.stderr, /, 2 holes$/m.test(all.stdout)], ['', true], 'names of nodes above them are known');
     const none = cagecast(...['make', at('head.glb'), '--exclude', '', '--triangles', '300', '-o', at('none.glb')]);
     assert.deepEqual([none.stderr, /, 0 holes$/m.test(none.stdout)], ['', true]);
     const triangles = unpackGlb(readFileSync(at('one.glb'))).json.accessors![2]!.count / 3;

@@ -64,6 +64,7 @@ interface Report {
     coveredArea: number;
     coverage: number;
     culled: boolean;
+    culledBy: string;
     part: string;
   }[];
   parts: {
@@ -737,6 +738,33 @@ describe('transfer', () => {
       ),
       true,
     );
+  });
+
+  test('--keep and --exclude take a node that holds others for all below it, unless a part has its name', () => {
+    const maker = new GlbMaker();
+    const part = (group: number, name: string) => {
+      const indices = scene.target.indices.filter((_, i, all) => scene.target.groups![all[i - (i % 3)]!] === group);
+      return (maker.json.nodes ??= []).push({ name, mesh: maker.mesh({ ...scene.target, indices }) }) - 1;
+    };
+    const [head, eye, tongue] = [part(0, 'head'), part(1, 'eye'), part(2, 'tongue')];
+    const holding = (name: string, ...children: number[]) => maker.json.nodes!.push({ name, children }) - 1;
+    const mouth = holding('mouth', tongue);
+    maker.node({ name: 'Face', children: [eye, mouth] });
+    maker.node({ name: 'eye', children: [head] });
+    const path = write('holding.glb', maker.finish());
+    const culled = (...flags: string[]) => {
+      const { segments } = report(path, at('cage.glb'), ...flags);
+      return ['head', 'eye', 'tongue'].map((name) =>
+        segments.filter((one) => one.part === name && one.points > 1).every(({ culledBy }) => culledBy === 'lock'),
+      );
+    };
+    assert.deepEqual(culled('--exclude', 'Fa*'), [false, true, true]);
+    assert.deepEqual(culled('--exclude', 'mouth'), [false, false, true]);
+    assert.deepEqual(culled('--exclude', 'eye'), [false, true, false]);
+    const { status, stderr } = cagecast(
+      ...['transfer', path, '--cage', at('cage.glb'), '--exclude', 'Face', '--keep', 'tongue'],
+    );
+    assert.deepEqual([status, /--keep tongue and --exclude Face both match "tongue"/.test(stderr)], [1, true], stderr);
   });
 
   test('splits vertices so that no triangle stretches across the texture', async () => {

@@ -12,7 +12,7 @@ import { isPosition } from '../parts/template.js';
 import { parseObject } from './config/settings.js';
 import { conclusionOf, inspectionReport } from './inspect-command.js';
 import { inspectionPage } from './inspect-page.js';
-import { checkExclusions, fitCageTo, landmarksOf, makeCageFor } from './make-cage.js';
+import { fitCageTo, landmarksOf, makeCageFor } from './make-cage.js';
 import { defaultRules } from './options.js';
 import { writeFiles } from './output.js';
 import type { Found } from './print.js';
@@ -67,7 +67,6 @@ export interface CageVerdict extends Found {
 export async function makeCommand(command: MakeCommand, progress: Progress): Promise<CageVerdict> {
   const { target, exclude, triangles, kind, closing, reading } = command;
   const model = await readModel(target, reading, progress);
-  await checkExclusions(exclude, model);
   const options = { exclude, triangles, kind, closing };
   const cage = await makeCageFor(model, options, progress);
   return finish(command, model, { ...cage, landmarks: await landmarksOf(model, progress) }, progress);
@@ -92,7 +91,6 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
     ).in(templatePath);
   const landmarks = landmarksPath === undefined ? undefined : await readLandmarks(landmarksPath);
   const model = await readModel(target, reading, progress);
-  await checkExclusions(exclude, model);
   const files = { template: templatePath, landmarks: landmarksPath };
   const fit = await fitCageTo(model, { template, landmarks, files, options: { exclude } }, progress);
   return finish(command, model, fit.cage, progress, describeFit(fit, landmarks ?? {}));

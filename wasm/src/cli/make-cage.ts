@@ -1,6 +1,7 @@
 import { defaultExclusions, findLandmarks, fitCage, init, makeCage, matchingParts } from '../cages/sync.js';
-import type { Cage, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../cages/types.js';
+import type { Cage, CageModel, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../cages/types.js';
 import { cageModelOf } from '../gltf/cage-file.js';
+import { partsBelow } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { CagecastError } from '../index.js';
 import { noSuchName } from './options.js';
@@ -8,9 +9,10 @@ import type { Progress } from './progress.js';
 import type { ReadModel } from './run.js';
 
 /** Makes a cage for a model. @throws {InputError} that names the file. */
-export function makeCageFor(model: ReadModel, options: MakeOptions, progress: Progress): Promise<Cage> {
+export async function makeCageFor(model: ReadModel, options: MakeOptions, progress: Progress): Promise<Cage> {
+  const named = await withExcluded(model, options.exclude);
   return calling('making a cage', { model: model.file.path }, progress, (onProgress) =>
-    makeCage(cageModelOf(model.file, model.extracted), { ...options, onProgress }),
+    makeCage(named, { ...options, onProgress }),
   );
 }
 
@@ -28,13 +30,27 @@ export async function partsLeftOut({ file, extracted }: ReadModel): Promise<bool
   return matchingParts(cageModelOf(file, extracted).parts ?? [], defaultExclusions());
 }
 
-/** Checks that each pattern matches a part of a model. @throws {InputError} that names the file and the pattern. */
-export async function checkExclusions(patterns: readonly string[] = [], { file, extracted }: ReadModel): Promise<void> {
+/**
+ * A model whose parts are known by patterns: if no part has such a name, all below nodes that have it get it.
+ * @throws {InputError} that names the file and the pattern that matches nothing.
+ */
+async function withExcluded({ file, extracted }: ReadModel, patterns: readonly string[] = []): Promise<CageModel> {
   await init();
-  const { parts = [] } = cageModelOf(file, extracted);
-  for (const pattern of patterns)
-    if (!matchingParts(parts, [pattern]).includes(true))
-      throw noSuchName(`--exclude ${pattern}`, extracted.parts).in(file.path);
+  const model = cageModelOf(file, extracted);
+  const names = [...model.parts!];
+  const { nodes = [] } = file.json;
+  for (const pattern of patterns) {
+    if (matchingParts(names, [pattern]).includes(true)) continue;
+    const isAbove = matchingParts(
+      nodes.map(({ name = '' }) => [name]),
+      [pattern],
+    );
+    const below = partsBelow(file.json, extracted.parts, isAbove);
+    if (below.length === 0) throw noSuchName(`--exclude ${pattern}`, extracted.parts).in(file.path);
+    const added = nodes.flatMap(({ name = '' }, n) => (isAbove[n] ? [name] : []));
+    for (const p of below) names[p] = [names[p]!, added].flat();
+  }
+  return { ...model, parts: names };
 }
 
 /** A template, landmarks of the model (none if there is no file of them), and the files that they come from. */
@@ -46,13 +62,14 @@ interface FitSources {
 }
 
 /** Fits a template to a model. @throws {InputError} that names the file at fault. */
-export function fitCageTo(
+export async function fitCageTo(
   model: ReadModel,
   { template, landmarks, files, options }: FitSources,
   progress: Progress,
 ): Promise<Fit> {
+  const named = await withExcluded(model, options.exclude);
   return calling('fitting the cage', { model: model.file.path, ...files }, progress, (onProgress) =>
-    fitCage(template, cageModelOf(model.file, model.extracted), landmarks, { ...options, onProgress }),
+    fitCage(template, named, landmarks, { ...options, onProgress }),
   );
 }
 

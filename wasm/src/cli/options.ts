@@ -1,10 +1,10 @@
 import { type Command, InvalidArgumentError, Option } from 'commander';
 import { optionFlags } from '../generated/options.js';
-import type { Extracted } from '../gltf/extract.js';
+import { partsBelow } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { type Lock, type Preset, type PresetOptions, presetOptions, type TransferOptions } from '../index.js';
 import type { Finding } from '../inspect/finding.js';
-import type { Sources } from './run.js';
+import type { ReadModel, Sources } from './run.js';
 import { cut, listed } from './table.js';
 
 export const presets: readonly Preset[] = ['default', 'paper'];
@@ -74,13 +74,13 @@ export function addRuleFlags(command: Command): Command {
     .addOption(
       new Option(
         '--keep <NAME>',
-        'keep parts of this node or material even if the rules would cull them (* matches any text); may be repeated',
+        'keep parts of this node or material even if the rules would cull them (* matches any text); a node that holds others means all below it; may be repeated',
       )
         .default([], 'none')
         .argParser(oneMore),
     )
     .addOption(
-      new Option('--exclude <NAME>', 'never paint parts of this node or material (* matches any text); may be repeated')
+      new Option('--exclude <NAME>', 'never paint parts of this node or material; as for --keep; may be repeated')
         .default([], 'none')
         .argParser(oneMore),
     )
@@ -171,13 +171,14 @@ export function effectiveOptions({
 export const configLine = (config: string | null | undefined): string => (config ? `settings from ${config}` : '');
 
 /**
- * The options of `transfer`. Names of parts become locks by group, because each part is a group.
+ * The options of `transfer`. Names of parts become locks by group, because each part is a group. The name of a node that no part
+ * has stands for all parts below it.
  * @param leftOut  Whether each part is excluded if nothing is said of it. Default: none is.
  * @throws {InputError} if nothing has a given name, or a part is both kept and excluded in one place.
  */
 export function transferOptions(
   { preset, single, keep, exclude, ranks, optional = [], config }: Rules,
-  { parts }: Extracted,
+  { file: { json }, extracted: { parts } }: ReadModel,
   leftOut: readonly boolean[] = [],
 ): TransferOptions {
   const saidOf = new Map<number, { lock: Lock; pattern: string; rank: number }>();
@@ -188,7 +189,10 @@ export function transferOptions(
     for (const [i, pattern] of patterns.entries()) {
       const rank = ranks?.[lock][i] ?? 0;
       const matches = matcher(pattern);
-      const found = [...parts.keys()].filter((p) => parts[p]!.vertexCount > 0 && parts[p]!.aliases.some(matches));
+      const own = [...parts.keys()].filter((p) => parts[p]!.aliases.some(matches));
+      const isAbove = () => (json.nodes ?? []).map(({ name = '' }) => matches(name));
+      const all = own.length > 0 ? own : partsBelow(json, parts, isAbove());
+      const found = all.filter((p) => parts[p]!.vertexCount > 0);
       if (found.length === 0 && !optional.includes(pattern)) throw noSuchName(`--${lock} ${pattern}`, parts);
       for (const p of found) {
         const said = saidOf.get(p);

@@ -181,11 +181,11 @@ export async function transferModels(
   }
 }
 
-function optionsFor({ file, extracted }: ReadModel, rules: Rules, leftOut: readonly boolean[]): TransferOptions {
+function optionsFor(model: ReadModel, rules: Rules, leftOut: readonly boolean[]): TransferOptions {
   try {
-    return transferOptions(rules, extracted, leftOut);
+    return transferOptions(rules, model, leftOut);
   } catch (error) {
-    throw withName(error, file.path);
+    throw withName(error, model.file.path);
   }
 }
 

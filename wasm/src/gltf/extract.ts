@@ -70,6 +70,17 @@ export function partOf(parts: readonly Part[], vertex: number): Part | undefined
   return parts.find((part) => vertex >= part.firstVertex && vertex < part.firstVertex + part.vertexCount);
 }
 
+/** The numbers of the parts below nodes of which some number is true. */
+export function partsBelow({ nodes = [] }: GLTF.IGLTF, parts: readonly Part[], isMeant: readonly boolean[]): number[] {
+  const below = new Set<number>();
+  const stack = nodes.flatMap((_, node) => (isMeant[node] ? [node] : []));
+  for (let node = stack.pop(); node !== undefined; node = stack.pop()) {
+    if (!below.has(node)) stack.push(...(nodes[node]!.children ?? []));
+    below.add(node);
+  }
+  return [...parts.keys()].filter((p) => below.has(parts[p]!.node));
+}
+
 function listParts(file: GltfFile): Part[] {
   const { meshes = [], nodes = [], materials = [] } = file.json;
   const parts: Part[] = [];
