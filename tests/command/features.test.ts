@@ -62,6 +62,29 @@ test('--compress writes the other forms, each from each', async () => {
   }
 });
 
+test('diff tells in a line which file is no report', () => {
+  ok('transfer', at('target.glb'), ...cage, '--report', at('whole.json'));
+  const whole = JSON.parse(readFileSync(at('whole.json'), 'utf8')) as object;
+  for (const wrong of [
+    { target: null },
+    { target: [] },
+    { areas: null },
+    { segments: [null] },
+    { parts: {} },
+    { regions: 5 },
+  ]) {
+    writeFileSync(at('wrong.json'), JSON.stringify({ ...whole, ...wrong }));
+    for (const paths of [
+      ['whole.json', 'wrong.json'],
+      ['wrong.json', 'whole.json'],
+    ]) {
+      const { status, stdout, stderr } = cagecast('diff', ...paths.map((path) => at(path)));
+      assert.deepEqual([status, stdout], [1, ''], JSON.stringify(wrong));
+      assert.match(stderr, /^cagecast: .*wrong\.json: is no report of .*\n$/, JSON.stringify(wrong));
+    }
+  }
+});
+
 test('- is the standard input and output; the summary goes beside it', () => {
   const run = (args: string[], input?: Uint8Array) =>
     spawnSync(process.execPath, ['dist/cli.js', ...args], { ...(input && { input }) });

@@ -3,7 +3,7 @@ import { join } from 'node:path';
 import { isFolder, listingError, readBytes } from '../gltf/files.js';
 import { InputError, withName } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
-import { parseObject } from './config/settings.js';
+import { isObject, parseObject } from './config/settings.js';
 import { type InspectionReport, isWorse } from './inspect-command.js';
 import type { Found } from './print.js';
 import { cut, integer, percent, short, table } from './table.js';
@@ -130,8 +130,9 @@ function shown({ kind }: Change, value: Change['before']): string {
 function readReport(path: string): Promise<AnyReport> {
   return naming(path, async () => {
     const report = parseObject(new TextDecoder().decode(await readBytes(path)));
-    const { target, segments, areas, coverage } = report;
-    if (typeof target !== 'object' || !Array.isArray(segments) || typeof (areas ?? coverage) !== 'object')
+    const { target, segments, areas, coverage, parts = [], holes = [], regions = [] } = report;
+    const isList = (list: unknown) => Array.isArray(list) && list.every(isObject);
+    if (![target, areas ?? coverage].every(isObject) || ![segments, parts, holes, regions].every(isList))
       throw new InputError('is no report of cagecast transfer (--report) or inspect (--json)');
     return report as unknown as AnyReport;
   });
