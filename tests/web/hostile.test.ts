@@ -1,5 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { readProject, writeProject } from '../../web/src/project/container';
 import { loadModel } from '../../web/src/scene/load-model';
 import { GlbMaker, tetrahedron } from '../support/glb';
 
@@ -30,4 +31,12 @@ test('a model that refers to other files counts them', async () => {
     loadModel(file, undefined, [more]),
     /box\.glb: .*TEXCOORD_0 has 4 elements for 3000000 vertices/,
   );
+});
+
+test('a text that begins as a project does is no project, nor one of a newer page', async () => {
+  const text = new Blob(['CAGECAST: how to paint many models at once']);
+  await assert.rejects(readProject(text), { message: 'this is not a Cagecast project' });
+  const bytes = new Uint8Array(await writeProject({}, new Map()).arrayBuffer());
+  bytes[8] = 9; // the version
+  await assert.rejects(readProject(new Blob([bytes])), /newer version/);
 });

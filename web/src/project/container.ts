@@ -6,6 +6,8 @@ const kMagic = 'CAGECAST';
 const kHead = 16; // bytes
 /** Grows when older pages cannot read what newer ones write. */
 export const kVersion = 1;
+/** A number above this is no version, but letters of a text. */
+const kMostVersions = 255;
 const kMostText = 2 ** 24;
 const kMostFiles = 4096;
 
@@ -24,7 +26,8 @@ export function writeProject(parts: object, files: ReadonlyMap<string, Blob>): B
 export async function readProject(file: Blob): Promise<{ parts: Record<string, unknown>; files: Files }> {
   const head = new DataView(await file.slice(0, kHead).arrayBuffer());
   const magic = String.fromCharCode(...new Uint8Array(head.buffer).subarray(0, kMagic.length));
-  if (magic !== kMagic || head.byteLength < kHead) throw new Error('this is not a Cagecast project');
+  if (magic !== kMagic || head.byteLength < kHead || head.getUint32(8, true) > kMostVersions)
+    throw new Error('this is not a Cagecast project');
   if (head.getUint32(8, true) !== kVersion)
     throw new Error('this project was saved by a newer version of the page: reload the page and try again');
   const length = head.getUint32(12, true);
