@@ -179,9 +179,27 @@ describe('cagecast transfer --cage auto', () => {
       '--json',
     );
     assert.deepEqual([status, stderr], [0, '']);
-    const { parts } = JSON.parse(stdout) as { parts: { name: string; counts: { cosmetic: number } }[] };
+    const { parts, cage } = JSON.parse(stdout) as {
+      parts: { name: string; counts: { cosmetic: number } }[];
+      cage: { excluded: string[] };
+    };
     const painted = parts.filter(({ counts }) => counts.cosmetic > 0).map(({ name }) => name);
     assert.deepEqual(painted, ['skin', 'upper-teeth']);
+    const others = parts.map(({ name }) => name).filter((name) => !painted.includes(name));
+    assert.deepEqual(cage.excluded, others, 'the report says which');
+  });
+
+  test('says which parts it is made without', () => {
+    const lizard = (name: string) => `build/assets/lizard/${name}.glb`;
+    for (const command of ['transfer', 'inspect']) {
+      const { stdout } = cagecast(command, at('head.glb'), '--cage', 'auto');
+      assert.match(stdout, /^excluded from the cage by their names: Eye\.L, ball$/m, command);
+      const kept = cagecast(command, at('head.glb'), '--cage', 'auto', '--keep', 'Eye*');
+      assert.doesNotMatch(kept.stdout, /excluded/, command);
+      const own = cagecast(command, lizard('target'), '--cage', lizard('cage'), '--json');
+      const { cage } = JSON.parse(own.stdout) as { cage: object };
+      assert.deepEqual(Object.keys(cage), ['file', 'vertices', 'triangles'], command);
+    }
   });
 });
 

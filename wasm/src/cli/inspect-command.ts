@@ -1,6 +1,7 @@
 import { counted } from '../inspect/finding.js';
 import { boxOf, vertexAreas } from '../inspect/geometry.js';
 import { type Inspection, inspect, unfitFrom, usableFrom, type Verdict } from '../inspect/index.js';
+import { type CageReport, cageReport, excludedLine } from './cage-report.js';
 import { inspectionPage } from './inspect-page.js';
 import { adviceOn, configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
@@ -24,7 +25,7 @@ export const isWorse = (a: Verdict, b: Verdict): boolean => verdicts.indexOf(a) 
 export interface InspectionReport extends Inspection {
   versions: { cagecast: string; node: string };
   target: { file: string; vertices: number; triangles: number; points: number; diagonal: number };
-  cage: { file: string; vertices: number; triangles: number };
+  cage: CageReport;
   options: EffectiveOptions;
   /** Vertices of the target in each zone. */
   counts: PerZone;
@@ -58,9 +59,10 @@ export async function inspectCommand(
 /** Inspects the cage of a run. @param textures  Where its UVs have textures, besides 0..1. */
 export function inspectionReport(
   command: Omit<Sources, 'reading'>,
-  { target, wholeCage, options, result }: Run,
+  run: Run,
   textures: readonly UvBounds[],
 ): InspectionReport {
+  const { target, wholeCage, options, result } = run;
   const cage = withinBounds(wholeCage, textures.length > 0 ? boundsAround(textures) : undefined).extracted;
   const { mesh, parts } = target;
   const areas = perZone(result.zones, vertexAreas(mesh));
@@ -75,7 +77,7 @@ export function inspectionReport(
       points: result.segmentStats.reduce((sum, { points }) => sum + points, 0),
       diagonal: boxOf(mesh.positions).diagonal,
     },
-    cage: { file: command.cage, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
+    cage: cageReport(command.cage, cage, run),
     options: effectiveOptions(command),
     counts: perZone(result.zones),
     coverage: {
@@ -164,6 +166,8 @@ function describe(report: InspectionReport, html: string | undefined): string[] 
     ...segmentTable(listed),
     '',
     ...conclusionOf(report),
-    ...[html === undefined ? '' : `wrote ${html}`, configLine(report.options.config)].filter(Boolean),
+    ...[html === undefined ? '' : `wrote ${html}`, excludedLine(cage), configLine(report.options.config)].filter(
+      Boolean,
+    ),
   ];
 }

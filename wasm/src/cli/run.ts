@@ -30,6 +30,8 @@ export interface Run {
   cage: Extracted;
   /** The cage before its UVs were moved to those of the texture. */
   wholeCage: ReadModel;
+  /** The names of the parts that the cage was made without, if it was made on the way. */
+  excluded?: readonly string[] | undefined;
   /** What `transfer` was called with. */
   options: TransferOptions;
   result: TransferResult;
@@ -73,7 +75,8 @@ export async function runTransfer(
   const reference = sources.referenceCage === undefined ? undefined : await cageOf(sources.referenceCage);
   const drawn = withoutLacking(whole, reference);
   const run = await transferModels(read, withinBounds(drawn, sources.uvBounds), options, progress);
-  return { ...run, wholeCage: drawn };
+  const excluded = isMade ? excludedNames(read, leftOut, options) : undefined;
+  return { ...run, wholeCage: drawn, excluded };
 }
 
 /** The masks of a target. @throws {InputError} that names the file at fault. */
@@ -180,6 +183,11 @@ export async function transferModels(
     throw inFile(error, files);
   }
 }
+
+/** The names of the parts that are left out and not kept. */
+const excludedNames = ({ extracted }: ReadModel, leftOut: readonly boolean[], { locks }: TransferOptions): string[] => [
+  ...new Set(extracted.parts.filter((_, p) => leftOut[p] && locks?.groups?.[p] !== 'keep').map(({ name }) => name)),
+];
 
 function optionsFor(model: ReadModel, rules: Rules, leftOut: readonly boolean[]): TransferOptions {
   try {

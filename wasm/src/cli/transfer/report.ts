@@ -4,6 +4,7 @@ import type { Added } from '../../gltf/write.js';
 import type { SegmentStats, TransferResult } from '../../index.js';
 import { boxOf, vertexAreas } from '../../inspect/geometry.js';
 import type { Finding, Verdict } from '../../inspect/index.js';
+import { type CageReport, cageReport, excludedLine } from '../cage-report.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from '../options.js';
 import { type Stretch, stretchOf } from '../paint/stretch.js';
 import type { Run } from '../run.js';
@@ -15,7 +16,7 @@ import type { Region, RegionRun, TransferCommand } from './command.js';
 export interface Report {
   versions: { cagecast: string; node: string };
   target: { file: string; vertices: number; triangles: number; diagonal: number };
-  cage: { file: string; vertices: number; triangles: number };
+  cage: CageReport;
   texture: string | null;
   output: string | null;
   borders: TransferCommand['borders'];
@@ -98,7 +99,7 @@ const trianglesOf = (cosmetic: Uint8Array, shown: Uint8Array, isBounded: boolean
 
 /** The report of a transfer from the first cage. */
 export function makeReport(command: TransferCommand, { run, shown, cut, ...rest }: RegionRun): Report {
-  const { target, cage, result } = run;
+  const { target, result } = run;
   const { mesh, parts } = target;
   const written = command.output === undefined ? undefined : rest.written;
   const isBounded = command.uvBounds !== undefined;
@@ -111,7 +112,7 @@ export function makeReport(command: TransferCommand, { run, shown, cut, ...rest 
       triangles: mesh.indices.length / 3,
       diagonal: boxOf(mesh.positions).diagonal,
     },
-    cage: { file: command.cage, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
+    cage: cageReport(command.cage, run.cage, run),
     texture: command.texture ?? null,
     output: command.output ?? null,
     borders: command.borders,
@@ -197,7 +198,7 @@ export function regionReport(
 /** The report for people. */
 export function summary(
   command: TransferCommand,
-  { target, counts, areas, triangles, cut, segments, parts, replacedOverlays, regions, timings, output }: Report,
+  { target, cage, counts, areas, triangles, cut, segments, parts, replacedOverlays, regions, timings, output }: Report,
 ): string[] {
   const rows = [
     ['', 'vertices', 'area'],
@@ -233,6 +234,7 @@ export function summary(
         `${cage}: ${integer(cosmetic)} of ${integer(total)} triangles more may be painted, by ${texture}`,
     ),
     command.report === undefined ? '' : `wrote ${command.report}`,
+    excludedLine(cage),
     configLine(command.rules.config),
     output === null && command.report === undefined
       ? 'nothing written; to save the result, add -o OUT.glb or --report R.json'
