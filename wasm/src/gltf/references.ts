@@ -1,4 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
+import { dracoOf } from './check.js';
 import { instancing } from './instancing.js';
 import { isOfTransfer, isOverlay } from './overlay.js';
 
@@ -54,7 +55,7 @@ export const hasUnknownReferences = ({ extensionsUsed = [] }: GLTF.IGLTF): boole
 
 /**
  * A glTF of what an earlier transfer added, attributes and the indices of overlays, and of what no unknown extension refers to: images,
- * and geometry that Draco compressed.
+ * and geometry that Draco compressed, of which only the stream has the bytes.
  */
 export function addedByTransfer(json: GLTF.IGLTF): GLTF.IGLTF {
   const { meshes = [], accessors = [], images = [] } = json;
@@ -63,9 +64,14 @@ export function addedByTransfer(json: GLTF.IGLTF): GLTF.IGLTF {
     .flatMap((mesh) => mesh.primitives)
     .map((primitive): GLTF.IMeshPrimitive => {
       const { attributes, indices, extensions } = primitive;
+      const isDraco = dracoOf(primitive) !== undefined;
+      const isInStream = (accessor: number) => {
+        const { bufferView, sparse } = accessors[accessor]!;
+        return isDraco && bufferView === undefined && sparse === undefined;
+      };
       return {
-        attributes: Object.fromEntries(Object.entries(attributes).filter(isAdded)),
-        ...(isOverlay(primitive, json) && indices !== undefined && { indices }),
+        attributes: Object.fromEntries(Object.entries(attributes).filter((one) => isAdded(one) || isInStream(one[1]))),
+        ...(indices !== undefined && (isOverlay(primitive, json) || isInStream(indices)) && { indices }),
         ...(extensions && { extensions }),
       };
     });
