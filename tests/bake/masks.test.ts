@@ -220,6 +220,8 @@ describe('masks of loaded models', () => {
         /^modelMasks: options\.nevr is not an option; there are: never, always, attribute$/,
       ],
       [() => modelMasks(plane(), texture(image) as object), /^modelMasks: options\.\w+ is not an option/],
+      [() => modelMasks(plane(), undefined as never), /^modelMasks: options is undefined, not an object$/],
+      [() => modelMasks(plane(), null as never), /^modelMasks: options is null, not an object$/],
     ];
     for (const [call, message] of cases)
       assert.throws(

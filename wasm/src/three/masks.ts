@@ -4,6 +4,7 @@ import type { Masks } from '../index.js';
 import { localIndices } from '../parts/prepare.js';
 import { wrong } from './error.js';
 import { extract, valuesOf } from './extract.js';
+import { checkObject } from './options.js';
 
 /** Where the masks of a model come from. */
 export interface ModelMasks {
@@ -24,34 +25,34 @@ export interface ModelMasks {
  * @example
  * applyTransfer(scan.scene, cage.scene, { texture: paint, masks: modelMasks(scan.scene, { never: eyes }) });
  */
-export function modelMasks(
-  target: Object3D | BufferGeometry,
-  { never, always, attribute, ...others }: ModelMasks,
-): Masks {
+export function modelMasks(target: Object3D | BufferGeometry, options: ModelMasks): Masks {
+  checkObject(options, 'modelMasks');
+  const { never, always, attribute, ...others } = options;
   for (const name in others)
     throw wrong(`options.${name} is not an option; there are: never, always, attribute`, 'modelMasks', 'badOption');
   const { mesh, parts } = extract(target);
   const images = { never: never && imageOf('never', never), always: always && imageOf('always', always) };
   const vertices = new Int8Array(mesh.positions.length / 3);
   const triangles = new Int8Array(mesh.indices.length / 3);
-  const wanted = { uv: Boolean(never || always), [attribute ?? '']: attribute !== undefined };
+  const missing = new Set<string>();
+  if (never || always) missing.add('uv');
+  if (attribute !== undefined) missing.add(attribute);
   for (const part of parts) {
     const { geometry, firstVertex, vertexCount, firstTriangle } = part;
     const values = (name: string, ...sizes: number[]) => {
       const found = geometry.getAttribute(name);
       if (!sizes.includes(found?.itemSize)) return undefined;
-      wanted[name] = false;
+      missing.delete(name);
       return valuesOf(found).subarray(0, found.itemSize * vertexCount);
     };
-    const colors = attribute === undefined ? undefined : values(attribute, 3, 4);
+    const colors = attribute !== undefined && values(attribute, 3, 4);
     if (colors) vertices.set(maskVertices(colors, (colors.length / vertexCount) as 3 | 4), firstVertex);
-    const uvs = never || always ? values('uv', 2) : undefined;
+    const uvs = (never || always) && values('uv', 2);
     if (!uvs) continue;
     const indices = localIndices({ ...part, mirrored: false }, mesh.indices);
     triangles.set(maskTriangles({ indices, uvs }, images), firstTriangle);
   }
-  const missing = Object.keys(wanted).find((name) => wanted[name]);
-  if (missing !== undefined) throw wrong(`no part of target has the attribute ${missing}`, 'modelMasks');
+  for (const name of missing) throw wrong(`no part of target has the attribute ${name}`, 'modelMasks');
   return { vertices, triangles };
 }
 

@@ -91,12 +91,18 @@ export interface Applied {
   dispose(): void;
 }
 
+/** @throws {CagecastError} `badOption` */
+function check(fits: unknown, name: string, value: unknown, what: string, fn?: string): void {
+  if (!fits) throw wrong(`options${name} is ${describe(value)}, not ${what}`, fn, 'badOption');
+}
+
+/** @throws {CagecastError} `badOption` */
+export const checkObject = (options: unknown, fn?: string): void =>
+  check(typeof options === 'object' && options, '', options, 'an object', fn);
+
 /** @throws {CagecastError} `badOption` that names the option and its value. */
 export function checkOptions(options: ApplyOptions): void {
-  const check = (fits: boolean | undefined, name: string, value: unknown, what: string) => {
-    if (!fits) throw wrong(`options${name} is ${describe(value)}, not ${what}`, undefined, 'badOption');
-  };
-  check(typeof options === 'object' && options !== null, '', options, 'an object');
+  checkObject(options);
   const { texture, material, channel = 1, opacity = 1, feather = 0, saved } = options;
   check(!texture || texture.isTexture, '.texture', texture, 'a Texture');
   check(!material || material.isMaterial, '.material', material, 'a Material');
