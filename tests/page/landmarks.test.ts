@@ -340,3 +340,63 @@ test('a landmark that is being dragged when an earlier fit comes is not lost', a
     assert.notDeepEqual(landmarks[name], found.landmarks[name], name);
   assert.deepEqual(complaints, []);
 });
+
+/** Puts fingers on the stage, moves and lifts them. */
+const finger = (page: Page, type: 'down' | 'move' | 'up', pointerId: number, at: { x: number; y: number }) =>
+  page.locator('#view').evaluate(
+    (view, { type, pointerId, at }) => {
+      view.setPointerCapture = () => {}; // there is no such pointer
+      const place = { clientX: at.x, clientY: at.y, buttons: type === 'up' ? 0 : 1 };
+      view.dispatchEvent(
+        new PointerEvent(`pointer${type}`, { ...place, pointerId, pointerType: 'touch', bubbles: true }),
+      );
+    },
+    { type, pointerId, at },
+  );
+
+test('a second finger or Escape ends the drag of a landmark: all is as before it, with a fit that came meanwhile', async () => {
+  const { page, complaints } = await site.visit({}, holdingBack('fitCage'));
+  await page.evaluate('window.holds = false');
+  await drop(page, [head()]);
+  await ready(page);
+  await fitted(page);
+  const count = () => page.locator('#landmark-count').textContent();
+  const label = () => page.locator('[data-landmark=mouth_corner_left]').getAttribute('aria-label');
+  const begin = async () => {
+    const { x, y } = await placeOf(page, 'mouth_corner_left');
+    await finger(page, 'down', 1, { x, y });
+    await finger(page, 'move', 1, { x, y: y + 12 });
+    assert.equal(await label(), 'left mouth corner, placed by you');
+    return { x, y };
+  };
+  const cancel = async ({ x, y }: { x: number; y: number }) => {
+    await finger(page, 'down', 2, { x: x + 100, y });
+    for (const id of [2, 1]) await finger(page, 'up', id, { x, y });
+    assert.equal(await label(), 'left mouth corner, found');
+    assert.ok(Math.abs((await placeOf(page, 'mouth_corner_left')).y - y) < 2, 'it is back');
+  };
+  const found = await count();
+  await cancel(await begin());
+  assert.equal(await count(), found);
+  const { x, y } = await begin();
+  await page.locator('#view').press('Escape');
+  await finger(page, 'up', 1, { x, y: y + 12 });
+  assert.equal(await count(), found);
+  assert.ok(await page.getByTestId('undo').isDisabled(), 'nothing was done');
+  await page.keyboard.press('l');
+
+  await page.evaluate('window.holds = true');
+  await drag(page, 'nose_tip', 0, 8);
+  await heldBack(page);
+  const moved = await count();
+  const place = await begin();
+  await workedFor(page, () => page.evaluate('window.letGo()') as Promise<void>);
+  await cancel(place);
+  assert.equal(await count(), moved);
+  // The step has that fit: no other is made.
+  const cage = await savedCage(page);
+  await page.evaluate('window.holds = true');
+  for (const keys of ['Control+z', 'Control+Shift+z']) await workedFor(page, () => page.keyboard.press(keys));
+  assert.deepEqual(await savedCage(page), cage);
+  assert.deepEqual(complaints, []);
+});

@@ -135,7 +135,10 @@ export class LandmarkEditor {
     this.#dots?.dispose();
     this.#dots = on ? new LandmarkDots(this.#viewer.renderer.getPixelRatio()) : undefined;
     if (this.#dots) this.#viewer.stage.marks.add(this.#dots.object);
-    if (!on) this.#askFor(undefined);
+    if (!on) {
+      this.#cancel();
+      this.#askFor(undefined);
+    }
     this.#viewer.redraw();
   }
 
@@ -267,6 +270,10 @@ export class LandmarkEditor {
     this.#state = this.#drag.before;
     this.#letGo();
     this.#tell(undefined);
+    if (!this.#fitting) return;
+    // A fit to these landmarks may have come during the drag.
+    if (this.#fitting.given === this.given) this.edit(this.#fitting);
+    else this.#write();
     this.#viewer.redraw();
   }
 
