@@ -483,3 +483,22 @@ test('what is on the stage is in the list, though avatars are removed, or models
   assert.equal(await shownError(page), '');
   assert.deepEqual(complaints, []);
 });
+
+test('a sample that is loading comes, though the avatar on the stage is removed meanwhile', async () => {
+  const { page, complaints } = await site.visit();
+  await page.getByTestId('open-wardrobe').click();
+  await avatars(page, 1);
+  await page.getByTestId('wardrobe-sample').selectOption('human');
+  await avatars(page, 2);
+  const names = await page.locator('.avatars .name').allTextContents();
+  const letGo = await chooseHeldCar(page);
+  await page.locator('.avatars .avatar').first().press('Delete');
+  letGo();
+  await page.locator('.avatars .avatar[aria-pressed=true] img').waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.equal(await page.getByTestId('sample-select').inputValue(), 'car');
+  const now = await page.locator('.avatars .name').allTextContents();
+  assert.deepEqual(now.slice(1), names.slice(1), 'the other one stays');
+  assert.notEqual(now[0], names[0]);
+  assert.deepEqual(complaints, []);
+});

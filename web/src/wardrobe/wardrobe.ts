@@ -157,7 +157,8 @@ export class Wardrobe {
         .concat(this.list.all)
         .find(({ files }) => files.length > 0);
       if (!next) return void this.list.all.splice(at, 0, avatar);
-      this.activate(next);
+      // A model that was opened meanwhile takes its place.
+      if (this.#coming || this.#session.keepTarget()) this.activate(next);
     }
     this.#transfers.clear(avatar);
     this.#arrange();
