@@ -502,3 +502,17 @@ test('a sample that is loading comes, though the avatar on the stage is removed 
   assert.notEqual(now[0], names[0]);
   assert.deepEqual(complaints, []);
 });
+
+test('of all avatars to which the cage cannot be fitted, it is told why', async () => {
+  const { page, complaints } = await site.visit();
+  const names = ['two', 'three'];
+  await drop(page, [figure('one'), ...names.map((name) => glb(`${name}.glb`, glbOf(tetrahedron())))]);
+  await avatars(page, 3);
+  await page.locator('#template-select').selectOption('human-body');
+  await page.getByTestId('fit-cage').click();
+  await page.locator('#cage-note', { hasText: 'was fitted' }).waitFor();
+  await page.locator('#error', { hasText: 'three: ' }).waitFor();
+  const told = await shownError(page);
+  for (const name of names) assert.match(told, new RegExp(`\\b${name}: `));
+  assert.deepEqual(complaints, []);
+});

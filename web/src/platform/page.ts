@@ -15,6 +15,11 @@ export function showError(message: string): void {
   alertBox.hidden = false;
 }
 
+/** Shows an error below those that are shown. */
+export function addError(message: string): void {
+  showError(`${alertText.textContent}\n${message}`.trim());
+}
+
 export function clearError(): void {
   alertBox.hidden = true;
   alertText.textContent = '';

@@ -1,5 +1,5 @@
 import { Emitter } from 'cagecast/three/layers';
-import { showError } from '../platform/page';
+import { addError } from '../platform/page';
 import type { Avatar } from './avatar';
 
 /** The avatars of the wardrobe, and what is to be done with them, one after the other. */
@@ -47,7 +47,7 @@ export class AvatarList extends Emitter<{ change: undefined }> {
       try {
         await work();
       } catch (error) {
-        if (this.has(avatar)) showError((error as Error).message);
+        if (this.has(avatar)) addError((error as Error).message);
       } finally {
         this.tell(avatar, { doing: '' });
       }

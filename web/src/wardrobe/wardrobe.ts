@@ -1,5 +1,5 @@
 import { paintableShare } from '../panels/stage-verdict';
-import { showError } from '../platform/page';
+import { addError, showError } from '../platform/page';
 import { disposeModel, loadModel, type Model } from '../scene/load-model';
 import { haveSameUvs } from '../scene/same-uvs';
 import type { Session, Shown } from '../scene/session';
@@ -104,12 +104,12 @@ export class Wardrobe {
           if (!this.list.has(avatar)) return;
           this.remove(avatar);
           troubles.push((error as Error).message);
-          showError(troubles.join(' '));
+          addError(troubles.at(-1)!);
         }
       });
     await this.list.done;
     // What was done meanwhile has cleared it.
-    if (left.length > 0) showError(troubles.join(' '));
+    if (left.length > 0) showError(troubles.join('\n'));
   }
 
   /** What a project has of it. */
@@ -321,7 +321,7 @@ export class Wardrobe {
         this.#session.want({ cage: Promise.resolve(fitted) });
     } catch (error) {
       if (signal.aborted) return;
-      showError(`${avatar.name}: ${reasonOf(error)}`);
+      addError(`${avatar.name}: ${reasonOf(error)}`);
     }
   }
 
