@@ -4,7 +4,7 @@ import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { faults } from '../support/axe';
-import { asset, fitted, head, middleOf, ready, worked } from '../support/cages';
+import { asset, fitted, head, heldBack, holdingBack, middleOf, ready, worked } from '../support/cages';
 import { GlbMaker, tetrahedron } from '../support/glb';
 import { names, rows } from '../support/layers';
 import { validModel } from '../support/saved';
@@ -251,5 +251,32 @@ test('paint for earlier cages is kept put away, however often the cage is made a
   assert.ok(await page.getByTestId('save-cage').isVisible(), 'the cage that was made can still be saved');
   await page.getByRole('button', { name: 'Bring back' }).click();
   assert.deepEqual(await state(), ['Painting 1', 'Painting 1', '(UV checker)', 'nothing']);
+  assert.deepEqual(complaints, []);
+});
+
+test('a cage that is being made comes, though rules are chosen meanwhile, and by these', async () => {
+  const { page, complaints } = await site.visit({}, holdingBack('makeCage'));
+  await drop(page, [head()]);
+  await ready(page);
+  await page.getByTestId('make-cage').click();
+  await heldBack(page);
+  await page.getByTestId('preset').selectOption('paper');
+  await page.locator('#exact-borders').check({ force: true });
+  await page.getByTestId('threshold').fill('0.9');
+  await passed(page, 1000);
+  await page.evaluate('window.letGo()');
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  await page.locator('#borders-note', { hasText: 'Adds' }).waitFor();
+  await ready(page);
+  assert.equal(await page.getByTestId('preset').inputValue(), 'paper');
+
+  // One that is cancelled leaves the rules to be followed.
+  await page.evaluate('window.holds = true');
+  await page.getByTestId('make-cage').click();
+  await heldBack(page);
+  await page.getByTestId('preset').selectOption('default');
+  await page.getByTestId('cancel').click();
+  await ready(page);
+  assert.equal(await page.getByTestId('preset').inputValue(), 'paper');
   assert.deepEqual(complaints, []);
 });

@@ -350,7 +350,7 @@ test('an avatar whose loading was cancelled can be chosen again; the focus stays
 
 /** Opens the wardrobe with a model on the stage, and puts another one beside it, to which the cage is being fitted. */
 async function beingFitted(): Promise<Visit> {
-  const visit = await site.visit({}, holdingBack('refineCage'));
+  const visit = await site.visit({}, holdingBack('refineCage', 'makeCage'));
   const { page } = visit;
   const model = (name: string): Upload => glb(name, asset('lizard', 'target.glb'));
   await drop(page, [model('one.glb'), glb('cage.glb', asset('lizard', 'cage.glb'))]);
@@ -514,5 +514,19 @@ test('of all avatars to which the cage cannot be fitted, it is told why', async 
   await page.locator('#error', { hasText: 'three: ' }).waitFor();
   const told = await shownError(page);
   for (const name of names) assert.match(told, new RegExp(`\\b${name}: `));
+  assert.deepEqual(complaints, []);
+});
+
+test('a cage that is being made for an avatar is not replaced by one that was being fitted to it', async () => {
+  const { page, complaints } = await beingFitted();
+  await choose(page, 1);
+  // It is made once that one is ready.
+  await page.getByTestId('make-cage').click();
+  await page.locator('#status[data-state=working]').waitFor({ state: 'attached' });
+  await page.evaluate('window.held.pop()()');
+  await page.waitForFunction(() => !/Waiting|Fitting/.test(document.querySelector('.avatars')!.textContent!));
+  await page.evaluate('window.letGo()');
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
   assert.deepEqual(complaints, []);
 });

@@ -69,8 +69,10 @@ export async function dragBy(page: Page, button: Locator, dx: number, dy: number
   await page.mouse.up();
 }
 
-/** A script that holds calls of a function of the engine back while `window.holds` is set, as it is at first, until `window.letGo()`. */
-export const holdingBack = (fn: 'fitCage' | 'refineCage'): string => `const { postMessage } = Worker.prototype;
+/** A script that holds calls of functions of the engine back while `window.holds` is set, as it is at first, until `window.letGo()`. */
+export const holdingBack = (
+  ...fns: ('fitCage' | 'refineCage' | 'makeCage')[]
+): string => `const { postMessage } = Worker.prototype;
 window.held = [];
 window.holds = true;
 window.letGo = () => {
@@ -79,7 +81,7 @@ window.letGo = () => {
 };
 Worker.prototype.postMessage = function (message, ...rest) {
   const post = () => postMessage.call(this, message, ...rest);
-  if (window.holds && message?.fn === '${fn}') window.held.push(post);
+  if (window.holds && ${JSON.stringify(fns)}.includes(message?.fn)) window.held.push(post);
   else post();
 }`;
 

@@ -200,8 +200,8 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     const { target, cage: current } = this.#session.shown!;
     const abort = new AbortController();
     const giveUp = (): void => abort.abort();
-    const tell = (stage: string, share: number): unknown => this.#session.work(stage, share, giveUp);
-    const done = this.#session.work(title, 0, giveUp);
+    const tell = (stage: string, share: number): unknown => this.#session.work(stage, share, giveUp, true);
+    const done = this.#session.work(title, 0, giveUp, true);
     try {
       const [engine, read] = await Promise.all([
         import('cagecast/cages'),

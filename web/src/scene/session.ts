@@ -135,6 +135,8 @@ export class Session extends Emitter<SessionEvents> {
   #working = false;
   /** Cancels a feature's work on the current scene. */
   #giveUpWork: GiveUp | undefined;
+  /** Whether that work makes a cage. */
+  #makesCage = false;
   #moved = false;
   /** The paint of the latest `paint` event. */
   #painted: Paint | undefined;
@@ -214,13 +216,18 @@ export class Session extends Emitter<SessionEvents> {
     return !this.#wantsTarget;
   }
 
+  /** Whether a cage is being made for the current target. */
+  get awaitsCage(): boolean {
+    return this.#working && this.#giveUpWork !== undefined && this.#makesCage;
+  }
+
   /** Exchanges target and cage. */
   swap(): void {
     const { target, cage } = this.#wanted;
     if (target && cage) this.want({ target: cage, cage: target });
   }
 
-  /** Changes options. A threshold takes effect at once, another preset needs a transfer. */
+  /** Changes options. A threshold takes effect at once, another preset with the next transfer, which waits for a cage that is being made. */
   setRules(change: Partial<Rules>): void {
     const before = this.#rules;
     this.#rules = { ...before, ...change };
@@ -228,7 +235,7 @@ export class Session extends Emitter<SessionEvents> {
     if (this.#rules.preset !== before.preset) {
       this.#giveUpRest();
       // Before the first request there is nothing to repeat.
-      if (this.begun) void this.#run();
+      if (this.begun && !this.awaitsCage) void this.#run();
     } else if (this.#shown) this.#classify();
   }
 
@@ -305,6 +312,7 @@ export class Session extends Emitter<SessionEvents> {
 
   /** Reports an error; the current scene stays. */
   fail(error: unknown): void {
+    if (this.awaitsCage) this.#giveUpPreset();
     this.emit('progress', { state: 'failed', error: error instanceof Error ? error : new Error(String(error)) });
   }
 
@@ -321,17 +329,20 @@ export class Session extends Emitter<SessionEvents> {
 
   /**
    * Announces a feature's work on the current scene. Called again with the same function, it tells how far the work is.
-   * @param giveUp Called if the work is cancelled or superseded.
+   * @param giveUp    Called if the work is cancelled or superseded.
+   * @param makesCage Whether it makes a cage.
    * @returns A function to call when the work is done.
    */
-  work(stage: string, share: number, giveUp: GiveUp): () => void {
+  work(stage: string, share: number, giveUp: GiveUp, makesCage = false): () => void {
     if (this.#giveUpWork !== giveUp) this.#endWork('superseded');
     this.#giveUpWork = giveUp;
+    this.#makesCage = makesCage;
     this.#tell(stage, share);
     return () => {
       if (this.#giveUpWork !== giveUp) return;
       this.#giveUpWork = undefined;
-      this.emit('progress', { state: 'ready' });
+      if (makesCage && this.#rules.preset !== this.#shown?.projection.preset) void this.#run();
+      else this.emit('progress', { state: 'ready' });
     };
   }
 

@@ -61,7 +61,7 @@ export class ExactBorders {
     const keys = ['projection', 'culled', 'always', 'bare'] as const;
     if (keys.every((key) => wanted?.[key] === this.#basis?.[key])) return;
     this.#clear();
-    if (!wanted) return;
+    if (!wanted || this.#session.awaitsCage) return; // the cut waits until that is made
     this.#basis = wanted;
     this.#due = setTimeout(() => void this.#cut(classification), kPatience);
   }

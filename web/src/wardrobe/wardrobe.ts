@@ -315,7 +315,8 @@ export class Wardrobe {
       onProgress(0);
       const file = await fitLike(cage, model, { signal, onProgress });
       const fitted = await loadModel(file, this.#viewer.renderer);
-      if (signal.aborted) return;
+      // One that is being made was asked for since.
+      if (signal.aborted || (avatar === this.list.active && this.#session.awaitsCage)) return;
       Object.assign(avatar, { cage: fitted, follows: true, verdict: '' });
       if (avatar === this.#coming || (avatar === this.list.active && this.#session.keepTarget()))
         this.#session.want({ cage: Promise.resolve(fitted) });
