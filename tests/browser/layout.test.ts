@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
-import { head, ready } from '../support/cages';
+import { fitted, head, ready } from '../support/cages';
 import { difference, look, modelArea } from '../support/picture';
 import { drop, Site, type Visit } from '../support/site';
 
@@ -373,4 +373,34 @@ test('the model has the pixels of the screen, also after the page was moved to a
       return Math.abs(width - ratio * clientWidth) <= 1;
     }, deviceScaleFactor);
   }
+});
+
+test('with a seventh tool, too, nothing on a low stage is covered or cut off; the template that is fitted can be read', async () => {
+  const { page } = (visit = await site.visit({ hasTouch: true, viewport: { width: 1280, height: 800 } }));
+  await drop(page, [head()]);
+  await ready(page);
+  const roomFor = (selector: string) =>
+    page.locator(selector).evaluate((select: HTMLSelectElement) => {
+      const { width } = select.getBoundingClientRect();
+      select.style.width = 'max-content';
+      const { width: wanted } = select.getBoundingClientRect();
+      select.style.width = '';
+      return width - wanted;
+    });
+  assert.ok((await roomFor('#template-select')) >= 0, 'the template is not cut');
+  await fitted(page);
+  // What has no room can be scrolled to.
+  const overlaps = async (): Promise<string[]> =>
+    (await stageFaults(page, [[320, 568]])).filter((fault) => /overlaps/.test(fault));
+  assert.deepEqual(await overlaps(), []);
+  await page.setViewportSize({ width: 640, height: 400 });
+  await page.getByRole('radio', { name: 'Zones' }).check({ force: true });
+  const tops = await page
+    .locator('#legend .key')
+    .evaluateAll((keys) => keys.map((key) => key.getBoundingClientRect().top));
+  assert.deepEqual(new Set(tops).size, 1, 'the keys stand in a line');
+  await page.getByTestId('open-wardrobe').click();
+  await page.getByTestId('wardrobe-sample').waitFor();
+  assert.deepEqual(await stageFaults(page, [[640, 360]]), []);
+  assert.ok((await page.locator('.rail').boundingBox())!.height < 60, 'the tools stand in a row');
 });
