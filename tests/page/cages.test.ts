@@ -8,7 +8,7 @@ import { asset, fitted, head, heldBack, holdingBack, middleOf, ready, worked } f
 import { GlbMaker, tetrahedron } from '../support/glb';
 import { names, rows } from '../support/layers';
 import { validModel } from '../support/saved';
-import { drop, glb, passed, Site, shownError, shownParts } from '../support/site';
+import { drop, glb, passed, Site, shownError, shownParts, violetPaint } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -278,5 +278,37 @@ test('a cage that is being made comes, though rules are chosen meanwhile, and by
   await page.getByTestId('cancel').click();
   await ready(page);
   assert.equal(await page.getByTestId('preset').inputValue(), 'paper');
+  assert.deepEqual(complaints, []);
+});
+
+test('where a cage comes again, the layers that were painted for it are brought back, without those of others', async () => {
+  const { page, complaints } = await site.visit({}, undefined, '#sample=lizard');
+  const add = async (name: string): Promise<void> => {
+    await page.getByTestId('texture-input').setInputFiles({ ...violetPaint(), name });
+    await page.locator('#layers', { hasText: name }).waitFor();
+    await ready(page);
+  };
+  const open = async (name: string): Promise<void> => {
+    await page.getByTestId('sample-select').selectOption(name);
+    await ready(page);
+  };
+  await add('scales.png');
+  await open('human');
+  await add('skin.png');
+  const [, base] = await names(page);
+  await open('lizard');
+  const [own] = await names(page);
+  const offer = page.getByTestId('put-away');
+  await offer.filter({ hasText: '2 layers of earlier cages put away.' }).waitFor();
+  await page.locator('#bring-back').click();
+  assert.deepEqual(await names(page), ['scales.png', own]);
+  await offer.filter({ hasText: 'One layer of an earlier cage put away.' }).waitFor();
+  await open('human');
+  await page.locator('#bring-back').click();
+  assert.deepEqual(await names(page), ['skin.png', base]);
+  // Where none is of the cage, all of them come.
+  await open('car');
+  await page.locator('#bring-back').click();
+  assert.deepEqual((await names(page)).slice(0, 2).sort(), ['scales.png', 'skin.png']);
   assert.deepEqual(complaints, []);
 });

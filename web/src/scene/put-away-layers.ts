@@ -1,4 +1,4 @@
-import { type Edits, type Layer, type LayerStack, maxLayers } from 'cagecast/three/layers';
+import { type Edits, type Layer, type LayerStack, maxLayers, type Sheet } from 'cagecast/three/layers';
 import { element, showError } from '../platform/page';
 import type { Model } from './load-model';
 import { haveSameUvs } from './same-uvs';
@@ -12,13 +12,15 @@ export interface PutAway {
 }
 
 /**
- * Puts the layers away that were painted for another cage, and offers them again until they are brought back. They stay where a
- * cage has the same UVs.
+ * Puts the layers away that were painted for another cage, and offers them again until they are brought back: those for the
+ * current cage, or else all. They stay where a cage has the same UVs.
  */
 export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits): PutAway {
   const offer = element('put-away', HTMLElement);
   let last: Model | undefined;
   let away: readonly Layer[] = [];
+  /** The meshes of the cages that they were painted for, as far as these were here since the page was opened. */
+  const meshes = new WeakMap<Sheet, Model['mesh']>();
   // Undoing brings them back too, and redoing puts them away again.
   const offered = (): Layer[] => away.filter(({ id }) => stack.layers.every((layer) => layer.id !== id));
   const write = (): void => {
@@ -43,6 +45,7 @@ export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits)
     const old = stack.layers.filter(({ id }) => id !== stack.base?.id);
     // Nothing else is to be seen now.
     if (old.length === 0) return restyleChecker(true);
+    for (const { sheet } of old) meshes.set(sheet, before.mesh);
     const kept = [...offered(), ...old].slice(-maxLayers);
     edits.do('putting layers away', () => {
       for (const { id } of old) stack.remove(id);
@@ -52,8 +55,13 @@ export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits)
   });
   stack.on('change', write);
   element('bring-back', HTMLButtonElement).addEventListener('click', () => {
+    const all = offered();
+    const own = all.filter(({ sheet }) => {
+      const mesh = meshes.get(sheet);
+      return mesh && haveSameUvs({ mesh }, last!);
+    });
     // As many as there is room for; without any, the stack says so.
-    const some = offered().slice(0, Math.max(1, maxLayers - stack.layers.length));
+    const some = (own.length > 0 ? own : all).slice(0, Math.max(1, maxLayers - stack.layers.length));
     try {
       edits.do('bringing layers back', () => {
         stack.change([], some);
