@@ -306,10 +306,35 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     const said = await page.evaluate(
       'viewer.setAttribute("opacity", "2"); viewer.setAttribute("target", "cage.glb"); next()',
     );
-    assert.match(said as string, /^error .*\b2 is not a number from 0 to 1/);
+    assert.match(said as string, /^error .*\bopacity is 2, not a number from 0 to 1$/);
     assert.equal(await page.evaluate('viewer.setAttribute("opacity", "1"); next()'), 'load');
     assert.ok(await page.isHidden('cagecast-viewer [role=alert]'));
     await page.evaluate(`viewer.removeAttribute("opacity"); viewer.setAttribute("target", "${target}"); next()`);
+  });
+
+  test('tells of a wrong opacity once where it is there from the beginning', async () => {
+    const told = await page.evaluate<string[]>(`(async () => {
+      const other = document.createElement('cagecast-viewer');
+      const told = [];
+      for (const type of ['load', 'error']) other.addEventListener(type, ({ detail }) => told.push(detail ? detail.message : type));
+      const parse = other.loader.parseAsync;
+      const read = new Promise((done) => {
+        other.loader.parseAsync = function (...given) {
+          const reading = parse.apply(this, given);
+          reading.then(() => setTimeout(done));
+          return reading;
+        };
+      });
+      other.setAttribute('target', 'cage.glb');
+      other.setAttribute('opacity', 'abc');
+      viewer.parentNode.append(other);
+      await read;
+      other.setAttribute('opacity', '0.5');
+      while (!told.includes('load')) await new Promise((done) => setTimeout(done, 20));
+      other.remove();
+      return told;
+    })()`);
+    assert.deepEqual(told, ['cagecast-viewer: opacity is "abc", not a number', 'load']);
   });
 
   test('frees pictures and buffers of what is not shown any more, and of what could not be loaded', async () => {
@@ -450,6 +475,46 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.match(await page.innerText('cagecast-viewer [role=alert]'), /none\.png/);
     await page.evaluate('viewer.setAttribute("paint", "paint-tiger.png"); next()');
     assert.ok(await page.isHidden('cagecast-viewer [role=alert]'), 'no error is left');
+    assert.deepEqual(await picture(), before);
+  });
+
+  test('tells of an orbit that is none, once, until it is one', async () => {
+    const before = await picture();
+    const alert = page.locator('cagecast-viewer [role=alert]:visible');
+    const set = (value: string) =>
+      page.evaluate<string[]>(
+        `told.length = 0; viewer.setAttribute("camera-orbit", "${value}"); Promise.resolve().then(() => told)`,
+      );
+    const wrongs = ['left', '90deg 80deg 1.5m', '1.5rad', '20deg 80deg 0%', '20deg 80deg -100%', '1 2 3 4', 'deg'];
+    const sentence = (wrong: string) =>
+      `cagecast-viewer: camera-orbit is "${wrong}", not angles and a distance such as 20deg 80deg 100%`;
+    for (const wrong of wrongs) {
+      assert.deepEqual(await set(wrong), [`error ${sentence(wrong)}`]);
+      assert.equal(await alert.innerText(), sentence(wrong));
+    }
+    // From the beginning, too.
+    const target = await page.evaluate<string>('viewer.getAttribute("target")');
+    for (const address of ['cage.glb', target]) {
+      const told = await page.evaluate<string[]>(`(async () => {
+        told.length = 0;
+        const loaded = new Promise((done) => viewer.addEventListener('load', done, { once: true }));
+        viewer.setAttribute("target", "${address}");
+        await loaded;
+        return told;
+      })()`);
+      assert.deepEqual(told, [`error ${sentence(wrongs.at(-1)!)}`, 'load']);
+    }
+    for (const [right, isOther] of [
+      ['', false],
+      ['20', false],
+      [' 20deg  80 100% ', false],
+      ['-.5e1deg 80.5', true],
+    ] as const) {
+      await page.evaluate(`viewer.setAttribute("camera-orbit", "${right}")`);
+      assert.equal(await alert.count(), 0, right);
+      assert.equal((await picture()).equals(before), !isOther, right);
+    }
+    await page.evaluate('viewer.removeAttribute("camera-orbit")');
     assert.deepEqual(await picture(), before);
   });
 

@@ -69,10 +69,11 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   readonly #error = newAlert();
   /** Shown while the graphics context is lost. */
   readonly #lost = newAlert();
-  /** Whether the error that is shown is about the opacity. */
-  #hasBadOpacity = false;
+  /** Whether the error that is shown is about the opacity or the camera. */
+  #hasBadAppearance = false;
   #stage: Stage | undefined;
   #shown: Shown | undefined;
+  #orbit = defaultOrbit;
   /** Whether the attributes name another model than the one that is shown, which could not be loaded, or not yet. */
   #isOutdated = true;
   /** Ends the loading under way. */
@@ -175,8 +176,6 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     const poster = this.getAttribute('poster');
     if (poster) this.#poster.src = poster;
     this.#poster.hidden = !poster || this.#shown !== undefined;
-    if (changed.has('camera-orbit') && this.#shown) this.#stage?.place(this.#orbit());
-    if (changed.has('opacity')) this.#setOpacity();
     // A paint alone needs no other transfer; but one under way is begun anew.
     const isOther = changed.has('paint') && this.#isOutdated;
     // What could not be loaded may have failed for its opacity.
@@ -184,19 +183,24 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     if (isOther || isAgain || changed.has('check') || kOfTransfer.some((name) => changed.has(name)))
       void this.#load((signal) => this.#loadAll(signal));
     else if (changed.has('paint')) void this.#load((signal) => this.#loadPaint(signal));
+    if (changed.has('opacity') || changed.has('camera-orbit')) this.#setAppearance(changed.has('camera-orbit'));
   }
 
-  #setOpacity(): void {
+  /** Takes what needs no loading: the opacity and the camera's orbit. */
+  #setAppearance(isPlaced: boolean): void {
     try {
+      this.#orbit = readOrbit(this.getAttribute('camera-orbit'));
+      if (isPlaced && this.#shown) this.#stage?.place(this.#orbit);
       const { opacity = 1 } = this.#options();
       this.#shown?.applied?.setOpacity(opacity);
       if (this.#shown) this.#shown.opacity = opacity;
       this.#stage?.draw();
-      if (this.#hasBadOpacity) this.#error.hidden = true;
-      this.#hasBadOpacity = false;
+      if (this.#hasBadAppearance) this.#error.hidden = true;
+      this.#hasBadAppearance = false;
     } catch (error) {
+      if (this.#loading) return; // it is told at the end of that
       this.#fail(error);
-      this.#hasBadOpacity = true;
+      this.#hasBadAppearance = true;
     }
   }
 
@@ -216,6 +220,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       await work(loading.signal);
       loading.signal.throwIfAborted();
       this.#loading = undefined;
+      this.#setAppearance(false); // It may have changed since; or its error was hidden.
       this.#tell('load', undefined);
     } catch (error) {
       if (loading.signal.aborted) return;
@@ -234,7 +239,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   #fail(error: unknown): void {
     this.#error.textContent = (error as Error).message;
     this.#error.hidden = false;
-    this.#hasBadOpacity = false;
+    this.#hasBadAppearance = false;
     this.#tell('error', error);
   }
 
@@ -277,8 +282,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     this.#shown = shown;
     this.#isOutdated = false;
     this.#poster.hidden = true;
-    this.#stage!.show(shown.gltf.scene, isSame ? undefined : this.#orbit());
-    this.#setOpacity(); // It may have changed since.
+    this.#stage!.show(shown.gltf.scene, isSame ? undefined : this.#orbit);
     tellVerdict?.();
   }
 
@@ -302,8 +306,6 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     shown.applied?.setTexture(paint);
     shown.paint?.dispose();
     shown.paint = paint;
-    this.#stage!.draw();
-    this.#setOpacity(); // Its error, if there is one, was hidden.
   }
 
   #options(): ApplyOptions {
@@ -323,19 +325,6 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       borders: text<'cut' | 'triangle'>('borders'),
     };
     return Object.fromEntries(Object.entries(all).filter(([, value]) => value !== undefined));
-  }
-
-  #orbit(): Orbit {
-    const [azimuth, polar, share] = (this.getAttribute('camera-orbit') ?? '')
-      .trim()
-      .split(/\s+/)
-      .map(Number.parseFloat);
-    const or = (value: number | undefined, other: number) => (Number.isFinite(value) ? value! : other);
-    return {
-      azimuth: or(azimuth, defaultOrbit.azimuth),
-      polar: or(polar, defaultOrbit.polar),
-      distance: or(share, 100 * defaultOrbit.distance) / 100,
-    };
   }
 
   #tell(type: string, detail: unknown): void {
@@ -367,6 +356,18 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     this.#canvas.replaceWith(canvas);
     this.#canvas = canvas;
   }
+}
+
+/** The orbit that an attribute names; what it leaves out is as usual. @throws {CagecastError} `badOption` */
+function readOrbit(given: string | null): Orbit {
+  const found = /^(?:(\S+?)(?:deg)?)?(?:\s+(\S+?)(?:deg)?)?(?:\s+(\S+?)%?)?$/.exec((given ?? '').trim());
+  const { azimuth, polar, distance } = defaultOrbit;
+  const values = [azimuth, polar, 100 * distance].map((usual, i) => Number(found ? (found[i + 1] ?? usual) : NaN));
+  if (!(values.every(Number.isFinite) && values[2]! > 0)) {
+    const what = 'angles and a distance such as 20deg 80deg 100%';
+    throw new CagecastError('badOption', 'cagecast-viewer', `camera-orbit is "${given}", not ${what}`);
+  }
+  return { azimuth: values[0]!, polar: values[1]!, distance: values[2]! / 100 };
 }
 
 function newAlert(): HTMLElement {
