@@ -398,6 +398,24 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     await page.evaluate(`viewer.setAttribute("target", "${target}"); next()`);
   });
 
+  test('is shown as before in the document of a frame', async () => {
+    const styles = () =>
+      page.evaluate<string[]>(`[viewer, part('canvas'), part('.error')].map((element) => {
+        const { display, position } = getComputedStyle(element);
+        return display + ' ' + position;
+      })`);
+    const [before, shown] = [await styles(), await picture()];
+    await page.evaluate(`
+      globalThis.place = viewer.parentNode;
+      globalThis.frame = document.createElement('iframe');
+      place.append(frame);
+      frame.contentDocument.body.append(viewer);`);
+    const [within, shownWithin] = [await styles(), await picture()];
+    await page.evaluate('place.append(viewer); frame.remove()');
+    assert.deepEqual([within, await styles()], [before, before]);
+    assert.deepEqual([shownWithin, await picture()], [shown, shown]);
+  });
+
   test('shows all of the model where it is narrow, also if it was wide or hidden before', async () => {
     const resized = (width: string) =>
       page.evaluate(`(async () => {

@@ -86,9 +86,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   constructor() {
     super();
     const root = this.attachShadow({ mode: 'open', delegatesFocus: true });
-    const style = new CSSStyleSheet();
-    style.replaceSync(kStyle);
-    root.adoptedStyleSheets = [style];
+    this.#setStyle();
     this.#canvas = this.#newCanvas();
     this.#poster = Object.assign(document.createElement('img'), { className: 'poster', hidden: true, alt: '' });
     root.append(this.#canvas, this.#poster, this.#error, this.#lost);
@@ -103,6 +101,10 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   disconnectedCallback(): void {
     // An element that is moved is connected again at once.
     queueMicrotask(() => this.isConnected || this.#free());
+  }
+
+  adoptedCallback(): void {
+    this.#setStyle();
   }
 
   attributeChangedCallback(name: string, before: string | null, now: string | null): void {
@@ -152,6 +154,15 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   #get(method: string): Shown {
     if (!this.#shown) throw new Error(`${method}: <cagecast-viewer> shows nothing yet; wait for its event load`);
     return this.#shown;
+  }
+
+  /** Each document needs a style sheet of its own. */
+  #setStyle(): void {
+    const window = this.ownerDocument.defaultView;
+    if (!window) return; // nothing of this document is shown
+    const style = new window.CSSStyleSheet();
+    style.replaceSync(kStyle);
+    this.shadowRoot!.adoptedStyleSheets = [style];
   }
 
   #newCanvas(): HTMLCanvasElement {
