@@ -702,6 +702,31 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.match(warnings.splice(0).join(), /too many/i);
   });
 
+  test('is loaded again when it comes into view after the browser has stopped it', async () => {
+    const before = await picture();
+    const alert = page.locator('cagecast-viewer [role=alert]:visible');
+    await page.evaluate(
+      'globalThis.others = Array.from({ length: 16 }, () => document.createElement("canvas").getContext("webgl2")); 0',
+    );
+    await alert.waitFor({ timeout: 5000 });
+    const frame = 'new Promise((done) => requestAnimationFrame(() => setTimeout(done)))';
+    const told = await page.evaluate<string[]>(`(async () => {
+      viewer.hidden = true;
+      // One for the observer, and one for what it has seen.
+      for (let i = 0; i < 2; ++i) await ${frame};
+      viewer.hidden = false;
+      told.length = 0;
+      for (let i = 0; i < 2; ++i) await ${frame};
+      if (told.length === 0 && !part('.error:not([hidden])')) await next();
+      return told;
+    })()`);
+    await page.evaluate('for (const other of others) other.getExtension("WEBGL_lose_context")?.loseContext()');
+    assert.deepEqual(told, ['load']);
+    assert.equal(await alert.count(), 0);
+    assertSameModel(await picture(), before);
+    assert.match(warnings.splice(0).join(), /too many/i);
+  });
+
   test('shows what is wrong, by attribute and address; the last change wins', async () => {
     const many = new GlbMaker();
     const mesh = many.mesh(tetrahedron());

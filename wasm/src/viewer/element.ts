@@ -227,7 +227,11 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     const loading = new AbortController();
     this.#loading = loading;
     try {
-      this.#stage ??= new Stage(this.#canvas, () => this.#tellLost());
+      this.#stage ??= new Stage(
+        this.#canvas,
+        () => this.#tellLost(),
+        () => this.#restart(),
+      );
       await work(loading.signal);
       loading.signal.throwIfAborted();
       this.#loading = undefined;
@@ -352,6 +356,12 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     this.#shown = undefined;
     this.#isOutdated = true;
     this.#poster.hidden = !this.getAttribute('poster');
+  }
+
+  /** Loads all again, with another graphics context. */
+  #restart(): void {
+    this.#free();
+    this.connectedCallback();
   }
 
   #free(): void {

@@ -33,6 +33,7 @@ export class Stage {
   readonly #scene = new Scene();
   readonly #controls: OrbitControls;
   readonly #sizes: ResizeObserver;
+  readonly #views: IntersectionObserver;
   /** Removes the listeners. */
   readonly #end = new AbortController();
   /** The distance from which all of the model is seen. */
@@ -42,10 +43,11 @@ export class Stage {
   #frame = 0;
 
   /**
-   * @param onContext Is told when the browser has taken the graphics context away, and when it is back.
+   * @param onContext  Is told when the browser has taken the graphics context away, and when it is back.
+   * @param onLostView Is told when the canvas comes into view without a graphics context.
    * @throws Error if the host cannot draw.
    */
-  constructor(canvas: HTMLCanvasElement, onContext: () => void) {
+  constructor(canvas: HTMLCanvasElement, onContext: () => void, onLostView: () => void) {
     this.#canvas = canvas;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     const sun = new DirectionalLight(0xffffff, 2);
@@ -62,6 +64,12 @@ export class Stage {
     canvas.addEventListener('webglcontextrestored', this.draw, { signal });
     this.#sizes = new ResizeObserver(() => this.#resize());
     this.#sizes.observe(canvas);
+    this.#views = new IntersectionObserver((changes) => {
+      if (!changes.at(-1)!.isIntersecting) return;
+      if (this.isLost) onLostView();
+      else this.draw(); // browsers take the context that was drawn longest ago
+    });
+    this.#views.observe(canvas);
     this.#watchRatio();
     this.#camera.aspect = canvas.width / canvas.height; // of an element that is not shown yet
     this.#resize();
@@ -120,6 +128,7 @@ export class Stage {
     cancelAnimationFrame(this.#frame);
     this.#end.abort();
     this.#sizes.disconnect();
+    this.#views.disconnect();
     this.#controls.dispose();
     this.#renderer.dispose();
     this.#renderer.forceContextLoss();
