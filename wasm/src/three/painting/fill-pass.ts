@@ -12,7 +12,7 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { drawerOf, drawTo, type Rect } from '../gpu/index.js';
+import { drawerOf, drawTo, type Rect, toTexels } from '../gpu/index.js';
 import { fillShader } from './stroke-shaders.js';
 
 const kVertexShader = /* glsl */ `
@@ -117,11 +117,5 @@ function boundsOf(uvs: readonly number[], size: number): Rect {
     bounds.top = Math.min(bounds.top, uvs[at + 1]!);
     bounds.bottom = Math.max(bounds.bottom, uvs[at + 1]!);
   }
-  const margin = Math.ceil(Math.max(...kInGutters)) + 1;
-  return {
-    left: Math.max(0, Math.floor(bounds.left * size) - margin),
-    top: Math.max(0, Math.floor(bounds.top * size) - margin),
-    right: Math.min(size, Math.ceil(bounds.right * size) + margin),
-    bottom: Math.min(size, Math.ceil(bounds.bottom * size) + margin),
-  };
+  return toTexels(bounds, size, Math.ceil(Math.max(...kInGutters)) + 1);
 }

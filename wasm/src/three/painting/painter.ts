@@ -1,9 +1,8 @@
 import { type BufferGeometry, type Camera, type Object3D, Raycaster, type Texture, Vector2, Vector3 } from 'three';
-import { CagecastError } from '../../index.js';
 import { type Applied, extract } from '../index.js';
 import { createLayers, type Layers, type LayersOptions } from '../layers/index.js';
 import type { SurfacePoint } from './cage-texels.js';
-import { check } from './check.js';
+import { check, wrong } from './check.js';
 import { LayerPainter } from './layer-painter.js';
 import type { PaintingSize } from './painted-sheet.js';
 import { pickSpot, pixelsPerUnit, type Spot } from './pick.js';
@@ -76,13 +75,9 @@ export class Painter {
   constructor({ layers, renderer, texture, applied, cage, size } = {} as PainterOptions) {
     this.#models = [applied].flat();
     if (this.#models.some((model) => typeof model?.setTexture !== 'function'))
-      throw new CagecastError(
-        'badArgument',
-        'cagecast/three/paint',
-        'options.applied is not what applyTransfer returned',
-      );
+      throw wrong('options.applied is not what applyTransfer returned');
     const { positions, indices, uvs } = extract(cage, 'cage').mesh;
-    if (!uvs) throw new CagecastError('badArgument', 'cagecast/three/paint', 'options.cage has no UVs');
+    if (!uvs) throw wrong('options.cage has no UVs');
     this.layers = layers ?? createLayers({ renderer } as LayersOptions);
     if (texture && !layers) {
       this.layers.add(texture);
@@ -110,7 +105,7 @@ export class Painter {
 
   /** As `pick`, for a position of a page. @param position  Such as a pointer event. */
   pickAt({ clientX, clientY }: { clientX: number; clientY: number }, camera: Camera): Spot | undefined {
-    const { left, top, width, height } = (this.layers.renderer.domElement as HTMLElement).getBoundingClientRect();
+    const { left, top, width, height } = this.#canvas.getBoundingClientRect();
     const at = new Vector2((2 * (clientX - left)) / width - 1, 1 - (2 * (clientY - top)) / height);
     camera.updateMatrixWorld();
     const raycaster = new Raycaster();
@@ -177,7 +172,7 @@ export class Painter {
    * @param element  Default: the renderer's canvas.
    * @returns a function that ends it.
    */
-  listen(camera: Camera, element = this.layers.renderer.domElement as HTMLElement): () => void {
+  listen(camera: Camera, element = this.#canvas): () => void {
     const stop = listenTo(element, (event) => this.#drag(event, camera));
     this.#stops.add(stop);
     return () => {
@@ -192,6 +187,10 @@ export class Painter {
     this.#painter.dispose();
     this.#sheet.dispose();
     if (!this.#painter.hasSheets) this.#unfollow();
+  }
+
+  get #canvas(): HTMLElement {
+    return this.layers.renderer.domElement;
   }
 
   /** Begins what the tool does with a pointer. */
@@ -234,7 +233,7 @@ export class Painter {
   }
 
   #aim(spot: Spot | undefined, camera: Camera): Aim | undefined {
-    const { height } = (this.layers.renderer.domElement as HTMLElement).getBoundingClientRect();
+    const { height } = this.#canvas.getBoundingClientRect();
     return spot && { surface: spot.surface, scale: spot.scale * pixelsPerUnit(camera, spot.point, height) };
   }
 
@@ -274,8 +273,7 @@ export class Painter {
     if (point === undefined) return undefined;
     const { toCage, surface, x, y } = Object(point) as Partial<Spot & { x: number; y: number }>;
     if (toCage) return surface;
-    if (![x, y].every(Number.isFinite))
-      throw new CagecastError('badArgument', 'cagecast/three/paint', `a point is (${x}, ${y}), not a UV`);
+    if (![x, y].every(Number.isFinite)) throw wrong(`a point is (${x}, ${y}), not a UV`);
     return this.#painter.cageTexels?.at(x!, y!);
   }
 }

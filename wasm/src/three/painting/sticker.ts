@@ -1,7 +1,7 @@
 import { CanvasTexture, SRGBColorSpace, Vector3, type WebGLRenderer } from 'three';
-import { CagecastError } from '../../index.js';
 import { Composite, plainStyle } from '../layers/index.js';
 import type { SurfacePoint } from './cage-texels.js';
+import { wrong } from './check.js';
 import type { Sticker } from './stroke-layer.js';
 
 /** An image that a canvas can draw, with its size. */
@@ -117,7 +117,7 @@ function drawText({ text, color, outline, font: family = 'system-ui, sans-serif'
 function drawImage(image: StickerImage): Canvas {
   // The width of an element is that of its place on the page.
   const { naturalWidth: wide = image.width, naturalHeight: high = image.height } = image as HTMLImageElement;
-  if (!(wide * high > 0)) throw new CagecastError('badArgument', 'cagecast/three/paint', 'the image is not loaded yet');
+  if (!(wide * high > 0)) throw wrong('the image is not loaded yet');
   const scale = (kSide - 2 * kMargin) / Math.max(wide, high);
   const [width, height] = [wide, high].map((side) => Math.max(1, Math.round(side * scale))) as [number, number];
   const canvas = makeCanvas(width + 2 * kMargin, height + 2 * kMargin);

@@ -172,9 +172,7 @@ export class StrokeLayer {
 
   /** Fills triangles of the texture. @param uvs 6 numbers per triangle. @returns The parts it touched, in shares. */
   fill(renderer: WebGLRenderer, uvs: ArrayLike<number>): Rect[] {
-    const rects = this.#fill.run(renderer, this.#target, uvs, this.#style.color);
-    this.#rects = disjoint([...this.#rects, ...rects], kMostRects);
-    return rects.map((rect) => toShares(rect, this.cageTexels.size));
+    return this.#add(this.#fill.run(renderer, this.#target, uvs, this.#style.color));
   }
 
   /** Draws a sticker in place of the stroke so far. @returns The parts that changed, in shares. */
@@ -281,6 +279,11 @@ export class StrokeLayer {
       kMostRects,
     );
     pass.run(renderer, this.#target, rects);
+    return this.#add(rects);
+  }
+
+  /** Notes parts that are not empty any more. @returns them, in shares. */
+  #add(rects: readonly Rect[]): Rect[] {
     this.#rects = disjoint([...this.#rects, ...rects], kMostRects);
     return rects.map((rect) => toShares(rect, this.cageTexels.size));
   }

@@ -5,7 +5,11 @@ import { kFacing, kPatchTexels } from './cage-texels.js';
 export const kTableWidth = 1024; // a power of two
 export const kMostCapsules = 8; // per pass
 
-/** @param size Texels a side. */
+/**
+ * `surfacePoint` finds the point of the cage at this texel; in the gutter of a chart, the nearest point of its border. It is false where
+ * there is none.
+ * @param size Texels a side.
+ */
 const surfacePointShader = (size: number): string => /* glsl */ `
 uniform highp isampler2D owners;
 uniform sampler2D patches;
@@ -16,7 +20,6 @@ vec4 row(int patchIndex, int index) {
   return texelFetch(patches, ivec2(at & ${kTableWidth - 1}, at >> ${Math.log2(kTableWidth)}), 0);
 }
 
-// The point of the cage at this texel; in the gutter of a chart, the nearest point of its border. False where there is none.
 bool surfacePoint(out vec3 point, out vec3 normal) {
   int owner = texelFetch(owners, ivec2(gl_FragCoord.xy), 0).r;
   if (owner < 0) return false;
@@ -60,6 +63,9 @@ void main() {
 }
 `;
 
+// `pitch` is the length of a texel in space, `texel` the same in texels of the picture. What faces away or lies far behind is left out: it
+// is another surface that happens to be underneath. Each texel takes several samples, as one of a smaller level would blur thin lines, and
+// be jagged in the narrow direction of a long text.
 export const stickerShader = (size: number): string => /* glsl */ `
 ${surfacePointShader(size)}
 uniform sampler2D picture;
@@ -68,8 +74,8 @@ uniform vec3 outward;
 uniform vec3 right;
 uniform vec3 up;
 uniform vec2 extent;
-uniform float pitch; // the length of a texel in space
-uniform float texel; // the same in texels of the picture
+uniform float pitch;
+uniform float texel;
 uniform float opacity;
 const int kSamples = 4; // per side of a texel
 out vec4 color;
@@ -80,10 +86,8 @@ void main() {
   vec3 from = point - center;
   vec2 at = vec2(dot(from, right), -dot(from, up)) / extent + 0.5;
   vec2 reach = pitch / extent;
-  // Skip what faces away or lies far behind: it is another surface that happens to be underneath.
   if (dot(normal, outward) < 0.1 || abs(dot(from, outward)) > 0.5 * max(extent.x, extent.y)) discard;
   if (any(lessThan(at, -reach)) || any(greaterThan(at, 1.0 + reach))) discard;
-  // Several samples, as one of a smaller level would blur thin lines, and be jagged in the narrow direction of a long text.
   float level = log2(max(texel / float(kSamples), 1.0));
   color = vec4(0.0);
   for (int i = 0; i < kSamples * kSamples; i++) {
