@@ -437,10 +437,38 @@ export const layerScenes: Record<string, () => unknown> = {
       sticker({ opacity: 2 }),
       sticker({}, { image: new Image() }),
       messageOf(() => painter.stroke([{ ...at, pressure: Number.NaN }])),
+      messageOf(() => painter.sticker(undefined as unknown as StickerPicture, { at })),
+      messageOf(() => (painter.sticker as () => void)()),
+      sticker({}, {} as StickerPicture),
+      sticker({}, 'A' as unknown as StickerPicture),
     ];
     const { canUndo } = painter;
     painter.dispose();
     return { errors, canUndo };
+  },
+
+  /** What a painter says and does after it has been disposed of. */
+  disposedPainter() {
+    const { painter, spots } = paintedBall();
+    const [spot] = spots([32, 32]) as [StrokePoint];
+    painter.stroke([spot]);
+    const before = filled(painter).texels;
+    painter.dispose();
+    const uv = { x: 0.5, y: 0.5 };
+    const picture = { text: 'A', color: '#ff0000' };
+    const messages = [
+      () => painter.stroke([uv]),
+      () => painter.stroke([spot]),
+      () => painter.erase([uv]),
+      () => painter.sticker(picture, { at: uv }),
+      () => painter.sticker(picture, { at: spot }),
+      () => painter.dispose(),
+    ].map(messageOf);
+    const after = filled(painter).texels;
+    painter.undo();
+    const undone = filled(painter).texels;
+    painter.layers.dispose();
+    return { messages, texels: [before, after], undone };
   },
 
   /** One text twice. Meanwhile its font is loaded: here, one whose letters are solid. */

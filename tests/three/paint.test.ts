@@ -573,9 +573,23 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
       /opacity is 2, not a number from 0 to 1$/,
       /the image is not loaded yet$/,
       /pressure is NaN, not a number from 0 to 1$/,
+      /^cagecast\/three\/paint: the picture is undefined, not a text or an image$/,
+      /the picture is undefined, not a text or an image$/,
+      /the picture is an object, not a text or an image$/,
+      /the picture is "A", not a text or an image$/,
     ];
+    assert.equal(errors.length, expected.length);
     errors.forEach((message, i) => assert.match(message, expected[i]!));
     assert.equal(canUndo, false);
+  });
+
+  test('a painter that was disposed of paints no more, and what it has painted can be undone', async () => {
+    const { messages, texels, undone } = await run<{ messages: string[]; texels: number[]; undone: number }>(
+      'disposedPainter',
+    );
+    assert.deepEqual(new Set(messages), new Set(['no error']));
+    assert.ok(texels[0]! > 0 && texels[1] === texels[0], texels.join());
+    assert.equal(undone, 0);
   });
 
   test('a text that is laid again has the font that was loaded meanwhile', async () => {

@@ -8,7 +8,7 @@ import type { PaintingSize } from './painted-sheet.js';
 import { pickSpot, pixelsPerUnit, type Spot } from './pick.js';
 import { type Drag, listenTo } from './pointer.js';
 import { type Aim, type BrushStyle, PointerStroke } from './pointer-stroke.js';
-import { type StickerPicture, StickerSheet } from './sticker.js';
+import { checkPicture, type StickerPicture, StickerSheet } from './sticker.js';
 import { Stroke } from './stroke.js';
 
 /** Options of `createPainter`. */
@@ -131,9 +131,10 @@ export class Painter {
 
   /**
    * Lays a text or an image on the model, as one undo step; nothing where no cage is.
-   * @throws {CagecastError} as `stroke`, and `badArgument` for an image that is not loaded yet.
+   * @throws {CagecastError} as `stroke`, and `badArgument` for what is no picture, and for an image that is not loaded yet.
    */
   sticker(picture: StickerPicture, place: StickerPlace): void {
+    checkPicture(picture);
     const surface = this.#surfaceAt(place.at);
     if (!surface) return;
     this.#beginSticker(picture, place)(surface, place.up);
@@ -181,7 +182,7 @@ export class Painter {
     };
   }
 
-  /** Frees what is its own. The layers stay, with what was painted. */
+  /** Frees what is its own, and paints no more. The layers stay, with what was painted. */
   dispose(): void {
     for (const stop of this.#stops) stop();
     this.#painter.dispose();
@@ -253,7 +254,8 @@ export class Painter {
 
   #stroke(points: readonly (StrokePoint | undefined)[], style: BrushStyle): void {
     checkBrush(style);
-    const texels = this.#painter.cageTexels!;
+    const texels = this.#painter.cageTexels;
+    if (!texels) return; // disposed of
     const stroke = new Stroke(texels, { radius: (style.size / 2) * texels.diagonal, mirror: style.mirror });
     this.#painter.begin(style.erases ? 'erasing' : 'stroke', style);
     try {
@@ -272,9 +274,10 @@ export class Painter {
   #surfaceAt(point: Spot | { x: number; y: number } | undefined): SurfacePoint | undefined {
     if (point === undefined) return undefined;
     const { toCage, surface, x, y } = Object(point) as Partial<Spot & { x: number; y: number }>;
-    if (toCage) return surface;
+    const { cageTexels: texels } = this.#painter;
+    if (toCage) return texels && surface;
     if (![x, y].every(Number.isFinite)) throw wrong(`a point is (${x}, ${y}), not a UV`);
-    return this.#painter.cageTexels?.at(x!, y!);
+    return texels?.at(x!, y!);
   }
 }
 

@@ -1,4 +1,5 @@
 import { CanvasTexture, SRGBColorSpace, Vector3, type WebGLRenderer } from 'three';
+import { describe } from '../describe.js';
 import { Composite, plainStyle } from '../layers/index.js';
 import type { SurfacePoint } from './cage-texels.js';
 import { wrong } from './check.js';
@@ -42,8 +43,9 @@ export class StickerSheet {
   readonly #composite = new Composite();
   #texture: CanvasTexture<Canvas> | undefined;
 
-  /** Shows another picture. */
+  /** Shows another picture. @throws {CagecastError} `badArgument` for what is none, and for an image that is not loaded yet. */
   draw(picture: StickerPicture): void {
+    checkPicture(picture);
     const texture = new CanvasTexture('text' in picture ? drawText(picture) : drawImage(picture.image));
     this.#texture?.dispose();
     texture.colorSpace = SRGBColorSpace;
@@ -78,6 +80,12 @@ export class StickerSheet {
     this.#composite.dispose();
     this.#texture?.dispose();
   }
+}
+
+/** @throws {CagecastError} `badArgument` */
+export function checkPicture(picture: StickerPicture): void {
+  const given = Object(picture);
+  if (!('text' in given || given.image)) throw wrong(`the picture is ${describe(picture)}, not a text or an image`);
 }
 
 type Canvas = HTMLCanvasElement | OffscreenCanvas;
