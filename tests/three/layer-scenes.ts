@@ -471,6 +471,30 @@ export const layerScenes: Record<string, () => unknown> = {
     return { messages, texels: [before, after], undone };
   },
 
+  /** A pointer on a model whose layers are too many for another one. */
+  fullLayers() {
+    const layers = createLayers({ renderer, size: 256 });
+    for (let i = 0; i < 16; ++i) layers.add(clear(0, 0));
+    const { painter } = paintedBall(modelOf(white()), layers);
+    const canvas = renderer.domElement;
+    document.body.append(canvas);
+    const told: string[] = [];
+    painter.onError = ({ message }) => told.push(message);
+    painter.listen(camera);
+    const { left, top } = canvas.getBoundingClientRect();
+    const at = { clientX: left + kSize / 2, clientY: top + kSize / 2 };
+    const send = () => canvas.dispatchEvent(new PointerEvent('pointerdown', { pointerId: 7, isPrimary: true, ...at }));
+    send();
+    painter.tool = 'sticker';
+    painter.picture = { image: new Image() };
+    send();
+    const { held } = layers.history;
+    painter.dispose();
+    layers.dispose();
+    canvas.remove();
+    return { told, held };
+  },
+
   /** One text twice. Meanwhile its font is loaded: here, one whose letters are solid. */
   lateFont() {
     const { painter } = paintedBall();

@@ -592,6 +592,14 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     assert.equal(undone, 0);
   });
 
+  test('why a pointer cannot paint is told, such as that there are too many layers', async () => {
+    const { told, held } = await run<{ told: string[]; held: boolean }>('fullLayers');
+    assert.equal(told.length, 2);
+    assert.match(told[0]!, /already 16 layers/);
+    assert.match(told[1]!, /the image is not loaded yet$/);
+    assert.equal(held, false);
+  });
+
   test('a text that is laid again has the font that was loaded meanwhile', async () => {
     const { before, after } = await run<{ before: number; after: number }>('lateFont');
     assert.ok(before > 0 && after > 1.2 * before, `${after} texels after ${before}`);

@@ -66,6 +66,10 @@ export class Painter {
   tool: Tool | undefined = 'brush';
   /** What pointers place with the tool `sticker`. */
   picture: (StickerPicture & { size?: number; angle?: number; opacity?: number; mirrored?: boolean }) | undefined;
+  /** Is told why a pointer cannot paint, such as that there is no room for another layer. Default: throws it, so that the page is told. */
+  onError = (error: Error): void => {
+    throw error;
+  };
   readonly #painter: LayerPainter;
   readonly #models: readonly Applied[];
   readonly #sheet = new StickerSheet();
@@ -174,7 +178,14 @@ export class Painter {
    * @returns a function that ends it.
    */
   listen(camera: Camera, element = this.#canvas): () => void {
-    const stop = listenTo(element, (event) => this.#drag(event, camera));
+    const stop = listenTo(element, (event) => {
+      try {
+        return this.#drag(event, camera);
+      } catch (error) {
+        this.onError(error as Error);
+        return undefined;
+      }
+    });
     this.#stops.add(stop);
     return () => {
       stop();
