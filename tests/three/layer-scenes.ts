@@ -441,6 +441,9 @@ export const layerScenes: Record<string, () => unknown> = {
       messageOf(() => (painter.sticker as () => void)()),
       sticker({}, {} as StickerPicture),
       sticker({}, 'A' as unknown as StickerPicture),
+      messageOf(() => (painter.sticker as (picture: StickerPicture) => void)({ text: 'A', color: '#ff0000' })),
+      messageOf(() => (painter.stroke as () => void)()),
+      messageOf(() => painter.stroke(at as unknown as StrokePoint[])),
     ];
     const { canUndo } = painter;
     painter.dispose();

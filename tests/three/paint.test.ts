@@ -577,6 +577,9 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
       /the picture is undefined, not a text or an image$/,
       /the picture is an object, not a text or an image$/,
       /the picture is "A", not a text or an image$/,
+      /the place is undefined, not an object with "at"$/,
+      /points is undefined, not an array$/,
+      /points is an object, not an array$/,
     ];
     assert.equal(errors.length, expected.length);
     errors.forEach((message, i) => assert.match(message, expected[i]!));

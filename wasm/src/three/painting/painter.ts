@@ -1,4 +1,5 @@
 import { type BufferGeometry, type Camera, type Object3D, Raycaster, type Texture, Vector2, Vector3 } from 'three';
+import { describe } from '../describe.js';
 import { type Applied, extract } from '../index.js';
 import { createLayers, type Layers, type LayersOptions } from '../layers/index.js';
 import type { SurfacePoint } from './cage-texels.js';
@@ -122,7 +123,8 @@ export class Painter {
    * Paints a stroke along the cage through some points, as one undo step.
    * @param points  Undefined, as `pick` returns it beside the models, ends a line; the next point begins another.
    * @param style   What differs from `brush`.
-   * @throws {CagecastError} `badOption` that names a field and its value, `badArgument` if there is no room for a layer.
+   * @throws {CagecastError} `badOption` that names a field and its value, `badArgument` for points that are no array, or if there is no
+   * room for a layer.
    */
   stroke(points: readonly (StrokePoint | undefined)[], style: Partial<Omit<BrushStyle, 'erases'>> = {}): void {
     this.#stroke(points, { ...this.brush, ...style, erases: false });
@@ -135,10 +137,11 @@ export class Painter {
 
   /**
    * Lays a text or an image on the model, as one undo step; nothing where no cage is.
-   * @throws {CagecastError} as `stroke`, and `badArgument` for what is no picture, and for an image that is not loaded yet.
+   * @throws {CagecastError} as `stroke`, and `badArgument` for what is no picture or place, and for an image that is not loaded yet.
    */
   sticker(picture: StickerPicture, place: StickerPlace): void {
     checkPicture(picture);
+    if (!('at' in Object(place))) throw wrong(`the place is ${describe(place)}, not an object with "at"`);
     const surface = this.#surfaceAt(place.at);
     if (!surface) return;
     this.#beginSticker(picture, place)(surface, place.up);
@@ -265,6 +268,7 @@ export class Painter {
 
   #stroke(points: readonly (StrokePoint | undefined)[], style: BrushStyle): void {
     checkBrush(style);
+    if (!Array.isArray(points)) throw wrong(`points is ${describe(points)}, not an array`);
     const texels = this.#painter.cageTexels;
     if (!texels) return; // disposed of
     const stroke = new Stroke(texels, { radius: (style.size / 2) * texels.diagonal, mirror: style.mirror });
