@@ -30,14 +30,14 @@ function PaintedHead({ paint: file }) {
   // The camera, not the head, which must stay where the cage is until it is painted.
   useFrame(({ camera, clock }) => {
     const turn = Math.sin(clock.elapsedTime / 2) / 2;
-    camera.position.set(2.5 * Math.sin(turn), 0.5, 2.5 * Math.cos(turn));
-    camera.lookAt(0, 0.5, 0);
+    camera.position.set(2.5 * Math.sin(turn), 0, 2.5 * Math.cos(turn));
+    camera.lookAt(0, 0, 0);
   });
   return <primitive object={head.scene} />;
 }
 
 createRoot(document.querySelector('#root')).render(
-  <Canvas camera={{ fov: 35, position: [0, 0.5, 2.5] }}>
+  <Canvas camera={{ fov: 35, position: [0, 0, 2.5] }}>
     <ambientLight intensity={1.5} />
     <directionalLight intensity={2} />
     <Suspense>
