@@ -143,6 +143,7 @@ export const layerScenes: Record<string, () => unknown> = {
       () => layers.set(added[0]!, { blend: 'overlay' as Blend }),
       () => layers.set(added[0]!, { tint: 'red' }),
       () => layers.move(added[0]!, 0.5),
+      () => (createLayers as (options?: unknown) => void)(),
       () => createLayers({} as Parameters<typeof createLayers>[0]),
       () => createLayers({ renderer }).add({} as DataTexture),
       () => layers.toImageData(0),

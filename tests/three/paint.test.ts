@@ -436,10 +436,12 @@ describe('cagecast/three/layers, drawn by Chromium', () => {
       /tint is "red", not a colour such as #ff8800$/,
       /place of a layer is 0\.5, not an integer$/,
       /options\.renderer is not a WebGLRenderer$/,
+      /options\.renderer is not a WebGLRenderer$/,
       /texture is an object, not a Texture$/,
       /size is 0, not an integer from 1 to 2048$/,
       /size is 100, not one of 256, 512, 1024, 2048$/,
     ];
+    assert.equal(seen.errors.length, expected.length);
     seen.errors.forEach((message, i) => assert.match(message, expected[i]!));
   });
 
@@ -531,6 +533,7 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
       /options\.applied is not what applyTransfer returned$/,
       /size is 512, not one of 1024, 2048$/,
     ];
+    assert.equal(seen.errors.length, expected.length);
     seen.errors.forEach((message, i) => assert.match(message, expected[i]!));
     assert.equal(seen.steps, 1);
   });

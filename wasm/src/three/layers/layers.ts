@@ -44,7 +44,7 @@ export class Layers extends Emitter<{
     this.announce();
   };
 
-  constructor({ renderer, size }: LayersOptions) {
+  constructor({ renderer, size } = {} as LayersOptions) {
     super();
     // Other renderers have no such map.
     if (typeof renderer?.properties?.get !== 'function')
