@@ -341,6 +341,31 @@ test('a landmark that is being dragged when an earlier fit comes is not lost', a
   assert.deepEqual(complaints, []);
 });
 
+test('fitting the template anew, which forgets the landmarks of the user, is a step that can be undone', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await ready(page);
+  await fitted(page);
+  const found = await savedCage(page);
+  await drag(page, 'mouth_corner_left', 0, 12);
+  await worked(page);
+  const moved = await savedCage(page);
+  await workedFor(page, () => page.getByTestId('fit-cage').click());
+  assert.deepEqual(await savedCage(page), found);
+  const undo = () => page.getByTestId('undo').getAttribute('title');
+  assert.equal(await undo(), 'Undo: fitting the template');
+  await workedFor(page, () => page.keyboard.press('Control+z'));
+  assert.deepEqual(await savedCage(page), moved);
+  assert.equal(
+    await page.locator('[data-landmark=mouth_corner_left]').getAttribute('aria-label'),
+    'left mouth corner, placed by you',
+  );
+  assert.equal(await undo(), 'Undo: moving the left mouth corner');
+  await workedFor(page, () => page.keyboard.press('Control+Shift+z'));
+  assert.deepEqual(await savedCage(page), found);
+  assert.deepEqual(complaints, []);
+});
+
 /** Puts fingers on the stage, moves and lifts them. */
 const finger = (page: Page, type: 'down' | 'move' | 'up', pointerId: number, at: { x: number; y: number }) =>
   page.locator('#view').evaluate(

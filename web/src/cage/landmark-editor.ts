@@ -100,9 +100,10 @@ export class LandmarkEditor {
 
   /** Shows the landmarks of a fit; undefined ends. */
   edit(fitting: Fitting | undefined): void {
-    const isNew = fitting !== undefined && !this.#fitting;
+    const last = this.#fitting;
+    const isNew = fitting !== undefined && !last;
     const { target, cage } = this.#session.shown!;
-    const isOther = target !== this.#target || fitting?.template !== this.#fitting?.template;
+    const isOther = target !== this.#target || fitting?.template !== last?.template;
     // Steps on another model or template do not apply any more.
     if (isOther) this.#history.forget((command) => command instanceof LandmarkStep);
     this.#target = target;
@@ -117,7 +118,11 @@ export class LandmarkEditor {
     const fitted = fitting && madeOf(cage.files[0]!)?.fitting === fitting ? cage : undefined;
     // The steps before and after a state get the cage that was fitted to it.
     if (given === this.#state.given && !this.#state.cage) Object.assign(this.#state, { spots: used, cage: fitted });
-    else this.#state = { spots: used, given, cage: fitted };
+    else {
+      const before = this.#state;
+      this.#state = { spots: used, given, cage: fitted };
+      if (!isOther && fitting !== last && given !== before.given) this.#record('fitting the template', before);
+    }
     if (!fitting) return;
     const box = new Box3().setFromArray(target.mesh.positions);
     this.#size = box.getSize(new Vector3()).length();
