@@ -73,7 +73,7 @@ void checkDepth(std::string_view json) {
   }
 }
 
-/// Reads a file for tinygltf, which would look anywhere, and wait for pipes for ever.
+/// Reads a file for tinygltf, which by itself would read any file, and wait for a pipe for ever.
 /// @param folder  The `std::string` that names the folder in which the file must be, links followed.
 bool readBeside(std::vector<unsigned char>* bytes, std::string* error, const std::string& path, void* folder) {
   namespace fs = std::filesystem;
@@ -87,7 +87,7 @@ bool readBeside(std::vector<unsigned char>* bytes, std::string* error, const std
   return tinygltf::ReadWholeFile(bytes, error, path, nullptr);
 }
 
-/// tinygltf's functions for files. Versions after 2.8 have one more, for a limit that is not used here, and demand all.
+/// tinygltf's functions for files. Newer versions have one more, for a limit that is not used here, and demand all.
 template <typename Callbacks>
 Callbacks filesBeside(std::string& folder) {
   Callbacks callbacks{};
@@ -122,7 +122,7 @@ tinygltf::Model parse(std::span<const std::uint8_t> bytes, const std::string& fo
   loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
                            void*) { return true; },
                         nullptr);
-  std::string root = folder;  // tinygltf takes what can be changed.
+  std::string root = folder;  // The callbacks get it by a pointer that is not const.
   loader.SetFsCallbacks(filesBeside<tinygltf::FsCallbacks>(root));
   tinygltf::Model model;
   std::string error, warning;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -65,7 +66,7 @@ float toFloat(double value) {
   return static_cast<float>(value);
 }
 
-/// How a texture lies on a primitive: by the first UVs, as they are.
+/// How a texture lies on a primitive; by default by the first UVs, as they are.
 struct UvLayout {
   std::string set = "TEXCOORD_0";
   bool isTransformed = false;
@@ -73,17 +74,23 @@ struct UvLayout {
   double rotation = 0;
 };
 
-double numberOf(const tinygltf::Value& value, const char* member) {
-  if (!value.IsNumber()) fail(member, " of ", kTextureTransform, " is not of numbers");
-  return value.GetNumberAsDouble();
-}
-
-/// Reads a pair of numbers, if it is there.
-void readPair(const tinygltf::Value& transform, const char* member, std::array<double, 2>& out) {
-  if (!transform.Has(member)) return;
-  const tinygltf::Value& pair = transform.Get(member);
-  if (pair.ArrayLen() != 2) fail(member, " of ", kTextureTransform, " is not of two numbers");
-  out = {numberOf(pair.Get(0), member), numberOf(pair.Get(1), member)};
+/// Reads the members of a KHR_texture_transform that are there.
+/// @param where  The material, for errors.
+void readTransform(const tinygltf::Value& transform, const std::string& where, UvLayout& out) {
+  const auto number = [&](const tinygltf::Value& value, const char* member) {
+    if (!value.IsNumber()) fail(where, ": ", member, " of ", kTextureTransform, " is not of numbers");
+    return value.GetNumberAsDouble();
+  };
+  const auto readPair = [&](const char* member, std::array<double, 2>& pair) {
+    if (!transform.Has(member)) return;
+    const tinygltf::Value& given = transform.Get(member);
+    if (given.ArrayLen() != 2) fail(where, ": ", member, " of ", kTextureTransform, " is not of two numbers");
+    pair = {number(given.Get(0), member), number(given.Get(1), member)};
+  };
+  readPair("offset", out.offset);
+  readPair("scale", out.scale);
+  if (transform.Has("rotation")) out.rotation = number(transform.Get("rotation"), "rotation");
+  out.isTransformed = true;
 }
 
 /// How the base colour texture of a primitive lies on it.
@@ -96,10 +103,7 @@ UvLayout uvLayoutOf(const tinygltf::Model& model, const tinygltf::Primitive& pri
   int set = texture.texCoord;
   if (const auto found = texture.extensions.find(kTextureTransform); found != texture.extensions.end()) {
     const tinygltf::Value& transform = found->second;
-    layout.isTransformed = true;
-    readPair(transform, "offset", layout.offset);
-    readPair(transform, "scale", layout.scale);
-    if (transform.Has("rotation")) layout.rotation = numberOf(transform.Get("rotation"), "rotation");
+    readTransform(transform, "materials[" + std::to_string(primitive.material) + "]", layout);
     if (transform.Has("texCoord") && transform.Get("texCoord").IsInt()) set = transform.Get("texCoord").Get<int>();
   }
   layout.set = "TEXCOORD_" + std::to_string(set);

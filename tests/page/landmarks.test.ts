@@ -17,7 +17,7 @@ import {
 } from '../support/cages';
 import { difference, look, modelArea } from '../support/picture';
 import { saved } from '../support/saved';
-import { drop, glb, passed, Site } from '../support/site';
+import { drop, glb, passed, Site, type Visit } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -316,12 +316,19 @@ test('undoing what was done to a landmark brings the cage back that was there, t
   assert.deepEqual(complaints, []);
 });
 
-test('a landmark that is being dragged when an earlier fit comes is not lost', async () => {
-  const { page, complaints } = await site.visit({}, holdingBack('fitCage'));
+/** A head to which a template was fitted; while `window.holds` is set, further fits are held back. */
+async function fittedHead(): Promise<Visit> {
+  const visit = await site.visit({}, holdingBack('fitCage'));
+  const { page } = visit;
   await page.evaluate('window.holds = false');
   await drop(page, [head()]);
   await ready(page);
   await fitted(page);
+  return visit;
+}
+
+test('a landmark that is being dragged when an earlier fit comes is not lost', async () => {
+  const { page, complaints } = await fittedHead();
   const found = await savedCage(page);
   await page.evaluate('window.holds = true');
   await drag(page, 'nose_tip', 0, 8);
@@ -380,11 +387,7 @@ const finger = (page: Page, type: 'down' | 'move' | 'up', pointerId: number, at:
   );
 
 test('a second finger or Escape ends the drag of a landmark: all is as before it, with a fit that came meanwhile', async () => {
-  const { page, complaints } = await site.visit({}, holdingBack('fitCage'));
-  await page.evaluate('window.holds = false');
-  await drop(page, [head()]);
-  await ready(page);
-  await fitted(page);
+  const { page, complaints } = await fittedHead();
   const count = () => page.locator('#landmark-count').textContent();
   const label = () => page.locator('[data-landmark=mouth_corner_left]').getAttribute('aria-label');
   const begin = async () => {

@@ -47,7 +47,7 @@ export function extractMesh(
   return { ...mesh, primitives };
 }
 
-/** Moves UVs to where they are in a texture, as KHR_texture_transform says: scaled, rotated, then moved. */
+/** Moves UVs to where they are in a texture, as KHR_texture_transform says: scaled, rotated, then moved. `Texture.matrix` scales last. */
 function transformUvs(uvs: Float32Array, { offset, rotation, repeat }: Texture): void {
   const [cos, sin] = [Math.cos(rotation), Math.sin(rotation)];
   for (let i = 0; i < uvs.length; i += 2) {

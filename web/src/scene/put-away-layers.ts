@@ -19,7 +19,7 @@ export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits)
   const offer = element('put-away', HTMLElement);
   let last: Model | undefined;
   let away: readonly Layer[] = [];
-  /** The meshes of the cages that they were painted for, as far as these were here since the page was opened. */
+  /** The mesh of the cage that each layer was painted for; not known of those from before the page was opened. */
   const meshes = new WeakMap<Sheet, Model['mesh']>();
   // Undoing brings them back too, and redoing puts them away again.
   const offered = (): Layer[] => away.filter(({ id }) => stack.layers.every((layer) => layer.id !== id));
