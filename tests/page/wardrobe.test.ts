@@ -421,16 +421,20 @@ test('a cage fitted to an avatar does not reach a sample that is loading, whethe
 });
 
 test('an avatar that was chosen, and then a sample, can be chosen again before that has come', async () => {
-  const { page, complaints } = await beingFitted();
-  const second = page.locator('.avatars .avatar').nth(1);
-  await page.evaluate("document.querySelectorAll('.avatars .avatar')[1].click()");
-  const letGo = await chooseHeldCar(page);
-  await second.click();
-  await page.locator('.avatars li:nth-child(2) .avatar[aria-pressed=true]').waitFor();
-  letGo();
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  assert.equal(await page.locator('#target-name').textContent(), 'two.glb');
-  assert.deepEqual(complaints, []);
+  for (const comes of [true, false]) {
+    const { page, complaints } = await beingFitted();
+    const second = page.locator('.avatars .avatar').nth(1);
+    if (comes) await choose(page, 1);
+    else await page.evaluate("document.querySelectorAll('.avatars .avatar')[1].click()");
+    const letGo = await chooseHeldCar(page);
+    await second.click();
+    await page.locator('.avatars li:nth-child(2) .avatar[aria-pressed=true]').waitFor();
+    letGo();
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    assert.equal(await page.locator('#target-name').textContent(), 'two.glb');
+    assert.notEqual(await page.getByTestId('sample-select').inputValue(), 'car');
+    assert.deepEqual(complaints, []);
+  }
 });
 
 test('“Fit this cage to all” fits the cage that was on the stage then, whatever comes there meanwhile', async () => {

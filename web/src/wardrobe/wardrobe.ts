@@ -166,7 +166,9 @@ export class Wardrobe {
 
   /** Puts an avatar on the stage. */
   activate(avatar: Avatar): void {
-    if (avatar === (this.#coming ?? this.list.active) || avatar.files.length === 0) return;
+    if (avatar.files.length === 0 || avatar === this.#coming) return;
+    // The one that is there comes anew if it would have to give way to a model that was opened since.
+    if (!this.#coming && avatar === this.list.active && this.#session.keepTarget()) return;
     this.#arrived();
     this.#arrival = new Promise((done) => (this.#arrived = done));
     const { cage, sample, locks } = avatar;
