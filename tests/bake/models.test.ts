@@ -140,6 +140,23 @@ test('a PNG has the paint alone; the way back has it in the cage’s UVs', () =>
     }
 });
 
+test('--part takes a node that holds others for all below it, unless a part has its name', () => {
+  const { json, bin } = unpackGlb(readFileSync(at('box.glb')));
+  const nodes = json.nodes!;
+  const far = nodes.push({ name: 'far', mesh: 0, translation: [9, 0, 0] }) - 1;
+  const holding = (name: string, ...children: number[]) => nodes.push({ name, children }) - 1;
+  json.scenes![0]!.nodes = [holding('Near', 0), holding('Away', holding('box', far))];
+  writeFileSync(at('held.glb'), packGlb({ json, bin }));
+  const bake = (part: string) =>
+    cagecast('bake', at('held.glb'), at('cage.glb'), at('red.png'), '--part', part, '-o', at('part.png'));
+  for (const part of ['Ne*', 'box']) {
+    const { stdout, stderr } = bake(part);
+    assert.deepEqual([stderr, /part\.png: 96 × 96, for "box"$/m.test(stdout)], ['', true], part);
+  }
+  assert.match(bake('Away').stderr, /held\.glb: nothing of it may be painted\n$/);
+  assert.match(bake('Nose').stderr, /--part Nose: no node or material has this name; there are: box, /);
+});
+
 test('maps of normals and of roughness are added to materials that lack them, flat beside the paint', async () => {
   const args = [
     'bake',

@@ -1,6 +1,7 @@
+import type { GLTF } from '@gltf-transform/core';
 import { type Command, InvalidArgumentError, Option } from 'commander';
 import { optionFlags } from '../generated/options.js';
-import { partsBelow } from '../gltf/extract.js';
+import { type Part, partsBelow } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { type Lock, type Preset, type PresetOptions, presetOptions, type TransferOptions } from '../index.js';
 import type { Finding } from '../inspect/finding.js';
@@ -170,9 +171,16 @@ export function effectiveOptions({
 /** Says which configuration file settings come from; empty if there is none. */
 export const configLine = (config: string | null | undefined): string => (config ? `settings from ${config}` : '');
 
+/** The numbers of the parts that a pattern names. The name of a node that no part has stands for all parts below it. */
+export function partsNamed(pattern: string, json: GLTF.IGLTF, parts: readonly Part[]): number[] {
+  const matches = matcher(pattern);
+  const own = [...parts.keys()].filter((p) => parts[p]!.aliases.some(matches));
+  const isAbove = () => (json.nodes ?? []).map(({ name = '' }) => matches(name));
+  return own.length > 0 ? own : partsBelow(json, parts, isAbove());
+}
+
 /**
- * The options of `transfer`. Names of parts become locks by group, because each part is a group. The name of a node that no part
- * has stands for all parts below it.
+ * The options of `transfer`. Names of parts become locks by group, because each part is a group.
  * @param leftOut  Whether each part is excluded if nothing is said of it. Default: none is.
  * @throws {InputError} if nothing has a given name, or a part is both kept and excluded in one place.
  */
@@ -188,11 +196,7 @@ export function transferOptions(
   ] as const) {
     for (const [i, pattern] of patterns.entries()) {
       const rank = ranks?.[lock][i] ?? 0;
-      const matches = matcher(pattern);
-      const own = [...parts.keys()].filter((p) => parts[p]!.aliases.some(matches));
-      const isAbove = () => (json.nodes ?? []).map(({ name = '' }) => matches(name));
-      const all = own.length > 0 ? own : partsBelow(json, parts, isAbove());
-      const found = all.filter((p) => parts[p]!.vertexCount > 0);
+      const found = partsNamed(pattern, json, parts).filter((p) => parts[p]!.vertexCount > 0);
       if (found.length === 0 && !optional.includes(pattern)) throw noSuchName(`--${lock} ${pattern}`, parts);
       for (const p of found) {
         const said = saidOf.get(p);

@@ -49,7 +49,7 @@ export function addBakeCommand(program: Command, progress: Progress): void {
     .addOption(
       new Option(
         '--part <NAME>',
-        'for a PNG: only parts of this node or material (* matches any text); may be repeated',
+        'for a PNG: only parts of this node or material (* matches any text); a node that holds others means all below it; may be repeated',
       )
         .default([], 'all')
         .argParser((name: string, before: string[]) => [...before, name]),

@@ -7,7 +7,7 @@ import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
 import type { UvLayout } from '../../gltf/uv-transform.js';
 import type { CutTarget } from '../../index.js';
-import { matcher, noSuchName, quoted } from '../options.js';
+import { noSuchName, partsNamed, quoted } from '../options.js';
 import type { Run } from '../run.js';
 import { listed } from '../table.js';
 import { decodeImage } from './images.js';
@@ -193,12 +193,14 @@ const uvLayoutOf = (model: FileModel, part: Part): UvLayout =>
   colorUseOf(model, part) ?? { set: 'TEXCOORD_0', transform: undefined };
 
 /** The parts that share one texture. @throws {InputError} if there are several textures, or a part has no UVs. */
-function oneTexture(model: FileModel, { result, target }: Run, names: readonly string[]) {
-  for (const name of names)
-    if (!target.parts.some(({ aliases }) => aliases.some(matcher(name))))
-      throw noSuchName(`--part ${name}`, target.parts);
-  const isChosen = ({ aliases }: Part) => names.length === 0 || names.some((name) => aliases.some(matcher(name)));
-  const chosen = target.parts.filter((part) => isPainted(part, result) && isChosen(part));
+function oneTexture(model: FileModel, { result, targetFile, target }: Run, names: readonly string[]) {
+  const meant = names.flatMap((name) => {
+    const found = partsNamed(name, targetFile.json, target.parts);
+    if (found.length === 0) throw noSuchName(`--part ${name}`, target.parts);
+    return found;
+  });
+  const isChosen = (p: number) => names.length === 0 || meant.includes(p);
+  const chosen = target.parts.filter((part, p) => isPainted(part, result) && isChosen(p));
   const textured = chosen.filter((part) => colorUseOf(model, part));
   const painted = textured.length > 0 ? textured : chosen;
   if (painted.length === 0) throw new InputError('nothing of it may be painted');
