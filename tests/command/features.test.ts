@@ -62,27 +62,27 @@ test('--compress writes the other forms, each from each', async () => {
   }
 });
 
-test('diff tells in a line which file is no report', () => {
+test('diff tells in a line which file is no report, and why', () => {
   ok('transfer', at('target.glb'), ...cage, '--report', at('whole.json'));
-  const whole = JSON.parse(readFileSync(at('whole.json'), 'utf8')) as object;
-  for (const wrong of [
-    { target: null },
-    { target: [] },
-    { areas: null },
-    { segments: [null] },
-    { parts: {} },
-    { regions: 5 },
-  ]) {
+  const whole = JSON.parse(readFileSync(at('whole.json'), 'utf8')) as { target: object; segments: object[] };
+  for (const [wrong, fault] of [
+    [{ target: null }, 'target is null, not an object'],
+    [{ target: { ...whole.target, diagonal: -1 } }, 'target.diagonal is -1, not a number from 0 on'],
+    [{ areas: undefined }, 'areas is missing'],
+    [{ segments: [null] }, 'segments[0] is null, not an object'],
+    [{ segments: [whole.segments[0], { ...whole.segments[0], part: 5 }] }, 'segments[1].part is 5, not a text'],
+    [{ parts: {} }, 'parts is {}, not an array'],
+    [{ stretch: {} }, 'stretch.median is missing'],
+    [{ regions: [{}] }, 'regions[0].counts is missing'],
+    [{ verdict: 'bad' }, 'verdict is "bad", not one of unfit, usable, good'],
+  ] as const) {
     writeFileSync(at('wrong.json'), JSON.stringify({ ...whole, ...wrong }));
-    for (const paths of [
-      ['whole.json', 'wrong.json'],
-      ['wrong.json', 'whole.json'],
-    ]) {
-      const { status, stdout, stderr } = cagecast('diff', ...paths.map((path) => at(path)));
-      assert.deepEqual([status, stdout], [1, ''], JSON.stringify(wrong));
-      assert.match(stderr, /^cagecast: .*wrong\.json: is no report of .*\n$/, JSON.stringify(wrong));
-    }
+    const { status, stdout, stderr } = cagecast('diff', at('whole.json'), at('wrong.json'));
+    const text = 'is no report of cagecast transfer (--report) or inspect (--json)';
+    assert.deepEqual([status, stdout, stderr], [1, '', `cagecast: ${at('wrong.json')}: ${text}: ${fault}\n`]);
   }
+  const { stderr } = cagecast('diff', at('wrong.json'), at('whole.json'));
+  assert.match(stderr, /^cagecast: .*wrong\.json: is no report of .*\n$/);
 });
 
 test('- is the standard input and output; the summary goes beside it', () => {

@@ -16,7 +16,7 @@ interface InspectCommand extends Sources {
   html?: string | undefined;
 }
 
-const verdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
+export const verdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
 
 /** Whether one verdict is worse than another. */
 export const isWorse = (a: Verdict, b: Verdict): boolean => verdicts.indexOf(a) < verdicts.indexOf(b);

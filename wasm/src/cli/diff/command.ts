@@ -1,14 +1,13 @@
 import { readdir } from 'node:fs/promises';
 import { join } from 'node:path';
-import { isFolder, listingError, readBytes } from '../gltf/files.js';
-import { InputError, withName } from '../gltf/input-error.js';
-import { counted } from '../inspect/finding.js';
-import { isObject, parseObject } from './config/settings.js';
-import { type InspectionReport, isWorse } from './inspect-command.js';
-import type { Found } from './print.js';
-import { cut, integer, percent, short, table } from './table.js';
-import type { Report } from './transfer/report.js';
-import { type PerZone, zoneNames } from './zones.js';
+import { isFolder, listingError } from '../../gltf/files.js';
+import { InputError, withName } from '../../gltf/input-error.js';
+import { counted } from '../../inspect/finding.js';
+import { isWorse } from '../inspect-command.js';
+import type { Found } from '../print.js';
+import { cut, integer, percent, short, table } from '../table.js';
+import { type PerZone, zoneNames } from '../zones.js';
+import { type AnyReport, readReport } from './read-report.js';
 
 /** The arguments of `cagecast diff`. */
 interface DiffCommand {
@@ -27,11 +26,6 @@ interface Change {
   isOver: boolean;
 }
 
-/** What of a report is compared; reports of `transfer` and of `inspect --json` have some of it each. */
-type AnyReport = Pick<Report, 'target' | 'segments'> &
-  Partial<Omit<Report, 'target' | 'segments'>> &
-  Partial<Omit<InspectionReport, 'target' | 'segments' | 'cage' | 'options' | 'versions' | 'counts'>>;
-
 /** Two kinds of reports may round a sum differently. */
 const kRounding = 1e-9;
 
@@ -48,7 +42,11 @@ interface Difference {
  */
 export async function diffCommand(command: DiffCommand): Promise<Found & { over: number }> {
   const areFolders = await Promise.all(
-    [command.before, command.after].map((path) => naming(path, () => isFolder(path))),
+    [command.before, command.after].map((path) =>
+      isFolder(path).catch((error) => {
+        throw withName(error, path);
+      }),
+    ),
   );
   if (areFolders[0] !== areFolders[1])
     throw new InputError('is a folder, and the other is a file; compare two files or two folders').in(
@@ -125,26 +123,6 @@ function shown({ kind }: Change, value: Change['before']): string {
   if (value === null) return '–';
   if (typeof value === 'string') return value;
   return kind === 'share' ? percent(value) : kind === 'ratio' ? short(value) : integer(value);
-}
-
-function readReport(path: string): Promise<AnyReport> {
-  return naming(path, async () => {
-    const report = parseObject(new TextDecoder().decode(await readBytes(path)));
-    const { target, segments, areas, coverage, parts = [], holes = [], regions = [] } = report;
-    const isList = (list: unknown) => Array.isArray(list) && list.every(isObject);
-    if (![target, areas ?? coverage].every(isObject) || ![segments, parts, holes, regions].every(isList))
-      throw new InputError('is no report of cagecast transfer (--report) or inspect (--json)');
-    return report as unknown as AnyReport;
-  });
-}
-
-/** Adds the name of what is read to errors. */
-async function naming<Result>(path: string, read: () => Promise<Result>): Promise<Result> {
-  try {
-    return await read();
-  } catch (error) {
-    throw withName(error, path);
-  }
 }
 
 type Measures = Map<string, { kind: 'share' | 'ratio' | 'number' | 'part'; value: number }>;

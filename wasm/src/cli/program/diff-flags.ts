@@ -1,5 +1,5 @@
 import { type Command, Option } from 'commander';
-import { diffCommand } from '../diff-command.js';
+import { diffCommand } from '../diff/command.js';
 import { numberWithin } from '../options.js';
 import { addPrintFlags, type PrintFlags, print } from '../print.js';
 import { changed } from '../usage.js';
