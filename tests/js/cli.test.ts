@@ -750,7 +750,7 @@ describe('transfer', () => {
     const holding = (name: string, ...children: number[]) => maker.json.nodes!.push({ name, children }) - 1;
     const mouth = holding('mouth', tongue);
     maker.node({ name: 'Face', children: [eye, mouth] });
-    maker.node({ name: 'eye', children: [head] });
+    maker.node({ children: [holding('eye', head)] });
     const path = write('holding.glb', maker.finish());
     const culled = (...flags: string[]) => {
       const { segments } = report(path, at('cage.glb'), ...flags);
@@ -765,6 +765,8 @@ describe('transfer', () => {
       ...['transfer', path, '--cage', at('cage.glb'), '--exclude', 'Face', '--keep', 'tongue'],
     );
     assert.deepEqual([status, /--keep tongue and --exclude Face both match "tongue"/.test(stderr)], [1, true], stderr);
+    const unnamed = cagecast('transfer', path, '--cage', at('cage.glb'), '--exclude', '');
+    assert.deepEqual([unnamed.status, /--exclude : no node or material has this name/.test(unnamed.stderr)], [1, true]);
   });
 
   test('splits vertices so that no triangle stretches across the texture', async () => {

@@ -175,7 +175,7 @@ export const configLine = (config: string | null | undefined): string => (config
 export function partsNamed(pattern: string, json: GLTF.IGLTF, parts: readonly Part[]): number[] {
   const matches = matcher(pattern);
   const own = [...parts.keys()].filter((p) => parts[p]!.aliases.some(matches));
-  const isAbove = () => (json.nodes ?? []).map(({ name = '' }) => matches(name));
+  const isAbove = () => (json.nodes ?? []).map(({ name }) => name !== undefined && matches(name));
   return own.length > 0 ? own : partsBelow(json, parts, isAbove());
 }
 
