@@ -540,6 +540,20 @@ test('an empty path fails its job, which names the member', () => {
   assert.match(nothing('--results', at('nothing.jsonl')), /^1 job: 1 done, .*\n$/);
 });
 
+test('--resume does again what should have a verdict in the results, and has none', () => {
+  const results = at('verdicts.jsonl');
+  const batch = () => {
+    const files = [at('in/0.glb'), '--cage', at('cage.glb'), '--results', results];
+    return cagecast('batch', ...files, '--resume', '--fail-on', 'unfit').stderr.replace(/;.*\n/, '');
+  };
+  assert.equal(batch(), '1 job: 1 done, 0 failed');
+  const text = readFileSync(results, 'utf8');
+  for (const wrong of ['"verdict":7', '"other":"good"']) {
+    writeFileSync(results, text.replace(/"verdict":"\w+"/, wrong));
+    assert.equal(batch(), '1 job: 1 done, 0 failed', wrong);
+  }
+});
+
 test('with --fail-on reports have the verdict, which diff compares', () => {
   const report = (cage: string) => {
     const path = at(`${cage}.json`);

@@ -8,7 +8,7 @@ import { counted } from '../inspect/finding.js';
 import type { Verdict } from '../inspect/index.js';
 import { isWritten, type Job, writtenBy } from './batch-jobs.js';
 import type { Outcome } from './batch-worker.js';
-import { isWorse } from './inspect-command.js';
+import { isWorse, verdicts } from './inspect-command.js';
 import { canonicalPath, writing } from './output.js';
 import { jsonText, oneLine } from './print.js';
 import type { Progress } from './progress.js';
@@ -86,6 +86,7 @@ export async function batchCommand(
     if (job.error !== undefined) take(job, { status: 'failed', ms: 0, error: job.error });
     else if (
       known &&
+      (failOn === undefined || ('verdict' in known && verdicts.includes(known.verdict!))) &&
       isWritten(job) &&
       writtenBy(job).every((path) => before.writers.get(canonicalPath(path)) === job.key)
     )
