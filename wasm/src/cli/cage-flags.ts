@@ -31,7 +31,7 @@ const addOutputFlags = (command: Command): Command =>
 const exclusion = (): Option =>
   new Option(
     '--exclude <NAME>',
-    'do not paint parts whose node or material has this name, or this word in its name (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair; an empty name excludes nothing',
+    'do not paint parts whose node or material has this name, or this word in its name (* matches any text, case does not matter); a node that holds others means all below it; may be repeated; replaces the default list, such as eyes, teeth and hair; an empty name excludes nothing',
   ).argParser((name: string, before: string[] = []) => (name === '' ? before : [...before, name]));
 
 /** Adds the commands that make and fit cages. */
