@@ -13,6 +13,7 @@ import {
   refuseUnknown,
   settingNames,
   settingsOf,
+  shown,
 } from './config/settings.js';
 import { filesOf } from './glob.js';
 import { defaultRules } from './options.js';
@@ -130,7 +131,7 @@ async function jobLine(
   if (given['target'] === undefined) throw new InputError('has no "target"');
   const { uvBounds, regions } = given;
   if (uvBounds !== undefined && !areBounds(uvBounds))
-    throw new InputError(`"uvBounds" is not an array of ${boundsText}`);
+    throw new InputError(`"uvBounds" is ${shown(uvBounds)}, not an array of ${boundsText}`);
   const fault = placeholderFault(given['output'], given['report']);
   if (fault !== undefined) throw new InputError(fault);
   const own = Object.fromEntries([
@@ -172,16 +173,23 @@ async function jobLine(
 const pathIn = (given: Readonly<Record<string, unknown>>, name: string, folder: string): string | undefined =>
   name === 'cage' && given[name] === autoCage ? autoCage : pathOf(given, name, folder);
 
-/** @throws {InputError} */
+/** @throws {InputError} that names the member, and of which region it is. */
 function regionsOf(regions: unknown, folder: string): Region[] {
-  const isRegion = (one: unknown): one is Region & Record<string, unknown> =>
-    isObject(one) && typeof one['cage'] === 'string' && typeof one['texture'] === 'string';
-  if (!Array.isArray(regions) || !regions.every(isRegion))
-    throw new InputError('"regions" is not an array of {"cage": …, "texture": …}');
-  return regions.map((region) => ({
-    cage: pathIn(region, 'cage', folder)!,
-    texture: pathIn(region, 'texture', folder)!,
-  }));
+  const form = '{"cage": …, "texture": …}';
+  if (!Array.isArray(regions)) throw new InputError(`"regions" is ${shown(regions)}, not an array of ${form}`);
+  return regions.map((region: unknown, r) => {
+    try {
+      if (!isObject(region)) throw new InputError(`is ${shown(region)}, not ${form}`);
+      const [cage, texture] = ['cage', 'texture'].map((name) => {
+        const path = pathIn(region, name, folder);
+        if (path === undefined) throw new InputError(`has no "${name}"`);
+        return path;
+      });
+      return { cage: cage!, texture: texture! };
+    } catch (error) {
+      throw withName(error, `"regions" [${r}]`);
+    }
+  });
 }
 
 type JobNames = Pick<TransferCommand, 'target' | 'referenceCage' | 'texture' | 'regions' | 'output' | 'report'> & {

@@ -9,7 +9,7 @@ import { InputError, withName } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
 import type { Verdict } from '../inspect/index.js';
 import { isPosition } from '../parts/template.js';
-import { parseObject } from './config/settings.js';
+import { parseObject, shown } from './config/settings.js';
 import { conclusionOf, inspectionReport } from './inspect-command.js';
 import { inspectionPage } from './inspect-page.js';
 import { fitCageTo, landmarksOf, makeCageFor } from './make-cage.js';
@@ -85,10 +85,14 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
     ...(templateLandmarks !== undefined && { landmarks: await readLandmarks(templateLandmarks) }),
   };
   const count = Object.keys(template.landmarks).length;
-  if (count < kLeastLandmarks)
+  if (count < kLeastLandmarks) {
+    const has = `has ${count === 0 ? 'no landmarks' : counted(count, 'landmark')}`;
+    if (templateLandmarks !== undefined)
+      throw new InputError(`${has}; at least ${kLeastLandmarks} are needed`).in(templateLandmarks);
     throw new InputError(
-      `has ${count === 0 ? 'no landmarks' : counted(count, 'landmark')} in the extras of its nodes and meshes; give at least ${kLeastLandmarks} of the model that it was made for: --template-landmarks T.json`,
+      `${has} in the extras of its nodes and meshes; give at least ${kLeastLandmarks} of the model that it was made for: --template-landmarks T.json`,
     ).in(templatePath);
+  }
   const landmarks = landmarksPath === undefined ? undefined : await readLandmarks(landmarksPath);
   const model = await readModel(target, reading, progress);
   const files = { template: templatePath, landmarks: landmarksPath };
@@ -112,7 +116,7 @@ async function readLandmarks(path: string): Promise<Landmarks> {
   try {
     const landmarks = parseObject(new TextDecoder().decode(await readBytes(path)));
     for (const [name, position] of Object.entries(landmarks))
-      if (!isPosition(position)) throw new InputError(`"${name}" is not 3 numbers [x, y, z]`);
+      if (!isPosition(position)) throw new InputError(`"${name}" is ${shown(position)}, not 3 numbers [x, y, z]`);
     return landmarks as Landmarks;
   } catch (error) {
     throw withName(error, path);
