@@ -11,7 +11,7 @@ import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
 import { head } from '../js/scenes.js';
-import { cagecast, GlbMaker, glbOf, unpackGlb, validate } from '../support/gltf.js';
+import { cagecast, GlbMaker, glbOf, tetrahedron, unpackGlb, validate } from '../support/gltf.js';
 import { temporaryFolder } from '../support/temporary.js';
 
 const { at } = temporaryFolder('features');
@@ -83,6 +83,17 @@ test('diff tells in a line which file is no report, and why', () => {
   }
   const { stderr } = cagecast('diff', at('wrong.json'), at('whole.json'));
   assert.match(stderr, /^cagecast: .*wrong\.json: is no report of .*\n$/);
+});
+
+test('what there is one of is called so', () => {
+  writeFileSync(at('one.glb'), glbOf(tetrahedron()));
+  const one = ['--cage', at('one.glb')];
+  assert.match(ok('transfer', at('one.glb'), ...one), /, 1 segment \(/);
+  const { uvs, ...mesh } = tetrahedron();
+  uvs.set([2, 2]);
+  writeFileSync(at('out-of-bounds.glb'), glbOf({ ...mesh, uvs }));
+  const { stdout } = cagecast('inspect', at('one.glb'), '--cage', at('out-of-bounds.glb'));
+  assert.match(stdout, /; 1 vertex outside 0\.\.1; /);
 });
 
 test('- is the standard input and output; the summary goes beside it', () => {

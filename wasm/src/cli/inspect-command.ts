@@ -139,8 +139,8 @@ function describe(report: InspectionReport, html: string | undefined): string[] 
     `  cage vertices inside the target: ${integer(inside.vertices)} (${percent(inside.area)} by area)`,
     '',
     'cage',
-    `  facing inward: ${integer(inward.triangles.length)} triangles; without area: ${integer(topology.degenerateTriangles)}; doubled: ${integer(topology.doubledTriangles)}; edges of more than two triangles: ${integer(topology.nonManifoldEdges)}; cracks: ${integer(topology.crackEdges + topology.slits)}; pieces: ${integer(topology.pieces)}`,
-    `  UVs: ${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}, ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that twice; ${integer(uv.outside.vertices)} vertices outside 0..1; ${integer(uv.withoutArea.triangles)} triangles without area`,
+    `  facing inward: ${counted(inward.triangles.length, 'triangle')}; without area: ${integer(topology.degenerateTriangles)}; doubled: ${integer(topology.doubledTriangles)}; edges of more than two triangles: ${integer(topology.nonManifoldEdges)}; cracks: ${integer(topology.crackEdges + topology.slits)}; pieces: ${integer(topology.pieces)}`,
+    `  UVs: ${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}, ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that twice; ${counted(uv.outside.vertices, 'vertex', 'vertices')} outside 0..1; ${counted(uv.withoutArea.triangles, 'triangle')} without area`,
     '',
     `holes: ${integer(holes.length)}${more(holes.length)}`,
     ...(holes.length === 0

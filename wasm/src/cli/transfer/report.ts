@@ -2,6 +2,7 @@ import { type Extracted, type Part, primitivePath } from '../../gltf/extract.js'
 import { zoneAttribute } from '../../gltf/overlay.js';
 import type { Added } from '../../gltf/write.js';
 import type { SegmentStats, TransferResult } from '../../index.js';
+import { counted } from '../../inspect/finding.js';
 import { boxOf, vertexAreas } from '../../inspect/geometry.js';
 import type { Finding, Verdict } from '../../inspect/index.js';
 import { type CageReport, cageReport, excludedLine } from '../cage-report.js';
@@ -219,7 +220,7 @@ export function summary(
         : '; no overlay, as the texture shows nowhere';
   const { outOfBounds = 0 } = cut?.triangles ?? triangles;
   const lines = [
-    `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
+    `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${counted(segments.length, 'segment')} (${integer(culled)} culled)`,
     ...table(rows),
     `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted${cut ? `; cut along borders, ${integer(cut.triangles.cosmetic)} of ${integer(cut.triangles.total)}` : ''}; ${timings.total.toFixed(1)} ms`,
     outOfBounds > 0
@@ -227,7 +228,7 @@ export function summary(
       : '',
     output === null
       ? ''
-      : `wrote ${output}: ${sets}, ${zoneAttribute}${overlay}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}${replacedOverlays === 0 ? '' : `; ${takenAway(replacedOverlays)}`}`,
+      : `wrote ${output}: ${sets}, ${zoneAttribute}${overlay}${splits === 0 ? '' : `; ${counted(splits, 'vertex', 'vertices')} split at seams of the texture`}${replacedOverlays === 0 ? '' : `; ${takenAway(replacedOverlays)}`}`,
     filled && `the overlay fills what the material cuts out of ${filled}; cagecast bake paints only the rest`,
     ...regions.map(
       ({ cage, texture, triangles: { cosmetic, total } }) =>
