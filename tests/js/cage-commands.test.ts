@@ -220,7 +220,7 @@ describe('cagecast fit', () => {
     assert.equal(status, 0, stdout);
     assert.match(
       stdout,
-      /^wrote .*fit\.glb: \d+ vertices, \d+ triangles, 1 chart, 4 holes\nlandmarks: \d+ used, 0 of them given\nfound, but not certain \(of 1\): forehead \(0\.\d\d\), /,
+      /^wrote .*fit\.glb: \d+ vertices, \d+ triangles, 1 chart, 4 holes\nlandmarks: \d+ used, 0 of them given\nfound, but not certain \(1 would be\): forehead \(0\.\d\d\), /,
     );
     assert.match(stdout, /^(GOOD|USABLE): the cage fits/m);
     // Of a cage that is good, nothing is asked for.

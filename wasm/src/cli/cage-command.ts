@@ -143,7 +143,7 @@ function describeFit({ used, confidence, missing }: Fit, given: Landmarks): FitN
   const isJoint = (name: string) => name.startsWith('joint_');
   const lines = [
     `landmarks: ${integer(all.length)} used, ${integer(own)} of them given`,
-    doubtful.length > 0 ? `found, but not certain (of 1): ${list(doubtful)}` : '',
+    doubtful.length > 0 ? `found, but not certain (1 would be): ${list(doubtful)}` : '',
     missing.length > 0 ? `not found: ${list(missing)}` : '',
     missing.some(isJoint) && !all.some(isJoint)
       ? 'no joint is found: TARGET has no skeleton, or names of bones that are not known'

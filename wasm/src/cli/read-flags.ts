@@ -5,7 +5,7 @@ import { defaultLimits, type ReadLimits } from '../gltf/limits.js';
 /** The flags that say how files are read, as commander parses them. */
 export interface ReadFlags {
   allowOutside?: boolean;
-  limit: Partial<ReadLimits>;
+  limit?: Partial<ReadLimits>;
 }
 
 /** Adds the flags that say how files are read. */
@@ -20,9 +20,7 @@ export function addReadFlags(command: Command): Command {
       new Option(
         '--limit <NAME=VALUE>',
         `what reading a file may cost; may be repeated; names and defaults: ${limits.join(', ')}`,
-      )
-        .default({}, 'these')
-        .argParser(limitOf),
+      ).argParser(limitOf),
     );
 }
 
@@ -32,7 +30,7 @@ export const readingOf = ({ allowOutside = false, limit }: ReadFlags): ReadOptio
   limits: { ...defaultLimits, ...limit },
 });
 
-function limitOf(text: string, before: Partial<ReadLimits>): Partial<ReadLimits> {
+function limitOf(text: string, before: Partial<ReadLimits> = {}): Partial<ReadLimits> {
   const [name = '', value = ''] = text.split('=', 2);
   if (!Object.hasOwn(defaultLimits, name))
     throw new InvalidArgumentError(`There are the limits ${Object.keys(defaultLimits).join(', ')}.`);
