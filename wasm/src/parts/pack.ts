@@ -47,7 +47,7 @@ export function unpack(bytes: Uint8Array): unknown {
   const [magic, version, length, sum] = own.length >= 16 ? new Uint32Array(own.buffer, 0, 4) : [];
   if (magic !== kMagic) throw refused(`is nothing that serialize wrote (${own.length} bytes)`);
   if (version !== kVersion) throw refused(`has version ${version} of the format; this one reads version ${kVersion}`);
-  if (16 + length! > own.length || hash(own.subarray(16)) !== sum) throw refused('is damaged or not whole');
+  if (hash(own.subarray(16)) !== sum) throw refused('is damaged or not whole');
   const start = align(16 + length!);
   const text = new TextDecoder().decode(own.subarray(16, 16 + length!));
   try {

@@ -29,8 +29,8 @@ export function splitPart(part: PartGeometry, result: Pick<TransferResult, 'uvs'
   const { firstVertex, vertexCount, firstTriangle, triangleCount } = part;
   const localIndices = Uint32Array.from(part.localIndices);
   const uvs = result.uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount));
-  if (result.cornerUvs.length === 0)
-    return { uvs, sources: new Uint32Array(vertexCount).map((_, v) => v), indices: localIndices, copies: 0 };
+  const own = new Uint32Array(vertexCount).map((_, v) => v);
+  if (result.cornerUvs.length === 0) return { uvs, sources: own, indices: localIndices, copies: 0 };
 
   const cornerUvs = result.cornerUvs.slice(6 * firstTriangle, 6 * (firstTriangle + triangleCount));
   if (part.mirrored) {
@@ -43,8 +43,8 @@ export function splitPart(part: PartGeometry, result: Pick<TransferResult, 'uvs'
   const split = splitVertices({ positions: new Float32Array(3 * vertexCount), indices: localIndices }, cornerUvs);
   const taken = new Uint8Array(vertexCount);
   const added: number[] = [];
-  const place = split.sources.map((source, n) => {
-    if (taken[source] === 1) return vertexCount + added.push(n) - 1;
+  const place = split.sources.map((source) => {
+    if (taken[source] === 1) return vertexCount + added.push(source) - 1;
     taken[source] = 1;
     return source;
   });
@@ -56,9 +56,7 @@ export function splitPart(part: PartGeometry, result: Pick<TransferResult, 'uvs'
   });
   return {
     uvs: all,
-    sources: new Uint32Array(vertexCount + added.length).map((_, v) =>
-      v < vertexCount ? v : split.sources[added[v - vertexCount]!]!,
-    ),
+    sources: Uint32Array.from([...own, ...added]),
     indices: split.indices.map((n) => place[n]!),
     copies: added.length,
   };

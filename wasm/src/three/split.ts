@@ -163,16 +163,11 @@ function valuesOf(attribute: Attribute): TypedArray {
 
 /** An attribute of the same kind with other values. */
 function likeAttribute(attribute: Attribute, values: TypedArray): BufferAttribute {
-  const { itemSize, normalized } = attribute;
+  const { itemSize, normalized, name } = attribute;
+  if ('isInterleavedBufferAttribute' in attribute)
+    return Object.assign(new BufferAttribute(values, itemSize, normalized), { name });
+  const { usage, gpuType } = attribute;
   // Some classes of three define how values are encoded, such as half floats, so the class must be kept.
-  const Class = (
-    'isInterleavedBufferAttribute' in attribute ? BufferAttribute : attribute.constructor
-  ) as typeof BufferAttribute;
-  const made = new Class(values, itemSize, normalized);
-  made.name = attribute.name;
-  if (!('isInterleavedBufferAttribute' in attribute)) {
-    made.usage = attribute.usage;
-    made.gpuType = attribute.gpuType;
-  }
-  return made;
+  const Class = attribute.constructor as typeof BufferAttribute;
+  return Object.assign(new Class(values, itemSize, normalized), { name, usage, gpuType });
 }
