@@ -174,10 +174,6 @@ describe('extract', () => {
       cage,
     );
     fails(/cagecast\/three: cage is undefined, not a scene/, target);
-    fails(/cagecast\/three: options is null, not an object/, target, cage, null);
-    fails(/cagecast\/three: options\.texture is "paint\.png", not a Texture/, target, cage, { texture: 'paint.png' });
-    fails(/cagecast\/three: options\.material is an object, not a Material/, target, cage, { material: {} });
-    fails(/cagecast\/three: options\.channel is 7, not 1, 2 or 3/, target, cage, { channel: 7 });
     fails(
       /cagecast\/three: options\.result\.zones is not an array, the target needs \d+; extract it before/,
       target,
@@ -190,6 +186,37 @@ describe('extract', () => {
       result: { ...transfer(scene.cage, { ...scene.target, groups: undefined }), uvs: undefined },
     });
   });
+});
+
+test('wrong options are one error of both calls, which names the function, the option and its value', async () => {
+  const [target, cage] = [meshOf(scene.target), meshOf(scene.cage)];
+  const calls = {
+    applyTransfer: async (options: ApplyOptions) => applyTransfer(target, cage, options),
+    applyTransferAsync: (options: ApplyOptions) => applyTransferAsync(target, cage, options),
+  };
+  const refuses = (fn: keyof typeof calls, options: unknown, reason: string) =>
+    assert.rejects(
+      calls[fn](options as ApplyOptions),
+      { name: 'CagecastError', code: 'badOption', argument: 'options', fn, message: `${fn}: ${reason}` },
+      `${fn}: ${reason}`,
+    );
+  for (const [options, reason] of [
+    [null, 'options is null, not an object'],
+    [7, 'options is 7, not an object'],
+    ['paint.png', 'options is "paint.png", not an object'],
+    [{ texture: 'paint.png' }, 'options.texture is "paint.png", not a Texture'],
+    [{ material: {} }, 'options.material is an object, not a Material'],
+    [{ channel: 7 }, 'options.channel is 7, not 1, 2 or 3'],
+    [{ opacity: 2 }, 'options.opacity is 2, not a number from 0 to 1'],
+    [{ feather: Number.NaN }, 'options.feather is NaN, not a number from 0 to 1'],
+    [{ saved: {} }, 'options.saved is an object, not what deserialize returned'],
+    [{ borders: 'round' }, 'options.borders = "round" is unknown; there are: "triangle", "cut"'],
+  ] as const)
+    for (const fn of Object.keys(calls) as (keyof typeof calls)[]) await refuses(fn, options, reason);
+  await refuses('applyTransferAsync', { signal: 'soon' }, 'options.signal is "soon", not an AbortSignal');
+  await refuses('applyTransferAsync', { signal: {} }, 'options.signal is an object, not an AbortSignal');
+  await refuses('applyTransferAsync', { signal: false }, 'options.signal is false, not an AbortSignal');
+  await refuses('applyTransferAsync', { onProgress: false }, 'options.onProgress is false, not a function');
 });
 
 /** Asserts that a geometry shows the UV and zone of a result at each corner, and is what it was, with copies of vertices at the end. */
@@ -518,11 +545,22 @@ describe('applyTransfer', () => {
     const shader = { uniforms: {} as Record<string, { value: unknown }>, vertexShader: '', fragmentShader: '' };
     (overlays[0]!.material as MeshStandardMaterial).onBeforeCompile(shader as never, undefined as never);
     assert.equal(shader.uniforms['cagecastMap']!.value, red);
-    for (const texture of [green, undefined, red]) {
+    for (const texture of [green, undefined, red, null, red]) {
       setTexture(texture);
       assert.equal(overlays[0]!.parent, texture ? target : null);
       if (texture) assert.equal(shader.uniforms['cagecastMap']!.value, texture);
     }
+  });
+
+  test('a texture or a material that is null is none', () => {
+    const [target, other] = [meshOf(scene.target), new ThreeMesh(geometryOf(scene.target), new MeshNormalMaterial())];
+    const plain = applyTransfer(meshOf(scene.target), meshOf(scene.cage));
+    const bare = applyTransfer(target, meshOf(scene.cage), { texture: null, material: null });
+    assert.equal(bare.splitVertices, plain.splitVertices);
+    assert.ok(!Object.hasOwn(target.material, 'onBeforeCompile'), 'the material is as it was');
+    const painted = applyTransfer(other, meshOf(scene.cage), { texture: new Texture() });
+    applyTransfer(other, meshOf(scene.cage), { texture: null });
+    assert.deepEqual(other.children, painted.overlays);
   });
 
   test('a later transfer takes away the overlays whose paint it replaces', () => {

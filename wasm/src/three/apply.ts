@@ -129,7 +129,7 @@ export function* apply(
   });
   parts.forEach(({ mesh, geometry }, p) => {
     // Earlier overlays show paint, or UVs of a channel, that is overwritten here.
-    const isReplaced = options.material ? givenChannels.get(geometry) === channel : options.texture !== undefined;
+    const isReplaced = options.material ? givenChannels.get(geometry) === channel : options.texture;
     if (mesh && isReplaced) removeOverlays(mesh);
     if (remades[p]) replace(geometry, remades[p]!);
     else disposeOwn(geometry, [`uv${channel}`, zoneAttribute]); // or the GPU buffers of what is replaced here would be left to the garbage collector
@@ -145,7 +145,7 @@ export function* apply(
 
 interface Display {
   painting: Painting;
-  material: Material | undefined;
+  material: Material | null | undefined;
   channel: 1 | 2 | 3;
 }
 
@@ -159,7 +159,7 @@ class Shown implements Applied {
   readonly #target: Extracted['mesh'];
   readonly #shown: ShownPart[];
   readonly #painting: Painting;
-  readonly #material: Material | undefined;
+  readonly #material: Display['material'];
   /** The verdicts of the result. A copy: the caller may overwrite `result` later (`reuse`). */
   readonly #culled: boolean[];
   readonly #copies = new Map<Material, Material>();
@@ -187,7 +187,7 @@ class Shown implements Applied {
     return this.#shown.flatMap(({ overlay }) => overlay ?? []);
   }
 
-  readonly setTexture = (texture: Texture | undefined): void => {
+  readonly setTexture = (texture: Texture | null | undefined): void => {
     if (texture && !texture.isTexture) throw wrong(`${describe(texture)} is not a Texture`, 'setTexture');
     this.#painting.texture = texture;
     this.#show();
@@ -234,11 +234,11 @@ class Shown implements Applied {
   #show(): void {
     if (this.#isDisposed) return;
     const { texture, feather, matrix } = this.#painting;
+    const shown = this.#current;
     if (this.#material) {
-      for (const one of this.#current) showMaterial(one, this.#material);
+      for (const one of shown) showMaterial(one, this.#material);
       return;
     }
-    const shown = this.#current;
     const isShown = shown.every(({ part }) => shownPaintings.get(part.geometry) === this.#painting);
     if (texture && !(this.#hasPaint && isShown)) {
       writePaint(shown, feather, feather > 0 ? diagonal(this.#target.positions) : 1);
@@ -247,7 +247,7 @@ class Shown implements Applied {
     }
     matrix.refresh(this.#painting);
     // Materials without paint for now stay ready for it: to make them what they were, and again, would compile their shaders twice.
-    const paints = texture !== undefined || this.#painted.size > 0;
+    const paints = !!texture || this.#painted.size > 0;
     const painted = new Set(shown.flatMap((one) => showPaint(one, this.#painting, this.#copies, paints)));
     if (paints && shown.length > 0) for (const material of this.#added) painted.add(paintOn(material, this.#painting));
     for (const material of this.#painted) if (!painted.has(material)) unpaint(material, this.#painting);

@@ -91,10 +91,9 @@ export function applyTransfer(
   cage: Object3D | BufferGeometry | undefined,
   options: ApplyOptions = {},
 ): Applied {
-  const call = read('applyTransfer', target, cage, options);
-  const prepared = call.saved ?? prepare(call.input);
-  const applied = atOnce(apply(call.extracted, call.states, prepared, options));
-  return remember(applied, () => ({ key: call.key(), prepared }));
+  checkOptions('applyTransfer', options);
+  const { saved, input, finish } = read('applyTransfer', target, cage, options);
+  return atOnce(finish(saved ?? prepare(input)));
 }
 
 /**
@@ -108,27 +107,28 @@ export function applyTransfer(
 export async function applyTransferAsync(
   target: Object3D | BufferGeometry,
   cage: Object3D | BufferGeometry | undefined,
-  { signal, onProgress, ...options }: ApplyOptions & Calling = {},
+  options: ApplyOptions & Calling = {},
 ): Promise<Applied> {
+  checkOptions('applyTransferAsync', options);
+  const { signal, onProgress, ...others } = options;
   signal?.throwIfAborted();
-  const call = read('applyTransferAsync', target, cage, options);
+  const { saved, input, finish } = read('applyTransferAsync', target, cage, others);
   await nextTask();
   signal?.throwIfAborted();
   onProgress?.(0.05, 'transfer');
-  const prepared = call.saved ?? (await prepareParts(call.input, { signal }));
+  const prepared = saved ?? (await prepareParts(input, { signal }));
   onProgress?.(0.7, 'geometry');
-  const applied = await runInTasks(apply(call.extracted, call.states, prepared, options), signal);
+  const applied = await runInTasks(finish(prepared), signal);
   onProgress?.(1, 'done');
-  return remember(applied, () => ({ key: call.key(), prepared }));
+  return applied;
 }
 
 interface Call {
-  extracted: Extracted;
-  states: BufferGeometry[];
   /** What was prepared earlier. */
   saved: Prepared | undefined;
   input: PrepareInput;
-  key: () => string;
+  /** Applies what was prepared, as `apply`. */
+  finish(prepared: Prepared): Generator<void, Applied>;
 }
 
 function read(
@@ -137,7 +137,6 @@ function read(
   cage: Object3D | BufferGeometry | undefined,
   options: ApplyOptions,
 ): Call {
-  checkOptions(options);
   const cuts = isCut(fn, options.borders);
   const extracted = extract(target);
   const { saved, result } = options;
@@ -145,9 +144,8 @@ function read(
   const needsCage = !saved && (cuts || !result);
   const around = needsCage ? extract(cage!, 'cage').mesh : undefined;
   if (result) checkResult(result, extracted);
+  const states = statesOf(extracted);
   return {
-    extracted,
-    states: statesOf(extracted),
     saved: saved && checkSaved(saved, extracted),
     input: {
       cage: around,
@@ -156,9 +154,12 @@ function read(
       options: rules,
       result,
       cuts,
-      paints: options.texture !== undefined && options.material === undefined,
+      paints: !!options.texture && !options.material,
     },
-    key: () => saved?.key ?? keyOf(extracted, around, rules, cuts),
+    *finish(prepared) {
+      const applied = yield* apply(extracted, states, prepared, options);
+      return remember(applied, () => ({ key: saved?.key ?? keyOf(extracted, around, rules, cuts), prepared }));
+    },
   };
 }
 
@@ -168,9 +169,9 @@ function checkResult(result: TransferResult, { mesh }: Extracted): void {
     zones: vertices,
     cosmeticTriangles: triangles,
     uvs: 2 * vertices,
-    cornerUvs: result?.cornerUvs?.length === 0 ? 0 : 6 * triangles,
+    cornerUvs: result.cornerUvs?.length === 0 ? 0 : 6 * triangles,
     segments: vertices,
-    segmentStats: result?.segmentStats?.length ?? 1,
+    segmentStats: result.segmentStats?.length ?? 1,
   };
   checkLengths('options.result', result, lengths, '; extract it before vertices are split');
 }

@@ -26,7 +26,7 @@ export interface ModelMasks {
  * applyTransfer(scan.scene, cage.scene, { texture: paint, masks: modelMasks(scan.scene, { never: eyes }) });
  */
 export function modelMasks(target: Object3D | BufferGeometry, options: ModelMasks): Masks {
-  checkObject(options, 'modelMasks');
+  checkObject('modelMasks', options);
   const { never, always, attribute, ...others } = options;
   for (const name in others)
     throw wrong(`options.${name} is not an option; there are: never, always, attribute`, 'modelMasks', 'badOption');

@@ -1,6 +1,7 @@
 import type { Material, Mesh, Texture } from 'three';
 import type { Classification, TransferOptions, TransferResult } from '../index.js';
 import type { Borders } from '../parts/borders-option.js';
+import type { Calling } from './async.js';
 import { describe } from './describe.js';
 import { wrong } from './error.js';
 import type { Part } from './extract.js';
@@ -16,7 +17,7 @@ export interface ApplyOptions extends TransferOptions {
    * The paint, in the cage's UV space, mixed into the colour of the cosmetic triangles before they are lit. It is read, never
    * changed: its offset, repeat and rotation apply, its `channel` does not. Set its `flipY` to false, as for all textures of glTF.
    */
-  texture?: Texture | undefined;
+  texture?: Texture | null | undefined;
   /** How much of the paint shows, 0 to 1. Default: 1. */
   opacity?: number | undefined;
   /**
@@ -28,7 +29,7 @@ export interface ApplyOptions extends TransferOptions {
    * A material to show on the cosmetic triangles instead of paint, as an overlay: a second mesh for each part. It finds the UVs in
    * the channel that `Applied` names.
    */
-  material?: Material | undefined;
+  material?: Material | null | undefined;
   /**
    * The channel of the new UVs, 1 to 3: the attribute `uv1`, `uv2` or `uv3`, which is overwritten. Default: the lowest that no
    * geometry uses already.
@@ -67,7 +68,7 @@ export interface Applied {
    * Shows another texture, or none, in the next frame. At no cost, but for the first texture since an `applyTransfer` or `update`
    * without one: it costs about as much as `update`, and shaders are compiled for it.
    */
-  setTexture(texture: Texture | undefined): void;
+  setTexture(texture: Texture | null | undefined): void;
   /** Changes how much of the paint shows, 0 to 1. In the next frame, at no cost. */
   setOpacity(opacity: number): void;
   /**
@@ -92,24 +93,28 @@ export interface Applied {
 }
 
 /** @throws {CagecastError} `badOption` */
-function check(fits: unknown, name: string, value: unknown, what: string, fn?: string): void {
-  if (!fits) throw wrong(`options${name} is ${describe(value)}, not ${what}`, fn, 'badOption');
+export function checkObject(fn: string, options: unknown): void {
+  if (typeof options !== 'object' || !options)
+    throw wrong(`options is ${describe(options)}, not an object`, fn, 'badOption');
 }
 
-/** @throws {CagecastError} `badOption` */
-export const checkObject = (options: unknown, fn?: string): void =>
-  check(typeof options === 'object' && options, '', options, 'an object', fn);
-
-/** @throws {CagecastError} `badOption` that names the option and its value. */
-export function checkOptions(options: ApplyOptions): void {
-  checkObject(options);
-  const { texture, material, channel = 1, opacity = 1, feather = 0, saved } = options;
-  check(!texture || texture.isTexture, '.texture', texture, 'a Texture');
-  check(!material || material.isMaterial, '.material', material, 'a Material');
-  check([1, 2, 3].includes(channel), '.channel', channel, '1, 2 or 3');
-  check(opacity >= 0 && opacity <= 1, '.opacity', opacity, 'a number from 0 to 1');
-  check(feather >= 0 && feather <= 1, '.feather', feather, 'a number from 0 to 1');
-  check(!saved || typeof saved.key === 'string', '.saved', saved, 'what deserialize returned');
+/** @throws {CagecastError} `badOption` that names the function, the option and its value. */
+export function checkOptions(fn: string, options: ApplyOptions & Calling): void {
+  checkObject(fn, options);
+  const check = (name: keyof typeof options, fits: unknown, what: string): void => {
+    if (!fits) throw wrong(`options.${name} is ${describe(options[name])}, not ${what}`, fn, 'badOption');
+  };
+  const { texture, material, channel = 1, saved, signal, onProgress } = options;
+  check('texture', !texture || texture.isTexture, 'a Texture');
+  check('material', !material || material.isMaterial, 'a Material');
+  check('channel', [1, 2, 3].includes(channel), '1, 2 or 3');
+  for (const name of ['opacity', 'feather'] as const) {
+    const share = options[name] ?? 1;
+    check(name, share >= 0 && share <= 1, 'a number from 0 to 1');
+  }
+  check('saved', !saved || typeof saved.key === 'string', 'what deserialize returned');
+  check('signal', signal == null || signal.throwIfAborted, 'an AbortSignal');
+  check('onProgress', onProgress == null || typeof onProgress === 'function', 'a function');
 }
 
 /** The options of `transfer` among those of `applyTransfer`. */

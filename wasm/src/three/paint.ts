@@ -11,7 +11,7 @@ export const paintAttribute = '_cagecast_paint';
 
 /** The paint of a model, as its materials read it: every change shows in the next frame. */
 export interface Paint {
-  texture: Texture | undefined;
+  texture: Texture | null | undefined;
   /** 0 to 1. */
   opacity: number;
   /** The width of the soft border, in the unit of the attribute's distances. */
@@ -90,15 +90,14 @@ export function addPaint(shader: Shader, uniforms: PaintUniforms, alone: boolean
   // Another copy of this module may have added its own: this paint came later.
   Object.assign(shader.uniforms, uniforms);
   if (shader.vertexShader.includes(kVertex)) return;
-  shader.vertexShader =
-    kVertex + shader.vertexShader.replace(kMain, (main) => `${main}\n  vCagecastPaint = ${paintAttribute};\n`);
+  shader.vertexShader = kVertex + shader.vertexShader.replace(kMain, `$&\n  vCagecastPaint = ${paintAttribute};\n`);
   if (!asks(shader.fragmentShader)) {
     const mixed = alone
       ? 'vec4 cagecastAlone = cagecastTexel();\n  diffuseColor = vec4(cagecastAlone.rgb, cagecastAlone.a * diffuseColor.a);'
       : 'diffuseColor.rgb = cagecastPaint(diffuseColor.rgb);';
     shader.fragmentShader = shader.fragmentShader
-      .replace(kColorKnown, (line) => `  ${mixed}\n${line}`)
-      .replace(kShadeKnown, (line) => `${kPaintShade}${line}`);
+      .replace(kColorKnown, `  ${mixed}\n$&`)
+      .replace(kShadeKnown, `${kPaintShade}$&`);
   }
   shader.fragmentShader = kFragment + shader.fragmentShader;
 }

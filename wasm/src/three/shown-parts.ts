@@ -141,7 +141,7 @@ export function showPaint(
   // Three.js draws nothing where a list of materials has a gap.
   const materials: (Material | undefined)[] = [mesh.material].flat();
   const isBlind = materials.map((material) => material !== undefined && !canBePainted(material));
-  const needsOverlay = hasPaint && painting.texture !== undefined && isBlind.includes(true);
+  const needsOverlay = hasPaint && painting.texture && isBlind.includes(true);
   if (needsOverlay) {
     shown.overlay ??= makeOverlay(shown.part, mesh, overlayMaterial(materials[isBlind.indexOf(true)]!));
     // Each time, for the texture may be another.
