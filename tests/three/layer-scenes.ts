@@ -597,6 +597,33 @@ export const layerScenes: Record<string, () => unknown> = {
     return left;
   },
 
+  /** The `touch-action` of an element that painters listen to, after one of them has ended or begun. */
+  touchActions() {
+    const layers = createLayers({ renderer, size: 256 });
+    const [first, second] = [1, 2].map(() => createPainter({ layers, applied: [], cage: cage() })) as [
+      Painter,
+      Painter,
+    ];
+    const element = document.createElement('div');
+    element.style.touchAction = 'pan-y';
+    const stops = [first, second].map((painter) => painter.listen(camera, element)) as [() => void, () => void];
+    const after = (run: () => unknown): string => {
+      run();
+      return element.style.touchAction;
+    };
+    const ended = [stops[0], stops[0], () => second.dispose()].map(after);
+    element.style.touchAction = 'auto'; // by another
+    const late = [
+      stops[1],
+      () => second.dispose(),
+      () => second.listen(camera, element),
+      () => second.listen(camera, element)(),
+    ].map(after);
+    const again = [() => first.listen(camera, element), () => first.dispose()].map(after);
+    layers.dispose();
+    return { ended, late, again };
+  },
+
   /** A part in front of another one that is taken out of the model. */
   removedPart() {
     const [head, hair] = [new Mesh(ball(0.8), white()), new Mesh(ball(), white())];

@@ -621,6 +621,14 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     assert.deepEqual(await run('followers'), [1, 0]);
   });
 
+  test('painters that listen to one element leave it as it was once the last has ended; none begins when disposed of', async () => {
+    assert.deepEqual(await run('touchActions'), {
+      ended: ['none', 'none', 'pan-y'],
+      late: ['auto', 'auto', 'auto', 'auto'],
+      again: ['none', 'auto'],
+    });
+  });
+
   test('a part that was taken out of a model in a scene is not picked', async () => {
     assert.deepEqual(await run('removedPart'), [true, true, true]);
   });

@@ -2,6 +2,7 @@ import { NoColorSpace, type Texture, type WebGLRenderer, WebGLRenderTarget } fro
 import { Pass } from './pass.js';
 import { kWhole, toTexels } from './rect.js';
 
+// Bilinear, but not by `texture`: with anisotropic filtering, some drivers blur even what has the same size.
 const kShader = /* glsl */ `
 uniform sampler2D source;
 uniform int level;
@@ -17,7 +18,6 @@ vec3 encode(vec3 linear) {
 }
 
 void main() {
-  // Bilinear. Not by \`texture\`: with anisotropic filtering, some drivers blur even what has the same size.
   vec2 at = gl_FragCoord.xy / size * vec2(textureSize(source, level)) - 0.5;
   ivec2 least = ivec2(floor(at));
   vec4 lower = mix(texel(least), texel(least + ivec2(1, 0)), at.x - float(least.x));

@@ -15,8 +15,9 @@ import {
 import { drawerOf, drawTo, type Rect, toTexels } from '../gpu/index.js';
 import { fillShader } from './stroke-shaders.js';
 
+// `position` is a UV.
 const kVertexShader = /* glsl */ `
-in vec2 position; // a UV
+in vec2 position;
 uniform vec2 offset;
 void main() { gl_Position = vec4(2.0 * (position + offset) - 1.0, 0.0, 1.0); }
 `;

@@ -76,6 +76,7 @@ export class Painter {
   readonly #sheet = new StickerSheet();
   readonly #stops = new Set<() => void>();
   readonly #unfollow: () => void;
+  #isDisposed = false;
 
   constructor({ layers, renderer, texture, applied, cage, size } = {} as PainterOptions) {
     this.#models = [applied].flat();
@@ -181,6 +182,7 @@ export class Painter {
    * @returns a function that ends it.
    */
   listen(camera: Camera, element = this.#canvas): () => void {
+    if (this.#isDisposed) return () => {};
     const stop = listenTo(element, (event) => {
       try {
         return this.#drag(event, camera);
@@ -198,6 +200,7 @@ export class Painter {
 
   /** Frees what is its own, and paints no more. The layers stay, with what was painted. */
   dispose(): void {
+    this.#isDisposed = true;
     for (const stop of this.#stops) stop();
     this.#painter.dispose();
     this.#sheet.dispose();

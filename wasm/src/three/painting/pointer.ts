@@ -5,6 +5,9 @@ export interface Drag {
   cancel(): void;
 }
 
+/** For each element how many listen to it, and its `touch-action` before the first of them. */
+const listening = new WeakMap<HTMLElement, { count: number; touchAction: string }>();
+
 /** That the pointer of an event comes down where that was. */
 function downAt(event: PointerEvent): PointerEvent {
   const { pointerId, pointerType, isPrimary, clientX, clientY, view } = event;
@@ -15,7 +18,7 @@ function downAt(event: PointerEvent): PointerEvent {
 /**
  * Passes the pointers on an element to what `begin` makes of them.
  * @param begin  Undefined leaves the pointer to others.
- * @returns a function that ends it.
+ * @returns a function that ends it; the element has its `touch-action` again once none listens.
  */
 export function listenTo(element: HTMLElement, begin: (event: PointerEvent) => Drag | undefined): () => void {
   let drag: Drag | undefined;
@@ -62,12 +65,20 @@ export function listenTo(element: HTMLElement, begin: (event: PointerEvent) => D
   const listeners = { pointerdown: down, pointermove: move, pointerup: up, pointercancel: up };
   const entries = Object.entries(listeners) as [keyof typeof listeners, (event: PointerEvent) => void][];
   // First of all, so that others do not see what paints.
-  for (const [type, listener] of entries) element.addEventListener(type, listener, { capture: true });
-  const { touchAction } = element.style;
-  element.style.touchAction = 'none';
+  const ended = new AbortController();
+  const { signal } = ended;
+  for (const [type, listener] of entries) element.addEventListener(type, listener, { capture: true, signal });
+  const { style } = element;
+  const shared = listening.get(element) ?? { count: 0, touchAction: style.touchAction };
+  listening.set(element, shared);
+  ++shared.count;
+  style.touchAction = 'none';
   return () => {
+    if (signal.aborted) return;
+    ended.abort();
     finish('cancel');
-    for (const [type, listener] of entries) element.removeEventListener(type, listener, { capture: true });
-    element.style.touchAction = touchAction;
+    if (--shared.count > 0) return;
+    listening.delete(element);
+    style.touchAction = shared.touchAction;
   };
 }

@@ -33,16 +33,17 @@ bool surfacePoint(out vec3 point, out vec3 normal) {
 }
 `;
 
+// `radii` are those at both ends, `fade` is the least width of the edge.
 export const brushShader = (size: number): string => /* glsl */ `
 ${surfacePointShader(size)}
 uniform vec3 from[${kMostCapsules}];
 uniform vec3 to[${kMostCapsules}];
 uniform vec3 fromNormal[${kMostCapsules}];
 uniform vec3 toNormal[${kMostCapsules}];
-uniform vec2 radii[${kMostCapsules}]; // at both ends
+uniform vec2 radii[${kMostCapsules}];
 uniform int count;
 uniform float hardness;
-uniform float fade; // the least width of the edge
+uniform float fade;
 uniform vec3 paint;
 out vec4 color;
 
@@ -64,8 +65,8 @@ void main() {
 `;
 
 // `pitch` is the length of a texel in space, `texel` the same in texels of the picture. What faces away or lies far behind is left out: it
-// is another surface that happens to be underneath. Each texel takes several samples, as one of a smaller level would blur thin lines, and
-// be jagged in the narrow direction of a long text.
+// is another surface that happens to be underneath. Each texel takes `kSamples` samples a side, as one of a smaller level would blur thin
+// lines, and be jagged in the narrow direction of a long text.
 export const stickerShader = (size: number): string => /* glsl */ `
 ${surfacePointShader(size)}
 uniform sampler2D picture;
@@ -77,7 +78,7 @@ uniform vec2 extent;
 uniform float pitch;
 uniform float texel;
 uniform float opacity;
-const int kSamples = 4; // per side of a texel
+const int kSamples = 4;
 out vec4 color;
 
 void main() {
