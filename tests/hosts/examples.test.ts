@@ -661,8 +661,10 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
 
   test('says that the graphics context is lost, and draws again once it is back', async () => {
     const before = await picture();
-    // It cannot be restored before the event has ended.
+    // It cannot be restored before the event has ended. What waits for a second or more waits until it is let go.
     await page.evaluate(`
+      globalThis.waiting = [];
+      globalThis.setTimeout = ((set) => (run, time = 0) => (time < 1000 ? set(run, time) : waiting.push(run)))(setTimeout);
       globalThis.event = (name) => new Promise((done) => part('canvas').addEventListener(name, () => setTimeout(done), { once: true }));
       globalThis.extension = part('canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
       told.length = 0;
@@ -680,6 +682,60 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.equal(await alert.count(), 0);
     await seen(page);
     assert.deepEqual(await picture(), before);
+    assert.equal(await page.evaluate('told.length = 0; for (const run of waiting.splice(0)) run(); told.length'), 0);
+    assert.deepEqual(await picture(), before);
+  });
+
+  test('is loaded again where it stays in view and its context does not come back, once; then when it is seen again', async () => {
+    const before = await picture();
+    const told = await page.evaluate<string[]>(`(async () => {
+      const stop = async () => {
+        told.length = 0;
+        const lost = event('webglcontextlost');
+        part('canvas').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext();
+        await lost;
+      };
+      const goOn = () => { for (const run of waiting.splice(0)) run(); };
+      const loaded = async () => { for (let i = 0; i < 3000 && !told.includes('load'); ++i) await new Promise((done) => setTimeout(done, 20)); };
+      const frames = async () => { for (let i = 0; i < 2; ++i) await new Promise((done) => requestAnimationFrame(() => setTimeout(done))); };
+      const kinds = () => told.map((text) => text.split(' ')[0]).join();
+      const shows = async (isShown) => {
+        Object.defineProperty(document, 'hidden', { value: !isShown, configurable: true });
+        document.dispatchEvent(new Event('visibilitychange'));
+        await frames();
+      };
+      const seen = [];
+      await stop();
+      goOn();
+      await loaded();
+      await frames();
+      seen.push('stays in view: ' + kinds());
+      await stop();
+      goOn();
+      await frames();
+      seen.push('again: ' + kinds());
+      told.length = 0;
+      await shows(false);
+      await shows(true);
+      await loaded();
+      seen.push('the page is shown again: ' + kinds());
+      await shows(false);
+      await stop();
+      goOn();
+      await frames();
+      seen.push('hidden: ' + kinds());
+      await shows(true);
+      await loaded();
+      delete document.hidden;
+      return seen;
+    })()`);
+    assert.deepEqual(told, [
+      'stays in view: error,load',
+      'again: error',
+      'the page is shown again: load',
+      'hidden: error',
+    ]);
+    assertSameModel(await picture(), before);
   });
 
   test('says that the page has more 3D views than the browser allows, and draws again when it is put in anew', async () => {

@@ -23,6 +23,9 @@ const kOfTransfer = ['target', 'cage', 'preset', 'threshold', 'borders', 'feathe
 const kLost =
   'cagecast-viewer: the browser has stopped this 3D view, as the page has more of them than it allows (16 in Chromium) or the graphics were reset';
 
+/** Milliseconds in which a browser may give a graphics context back by itself. */
+const kPatience = 3000;
+
 const kStyle = `
   :host { display: block; position: relative; width: 300px; height: 300px; }
   :host([hidden]) { display: none; }
@@ -57,6 +60,9 @@ interface Shown {
  * Events: `progress` (`detail: { share, stage }`), `load`, `verdict` (`detail`: `Check`), `error` (`detail`: the `Error`, which the
  * element shows too). Arrow keys turn the model, + and - zoom, Home goes back. When it is removed from the page, it frees all it has.
  *
+ * One that the browser has stopped, as the page has too many 3D views, says so. It is loaded again 3 seconds later if it is in view
+ * then, once; and whenever it comes into view or the page is shown again.
+ *
  * In a page with a Content-Security-Policy: `script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self' blob:`.
  */
 export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknown as typeof HTMLElement)) {
@@ -72,6 +78,8 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   /** Whether the error that is shown is about the opacity or the camera. */
   #hasBadAppearance = false;
   #stage: Stage | undefined;
+  /** Whether it was loaded again though it was seen all the time: more than once, and elements that are too many would never rest. */
+  #isRestarted = false;
   #shown: Shown | undefined;
   #orbit = defaultOrbit;
   /** Whether the attributes name another model than the one that is shown, which could not be loaded, or not yet. */
@@ -230,7 +238,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       this.#stage ??= new Stage(
         this.#canvas,
         () => this.#tellLost(),
-        () => this.#restart(),
+        () => this.#onSight(),
       );
       await work(loading.signal);
       loading.signal.throwIfAborted();
@@ -248,7 +256,20 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     const isLost = this.#stage!.isLost;
     this.#lost.textContent = kLost;
     this.#lost.hidden = !isLost;
-    if (isLost) this.#tell('error', new Error(kLost));
+    if (!isLost) return;
+    this.#tell('error', new Error(kLost));
+    setTimeout(() => {
+      if (!this.#stage?.isLost || !this.#stage.isSeen || this.#isRestarted) return;
+      this.#isRestarted = true;
+      this.#restart();
+    }, kPatience);
+  }
+
+  #onSight(): void {
+    const stage = this.#stage;
+    if (!stage?.isSeen) this.#isRestarted = false;
+    else if (stage.isLost) this.#restart();
+    else stage.draw(); // browsers take the context that was drawn longest ago
   }
 
   #fail(error: unknown): void {

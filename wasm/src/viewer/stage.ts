@@ -41,13 +41,14 @@ export class Stage {
   #orbit = defaultOrbit;
   #model: Object3D | undefined;
   #frame = 0;
+  #isInView = false;
 
   /**
    * @param onContext  Is told when the browser has taken the graphics context away, and when it is back.
-   * @param onLostView Is told when the canvas comes into view without a graphics context.
+   * @param onSight    Is told when it is seen, or no more: when the canvas comes into view, or the page is shown.
    * @throws Error if the host cannot draw.
    */
-  constructor(canvas: HTMLCanvasElement, onContext: () => void, onLostView: () => void) {
+  constructor(canvas: HTMLCanvasElement, onContext: () => void, onSight: () => void) {
     this.#canvas = canvas;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     const sun = new DirectionalLight(0xffffff, 2);
@@ -65,10 +66,10 @@ export class Stage {
     this.#sizes = new ResizeObserver(() => this.#resize());
     this.#sizes.observe(canvas);
     this.#views = new IntersectionObserver((changes) => {
-      if (!changes.at(-1)!.isIntersecting) return;
-      if (this.isLost) onLostView();
-      else this.draw(); // browsers take the context that was drawn longest ago
+      this.#isInView = changes.at(-1)!.isIntersecting;
+      onSight();
     });
+    canvas.ownerDocument.addEventListener('visibilitychange', onSight, { signal });
     this.#views.observe(canvas);
     this.#watchRatio();
     this.#camera.aspect = canvas.width / canvas.height; // of an element that is not shown yet
@@ -78,6 +79,11 @@ export class Stage {
   /** Whether the browser has taken the graphics context away. */
   get isLost(): boolean {
     return this.#renderer.getContext().isContextLost();
+  }
+
+  /** Whether the canvas is in view, on a page that is shown. */
+  get isSeen(): boolean {
+    return this.#isInView && !this.#canvas.ownerDocument.hidden;
   }
 
   /** Shows a model instead of the one before, from where `orbit` says; without it, the same one again, from where the camera is. */
