@@ -3,7 +3,7 @@ import { before, describe, test } from 'node:test';
 import { setFlagsFromString } from 'node:v8';
 import { CagecastError, classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
 import { type ApplyOptions, applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
-import { Edits, History, LayerStack } from 'cagecast/three/layers';
+import { createLayers, Edits, History, LayerStack } from 'cagecast/three/layers';
 import { terminate } from 'cagecast/worker';
 import {
   BatchedMesh,
@@ -18,6 +18,7 @@ import {
   InstancedMesh,
   InterleavedBuffer,
   InterleavedBufferAttribute,
+  type Matrix3,
   Matrix4,
   MeshNormalMaterial,
   MeshStandardMaterial,
@@ -1092,6 +1093,81 @@ describe('applyTransferAsync', () => {
     assert.ok(geometry.hasAttribute('uv2') && !geometry.hasAttribute('uv1'));
     for (const one of Object.values(geometry.attributes)) assert.equal(one.count, heat.count);
     terminate();
+  });
+});
+
+/** Bytes that a call allocates once it is compiled, as the median of several rounds, for garbage may be collected in one. */
+function allocatedBy(call: () => void): number {
+  const calls = 2000;
+  for (let i = 0; i < 100 * calls; ++i) call();
+  const rounds = Array.from({ length: 9 }, () => {
+    const before = process.memoryUsage().heapUsed;
+    for (let i = 0; i < calls; ++i) call();
+    return (process.memoryUsage().heapUsed - before) / calls;
+  });
+  return rounds.sort((a, b) => a - b)[4]!;
+}
+
+describe('a frame', () => {
+  const frame = { frame: 0 };
+  const gl = new Proxy({}, { get: () => () => undefined });
+  const nothing = (): void => {};
+  const canvas = new EventTarget();
+  const renderer = {
+    info: { render: frame },
+    domElement: canvas,
+    xr: {},
+    properties: { get: () => ({}) },
+    state: { bindFramebuffer: nothing, setScissorTest: nothing },
+    getContext: () => gl,
+    getRenderTarget: () => null,
+    getActiveCubeFace: () => 0,
+    getActiveMipmapLevel: () => 0,
+    setRenderTarget: nothing,
+    render: nothing,
+  } as unknown as WebGLRenderer;
+
+  for (const matrixAutoUpdate of [true, false])
+    test(`allocates nothing for paint (matrixAutoUpdate: ${matrixAutoUpdate})`, () => {
+      const target = meshOf(scene.target);
+      const texture = Object.assign(new Texture(), { matrixAutoUpdate });
+      texture.offset.set(0.25, 0.5);
+      applyTransfer(target, meshOf(scene.cage), { texture });
+      const { material } = target;
+      const shader = { uniforms: {} as Record<string, { value: Matrix3 }>, vertexShader: '', fragmentShader: '' };
+      material.onBeforeCompile(shader as never, undefined as never);
+      const draw = () => {
+        ++frame.frame;
+        (material.onBeforeRender as (renderer: WebGLRenderer) => void)(renderer);
+      };
+      const bytes = allocatedBy(draw);
+      assert.ok(bytes < 16, `${bytes} bytes`);
+      const x = () => shader.uniforms['cagecastMatrix']!.value.elements[6];
+      assert.equal(x(), matrixAutoUpdate ? 0.25 : 0);
+      // The matrix is the caller's, and may change at any time.
+      texture.matrixAutoUpdate = false;
+      texture.matrix.makeTranslation(0.75, 0);
+      draw();
+      assert.equal(x(), 0.75);
+      texture.matrixAutoUpdate = true;
+      draw();
+      assert.equal(x(), 0.25);
+    });
+
+  test('allocates nothing for layers that have not changed', () => {
+    const layers = createLayers({ renderer });
+    const textures = [1, 2, 3].map(() => new Texture());
+    for (const texture of textures) layers.add(texture);
+    assert.deepEqual([layers.update(), layers.update()], [true, false]);
+    const bytes = allocatedBy(() => layers.update());
+    assert.ok(bytes < 16, `${bytes} bytes`);
+    for (const texture of textures) {
+      texture.needsUpdate = true;
+      assert.deepEqual([layers.update(), layers.update()], [true, false]);
+    }
+    layers.remove(layers.list[0]!);
+    assert.deepEqual([layers.update(), layers.update()], [true, false]);
+    layers.dispose();
   });
 });
 

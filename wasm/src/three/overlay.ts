@@ -133,8 +133,7 @@ export function removeOverlay(overlay: Mesh): void {
   const { geometry } = overlay;
   overlay.removeFromParent();
   disposeOwn(geometry);
-  for (const name of Object.keys(geometry.attributes)) geometry.deleteAttribute(name);
-  geometry.morphAttributes = {};
+  Object.assign(geometry, { attributes: {}, morphAttributes: {} });
 }
 
 /** Takes away the overlays that earlier transfers have given to a mesh. */

@@ -107,7 +107,8 @@ export function addPaint(shader: Shader, uniforms: PaintUniforms, alone: boolean
  * so it is made again only if something has changed.
  */
 export class PaintMatrix extends Matrix3 {
-  #made: readonly unknown[] = [];
+  /** What it was made of; undefined where the caller sets the matrix, which may change at any time. */
+  #made: readonly unknown[] | undefined;
 
   refresh(paint: Paint): void {
     const { texture } = paint;
@@ -115,9 +116,9 @@ export class PaintMatrix extends Matrix3 {
     const { offset, repeat, center, rotation, matrixAutoUpdate } = texture;
     const { opacity, feather } = paint;
     const m = this.#made;
-    // A matrix that the caller sets may change at any time.
     const isSame =
       matrixAutoUpdate &&
+      m &&
       m[0] === texture &&
       m[1] === opacity &&
       m[2] === feather &&
@@ -129,8 +130,11 @@ export class PaintMatrix extends Matrix3 {
       m[8] === center.x &&
       m[9] === center.y;
     if (isSame) return;
-    this.#made = [texture, opacity, feather, rotation, offset.x, offset.y, repeat.x, repeat.y, center.x, center.y];
-    if (matrixAutoUpdate) texture.updateMatrix();
+    this.#made = undefined;
+    if (matrixAutoUpdate) {
+      this.#made = [texture, opacity, feather, rotation, offset.x, offset.y, repeat.x, repeat.y, center.x, center.y];
+      texture.updateMatrix();
+    }
     const { elements } = this.copy(texture.matrix);
     elements[2] = opacity;
     elements[5] = feather;

@@ -64,8 +64,8 @@ export class Composite {
   #below: WebGLRenderTarget | undefined;
   readonly #size: number | undefined;
   #layers: readonly Layer[] = [];
-  /** Versions of the textures that were drawn. */
-  #drawn: readonly number[] = [];
+  /** Versions of the textures that were drawn, by layer. */
+  readonly #drawn: number[] = [];
   #stroke: ActiveStroke | undefined;
   /** The sheet of the last stroke: the next stroke is likely to use it, and its shader. */
   #strokeSheet: Sheet | undefined;
@@ -107,9 +107,12 @@ export class Composite {
 
   /** Redraws what changed, including textures with `needsUpdate`. @returns Whether anything did. */
   update(renderer: WebGLRenderer): boolean {
-    const versions = this.#layers.map(({ sheet }) => sheet.texture.version);
-    if (versions.some((version, index) => version !== this.#drawn[index])) this.#stale = [kWhole];
-    this.#drawn = versions;
+    // In each frame, so nothing is allocated here.
+    for (let i = 0; i < this.#layers.length; ++i) {
+      const { version } = this.#layers[i]!.sheet.texture;
+      if (version !== this.#drawn[i]) this.#stale = [kWhole];
+      this.#drawn[i] = version;
+    }
     if (this.#stale.length === 0) return false;
     const isLarge = this.#layers.some(({ sheet }) => Math.max(...sidesOf(sheet.texture)) > kLeastSize);
     const size = this.#size ?? (isLarge ? maxCompositeSize : kLeastSize);
