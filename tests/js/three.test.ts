@@ -4,6 +4,7 @@ import { setFlagsFromString } from 'node:v8';
 import { CagecastError, classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
 import { type ApplyOptions, applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
 import { createLayers, Edits, History, LayerStack } from 'cagecast/three/layers';
+import { createPainter } from 'cagecast/three/paint';
 import { terminate } from 'cagecast/worker';
 import {
   BatchedMesh,
@@ -1108,25 +1109,25 @@ function allocatedBy(call: () => void): number {
   return rounds.sort((a, b) => a - b)[4]!;
 }
 
-describe('a frame', () => {
-  const frame = { frame: 0 };
-  const gl = new Proxy({}, { get: () => () => undefined });
-  const nothing = (): void => {};
-  const canvas = new EventTarget();
-  const renderer = {
-    info: { render: frame },
-    domElement: canvas,
-    xr: {},
-    properties: { get: () => ({}) },
-    state: { bindFramebuffer: nothing, setScissorTest: nothing },
-    getContext: () => gl,
-    getRenderTarget: () => null,
-    getActiveCubeFace: () => 0,
-    getActiveMipmapLevel: () => 0,
-    setRenderTarget: nothing,
-    render: nothing,
-  } as unknown as WebGLRenderer;
+const frame = { frame: 0 };
+const gl = new Proxy({}, { get: () => () => undefined });
+const nothing = (): void => {};
+/** Draws nothing. */
+const renderer = {
+  info: { render: frame },
+  domElement: new EventTarget(),
+  xr: {},
+  properties: { get: () => ({}) },
+  state: { bindFramebuffer: nothing, setScissorTest: nothing },
+  getContext: () => gl,
+  getRenderTarget: () => null,
+  getActiveCubeFace: () => 0,
+  getActiveMipmapLevel: () => 0,
+  setRenderTarget: nothing,
+  render: nothing,
+} as unknown as WebGLRenderer;
 
+describe('a frame', () => {
   for (const matrixAutoUpdate of [true, false])
     test(`allocates nothing for paint (matrixAutoUpdate: ${matrixAutoUpdate})`, () => {
       const target = meshOf(scene.target);
@@ -1196,5 +1197,25 @@ describe('layers', () => {
     stack.setBase('newer', sheet);
     history.undo();
     assert.deepEqual(state(), ['newer', ['newer', 'third']]);
+  });
+
+  test('options of layers and painters that are null are told, and change nothing', () => {
+    const layers = createLayers({ renderer });
+    const layer = layers.add(new Texture());
+    const wrong = null as never;
+    for (const [call, code, message] of [
+      [() => createLayers(wrong), 'badArgument', 'cagecast/three/layers: options.renderer is not a WebGLRenderer'],
+      [() => layers.add(new Texture(), wrong), 'badOption', 'cagecast/three/layers: style is null, not an object'],
+      [() => layers.set(layer, wrong), 'badOption', 'cagecast/three/layers: style is null, not an object'],
+      [
+        () => createPainter(wrong),
+        'badArgument',
+        'cagecast/three/paint: options.applied is not what applyTransfer returned',
+      ],
+    ] as const)
+      assert.throws(call, { name: 'CagecastError', code, message }, message);
+    assert.deepEqual(layers.list, [layer]);
+    assert.equal(layers.undo(), 'adding Layer 1');
+    layers.dispose();
   });
 });

@@ -39,6 +39,7 @@ export function readStyle(style: Partial<Style>): Partial<Style> {
     if (!fits)
       throw new CagecastError('badOption', 'cagecast/three/layers', `${name} is ${describe(value)}, not ${what}`);
   };
+  check(typeof style === 'object' && !!style, 'style', style, 'an object');
   const { opacity = 1, tint = '#ffffff', blend = 'normal', visible = true } = style;
   check(opacity >= 0 && opacity <= 1, 'opacity', opacity, 'a number from 0 to 1');
   check(/^#[0-9a-f]{6}$/i.test(tint), 'tint', tint, 'a colour such as #ff8800');

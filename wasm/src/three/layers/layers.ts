@@ -10,6 +10,7 @@ import { LayerStack } from './stack.js';
 
 /** Options of `createLayers`. */
 export interface LayersOptions {
+  /** Draws the texture; the models that show it have to be drawn by the same one. */
   renderer: WebGLRenderer;
   /** Texels per side of the texture: 256, 512, 1024 or 2048. Default: 1024, or 2048 where a layer is larger than 1024. */
   size?: (typeof kSizes)[number] | undefined;
@@ -21,7 +22,7 @@ const kSizes = [256, 512, 1024, maxCompositeSize] as const;
 export interface NewLayer extends Partial<Style> {
   /** For people, also in the undo history. Default: the texture's name. */
   name?: string | undefined;
-  /** From 0, the lowest. Default: on top. */
+  /** From 0, the lowest, an integer; what is out of range is clamped. Default: on top. */
   place?: number | undefined;
 }
 
@@ -44,8 +45,9 @@ export class Layers extends Emitter<{
     this.announce();
   };
 
-  constructor({ renderer, size } = {} as LayersOptions) {
+  constructor(options: LayersOptions) {
     super();
+    const { renderer, size } = options ?? {};
     // Other renderers have no such map.
     if (typeof renderer?.properties?.get !== 'function')
       throw new CagecastError('badArgument', 'cagecast/three/layers', 'options.renderer is not a WebGLRenderer');
@@ -79,8 +81,10 @@ export class Layers extends Emitter<{
    *                 such as a canvas, is drawn again by `update`. It is not disposed of with the layer.
    * @throws {CagecastError} `badArgument` for the 17th layer or if it is not a texture, `badOption` that names an option and its value.
    */
-  add(texture: Texture, { name, place, ...style }: NewLayer = {}): Layer {
+  add(texture: Texture, options: NewLayer = {}): Layer {
     checkTexture(texture, 'texture');
+    const style = readStyle(options);
+    const { name, place } = options;
     const title = name ?? (texture.name || freeName('Layer', this.list));
     return this.edits.do(`adding ${title}`, () => {
       const premultiplied = texture.premultiplyAlpha;
@@ -90,7 +94,10 @@ export class Layers extends Emitter<{
     });
   }
 
-  /** Changes opacity, tint, blend mode or visibility. Equal changes of a layer in quick succession, as by a slider, are one step. */
+  /**
+   * Changes opacity, tint, blend mode or visibility. Equal changes of a layer in quick succession, as by a slider, are one step.
+   * @throws {CagecastError} `badOption` that names a field and its value, `badArgument` if the layer was removed.
+   */
   set(layer: Pick<Layer, 'id'>, style: Partial<Style>): void {
     const change = readStyle(style);
     this.edits.do(`changing ${Object.keys(change).join(', ')} of ${this.#nameOf(layer)}`, () =>
@@ -98,12 +105,16 @@ export class Layers extends Emitter<{
     );
   }
 
-  /** Moves a layer. @param place  From 0, the lowest; what is out of range is clamped. */
+  /**
+   * Moves a layer.
+   * @param place  From 0, the lowest; what is out of range is clamped.
+   * @throws {CagecastError} `badArgument` if it is no integer, or the layer was removed.
+   */
   move(layer: Pick<Layer, 'id'>, place: number): void {
     this.edits.do(`moving ${this.#nameOf(layer)}`, () => this.stack.move(layer, place));
   }
 
-  /** Removes a layer. */
+  /** Removes a layer. @throws {CagecastError} `badArgument` if it was removed. */
   remove(layer: Pick<Layer, 'id'>): void {
     this.edits.do(`removing ${this.#nameOf(layer)}`, () => this.stack.remove(layer.id));
   }
@@ -149,6 +160,7 @@ export class Layers extends Emitter<{
   /**
    * Reads the texture, as image files have it: sRGB, colours not multiplied by alpha. Waits for the GPU.
    * @param size  Texels per side, 1 to 2048. Default: those of the texture.
+   * @throws {CagecastError} `badArgument` for another size.
    */
   toImageData(size = this.composite.size): ImageData {
     if (!(Number.isInteger(size) && size > 0 && size <= maxCompositeSize))
@@ -175,6 +187,7 @@ export class Layers extends Emitter<{
 
 /**
  * Makes an empty stack of layers.
+ * @throws {CagecastError} `badArgument` without a `WebGLRenderer`, `badOption` for another size.
  *
  * @example
  * const layers = createLayers({ renderer });

@@ -36,7 +36,7 @@ export type StrokePoint = (Spot | { x: number; y: number }) & { pressure?: numbe
 export interface StickerPlace {
   /** A spot of a model, or a UV of the cage. Undefined, as `pick` returns it beside the models, is no place: nothing is laid. */
   at: Spot | { x: number; y: number } | undefined;
-  /** Its longer side, as a share of the diagonal of the cage, up to 2. Default: 0.2. */
+  /** Its longer side, as a share of the diagonal of the cage: above 0, up to 2. Default: 0.2. */
   size?: number | undefined;
   /** Radians, clockwise as seen. Default: 0. */
   angle?: number | undefined;
@@ -65,7 +65,7 @@ export class Painter {
   };
   /** What pointers do; undefined leaves them to others. */
   tool: Tool | undefined = 'brush';
-  /** What pointers place with the tool `sticker`. */
+  /** What pointers place with the tool `sticker`, upright as seen; the other fields are as those of `StickerPlace`. */
   picture: (StickerPicture & { size?: number; angle?: number; opacity?: number; mirrored?: boolean }) | undefined;
   /** Is told why a pointer cannot paint, such as that there is no room for another layer. Default: throws it, so that the page is told. */
   onError = (error: Error): void => {
@@ -78,7 +78,8 @@ export class Painter {
   readonly #unfollow: () => void;
   #isDisposed = false;
 
-  constructor({ layers, renderer, texture, applied, cage, size } = {} as PainterOptions) {
+  constructor(options: PainterOptions) {
+    const { layers, renderer, texture, applied, cage, size } = options ?? {};
     this.#models = [applied].flat();
     if (this.#models.some((model) => typeof model?.setTexture !== 'function'))
       throw wrong('options.applied is not what applyTransfer returned');
@@ -131,7 +132,10 @@ export class Painter {
     this.#stroke(points, { ...this.brush, ...style, erases: false });
   }
 
-  /** Erases along some points what was painted, as `stroke` paints: what that has left, it takes away. The texture stays. */
+  /**
+   * Erases along some points what was painted, as `stroke` paints: what that has left, it takes away. The texture stays.
+   * @throws {CagecastError} as `stroke`; never if nothing is painted yet.
+   */
   erase(points: readonly (StrokePoint | undefined)[], style: Partial<Omit<BrushStyle, 'erases'>> = {}): void {
     if (this.#painter.hasPainting) this.#stroke(points, { ...this.brush, ...style, erases: true });
   }
@@ -149,10 +153,12 @@ export class Painter {
     this.#painter.end();
   }
 
+  /** As `layers.undo`, which takes back changes of the layers, too. */
   undo(): string | undefined {
     return this.layers.undo();
   }
 
+  /** As `layers.redo`. */
   redo(): string | undefined {
     return this.layers.redo();
   }
@@ -178,8 +184,9 @@ export class Painter {
   /**
    * Lets pointers paint with `tool`: those that go down where paint may be are not seen by what listens to the element otherwise, such
    * as `OrbitControls`. Of several fingers on the page, the first one paints. The pressure of pens makes the brush smaller.
-   * @param element  Default: the renderer's canvas.
-   * @returns a function that ends it.
+   * @param camera   By which the models are drawn on the element.
+   * @param element  Default: the renderer's canvas. Its `touch-action` is `none` until no painter listens to it.
+   * @returns a function that ends it. After `dispose` nothing is listened to.
    */
   listen(camera: Camera, element = this.#canvas): () => void {
     if (this.#isDisposed) return () => {};
