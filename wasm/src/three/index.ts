@@ -72,7 +72,9 @@ export {
  *
  * @param target  A loaded scene, a mesh, or a geometry (which gets the attributes; `Applied.paint` paints its material).
  * @param cage    Of the same types, with the attribute `uv`, and in the same space as the target; not needed with `saved`.
- * @throws {CagecastError} as `transfer` does, and if a part cannot be read.
+ * @param options `texture` or `material` show something; without them, geometries only get the attributes.
+ * @throws {CagecastError} as `transfer` does; `badOption` that names an option and its value; `badArgument` if a part cannot be read or
+ * no channel of UVs is free. Then nothing is changed.
  *
  * @example
  * import { init } from 'cagecast';
@@ -100,7 +102,8 @@ export function applyTransfer(
  * As `applyTransfer`, with the transfer and all that follows from it in the worker of `cagecast/worker`; what is left for the main
  * thread, copying attributes and morph targets, is done in tasks of some milliseconds. Nothing of the model is changed before the
  * last of them. `init` is not needed. The first frame after it uploads what has changed, which three.js does in one task.
- * @param options  And `signal`, which cancels the call, and `onProgress(share, stage)`.
+ * @param options  And `signal`, which cancels the call: the promise is rejected with its reason. And `onProgress(share, stage)`; stages are
+ * `transfer`, `geometry` and `done`.
  * @throws {CagecastError} as `applyTransfer`; `badArgument` if a geometry was changed meanwhile, as by another transfer; and
  * `unsupported` if the worker cannot start.
  */

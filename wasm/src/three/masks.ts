@@ -12,7 +12,7 @@ export interface ModelMasks {
   never?: Texture | Image | undefined;
   /** White where it is always painted. */
   always?: Texture | Image | undefined;
-  /** An attribute of colours, such as "color": red vertices are never painted, green ones always. */
+  /** An attribute of colours, 3 or 4 numbers each, such as "color": red vertices are never painted, green ones always. */
   attribute?: string | undefined;
 }
 

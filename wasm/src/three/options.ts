@@ -9,30 +9,34 @@ import type { Saved } from './saved.js';
 
 /** Options of `applyTransfer`: those of `transfer`, and what to display. */
 export interface ApplyOptions extends TransferOptions {
-  /** A result of `transfer`, also from `cagecast/worker`, for the arrays that `extract` returned for `cage` and `target`. */
+  /**
+   * A result of `transfer`, also from `cagecast/worker`, for the arrays that `extract` returned for `cage` and `target`. No transfer is
+   * made, so the options of `transfer` count only where `borders` are cut, which needs the cage.
+   */
   result?: TransferResult | undefined;
-  /** What `deserialize` returned: instead of a transfer. Needs neither a cage nor `init`. */
+  /** What `deserialize` returned: instead of a transfer, whose options and `borders` it keeps. Needs neither a cage nor `init`. */
   saved?: Saved | undefined;
   /**
    * The paint, in the cage's UV space, mixed into the colour of the cosmetic triangles before they are lit. It is read, never
    * changed: its offset, repeat and rotation apply, its `channel` does not. Set its `flipY` to false, as for all textures of glTF.
+   * Default: none, as null.
    */
   texture?: Texture | null | undefined;
   /** How much of the paint shows, 0 to 1. Default: 1. */
   opacity?: number | undefined;
   /**
-   * The width of a soft border, inside the painted zone, as a share of the target's diagonal. Default: 0. The edge of a mesh is no
-   * border, nor is a seam of UVs. Cost: some milliseconds per 10,000 vertices.
+   * The width of a soft border, inside the painted zone, as a share of the target's diagonal, 0 to 1. Default: 0. The edge of a mesh
+   * is no border, nor is a seam of UVs. Cost: some milliseconds per 10,000 vertices. No effect on a `material`.
    */
   feather?: number | undefined;
   /**
    * A material to show on the cosmetic triangles instead of paint, as an overlay: a second mesh for each part. It finds the UVs in
-   * the channel that `Applied` names.
+   * the channel that `Applied` names. `texture` is not shown then. Default: none, as null.
    */
   material?: Material | null | undefined;
   /**
    * The channel of the new UVs, 1 to 3: the attribute `uv1`, `uv2` or `uv3`, which is overwritten. Default: the lowest that no
-   * geometry uses already.
+   * geometry uses already; an error if all are in use.
    */
   channel?: 1 | 2 | 3 | undefined;
   /**
@@ -65,16 +69,18 @@ export interface Applied {
    */
   overlays: Mesh[];
   /**
-   * Shows another texture, or none, in the next frame. At no cost, but for the first texture since an `applyTransfer` or `update`
-   * without one: it costs about as much as `update`, and shaders are compiled for it.
+   * Shows another texture in the next frame, or none (undefined or null). At no cost, but for the first texture since an
+   * `applyTransfer` or `update` without one: it costs about as much as `update`, and shaders are compiled for it. No effect where a
+   * material is shown.
+   * @throws {CagecastError} `badArgument` if it is not a texture.
    */
   setTexture(texture: Texture | null | undefined): void;
-  /** Changes how much of the paint shows, 0 to 1. In the next frame, at no cost. */
+  /** Changes how much of the paint shows, 0 to 1. In the next frame, at no cost. @throws {CagecastError} `badArgument` */
   setOpacity(opacity: number): void;
   /**
    * Paints one more material, such as one that a mesh is given later. Materials that the meshes have at a call of `update` or
    * `setTexture` are painted then.
-   * @returns whether it can be painted.
+   * @returns whether it can be painted; without a texture it will be with the first one.
    */
   paint(material: Material): boolean;
   /**

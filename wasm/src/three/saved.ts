@@ -17,7 +17,7 @@ const made = new WeakMap<Applied, () => Saved>();
 
 /**
  * Turns what was applied into bytes, to be stored. `deserialize` reads them; then the same model needs no transfer and no cage.
- * They hold the result and how the geometries are split, about 100 bytes per vertex, and no texture.
+ * They hold the result and how the geometries are split, about 100 bytes per vertex, more with cut borders, and no texture.
  * @throws {CagecastError} `badArgument` if it is nothing that `applyTransfer` returned.
  */
 export function serialize(applied: Applied): Uint8Array<ArrayBuffer> {

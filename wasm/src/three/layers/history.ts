@@ -12,7 +12,7 @@ export interface Command {
 
 const kMostBytes = 128 * 2 ** 20;
 
-/** The undo history, limited by memory: the oldest commands are dropped first. */
+/** The undo history, limited to 128 MiB: the oldest commands are dropped first. */
 export class History extends Emitter<{ change: undefined }> {
   #done: Command[] = [];
   #undone: Command[] = [];

@@ -5,7 +5,7 @@ import type { StrokeStyle } from './stroke-layer.js';
 
 /** A stroke's style, and the size of its brush. */
 export interface BrushStyle extends StrokeStyle {
-  /** The brush's diameter, as a share of the diagonal of the cage. */
+  /** The brush's diameter, as a share of the diagonal of the cage: above 0, up to 2. */
   size: number;
   /** Whether it paints on both sides of the cage's plane of symmetry, x = the middle of its box. */
   mirror: boolean;
