@@ -1199,9 +1199,10 @@ describe('layers', () => {
     assert.deepEqual(state(), ['newer', ['newer', 'third']]);
   });
 
-  test('options of layers and painters that are null are told, and change nothing', () => {
+  test('options of layers and painters that are null, and a camera that is none, are told, and change nothing', () => {
     const layers = createLayers({ renderer });
     const layer = layers.add(new Texture());
+    const painter = createPainter({ layers, applied: [], cage: meshOf(scene.cage) });
     const wrong = null as never;
     for (const [call, code, message] of [
       [() => createLayers(wrong), 'badArgument', 'cagecast/three/layers: options.renderer is not a WebGLRenderer'],
@@ -1212,6 +1213,7 @@ describe('layers', () => {
         'badArgument',
         'cagecast/three/paint: options.applied is not what applyTransfer returned',
       ],
+      [() => painter.listen(wrong), 'badArgument', 'cagecast/three/paint: camera is null, not a Camera'],
     ] as const)
       assert.throws(call, { name: 'CagecastError', code, message }, message);
     assert.deepEqual(layers.list, [layer]);

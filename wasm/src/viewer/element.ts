@@ -63,7 +63,8 @@ interface Shown {
  * One that the browser has stopped, as the page has too many 3D views, says so. It is loaded again 3 seconds later if it is in view
  * then, once; and whenever it comes into view or the page is shown again.
  *
- * In a page with a Content-Security-Policy: `script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self' blob:`.
+ * In a page with a Content-Security-Policy: `script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self' blob:;
+ * img-src 'self' blob:`.
  */
 export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknown as typeof HTMLElement)) {
   static readonly observedAttributes = [...kOfTransfer, 'paint', 'opacity', 'camera-orbit', 'alt', 'poster', 'check'];

@@ -187,8 +187,10 @@ export class Painter {
    * @param camera   By which the models are drawn on the element.
    * @param element  Default: the renderer's canvas. Its `touch-action` is `none` until no painter listens to it.
    * @returns a function that ends it. After `dispose` nothing is listened to.
+   * @throws {CagecastError} `badArgument` without a camera.
    */
   listen(camera: Camera, element = this.#canvas): () => void {
+    if (!camera?.isCamera) throw wrong(`camera is ${describe(camera)}, not a Camera`);
     if (this.#isDisposed) return () => {};
     const stop = listenTo(element, (event) => {
       try {
