@@ -281,6 +281,31 @@ test('a cage that is being made comes, though rules are chosen meanwhile, and by
   assert.deepEqual(complaints, []);
 });
 
+test('a cage that is being made comes, though paints are chosen and dropped meanwhile', async () => {
+  const { page, complaints } = await site.visit({}, holdingBack('makeCage'));
+  await drop(page, [head()]);
+  await page.locator('#target-name', { hasText: 'bust.glb' }).waitFor();
+  await ready(page);
+  await page.getByTestId('make-cage').click();
+  await heldBack(page);
+  const title = page.locator('#paints label .title').nth(1);
+  const chosen = (await title.textContent())!;
+  await title.click();
+  await page.locator('#undo[title^="Undo: choosing"]').waitFor();
+  assert.equal((await names(page)).at(-1), chosen);
+  await drop(page, [violetPaint()]);
+  await page.locator('#layers', { hasText: 'violet.png' }).waitFor();
+  await drop(page, [{ name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('no image') }]);
+  await page.locator('#error', { hasText: 'broken.png: the browser cannot read this image' }).waitFor();
+  assert.equal(await page.getByTestId('status').textContent(), 'working');
+  await page.evaluate('window.letGo()');
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  await ready(page);
+  assert.deepEqual(await names(page), ['UV checker']);
+  await page.getByTestId('put-away').filter({ hasText: 'One layer of an earlier cage put away.' }).waitFor();
+  assert.deepEqual(complaints, []);
+});
+
 test('where a cage comes again, the layers that were painted for it are brought back, without those of others', async () => {
   const { page, complaints } = await site.visit({}, undefined, '#sample=lizard');
   const add = async (name: string): Promise<void> => {

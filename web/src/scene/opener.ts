@@ -23,6 +23,8 @@ export class Opener {
   #samples: Sample[] = [];
   /** Warnings about the latest files, shown once these are loaded. */
   #warnings: readonly string[] = [];
+  /** The base paint that was chosen last. */
+  #chosen: Promise<Paint> | undefined;
 
   /** Opens a saved project. */
   onProject: ((file: File) => void) | undefined;
@@ -136,6 +138,10 @@ export class Opener {
       wanted.cage = pair.then(([, smaller]) => smaller!);
     }
     if (texture) wanted.paint = loadPaint(texture);
+    if (texture && !target && !cage && !one && this.#session.awaitsCage) {
+      void this.#use(wanted.paint!, (paint) => this.#session.tellPaint(paint));
+      return;
+    }
     this.#warnings = warnings;
     this.#session.want(wanted);
   }
@@ -175,15 +181,33 @@ export class Opener {
 
   /** Sets the base paint, as an undo step. */
   async #choose(loaded: Promise<Paint>): Promise<void> {
+    const { awaitsCage, shown } = this.#session;
+    const set = (paint: Paint): unknown =>
+      this.#edits.do(`choosing ${titleOf(paint)}`, () => this.#stack.setBase(titleOf(paint), paint));
+    this.#chosen = loaded;
+    if (awaitsCage)
+      return this.#use(loaded, (paint) => {
+        if (loaded === this.#chosen && shown!.cage === this.#session.shown!.cage) set(paint);
+      });
     let wanted = true;
     const done = this.#session.work(kReading, 0, () => (wanted = false));
     try {
       const paint = await loaded;
       if (!wanted) return;
-      this.#edits.do(`choosing ${titleOf(paint)}`, () => this.#stack.setBase(titleOf(paint), paint));
+      set(paint);
       done();
     } catch (error) {
       if (wanted) this.#session.fail(error);
+      this.#offerPaints(this.#session.shown!);
+    }
+  }
+
+  /** Does something with a paint once it is loaded; a cage that is being made goes on. */
+  async #use(loading: Promise<Paint>, act: (paint: Paint) => unknown): Promise<void> {
+    try {
+      act(await loading);
+    } catch (error) {
+      showError((error as Error).message);
       this.#offerPaints(this.#session.shown!);
     }
   }
@@ -203,14 +227,10 @@ export class Opener {
     const chosen = choices.findIndex(({ picture }) => picture === this.#stack.base?.sheet.picture);
     offerPaints(choices, chosen, {
       onChoose: (index) => this.#choose(choices[index]!.load()),
-      onAdd: async (index) => {
-        try {
-          const paint = await choices[index]!.load();
-          this.#edits.do(`adding ${titleOf(paint)}`, () => this.#stack.add(titleOf(paint), paint));
-        } catch (error) {
-          showError((error as Error).message);
-        }
-      },
+      onAdd: (index) =>
+        this.#use(choices[index]!.load(), (paint) =>
+          this.#edits.do(`adding ${titleOf(paint)}`, () => this.#stack.add(titleOf(paint), paint)),
+        ),
     });
   }
 }

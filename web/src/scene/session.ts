@@ -299,6 +299,11 @@ export class Session extends Emitter<SessionEvents> {
     this.emit('view', this.#view);
   }
 
+  /** Tells that a paint is added, without superseding work in progress. */
+  tellPaint(paint: Paint): void {
+    this.emit('paint', paint);
+  }
+
   /** Tells what an inspection of the cage that is shown has found. */
   tellInspection(inspection: Inspection): void {
     this.#inspection = inspection;
