@@ -534,3 +534,18 @@ test('a cage that is being made for an avatar is not replaced by one that was be
   assert.equal(await settled(page), 'ready', await shownError(page));
   assert.deepEqual(complaints, []);
 });
+
+test('an avatar whose cage was cancelled while it was made is fitted again, if a fit has given way to that', async () => {
+  const { page, complaints } = await beingFitted();
+  await choose(page, 1);
+  await page.getByTestId('make-cage').click();
+  await page.locator('#status[data-state=working]').waitFor({ state: 'attached' });
+  await page.evaluate('window.held.pop()()');
+  await page.waitForFunction(() => !/Waiting|Fitting/.test(document.querySelector('.avatars')!.textContent!));
+  await page.getByTestId('cancel').click();
+  await heldBack(page);
+  await page.evaluate('window.letGo()');
+  await page.locator('#cage-name', { hasText: 'two-cage.glb' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.deepEqual(complaints, []);
+});

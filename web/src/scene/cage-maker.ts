@@ -222,7 +222,6 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       const sample = isChanged ? sampleOf(current) : undefined;
       made.set(file, { target: target.files[0]!, fitting, sample, note, isNew });
       this.latest = fitting;
-      done();
       this.show(loadModel(file, this.#renderer));
     } catch (error) {
       if (abort.signal.aborted) return;

@@ -317,8 +317,16 @@ export class Wardrobe {
       onProgress(0);
       const file = await fitLike(cage, model, { signal, onProgress });
       const fitted = await loadModel(file, this.#viewer.renderer);
-      // One that is being made was asked for since.
-      if (signal.aborted || (avatar === this.list.active && this.#session.awaitsCage)) return;
+      if (signal.aborted) return;
+      if (avatar === this.list.active && this.#session.awaitsCage) {
+        // The one that is being made was asked for since. If it does not come, this is fitted again.
+        const end = this.#session.on('progress', ({ state }) => {
+          if (state === 'working') return;
+          end();
+          if (!signal.aborted) this.#fitLater(avatar, cage);
+        });
+        return;
+      }
       Object.assign(avatar, { cage: fitted, follows: true, verdict: '' });
       if (avatar === this.#coming || (avatar === this.list.active && this.#session.keepTarget()))
         this.#session.want({ cage: Promise.resolve(fitted) });
