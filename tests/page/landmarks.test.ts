@@ -23,6 +23,10 @@ let site: Site;
 before(async () => void (site = await Site.open()));
 after(() => site?.close());
 
+/** Waits until the browser keeps everything. */
+const kept = (page: Page): Promise<unknown> =>
+  page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
+
 test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit follows, and the cage is saved with them', async () => {
   const { page, complaints } = await site.visit();
   await drop(page, [head()]);
@@ -143,7 +147,7 @@ test('a fit and the landmarks of the user are there after a reload, and in the p
   await drag(page, 'mouth_corner_left', 0, 12);
   await worked(page);
   const before = await savedCage(page);
-  await page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
+  await kept(page);
   await page.reload();
   await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
   await ready(page);
@@ -207,6 +211,35 @@ test('landmarks stay while too few are placed, whatever rules are chosen meanwhi
     assert.equal(await count.textContent(), placed, preset);
     for (const what of [page.getByTestId('landmarks'), note]) assert.ok(await what.isVisible(), preset);
   }
+  assert.deepEqual(complaints, []);
+});
+
+test('landmarks that are too few for a fit are there after a reload, and gone with their model', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [glb('car.glb', asset('car', 'target.glb'))]);
+  await page.locator('#target-name', { hasText: 'car.glb' }).waitFor();
+  await ready(page);
+  await page.locator('#template-select').selectOption('human-head');
+  await page.getByTestId('fit-cage').click();
+  await page.getByTestId('landmark-ask').waitFor();
+  await page.locator('#view').press('Enter');
+  const count = page.locator('#landmark-count', { hasText: 'by you' });
+  const placed = await count.textContent();
+  assert.doesNotMatch(placed!, /, 0 by you/, 'the model is under the cross');
+  await kept(page);
+  await page.reload();
+  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  await ready(page);
+  await page.locator('#cage-note', { hasText: 'place more on the model' }).waitFor();
+  assert.equal(await count.textContent(), placed);
+
+  await drop(page, [glb('lizard.glb', asset('lizard', 'target.glb'))]);
+  await page.locator('#target-name', { hasText: 'lizard.glb' }).waitFor();
+  await ready(page);
+  assert.ok(await page.getByTestId('landmarks').isHidden());
+  const { bytes } = await saved(page, 'save-project');
+  const { parts } = JSON.parse(bytes.subarray(16, 16 + bytes.readUInt32LE(12)).toString());
+  assert.ok(parts.models && !parts.landmarks, 'they are of that model alone');
   assert.deepEqual(complaints, []);
 });
 

@@ -117,7 +117,19 @@ if (wardrobe) opener.takesDrop = (files) => wardrobe.take(files);
 const linked = { session, layers, live, controls: viewer?.controls };
 const exportPanel = new ExportPanel(linked, exportPng);
 stack.on('change', () => exportPanel.refresh());
-const restoreWork = beginProjects({ session, stack, edits, history, away, opener, painter, live, viewer, wardrobe });
+const restoreWork = beginProjects({
+  session,
+  stack,
+  edits,
+  history,
+  maker,
+  away,
+  opener,
+  painter,
+  live,
+  viewer,
+  wardrobe,
+});
 keepOffline(session);
 offerGuide(session);
 

@@ -154,6 +154,9 @@ export class LandmarkEditor {
     unknown.sort((a, b) => Number(kFirst.test(b)) - Number(kFirst.test(a)));
     const own = Object.keys(this.given).length;
     const known = Object.keys(this.spots);
+    // Too few for a fit, they are saved as they are now; a fit keeps those that it was made with.
+    if (known.length < kLeastLandmarks && this.#fitting === this.#maker.lacking)
+      Object.assign(this.#fitting!, { used: this.spots, given: this.given });
     element('landmark-count', HTMLElement).textContent = `${known.length}, ${own} by you`;
     element('landmark-missing', HTMLElement).hidden = unknown.length === 0;
     element('landmark-reset', HTMLButtonElement).disabled = own === 0;

@@ -1,6 +1,6 @@
 import type { Landmarks, TemplateName } from 'cagecast/cages';
 import { element } from '../platform/page';
-import { type Fitting, madeOf, noteMade } from '../scene/cage-maker';
+import { type CageMaker, type Fitting, madeOf, noteMade } from '../scene/cage-maker';
 import type { Opener } from '../scene/opener';
 import type { Session } from '../scene/session';
 import type { WardrobeOfPage } from '../wardrobe/set-up-wardrobe';
@@ -51,6 +51,19 @@ export function cagePart(session: Session, opener: Opener, wardrobe: WardrobeOfP
           for (const { file, made } of all) noteMade(file, made);
         },
       };
+    },
+  };
+}
+
+/** The landmarks of the user while they are too few for a fit. */
+export function landmarksPart(maker: CageMaker): Contribution {
+  return {
+    name: 'landmarks',
+    isWork: true,
+    save: () => maker.lacking,
+    read(saved) {
+      const fitting = fittingOf(saved);
+      return { ready: () => maker.ask(fitting) };
     },
   };
 }

@@ -2,10 +2,11 @@ import type { History } from 'cagecast/three/layers';
 import type { Live } from '../live/live-panel';
 import { download } from '../platform/download';
 import { announce, element, showError } from '../platform/page';
+import type { CageMaker } from '../scene/cage-maker';
 import type { Viewer } from '../view/viewer';
 import type { WardrobeOfPage } from '../wardrobe/set-up-wardrobe';
 import { barePart } from './bare-part';
-import { cagePart } from './cage-part';
+import { cagePart, landmarksPart } from './cage-part';
 import { nameOf, readProject, writeProject } from './container';
 import { Keeper, type Offer } from './keeper';
 import { type LayersOfPage, layersPart } from './layers-part';
@@ -17,6 +18,7 @@ import { wardrobePart } from './wardrobe-part';
 /** What projects are made of. */
 export interface ProjectOfPage extends LayersOfPage {
   history: History;
+  maker: CageMaker;
   live: Live;
   /** Undefined without WebGL, as is the wardrobe. */
   viewer: Viewer | undefined;
@@ -35,12 +37,13 @@ interface Projects {
 }
 
 export function setUpProjects(page: ProjectOfPage): Projects {
-  const { session, stack, painter, history, live, viewer, wardrobe } = page;
+  const { session, stack, history, live, viewer, wardrobe } = page;
   const project = new Project(session, scenePart(session, page.opener, viewer?.renderer));
   project.add(layersPart(page));
   for (const part of settingsParts(session, live, viewer?.controls)) project.add(part);
   project.add(barePart(session));
   project.add(cagePart(session, page.opener, wardrobe));
+  project.add(landmarksPart(page.maker));
   if (wardrobe) project.add(wardrobePart(wardrobe));
   const keeper = new Keeper(project, session, history, {
     offer: showOffer,
@@ -50,7 +53,7 @@ export function setUpProjects(page: ProjectOfPage): Projects {
   const touch = (): void => project.touch();
   for (const event of ['zones', 'rules', 'view', 'paint'] as const) session.on(event, touch);
   for (const event of ['change', 'select'] as const) stack.on(event, touch);
-  painter?.on('painted', touch);
+  history.on('change', touch);
   if (wardrobe) wardrobe.onChange = touch;
 
   const open = async (file: File): Promise<void> => {

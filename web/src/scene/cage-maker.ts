@@ -99,9 +99,11 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     });
     let shown: { target?: Model; cage?: Model } = {};
     session.on('transfer', ({ target, cage }) => {
-      const { latest } = this;
-      // While landmarks are asked for, those that were placed are of no cage yet: by other rules, they stay.
-      if (target === shown.target && cage === shown.cage && latest && lacksLandmarks(latest.used)) return;
+      if (this.lacking) {
+        // Landmarks that were placed are of no cage yet: by other rules, they stay.
+        if (target === shown.target && cage === shown.cage) return;
+        this.latest = undefined;
+      }
       if (target !== shown.target) this.#template.value = likelyTemplate(target.mesh.positions);
       shown = { target, cage };
       element('no-cage', HTMLElement).hidden = target.sample !== undefined && target.sample === cage.sample;
@@ -118,6 +120,11 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       this.#missing.textContent =
         missing.length > 0 ? `Landmarks that were not found: ${missing.map(readable).join(', ')}.` : '';
     });
+  }
+
+  /** A fit that lacks landmarks, while the user is asked for them. */
+  get lacking(): Fitting | undefined {
+    return this.latest && lacksLandmarks(this.latest.used) ? this.latest : undefined;
   }
 
   /** Whether the current cage stayed where it was when it was to be moved into place. */
@@ -275,12 +282,17 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       const used = Object.fromEntries(names.flatMap((known) => (all[known] ? [[known, all[known]]] : [])));
       if (!lacksLandmarks(used)) throw error;
       const missing = names.filter((known) => !used[known]);
-      this.#missing.textContent = '';
-      this.#note.textContent = `Of ${kLeastLandmarks} landmarks that are needed, ${Object.keys(used).length} were found: place more on the model.`;
-      this.latest = { ...found, template: name, given, used, missing };
-      this.emit('fitting', this.latest);
+      this.ask({ ...found, template: name, given, used, missing });
       return undefined;
     }
+  }
+
+  /** Asks the user for the landmarks that a fit lacks. */
+  ask(fitting: Fitting): void {
+    this.#missing.textContent = '';
+    this.#note.textContent = `Of ${kLeastLandmarks} landmarks that are needed, ${Object.keys(fitting.used).length} were found: place more on the model.`;
+    this.latest = fitting;
+    this.emit('fitting', fitting);
   }
 }
 
