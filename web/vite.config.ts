@@ -73,11 +73,20 @@ function withoutSpareWorker(): Plugin {
   };
 }
 
+/** Leaves out what Vite preloads imported scripts with, as nothing is (`modulePreload` below): each import is the browser's own. */
+function plainImports(): Plugin {
+  return {
+    name: 'cagecast-plain-imports',
+    transform: (_, id) =>
+      id.endsWith('vite/preload-helper.js') ? 'export const __vitePreload = (load) => load();' : undefined,
+  };
+}
+
 export default defineConfig({
   root: fileURLToPath(new URL('.', import.meta.url)),
   // Relative, so that the page can be served from any folder.
   base: './',
-  plugins: [slim(), samples(), onlyGltfDraco(), withoutSpareWorker(), basis(), share(), precache()],
+  plugins: [slim(), samples(), onlyGltfDraco(), withoutSpareWorker(), plainImports(), basis(), share(), precache()],
   build: {
     outDir: path.join(kRepository, 'build/web'),
     emptyOutDir: true,
