@@ -520,3 +520,46 @@ test('a project that takes long to open leaves the work before it as it was', as
   assert.equal(await page.getByTestId('threshold').inputValue(), '0.7');
   assert.deepEqual(complaints, []);
 });
+
+/** After a reload, holds the files of the work back, before they are found or while they are read, until `window.letGo()`. */
+const kSlowWork = `
+  const held = new Promise((done) => (window.letGo = done));
+  const holds = (what) => {
+    if (sessionStorage.getItem('holds') !== what) return;
+    window.isHeld = true;
+    return held;
+  };
+  const { request } = LockManager.prototype;
+  LockManager.prototype.request = async function (...values) {
+    const isHeld = holds('finding');
+    await isHeld;
+    return isHeld ? request.call(this, values[0], values.at(-1)) : request.apply(this, values); // without its patience
+  };
+  const { arrayBuffer } = Blob.prototype;
+  Blob.prototype.arrayBuffer = async function () {
+    if (this.name === 'bust.glb') await holds('reading');
+    return arrayBuffer.call(this);
+  };`;
+
+test('files that are opened before the work is back stay, and the work is offered', async () => {
+  for (const what of (process.env.WHAT ?? 'finding,reading').split(',')) {
+    const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } }, kSlowWork);
+    await openOwn(page);
+    await page.getByTestId('kept-note').filter({ hasText: 'Your work is kept on this device' }).waitFor();
+    await page.evaluate((what) => sessionStorage.setItem('holds', what), what);
+    await page.reload();
+    await page.waitForFunction(() => 'isHeld' in window);
+    await drop(page, [
+      glb('lizard.glb', asset('lizard', 'target.glb')),
+      glb('lizard-cage.glb', asset('lizard', 'cage.glb')),
+    ]);
+    await page.evaluate('window.letGo()');
+    await page.getByTestId('kept').filter({ hasText: 'Your last work is kept.' }).waitFor();
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    assert.equal(await page.locator('#target-name').textContent(), 'lizard.glb', what);
+    await page.getByRole('button', { name: 'Bring it back' }).click();
+    await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+    assert.equal(await page.locator('#target-name').textContent(), 'bust.glb');
+    assert.deepEqual(complaints, []);
+  }
+});

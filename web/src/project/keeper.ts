@@ -77,7 +77,7 @@ export class Keeper {
     return snapshot === undefined || snapshot.work === (this.#kept?.work ?? this.#first);
   }
 
-  /** Brings the last work of this tab back, or of the browser. @returns Whether that was tried and failed. */
+  /** Brings the last work of this tab back, or of the browser. @returns Whether that failed, and no other model was opened meanwhile. */
   async restore(): Promise<boolean> {
     try {
       this.#store = await Store.open();
@@ -89,7 +89,7 @@ export class Keeper {
       const work = await firstFree(works, own);
       if (!work) return false;
       const aside = work === works[0] ? this.#reasonToWait(work) : 'An earlier work of yours is kept.';
-      if (!aside) return !(await this.#show(work));
+      if (!aside) return !(await this.#show(work, true)) && !this.#project.isReplaced;
       this.#offerBack(aside, work.slot);
     } catch (error) {
       this.#fail(error);
@@ -199,7 +199,8 @@ export class Keeper {
     return undefined;
   }
 
-  async #show(work: Work): Promise<boolean> {
+  /** @param yields Whether a model that was opened already stays. */
+  async #show(work: Work, yields = false): Promise<boolean> {
     await this.save();
     const { isKept } = this;
     // What was only looked at is no work that is missed.
@@ -218,7 +219,7 @@ export class Keeper {
         this.#project.know(file, key);
         found.set(key, file);
       }
-      if (!(await this.#open(work.parts, filesIn(found)))) {
+      if ((yields && this.#project.isReplaced) || !(await this.#open(work.parts, filesIn(found)))) {
         this.#offerBack('Your last work is kept.', work.slot);
         return false;
       }

@@ -1,3 +1,4 @@
+import type { Model } from '../scene/load-model';
 import { kReading, type Scene, type Session } from '../scene/session';
 
 /** Gives a file of a saved project. @throws Error if there is none of that key. */
@@ -54,6 +55,8 @@ export class Project {
   readonly #listeners: (() => void)[] = [];
   readonly #keys = new WeakMap<object, string>();
   #lastKey = 0;
+  /** The target of the state that was opened last. */
+  #requested: Promise<Model> | undefined;
 
   constructor(session: Session, scene: SceneContribution) {
     this.#session = session;
@@ -71,6 +74,11 @@ export class Project {
 
   onTouch(listener: () => void): void {
     this.#listeners.push(listener);
+  }
+
+  /** Whether another target was requested since a state was opened last. */
+  get isReplaced(): boolean {
+    return this.#session.wants('target') && !this.#session.awaits(this.#requested);
   }
 
   /** Whether people did something that the undo history does not have. */
@@ -122,11 +130,8 @@ export class Project {
     ]);
     if (!wanted) return false;
     for (const restoring of restorings) restoring.before?.();
-    session.want(
-      { target: Promise.resolve(target), cage: Promise.resolve(cage), paint: Promise.resolve(paint) },
-      {},
-      true,
-    );
+    this.#requested = Promise.resolve(target);
+    session.want({ target: this.#requested, cage: Promise.resolve(cage), paint: Promise.resolve(paint) }, {}, true);
     return new Promise((done) => {
       let isShown = false;
       const ends = [

@@ -184,7 +184,7 @@ export class Session extends Emitter<SessionEvents> {
   }
 
   /** Whether a target is the one that was requested last. */
-  awaits(target: Promise<Model>): boolean {
+  awaits(target: Promise<Model> | undefined): boolean {
     return this.#wanted.target === target;
   }
 
