@@ -73,7 +73,10 @@ function withoutSpareWorker(): Plugin {
   };
 }
 
-/** Leaves out what Vite preloads imported scripts with, as nothing is (`modulePreload` below): each import is the browser's own. */
+/**
+ * Leaves out what Vite preloads imported scripts with, as nothing is (`modulePreload` below), and as it tells errors to a `window`, which
+ * workers lack: each import is the browser's own.
+ */
 function plainImports(): Plugin {
   return {
     name: 'cagecast-plain-imports',
@@ -82,11 +85,36 @@ function plainImports(): Plugin {
   };
 }
 
+/** Builds workers together with the page, so that they share scripts with it. Vite would give each of them copies. */
+function sharingWorkers(): Plugin {
+  return {
+    name: 'cagecast-sharing-workers',
+    apply: 'build',
+    enforce: 'pre',
+    transform(code, id) {
+      return code.replace(/new URL\('(\.\/[\w-]+-worker\.ts)', import\.meta\.url\)/g, (_, worker) => {
+        const chunk = this.emitFile({ type: 'chunk', id: path.join(path.dirname(id), worker) });
+        return `import.meta.ROLLUP_FILE_URL_${chunk}`;
+      });
+    },
+  };
+}
+
 export default defineConfig({
   root: fileURLToPath(new URL('.', import.meta.url)),
   // Relative, so that the page can be served from any folder.
   base: './',
-  plugins: [slim(), samples(), onlyGltfDraco(), withoutSpareWorker(), plainImports(), basis(), share(), precache()],
+  plugins: [
+    slim(),
+    samples(),
+    onlyGltfDraco(),
+    withoutSpareWorker(),
+    plainImports(),
+    sharingWorkers(),
+    basis(),
+    share(),
+    precache(),
+  ],
   build: {
     outDir: path.join(kRepository, 'build/web'),
     emptyOutDir: true,
@@ -103,6 +131,8 @@ export default defineConfig({
         codeSplitting: {
           includeDependenciesRecursively: false,
           groups: [
+            // What the page and its workers begin with; the cage module, which imports it, loads when a cage is asked for.
+            { name: 'cagecast', test: /dist\/slim\.js$|vite\/preload-helper\.js$/ },
             {
               name: 'shared',
               test: /web\/src\/(platform\/page|scene\/surface|brush\/ring|explain\/ray|scene\/same-uvs|cage\/(landmark-dots|arrow-keys))\.ts$/,

@@ -8,6 +8,13 @@ import { inRepository } from '../support/site';
 /** The built page; tests/run.mjs builds it. */
 const kPage = process.env.CAGECAST_PAGE ?? inRepository('build/web');
 
+test('the page begins without the cage module', () => {
+  const begins = [...readFileSync(path.join(kPage, 'index.html'), 'utf8').matchAll(/assets\/([\w.-]+\.js)/g)];
+  const names = begins.map(([, name]) => name!);
+  assert.ok(names.some((name) => name.startsWith('cagecast-')) && names.length > 3, names.join(', '));
+  assert.ok(!names.some((name) => name.startsWith('cages-')), names.join(', '));
+});
+
 test('all scripts of the page are at most 420 KB gzipped, without the cage module, which loads when a cage is asked for', () => {
   const scripts = readdirSync(kPage, { recursive: true, withFileTypes: true }).filter(
     ({ name }) => name.endsWith('.js') && !name.startsWith('cages-'),
