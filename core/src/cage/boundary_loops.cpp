@@ -46,8 +46,8 @@ bool areBehind(Vec3 direction, Vec3 from, std::span<const Vec3> points) {
   return leastAlong(-1 * direction, from, points) >= 0;
 }
 
-/// Whether all points of a convex hull are closest to one edge or corner of a triangle that is on no loop, or to one of
-/// the edge's ends that is on none.
+/// Whether all points of a convex hull are closest to the same corner, or the same edge, of a triangle, where that is
+/// on no loop; of the edge's ends, only one that is on no loop may be closest.
 /// @param loops  6, as in `BoundaryLoops::loopOf`.
 /// @param near   How far from an edge that is on a loop, or an end of one, points must be.
 bool areClosestOffLoops(const Frame& frame, const std::uint32_t* loops, std::span<const Vec3> hull, double near) {
@@ -106,7 +106,7 @@ bool BoundaryLoops::areSurelyOff(const CageTriangle& triangle, std::uint32_t cag
   const std::uint32_t* loops = loopOf + std::size_t{6} * cageTriangle;
   const Frame frame(triangle);
   const double near = 2 * kOnLoop * diagonal;
-  // In so thin a triangle, all points may be that near to an edge.
+  // Nothing is certain in a triangle so thin that all its points may be that near to an edge.
   for (const double length : frame.lengths) {
     if (frame.doubleArea < near * length) return false;
   }

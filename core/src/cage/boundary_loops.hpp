@@ -47,10 +47,10 @@ struct BoundaryLoops {
     return element == kNone ? kNone : loopOf[std::size_t{6} * cageTriangle + element];
   }
 
-  /// Whether surely no point of a convex hull has its closest point, on this triangle, on a loop.
+  /// Whether it is certain that, for no point of a convex hull, the closest point on this triangle lies on a loop.
   [[nodiscard]] bool areSurelyOff(const CageTriangle& triangle, std::uint32_t cageTriangle, std::span<const Vec3> hull,
                                   double diagonal) const noexcept;
-  /// Whether surely all points of a convex hull do. A sufficient condition.
+  /// Whether it is certain that, for all points of a convex hull, it does.
   [[nodiscard]] bool areSurelyOn(const CageTriangle& triangle, std::uint32_t cageTriangle,
                                  std::span<const Vec3> hull) const noexcept;
 

@@ -70,7 +70,7 @@ void linkHalfEdges(const HalfEdges& halfEdges, const UvBits* uvs, std::uint32_t 
 bool findUvCharts(const Cage& cage, const HalfEdges& halfEdges, Arena& arena, UvCharts& out) noexcept {
   const std::uint32_t halfEdgeCount = 3 * cage.count;
   out.nextHalfEdge = arena.allocate<std::uint32_t>(halfEdgeCount);
-  out.neighbors = arena.allocate<ChartNeighbors>(cage.count);
+  out.neighbours = arena.allocate<ChartNeighbours>(cage.count);
   out.charts = arena.allocate<std::uint32_t>(cage.count);
   out.stretch = arena.allocate<double>(cage.count);
   const Arena::Scope scope(arena);
@@ -88,16 +88,16 @@ bool findUvCharts(const Cage& cage, const HalfEdges& halfEdges, Arena& arena, Uv
   linkHalfEdges(halfEdges, uvs, halfEdgeCount, fans, out.nextHalfEdge);
   UnionFind sets(out.charts, cage.count);
   for (std::uint32_t t = 0; t < cage.count; ++t) {
-    ChartNeighbors& neighbors = out.neighbors[t];
-    neighbors.hasFan = 0;
+    ChartNeighbours& neighbours = out.neighbours[t];
+    neighbours.hasFan = 0;
     std::uint32_t next[3];
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t halfEdge = 3 * t + k;
       const std::uint32_t other = out.nextHalfEdge[halfEdge];
       const bool isFan = out.nextHalfEdge[other] != halfEdge;
       next[k] = other / 3;
-      neighbors.triangles[k] = isFan ? t : next[k];
-      neighbors.hasFan |= unsigned{isFan};
+      neighbours.triangles[k] = isFan ? t : next[k];
+      neighbours.hasFan |= unsigned{isFan};
     }
     sets.join({t, next[0], next[1], next[2]});
   }

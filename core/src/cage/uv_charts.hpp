@@ -11,7 +11,7 @@
 
 namespace cagecast {
 
-/// The closest point of a target vertex, as far as the texture is concerned.
+/// What step 9 compares of the closest points of two target vertices.
 struct UvSample {
   std::uint32_t cageTriangle;
   double distance;  ///< From the vertex to the cage, scaled.
@@ -19,14 +19,14 @@ struct UvSample {
 };
 
 /// The triangles that share the edges of a cage triangle in UV.
-struct ChartNeighbors {
+struct ChartNeighbours {
   std::uint32_t triangles[3];  ///< Per edge. The triangle itself at an edge that no other or several others share.
   std::uint32_t hasFan;        ///< 1 if several others share one of the edges.
 };
 
 /// The UV charts of the cage: its triangles connected over edges that have equal positions and equal UVs at both ends.
 struct UvCharts {
-  ChartNeighbors* neighbors;    ///< 1 per triangle.
+  ChartNeighbours* neighbours;  ///< 1 per triangle.
   std::uint32_t* nextHalfEdge;  ///< 1 per half-edge: the next one of the same edge in UV. Those of an edge form a ring.
   std::uint32_t* charts;        ///< 1 per triangle: the number of its chart.
   double* stretch;              ///< 1 per triangle: the greatest ratio of UV length to length among its edges.

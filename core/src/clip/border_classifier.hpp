@@ -45,7 +45,7 @@ struct NearbyTriangles {
   [[nodiscard]] std::uint32_t end() const noexcept { return first + count; }
 };
 
-/// Classifies points of the target, in double, and proves that parts of it contain no border.
+/// Classifies points of the target, in double precision, and proves that parts of the target contain no border.
 class BorderClassifier {
  public:
   /// Allocates its working memory from `arena`; check `arena.failed()` afterwards.
@@ -61,7 +61,7 @@ class BorderClassifier {
   /// Lists what is near a part of the target.
   /// @param distance  An upper bound of the distance between the part's centroid and the cage; the tighter the faster.
   NearbyTriangles listNearby(Hull hull, double distance) noexcept;
-  /// Lists what is near a smaller part, without what surely loses a tie there.
+  /// Lists those that are near a smaller part, without those that surely lose a tie at every point of it.
   NearbyTriangles narrow(NearbyTriangles nearby, Hull hull) noexcept;
 
   /// How much is listed now.
@@ -73,13 +73,13 @@ class BorderClassifier {
   /// Whether memory ran out, or there were too many comparisons.
   [[nodiscard]] bool failed() const noexcept { return listed_.failed() || limits_.failed() || isOverLimit(); }
 
-  /// Whether all points of a part are surely in a region. False if that is not known.
+  /// Whether it is certain that all points of a part are in a region.
   [[nodiscard]] bool isSurelyIn(std::uint32_t region, NearbyTriangles nearby, Hull hull) noexcept;
-  /// Whether all points of a part are surely in a region, and no border within the region runs through it either.
+  /// The same, and also that no border within the region runs through the part.
   [[nodiscard]] bool isSurelyWhole(std::uint32_t region, NearbyTriangles nearby, Hull hull) noexcept;
 
-  /// The radius of a ball around a point in which surely no other point has its closest point on a boundary loop. 0 for
-  /// seams.
+  /// The radius of a ball around a point within which, for certain, no point has its closest point on a boundary loop.
+  /// 0 for seams.
   [[nodiscard]] double clearance(const BorderSample& sample, Vec3 p) noexcept;
 
   /// Whether a border runs between two points: their regions differ, or the texture is smeared between them.

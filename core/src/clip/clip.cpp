@@ -54,9 +54,8 @@ Status clip(const MeshView& cage, const DecidedTarget& decided, const TransferOp
                     decided.mesh, takesPart, arena, out);
 }
 
-/// Brings the zones of the vertices and triangles in line with the cuts, along which a transfer alone would leave it to
-/// rounding: what lies beyond a boundary loop is uncovered, even if the hole is assigned to other parts, and what lies
-/// on the border is not.
+/// Sets the zones along the cuts, where rounding would decide otherwise: what lies beyond a boundary loop is uncovered,
+/// whatever step 7 says, and what lies on the border is not.
 void applyCuts(const ClippedMesh& cut, const TransferOptions& options, Zones& zones) {
   for (std::size_t v = 0; v < cut.loopSides.size(); ++v) {
     Zone& zone = zones.zones[v];
@@ -72,10 +71,10 @@ void applyCuts(const ClippedMesh& cut, const TransferOptions& options, Zones& zo
 Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const TransferOptions& options,
                   Workspace& workspace, CutTarget& out) noexcept {
   const MeshView& target = decided.mesh;
-  const std::size_t ownCount = target.positions.size() / 3;
+  const std::size_t targetVertexCount = target.positions.size() / 3;
   const std::size_t segmentCount = decided.culledBy.size();
   const auto isStray = [=](std::uint32_t segment) { return segment >= segmentCount; };
-  if (decided.zones.size() != ownCount || decided.segments.size() != ownCount ||
+  if (decided.zones.size() != targetVertexCount || decided.segments.size() != targetVertexCount ||
       std::any_of(decided.segments.begin(), decided.segments.end(), isStray)) {
     return {Code::resultMismatch, Argument::target, static_cast<std::uint32_t>(decided.zones.size())};
   }
@@ -93,7 +92,7 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
     return kOutOfMemory;
   }
   for (std::size_t v = 0; v < count; ++v) {
-    const std::size_t source = v < ownCount ? v : cut.sources[3 * (v - ownCount)];
+    const std::size_t source = v < targetVertexCount ? v : cut.sources[3 * (v - targetVertexCount)];
     if (!groups.empty()) groups[v] = target.groups[source];
     segments[v] = decided.segments[source];
   }

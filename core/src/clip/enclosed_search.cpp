@@ -32,8 +32,8 @@ bool EnclosedSearch::find(const List<Piece>& pieces, TrianglePoint& point) noexc
   return isFound;
 }
 
-/// Queues a part, unless its core surely lies in the piece's region. The core of a part is what of it lies well inside
-/// the piece; nothing else of the part and of its quarters counts, so only what is near the core stays listed for them.
+/// Queues a part, unless its core surely lies in the piece's region. The core is the area of the part that lies well
+/// inside the piece. Only the core counts, of the part and of its quarters, so only triangles near it stay listed.
 void EnclosedSearch::addPart(const Piece& piece, Part part) noexcept {
   if (longestEdge(part.corners) <= triangle_.tolerances.feature) return;
   Vec3 corners[kMaxCorners];

@@ -31,7 +31,7 @@ std::size_t PieceBuilder::findEar() const noexcept {
   return ear < n ? ear : 1;
 }
 
-/// Whether a corner is convex, and no other corner lies in the triangle that it makes with its neighbors. Decided by
+/// Whether a corner is convex, and no other corner lies in the triangle that it makes with its neighbours. Decided by
 /// the weights of the target triangle's corners, in which the polygon is flat.
 bool PieceBuilder::isEar(std::size_t i) const noexcept {
   const std::size_t n = polygon_.size();

@@ -34,9 +34,9 @@ void PieceMerger::merge() noexcept {
     for (std::size_t i = 0; i < count && !failed(); ++i) {
       if (vertices_[i].stays || vertices_[i].isGone) continue;
       const auto vertex = static_cast<std::uint32_t>(firstVertex_ + i);
-      const std::uint32_t neighbor = listAround(vertex) ? findNeighbor(vertex) : kNoVertex;
-      if (neighbor == kNoVertex) continue;
-      move(vertex, neighbor);
+      const std::uint32_t neighbour = listAround(vertex) ? findNeighbour(vertex) : kNoVertex;
+      if (neighbour == kNoVertex) continue;
+      move(vertex, neighbour);
       vertices_[i].isGone = true;
       isDone = false;
     }
@@ -99,7 +99,7 @@ bool PieceMerger::listAround(std::uint32_t vertex) noexcept {
   return around_[n - 1].to == around_[0].from;
 }
 
-/// Whether a vertex, whose triangles are listed, may be moved to one of its neighbors.
+/// Whether a vertex, whose triangles are listed, may be moved to one of its neighbours.
 /// @param[in,out] thinnest  The least height that the triangles may get; then that which they get.
 bool PieceMerger::mayMove(std::uint32_t vertex, std::uint32_t to, double& thinnest) const noexcept {
   const List<std::uint8_t>& onBorder = triangle_.out.onBorder;
@@ -116,9 +116,9 @@ bool PieceMerger::mayMove(std::uint32_t vertex, std::uint32_t to, double& thinne
   return true;
 }
 
-/// Finds the neighbor that a vertex, whose triangles are listed, is best moved to.
+/// Finds the neighbour that a vertex, whose triangles are listed, is best moved to.
 /// @return kNoVertex if the vertex is needed.
-std::uint32_t PieceMerger::findNeighbor(std::uint32_t vertex) noexcept {
+std::uint32_t PieceMerger::findNeighbour(std::uint32_t vertex) noexcept {
   const List<std::uint32_t>& regions = triangle_.out.regions;
   const std::size_t n = around_.size();
   std::uint32_t ends[2] = {};  // Of the two borders that meet here.
@@ -154,7 +154,7 @@ std::uint32_t PieceMerger::findNeighbor(std::uint32_t vertex) noexcept {
   return best;
 }
 
-/// Moves a vertex to a neighbor. The triangles between the two are taken away: their corners become `kNoVertex`.
+/// Moves a vertex to a neighbour. The triangles between the two are taken away: their corners become `kNoVertex`.
 void PieceMerger::move(std::uint32_t vertex, std::uint32_t to) noexcept {
   List<std::uint32_t>& indices = triangle_.out.indices;
   for (std::size_t i = 0; i < around_.size(); ++i) {

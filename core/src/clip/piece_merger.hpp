@@ -7,9 +7,9 @@ namespace cagecast {
 
 /// Makes the pieces of a target triangle fewer: removes vertices inside it that no border needs.
 ///
-/// A vertex is removed by moving it to a neighbor, which takes the triangles between the two away. It may go if all
-/// around it is one region, or if it lies between two regions and the border is straight there. No triangle gets
-/// thinner than the thinnest around the vertex was.
+/// A vertex is removed by moving it to a neighbour, which takes the triangles between the two away. It may go if all
+/// triangles around it are in one region, or if it lies between two regions and the border is straight there. No
+/// triangle gets thinner than the thinnest around the vertex was.
 class PieceMerger {
  public:
   explicit PieceMerger(TargetTriangle& triangle) noexcept : triangle_(triangle) {}
@@ -55,7 +55,7 @@ class PieceMerger {
   [[nodiscard]] double height(std::uint32_t a, std::uint32_t b, std::uint32_t c) const noexcept;
   [[nodiscard]] bool listAround(std::uint32_t vertex) noexcept;
   [[nodiscard]] bool mayMove(std::uint32_t vertex, std::uint32_t to, double& thinnest) const noexcept;
-  std::uint32_t findNeighbor(std::uint32_t vertex) noexcept;
+  std::uint32_t findNeighbour(std::uint32_t vertex) noexcept;
   void move(std::uint32_t vertex, std::uint32_t to) noexcept;
   void closeGaps() noexcept;
 

@@ -80,7 +80,7 @@ class TriangleCutter {
       divide(0, polygons_.size());
       if (!failed()) merger_.merge();
     } else {
-      // Only what its neighbors need: the vertices on its edges.
+      // It only gets what its neighbours need: the vertices on its edges.
       addUndivided(0, polygons_.size());
     }
   }

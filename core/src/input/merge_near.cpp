@@ -17,8 +17,8 @@ namespace {
 /// Floats per position.
 constexpr std::size_t kStride = 4;
 
-/// So many others may be near to each point, on average: what real meshes stay far below, and what takes half a second
-/// with 100,000 points.
+/// The most others that may be near to each point, on average. Real meshes stay far below it, and at it 100,000 points
+/// take half a second.
 constexpr std::uint64_t kMostNear = 2000;
 
 /// Points as nanoflann wants to see them.

@@ -32,7 +32,7 @@ struct Box {
   }
 };
 
-/// What is known of four rows of numbers.
+/// The ranges of four rows of numbers, and whether all of these are finite.
 struct Rows {
   simd::f32x4 low = simd::splat(std::numeric_limits<float>::infinity());
   simd::f32x4 high = simd::splat(-std::numeric_limits<float>::infinity());
@@ -64,7 +64,7 @@ std::size_t firstNonFinite(std::span<const float> values) {
 /// Finds the box around positions.
 /// @return false if any is not finite.
 bool bound(std::span<const float> positions, Box& box) {
-  // Four vertices are three vectors; what row is of which axis repeats.
+  // Four vertices fill three vectors. Which lane holds which axis repeats after that.
   Rows rows[3];
   const float* p = positions.data();
   const float* const end = p + positions.size();

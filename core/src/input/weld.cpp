@@ -43,7 +43,7 @@ class Digits {
     const std::uint32_t mask = values() - 1;
     ++counts[key & mask];
     ++(counts + values())[key >> bits_ & mask];
-    // Of large meshes: others need not even prepare for it.
+    // Only large meshes have a third digit; the others should not pay for it.
     if (count_ > 2) [[unlikely]]
       ++(counts + 2 * std::size_t{values()})[key >> 2 * bits_];
   }

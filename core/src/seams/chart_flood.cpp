@@ -153,7 +153,7 @@ void ChartFlood::visitFans(std::uint32_t cageTriangle, Visit visit) noexcept {
   }
 }
 
-/// Visits the queued triangles, adds those within reach to the members and queues their neighbors.
+/// Visits the queued triangles, adds those within reach to the members and queues their neighbours.
 void ChartFlood::flood(const Group& group, double reach) noexcept {
   const double rounding = roundingAt(group, reach);
   const double inner = std::max(0.0, reach - rounding), outer = reach + rounding;
@@ -199,9 +199,9 @@ void ChartFlood::flood(const Group& group, double reach) noexcept {
       simd::store(squares + simd::kWidth * v, more);
       least_[v] = simd::min(least_[v], more);
     }
-    const ChartNeighbors& neighbors = charts_.neighbors[t];
-    for (const std::uint32_t neighbor : neighbors.triangles) enqueue(neighbor);
-    if (neighbors.hasFan != 0) visitFans(t, enqueue);
+    const ChartNeighbours& neighbours = charts_.neighbours[t];
+    for (const std::uint32_t neighbour : neighbours.triangles) enqueue(neighbour);
+    if (neighbours.hasFan != 0) visitFans(t, enqueue);
   }
   queueEnd_ = 0;
   memberCount_ = memberCount;

@@ -14,9 +14,9 @@ struct Box {
 
   /// A coordinate that is far from everything; its square is still finite.
   static constexpr float kFar = 1e15f;
-  /// How much larger than its contents a box is made, as a share of the scene. The ray kernel rounds coordinates
-  /// relative to the ray's origin by at most 2^-23 of their size, and this is eight times that. The lattice tests fail
-  /// without it.
+  /// How much larger than its contents a box is made, as a share of the scene's size. The ray kernel rounds coordinates
+  /// relative to the ray's origin by at most 2^-23 of that size, and this is eight times as much. The lattice tests
+  /// fail without it.
   static constexpr float kPadding = 1e-6f;
 
   static Box farAway() {

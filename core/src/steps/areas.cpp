@@ -9,7 +9,7 @@ namespace {
 /// Areas of a segment, in an `AreaUnit`.
 struct Sums {
   std::int64_t ofZone[4];
-  std::int64_t rounding;  ///< What its interior samples have less than the corners they stand for.
+  std::int64_t rounding;  ///< Area that rounding takes from its interior samples, against the corners they replace.
 
   void add(Zone zone, std::int64_t area) { ofZone[static_cast<std::size_t>(zone)] += area; }
   [[nodiscard]] std::int64_t of(Zone zone) const { return ofZone[static_cast<std::size_t>(zone)]; }

@@ -15,9 +15,10 @@ namespace {
 constexpr double kExplaining = 0.02;
 /// A segment is small if its covered area, C, is less than this share of the covered area of all segments, K.
 constexpr double kSmallSegment = 0.02;
-/// A small segment is culled if it is hidden under a hole in more than this share of E + H_s.
+/// A small segment is culled if its hidden area under a hole, H_s, is more than this share of E + H_s.
 constexpr double kHidden = 0.25;
-/// A small segment is culled if it is uncovered at an unexplained hole in more than this share of its exposed area, E.
+/// A small segment is culled if its uncovered area at an unexplained hole, U_s, is more than this share of its exposed
+/// area, E.
 constexpr double kUncoveredOfSegment = 0.15;
 /// The previous rule applies only if the segment has at least this share of the uncovered area at the hole, U.
 constexpr double kUncoveredOfHole = 0.25;
@@ -25,7 +26,7 @@ constexpr double kUncoveredOfHole = 0.25;
 /// docs/method.md, section 5″: twins with scores within this factor of 1 are judged together.
 constexpr double kDoubt = 2;
 
-/// How many times what it needs something has.
+/// How many times over a need is met; infinity if there is none.
 double ratio(double has, double needs) { return needs > 0 ? has / needs : std::numeric_limits<double>::infinity(); }
 
 /// The areas of a segment, or of several that are judged together: A, E, C and D of docs/method.md.

@@ -10,7 +10,7 @@ namespace {
 /// docs/method.md, step 5′: a depth up to this share of the diagonal is never too deep.
 constexpr double kShallow = 0.01;
 
-/// Of covered points: their area, and the sum of their areas times depths.
+/// Sums over covered points: of their areas, and of area times depth.
 struct Covered {
   std::int64_t area = 0, depth = 0;
   void add(Covered other) {
@@ -36,8 +36,9 @@ void eachCovered(const PointData& data, const InteriorSamples& samples, const Ar
   }
 }
 
-/// Finds the typical depth under each cage triangle: the mean over what is covered by the triangles around its corners.
-/// @param ofTriangles        1 per cage triangle: what it covers.
+/// Finds the typical depth under each cage triangle: the mean over the points covered by the triangles around its
+/// corners.
+/// @param ofTriangles        1 per cage triangle: of the points that it covers.
 /// @param[out] typicalDepth  1 per cage triangle.
 void findTypicalDepths(const Scene& scene, const Covered* ofTriangles, double deepest, double* typicalDepth) {
   const HalfEdges& halfEdges = scene.halfEdges;

@@ -7,8 +7,8 @@
 
 namespace cagecast {
 
-/// Step 5′: finds the depth-weighted area of every segment: its covered area, where each
-/// sample counts as area · min(1, typical depth / depth)². The typical depth is that of what is covered around it.
+/// Step 5′: finds the depth-weighted area of every segment: its covered area, where each sample counts as
+/// area · min(1, typical depth / depth)². The typical depth is the mean depth of the covered samples around it.
 void weightByDepth(const Scene& scene, const PointData& data, const InteriorSamples& samples,
                    Array<SegmentStats>& stats) noexcept;
 

@@ -10,12 +10,11 @@
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 7: a point may overhang the boundary loop of any hole by the lesser of this share of the
-/// diagonal,
+/// docs/method.md, step 7: an uncovered point becomes cosmetic if its overhang is at most the lesser of these two: a
+/// share of the target's diagonal, and a share of the diagonal of the loop's box.
 constexpr double kOverhang = 0.005;
-/// and this share of the diagonal of the loop;
 constexpr double kOverhangOfHole = 0.05;
-/// and the loop of an explained hole by this share of the diagonal.
+/// At an explained hole, its overhang may be this share of the target's diagonal.
 constexpr double kExplainedOverhang = 0.03;
 
 constexpr std::uint32_t kNone = BoundaryLoops::kNone;
@@ -35,8 +34,8 @@ bool takesPart(const PointData& data, const Array<SegmentStats>& stats, std::uin
   return !isUnderCage && stats[data.segments[point]].coveredArea > 0;
 }
 
-/// Finds the boundary loop that a point's closest point on the cage lies on, and decides whether an uncovered
-/// point at a loop is recovered: not if it lies too far beyond it.
+/// Finds the boundary loop that a point's closest point on the cage lies on, and decides by the overhang whether an
+/// uncovered point at a loop is recovered.
 /// @param[in,out] recovery  Of an uncovered point: `always` before.
 std::uint32_t loopOfPoint(const Scene& scene, const PointData& data, std::uint32_t point, std::uint32_t& recovery) {
   const BoundaryLoops& loops = scene.loops;
@@ -56,7 +55,7 @@ std::uint32_t loopOfPoint(const Scene& scene, const PointData& data, std::uint32
   return loop;
 }
 
-/// Adds up, loop by loop, what each segment has there.
+/// Adds up, loop by loop, the areas that each segment has there.
 /// @param atLoops     The points at loops, loop by loop.
 /// @param ends        1 per loop: where its points end.
 /// @param[out] found  Room for as many as there are points.

@@ -8,11 +8,11 @@ namespace {
 
 using Box = BoundaryLoops::Box;
 
-/// docs/method.md, step 4′: a small segment has fewer points than this,
+/// docs/method.md, step 4′: a small segment has fewer points than this.
 constexpr std::uint32_t kFewPoints = 32;
-/// a segment near a hole is no farther from it than this share of the diagonal,
+/// A segment is near a hole if it is no farther from it than this share of the diagonal.
 constexpr double kNearHole = 0.01;
-/// and the longest edge of a large triangle is at least this share of the diagonal.
+/// A triangle is large if its longest edge is at least this share of the diagonal.
 constexpr double kLargeEdge = 0.06;
 
 bool isSmall(const SegmentStats& segment) { return segment.points < kFewPoints; }
@@ -48,7 +48,7 @@ bool findSampledSegments(const Scene& scene, const PointData& data, const Array<
   for (std::uint32_t i = 0; i < data.points.count; ++i) {
     const std::uint32_t s = data.segments[i];
     if (!isSmall(stats[s])) continue;
-    // With `farLoops` all that is as near to the point as the cage is, and so the cage over the point.
+    // With `farLoops` the box takes in all that is as near to the point as the cage is: so also the cage above it.
     const double around = scene.options.steps.farLoops ? static_cast<double>(data.distances[i]) : 0;
     for (const double side : {-around, around}) {
       boxes[s].grow(Vec3::from(data.points.at(i)) + Vec3{side, side, side});

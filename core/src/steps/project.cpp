@@ -16,8 +16,8 @@ void projectPoints(const Scene& scene, PointData& data) noexcept {
   const Arena::Scope scope(arena);
   auto* found = arena.allocate<std::uint32_t>(cage.count);
   auto* candidates = arena.allocate<Candidate>(cage.count);
-  // Interior samples are rounded to floats before the search. A diagonal that is longer by the size of the scene makes
-  // the search allow for more than that rounding.
+  // Interior samples are rounded to floats before the search. With the size of the scene added to the diagonal, the
+  // search's tolerance is larger than that rounding.
   const double diagonal = units.diagonal + (points.rests == nullptr ? 0 : static_cast<double>(units.sceneSize));
   ClosestPointSearch search(scene.cageTree, diagonal, arena);
   if (arena.failed()) return;

@@ -9,13 +9,13 @@
 namespace cagecast {
 namespace {
 
-/// docs/method.md, section 5″: twins have equally many points; the area of the larger exceeds that of the smaller by no
-/// more than this share,
+/// docs/method.md, section 5″: twins have equally many points. By what share the area of the larger may exceed that of
+/// the smaller.
 constexpr double kAreaTolerance = 0.01;
-/// and their extents differ by no more than this share.
+/// By what share their extents may differ.
 constexpr double kExtentTolerance = 0.02;
-/// Segments are compared in the order of their areas. Up to so many kinds of equal area and another shape may come
-/// between twins.
+/// A segment is compared with this many kinds at most, the latest ones. In the order of `Order`, twins are seldom
+/// farther apart.
 constexpr std::uint32_t kMostKinds = 8;
 
 /// Segments in an order in which twins are close together: by points, area and number.

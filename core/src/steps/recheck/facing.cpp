@@ -16,9 +16,9 @@ constexpr double kSameSize = 1e-12;
 
 bool isZero(Vec3 v) { return (v.x == 0) & (v.y == 0) & (v.z == 0); }
 
-/// How many areas of a point make the number whose last bit its normals are rounded to. An area normal is twice as long
-/// as the area of its triangle, of which the point has a third, so 6 areas are the sum of the lengths. The last bit of
-/// 2^19 times that sum is at most 2^-33 of it: sums of normals then need some 34 of the 53 bits of a double.
+/// Area normals at a point are rounded to the last bit of this many times the point's area. An area normal is twice as
+/// long as the area of its triangle, of which the point has a third, so 6 areas are the sum of the lengths. The last
+/// bit of 2^19 times that sum is at most 2^-33 of it: sums of normals then need some 34 of the 53 bits of a double.
 constexpr double kRoundTo = 0x1.8p21;  // 6 · 2^19
 
 /// Sums of the area normals of the triangles at each point. Normals are rounded to 2^-33 of the sum of their lengths
@@ -109,7 +109,8 @@ void findFacing(const Scene& scene, const PointData& data, std::span<const bool>
   out.isTwoSided = arena.allocate<bool>(points.count);
   out.isTurned = arena.allocate<bool>(segmentCount);
   const Arena::Scope scope(arena);
-  auto* agreement = arena.allocate<std::int64_t>(segmentCount);  // Area with normals as the cage's, less that against.
+  // Area whose normals agree with the cage's, less the area whose normals oppose them.
+  auto* agreement = arena.allocate<std::int64_t>(segmentCount);
   NormalSums sums(AreaUnit(points.triangleCount), data, out.normals, arena);
   if (arena.failed()) return;
   std::fill(out.normals, out.normals + points.count, Vec3{0, 0, 0});
@@ -120,7 +121,7 @@ void findFacing(const Scene& scene, const PointData& data, std::span<const bool>
     const Vec3 normal = normalOf(points, corner);
     for (int i = 0; i < 3; ++i) sums.add(corner[i], normal);
   });
-  // Of a closed part, outside and inside would cancel out; but its inside is occluded.
+  // The outside and the inside of a closed part would cancel out, so only exposed points count: its inside is occluded.
   const bool isExposedOnly = scene.options.steps.exposedSide;
   bool isAnyCancelled = false;
   for (std::uint32_t p = 0; p < points.count; ++p) {
