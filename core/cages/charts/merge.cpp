@@ -12,7 +12,7 @@ namespace cagecast::cages {
 
 namespace {
 
-/// Each try takes milliseconds.
+/// How many pairs of charts are tried at most: each try takes milliseconds.
 constexpr int kMostTries = 40;
 
 /// Cosine by which a chart faces along an axis, on the mean.

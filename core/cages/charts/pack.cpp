@@ -22,7 +22,7 @@ constexpr int kRefinements = 2;
 /// A cell is no smaller than this, so that masks stay small.
 constexpr double kLeastGutter = 1.0 / 2048;
 constexpr std::size_t kWord = 64;
-/// What a try counts, as triangles that are flattened.
+/// The work of a try, for the ticker, as a number of triangles.
 constexpr std::size_t kWorkPerTry = 3000;
 
 /// Cells that a chart touches, row by row.

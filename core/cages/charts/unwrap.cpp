@@ -297,7 +297,8 @@ void standUpright(Chart& chart, const UnwrapOptions& options) {
   for (Uv& uv : chart.uvs) uv = {uv[0] * turn[1] - uv[1] * turn[0], uv[0] * turn[0] + uv[1] * turn[1]};
 }
 
-/// Sides of props are joined where they lie flat together; too many charts of any model where it can be borne.
+/// Joins sides of props that lie flat together. Of any model that still has too many charts, joins more, as far as the
+/// stretch can be borne.
 void joinCharts(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& ticker, std::vector<Chart>& charts) {
   double area = 0;
   for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t)) / 2;

@@ -13,8 +13,8 @@ namespace {
 constexpr int kPushes = 12;
 constexpr double kMostPush = 4;     ///< Of a vertex in all, in offsets: beyond it fins grow between legs.
 constexpr double kClearance = 0.1;  ///< How far skin should stay inside of the cage, in offsets.
-constexpr double kVisible = 1.6;    ///< Skin farther inside of the hull is not pushed for, in offsets.
-constexpr double kPushReach = 4;    ///< Skin farther away from the cage is not pushed for, in offsets.
+constexpr double kVisible = 1.6;    ///< Skin deeper inside the hull than this does not count, in offsets.
+constexpr double kPushReach = 4;    ///< Skin farther away from the cage than this does not count, in offsets.
 
 /// A point of the skin that should be inside, with its normal.
 struct SkinPoint {
@@ -37,7 +37,7 @@ std::vector<bool> borderVertices(const TemplateCage& cage) {
   return out;
 }
 
-/// Takes moves back where triangles would be folded that are not so in the template.
+/// Takes back the moves that fold triangles which are not folded in the template.
 void undoFolds(const TemplateCage& cage, const std::vector<Vec3>& old, const std::vector<bool>& foldedBefore,
                std::vector<Vec3>& positions) {
   // The corners first, then their neighbours as well.

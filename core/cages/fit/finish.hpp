@@ -15,7 +15,7 @@ struct Enclosed {
 
 /// Moves a cage outward where skin sticks out of it, by at most four times the offset and only where both face the same
 /// way and no triangle folds over.
-/// @param tracks  Per vertex: a direction along which alone it moves; zero if it is free.
+/// @param tracks  Per vertex: the only direction in which it moves; zero if it is free.
 /// @param step  Called before each of the iterations, with its share; false cancels.
 bool pushOut(const TemplateCage& cage, const Enclosed& inside, const std::vector<Vec3>& tracks,
              const std::function<bool(double)>& step, std::vector<Vec3>& positions);

@@ -41,7 +41,7 @@ std::vector<double> smallestAngles(const TriangleMesh& mesh) {
 
 /// Moves vertices to where the template's shape has them, turned and scaled as each place is: As-rigid-as-possible
 /// surface modeling (Sorkine, Alexa 2007), with similarities.
-/// @param tracks  Directions along which alone vertices move; zero for free ones.
+/// @param tracks  Per vertex: the only direction in which it moves; zero if it is free.
 void restoreShape(const TemplateCage& cage, const std::vector<bool>& moves, const std::vector<Vec3>& tracks,
                   std::vector<Vec3>& positions) {
   const std::vector<Vec3>& own = cage.mesh.positions;
@@ -110,7 +110,7 @@ class Surroundings {
 };
 
 /// Moves a vertex no farther than it takes for fewer triangles around it to be folded.
-/// @param track  The direction along which alone it moves; zero if it is free.
+/// @param track  The only direction in which it moves; zero if it is free.
 void searchAround(const TemplateCage& cage, const std::vector<bool>& foldedBefore, std::uint32_t vertex,
                   const Vec3& track, std::vector<Vec3>& positions) {
   Surroundings around(cage, foldedBefore, vertex, positions);

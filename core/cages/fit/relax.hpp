@@ -6,8 +6,8 @@
 
 namespace cagecast::cages {
 
-/// Restores the template's shape where triangles are folded over, or thin, that are not so in the template.
-/// @param tracks  Per vertex: a direction along which alone it moves, unless a triangle at it cannot be unfolded
+/// Restores the template's shape at triangles that are folded over or thin, but are not so in the template.
+/// @param tracks  Per vertex: the only direction in which it moves, unless a triangle at it cannot be unfolded
 ///   otherwise; zero if it is free.
 void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vector<Vec3>& positions);
 

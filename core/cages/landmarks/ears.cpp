@@ -103,7 +103,7 @@ struct Ear {
 std::optional<Ear> findEar(const Head& head, double side, double bottom) {
   const View view{{0, 0, 1}, {0, 1, 0}, {side, 0, 0}};
   const Grid grid = Grid::over(-0.52, 0.1, bottom, 0.3, kEarStep);
-  const HeightMap map = look(head.surface, view, grid, 1.0);
+  const HeightMap map = heightMapOf(head.surface, view, grid, 1.0);
   const std::vector<Place> places = earArea(map);
   if (places.empty()) return std::nullopt;
   Ear ear;

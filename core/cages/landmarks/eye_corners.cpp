@@ -12,7 +12,7 @@ void findEyeCorners(Head& head, const Surface& all, const std::vector<bool>& isE
     const Vec3& eye = head.eyes.centres[static_cast<std::size_t>(i)];
     const double side = i == 0 ? 1 : -1;
     const Grid grid = Grid::over(eye.x - reach, eye.x + reach, eye.y - reach, eye.y + reach, kCornerStep);
-    const HeightMap map = look(all, kFrontView, grid, 0.6);
+    const HeightMap map = heightMapOf(all, kFrontView, grid, 0.6);
     int first = -1, last = -1;
     std::vector<double> middles(static_cast<std::size_t>(grid.columns)), lowest(middles.size());
     double area = 0;

@@ -119,7 +119,7 @@ std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane
     if (local.empty()) continue;
     const Surface surface(local);
     const Grid grid = Grid::over(-0.2, 0.2, -0.3, 0.2, kEyeStep);
-    const HeightMap map = blurred(closed(look(surface, kFrontView, grid, 0.7), 0.008), 0.004);
+    const HeightMap map = blurred(closed(heightMapOf(surface, kFrontView, grid, 0.7), 0.008), 0.004);
     // From the top down: a chin may stand out more than a nose.
     double standsOut = 0;
     for (double y = kTop; y > kBottom; y -= kEyeStep) standsOut = std::max(standsOut, ridge(map, y));

@@ -26,8 +26,8 @@ double median3(double a, double b, double c) { return std::max(std::min(a, b), s
 double headLength(const TriangleMesh& skin, double eyeDistance, const HeadFrame& guess) {
   const double byEyes = eyeDistance / kEyeDistance;
   const Surface surface(guess.toLocal(within(skin, guess.origin, kHeadReach * guess.unit)));
-  const HeightMap top = look(surface, kTopView, Grid::over(-0.05, 0.05, -0.35, 0, 0.025), 1.5);
-  const HeightMap back = look(surface, kBackView, Grid::over(-0.05, 0.05, 0, 0.2, 0.025), 1.5);
+  const HeightMap top = heightMapOf(surface, kTopView, Grid::over(-0.05, 0.05, -0.35, 0, 0.025), 1.5);
+  const HeightMap back = heightMapOf(surface, kBackView, Grid::over(-0.05, 0.05, 0, 0.2, 0.025), 1.5);
   const double high = *std::max_element(top.heights.begin(), top.heights.end());
   const double rear = *std::max_element(back.heights.begin(), back.heights.end());
   const double byCrown = std::isfinite(high) ? high * guess.unit / kEyesToCrown : byEyes;

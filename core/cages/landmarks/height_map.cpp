@@ -28,7 +28,7 @@ void blurLine(const double* in, double* out, std::size_t stride, std::size_t cou
 
 }  // namespace
 
-HeightMap look(const Surface& surface, const View& view, const Grid& grid, double from) {
+HeightMap heightMapOf(const Surface& surface, const View& view, const Grid& grid, double from) {
   HeightMap out;
   out.grid = grid;
   std::vector<SurfaceRay> rays;

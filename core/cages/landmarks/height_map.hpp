@@ -59,7 +59,7 @@ struct HeightMap {
 };
 
 /// @param from  Height that the rays begin at.
-HeightMap look(const Surface& surface, const View& view, const Grid& grid, double from);
+HeightMap heightMapOf(const Surface& surface, const View& view, const Grid& grid, double from);
 
 /// A Gaussian blur that leaves out points without a height. @param sigma  In the unit of the grid's step.
 HeightMap blurred(const HeightMap& map, double sigma);

@@ -107,7 +107,7 @@ void findMouthCorners(Head& head) {
   constexpr double kAround = 0.08;
   const MouthLine& line = *head.mouth;
   const Grid grid = Grid::over(-0.18, 0.18, line.bottom - kAround, line.top + kAround, kMouthStep);
-  const HeightMap map = look(head.surface, kFrontView, grid, 0.6);
+  const HeightMap map = heightMapOf(head.surface, kFrontView, grid, 0.6);
   std::array<std::optional<Vec3>, 2> ends;
   if (line.top - line.bottom > kGaping) {
     ends = gapEnds(map, line.top, line.bottom, 0.5 * (line.top + line.bottom));

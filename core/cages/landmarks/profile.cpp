@@ -158,7 +158,7 @@ std::optional<Vec3> menton(const Head& head, const Vec3& chin, double noseToChin
   constexpr double kDepth = 0.6;  ///< Of the height from nose to chin.
   const double wanted = kDepth * noseToChin;
   const Grid grid = Grid::over(-kProfileStep, kProfileStep, chin.z - 0.2, chin.z + 0.02, kProfileStep);
-  const HeightMap map = look(head.surface, kBottomView, grid, -(chin.y - 0.11));
+  const HeightMap map = heightMapOf(head.surface, kBottomView, grid, -(chin.y - 0.11));
   const Curve under = Curve::along(map).blurred(kMedium);
   for (double z = chin.z; z > chin.z - 0.18; z -= kProfileStep) {
     const double y = -under.at(z);
@@ -172,7 +172,7 @@ std::optional<Vec3> menton(const Head& head, const Vec3& chin, double noseToChin
 
 bool findProfile(Head& head) {
   const Grid grid = Grid::over(-2 * kProfileStep, 2 * kProfileStep, -0.5, 0.32, kProfileStep);
-  const Curve sharp = Curve::along(look(head.surface, kFrontView, grid, 0.6));
+  const Curve sharp = Curve::along(heightMapOf(head.surface, kFrontView, grid, 0.6));
   Profile profile{sharp, sharp.blurred(kFine), sharp.blurred(kMedium)};
   auto nose = noseTip(profile);
   if (!nose) return false;

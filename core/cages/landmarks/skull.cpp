@@ -30,7 +30,7 @@ void findSkull(Head& head) {
   // The back of the head: the rearmost place of the midline, level with the face or above.
   constexpr double kLowest = -0.1, kHighest = 0.3;
   const Grid backGrid = Grid::over(-kSkullStep, kSkullStep, -0.4, kHighest + 0.05, kSkullStep);
-  const Curve back = Curve::along(look(head.surface, kBackView, backGrid, 1.0)).blurred(kRound);
+  const Curve back = Curve::along(heightMapOf(head.surface, kBackView, backGrid, 1.0)).blurred(kRound);
   const auto rearmost = back.highest(kLowest, kHighest);
   if (!rearmost) return;
   // Skulls are flat there: the middle between where they are a little less far back is steadier.
@@ -46,7 +46,7 @@ void findSkull(Head& head) {
   // flat there.
   const double middle = 0.5 * (browZ + occiput.z);
   const Grid topGrid = Grid::over(-kSkullStep, kSkullStep, middle - 0.1, middle + 0.1, kSkullStep);
-  const Curve top = Curve::along(look(head.surface, kTopView, topGrid, 1.0)).blurred(kRound);
+  const Curve top = Curve::along(heightMapOf(head.surface, kTopView, topGrid, 1.0)).blurred(kRound);
   const double height = top.at(middle);
   if (!std::isfinite(height)) return;
   const double sure = likeMost(height, kEyesToCrown);
@@ -54,7 +54,7 @@ void findSkull(Head& head) {
   // The forehead is between brow and crown, as a share of the height over the eyes.
   constexpr double kForehead = 0.61;
   const Grid frontGrid = Grid::over(-kSkullStep, kSkullStep, 0.05, 0.35, kSkullStep);
-  const Curve front = Curve::along(look(head.surface, kFrontView, frontGrid, 1.0)).blurred(kRound);
+  const Curve front = Curve::along(heightMapOf(head.surface, kFrontView, frontGrid, 1.0)).blurred(kRound);
   const double forehead = front.at(kForehead * height);
   if (std::isfinite(forehead)) head.add("forehead", {0, kForehead * height, forehead}, 0.55 * sure);
 }

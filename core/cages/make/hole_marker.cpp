@@ -11,7 +11,7 @@ namespace cagecast::cages {
 
 namespace {
 
-/// Each averages a vertex with its neighbours: details of about two edges go.
+/// How often each vertex is averaged with its neighbours, which removes details of about two edges.
 constexpr int kFieldSmoothings = 6;
 /// What a ray meets farther away than this multiple of the distance to the nearest part is seen through a gap, as teeth
 /// are between lips, and does not count.
@@ -22,9 +22,11 @@ constexpr int kRefinedEdges = 3;
 constexpr int kGapEdges = 3;
 /// Fewer marked vertices next to each other than this are an error of the sampling, not a part.
 constexpr std::size_t kLeastMark = 4;
-/// A part of whose visible area more than this is covered needs a wider hole; transfers paint it from a half on.
+/// A part needs a wider hole if more than this share of its visible area is covered. From a half on, transfers paint
+/// it.
 constexpr double kMostCovered = 0.35;
-/// How far behind the cage, in diagonals, what a ray meets hides it: the default of transfers.
+/// A point is hidden by what its ray meets in front of the cage, or up to this far behind it, in diagonals: the default
+/// `occlusionReach` of transfers.
 constexpr double kOcclusionReach = 0.03;
 /// By how much farther its hole is widened each time, in edges.
 constexpr int kWidening = 2;
@@ -32,7 +34,8 @@ constexpr int kWidening = 2;
 constexpr double kMostSamplesPerEdge = 64;
 /// A needle is a triangle narrower than this share of the spacing of samples: one row of them does.
 constexpr double kNeedleWidth = 0.25;
-/// Samples of all needles together, about: there may be thousands of them side by side; and of all other triangles.
+/// About the most samples on all needles together, of which there may be thousands side by side, and on all other
+/// triangles.
 constexpr double kNeedleSamples = 100'000, kTriangleSamples = 2'000'000;
 /// Points or rays between two calls of the callback: 10 ms of work, on meshes of a million triangles 100 ms.
 constexpr std::size_t kBatch = 4096;
@@ -133,7 +136,7 @@ void smooth(const Neighbours& neighbours, std::vector<double>& field) {
   field.swap(next);
 }
 
-/// Sets connected marks to 1 again, of which smoothing has left nothing.
+/// Sets the field to 1 again on connected marks that smoothing has removed.
 void restoreVanished(const Neighbours& neighbours, const std::vector<bool>& marks, std::vector<double>& field) {
   std::vector<bool> seen(marks.size(), false);
   std::vector<std::uint32_t> mark;
@@ -213,7 +216,7 @@ bool HoleMarker::markBelow(std::size_t begin, const Progress& progress) {
 }
 
 std::vector<std::uint32_t> HoleMarker::verticesAbove() const {
-  // What has become of each triangle of the hull as it was, by a counting sort.
+  // List the parts of each triangle of the original hull, by a counting sort.
   std::uint32_t originals = 0;
   for (const std::uint32_t parent : parents_) originals = std::max(originals, parent + 1);
   std::vector<std::uint32_t> first(originals + 1, 0), parts(parents_.size());
@@ -284,7 +287,7 @@ bool HoleMarker::widen(const TriangleMesh& cage, const Progress& progress, doubl
     std::vector<Vec3> positions(count);
     for (std::size_t i = 0; i < count; ++i) positions[i] = samples_[first + i].position;
     const std::vector<SurfacePoint> closest = surface.closest(positions);
-    // As a transfer judges it: by a ray along the cage's normal that meets the cage, and the model not before.
+    // As a transfer judges it: by a ray along the cage's normal that meets the cage before it meets the model.
     std::vector<SurfaceRay> rays(count);
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 normal = areaNormal(cage, cage.triangles[closest[i].triangle]);

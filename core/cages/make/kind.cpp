@@ -53,25 +53,25 @@ Vec3 axisOf(const Vec3& direction) {
   return x >= z ? Vec3{std::copysign(1.0, direction.x), 0, 0} : Vec3{0, 0, std::copysign(1.0, direction.z)};
 }
 
-/// What a model looks like as far as its kind is concerned.
-struct Look {
+/// What tells the kind of a model.
+struct KindFeatures {
   double width = 0, height = 0, depth = 0;
   double slender = 0;  ///< Height by depth. Chibi figures are 2.2 times as tall as deep; heads with a neck 1.8 times.
   bool isCompact = false, isCar = false, isLegged = false;
 };
 
-Look lookOf(const Model& model) {
+KindFeatures featuresOf(const Model& model) {
   const Bounds box = boundsOf(model.mesh);
   const auto [up, front] = stanceOf(model);
   const Vec3 size = box.size(), side = cross(up, front);
   const auto along = [&](const Vec3& axis) { return std::abs(dot(axis, size)); };
-  Look look{along(side), along(up), along(front)};
-  look.slender = look.height / std::max(look.depth, 1e-9 * look.height);
-  look.isCompact =
-      look.slender > 0.6 && look.slender < 2.2 && look.width < 2.2 * look.height && look.width > 0.3 * look.height;
-  look.isCar = hasParts(model, {"*wheel*", "*tyre*", "*tire*", "window*", "windscreen*", "windshield*"});
-  look.isLegged = hasLegs(model, box);
-  return look;
+  KindFeatures features{along(side), along(up), along(front)};
+  features.slender = features.height / std::max(features.depth, 1e-9 * features.height);
+  features.isCompact = features.slender > 0.6 && features.slender < 2.2 && features.width < 2.2 * features.height &&
+                       features.width > 0.3 * features.height;
+  features.isCar = hasParts(model, {"*wheel*", "*tyre*", "*tire*", "window*", "windscreen*", "windshield*"});
+  features.isLegged = hasLegs(model, box);
+  return features;
 }
 
 }  // namespace
@@ -98,19 +98,21 @@ Stance stanceOf(const Model& model) {
 }
 
 Kind kindOf(const Model& model) {
-  const Look look = lookOf(model);
-  if (look.isLegged) return look.slender > 1.5 ? Kind::body : Kind::prop;  // On all fours, seams are those of props.
+  const KindFeatures features = featuresOf(model);
+  if (features.isLegged)
+    return features.slender > 1.5 ? Kind::body : Kind::prop;  // On all fours, seams are those of props.
   const bool hasFace = hasParts(model, {"eye", "eyes", "*eyeball*", "teeth", "*tongue*", "*lash*", "*lashes"});
-  if (look.isCompact && !look.isCar && (hasFace || isOpenBelow(model.mesh, boundsOf(model.mesh)))) return Kind::head;
+  if (features.isCompact && !features.isCar && (hasFace || isOpenBelow(model.mesh, boundsOf(model.mesh))))
+    return Kind::head;
   // Arms reach far to the sides in a T-pose, and less in an A-pose.
-  const double span = look.width / look.height;
-  if (look.slender > 2.8 && span > 0.2 && !look.isCar && (hasFace || span > 0.3)) return Kind::body;
-  return hasFace && !look.isCar && look.depth < 2.5 * look.height ? Kind::head : Kind::prop;
+  const double span = features.width / features.height;
+  if (features.slender > 2.8 && span > 0.2 && !features.isCar && (hasFace || span > 0.3)) return Kind::body;
+  return hasFace && !features.isCar && features.depth < 2.5 * features.height ? Kind::head : Kind::prop;
 }
 
 bool isCompactProp(const Model& model) {
-  const Look look = lookOf(model);
-  return look.isCompact && !look.isCar && !look.isLegged && kindOf(model) == Kind::prop;
+  const KindFeatures features = featuresOf(model);
+  return features.isCompact && !features.isCar && !features.isLegged && kindOf(model) == Kind::prop;
 }
 
 }  // namespace cagecast::cages

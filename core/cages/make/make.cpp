@@ -44,7 +44,7 @@ constexpr double kFarthestPush = 4;
 constexpr int kAttempts = 5;
 /// Holes are widened until they open this share more of the hull, at most.
 constexpr double kMostWidened = 0.1;
-/// Points of the hull that the cage is moved past, about.
+/// The cage is moved past about this many points of the hull.
 constexpr std::size_t kEnclosedPoints = 20000;
 
 /// Limits of options, unless they are 0. Lengths are shares of the diagonal.
@@ -52,7 +52,7 @@ constexpr auto kLeastLength = static_cast<double>(0.0005f), kMostLength = static
 constexpr double kLeastGivenVoxels = 16, kMostGivenVoxels = 400;
 constexpr double kLeastTriangles = 50, kMostTriangles = 20000;
 
-/// What options come to for a model, in its space.
+/// The options of a call with all values filled in. Lengths are in the space of the model.
 struct MakeSettings {
   Kind kind = Kind::prop;
   HullOptions hull;

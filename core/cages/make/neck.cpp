@@ -10,12 +10,12 @@ namespace cagecast::cages {
 
 namespace {
 
-/// An opening of at least this width, in diagonals, is a neck,
+/// An opening is a neck if all of these hold: it is at least this wide, in diagonals;
 constexpr double kLeastWidth = 0.2;
-/// if this share of the head is on one side of it,
+/// at least this share of the head is on one side of it;
 constexpr double kBehind = 0.97;
-/// and its own piece reaches this far to that side of its border, in widths of the opening. A sheet, such as a strand
-/// of hair or a visor, lies within its border.
+/// and its own piece reaches at least this far to that side, in widths of the opening: a sheet, such as a strand of
+/// hair or a visor, does not.
 constexpr double kLeastDepth = 0.1;
 /// The hull is opened as far as this from the middle of a neck, in radii of the opening.
 constexpr double kOpenedRadius = 1.3;

@@ -25,7 +25,7 @@ constexpr double kLoopError = 0.04;
 /// Triangles of a fin, at most.
 constexpr std::uint32_t kFinTriangles = 8;
 
-/// Indices from which on one call does the rest, if they are twice as many as it is to leave: a few tens of
+/// With at most so many indices, or twice as many as are to be left, one call does the rest, in a few tens of
 /// milliseconds.
 constexpr std::size_t kLastStepIndices = std::size_t{3} * 15000;
 

@@ -8,14 +8,14 @@ namespace cagecast::cages {
 
 namespace {
 
-/// Points on the model that are looked for in its hull.
+/// How many points of the model are tested for whether they are in its hull.
 constexpr std::size_t kLookedFor = 4000;
 /// Of the outer area that is to be painted, a hull should not leave out more than this: a hand is 1 % of a figure, a
 /// head 8 %. Area tells it, for heads and limbs have little volume.
 constexpr double kLostAtBest = 0.03;
-/// More than this is no odd piece, such as what floats about a scan: no cage without it is of use.
+/// If it leaves out more than this, that is no odd piece, such as what floats about a scan, and the hull is of no use.
 constexpr double kLostAtMost = 0.1;
-/// How much wider the gaps are that are bridged if too much is left out.
+/// If too much is left out, gaps are bridged that are wider by this factor.
 constexpr double kWider = 2.5;
 
 /// The share of the outer unmarked area that is outside the hull.

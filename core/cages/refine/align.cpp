@@ -10,7 +10,7 @@ namespace cagecast::cages {
 namespace {
 
 constexpr int kAlignSteps = 60;
-/// Share of the scale that is left after a step: slow, so that gaps far from the usual one are heard first.
+/// Factor by which a step shrinks the robust scale: slowly, so that gaps far from the usual one count at first.
 constexpr double kAlignTightening = 0.8;
 /// A step that moves the cage by less than this, as a share of the diagonal, may be the last one.
 constexpr double kAlignSettled = 2e-5;

@@ -13,7 +13,7 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 using Triplet = Eigen::Triplet<double>;
 
 constexpr int kBendSteps = 12;
-/// Share of the scale that is left after a step. The cage lies about right already.
+/// Factor by which a step shrinks the robust scale: faster, as the cage lies about right already.
 constexpr double kBendTightening = 0.6;
 /// A step that moves no vertex by more than this share of the diagonal is the last one.
 constexpr double kBendSettled = 1e-4;

@@ -18,11 +18,12 @@ constexpr double kGapFacing = 0.3;
 constexpr double kTouching = 1e-7;
 /// How far inside the target a spot counts as sunk, as a share of the diagonal: `pokeThrough` of the transfer.
 constexpr double kSunk = 0.0025;
-/// The most that one gap counts as uneven, as a share of the diagonal; also what those that do not face count.
+/// The most that one gap adds to the unevenness, as a share of the diagonal. Gaps of spots that do not face the target
+/// add all of it.
 constexpr double kMostDifference = 0.03;
-/// A robust scale ends at so many times the spread of the gaps,
+/// The robust scale does not shrink below this multiple of the spread of the gaps,
 constexpr double kSpreads = 1.5;
-/// but not below this share of the diagonal, where the cage's own coarseness begins.
+/// nor below this share of the diagonal, where the cage's own coarseness begins.
 constexpr double kFinestScale = 1e-3;
 
 double medianOf(std::vector<double> values) {
