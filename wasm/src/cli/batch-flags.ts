@@ -3,7 +3,7 @@ import { standard } from '../gltf/files.js';
 import { forms } from '../gltf/glb-writer.js';
 import { batchCommand, describeBatch } from './batch-command.js';
 import { jobsOfManifest, jobsOfPatterns, placeholderFault, writtenBy } from './batch-jobs.js';
-import { addConfigFlags, type ConfigFlags, settler } from './config/config-flags.js';
+import { addConfigFlags, type ConfigFlags, settingsResolver } from './config/config-flags.js';
 import { borderKinds } from './config/settings.js';
 import { addRuleFlags, maskInputs, type RuleFlags, wholeNumberWithin } from './options.js';
 import { writeStandard } from './output.js';
@@ -112,7 +112,7 @@ async function runBatch(command: Command, targets: string[], flags: BatchFlags, 
     results,
     inspects: failOn === undefined ? undefined : true,
     cuts: flags.borders === 'cut',
-    settled: settler(command, flags),
+    settingsFor: settingsResolver(command, flags),
     reading: readingOf(flags),
   };
   const jobs =

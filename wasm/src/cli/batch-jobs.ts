@@ -4,7 +4,7 @@ import { basename, dirname, extname, resolve } from 'node:path';
 import { readBytes, standard } from '../gltf/files.js';
 import { firstLine, InputError, withName } from '../gltf/input-error.js';
 import { filesBeside, filesReadBy } from './beside.js';
-import type { Settled } from './config/config-flags.js';
+import type { ResolvedSettings } from './config/config-flags.js';
 import {
   isObject,
   mergeMasks,
@@ -34,11 +34,11 @@ export interface Job {
 }
 
 /** What jobs have in common, from the command line and configuration files. */
-interface JobDefaults extends Omit<TransferCommand, 'target' | 'cage' | keyof Settled> {
+interface JobDefaults extends Omit<TransferCommand, 'target' | 'cage' | keyof ResolvedSettings> {
   cage?: string | undefined;
   /** Where the batch writes its results, if in a file. */
   results?: string | undefined;
-  settled: (target: string) => Promise<Settled>;
+  settingsFor: (target: string) => Promise<ResolvedSettings>;
   /** Whether a flag asks for cut borders. */
   cuts: boolean;
 }
@@ -54,7 +54,7 @@ export async function jobsOfPatterns(patterns: readonly string[], defaults: JobD
     await Promise.all(
       [...new Set(targets)].map(async (target) => {
         try {
-          return jobOf({ ...defaults, target, ...(await defaults.settled(target)) });
+          return jobOf({ ...defaults, target, ...(await defaults.settingsFor(target)) });
         } catch (error) {
           return failedJob(target, target, defaults, error);
         }
@@ -114,7 +114,7 @@ function targetOf(line: string, folder: string): string | undefined {
 const paths = ['target', 'cage', 'referenceCage', 'texture', 'output', 'report'] as const;
 
 /** Stands for those of a job that cannot be started. */
-const noSettings: Settled = {
+const noSettings: ResolvedSettings = {
   rules: defaultRules,
   borders: 'triangle',
   compress: 'keep',
@@ -124,8 +124,8 @@ const noSettings: Settled = {
 async function jobLine(
   line: string,
   folder: string,
-  { settled, output, cuts }: JobDefaults,
-): Promise<JobNames & Settled> {
+  { settingsFor, output, cuts }: JobDefaults,
+): Promise<JobNames & ResolvedSettings> {
   const given = parseObject(line);
   refuseUnknown(given, [...paths, 'regions', 'uvBounds', ...settingNames]);
   if (given['target'] === undefined) throw new InputError('has no "target"');
@@ -142,7 +142,7 @@ async function jobLine(
     ...(uvBounds === undefined ? [] : [['uvBounds', uvBounds]]),
     ...(regions === undefined ? [] : [['regions', regionsOf(regions, folder)]]),
   ]) as Partial<JobNames> & { target: string };
-  const common = await settled(own.target);
+  const common = await settingsFor(own.target);
   const { borders, compress, preset, keep, exclude, masks, single } = settingsOf(given, folder);
   // A configuration may say so for other commands.
   if ((borders ? borders === 'cut' : cuts) && (own.output ?? output) === undefined) throw noOutput(own.target);
@@ -207,7 +207,7 @@ export function placeholderFault(...written: readonly unknown[]): string | undef
 }
 
 /** Fills in a job's own names. `{name}` in a path is the target's name without its ending, `{dir}` its folder. */
-function jobOf({ settled: _, results: __, cuts: ___, ...given }: JobDefaults & JobNames & Settled): Job {
+function jobOf({ settingsFor: _, results: __, cuts: ___, ...given }: JobDefaults & JobNames & ResolvedSettings): Job {
   const { target, cage, output, report } = given;
   if (cage === undefined)
     throw new InputError('has no cage; give one with --cage, or as "cage" in the manifest').in(target);

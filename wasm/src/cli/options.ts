@@ -10,7 +10,8 @@ import { cut, listed } from './table.js';
 
 export const presets: readonly Preset[] = ['default', 'paper'];
 
-export type Single = Partial<Omit<PresetOptions, 'steps'>>;
+/** Options of `transfer` that were given; the preset has the others. */
+export type GivenOptions = Partial<Omit<PresetOptions, 'steps'>>;
 
 /** Where the target is never or always painted: files of images in its own UVs, and an attribute of colours. */
 export interface MaskFiles {
@@ -22,8 +23,7 @@ export interface MaskFiles {
 /** The options of a transfer, from the command line. */
 export interface Rules {
   preset: Preset;
-  /** Options of `transfer` that were given. */
-  single: Single;
+  single: GivenOptions;
   /** Names of nodes or materials, `*` for any text, whose parts are always painted. */
   keep: string[];
   /** The same for parts that are never painted. */
@@ -45,7 +45,7 @@ export interface Rules {
 export const defaultRules: Rules = { preset: 'default', single: {}, keep: [], exclude: [] };
 
 /** The flags of these options, as commander parses them. */
-export interface RuleFlags extends Single {
+export interface RuleFlags extends GivenOptions {
   preset: Preset;
   keep: string[];
   exclude: string[];

@@ -1,6 +1,6 @@
 import { type Command, Option } from 'commander';
 import { mostTexels } from '../../bake/index.js';
-import { addConfigFlags, type ConfigFlags, settler } from '../config/config-flags.js';
+import { addConfigFlags, type ConfigFlags, settingsResolver } from '../config/config-flags.js';
 import { borderKinds } from '../config/settings.js';
 import { addRuleFlags, maskInputs, type RuleFlags, wholeNumberWithin } from '../options.js';
 import { addPrintFlags, type PrintFlags, print } from '../print.js';
@@ -93,7 +93,7 @@ export function addBakeCommand(program: Command, progress: Progress): void {
           back,
           part,
           size,
-          ...(await settler(command, flags)(target)),
+          ...(await settingsResolver(command, flags)(target)),
           reading: readingOf(flags),
         },
         progress,

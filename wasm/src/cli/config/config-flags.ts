@@ -9,8 +9,8 @@ export interface ConfigFlags {
   config?: string | false;
 }
 
-/** What holds for a transfer in the end. */
-export interface Settled extends Required<Pick<Settings, 'borders' | 'compress'>> {
+/** The settings of a transfer, from flags, configuration file and default values. */
+export interface ResolvedSettings extends Required<Pick<Settings, 'borders' | 'compress'>> {
   rules: Rules;
 }
 
@@ -24,13 +24,13 @@ export const addConfigFlags = (command: Command): Command =>
     .option('--no-config', `read no ${configName}`);
 
 /**
- * Returns what finds the settings of a target: flags that were given, then those of the configuration file, then default values.
+ * Returns a function that finds the settings of a target: from the flags that were given, else the configuration file, else default values.
  * @param command  The one that parsed the flags.
  */
-export function settler(
+export function settingsResolver(
   command: Command,
-  flags: RuleFlags & ReadFlags & ConfigFlags & Partial<Pick<Settled, 'borders' | 'compress'>>,
-): (target: string) => Promise<Settled> {
+  flags: RuleFlags & ReadFlags & ConfigFlags & Partial<Pick<ResolvedSettings, 'borders' | 'compress'>>,
+): (target: string) => Promise<ResolvedSettings> {
   const files = new Configuration(flags.config, readingOf(flags));
   const own = rulesOf(flags);
   const { borders = 'triangle', compress = 'keep' } = flags;

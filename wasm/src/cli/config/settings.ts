@@ -4,7 +4,15 @@ import { type Form, forms } from '../../gltf/glb-writer.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
 import type { Preset } from '../../index.js';
 import type { Borders } from '../../parts/borders-option.js';
-import { colorAttributes, holdsColors, infinite, type MaskFiles, presets, quoted, type Single } from '../options.js';
+import {
+  colorAttributes,
+  type GivenOptions,
+  holdsColors,
+  infinite,
+  type MaskFiles,
+  presets,
+  quoted,
+} from '../options.js';
 
 /** How paint may end: at existing edges of triangles, or where triangles are cut. */
 export const borderKinds: readonly Borders[] = ['triangle', 'cut'];
@@ -17,8 +25,7 @@ export interface Settings {
   keep?: string[];
   exclude?: string[];
   masks?: MaskFiles;
-  /** Options of `transfer`. */
-  single: Single;
+  single: GivenOptions;
 }
 
 /** The names of settings in JSON. */

@@ -1,5 +1,5 @@
 import { type Command, Option } from 'commander';
-import { settler } from '../config/config-flags.js';
+import { settingsResolver } from '../config/config-flags.js';
 import { inspectCommand } from '../inspect-command.js';
 import { maskInputs } from '../options.js';
 import { print } from '../print.js';
@@ -36,7 +36,7 @@ Examples:
           uvBounds,
           referenceCage,
           html,
-          rules: (await settler(command, flags)(target)).rules,
+          rules: (await settingsResolver(command, flags)(target)).rules,
           reading: readingOf(flags),
         },
         progress,

@@ -1,6 +1,6 @@
 import { type Command, Option } from 'commander';
 import { forms } from '../../gltf/glb-writer.js';
-import { settler } from '../config/config-flags.js';
+import { settingsResolver } from '../config/config-flags.js';
 import { borderKinds } from '../config/settings.js';
 import { maskInputs } from '../options.js';
 import { addRegionFlag } from '../paint/paint-flags.js';
@@ -108,7 +108,7 @@ export function addTransferCommand(program: Command, progress: Progress): void {
             regions,
             output,
             report,
-            ...(await settler(command, flags)(target)),
+            ...(await settingsResolver(command, flags)(target)),
             reading: readingOf(flags),
           },
           progress,
