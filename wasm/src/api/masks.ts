@@ -127,15 +127,15 @@ export function applyMasksToCut(
   isPartial: boolean,
 ): void {
   if (!masks) return;
-  const ownCount = whole.length;
-  const isMasked = new Uint8Array(ownCount);
+  const targetVertexCount = whole.length;
+  const isMasked = new Uint8Array(targetVertexCount);
   for (let t = 0; t < indices.length / 3; ++t)
     if (decided(masks, indices, whole, t, isPartial) !== undefined)
       for (let i = 3 * t; i < 3 * t + 3; ++i) isMasked[indices[i]!] = 1;
   for (let v = 0; v < cut.zones.length; ++v) {
-    const source = v < ownCount ? v : heaviestOf(cut, v - ownCount);
+    const source = v < targetVertexCount ? v : heaviestOf(cut, v - targetVertexCount);
     const mask = masks.vertices?.[source] ?? 0;
-    if (mask !== 0 || (v < ownCount && masks.triangles && isMasked[v] === 1)) cut.zones[v] = whole[source]!;
+    if (mask !== 0 || (v < targetVertexCount && masks.triangles && isMasked[v] === 1)) cut.zones[v] = whole[source]!;
   }
   for (let piece = 0; piece < cut.cosmeticTriangles.length; ++piece)
     cut.cosmeticTriangles[piece] =

@@ -2,7 +2,7 @@
 export type Wrapping = (coordinate: number) => number;
 
 /** A texture that is being filled. */
-interface Sheet {
+interface Texture {
   width: number;
   height: number;
   columnOf: Wrapping;
@@ -17,8 +17,8 @@ interface Sheet {
  * @param covered  1 per texel: 0 if nothing lies there; not 0 for the gutter, afterwards.
  * @param rings    The width of the gutter in texels.
  */
-export function fillGutter(sheet: Sheet, covered: Uint8Array, rings: number): void {
-  const { colors } = sheet;
+export function fillGutter(texture: Texture, covered: Uint8Array, rings: number): void {
+  const { colors } = texture;
   const near = new Int32Array(8);
   const found = new Uint8Array(covered.length);
   let ring = new Int32Array(covered.length);
@@ -26,7 +26,7 @@ export function fillGutter(sheet: Sheet, covered: Uint8Array, rings: number): vo
   /** Notes the empty neighbours of a texel. */
   const look = (texel: number, into: Int32Array, at: number): number => {
     let end = at;
-    const neighbours = neighboursOf(sheet, texel, near);
+    const neighbours = neighboursOf(texture, texel, near);
     for (let i = 0; i < neighbours; ++i) {
       const other = near[i]!;
       if (covered[other] !== 0 || found[other] === 1) continue;
@@ -40,7 +40,7 @@ export function fillGutter(sheet: Sheet, covered: Uint8Array, rings: number): vo
   let next = new Int32Array(covered.length);
   for (let step = 0; step < rings && count > 0; ++step) {
     for (let i = 0; i < count; ++i) {
-      const neighbours = neighboursOf(sheet, ring[i]!, near);
+      const neighbours = neighboursOf(texture, ring[i]!, near);
       let [red, green, blue, alpha, inner] = [0, 0, 0, 0, 0];
       for (let n = 0; n < neighbours; ++n) {
         if (covered[near[n]!] === 0) continue;
@@ -65,7 +65,7 @@ export function fillGutter(sheet: Sheet, covered: Uint8Array, rings: number): vo
 }
 
 /** The texels around one, of which there are at most eight. @returns how many. */
-function neighboursOf({ width, height, columnOf, rowOf }: Sheet, texel: number, out: Int32Array): number {
+function neighboursOf({ width, height, columnOf, rowOf }: Texture, texel: number, out: Int32Array): number {
   const x = texel % width;
   const y = (texel - x) / width;
   let count = 0;

@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { type GlbWriter, imageExtensions } from './glb-writer.js';
+import { extensionsByType, type GlbWriter } from './glb-writer.js';
 import { isOfTransfer, isOverlay } from './overlay.js';
 
 /** Removes the UVs and zones of an earlier transfer from primitives. */
@@ -44,7 +44,7 @@ export function removeOverlays(writer: GlbWriter, meshes: Iterable<GLTF.IMesh>):
     (number) =>
       hasReference(json.textures, /^source$/, number) || hasReference(json.extensions, /^thumbnailImage$/, number),
   );
-  for (const extension of Object.values(imageExtensions))
+  for (const extension of Object.values(extensionsByType))
     if (
       textures.some(({ extensions }) => extensions?.[extension]) &&
       !json.textures?.some(({ extensions }) => extensions?.[extension])

@@ -16,8 +16,8 @@ import { addedByTransfer, drop, eachAccessor, eachView, hasUnknownReferences, nu
 const kArrayBuffer = 34962;
 const kElementArrayBuffer = 34963;
 const kClampToEdge = 33071;
-/** The extensions by which textures have images that are neither PNG nor JPEG. */
-export const imageExtensions: Readonly<Record<string, string>> = {
+/** The extensions by which textures have images that are neither PNG nor JPEG, by the media types of these. */
+export const extensionsByType: Readonly<Record<string, string>> = {
   'image/webp': 'EXT_texture_webp',
   'image/ktx2': 'KHR_texture_basisu',
 };
@@ -279,7 +279,7 @@ export class GlbWriter {
       ? (json.samplers ??= []).push({ wrapS: kClampToEdge, wrapT: kClampToEdge }) - 1
       : undefined;
     const texture = { name, ...(sampler !== undefined && { sampler }) };
-    const extension = imageExtensions[mimeType];
+    const extension = extensionsByType[mimeType];
     if (extension === undefined) return (json.textures ??= []).push({ source, ...texture }) - 1;
     this.requireExtension(extension);
     return (json.textures ??= []).push({ ...texture, extensions: { [extension]: { source } } }) - 1;

@@ -16,9 +16,9 @@ export interface CutPart {
 
 /**
  * Extracts a part from a cut target. Vertices keep their order; new ones come after them.
- * @param ownCount  Vertices of the whole target before it was cut.
+ * @param targetVertexCount  Vertices of the whole target before it was cut.
  */
-export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget, ownCount: number): CutPart {
+export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget, targetVertexCount: number): CutPart {
   const { firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = part;
   const added = new Uint32Array(cut.sources.length / 3)
     .map((_, n) => n)
@@ -26,7 +26,7 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
   const numberInPart = new Uint32Array(cut.sources.length / 3);
   added.forEach((n, i) => (numberInPart[n] = vertexCount + i));
   const vertices = new Uint32Array(vertexCount + added.length).map((_, v) =>
-    v < vertexCount ? firstVertex + v : ownCount + added[v - vertexCount]!,
+    v < vertexCount ? firstVertex + v : targetVertexCount + added[v - vertexCount]!,
   );
 
   const before = (limit: number) => {
@@ -36,7 +36,7 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
   const [first, end] = [before(firstTriangle), before(firstTriangle + triangleCount)];
   const localIndices = cut.indices
     .slice(3 * first, 3 * end)
-    .map((v) => (v < ownCount ? v - firstVertex : numberInPart[v - ownCount]!));
+    .map((v) => (v < targetVertexCount ? v - firstVertex : numberInPart[v - targetVertexCount]!));
   if (mirrored) turnOver(localIndices);
   return {
     geometry: {

@@ -9,7 +9,7 @@ import { atOnce, remake, replace } from './split.js';
  * Replaces the triangles and vertices of a part's geometry by the cut ones. New vertices are blends in all attributes and morph
  * targets; copies at seams come after them. The geometry stays the same object; its groups and draw range are adapted. Needs
  * `init`.
- * @param ownCount  Number of vertices of the whole target before it was cut.
+ * @param targetVertexCount  Number of vertices of the whole target before it was cut.
  * @returns `pieces`, the cut part and which of its triangles may be painted; `split.sources`, for each vertex of the geometry the
  * vertex of `pieces` that it copies; and `split.uvs`, its UV.
  */
@@ -17,9 +17,9 @@ export function cutGeometry(
   geometry: BufferGeometry,
   part: PartRange,
   cut: CutTarget,
-  ownCount: number,
+  targetVertexCount: number,
 ): { pieces: CutPart; split: SplitPart } {
-  const pieces = cutPart(part, cut, ownCount);
+  const pieces = cutPart(part, cut, targetVertexCount);
   const split = splitPart(pieces.geometry, pieces.result);
   const remade = atOnce(remake(geometry, { pieces, split }, part.firstTriangle));
   if (remade) replace(geometry, remade);

@@ -8,12 +8,12 @@ import type { GltfFile } from '../read.js';
 import { uvLayoutOf } from '../uv-transform.js';
 import { type BakeModel, type Slot, type TextureUse, wrapOf } from './plan.js';
 
-/** Extensions that give a texture another image. */
-const imageExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
+/** Extensions that give a texture another image than its own `source`. */
+const sourceExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
 
 /** The image of a texture. */
 function sourceOf({ source, extensions }: GLTF.ITexture): number | undefined {
-  const other = imageExtensions.map((name) => (extensions?.[name] as { source?: number } | undefined)?.source);
+  const other = sourceExtensions.map((name) => (extensions?.[name] as { source?: number } | undefined)?.source);
   return other.find((found) => found !== undefined) ?? source;
 }
 
@@ -124,7 +124,7 @@ export class FileModel implements BakeModel<number, number> {
       number = use.texture;
       const source = sourceOf(before)!;
       const isShared = json.textures!.some((other) => other !== before && sourceOf(other) === source);
-      for (const extension of imageExtensions) delete before.extensions?.[extension];
+      for (const extension of sourceExtensions) delete before.extensions?.[extension];
       if (before.extensions && Object.keys(before.extensions).length === 0) delete before.extensions;
       if (isShared) before.source = json.images!.push(image) - 1;
       else {
@@ -132,7 +132,7 @@ export class FileModel implements BakeModel<number, number> {
         json.images![source] = { ...image, name: own, ...(extras && { extras }) };
         before.source = source;
       }
-      for (const extension of imageExtensions)
+      for (const extension of sourceExtensions)
         if (!json.textures!.some((texture) => texture.extensions?.[extension])) writer.unlistExtension(extension);
     }
     for (const material of materials) {

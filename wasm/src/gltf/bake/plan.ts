@@ -131,7 +131,7 @@ interface User<Material> {
 }
 
 /** A texture with a factor, and the materials that use it so, with all their parts, painted or not. */
-interface Sheet<Material, Texture> {
+interface SharedTexture<Material, Texture> {
   /** How the texture is used: whoever uses it in the same way shares its copy. */
   key: string;
   slot: Slot;
@@ -159,18 +159,18 @@ export async function bakeModel<Material, Texture>(
     const paint = input.paints[slot];
     if (!paint) continue;
     const refused = new Map<User<Material>, string>();
-    for (const sheet of listSheets(model, slot, refused)) {
-      const painted = new Set(sheet.users.map(({ part }) => part).filter((part) => isPainted(part, input.result)));
+    for (const shared of listTextures(model, slot, refused)) {
+      const painted = new Set(shared.users.map(({ part }) => part).filter((part) => isPainted(part, input.result)));
       if (painted.size === 0) continue;
-      const made = await bakeSheet(model, sheet, paint, input);
+      const made = await bakeTexture(model, shared, paint, input);
       if (typeof made === 'string') {
-        for (const user of sheet.users) refused.set(user, made);
+        for (const user of shared.users) refused.set(user, made);
         continue;
       }
       const { width, height, overlap, png } = made;
-      const materials = [...new Set(sheet.users.map(({ material }) => material))];
-      replacements.push(() => model.replace(materials, slot, png, sheet.use));
-      for (const { part, material } of sheet.users) if (material === model.materialOf(part)) baked.add(part);
+      const materials = [...new Set(shared.users.map(({ material }) => material))];
+      replacements.push(() => model.replace(materials, slot, png, shared.use));
+      for (const { part, material } of shared.users) if (material === model.materialOf(part)) baked.add(part);
       report.textures.push({ slot, parts: [...painted].map(({ name }) => name), width, height, overlap });
     }
     for (const [{ part, material }, reason] of refused) {
@@ -183,12 +183,12 @@ export async function bakeModel<Material, Texture>(
 }
 
 /** The textures that can be painted. @param refused  Gets what cannot be, and why. */
-function listSheets<Material, Texture>(
+function listTextures<Material, Texture>(
   model: BakeModel<Material, Texture>,
   slot: Slot,
   refused: Map<User<Material>, string>,
-): Sheet<Material, Texture>[] {
-  const sheets: Sheet<Material, Texture>[] = [];
+): SharedTexture<Material, Texture>[] {
+  const textures: SharedTexture<Material, Texture>[] = [];
   const users = new Map<Material, Piece[]>();
   for (const part of model.parts)
     for (const material of new Set([model.materialOf(part), ...model.variantsOf(part)]))
@@ -213,12 +213,12 @@ function listSheets<Material, Texture>(
     const redIsNew = slot === 'orm' && !model.hasOcclusion(material);
     // A new texture lies as that of the colours, which are painted once for each factor.
     const key = JSON.stringify([isNew && model.factorOf(material, 'color'), redIsNew, factor, use.wraps]);
-    const known = sheets.find((sheet) => sheet.key === key && sheet.use.texture === use.texture);
-    const sheet = known ?? { key, slot, use, isNew, redIsNew, factor, users: [] };
-    if (!known) sheets.push(sheet);
-    for (const part of parts) sheet.users.push({ part, material });
+    const known = textures.find((shared) => shared.key === key && shared.use.texture === use.texture);
+    const shared = known ?? { key, slot, use, isNew, redIsNew, factor, users: [] };
+    if (!known) textures.push(shared);
+    for (const part of parts) shared.users.push({ part, material });
   }
-  return sheets;
+  return textures;
 }
 
 /** Whether its vertices have colours, by which its texture is multiplied. Many programs write white ones. */
@@ -227,17 +227,17 @@ function isTinted<Material, Texture>(model: BakeModel<Material, Texture>, part: 
   return colors?.values.some((value, i) => i % colors.size < 3 && value !== 1);
 }
 
-/** Bakes the texture of a sheet. @returns what was baked, and the whole texture as a PNG; or why not. */
-async function bakeSheet<Material, Texture>(
+/** Bakes a shared texture. @returns what was baked, and the whole texture as a PNG; or why not. */
+async function bakeTexture<Material, Texture>(
   model: BakeModel<Material, Texture>,
-  sheet: Sheet<Material, Texture>,
+  shared: SharedTexture<Material, Texture>,
   paint: Image,
   input: BakeInput,
 ): Promise<(Baked & { png: Uint8Array }) | string> {
-  const { slot, use, factor } = sheet;
-  const base = await baseOf(model, sheet, input);
+  const { slot, use, factor } = shared;
+  const base = await baseOf(model, shared, input);
   if (typeof base === 'string') return base;
-  const layouts = sheetLayouts(model, sheet, input);
+  const layouts = layoutsOn(model, shared, input);
   const wrong = unusable(layouts, base.width * base.height);
   if (wrong) return wrong;
   const { width, height } = base;
@@ -247,10 +247,10 @@ async function bakeSheet<Material, Texture>(
   return { ...baked, png: await input.codec.encode(image) };
 }
 
-/** The triangles on a sheet; those of a part that several materials lay on it in the same way only once. */
-function sheetLayouts<Material, Texture>(
+/** The triangles that lie on a shared texture; those of a part that several materials lay there in the same way only once. */
+function layoutsOn<Material, Texture>(
   model: BakeModel<Material, Texture>,
-  { slot, users }: Sheet<Material, Texture>,
+  { slot, users }: SharedTexture<Material, Texture>,
   input: BakeInput,
 ): Layout[] {
   const known = new Set<string>();
@@ -263,10 +263,10 @@ function sheetLayouts<Material, Texture>(
   });
 }
 
-/** The image of a sheet, or what stands for it: a flat normal map, say. */
+/** The image of a shared texture, or what stands for it: a flat normal map, say. */
 async function baseOf<Material, Texture>(
   model: BakeModel<Material, Texture>,
-  { use, isNew, redIsNew, slot }: Sheet<Material, Texture>,
+  { use, isNew, redIsNew, slot }: SharedTexture<Material, Texture>,
   { codec, size }: BakeInput,
 ): Promise<Image | string> {
   if (isNew) {
