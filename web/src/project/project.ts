@@ -121,7 +121,7 @@ export class Project {
   async open(parts: Record<string, unknown>, files: Files): Promise<boolean> {
     const session = this.#session;
     let wanted = true;
-    session.work(kReading, 0, () => (wanted = false));
+    session.work(kReading, 0, { giveUp: () => (wanted = false) });
     const [{ target, cage, paint }, ...restorings] = await Promise.all([
       this.#scene.read(parts[this.#scene.name], files),
       ...this.#contributions

@@ -206,9 +206,9 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     if (!this.#session.keepTarget()) return announce('Another model is being loaded.');
     const { target, cage: current } = this.#session.shown!;
     const abort = new AbortController();
-    const giveUp = (): void => abort.abort();
-    const tell = (stage: string, share: number): unknown => this.#session.work(stage, share, giveUp, true);
-    const done = this.#session.work(title, 0, giveUp, true);
+    const making = { giveUp: () => abort.abort(), makesCage: true };
+    const tell = (stage: string, share: number): unknown => this.#session.work(stage, share, making);
+    const done = this.#session.work(title, 0, making);
     try {
       const [engine, read] = await Promise.all([
         import('cagecast/cages'),

@@ -190,7 +190,7 @@ export class Opener {
         if (loaded === this.#chosen && shown!.cage === this.#session.shown!.cage) set(paint);
       });
     let wanted = true;
-    const done = this.#session.work(kReading, 0, () => (wanted = false));
+    const done = this.#session.work(kReading, 0, { giveUp: () => (wanted = false) });
     try {
       const paint = await loaded;
       if (!wanted) return;

@@ -72,8 +72,13 @@ export function choicesOf(
   return { locks, ...((vertices || triangles) && { masks: { vertices: vertices || undefined, triangles } }) };
 }
 
-/** Called when work is cancelled by the user, or superseded by a newer request. */
-type GiveUp = (why: 'cancelled' | 'superseded') => void;
+/** A feature's work on the current scene. */
+interface Work {
+  /** Called if it is cancelled by the user, or superseded by a newer request. */
+  giveUp: (why: 'cancelled' | 'superseded') => void;
+  /** Whether it makes a cage. */
+  makesCage?: boolean;
+}
 
 /** The stage in which files are read. */
 export const kReading = 'Reading';
@@ -133,10 +138,8 @@ export class Session extends Emitter<SessionEvents> {
   #view = kFirstView;
   #runs = 0;
   #working = false;
-  /** Cancels a feature's work on the current scene. */
-  #giveUpWork: GiveUp | undefined;
-  /** Whether that work makes a cage. */
-  #makesCage = false;
+  /** A feature's work on the current scene. */
+  #work: Work | undefined;
   #moved = false;
   /** The paint of the latest `paint` event. */
   #painted: Paint | undefined;
@@ -218,7 +221,7 @@ export class Session extends Emitter<SessionEvents> {
 
   /** Whether a cage is being made for the current target. */
   get awaitsCage(): boolean {
-    return this.#working && this.#giveUpWork !== undefined && this.#makesCage;
+    return this.#working && this.#work?.makesCage === true;
   }
 
   /** Exchanges target and cage. */
@@ -333,28 +336,25 @@ export class Session extends Emitter<SessionEvents> {
   }
 
   /**
-   * Announces a feature's work on the current scene. Called again with the same function, it tells how far the work is.
-   * @param giveUp    Called if the work is cancelled or superseded.
-   * @param makesCage Whether it makes a cage.
+   * Announces a feature's work on the current scene. Called again with the same work, it tells how far that is.
    * @returns A function to call when the work is done.
    */
-  work(stage: string, share: number, giveUp: GiveUp, makesCage = false): () => void {
-    if (this.#giveUpWork !== giveUp) this.#endWork('superseded');
-    this.#giveUpWork = giveUp;
-    this.#makesCage = makesCage;
+  work(stage: string, share: number, work: Work): () => void {
+    if (this.#work !== work) this.#endWork('superseded');
+    this.#work = work;
     this.#tell(stage, share);
     return () => {
-      if (this.#giveUpWork !== giveUp) return;
-      this.#giveUpWork = undefined;
-      if (makesCage && this.#rules.preset !== this.#shown?.projection.preset) void this.#run();
+      if (this.#work !== work) return;
+      this.#work = undefined;
+      if (work.makesCage && this.#rules.preset !== this.#shown?.projection.preset) void this.#run();
       else this.emit('progress', { state: 'ready' });
     };
   }
 
-  #endWork(why: Parameters<GiveUp>[0]): void {
-    const giveUp = this.#giveUpWork;
-    this.#giveUpWork = undefined;
-    giveUp?.(why);
+  #endWork(why: Parameters<Work['giveUp']>[0]): void {
+    const work = this.#work;
+    this.#work = undefined;
+    work?.giveUp(why);
   }
 
   #tell(stage: string, share: number): void {

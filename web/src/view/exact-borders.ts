@@ -81,9 +81,11 @@ export class ExactBorders {
     const { shown, rules, choices } = this.#session;
     const { target, cage, projection } = shown!;
     this.#cutting = true;
-    const done = this.#session.work('Cutting borders', 0.3, (why) => {
-      this.#clear();
-      if (why === 'cancelled') this.#session.setRules({ borders: 'triangle' });
+    const done = this.#session.work('Cutting borders', 0.3, {
+      giveUp: (why) => {
+        this.#clear();
+        if (why === 'cancelled') this.#session.setRules({ borders: 'triangle' });
+      },
     });
     this.#cutting = false;
     try {
