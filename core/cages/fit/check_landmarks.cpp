@@ -90,6 +90,38 @@ double residual(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   return sum / static_cast<double>(from.size());
 }
 
+/// The pairs of landmarks that are no joints.
+struct SkinPairs {
+  std::vector<std::size_t> places;  ///< In the lists of landmarks.
+  std::vector<Vec3> from, to;
+};
+
+SkinPairs skinPairs(const std::vector<Landmark>& from, const std::vector<Landmark>& to) {
+  SkinPairs out;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (isJoint(from[i].name)) continue;
+    out.places.push_back(i);
+    out.from.push_back(positionOf(from[i]));
+    out.to.push_back(positionOf(to[i]));
+  }
+  return out;
+}
+
+/// The first landmark that has a mirror image if left and right seem to be swapped in all of them, because the other
+/// names would fit much better; empty otherwise.
+std::string swappedSides(const SkinPairs& pairs, const std::vector<Landmark>& to, double asGiven, double diagonal) {
+  std::vector<Vec3> swapped;
+  std::string first;
+  for (std::size_t k = 0; k < pairs.places.size(); ++k) {
+    const std::string& name = to[pairs.places[k]].name;
+    const Landmark* other = findLandmark(to, mirrorName(name));
+    if (other != nullptr && first.empty()) first = name;
+    swapped.push_back(other != nullptr ? positionOf(*other) : pairs.to[k]);
+  }
+  const bool isSwapped = !first.empty() && asGiven > 0.02 * diagonal && residual(pairs.from, swapped) < 0.5 * asGiven;
+  return isSwapped ? first : std::string();
+}
+
 /// A point that is not where the others put it.
 struct Suspect {
   std::size_t index;
@@ -177,45 +209,24 @@ Outcome checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box) {
 
 Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
                        const std::vector<bool>& given, double diagonal) {
-  std::vector<Vec3> a, b;
-  std::vector<std::string> names;
-  std::vector<bool> isGiven;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    if (isJoint(from[i].name)) continue;
-    a.push_back(positionOf(from[i]));
-    b.push_back(positionOf(to[i]));
-    names.push_back(from[i].name);
-    isGiven.push_back(given[i]);
-  }
-  if (a.size() < 3) return {};
-  // Left and right swapped: the mirrored names fit much better.
-  std::vector<Vec3> swapped;
-  std::size_t pairs = 0;
-  std::string pairName;
-  for (std::size_t i = 0, k = 0; i < from.size(); ++i) {
-    if (isJoint(from[i].name)) continue;
-    const Landmark* other = findLandmark(to, mirrorName(to[i].name));
-    if (other != nullptr) {
-      ++pairs;
-      if (pairName.empty()) pairName = to[i].name;
-    }
-    swapped.push_back(other != nullptr ? positionOf(*other) : b[k]);
-    ++k;
-  }
-  const double asGiven = residual(a, b);
-  if (pairs > 0 && asGiven > 0.02 * diagonal && residual(a, swapped) < 0.5 * asGiven) return otherSide(pairName);
+  const SkinPairs pairs = skinPairs(from, to);
+  if (pairs.places.size() < 3) return {};
+  const double asGiven = residual(pairs.from, pairs.to);
+  if (const std::string name = swappedSides(pairs, to, asGiven, diagonal); !name.empty()) return otherSide(name);
   if (const std::string name = exchangedPair(from, to, given, diagonal); !name.empty()) return otherSide(name);
-  std::vector<Suspect> suspects = leaveOut(a, b, kMostOff * diagonal);
+  std::vector<Suspect> suspects = leaveOut(pairs.from, pairs.to, kMostOff * diagonal);
   if (suspects.empty()) return {};
   const bool areSeveral = suspects.back().rest < kRestOfSeveral * asGiven || asGiven > kMostApart * diagonal;
   if (!areSeveral) suspects.resize(1);
-  if (areSeveral || suspects.front().rest < kRestOfOne * asGiven)
-    for (const Suspect& suspect : suspects)
-      if (isGiven[suspect.index])
-        return {Problem::badLandmarks, "landmarks: " + names[suspect.index] + " is " +
-                                           text("%.0f", 100 * suspect.off / diagonal) +
-                                           " % of the diagonal away from where the others put it; at most " +
-                                           text("%.0f", 100 * kMostOff) + " % is expected"};
+  if (!areSeveral && !(suspects.front().rest < kRestOfOne * asGiven)) return {};
+  for (const Suspect& suspect : suspects) {
+    const std::size_t i = pairs.places[suspect.index];
+    if (given[i])
+      return {Problem::badLandmarks, "landmarks: " + from[i].name + " is " +
+                                         text("%.0f", 100 * suspect.off / diagonal) +
+                                         " % of the diagonal away from where the others put it; at most " +
+                                         text("%.0f", 100 * kMostOff) + " % is expected"};
+  }
   return {};
 }
 

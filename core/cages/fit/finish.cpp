@@ -16,18 +16,21 @@ constexpr double kClearance = 0.1;  ///< How far skin should stay inside of the 
 constexpr double kVisible = 1.6;    ///< Skin deeper inside the hull than this does not count, in offsets.
 constexpr double kPushReach = 4;    ///< Skin farther away from the cage than this does not count, in offsets.
 
-/// A point of the skin that should be inside, with its normal.
-struct SkinPoint {
-  Vec3 position, normal;
+/// The skin that should be inside a cage.
+struct Skin {
+  std::vector<Vec3> positions, normals;
 };
 
-std::vector<SkinPoint> visiblePoints(const TriangleMesh& skin, const TriangleMesh& hull, double offset) {
-  std::vector<SkinPoint> points;
-  const std::vector<Vec3> normals = vertexNormals(skin);
-  const std::vector<SurfacePoint> onHull = Surface(hull).closest(skin.positions);
-  for (std::size_t v = 0; v < skin.positions.size(); ++v)
-    if (onHull[v].distance < kVisible * offset) points.push_back({skin.positions[v], normals[v]});
-  return points;
+Skin visibleSkin(const Enclosed& inside, double offset) {
+  Skin out;
+  const std::vector<Vec3> normals = vertexNormals(inside.skin);
+  const std::vector<SurfacePoint> onHull = Surface(inside.hull).closest(inside.skin.positions);
+  for (std::size_t v = 0; v < inside.skin.positions.size(); ++v) {
+    if (!(onHull[v].distance < kVisible * offset)) continue;
+    out.positions.push_back(inside.skin.positions[v]);
+    out.normals.push_back(normals[v]);
+  }
+  return out;
 }
 
 std::vector<bool> borderVertices(const TemplateCage& cage) {
@@ -35,6 +38,32 @@ std::vector<bool> borderVertices(const TemplateCage& cage) {
   for (const auto& loop : cage.loops)
     for (const std::uint32_t v : loop) out[v] = true;
   return out;
+}
+
+/// How far each vertex of a cage would have to move for the skin to be inside; empty if all of it is.
+/// @param onBorder  Per vertex. Where the closest point is on a border, the cage says nothing about the skin.
+std::vector<double> neededMoves(const TriangleMesh& cage, const std::vector<bool>& onBorder, const Skin& skin,
+                                double offset) {
+  std::vector<double> needed(cage.positions.size());
+  bool any = false;
+  const std::vector<SurfacePoint> closest = Surface(cage).closest(skin.positions);
+  for (std::size_t i = 0; i < closest.size(); ++i) {
+    const auto& [triangle, position, weights, distance, height] = closest[i];
+    const Triangle3& t = cage.triangles[triangle];
+    bool atBorder = true;
+    double squares = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      squares += weights[k] * weights[k];
+      if (weights[k] > 1e-4 && !onBorder[t[k]]) atBorder = false;
+    }
+    const double missing = height + kClearance * offset;
+    if (atBorder || missing <= 0 || distance > kPushReach * offset) continue;
+    const Vec3 normal = areaNormal(cage, t);
+    if (dot(normal, skin.normals[i]) < 0.5 * length(normal)) continue;
+    any = true;
+    for (std::size_t k = 0; k < 3; ++k) needed[t[k]] = std::max(needed[t[k]], missing * weights[k] / squares);
+  }
+  return any ? needed : std::vector<double>{};
 }
 
 /// Takes back the moves that fold triangles which are not folded in the template.
@@ -62,49 +91,27 @@ void undoFolds(const TemplateCage& cage, const std::vector<Vec3>& old, const std
 
 bool pushOut(const TemplateCage& cage, const Enclosed& inside, const std::vector<Vec3>& tracks,
              const std::function<bool(double)>& step, std::vector<Vec3>& positions) {
-  const std::vector<SkinPoint> points = visiblePoints(inside.skin, inside.hull, cage.offset);
+  const Skin skin = visibleSkin(inside, cage.offset);
   const std::vector<bool> onBorder = borderVertices(cage);
-  std::vector<Vec3> places;
-  places.reserve(points.size());
-  for (const SkinPoint& point : points) places.push_back(point.position);
   const std::vector<bool> foldedBefore = foldedTriangles(cage.mesh);
   std::vector<double> pushed(positions.size());
   for (int round = 0; round < kPushes; ++round) {
     if (!step(static_cast<double>(round) / kPushes)) return false;
     const TriangleMesh current{positions, cage.mesh.triangles};
+    const std::vector<double> needed = neededMoves(current, onBorder, skin, cage.offset);
+    if (needed.empty()) break;
     const std::vector<Vec3> normals = vertexNormals(current);
-    const std::vector<SurfacePoint> closest = Surface(current).closest(places);
-    std::vector<double> wanted(positions.size());
-    bool any = false;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Triangle3& t = current.triangles[closest[i].triangle];
-      bool atBorder = true;  // Where the nearest point is on a border, the cage says nothing about the skin.
-      double squares = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        squares += closest[i].weights[k] * closest[i].weights[k];
-        if (closest[i].weights[k] > 1e-4 && !onBorder[t[k]]) atBorder = false;
-      }
-      const Vec3 normal = areaNormal(current, t);
-      const double missing = closest[i].height + kClearance * cage.offset;
-      if (atBorder || missing <= 0 || closest[i].distance > kPushReach * cage.offset) continue;
-      if (dot(normal, points[i].normal) < 0.5 * length(normal)) continue;
-      any = true;
-      for (std::size_t k = 0; k < 3; ++k)
-        wanted[t[k]] = std::max(wanted[t[k]], missing * closest[i].weights[k] / squares);
-    }
-    if (!any) break;
-    const std::vector<Vec3> old = positions;
     for (std::size_t v = 0; v < positions.size(); ++v) {
       // Half of what the neighbours need, so that no single vertex sticks out.
       double around = 0;
       for (const std::uint32_t u : cage.neighbours[v])
-        around += 0.5 * wanted[u] / static_cast<double>(cage.neighbours[v].size());
-      const double push = std::min(std::max(wanted[v], around), kMostPush * cage.offset - pushed[v]);
+        around += 0.5 * needed[u] / static_cast<double>(cage.neighbours[v].size());
+      const double push = std::min(std::max(needed[v], around), kMostPush * cage.offset - pushed[v]);
       pushed[v] += push;
       const bool isFree = !(length(tracks[v]) > 0);
       positions[v] = positions[v] + push * (isFree ? normals[v] : dot(normals[v], tracks[v]) * tracks[v]);
     }
-    undoFolds(cage, old, foldedBefore, positions);
+    undoFolds(cage, current.positions, foldedBefore, positions);
   }
   return true;
 }
