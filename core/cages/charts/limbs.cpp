@@ -71,6 +71,7 @@ std::vector<Peak> peaksOf(const TriangleMesh& mesh, const std::vector<double>& v
     bool trunk = false;  ///< Two peaks have met in it.
     std::vector<std::uint32_t> members;
   };
+  // Not `Neighbours`: where regions meet, the order of the half-edges decides which is joined first.
   std::vector<std::vector<std::uint32_t>> neighbours(mesh.positions.size());
   for (std::uint32_t h = 0; h < 3 * mesh.triangles.size(); ++h) {
     neighbours[originOf(mesh, h)].push_back(endOf(mesh, h));

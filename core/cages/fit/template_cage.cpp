@@ -1,7 +1,6 @@
 #include "fit/template_cage.hpp"
 
 #include <algorithm>
-#include <set>
 
 #include "mesh/surface.hpp"
 
@@ -90,13 +89,7 @@ TemplateCage prepareTemplate(const Template& from) {
   std::vector<double> distances;
   for (const SurfacePoint& point : Surface(out.mesh).closest(onSkin)) distances.push_back(point.distance);
   out.offset = median(distances);
-  std::vector<std::set<std::uint32_t>> around(out.mesh.positions.size());
-  for (const Triangle3& t : out.mesh.triangles)
-    for (std::size_t i = 0; i < 3; ++i) {
-      around[t[i]].insert(t[(i + 1) % 3]);
-      around[t[(i + 1) % 3]].insert(t[i]);
-    }
-  for (const auto& set : around) out.neighbours.emplace_back(set.begin(), set.end());
+  out.neighbours = Neighbours(out.mesh);
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cagecast/cages.hpp"
-#include "mesh/triangle_mesh.hpp"
+#include "mesh/neighbours.hpp"
 
 namespace cagecast::cages {
 
@@ -25,7 +25,7 @@ struct TemplateCage {
   int rim = -1;  ///< The loop where the figure ends, as at a neck; -1 if there is none.
   double diagonal = 0;
   double offset = 0;  ///< How far the cage is off the model that it was made for, by the landmarks on its skin.
-  std::vector<std::vector<std::uint32_t>> neighbours;
+  Neighbours neighbours;
 };
 
 TemplateCage prepareTemplate(const Template& from);

@@ -130,8 +130,8 @@ void smooth(const Neighbours& neighbours, std::vector<double>& field) {
   std::vector<double> next(field.size());
   for (std::size_t v = 0; v < field.size(); ++v) {
     double sum = field[v];
-    for (std::uint32_t i = neighbours.first[v]; i < neighbours.first[v + 1]; ++i) sum += field[neighbours.list[i]];
-    next[v] = sum / (1 + neighbours.first[v + 1] - neighbours.first[v]);
+    for (const std::uint32_t n : neighbours[v]) sum += field[n];
+    next[v] = sum / (1 + static_cast<double>(neighbours[v].size()));
   }
   field.swap(next);
 }
@@ -147,8 +147,7 @@ void restoreVanished(const Neighbours& neighbours, const std::vector<bool>& mark
     bool remains = false;
     for (std::size_t i = 0; i < mark.size(); ++i) {
       remains = remains || field[mark[i]] >= 0.5;
-      for (std::uint32_t j = neighbours.first[mark[i]]; j < neighbours.first[mark[i] + 1]; ++j) {
-        const std::uint32_t n = neighbours.list[j];
+      for (const std::uint32_t n : neighbours[mark[i]]) {
         if (seen[n] || !marks[n]) continue;
         seen[n] = true;
         mark.push_back(n);
@@ -256,7 +255,7 @@ bool HoleMarker::mark(int refinements, const Progress& progress) {
   if (!findSamples(partOf(progress, 0, 0.4f)) || !markBelow(0, partOf(progress, 0.4f, 0.8f))) return false;
   markSamples();
   for (int level = 0; level < refinements; ++level) {
-    const Neighbours neighbours = neighboursIn(hull_);
+    const Neighbours neighbours(hull_);
     const std::size_t before = hull_.positions.size();
     refine(within(neighbours, borderOf(neighbours, marks()), kRefinedEdges), hull_, parents_);
     if (!markBelow(before, partOf(progress, 0.8f, 0.8f))) return false;
@@ -266,7 +265,7 @@ bool HoleMarker::mark(int refinements, const Progress& progress) {
 }
 
 std::vector<double> HoleMarker::field() const {
-  const Neighbours neighbours = neighboursIn(hull_);
+  const Neighbours neighbours(hull_);
   std::vector<bool> marks = this->marks();
   closeGaps(neighbours, marks);
   std::vector<double> field(marks.begin(), marks.end());
@@ -309,7 +308,7 @@ bool HoleMarker::widen(const TriangleMesh& cage, const Progress& progress, doubl
       front.push_back(vertices[i]);
   coveredShare = samples_.empty() ? 0 : static_cast<double>(front.size()) / static_cast<double>(samples_.size());
   widened_ += kWidening;
-  const std::vector<bool> reached = within(neighboursIn(hull_), std::move(front), widened_);
+  const std::vector<bool> reached = within(Neighbours(hull_), std::move(front), widened_);
   for (std::size_t v = 0; v < reached.size(); ++v) below_[v] = below_[v] || reached[v];
   return true;
 }

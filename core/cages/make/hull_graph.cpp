@@ -1,42 +1,28 @@
 #include "make/hull_graph.hpp"
 
+#include <algorithm>
 #include <array>
 #include <unordered_map>
 
 namespace cagecast::cages {
 
-Neighbours neighboursIn(const TriangleMesh& mesh) {
-  Neighbours out;
-  out.first.assign(mesh.positions.size() + 1, 0);
-  for (const Triangle3& t : mesh.triangles)
-    for (const std::uint32_t v : t) ++out.first[v + 1];
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) out.first[v + 1] += out.first[v];
-  out.list.resize(out.first.back());
-  std::vector<std::uint32_t> next(out.first.begin(), out.first.end() - 1);
-  for (const Triangle3& t : mesh.triangles)
-    for (std::size_t i = 0; i < 3; ++i) out.list[next[t[i]]++] = t[(i + 1) % 3];
-  return out;
-}
-
 std::vector<std::uint32_t> borderOf(const Neighbours& neighbours, const std::vector<bool>& marks) {
   std::vector<std::uint32_t> border;
   for (std::uint32_t v = 0; v < marks.size(); ++v) {
-    bool isBorder = false;
-    for (std::uint32_t i = neighbours.first[v]; i < neighbours.first[v + 1]; ++i)
-      isBorder = isBorder || marks[neighbours.list[i]] != marks[v];
-    if (isBorder) border.push_back(v);
+    const auto around = neighbours[v];
+    if (std::any_of(around.begin(), around.end(), [&](std::uint32_t n) { return marks[n] != marks[v]; }))
+      border.push_back(v);
   }
   return border;
 }
 
 std::vector<bool> within(const Neighbours& neighbours, std::vector<std::uint32_t> front, int edges) {
-  std::vector<bool> reached(neighbours.first.size() - 1, false);
+  std::vector<bool> reached(neighbours.size(), false);
   for (const std::uint32_t v : front) reached[v] = true;
   for (int i = 0; i < edges; ++i) {
     std::vector<std::uint32_t> next;
     for (const std::uint32_t v : front)
-      for (std::uint32_t j = neighbours.first[v]; j < neighbours.first[v + 1]; ++j) {
-        const std::uint32_t n = neighbours.list[j];
+      for (const std::uint32_t n : neighbours[v]) {
         if (reached[n]) continue;
         reached[n] = true;
         next.push_back(n);

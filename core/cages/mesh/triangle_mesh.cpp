@@ -116,10 +116,7 @@ std::vector<Vec3> vertexNormals(const TriangleMesh& mesh) {
     const Vec3 n = areaNormal(mesh, t);
     for (const std::uint32_t v : t) normals[v] = normals[v] + n;
   }
-  for (Vec3& n : normals) {
-    const double size = length(n);
-    n = size > 0 ? 1 / size * n : Vec3{0, 0, 0};
-  }
+  for (Vec3& n : normals) n = unit(n);
   return normals;
 }
 

@@ -1,0 +1,30 @@
+#include "mesh/neighbours.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace cagecast::cages {
+
+Neighbours::Neighbours(const TriangleMesh& mesh) : ends_(mesh.positions.size(), 0) {
+  // Each corner has two neighbours in its triangle. List them all, by a counting sort.
+  for (const Triangle3& t : mesh.triangles)
+    for (const std::uint32_t v : t) ends_[v] += 2;
+  std::uint32_t total = 0;
+  for (std::uint32_t& end : ends_) total += std::exchange(end, total);
+  list_.resize(total);
+  for (const Triangle3& t : mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 1; k < 3; ++k) list_[ends_[t[i]]++] = t[(i + k) % 3];
+  // Two triangles at an edge list the same neighbour.
+  auto first = list_.begin(), kept = list_.begin();
+  for (std::uint32_t& end : ends_) {
+    const auto last = list_.begin() + end;
+    std::sort(first, last);
+    kept = std::move(first, std::unique(first, last), kept);
+    first = last;
+    end = static_cast<std::uint32_t>(kept - list_.begin());
+  }
+  list_.erase(kept, list_.end());
+}
+
+}  // namespace cagecast::cages
