@@ -527,7 +527,7 @@ test('an empty path fails its job, which names the member', () => {
   assert.match(stderr, /^6 jobs: 1 done, 5 failed; /);
   const errors = linesOf(stdout).flatMap(({ error }) => error ?? []);
   const members = errors.map((error) => /^line (\d) of [^:]*: (.+) is empty/.exec(error)?.slice(1));
-  const empty = ['"target"', '"cage"', '"report"', '"neverMask"', '"regions" [0]: "texture"'];
+  const empty = ['"target"', '"cage"', '"report"', '"neverMask"', 'regions[0]: "texture"'];
   assert.deepEqual(
     members.sort(),
     empty.map((name, i) => [String(i + 2), name]),

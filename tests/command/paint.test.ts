@@ -425,8 +425,8 @@ test('a manifest has regions, bounds and a reference', () => {
   assert.deepEqual(found.map(({ status }) => status).sort(), ['done', ...Array(5).fill('failed')]);
   const errors = found.map(({ error }) => error ?? '').sort();
   assert.match(errors[1]!, /line 2 of .*: "uvBounds" is \[0,0\], not an array of four numbers/);
-  assert.match(errors[2]!, /line 3 of .*: "regions" \[0\]: is "cage\.glb", not \{"cage": …, "texture": …\}$/);
-  assert.match(errors[3]!, /line 4 of .*: "regions" \[1\]: has no "texture"$/);
+  assert.match(errors[2]!, /line 3 of .*: regions\[0\]: is "cage\.glb", not \{"cage": …, "texture": …\}$/);
+  assert.match(errors[3]!, /line 4 of .*: regions\[1\]: has no "texture"$/);
   assert.match(errors[4]!, /line 5 of .*: "regions" is \{\}, not an array of \{"cage": …, "texture": …\}$/);
   assert.match(errors[5]!, /line 6 of .*: bounds of UVs cannot be given with a texture of <UDIM> tiles/);
   const report = JSON.parse(readFileSync(at('job.json'), 'utf8')) as Report;

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import type { Page } from 'playwright-core';
+import type { Locator, Page } from 'playwright-core';
 import { faults } from '../support/axe';
 import {
   asset,
@@ -190,20 +190,25 @@ test('a fit and the landmarks of the user are there after a reload, and in the p
   assert.deepEqual([...complaints, ...fresh.complaints], []);
 });
 
-test('landmarks stay while too few are placed, whatever rules are chosen meanwhile', async () => {
-  const { page, complaints } = await site.visit();
+/** Asks for a fit to a car, which lacks landmarks of a head, and places one. @returns Where the page counts them, and what it says there. */
+async function tooFew(page: Page): Promise<{ count: Locator; placed: string }> {
   await drop(page, [glb('car.glb', asset('car', 'target.glb'))]);
   await page.locator('#target-name', { hasText: 'car.glb' }).waitFor();
   await ready(page);
   await page.locator('#template-select').selectOption('human-head');
   await page.getByTestId('fit-cage').click();
-  const note = page.locator('#cage-note', { hasText: 'place more on the model' });
-  await note.waitFor();
   await page.getByTestId('landmark-ask').waitFor();
   await page.locator('#view').press('Enter');
   const count = page.locator('#landmark-count', { hasText: 'by you' });
-  const placed = await count.textContent();
-  assert.doesNotMatch(placed!, /, 0 by you/, 'the model is under the cross');
+  const placed = (await count.textContent())!;
+  assert.doesNotMatch(placed, /, 0 by you/, 'the model is under the cross');
+  return { count, placed };
+}
+
+test('landmarks stay while too few are placed, whatever rules are chosen meanwhile', async () => {
+  const { page, complaints } = await site.visit();
+  const { count, placed } = await tooFew(page);
+  const note = page.locator('#cage-note', { hasText: 'place more on the model' });
   for (const preset of ['paper', 'default']) {
     await page.getByTestId('preset').selectOption(preset);
     await passed(page, 500);
@@ -216,16 +221,7 @@ test('landmarks stay while too few are placed, whatever rules are chosen meanwhi
 
 test('landmarks that are too few for a fit are there after a reload, and gone with their model', async () => {
   const { page, complaints } = await site.visit();
-  await drop(page, [glb('car.glb', asset('car', 'target.glb'))]);
-  await page.locator('#target-name', { hasText: 'car.glb' }).waitFor();
-  await ready(page);
-  await page.locator('#template-select').selectOption('human-head');
-  await page.getByTestId('fit-cage').click();
-  await page.getByTestId('landmark-ask').waitFor();
-  await page.locator('#view').press('Enter');
-  const count = page.locator('#landmark-count', { hasText: 'by you' });
-  const placed = await count.textContent();
-  assert.doesNotMatch(placed!, /, 0 by you/, 'the model is under the cross');
+  const { count, placed } = await tooFew(page);
   await kept(page);
   await page.reload();
   await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();

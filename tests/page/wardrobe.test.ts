@@ -521,14 +521,20 @@ test('of all avatars to which the cage cannot be fitted, it is told why', async 
   assert.deepEqual(complaints, []);
 });
 
-test('a cage that is being made for an avatar is not replaced by one that was being fitted to it', async () => {
-  const { page, complaints } = await beingFitted();
+/** An avatar on the stage for which a cage is being made; a fit to it, which came meanwhile, has given way to that. */
+async function givenWay(): Promise<Visit> {
+  const visit = await beingFitted();
+  const { page } = visit;
   await choose(page, 1);
-  // It is made once that one is ready.
   await page.getByTestId('make-cage').click();
   await page.locator('#status[data-state=working]').waitFor({ state: 'attached' });
   await page.evaluate('window.held.pop()()');
   await page.waitForFunction(() => !/Waiting|Fitting/.test(document.querySelector('.avatars')!.textContent!));
+  return visit;
+}
+
+test('a cage that is being made for an avatar is not replaced by one that was being fitted to it', async () => {
+  const { page, complaints } = await givenWay();
   await page.evaluate('window.letGo()');
   await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
   assert.equal(await settled(page), 'ready', await shownError(page));
@@ -536,12 +542,7 @@ test('a cage that is being made for an avatar is not replaced by one that was be
 });
 
 test('an avatar whose cage was cancelled while it was made is fitted again, if a fit has given way to that', async () => {
-  const { page, complaints } = await beingFitted();
-  await choose(page, 1);
-  await page.getByTestId('make-cage').click();
-  await page.locator('#status[data-state=working]').waitFor({ state: 'attached' });
-  await page.evaluate('window.held.pop()()');
-  await page.waitForFunction(() => !/Waiting|Fitting/.test(document.querySelector('.avatars')!.textContent!));
+  const { page, complaints } = await givenWay();
   await page.getByTestId('cancel').click();
   await heldBack(page);
   await page.evaluate('window.letGo()');

@@ -187,7 +187,7 @@ function regionsOf(regions: unknown, folder: string): Region[] {
       });
       return { cage: cage!, texture: texture! };
     } catch (error) {
-      throw withName(error, `"regions" [${r}]`);
+      throw withName(error, `regions[${r}]`);
     }
   });
 }
