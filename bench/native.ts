@@ -39,7 +39,7 @@ export interface Spread {
 export const stages = ['weld', 'build', 'project', 'occluded', 'covered', 'segments', 'classify', 'total'] as const;
 export type Stage = (typeof stages)[number];
 /** What the preset `default` does besides. */
-export const stagesOfDefault = ['secondLook', 'holes', 'seams'] as const;
+export const stagesOfDefault = ['recheck', 'holes', 'seams'] as const;
 export type StageOfDefault = (typeof stagesOfDefault)[number];
 
 /** What `cagecast_bench --json` prints; times in ms of CPU time. */

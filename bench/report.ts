@@ -185,7 +185,7 @@ function ofPresets(presets: Results['presets']): string[] {
         'ratio',
         'with them',
         'more',
-        'second look',
+        'recheck',
         'holes',
         'seams',
       ],

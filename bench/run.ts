@@ -230,7 +230,7 @@ async function measurePresets(scene: BenchScene, runs: number): Promise<PresetCo
     default: { vertex: cagecast.total.median, corner: corner.times.total.median },
     ratio: paper.ratios.total!,
     stages: {
-      secondLook: corner.times.secondLook.median,
+      recheck: corner.times.recheck.median,
       holes: corner.times.holes.median,
       seams: corner.times.seams.median,
     },

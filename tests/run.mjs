@@ -8,7 +8,7 @@ import { availableParallelism } from 'node:os';
 import { fileURLToPath } from 'node:url';
 
 const root = fileURLToPath(new URL('..', import.meta.url));
-const kMostPerFile = 20 * 60_000; // milliseconds, until a file of tests counts as one that hangs
+const kMaxPerFile = 20 * 60_000; // milliseconds, until a file of tests counts as one that hangs
 const kSuites = ['lint', 'core', 'package', 'browser', 'lanes'];
 
 const phases = [];
@@ -133,7 +133,7 @@ async function testFolders(folders, env) {
     for (let file = waiting.shift(); file; file = waiting.shift()) {
       const began = Date.now();
       const args = ['--import', 'tsx', '--test-reporter=spec', '--test-reporter-destination=stdout', file];
-      const { status, output } = await run(process.execPath, args, { env, atOnce: true, timeout: kMostPerFile });
+      const { status, output } = await run(process.execPath, args, { env, atOnce: true, timeout: kMaxPerFile });
       durations[file] = (Date.now() - began) / 1000;
       const count = (word) => Number(new RegExp(`^ℹ ${word} (\\d+)`, 'm').exec(output)?.[1] ?? 0);
       const all = counts[folders.find((folder) => file.startsWith(`${folder}/`))];

@@ -252,7 +252,7 @@ EMSCRIPTEN_BINDINGS(cagecast) {
       .field("occluded", &Timings::occluded)
       .field("covered", &Timings::covered)
       .field("segments", &Timings::segments)
-      .field("secondLook", &Timings::secondLook)
+      .field("recheck", &Timings::recheck)
       .field("holes", &Timings::holes)
       .field("seams", &Timings::seams)
       .field("classify", &Timings::classify)

@@ -80,7 +80,7 @@ const five = ['eye_centre_left', 'eye_centre_right', 'nose_tip', 'lip_lower', 'c
 const nine = [...five, 'mouth_corner_left', 'mouth_corner_right', 'ear_lobe_left', 'ear_lobe_right'];
 
 /**
- * Those of the true landmarks that a fit is told.
+ * Those of the true landmarks that a fit is given.
  * @param given  `auto`: none; `5`, `9`; `23`: all on the skin of a head; `all`; or names with commas between.
  */
 export function givenOf(landmarks: Landmarks, given: string): Landmarks {

@@ -2,7 +2,7 @@
 //
 //   npx tsx bench/cages/score-fit.ts [--run] [--given auto|5|9|23|all|name,name…] [--cages folder] [--template NAME] [head|body|NAME …]
 //     --run     fit first, with build/release/bench/cagecast_cages_tool
-//     --given   true landmarks that the fit is told (default auto: none)
+//     --given   true landmarks that the fit is given (default auto: none)
 //     --cages   subfolder of build/cages with NAME.json for each figure (default fitted-GIVEN)
 //     --template  name of another figure whose cage is fitted, to all that have eyes or landmarks; without correspondence, errors
 //               are those of landmarks only

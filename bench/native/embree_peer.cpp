@@ -159,7 +159,7 @@ class Query {
       const auto falls = [&](const Found& f) { return f.distance > least_ + tieDistance_; };
       count_ = static_cast<std::size_t>(std::remove_if(found_, found_ + count_, falls) - found_);
     }
-    if (count_ < kMostTies) found_[count_++] = {slot, distance};
+    if (count_ < kMaxTies) found_[count_++] = {slot, distance};
     if (least_ + tieDistance_ >= radius) return false;
     radius = least_ + tieDistance_;
     return true;
@@ -180,7 +180,7 @@ class Query {
   }
 
  private:
-  static constexpr std::size_t kMostTies =
+  static constexpr std::size_t kMaxTies =
       32;  // More triangles than that at one corner are rare enough to be dropped here.
   struct Found {
     std::uint32_t slot;
@@ -191,7 +191,7 @@ class Query {
   Vec3f p_{};
   float least_ = 0;
   std::size_t count_ = 0;
-  Found found_[kMostTies];
+  Found found_[kMaxTies];
 };
 
 bool offerPrimitive(RTCPointQueryFunctionArguments* arguments) {

@@ -124,17 +124,11 @@ struct Stage {
   const char* name;
   double Timings::*time;
 };
-constexpr Stage kStages[] = {{"weld", &Timings::weld},
-                             {"build", &Timings::build},
-                             {"project", &Timings::project},
-                             {"occluded", &Timings::occluded},
-                             {"covered", &Timings::covered},
-                             {"segments", &Timings::segments},
-                             {"secondLook", &Timings::secondLook},
-                             {"holes", &Timings::holes},
-                             {"seams", &Timings::seams},
-                             {"classify", &Timings::classify},
-                             {"total", &Timings::total}};
+constexpr Stage kStages[] = {
+    {"weld", &Timings::weld},         {"build", &Timings::build},     {"project", &Timings::project},
+    {"occluded", &Timings::occluded}, {"covered", &Timings::covered}, {"segments", &Timings::segments},
+    {"recheck", &Timings::recheck},   {"holes", &Timings::holes},     {"seams", &Timings::seams},
+    {"classify", &Timings::classify}, {"total", &Timings::total}};
 
 struct Spread {
   double median, min, max;

@@ -47,11 +47,11 @@ void measureSegments(const Scene& scene, PointData& data, Array<SegmentStats>& s
 /// Steps 6 and 7: which points are recovered if their segment is not culled.
 void findRecovery(const Scene& scene, PointData& data, Projection& out) {
   const Steps& steps = scene.options.steps;
-  if (steps.projection != ProjectionMode::nearestPoint || !(steps.secondLook || steps.holes)) return;
+  if (steps.projection != ProjectionMode::nearestPoint || !(steps.recheck || steps.holes)) return;
   data.recovery = scene.arena.allocate<std::uint32_t>(data.points.count);
   if (scene.arena.failed()) return;
   std::fill(data.recovery, data.recovery + data.points.count, Recovery::never);
-  if (steps.secondLook) timed(out.timings.secondLook, [&] { recheckOccluded(scene, data, out.segmentStats); });
+  if (steps.recheck) timed(out.timings.recheck, [&] { recheckOccluded(scene, data, out.segmentStats); });
   if (steps.holes) timed(out.timings.holes, [&] { assignHoles(scene, data, out.segmentStats, out.holeShares); });
 }
 

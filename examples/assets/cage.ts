@@ -74,7 +74,7 @@ export const makeCage = (plan: CagePlan): Mesh => {
   // Where the skin bulges, a point above it may lie over the very edge of an opening that is elsewhere.
   const half = fill(
     clipped,
-    borderLoops(clipped).filter((loop) => perimeter(clipped, loop) < kLeastHole * plan.distance),
+    borderLoops(clipped).filter((loop) => perimeter(clipped, loop) < kMinHole * plan.distance),
   );
   const open = plan.seams ? slit(half, plan.seams) : half;
   const cage = mirror(simplify(open, Math.floor(plan.triangles / 2), rimKeeper(half), plan.focus));
@@ -102,7 +102,7 @@ const evened = (positions: Float32Array, indices: Uint32Array): Float32Array => 
   return out;
 };
 
-const kLeastHole = 2; // perimeter of a hole that is meant, in distances
+const kMinHole = 2; // perimeter of a hole that is meant, in distances
 const kRimCorners = 12; // of a whole hole
 
 /** Holds on to some vertices all along each border of one half: small holes would lose their shape, or close. */

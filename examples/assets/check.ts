@@ -15,7 +15,7 @@ const validator = createRequire(import.meta.url)('gltf-validator') as {
 
 const kCageTriangles = { head: [300, 900], body: [1200, 1600], prop: [300, 900] } as const;
 const kThinnest = 5e-3; // height of a cage triangle as a share of its longest edge: flatter ones have no reliable normal
-const kLeastRim = 0.02; // perimeter of a hole that is meant, as a share of the cage's diagonal
+const kMinRim = 0.02; // perimeter of a hole that is meant, as a share of the cage's diagonal
 const kOverlap = 1e-3; // share of the covered UV area: what a grid's rounding can amount to
 
 /** What is wrong with a model, one line each; nothing if it is as it should be. */
@@ -63,7 +63,7 @@ export const cageFaults = (cage: Mesh, kind: keyof typeof kCageTriangles): strin
   expect(flat.length === 0, `cage triangle ${flat[0]} (and ${flat.length - 1} more) is flat`);
   const rims = borderLoops(welded).map((loop) => perimeter(welded, loop));
   expect(
-    Math.min(...rims) > kLeastRim * diagonalOf(cage.positions),
+    Math.min(...rims) > kMinRim * diagonalOf(cage.positions),
     `the cage has a crack of ${Math.min(...rims).toFixed(3)} around`,
   );
   const overlap = uvOverlap(cage);

@@ -2,7 +2,7 @@ import { open } from 'node:fs/promises';
 import { Failure } from './failure.ts';
 import { type Catalogue, openCatalogue } from './jobs.ts';
 
-/** Runs a program of this folder. What it cannot do is told in one sentence, and the exit code is 2. @param run  Returns the exit code. */
+/** Runs a program of this folder. What it cannot do is said in one sentence, and the exit code is 2. @param run  Returns the exit code. */
 export async function command(run: (catalogue: Catalogue) => Promise<number>): Promise<void> {
   const catalogue = openCatalogue();
   try {

@@ -4,7 +4,7 @@ import { mkdirSync } from 'node:fs';
 import { type AddressInfo, createServer } from 'node:net';
 import { Redis } from 'ioredis';
 
-/** A Redis server of this machine, which keeps all that it is told in a file. */
+/** A Redis server of this machine, which keeps everything in a file. */
 export interface OwnRedis {
   url: string;
   pid: number;

@@ -46,7 +46,7 @@ function newSandbox(): Sandbox {
   return sandbox;
 }
 
-/** How BullMQ is told of a failure: again after a while, or never. */
+/** How a failure is reported to BullMQ: again after a while, or never. */
 async function ended(job: CatalogueJob, failure: Failure, starts: number): Promise<Error> {
   const isCrash = failure.reason === 'crash';
   if (!isCrash || starts >= mostDeaths) await redis.hdel(startsKey, job.id!);
@@ -78,7 +78,7 @@ const worker = new Worker<JobData, Done>(queueName, run, {
 const tell = (text: string) => console.error(`${new Date().toISOString()} ${text}`);
 let last = '';
 worker.on('error', ({ message }) => {
-  if (message !== last) tell(message); // a Redis that is away is told once
+  if (message !== last) tell(message); // a Redis that is away is reported once
   last = message;
 });
 worker.on('failed', (job, { message }) => {

@@ -115,7 +115,7 @@ test('what must not be painted keeps its texels clear, though its neighbours are
     }
 });
 
-test('mirrored halves that share texels are told, with the names of the parts; parts alone are not', () => {
+test('mirrored halves that share texels are reported, with the names of the parts; parts alone are not', () => {
   const mesh = square();
   const half = [0, 0, 0.5, 0, 0.5, 1, 0, 1];
   const uvs = Float32Array.from([...half, ...half.map((value, k) => (k % 2 ? value : 0.5 - value))]);

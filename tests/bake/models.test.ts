@@ -234,7 +234,7 @@ test('the occlusion of a model stays beside that of the paint: none, in its meta
   }
 });
 
-test('two primitives with images of their own are painted each in its own; what cannot hold paint is told', async () => {
+test('two primitives with images of their own are painted each in its own; what cannot hold paint is reported', async () => {
   const document = await io.read(at('box.glb'));
   const [mesh] = document.getRoot().listMeshes();
   const [first] = mesh!.listPrimitives();
@@ -397,7 +397,7 @@ test('baking a model that has an overlay of an earlier transfer takes it away: d
   }
 });
 
-test('materials of variants are painted as well, or it is told why not: documents, files', async () => {
+test('materials of variants are painted as well, or it says why not: documents, files', async () => {
   const document = await io.read(at('box.glb'));
   const [box] = document.getRoot().listMeshes()[0]!.listPrimitives();
   const variants = document.createExtension(KHRMaterialsVariants);
@@ -701,7 +701,7 @@ test('what is optional in a file stays so', async () => {
   assert.deepEqual([after.extensionsUsed, after.extensionsRequired], [['EXT_texture_webp'], undefined]);
 });
 
-test('overlapping UVs are told by the command', () => {
+test('overlapping UVs are reported by the command', () => {
   const { status, stdout } = cagecast('bake', at('mirrored.glb'), at('cage.glb'), at('red.png'), '-o', at('out.glb'));
   assert.equal(status, 0);
   assert.match(

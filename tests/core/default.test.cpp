@@ -35,9 +35,9 @@ constexpr Step kSteps[] = {
     {"the floor of depth", [](TransferOptions& o) { o.steps.floor = Floor::depth, o.steps.depthWeighting = true; }},
     {"twins", [](TransferOptions& o) { o.steps.floor = Floor::depth, o.steps.depthWeighting = o.steps.twins = true; }},
     {"hole contents", [](TransferOptions& o) { o.steps.holes = o.steps.holeContents = true; }},
-    {"recheck", [](TransferOptions& o) { o.steps.secondLook = true; }},
-    {"recheck to both sides", [](TransferOptions& o) { o.steps.secondLook = o.steps.bothSides = true; }},
-    {"recheck by the exposed side", [](TransferOptions& o) { o.steps.secondLook = o.steps.exposedSide = true; }},
+    {"recheck", [](TransferOptions& o) { o.steps.recheck = true; }},
+    {"recheck to both sides", [](TransferOptions& o) { o.steps.recheck = o.steps.bothSides = true; }},
+    {"recheck by the exposed side", [](TransferOptions& o) { o.steps.recheck = o.steps.exposedSide = true; }},
     {"holes", [](TransferOptions& o) { o.steps.holes = true; }},
     {"partial triangles", [](TransferOptions& o) { o.steps.partialTriangles = true; }},
 };
@@ -110,7 +110,7 @@ TEST_CASE("any choice of the preset's steps and constants is the reference's on 
     options.steps.minOfAll = random.between(0, 0.05f);
     options.steps.maxUncovered = random.between(0, 1);
     options.steps.twins = flip();
-    options.steps.secondLook = flip();
+    options.steps.recheck = flip();
     options.steps.bothSides = flip();
     options.steps.exposedSide = flip();
     options.steps.holes = flip();
@@ -152,7 +152,7 @@ TEST_CASE("the preset is the reference's at any threshold, every triangle a segm
         INFO(name << ", threshold " << threshold);
         options.threshold = threshold;
         // The library looks again only where something is covered, which the floor asks of a segment too.
-        if (threshold == 0 && options.steps.secondLook && options.steps.floor == Floor::none)
+        if (threshold == 0 && options.steps.recheck && options.steps.floor == Floor::none)
           options.steps.floor = Floor::area;
         requireSameAsReference(scene.name, scene.cage.view(), apart.view(), options);
       }

@@ -134,8 +134,8 @@ TEST_CASE("the sentence about an option names its value and its range", "[option
 
 TEST_CASE("options as constructed are the preset `default`, and `paper` turns its steps off", "[options]") {
   constexpr TransferOptions standard, paper = TransferOptions::paper();
-  static_assert(standard.seams == Seams::corner && standard.steps.floor == Floor::depth && standard.steps.secondLook);
-  static_assert(paper.seams == Seams::vertex && paper.steps.floor == Floor::none && !paper.steps.secondLook);
+  static_assert(standard.seams == Seams::corner && standard.steps.floor == Floor::depth && standard.steps.recheck);
+  static_assert(paper.seams == Seams::vertex && paper.steps.floor == Floor::none && !paper.steps.recheck);
   static_assert(standard.threshold == paper.threshold && paper.occlusionReach == kInfinity);
 }
 

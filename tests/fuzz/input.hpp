@@ -62,7 +62,7 @@ class Input {
     const std::uint8_t off = byte();
     if ((off & 1) != 0) out.steps.interiorSamples = false;
     if ((off & 2) != 0) out.steps.depthWeighting = false;
-    if ((off & 4) != 0) out.steps.secondLook = false;
+    if ((off & 4) != 0) out.steps.recheck = false;
     if ((off & 8) != 0) out.steps.holes = false;
     if ((off & 16) != 0) out.steps.twins = false;
     return out;

@@ -154,7 +154,7 @@ describe('transfer', () => {
         'occluded',
         'covered',
         'segments',
-        'secondLook',
+        'recheck',
         'holes',
         'seams',
         'classify',

@@ -1199,7 +1199,7 @@ describe('layers', () => {
     assert.deepEqual(state(), ['newer', ['newer', 'third']]);
   });
 
-  test('options of layers and painters that are null, and a camera that is none, are told, and change nothing', () => {
+  test('options of layers and painters that are null, and a camera that is none, are reported, and change nothing', () => {
     const layers = createLayers({ renderer });
     const layer = layers.add(new Texture());
     const painter = createPainter({ layers, applied: [], cage: meshOf(scene.cage) });

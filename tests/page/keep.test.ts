@@ -343,7 +343,7 @@ test('the work is back after a reload, too, when a link to it is in the address'
   assert.deepEqual(complaints, []);
 });
 
-test('a project file holds everything; a damaged or hostile one is told in one sentence and changes nothing', async () => {
+test('a project file holds everything; a damaged or hostile one is reported in one sentence and changes nothing', async () => {
   const first = await site.visit({ viewport: { width: 900, height: 600 } });
   await work(first.page);
   const before = await state(first.page);

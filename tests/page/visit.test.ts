@@ -78,7 +78,7 @@ async function seenModel(page: Page): Promise<{ left: number; right: number; top
 }
 
 for (const { name, ...options } of kScreens) {
-  test(`${name}: a figure under another model’s cage is told to be unfit, is seen whole, and its picture can be saved`, async () => {
+  test(`${name}: a figure under another model’s cage is called unfit, is seen whole, and its picture can be saved`, async () => {
     const { page, complaints } = await site.visit({ ...options, deviceScaleFactor: 0.5 });
     assert.equal(await verdict(page), 'good');
     assert.match((await page.locator('#stage-verdict-text').textContent())!, /^\d+ % paintable$/);

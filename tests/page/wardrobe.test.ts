@@ -507,7 +507,7 @@ test('a sample that is loading comes, though the avatar on the stage is removed 
   assert.deepEqual(complaints, []);
 });
 
-test('of all avatars to which the cage cannot be fitted, it is told why', async () => {
+test('of all avatars to which the cage cannot be fitted, it says why', async () => {
   const { page, complaints } = await site.visit();
   const names = ['two', 'three'];
   await drop(page, [figure('one'), ...names.map((name) => glb(`${name}.glb`, glbOf(tetrahedron())))]);

@@ -61,7 +61,7 @@ const validOptions = fc.record(
       {
         interiorSamples: fc.boolean(),
         depthWeighting: fc.boolean(),
-        secondLook: fc.boolean(),
+        recheck: fc.boolean(),
         holes: fc.boolean(),
         twins: fc.boolean(),
         floor: fc.constantFrom('none' as const, 'area' as const, 'depth' as const),

@@ -48,11 +48,11 @@ for (const files of listFiles().filter(({ kind }) => kind === 'sample')) {
     const { cage, target } = (await loadFiles(files)).scene;
     const areas = areasOf(target);
     const all = areas.reduce((sum, area) => sum + area);
-    for (const [secondLook, most] of [
+    for (const [recheck, most] of [
       [true, 0.01],
       [false, 0.0005],
     ] as const) {
-      const options = { steps: { secondLook } };
+      const options = { steps: { recheck } };
       const { zones, segmentStats } = transfer(cage, target, options);
       for (const matrix of rotations(4)) {
         const after = transfer(turned(cage, matrix), turned(target, matrix), options);

@@ -598,7 +598,7 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     assert.equal(undone, 0);
   });
 
-  test('why a pointer cannot paint is told, such as that there are too many layers', async () => {
+  test('why a pointer cannot paint is reported, such as that there are too many layers', async () => {
     const { told, held } = await run<{ told: string[]; held: boolean }>('fullLayers');
     assert.equal(told.length, 2);
     assert.match(told[0]!, /already 16 layers/);
@@ -647,7 +647,7 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     );
     assert.ok(before[0]! > 2 * before[2]!, before.join());
     assert.deepEqual(after, before);
-    assert.ok(changes > 0, 'who draws on demand is told');
+    assert.ok(changes > 0, 'who draws on demand gets word');
   });
 
   test('a stroke while the graphics context is lost leaves what was painted', async () => {

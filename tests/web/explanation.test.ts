@@ -57,7 +57,7 @@ for (const folder of modelFolders()) {
             where,
           );
           assert.equal(part.passes, !culled);
-          // Whatever is culled although it is covered well enough is told apart from what is not.
+          // Whatever is culled although it is covered well enough is distinguished from what is not.
           if (culled && coverage >= threshold && part.exposed > 0)
             assert.match(steps.at(-1)!.sentence, /area is small|twins|meant for it/, where);
         }

@@ -16,7 +16,7 @@ const kHeads: [kind: RegExp, head: string, advice: RegExp][] = [
   [/image/, '\x89PNG\r\n', /paint/],
 ];
 
-test('a file of another kind is told by its first bytes, with what to do', () => {
+test('a file of another kind is known by its first bytes, with what to do', () => {
   for (const [kind, head, advice] of kHeads) {
     const told = adviceOn(Uint8Array.from(head, (letter) => letter.charCodeAt(0)));
     assert.match(told ?? '', kind, head);

@@ -5,11 +5,11 @@ import { CagecastError } from 'cagecast';
 import { forPeople, reasonOf } from '../../web/src/scene/wording';
 import { inRepository } from '../support/site';
 
-test('findings are told in the words of the page: parts', () => {
+test('findings are said in the words of the page: parts', () => {
   assert.equal(forPeople('Of 2 segments with the shape of "eye", 1 is'), 'Of 2 parts with the shape of "eye", 1 is');
 });
 
-test('errors are told without the function that threw them', () => {
+test('errors are said without the function that threw them', () => {
   assert.equal(reasonOf(new CagecastError('badModel', 'makeCage', 'model is too thin')), 'model is too thin');
   assert.equal(reasonOf(new Error('face.png: not an image')), 'face.png: not an image');
 });

@@ -125,7 +125,7 @@ interface TraceEvent {
 }
 
 /** Milliseconds that a task of the page's main thread may take. */
-export const kMostMs = 100;
+export const kMaxMs = 100;
 
 /**
  * Processor time of the longest task of an action, in ms: the minimum of up to three runs, relative to a fixed computation in
@@ -144,7 +144,7 @@ export async function longestTask(
     return longest / Math.max(1, same.longest / (kComputation / kTasks));
   };
   let longest = await once();
-  for (let more = 2; longest >= kMostMs && more > 0; --more) {
+  for (let more = 2; longest >= kMaxMs && more > 0; --more) {
     await undo();
     longest = Math.min(longest, await once());
   }

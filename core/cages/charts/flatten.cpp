@@ -15,7 +15,7 @@ namespace {
 constexpr double kFillWeight = 0.05;
 constexpr int kFlattenSteps = 60;
 /// A step that gains less than this share is the last.
-constexpr double kLeastGain = 2e-4;
+constexpr double kMinGain = 2e-4;
 /// After so many steps overlaps are looked for; an overlap then turns the run back to its last good state.
 constexpr int kStepsBetweenChecks = 4;
 
@@ -138,7 +138,7 @@ Chart flatten(Piece piece, Ticker& ticker) {
   for (int i = 0; i < kFlattenSteps; ++i) {
     if (!ticker.work(mesh.triangles.size())) return chart;
     const double gain = slim.step(uvs);
-    const bool last = gain < kLeastGain || i + 1 == kFlattenSteps;
+    const bool last = gain < kMinGain || i + 1 == kFlattenSteps;
     if (last || i % kStepsBetweenChecks == kStepsBetweenChecks - 1) {
       if (countOverlaps(uvs, chart.piece.mesh.triangles, 1) > 0) break;
       chart.uvs = uvs;

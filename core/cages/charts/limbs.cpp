@@ -17,7 +17,7 @@ namespace {
 /// Vertices that mean distances are taken to.
 constexpr std::size_t kThicknessSamples = 48;
 /// Peaks lower than this share of the whole range of mean distances are no limbs.
-constexpr double kLeastPeak = 0.14;
+constexpr double kMinPeak = 0.14;
 /// The loop that cuts off a limb may lie this far up the limb, as a share of its length, …
 constexpr double kLoopUp = 0.35;
 /// … and this far down the trunk.
@@ -144,7 +144,7 @@ Limbs limbsOf(const TriangleMesh& mesh, std::size_t most) {
   limbs.labels.assign(mesh.triangles.size(), 0);
   const std::vector<double> value = meanDistances(mesh);
   const auto [low, high] = std::minmax_element(value.begin(), value.end());
-  std::vector<Peak> peaks = peaksOf(mesh, value, kLeastPeak * (*high - *low));
+  std::vector<Peak> peaks = peaksOf(mesh, value, kMinPeak * (*high - *low));
   std::stable_sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.height > b.height; });
   if (peaks.size() > most) peaks.resize(most);
   for (const Peak& peak : peaks) {

@@ -13,7 +13,7 @@ namespace cagecast::cages {
 namespace {
 
 /// How many pairs of charts are tried at most: each try takes milliseconds.
-constexpr int kMostTries = 40;
+constexpr int kMaxTries = 40;
 
 /// Cosine by which a chart faces along an axis, on the mean.
 constexpr double kFacing = 0.55;
@@ -107,7 +107,7 @@ void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, Ticker& 
       const auto [a, b] = pair;
       const std::pair key{charts[a].piece.triangleOf[0], charts[b].piece.triangleOf[0]};
       if (failed.contains(key) || facing(charts[a], options.axis) != facing(charts[b], options.axis)) continue;
-      if (++tries > kMostTries || ticker.cancelled()) return;
+      if (++tries > kMaxTries || ticker.cancelled()) return;
       std::vector<Piece> pieces = joined(mesh, seams, a, b);
       if (pieces.size() == 1) {
         Chart chart = flatten(cutToDisk(std::move(pieces[0]), {}), ticker);

@@ -10,7 +10,7 @@ namespace cagecast::cages {
 namespace {
 
 /// More than the sum of all costs can be.
-constexpr std::int64_t kMost = std::int64_t{1} << 50;
+constexpr std::int64_t kMax = std::int64_t{1} << 50;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ MinCut::MinCut(std::size_t nodes, double unit)
 
 void MinCut::addArc(std::uint32_t from, std::uint32_t to, double there, double back) {
   const auto whole = [&](double cost) {
-    return cost / unit_ < static_cast<double>(kMost) ? static_cast<std::int64_t>(std::llround(cost / unit_)) : kMost;
+    return cost / unit_ < static_cast<double>(kMax) ? static_cast<std::int64_t>(std::llround(cost / unit_)) : kMax;
   };
   leaving_[from].push_back(static_cast<std::uint32_t>(arcs_.size()));
   arcs_.push_back({to, whole(there)});
@@ -66,7 +66,7 @@ void MinCut::push() {
     std::int64_t most, pushed;  // What may go through it, and what does.
   };
   // Not a recursion: a ribbon has as many levels as triangles, too many for the stack of a browser.
-  std::vector<Step> way = {{source_, kNone, kMost, 0}};
+  std::vector<Step> way = {{source_, kNone, kMax, 0}};
   while (true) {
     const Step here = way.back();
     if (const std::uint32_t arc = here.pushed < here.most ? nextArc(here.node) : kNone; arc != kNone) {

@@ -14,13 +14,13 @@ namespace cagecast::cages {
 namespace {
 
 /// More charts than this are packed by their boxes.
-constexpr std::size_t kMostMasks = 40;
+constexpr std::size_t kMaxMasks = 40;
 /// The first size tried has charts cover this much; each try is smaller by a factor. Once they fit, sizes between are
 /// tried.
 constexpr double kFirstCoverage = 0.85, kSmaller = 0.94;
 constexpr int kRefinements = 2;
 /// A cell is no smaller than this, so that masks stay small.
-constexpr double kLeastGutter = 1.0 / 2048;
+constexpr double kMinGutter = 1.0 / 2048;
 constexpr std::size_t kWord = 64;
 /// The work of a try, for the ticker, as a number of triangles.
 constexpr std::size_t kWorkPerTry = 3000;
@@ -205,7 +205,7 @@ bool packCharts(double gutter, Ticker& ticker, std::vector<Chart>& charts) {
     orders.push_back(std::move(order));
   }
   // A cell is a gutter wide. Charts take whole cells and leave one free, and half a cell is left at the border.
-  gutter = std::min(std::max(gutter, kLeastGutter), 0.2 / std::sqrt(static_cast<double>(charts.size())));
+  gutter = std::min(std::max(gutter, kMinGutter), 0.2 / std::sqrt(static_cast<double>(charts.size())));
   const auto cells = std::max(std::size_t{1}, static_cast<std::size_t>(1 / gutter) - 1);
   const auto side = static_cast<double>(cells);
   double scale = side * std::sqrt(kFirstCoverage / std::max(area, 1e-300));
@@ -216,8 +216,8 @@ bool packCharts(double gutter, Ticker& ticker, std::vector<Chart>& charts) {
   const auto fits = [&](double size) {
     for (const std::vector<std::size_t>& order : orders) {
       if (!ticker.work(kWorkPerTry)) return false;
-      auto found = charts.size() > kMostMasks ? placeBoxes(frames, order, size, side)
-                                              : placeMasks(charts, frames, order, {size, cells});
+      auto found = charts.size() > kMaxMasks ? placeBoxes(frames, order, size, side)
+                                             : placeMasks(charts, frames, order, {size, cells});
       if (!found) continue;
       places = std::move(found);
       scale = size;

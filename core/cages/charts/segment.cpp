@@ -19,8 +19,8 @@ namespace {
 /// size of the mesh wide.
 constexpr double kBorderWidth = 0.06;
 constexpr int kSegmentSweeps = 4;
-constexpr double kLeastSide = 0.04;
-constexpr std::size_t kMostSides = 8;
+constexpr double kMinSide = 0.04;
+constexpr std::size_t kMaxSides = 8;
 /// Joining two regions looks at each triangle so briefly that this many count as one in the ticker's work.
 constexpr std::size_t kTrianglesPerWork = 200;
 
@@ -169,7 +169,7 @@ std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& opti
     if (!changed) break;
   }
   std::vector<std::uint32_t> regions = regionsOf(mesh, labels);
-  joinSmallRegions(mesh, kLeastSide, kMostSides, ticker, regions);
+  joinSmallRegions(mesh, kMinSide, kMaxSides, ticker, regions);
   return regions;
 }
 
@@ -186,7 +186,7 @@ std::vector<std::uint32_t> frontAndBackOf(const TriangleMesh& mesh, const Vec3& 
     if (twins[h] != kNone && twins[h] > h) cut.addEdge(h / 3, twins[h] / 3, border * edgeLength(mesh, h));
   const std::vector<bool> back = cut.solve();
   std::vector<std::uint32_t> regions = regionsOf(mesh, {back.begin(), back.end()});
-  joinSmallRegions(mesh, kLeastSide, 2, ticker, regions);
+  joinSmallRegions(mesh, kMinSide, 2, ticker, regions);
   return regions;
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// Triangles thinner than this share of their longest edge are taken to be this thick, so that their gradients are
 /// finite.
-constexpr double kLeastTriangleHeight = 0.02;
+constexpr double kMinTriangleHeight = 0.02;
 /// Pull towards the previous step, as a share of the mean weight: fixes the translation and steadies the solver.
 constexpr double kProximity = 1e-4;
 /// Share of the way to the first flip that a step may go.
@@ -41,12 +41,12 @@ RestShapes restShapesOf(const TriangleMesh& mesh) {
     double longest = std::max({length(along), length(across), length(across - along)});
     if (!(longest > 0)) longest = 1e-12;
     // Corners (0, 0), (width, 0), (x, height).
-    double width = length(along), x = 0, height = kLeastTriangleHeight * longest;
-    if (width > kLeastTriangleHeight * longest) {
+    double width = length(along), x = 0, height = kMinTriangleHeight * longest;
+    if (width > kMinTriangleHeight * longest) {
       x = dot(along, across) / width;
       height = std::max(height, length(cross(along, across)) / width);
     } else {
-      width = kLeastTriangleHeight * longest;
+      width = kMinTriangleHeight * longest;
       height = longest;
     }
     const double gx1 = 1 / width, gy1 = -x / (width * height), gy2 = 1 / height;

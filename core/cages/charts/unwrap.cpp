@@ -18,27 +18,27 @@ namespace cagecast::cages {
 namespace {
 
 /// Charts with more energy than this are cut in two (4: no stretch; 5: stretched by about a quarter each way).
-constexpr double kMostEnergy = 6;
+constexpr double kMaxEnergy = 6;
 /// Energy that is borne before there are too many charts.
 constexpr double kBorneEnergy = 9;
 /// Sides of props are joined if the chart has no more energy, …
 constexpr double kJoinedEnergy = 4.2;
 /// … fills so much of its box, …
-constexpr double kLeastFill = 0.45;
+constexpr double kMinFill = 0.45;
 /// … and is no longer than this, as a share of the square root of the whole area.
 constexpr double kLongestChart = 1.25;
 /// A head, two arms, two legs.
-constexpr std::size_t kMostLimbs = 5;
+constexpr std::size_t kMaxLimbs = 5;
 /// Those of a spider.
-constexpr std::size_t kMostLegs = 8;
+constexpr std::size_t kMaxLegs = 8;
 /// Props should not have more charts than this.
-constexpr std::size_t kMostPropCharts = 10;
+constexpr std::size_t kMaxPropCharts = 10;
 /// Seams on a head cost this much more in front than at the back.
 constexpr double kFrontCost = 12;
 /// The neck is a loop at least this share as long as the longest.
-constexpr double kLeastNeck = 0.5;
+constexpr double kMinNeck = 0.5;
 /// Seams that are cut to let a chart lie flat, at most.
-constexpr int kMostSeams = 4;
+constexpr int kMaxSeams = 4;
 
 /// Where the seam of a head may start: the furthest place in this direction.
 struct SeamStart {
@@ -135,7 +135,7 @@ std::uint32_t mostStretched(const Chart& chart) {
 /// Flattens a piece; where it is stretched too much, seams from there to the boundary help (Gu, Gortler, Hoppe 2002).
 Chart flattenWithSeams(Piece piece, Ticker& ticker) {
   Chart chart = flatten(cutToDisk(std::move(piece), {}), ticker);
-  for (int i = 0; i < kMostSeams && chart.valid && chart.energy > kMostEnergy; ++i) {
+  for (int i = 0; i < kMaxSeams && chart.valid && chart.energy > kMaxEnergy; ++i) {
     const std::uint32_t worst = mostStretched(chart);
     const TriangleMesh& mesh = chart.piece.mesh;
     std::vector<std::uint32_t> boundary;
@@ -156,7 +156,7 @@ bool Unwrapper::layOut(Piece piece) {
     Chart chart = flattenWithSeams(std::move(waiting.back()), ticker_);
     waiting.pop_back();
     if (ticker_.cancelled()) return false;
-    if ((chart.valid && chart.energy < kMostEnergy) || chart.piece.mesh.triangles.size() < 2) {
+    if ((chart.valid && chart.energy < kMaxEnergy) || chart.piece.mesh.triangles.size() < 2) {
       accept(std::move(chart));
       continue;
     }
@@ -171,7 +171,7 @@ std::vector<std::uint32_t> neckOf(const TriangleMesh& mesh, const Vec3& up) {
   std::vector<std::uint32_t> neck;
   double lowest = 0;
   for (const auto& loop : loops) {
-    if (lengthOf(mesh, loop) < kLeastNeck * lengthOf(mesh, loops[0])) break;
+    if (lengthOf(mesh, loop) < kMinNeck * lengthOf(mesh, loops[0])) break;
     std::vector<std::uint32_t> vertices;
     double height = 0;
     for (const std::uint32_t h : loop) {
@@ -216,7 +216,7 @@ bool Unwrapper::layOutHead(Piece piece) {
     best = std::move(chart);
     least = fault;
   }
-  if (best.valid && best.energy < kMostEnergy) {
+  if (best.valid && best.energy < kMaxEnergy) {
     accept(std::move(best));
     return true;
   }
@@ -305,8 +305,8 @@ void joinCharts(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& 
   const double longest = kLongestChart * std::sqrt(area);
   const bool isProp = options.kind == Kind::prop || options.kind == Kind::automatic;
   const Vec3 side = cross(options.up, options.front);
-  if (isProp) mergeCharts(mesh, {kJoinedEnergy, 1, kLeastFill, longest, side}, ticker, charts);
-  const std::size_t enough = isProp ? kMostPropCharts : options.kind == Kind::body ? 8 : 2;
+  if (isProp) mergeCharts(mesh, {kJoinedEnergy, 1, kMinFill, longest, side}, ticker, charts);
+  const std::size_t enough = isProp ? kMaxPropCharts : options.kind == Kind::body ? 8 : 2;
   if (charts.size() > enough) mergeCharts(mesh, {kBorneEnergy, enough, 0, 1.5 * longest, {0, 0, 0}}, ticker, charts);
 }
 
@@ -342,10 +342,10 @@ std::vector<Chart> chartsOf(const TriangleMesh& mesh, const UnwrapOptions& optio
 bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progress& progress, Layout& out) {
   out = {};
   Ticker ticker(progress);
-  std::vector<Chart> charts = chartsOf(mesh, options, options.kind == Kind::body ? kMostLimbs : 0, ticker);
-  if (options.kind != Kind::head && options.kind != Kind::body && charts.size() > kMostPropCharts) {
+  std::vector<Chart> charts = chartsOf(mesh, options, options.kind == Kind::body ? kMaxLimbs : 0, ticker);
+  if (options.kind != Kind::head && options.kind != Kind::body && charts.size() > kMaxPropCharts) {
     // A spider has more sides than legs.
-    std::vector<Chart> others = chartsOf(mesh, options, kMostLegs, ticker);
+    std::vector<Chart> others = chartsOf(mesh, options, kMaxLegs, ticker);
     if (others.size() < charts.size()) charts = std::move(others);
   }
   if (ticker.cancelled()) return false;

@@ -35,7 +35,7 @@ struct Layout {
 /// seen from outside are not mirrored. Whatever the mesh is (open or closed, non-manifold, of any genus, in pieces),
 /// the layout is valid; the worse the mesh, the more charts. Deterministic. About 0.2 s for 1500 triangles.
 /// @param mesh  Finite positions; vertices shared where the surface goes on.
-/// @return false if `progress` cancelled it; it is told shares from 0 to 1.
+/// @return false if `progress` cancelled it; it gets shares from 0 to 1.
 bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progress& progress, Layout& out);
 
 /// What is wrong with a layout, and how much it stretches. Stretch is that of triangles with an area, weighted by it.

@@ -14,7 +14,7 @@ constexpr double kRimStep = 0.005;   ///< Distance of samples along a rim, in di
 constexpr double kSmoothing = 0.03;  ///< Ragged rims are smoothed over this share of their length.
 /// How many samples a rim has, about, at most: smoothing them takes the square of it. Necks have 200 to 400. There
 /// would be millions where landmarks that are close together make the target huge in the template's space.
-constexpr std::size_t kMostSamples = 2000;
+constexpr std::size_t kMaxSamples = 2000;
 
 /// How far the map may stay off landmarks that are not sure (see `Anchor::slack`).
 constexpr double kSlack = 0.1;
@@ -57,11 +57,11 @@ void smoothHeights(Rim& rim) {
 Rim sampleRim(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, double step, const Vec3& inward) {
   Rim rim;
   std::vector<Vec3> corners;
-  const std::size_t stride = 1 + loop.size() / kMostSamples;
+  const std::size_t stride = 1 + loop.size() / kMaxSamples;
   for (std::size_t i = 0; i < loop.size(); i += stride) corners.push_back(mesh.positions[loop[i]]);
   double around = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) around += length(corners[(i + 1) % corners.size()] - corners[i]);
-  step = std::max(step, around / static_cast<double>(kMostSamples));
+  step = std::max(step, around / static_cast<double>(kMaxSamples));
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec3 a = corners[i], edge = corners[(i + 1) % corners.size()] - a;
     const int pieces = 1 + static_cast<int>(length(edge) / step);

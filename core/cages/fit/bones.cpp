@@ -144,7 +144,7 @@ std::vector<Bone> bonesOf(const std::vector<Landmark>& from, const std::vector<L
       bones.push_back(foot);
     }
   }
-  if (bones.size() < kLeastBones) bones.clear();
+  if (bones.size() < kMinBones) bones.clear();
   return bones;
 }
 

@@ -9,7 +9,7 @@
 namespace cagecast::cages {
 
 /// With fewer, a figure is not bent.
-inline constexpr std::size_t kLeastBones = 6;
+inline constexpr std::size_t kMinBones = 6;
 
 /// A piece of the body that moves as one: where it is in the template, and an affine map to the target.
 struct Bone {
@@ -21,7 +21,7 @@ struct Bone {
 };
 
 /// The bones between joints that both have: each turned by the smallest angle and stretched along its length; the head
-/// by a similarity of its landmarks. Empty if fewer than `kLeastBones` are known.
+/// by a similarity of its landmarks. Empty if fewer than `kMinBones` are known.
 /// @param from,to  Landmarks with joints ("joint_knee_left"), both in the template's space.
 std::vector<Bone> bonesOf(const std::vector<Landmark>& from, const std::vector<Landmark>& to);
 

@@ -11,20 +11,20 @@ namespace cagecast::cages {
 namespace {
 
 /// A landmark of a model is at most this far outside its box, in diagonals.
-constexpr double kMostOutside = 0.2;
+constexpr double kMaxOutside = 0.2;
 /// Joints of its skeleton may be farther: a figure that ends at the hips may have the joints of legs.
-constexpr double kMostOutsideJoint = 0.5;
+constexpr double kMaxOutsideJoint = 0.5;
 /// A skeleton of several bones reaches over at least this share of the diagonal of its mesh.
-constexpr double kLeastReach = 0.05;
+constexpr double kMinReach = 0.05;
 /// Each landmark is compared with where all others put it: the time grows with the cube of their number.
-constexpr std::size_t kMostLandmarks = 300;
+constexpr std::size_t kMaxLandmarks = 300;
 /// A landmark that is off by more than this share of the diagonal, after the others are aligned, may be a mistake.
-constexpr double kMostOff = 0.15;
+constexpr double kMaxOff = 0.15;
 /// The farthest is a mistake if the residual without it is at most this share of that of all. Several are if it is at
 /// most this share without them: shapes may differ, such as an animal's head from a person's.
 constexpr double kRestOfOne = 0.5, kRestOfSeveral = 0.25;
 /// Nothing fits if the residual of all is more than this share of the diagonal.
-constexpr double kMostApart = 0.2;
+constexpr double kMaxApart = 0.2;
 /// Two that are off by more than this share of the diagonal together may have been exchanged.
 constexpr double kClearlyOff = 0.05;
 
@@ -162,16 +162,16 @@ std::vector<Suspect> leaveOut(std::vector<Vec3> from, std::vector<Vec3> to, doub
 
 Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* name, const Bounds& box,
                           Problem problem) {
-  if (landmarks.size() > kMostLandmarks)
+  if (landmarks.size() > kMaxLandmarks)
     return {problem, std::string(name) + ": " + std::to_string(landmarks.size()) + " are given, at most " +
-                         std::to_string(kMostLandmarks) + " are allowed"};
+                         std::to_string(kMaxLandmarks) + " are allowed"};
   const double size = box.diagonal();
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     const Landmark& a = landmarks[i];
     for (const float x : a.position)
       if (!std::isfinite(x)) return {problem, std::string(name) + ": " + a.name + " is not a finite position"};
     const double outside = box.distance(positionOf(a)) / size;
-    if (outside > kMostOutside)
+    if (outside > kMaxOutside)
       return {problem, std::string(name) + ": " + a.name + " is " + text("%.3g", outside) +
                            " diagonals outside the box of its model; it has to be in its unit and axes"};
     for (std::size_t j = 0; j < i; ++j) {
@@ -193,17 +193,17 @@ Outcome checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box) {
     ++count;
     joints.add(positionOf(landmark));
     const double outside = box.distance(positionOf(landmark)) / box.diagonal();
-    if (outside > kMostOutsideJoint)
+    if (outside > kMaxOutsideJoint)
       return {Problem::badModel, "model.joints: " + landmark.name + " is " + text("%.3g", outside) +
                                      " diagonals outside the box of the mesh, at most " +
-                                     text("%.3g", kMostOutsideJoint) +
+                                     text("%.3g", kMaxOutsideJoint) +
                                      " are expected; joints have to be in its unit and axes"};
   }
   const double reach = joints.diagonal() / box.diagonal();
-  if (count > kLeastBones && reach < kLeastReach)
+  if (count > kMinBones && reach < kMinReach)
     return {Problem::badModel, "model.joints: the box of " + std::to_string(count) + " joints is " +
                                    text("%.3g", reach) + " as large as that of the mesh, at least " +
-                                   text("%.3g", kLeastReach) + " is expected; joints have to be in its unit"};
+                                   text("%.3g", kMinReach) + " is expected; joints have to be in its unit"};
   return {};
 }
 
@@ -214,9 +214,9 @@ Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Land
   const double asGiven = residual(pairs.from, pairs.to);
   if (const std::string name = swappedSides(pairs, to, asGiven, diagonal); !name.empty()) return otherSide(name);
   if (const std::string name = exchangedPair(from, to, given, diagonal); !name.empty()) return otherSide(name);
-  std::vector<Suspect> suspects = leaveOut(pairs.from, pairs.to, kMostOff * diagonal);
+  std::vector<Suspect> suspects = leaveOut(pairs.from, pairs.to, kMaxOff * diagonal);
   if (suspects.empty()) return {};
-  const bool areSeveral = suspects.back().rest < kRestOfSeveral * asGiven || asGiven > kMostApart * diagonal;
+  const bool areSeveral = suspects.back().rest < kRestOfSeveral * asGiven || asGiven > kMaxApart * diagonal;
   if (!areSeveral) suspects.resize(1);
   if (!areSeveral && !(suspects.front().rest < kRestOfOne * asGiven)) return {};
   for (const Suspect& suspect : suspects) {
@@ -225,7 +225,7 @@ Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Land
       return {Problem::badLandmarks, "landmarks: " + from[i].name + " is " +
                                          text("%.0f", 100 * suspect.off / diagonal) +
                                          " % of the diagonal away from where the others put it; at most " +
-                                         text("%.0f", 100 * kMostOff) + " % is expected"};
+                                         text("%.0f", 100 * kMaxOff) + " % is expected"};
   }
   return {};
 }

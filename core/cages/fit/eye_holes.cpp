@@ -29,7 +29,7 @@ constexpr double kBoxSlack = 0.2;
 /// What is this near to the middle of an eyeball, in its radii, belongs to the eye: pupils and corneas, not lashes.
 constexpr double kBallSlack = 1.15;
 /// An eye that is seen at fewer places of the grid is hidden.
-constexpr std::size_t kLeastSeen = 32;
+constexpr std::size_t kMinSeen = 32;
 
 /// What is visible of an eye, seen along its axis.
 struct EyeOpening {
@@ -162,7 +162,7 @@ class EyeView {
         opening_.middle = opening_.middle + grid[i];
         ++count;
       }
-    if (count < static_cast<double>(kLeastSeen)) return false;
+    if (count < static_cast<double>(kMinSeen)) return false;
     opening_.middle = 1 / count * opening_.middle;
     return true;
   }

@@ -11,7 +11,7 @@ namespace cagecast::cages {
 namespace {
 
 constexpr int kPushes = 12;
-constexpr double kMostPush = 4;     ///< Of a vertex in all, in offsets: beyond it fins grow between legs.
+constexpr double kMaxPush = 4;      ///< Of a vertex in all, in offsets: beyond it fins grow between legs.
 constexpr double kClearance = 0.1;  ///< How far skin should stay inside of the cage, in offsets.
 constexpr double kVisible = 1.6;    ///< Skin deeper inside the hull than this does not count, in offsets.
 constexpr double kPushReach = 4;    ///< Skin farther away from the cage than this does not count, in offsets.
@@ -106,7 +106,7 @@ bool pushOut(const TemplateCage& cage, const Enclosed& inside, const std::vector
       double around = 0;
       for (const std::uint32_t u : cage.neighbours[v])
         around += 0.5 * needed[u] / static_cast<double>(cage.neighbours[v].size());
-      const double push = std::min(std::max(needed[v], around), kMostPush * cage.offset - pushed[v]);
+      const double push = std::min(std::max(needed[v], around), kMaxPush * cage.offset - pushed[v]);
       pushed[v] += push;
       const bool isFree = !(length(tracks[v]) > 0);
       positions[v] = positions[v] + push * (isFree ? normals[v] : dot(normals[v], tracks[v]) * tracks[v]);

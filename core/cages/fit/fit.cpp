@@ -35,14 +35,14 @@ struct FitSettings {
 constexpr FitSettings kHead{0.022, 80, 1, {.reach = 0.06, .sliding = 0.5, .stiffest = 30, .softest = 1}};
 constexpr FitSettings kBody{0.010, 200, 2, {.reach = 0.02, .sliding = 0.05, .stiffest = 30, .softest = 1}};
 /// The hull is at least this far off, in diagonals: templates whose landmarks lie on the cage.
-constexpr double kLeastOffset = 0.003;
-constexpr std::size_t kLeastLandmarks = 4;
+constexpr double kMinOffset = 0.003;
+constexpr std::size_t kMinLandmarks = 4;
 /// A fitted cage that is farther than this from the figure's box, in diagonals, is no cage of it.
-constexpr double kMostBeyond = 1;
+constexpr double kMaxBeyond = 1;
 /// Of a face, these do to begin with.
 constexpr std::array kFirstFive{"eye_centre_left", "eye_centre_right", "nose_tip", "lip_lower", "chin"};
 /// How many landmarks a message lists at most.
-constexpr std::size_t kMostNames = 12;
+constexpr std::size_t kMaxNames = 12;
 
 /// Shares of the work, for progress.
 constexpr float kLandmarksEnd = 0.3f, kTightenStart = 0.6f, kTightenEnd = 0.85f;
@@ -55,8 +55,8 @@ struct Pairs {
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) text += (i > 0 ? ", " : "") + names[i];
-  return names.size() > kMostNames ? text + " and " + std::to_string(names.size() - kMostNames) + " more" : text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMaxNames); ++i) text += (i > 0 ? ", " : "") + names[i];
+  return names.size() > kMaxNames ? text + " and " + std::to_string(names.size() - kMaxNames) + " more" : text;
 }
 
 /// Which landmarks to give first.
@@ -88,9 +88,9 @@ Outcome pairLandmarks(const Template& from, const std::vector<Landmark>& given, 
     out.given.push_back(isGiven);
     cage.landmarks.push_back(*there);
   }
-  if (out.from.size() >= kLeastLandmarks) return {};
+  if (out.from.size() >= kMinLandmarks) return {};
   return {Problem::badLandmarks, "landmarks: " + std::to_string(out.from.size()) + " are known, at least " +
-                                     std::to_string(kLeastLandmarks) + " are needed; please give some of " +
+                                     std::to_string(kMinLandmarks) + " are needed; please give some of " +
                                      listed(firstOf(cage.missing))};
 }
 
@@ -266,14 +266,14 @@ Outcome Fit::run(FittedCage& out) {
   if (Outcome outcome = pair(cage, out); !outcome.ok()) return outcome;
   align();
   const FitSettings& settings = bones_.empty() ? kHead : kBody;
-  cage.offset = std::max(cage.offset, kLeastOffset * cage.diagonal);
+  cage.offset = std::max(cage.offset, kMinOffset * cage.diagonal);
   readTarget();
   if (skin_.empty())
     return {Problem::badModel, "model: all of its parts are excluded by name; at least one must be painted"};
   const std::vector<Anchor> anchors = anchorsOf(cage);
   if (anchors.empty())
     return {Problem::badLandmarks, "landmarks: only " + std::to_string(pairs_.from.size()) +
-                                       " joints are known, too few for a skeleton of " + std::to_string(kLeastBones) +
+                                       " joints are known, too few for a skeleton of " + std::to_string(kMinBones) +
                                        " bones; give more of them, or landmarks on the skin"};
   if (!tell(kLandmarksEnd, "hull")) return cancelled();
   TriangleMesh hull;
@@ -282,7 +282,7 @@ Outcome Fit::run(FittedCage& out) {
   if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
   std::vector<Vec3> positions = start(cage, anchors);
   if (!draw(cage, hull, settings, positions)) return cancelled();
-  if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMostBeyond * cage.diagonal))
+  if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMaxBeyond * cage.diagonal))
     return {Problem::badModel,
             "model: the template does not fit it; if there are several figures in it, exclude all but one of them"};
   write(cage, positions, out);
@@ -297,9 +297,9 @@ Outcome fitCage(const Template& from, const Model& model, const FitOptions& opti
   if (from.cage.uvs.size() / 2 != from.cage.positions.size() / 3)
     return {Problem::badTemplate, "template.cage: it has no UVs; a cage needs 2 numbers per vertex"};
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
-  if (from.landmarks.size() < kLeastLandmarks)
+  if (from.landmarks.size() < kMinLandmarks)
     return {Problem::badTemplate, "template: it has " + std::to_string(from.landmarks.size()) +
-                                      " landmarks; at least " + std::to_string(kLeastLandmarks) + " are needed"};
+                                      " landmarks; at least " + std::to_string(kMinLandmarks) + " are needed"};
   if (Outcome outcome =
           checkLandmarkList(from.landmarks, "template.landmarks", boundsOf(from.cage), Problem::badTemplate);
       !outcome.ok())

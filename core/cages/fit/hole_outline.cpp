@@ -13,9 +13,9 @@ constexpr double kTurn = 2 * std::numbers::pi;
 /// What must be free is free this much farther out: paint must not reach it. At 1.06 the transfer painted 3 % of it.
 constexpr double kOutlineMargin = 1.12;
 /// What else is free should be less than this share of what must be free.
-constexpr double kMostSpill = 0.38;
+constexpr double kMaxSpill = 0.38;
 /// Costs of four areas, as shares of what must be free: what of it is covered; what of its margin is covered; what else
-/// is free; and what of that is beyond `kMostSpill`.
+/// is free; and what of that is beyond `kMaxSpill`.
 constexpr double kCovered = 5, kMarginCovered = 1.5, kSpill = 1, kTooMuch = 10;
 /// Costs of covers of the eye that are not free, and of each radian that a corner turns.
 constexpr double kCoversCovered = 2, kTurned = 0.1;
@@ -23,12 +23,12 @@ constexpr double kCoversCovered = 2, kTurned = 0.1;
 constexpr double kMayBeCovered = 0.35;
 /// What a triangle costs that is folded over, or has less than this share of the square of its longest edge as its
 /// area; or less than half of what it had before.
-constexpr double kFolded = 20, kLeastArea = 0.04;
+constexpr double kFolded = 20, kMinArea = 0.04;
 /// Corners stay this far apart, and are never farther apart, in radians.
-constexpr double kLeastGap = 0.1, kMostGap = 2.8;
+constexpr double kMinGap = 0.1, kMaxGap = 2.8;
 /// The search halves its steps, from shares of the radius and radians.
 constexpr double kFirstStep = 0.2, kLastStep = 0.005;
-constexpr int kMostRounds = 100;
+constexpr int kMaxRounds = 100;
 
 /// A corner by angle and distance from the origin.
 struct Corner {
@@ -57,7 +57,7 @@ class Search {
     // What faces away before, as at the side of a nose, says nothing.
     for (const HoleContent::Neighbour& neighbour : content.neighbours) {
       const double share = areaShare(neighbour.places);
-      if (share > 0) neighbours_.push_back({neighbour, std::min(kLeastArea, share / 2)});
+      if (share > 0) neighbours_.push_back({neighbour, std::min(kMinArea, share / 2)});
     }
     for (std::size_t d = 0; d < contour_.size(); ++d) {
       const double angle = kTurn * static_cast<double>(d) / static_cast<double>(contour_.size());
@@ -76,7 +76,7 @@ class Search {
     double least = cost();
     int rounds = 0;
     for (double step = kFirstStep; step > kLastStep; step /= 2)
-      for (bool better = true; better && rounds < kMostRounds; ++rounds) {
+      for (bool better = true; better && rounds < kMaxRounds; ++rounds) {
         better = false;
         for (Corner& corner : corners_)
           for (const auto& [turn, growth] :
@@ -108,7 +108,7 @@ class Search {
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       const bool isLast = i + 1 == corners_.size();
       const double gap = corners_[isLast ? 0 : i + 1].angle + (isLast ? kTurn : 0) - corners_[i].angle;
-      if (gap < kLeastGap || gap > kMostGap) return false;
+      if (gap < kMinGap || gap > kMaxGap) return false;
     }
     return true;
   }
@@ -147,7 +147,7 @@ class Search {
       folded += std::max(0.0, least - areaShare(places));
     }
     return kFolded * folded + kCovered * covered + kMarginCovered * margin + kSpill * spill +
-           kTooMuch * std::max(0.0, spill - kMostSpill) + kCoversCovered * coversCovered + kTurned * turned;
+           kTooMuch * std::max(0.0, spill - kMaxSpill) + kCoversCovered * coversCovered + kTurned * turned;
   }
 
   std::vector<Corner> corners_;
@@ -171,13 +171,13 @@ std::vector<Flat> fitOutline(std::vector<Flat> corners, const HoleContent& conte
     polar.push_back({before, 1});
   }
   // Corners that are out of order, or too close together or far apart, are spread evenly.
-  double gap = kMostGap;
+  double gap = kMaxGap;
   for (std::size_t i = 0; i < count; ++i) {
     const double next = i + 1 < count ? polar[i + 1].angle : polar[0].angle + kTurn;
-    gap = std::min(gap, next - polar[i].angle > kMostGap ? -1 : next - polar[i].angle);
+    gap = std::min(gap, next - polar[i].angle > kMaxGap ? -1 : next - polar[i].angle);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    if (gap < kLeastGap) polar[i].angle = polar[0].angle + kTurn * static_cast<double>(i) / static_cast<double>(count);
+    if (gap < kMinGap) polar[i].angle = polar[0].angle + kTurn * static_cast<double>(i) / static_cast<double>(count);
     const auto directions = static_cast<double>(content.contour.size());
     const auto d = static_cast<std::size_t>(wrapped(polar[i].angle) / kTurn * directions) % content.contour.size();
     polar[i].distance = kOutlineMargin * content.contour[d];

@@ -17,7 +17,7 @@ struct Solver::System {
 namespace {
 
 /// So that the system is never singular, whatever the planes.
-constexpr double kLeastHold = 1e-6;
+constexpr double kMinHold = 1e-6;
 
 int row(std::uint32_t vertex, int axis) { return 3 * static_cast<int>(vertex) + axis; }
 
@@ -56,7 +56,7 @@ std::vector<Vec3> Solver::solve(const std::vector<Vec3>& rest, const std::vector
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
         entries.emplace_back(row(v, a), row(v, b),
-                             (a == b ? weights.sliding + kLeastHold : 0.0) - weights.sliding * n[a] * n[b]);
+                             (a == b ? weights.sliding + kMinHold : 0.0) - weights.sliding * n[a] * n[b]);
   }
   // One block for each pair of corners, empty or not, so that the pattern of the matrix never changes.
   for (const Triangle3& t : cage.mesh.triangles)

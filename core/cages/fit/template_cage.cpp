@@ -9,7 +9,7 @@ namespace cagecast::cages {
 namespace {
 
 /// Length of a rim around, at least, in diagonals: necks have 1 to 2, eyes at most 0.4.
-constexpr double kLeastRim = 0.7;
+constexpr double kMinRim = 0.7;
 
 bool endsWith(const std::string& text, const char* end) {
   const std::string tail = end;
@@ -35,7 +35,7 @@ const Landmark* findLandmark(const std::vector<Landmark>& landmarks, const std::
 
 int rimOf(const TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& loops, double diagonal) {
   int best = -1;
-  double most = kLeastRim * diagonal;
+  double most = kMinRim * diagonal;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     double around = 0;
     for (std::size_t k = 0; k < loops[i].size(); ++k)

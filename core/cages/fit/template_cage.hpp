@@ -39,7 +39,7 @@ inline Vec3 positionOf(const Landmark& landmark) { return Vec3::from(landmark.po
 
 Axes axesOf(const std::vector<Landmark>& landmarks);
 
-/// The boundary loop that is a rim: the longest one, if it is longer than `kLeastRim` diagonals; -1 if there is none.
+/// The boundary loop that is a rim: the longest one, if it is longer than `kMinRim` diagonals; -1 if there is none.
 int rimOf(const TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& loops, double diagonal);
 
 }  // namespace cagecast::cages

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kTightenRounds = 9;
 /// Cosine of the angle between cage and hull beyond which a closest point is not the right one: 60 degrees.
-constexpr double kLeastAgreement = 0.5;
+constexpr double kMinAgreement = 0.5;
 
 struct Sample {
   Triangle3 corners;
@@ -65,7 +65,7 @@ std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& res
       for (std::size_t k = 0; k < 3; ++k) normal = normal + closest[i].weights[k] * hullNormals[t[k]];
       const Vec3 own = blend(normals, samples[i]);
       const double size = length(normal), ownSize = length(own);
-      if (!(dot(normal, own) > kLeastAgreement * size * ownSize)) continue;
+      if (!(dot(normal, own) > kMinAgreement * size * ownSize)) continue;
       planes.push_back({samples[i].corners, samples[i].weights, closest[i].position, 1 / size * normal, 1});
     }
     const double bending = options.stiffest * std::pow(options.softest / options.stiffest, share);

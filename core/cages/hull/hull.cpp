@@ -17,8 +17,8 @@ namespace {
 
 /// Nodes beyond the hull on each side of the grid: one for the flood, one for the border, one for rounding.
 constexpr double kBorder = 3;
-constexpr std::uint32_t kLeastVoxels = 8;
-constexpr std::uint32_t kMostVoxels = 512;
+constexpr std::uint32_t kMinVoxels = 8;
+constexpr std::uint32_t kMaxVoxels = 512;
 /// Nodes that a flood reaches between two calls of the callback: a few milliseconds of work.
 constexpr std::size_t kNodesPerReport = 1 << 18;
 
@@ -26,7 +26,7 @@ double longestOf(const Vec3& size) { return std::max({size.x, size.y, size.z}); 
 
 /// Spaces between the nodes along the longest side, without the border.
 double spacesFor(std::uint32_t voxels) {
-  return static_cast<double>(std::clamp(voxels, kLeastVoxels, kMostVoxels)) - 2 * kBorder + 1;
+  return static_cast<double>(std::clamp(voxels, kMinVoxels, kMaxVoxels)) - 2 * kBorder + 1;
 }
 
 /// The least that a mesh can be dilated by: any point is within 0.87 spaces of a node, so that the body has neither

@@ -38,7 +38,7 @@ TriangleMesh closeOpenings(const TriangleMesh& mesh, double width, std::vector<O
 /// @param mesh  At least one triangle; positions finite.
 /// @param[out] share  If not null: the volume of the hull, as a share of that of all components. Much less than 1 means
 ///   that the mesh is in several pieces, too far apart to be bridged.
-/// @return false if `progress` cancelled it; it is told shares from 0 to 1.
+/// @return false if `progress` cancelled it; it gets shares from 0 to 1.
 bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progress& progress, TriangleMesh& out,
               double* share = nullptr);
 

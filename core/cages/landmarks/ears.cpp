@@ -14,7 +14,7 @@ constexpr double kWidest = 0.125;
 /// by less than jaws and temples may curve.
 constexpr double kStandsOut = 0.01, kCurves = 0.02, kEnds = 0.4;
 /// Higher areas are looked at again with a higher limit, up to a share of the most: they may reach down the jaw.
-constexpr double kHigh = 0.17, kMostEnds = 0.5;
+constexpr double kHigh = 0.17, kMaxEnds = 0.5;
 
 /// How far each place stands out from the head, seen from a side: the height over what a line segment of the width
 /// `kWidest` can reach from inside (a morphological top-hat, along each row).
@@ -84,7 +84,7 @@ std::vector<Place> earArea(const HeightMap& map) {
   double limit = std::max(kStandsOut, std::min(kCurves, kEnds * most));
   std::vector<Place> area = largestArea(map, out, limit);
   constexpr double kRaise = 1.1;
-  while (!area.empty() && limit * kRaise < kMostEnds * most) {
+  while (!area.empty() && limit * kRaise < kMaxEnds * most) {
     const auto [low, high] = std::minmax_element(area.begin(), area.end(),
                                                  [](const Place& a, const Place& b) { return a.second < b.second; });
     if (map.grid.step * (high->second - low->second) < kHigh) break;
@@ -140,8 +140,8 @@ void findEars(Head& head) {
   const double bottom = chin != nullptr ? std::max(-0.3, chin->position.y) : -0.25;
   const auto left = findEar(head, 1, bottom), right = findEar(head, -1, bottom);
   if (!left || !right) return;
-  constexpr double kLeastArea = 0.001, kMostArea = 0.04;
-  if (std::min(left->area, right->area) < kLeastArea || std::max(left->area, right->area) > kMostArea) return;
+  constexpr double kMinArea = 0.001, kMaxArea = 0.04;
+  if (std::min(left->area, right->area) < kMinArea || std::max(left->area, right->area) > kMaxArea) return;
   const auto add = [&](const char* name, const Vec3& l, const Vec3& r) {
     const double off = length(Vec3{-l.x, l.y, l.z} - r);
     const double trust = off < 0.015 ? 0.75 : off < 0.03 ? 0.55 : 0.3;

@@ -117,16 +117,16 @@ struct Candidate {
 
 /// The components that are about as large and as round as an eye.
 std::vector<Candidate> eyeCandidates(const Figure& figure, double diagonal) {
-  constexpr std::size_t kLeastTriangles = 8;
+  constexpr std::size_t kMinTriangles = 8;
   constexpr double kSmallest = 0.002, kLargest = 0.15;  // Radii, as shares of the diagonal: of a figure, of a head.
-  constexpr std::size_t kMostCandidates = 500;          // The largest: a coat of mail has thousands of rings.
+  constexpr std::size_t kMaxCandidates = 500;           // The largest: a coat of mail has thousands of rings.
   std::vector<std::vector<Triangle3>> triangles(figure.componentCount);
   for (std::size_t t = 0; t < figure.components.size(); ++t)
     if (figure.roles[t] == Role::surface) triangles[figure.components[t]].push_back(figure.mesh.triangles[t]);
   std::vector<Candidate> candidates;
   for (std::uint32_t c = 0; c < figure.componentCount; ++c) {
     const std::size_t size = triangles[c].size();
-    if (size < kLeastTriangles || 2 * size > figure.components.size()) continue;
+    if (size < kMinTriangles || 2 * size > figure.components.size()) continue;
     const TriangleMesh part = compact(figure.mesh, triangles[c]);
     Shape shape = shapeOf(part);
     const Vec3 box = shape.bounds.size();
@@ -136,10 +136,10 @@ std::vector<Candidate> eyeCandidates(const Figure& figure, double diagonal) {
     const Sphere ball = ballOf(shape);
     candidates.push_back({std::move(shape), part, c, ball});
   }
-  if (candidates.size() > kMostCandidates) {
+  if (candidates.size() > kMaxCandidates) {
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.shape.area > b.shape.area; });
-    candidates.resize(kMostCandidates);
+    candidates.resize(kMaxCandidates);
   }
   return candidates;
 }

@@ -105,16 +105,16 @@ Found searchBalls(const HeightMap& map, double noseY, double rootY) {
 
 std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane) {
   constexpr double kTop = 0.05, kBottom = -0.25;
-  constexpr double kLeastNose = 0.012;                    ///< How far a nose stands out.
-  constexpr double kLeastVotes = 2.2, kClearVotes = 3.5;  ///< Planes have 1.
-  constexpr double kLeastHead = 0.02;                     ///< Of the diagonal: figures are ten heads tall at most.
+  constexpr double kMinNose = 0.012;                    ///< How far a nose stands out.
+  constexpr double kMinVotes = 2.2, kClearVotes = 3.5;  ///< Planes have 1.
+  constexpr double kMinHead = 0.02;                     ///< Of the diagonal: figures are ten heads tall at most.
   const TriangleMesh skin = figure.only(Role::surface);
   const double diagonal = diagonalOf(skin);
   std::optional<Eyes> best;
-  double most = kLeastNose;
+  double most = kMinNose;
   for (const double side : {plane.left.x < 0 ? -1.0 : 1.0, plane.left.x < 0 ? 1.0 : -1.0}) {
     const HeadFrame frame = guessFrame(skin, plane, side);
-    if (!(frame.unit > kLeastHead * diagonal)) continue;
+    if (!(frame.unit > kMinHead * diagonal)) continue;
     const TriangleMesh local = frame.toLocal(within(skin, frame.origin, 0.6 * frame.unit));
     if (local.empty()) continue;
     const Surface surface(local);
@@ -140,7 +140,7 @@ std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane
       if (map.near(0, y) < map.near(0, rootY)) rootY = y;
     if (y >= rootEnd) continue;
     const Found found = searchBalls(map, noseY, rootY);
-    if (found.votes < kLeastVotes) continue;
+    if (found.votes < kMinVotes) continue;
     Eyes eyes;
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       const double x = i == 0 ? found.x : -found.x;

@@ -79,10 +79,10 @@ std::optional<double> glabella(const Profile& profile, double nasionY, double& c
 /// The first fold of a range, from its top down: of those under the nose and the lower lip, the next may be sharper.
 /// Without any, the hollowest place of the upper half.
 double firstFold(const Profile& profile, double top, double bottom) {
-  constexpr double kLeast = 0.0025;  ///< How hollow a fold is.
+  constexpr double kMin = 0.0025;  ///< How hollow a fold is.
   const auto hollow = [&](double y) { return profile.fine.hollow(y, kFold); };
   for (double y = top; y > bottom; y -= kProfileStep)
-    if (hollow(y) > kLeast && hollow(y) >= hollow(y + kProfileStep) && hollow(y) > hollow(y - kProfileStep)) return y;
+    if (hollow(y) > kMin && hollow(y) >= hollow(y + kProfileStep) && hollow(y) > hollow(y - kProfileStep)) return y;
   return profile.fine.greatest(0.5 * (top + bottom), top, hollow).value_or(0.5 * (top + bottom));
 }
 
@@ -90,7 +90,7 @@ double firstFold(const Profile& profile, double top, double bottom) {
 std::optional<MouthLine> mouth(const Profile& profile, double subnasale) {
   constexpr double kNear = 0.01, kFar = 0.13;  ///< Below the fold.
   constexpr double kCrease = 0.006;            ///< Half its width.
-  constexpr double kLeast = 0.0012;            ///< Its depth.
+  constexpr double kMin = 0.0012;              ///< Its depth.
   constexpr double kOpen = 0.02;               ///< Deeper ones are gaps.
   const auto depth = [&](double y) {
     const double value = profile.sharp.hollow(y, kCrease);
@@ -99,7 +99,7 @@ std::optional<MouthLine> mouth(const Profile& profile, double subnasale) {
   double deepest = 0;
   for (double y = subnasale - kNear; y > subnasale - kFar; y -= kProfileStep) deepest = std::max(deepest, depth(y));
   MouthLine out;
-  const double enough = std::max(kLeast, 0.4 * deepest);
+  const double enough = std::max(kMin, 0.4 * deepest);
   for (double y = subnasale - kNear; y > subnasale - kFar; y -= kProfileStep) {
     if (depth(y) > out.depth) out = {y, y, y, depth(y)};
     if (out.depth > enough && depth(y) < 0.5 * out.depth) break;
@@ -183,9 +183,9 @@ bool findProfile(Head& head) {
     const auto low = profile.medium.highest(*nose - 0.2, *nose - 0.13, profile.tilt);
     if (!low) break;
     const Vec3 a = profile.point(nasionY), b = profile.point(*low);
-    constexpr double kMostTilt = 0.45;
+    constexpr double kMaxTilt = 0.45;
     const double tilt = std::atan2(b.z - a.z, a.y - b.y);
-    if (std::abs(tilt) > kMostTilt) break;
+    if (std::abs(tilt) > kMaxTilt) break;
     profile.tilt = tilt;
     if (const auto again = noseTip(profile)) nose = again;
     nasionY = nasion(profile, *nose, nasionTrust);

@@ -22,7 +22,7 @@ constexpr RigBone kBones[] = {
 };
 
 /// Fewer named joints than this may be chance: many rigs have a "Head" and a "Neck".
-constexpr std::size_t kLeastNamed = 6;
+constexpr std::size_t kMinNamed = 6;
 
 /// Case, spaces and separators of names vary with the exporter.
 std::string plain(std::string_view name) {
@@ -106,7 +106,7 @@ Rig recogniseRig(const std::vector<Joint>& joints) {
   });
   const auto most =
       std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
-  if (most->size() < kLeastNamed) return {"unknown"};
+  if (most->size() < kMinNamed) return {"unknown"};
   const auto naming = static_cast<std::size_t>(most - found.begin());
   const char* kNames[] = {"VRM", anyMixamo ? "Mixamo" : "Ready Player Me", "Roblox R15"};
   return {kNames[naming], std::move(*most)};

@@ -13,7 +13,7 @@ constexpr double kBorderValue = 0.4;
 /// The border keeps this share of an edge away from its ends, so that no triangle is a sliver.
 constexpr double kCutFromEnds = 0.15;
 /// Pieces that the cuts leave are dropped if they have less than this share of the area: gums between two teeth.
-constexpr double kLeastPiece = 0.01;
+constexpr double kMinPiece = 0.01;
 
 TriangleMesh withoutSplinters(const TriangleMesh& mesh) {
   std::uint32_t count = 0;
@@ -26,7 +26,7 @@ TriangleMesh withoutSplinters(const TriangleMesh& mesh) {
     total += area;
   }
   std::vector<bool> isKept(pieces.size());
-  for (std::size_t t = 0; t < pieces.size(); ++t) isKept[t] = areas[pieces[t]] >= kLeastPiece * total;
+  for (std::size_t t = 0; t < pieces.size(); ++t) isKept[t] = areas[pieces[t]] >= kMinPiece * total;
   return subset(mesh, isKept);
 }
 

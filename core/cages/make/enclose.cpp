@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kEncloseRounds = 16;
 /// Of the angle between a point's normal and the cage's: 70 degrees.
-constexpr double kLeastCosine = 0.34;
+constexpr double kMinCosine = 0.34;
 
 }  // namespace
 
@@ -32,7 +32,7 @@ bool enclose(const std::vector<OuterPoint>& points, double limit, const Progress
       const Triangle3& corners = mesh.triangles[point.triangle];
       if (!(point.height > 0) || border.has(point)) continue;
       const Vec3 normal = areaNormal(mesh, corners);
-      if (dot(normal, points[i].normal) < kLeastCosine * length(normal)) continue;
+      if (dot(normal, points[i].normal) < kMinCosine * length(normal)) continue;
       isDone = false;
       // The least movement of the three corners that takes the plane past the point.
       double squares = 0;

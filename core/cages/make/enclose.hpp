@@ -15,7 +15,7 @@ struct OuterPoint {
 
 /// Moves the vertices of a mesh outwards until points are behind it. Points next to a hole are let out.
 /// @param limit  How far a vertex may go at most; farther would be a fin.
-/// @return false if `progress` cancelled it; it is told shares from 0 to 1.
+/// @return false if `progress` cancelled it; it gets shares from 0 to 1.
 bool enclose(const std::vector<OuterPoint>& points, double limit, const Progress& progress, TriangleMesh& mesh);
 
 }  // namespace cagecast::cages

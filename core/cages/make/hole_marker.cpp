@@ -21,17 +21,17 @@ constexpr int kRefinedEdges = 3;
 /// Gaps between marks narrower than twice this, in edges, are marked.
 constexpr int kGapEdges = 3;
 /// Fewer marked vertices next to each other than this are an error of the sampling, not a part.
-constexpr std::size_t kLeastMark = 4;
+constexpr std::size_t kMinMark = 4;
 /// A part needs a wider hole if more than this share of its visible area is covered. From a half on, transfers paint
 /// it.
-constexpr double kMostCovered = 0.35;
+constexpr double kMaxCovered = 0.35;
 /// A point is hidden by what its ray meets in front of the cage, or up to this far behind it, in diagonals: the default
 /// `occlusionReach` of transfers.
 constexpr double kOcclusionReach = 0.03;
 /// By how much farther its hole is widened each time, in edges.
 constexpr int kWidening = 2;
 /// Samples along the longest edge of a triangle at most.
-constexpr double kMostSamplesPerEdge = 64;
+constexpr double kMaxSamplesPerEdge = 64;
 /// A needle is a triangle narrower than this share of the spacing of samples: one row of them does.
 constexpr double kNeedleWidth = 0.25;
 /// About the most samples on all needles together, of which there may be thousands side by side, and on all other
@@ -55,7 +55,7 @@ struct OnLongestEdge {
   }
   /// Samples along the edge, about `spacing` apart.
   [[nodiscard]] double steps(double spacing) const {
-    return std::clamp(std::ceil(length(along) / spacing), 1.0, kMostSamplesPerEdge);
+    return std::clamp(std::ceil(length(along) / spacing), 1.0, kMaxSamplesPerEdge);
   }
   [[nodiscard]] bool isNeedle(double spacing) const {
     return length(cross(along, toThird)) < kNeedleWidth * spacing * length(along) && length(along) > spacing;
@@ -105,7 +105,7 @@ void sampleMarked(const MarkedMesh& model, double spacing, std::vector<Vec3>& sa
     const Vec3 a = model.mesh->positions[triangle[0]];
     const Vec3 ab = model.mesh->positions[triangle[1]] - a, ac = model.mesh->positions[triangle[2]] - a;
     const double longest = std::max({length(ab), length(ac), length(ac - ab)});
-    const double steps = std::clamp(std::ceil(longest / spacings.triangles), 1.0, kMostSamplesPerEdge);
+    const double steps = std::clamp(std::ceil(longest / spacings.triangles), 1.0, kMaxSamplesPerEdge);
     for (double i = 0; i < steps; ++i)
       for (double j = 0; i + j < steps; ++j) {
         samples.push_back(a + (i + 1.0 / 3) / steps * ab + (j + 1.0 / 3) / steps * ac);
@@ -153,7 +153,7 @@ void restoreVanished(const Neighbours& neighbours, const std::vector<bool>& mark
         mark.push_back(n);
       }
     }
-    if (remains || mark.size() < kLeastMark) continue;
+    if (remains || mark.size() < kMinMark) continue;
     for (const std::uint32_t v : mark) field[v] = 1;
   }
 }
@@ -304,8 +304,7 @@ bool HoleMarker::widen(const TriangleMesh& cage, const Progress& progress, doubl
   std::vector<std::uint32_t> front;
   const std::vector<std::uint32_t> vertices = verticesAbove();
   for (std::size_t i = 0; i < samples_.size(); ++i)
-    if (isCovered[i] && covered[samples_[i].piece] > kMostCovered * all[samples_[i].piece])
-      front.push_back(vertices[i]);
+    if (isCovered[i] && covered[samples_[i].piece] > kMaxCovered * all[samples_[i].piece]) front.push_back(vertices[i]);
   coveredShare = samples_.empty() ? 0 : static_cast<double>(front.size()) / static_cast<double>(samples_.size());
   widened_ += kWidening;
   const std::vector<bool> reached = within(Neighbours(hull_), std::move(front), widened_);

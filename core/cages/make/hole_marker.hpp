@@ -29,7 +29,7 @@ class HoleMarker {
 
   /// Marks the vertices of the hull.
   /// @param refinements  How often its edges are halved near the borders of the marks.
-  /// @return false if `progress` cancelled it; it is told shares from 0 to 1.
+  /// @return false if `progress` cancelled it; it gets shares from 0 to 1.
   bool mark(int refinements, const Progress& progress);
 
   /// How much the hull is to have a hole at each of its vertices: 0 not at all, 1 wholly; marks end at ½. Smooth; marks

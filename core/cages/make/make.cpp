@@ -43,14 +43,14 @@ constexpr double kFarthestPush = 4;
 /// How often the cage is made at most, with wider holes where it covers too much.
 constexpr int kAttempts = 5;
 /// Holes are widened until they open this share more of the hull, at most.
-constexpr double kMostWidened = 0.1;
+constexpr double kMaxWidened = 0.1;
 /// The cage is moved past about this many points of the hull.
 constexpr std::size_t kEnclosedPoints = 20000;
 
 /// Limits of options, unless they are 0. Lengths are shares of the diagonal.
-constexpr auto kLeastLength = static_cast<double>(0.0005f), kMostLength = static_cast<double>(0.2f);
-constexpr double kLeastGivenVoxels = 16, kMostGivenVoxels = 400;
-constexpr double kLeastTriangles = 50, kMostTriangles = 20000;
+constexpr auto kMinLength = static_cast<double>(0.0005f), kMaxLength = static_cast<double>(0.2f);
+constexpr double kMinGivenVoxels = 16, kMaxGivenVoxels = 400;
+constexpr double kMinCageTriangles = 50, kMaxCageTriangles = 20000;
 
 /// The options of a call with all values filled in. Lengths are in the space of the model.
 struct MakeSettings {
@@ -67,10 +67,10 @@ Outcome checkOptions(const MakeOptions& options) {
     double value, least, most;
   };
   for (const auto& [name, value, least, most] :
-       {Range{"closing", static_cast<double>(options.closing), kLeastLength, kMostLength},
-        Range{"offset", static_cast<double>(options.offset), kLeastLength, kMostLength},
-        Range{"voxels", static_cast<double>(options.voxels), kLeastGivenVoxels, kMostGivenVoxels},
-        Range{"triangles", static_cast<double>(options.triangles), kLeastTriangles, kMostTriangles}}) {
+       {Range{"closing", static_cast<double>(options.closing), kMinLength, kMaxLength},
+        Range{"offset", static_cast<double>(options.offset), kMinLength, kMaxLength},
+        Range{"voxels", static_cast<double>(options.voxels), kMinGivenVoxels, kMaxGivenVoxels},
+        Range{"triangles", static_cast<double>(options.triangles), kMinCageTriangles, kMaxCageTriangles}}) {
     if (value == 0) continue;  // By kind.
     if (Outcome outcome = checkOption(name, value, least, most); !outcome.ok()) return outcome;
   }
@@ -164,7 +164,7 @@ Outcome shape(const MarkedHull& hull, const MakeSettings& settings, const Progre
     std::vector<double> field = hull.marker.field();
     openNecks(hull.mesh, hull.necks, field);
     const auto closed = std::count_if(field.begin(), field.end(), [](double open) { return open < 0.5; });
-    if (attempt == 0) leastClosed = (1 - kMostWidened) * static_cast<double>(closed);
+    if (attempt == 0) leastClosed = (1 - kMaxWidened) * static_cast<double>(closed);
     if (static_cast<double>(closed) < leastClosed) break;
     const TriangleMesh shell = cutHoles(hull.mesh, field);
     if (shell.empty() && out.empty()) return nothingToPaint();

@@ -11,12 +11,12 @@ namespace cagecast::cages {
 namespace {
 
 /// An opening is a neck if all of these hold: it is at least this wide, in diagonals;
-constexpr double kLeastWidth = 0.2;
+constexpr double kMinWidth = 0.2;
 /// at least this share of the head is on one side of it;
 constexpr double kBehind = 0.97;
 /// and its own piece reaches at least this far to that side, in widths of the opening: a sheet, such as a strand of
 /// hair or a visor, does not.
-constexpr double kLeastDepth = 0.1;
+constexpr double kMinDepth = 0.1;
 /// The hull is opened as far as this from the middle of a neck, in radii of the opening.
 constexpr double kOpenedRadius = 1.3;
 
@@ -79,7 +79,7 @@ bool isNeck(const TriangleMesh& head, const Pieces& pieces, const Opening& openi
   const Vec3 normal = normalOf(head, opening.loop);
   const auto [loopLow, loopHigh] = extent(opening.loop, normal);
   const auto [low, high] = extent(pieces.with(opening.loop[0]), normal);
-  const double leastDepth = kLeastDepth * opening.width;
+  const double leastDepth = kMinDepth * opening.width;
   if (loopLow - low < leastDepth && high - loopHigh < leastDepth) return false;
   const Neck neck = planeOf(head, opening);
   const double depth = dot(neck.normal, normal) > 0 ? loopLow - low : high - loopHigh;
@@ -113,7 +113,7 @@ Neck extend(const Opening& opening, double by, TriangleMesh& head) {
 
 std::vector<Neck> extendNecks(double by, TriangleMesh& head) {
   std::vector<Opening> openings;
-  closeOpenings(head, kLeastWidth * diagonalOf(head), &openings);
+  closeOpenings(head, kMinWidth * diagonalOf(head), &openings);
   std::vector<Neck> necks;
   const TriangleMesh own = head;
   const Pieces pieces(own);

@@ -17,8 +17,8 @@ namespace cagecast::cages {
 namespace {
 
 /// A loop keeps so many vertices at least and at most,
-constexpr std::size_t kLeastLocks = 5;
-constexpr std::size_t kMostLocks = 24;
+constexpr std::size_t kMinLocks = 5;
+constexpr std::size_t kMaxLocks = 24;
 /// and between these as many as it takes to stay this close to it, as a share of its size.
 constexpr double kLoopError = 0.04;
 
@@ -57,7 +57,7 @@ void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, 
   std::vector<std::size_t> chosen = {farthestFrom(mesh, loop, middleOf(mesh, loop))};
   chosen.push_back(farthestFrom(mesh, loop, at(chosen[0])));
   const double size = length(at(chosen[0]) - at(chosen[1]));
-  while (chosen.size() < std::min(kMostLocks, loop.size())) {
+  while (chosen.size() < std::min(kMaxLocks, loop.size())) {
     std::sort(chosen.begin(), chosen.end());
     double most = -1;
     std::size_t next = 0;
@@ -70,7 +70,7 @@ void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, 
         next = i % loop.size();
       }
     }
-    if (chosen.size() >= kLeastLocks && most < std::min(tolerance, kLoopError * size)) break;
+    if (chosen.size() >= kMinLocks && most < std::min(tolerance, kLoopError * size)) break;
     chosen.push_back(next);
   }
   for (const std::size_t i : chosen) locks[loop[i]] = 1;

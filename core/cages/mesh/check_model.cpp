@@ -13,14 +13,14 @@ namespace cagecast::cages {
 namespace {
 
 /// A mesh needs a triangle that is higher than this share of its diagonal.
-constexpr double kLeastModelHeight = 1e-6;
+constexpr double kMinModelHeight = 1e-6;
 
 /// Farthest a coordinate may be from the origin, in diagonals of the mesh: what `Surface` can take.
-constexpr double kMostDiagonalsAway = 1e6;
+constexpr double kMaxDiagonalsAway = 1e6;
 
 /// Range of sizes of a mesh: smaller coordinates would be floats of fewer digits, and a cage around larger ones would
 /// not fit a float.
-constexpr double kLeastDiagonal = 1e-37;
+constexpr double kMinDiagonal = 1e-37;
 constexpr double kMaxCoordinate = 0x1p125;
 
 std::string element(const char* name, const char* field, std::size_t i) {
@@ -73,7 +73,7 @@ std::string extentOf(const MeshView& mesh, const std::string& name) {
     return length(cagecast::Vec3::from(corner(j)) - cagecast::Vec3::from(corner(i)));
   };
   // Its height counts by the size of the mesh: the searches scale that to 1, and take floats.
-  const double least = kLeastModelHeight * length(high - low);
+  const double least = kMinModelHeight * length(high - low);
   bool hasArea = false;
   for (std::size_t i = 0; i < mesh.indices.size() && !hasArea; i += 3) {
     const double longest = std::max({edge(i, i + 1), edge(i + 1, i + 2), edge(i + 2, i)});
@@ -81,10 +81,10 @@ std::string extentOf(const MeshView& mesh, const std::string& name) {
   }
   if (!hasArea) return name + " has no triangle with an area";
   const double diagonal = length(high - low);
-  if (diagonal < kLeastDiagonal) return name + " is smaller than 1e-37 across";
+  if (diagonal < kMinDiagonal) return name + " is smaller than 1e-37 across";
   const double farthest = std::max({-low.x, -low.y, -low.z, high.x, high.y, high.z});
   if (farthest > kMaxCoordinate) return name + " reaches farther than 4.2e37 from the origin";
-  if (farthest > kMostDiagonalsAway * diagonal)
+  if (farthest > kMaxDiagonalsAway * diagonal)
     return name + " is more than a million times its size away from the origin";
   return {};
 }

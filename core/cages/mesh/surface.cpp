@@ -157,11 +157,11 @@ std::vector<RayHit> Surface::trace(std::span<const SurfaceRay> rays, double from
     const auto scale = static_cast<double>(trees.units.scale);
     RaySearch search(trees.tree.rays, from * scale, trees.arena);
     checkMemory(trees.arena);
-    std::vector<Ray> chunk(RaySearch::kMostRays);
-    std::vector<RayDirection> directions(RaySearch::kMostRays);
-    const auto hit = std::make_unique<bool[]>(RaySearch::kMostRays);
-    for (std::size_t first = 0; first < rays.size(); first += RaySearch::kMostRays) {
-      const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(RaySearch::kMostRays, rays.size() - first));
+    std::vector<Ray> chunk(RaySearch::kMaxRays);
+    std::vector<RayDirection> directions(RaySearch::kMaxRays);
+    const auto hit = std::make_unique<bool[]>(RaySearch::kMaxRays);
+    for (std::size_t first = 0; first < rays.size(); first += RaySearch::kMaxRays) {
+      const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(RaySearch::kMaxRays, rays.size() - first));
       for (std::uint32_t i = 0; i < count; ++i) {
         const Vec3 origin = trees.scaled(rays[first + i].origin);
         const double exact[3] = {origin.x, origin.y, origin.z};

@@ -14,7 +14,7 @@ struct AlignLimits {
 };
 
 /// Moves, turns and, if it may, enlarges or shrinks a cage so that its gaps become as even as possible.
-/// @return false if `progress` cancelled it; it is told shares from 0 to 1.
+/// @return false if `progress` cancelled it; it gets shares from 0 to 1.
 bool alignCage(const Target& target, std::span<const CageSpot> spots, const AlignLimits& limits,
                const Progress& progress, TriangleMesh& cage);
 

@@ -24,9 +24,9 @@ constexpr double kHold = 1e-4;
 /// Resistance to the motion of a single step: without it, steps along the surface feed each other.
 constexpr double kDamping = 1e-2;
 /// Cotangents beyond this belong to slivers, whose stiffness would spoil that of their neighbours.
-constexpr double kMostCotangent = 5;
+constexpr double kMaxCotangent = 5;
 /// Cells around vertices count as at least this share of the mean one, for the same reason.
-constexpr double kLeastCell = 0.1;
+constexpr double kMinCell = 0.1;
 
 /// The first of a vertex's three rows. Eigen's sparse matrices count by int.
 int row(std::uint32_t vertex) { return 3 * static_cast<int>(vertex); }
@@ -48,7 +48,7 @@ SparseMatrix bendingOf(const TriangleMesh& mesh) {
       const std::uint32_t apex = t[i], from = t[(i + 1) % 3], to = t[(i + 2) % 3];
       const double cotangent =
           dot(mesh.positions[from] - mesh.positions[apex], mesh.positions[to] - mesh.positions[apex]) / twiceArea;
-      const double weight = 0.5 * std::clamp(cotangent, -kMostCotangent, kMostCotangent);
+      const double weight = 0.5 * std::clamp(cotangent, -kMaxCotangent, kMaxCotangent);
       const auto a = static_cast<int>(from), b = static_cast<int>(to);
       entries.insert(entries.end(), {{a, b, -weight}, {b, a, -weight}, {a, a, weight}, {b, b, weight}});
       cells(static_cast<Eigen::Index>(apex)) += twiceArea / 6;
@@ -56,7 +56,7 @@ SparseMatrix bendingOf(const TriangleMesh& mesh) {
   }
   SparseMatrix laplacian(count, count);
   laplacian.setFromTriplets(entries.begin(), entries.end());
-  const double least = kLeastCell * cells.sum() / static_cast<double>(count);
+  const double least = kMinCell * cells.sum() / static_cast<double>(count);
   const Eigen::VectorXd inverse = cells.cwiseMax(least).cwiseInverse();
   return laplacian.transpose() * inverse.asDiagonal() * laplacian;
 }

@@ -20,7 +20,7 @@ constexpr double kTouching = 1e-7;
 constexpr double kSunk = 0.0025;
 /// The most that one gap adds to the unevenness, as a share of the diagonal. Gaps of spots that do not face the target
 /// add all of it.
-constexpr double kMostDifference = 0.03;
+constexpr double kMaxDifference = 0.03;
 /// The robust scale does not shrink below this multiple of the spread of the gaps,
 constexpr double kSpreads = 1.5;
 /// nor below this share of the diagonal, where the cage's own coarseness begins.
@@ -119,7 +119,7 @@ Placement placementOf(const Target& target, std::span<const Gap> gaps) {
   }
   result.facing = static_cast<double>(sizes.size()) / count;
   result.offset = medianOf(sizes);
-  const double most = kMostDifference * target.diagonal;
+  const double most = kMaxDifference * target.diagonal;
   result.unevenness = (1 - result.facing) * most;
   for (double& size : sizes) {
     size = std::abs(size - result.offset);

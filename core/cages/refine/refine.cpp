@@ -25,21 +25,21 @@ constexpr double kWorthwhile = 1.5;
 constexpr double kWorthwhileIfCrisp = 1.25;
 constexpr double kCrisp = 0.12;
 /// A cage that would move by less than this share of the diagonal stays.
-constexpr double kLeastMove = 0.0015;
+constexpr double kMinMove = 0.0015;
 /// More than this share of the cage cannot be meant to lie inside the model.
-constexpr double kMostSunk = 0.1;
+constexpr double kMaxSunk = 0.1;
 /// At least this share of a cage faces the same way as the model beneath it.
-constexpr double kLeastFacing = 0.7;
+constexpr double kMinFacing = 0.7;
 /// A cage whose gaps differ by more than this share of the diagonal, on the mean, is of another model. Those of cages
 /// in place differ by up to 0.008.
-constexpr double kMostUneven = 0.02;
+constexpr double kMaxUneven = 0.02;
 /// A cage is bent only if more than this share of it is inside the model. A smooth bend can even out any cage with more
 /// room in one place than in another, but such cages may be meant so.
 constexpr double kBendFrom = 0.005;
 /// Vertices of the cage this close together, as a share of the diagonal, move as one: seams, and poles of balls.
 constexpr double kWeld = 1e-6;
 /// Limits of `reach`: below, no cage would move; beyond, cage and model hardly touch.
-constexpr auto kLeastReach = static_cast<double>(0.001f), kMostReach = static_cast<double>(0.2f);
+constexpr auto kMinReach = static_cast<double>(0.001f), kMaxReach = static_cast<double>(0.2f);
 
 std::string percent(double share) {
   const long tenths = std::lround(1000 * share);
@@ -104,7 +104,7 @@ class Refinement {
     best_ = std::move(aligned);
     const bool isBetter = isMoreEven(best_, given_, isCrisp(best_) ? kWorthwhileIfCrisp : kWorthwhile) ||
                           kWorthwhile * best_.placement.spread < given_.placement.spread;
-    stays_ = !isBetter || sinks(best_, given_) || moved() < kLeastMove * target_.diagonal;
+    stays_ = !isBetter || sinks(best_, given_) || moved() < kMinMove * target_.diagonal;
     if (stays_) best_ = given_;
     return !progress_ || progress_(1, "bend");
   }
@@ -112,13 +112,13 @@ class Refinement {
   /// Whether what came out is a cage of this model at all.
   [[nodiscard]] Outcome judge() const {
     const Placement& placement = best_.placement;
-    if (placement.facing < kLeastFacing)
+    if (placement.facing < kMinFacing)
       return fault("cage does not belong to the model: only " + percent(placement.facing) +
                    " of it faces the same way as the model beneath it");
-    if (placement.unevenness > kMostUneven * target_.diagonal)
+    if (placement.unevenness > kMaxUneven * target_.diagonal)
       return fault("cage does not belong to the model: its distances from it differ by " +
                    percent(placement.unevenness / target_.diagonal) + " of the diagonal on the mean");
-    if (placement.sunk > kMostSunk)
+    if (placement.sunk > kMaxSunk)
       return fault("cage cannot be brought into place: " + percent(placement.sunk) +
                    " of it would still be inside the model");
     if (const double far = moved() / target_.diagonal; far > reach_)
@@ -192,8 +192,7 @@ Outcome refineCage(const MeshView& cage, const Model& model, const RefineOptions
                    Cage& out) {
   if (Outcome outcome = checkMesh(cage, "cage", Problem::badTemplate); !outcome.ok()) return outcome;
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
-  if (Outcome outcome = checkOption("reach", static_cast<double>(options.reach), kLeastReach, kMostReach);
-      !outcome.ok())
+  if (Outcome outcome = checkOption("reach", static_cast<double>(options.reach), kMinReach, kMaxReach); !outcome.ok())
     return outcome;
   const TriangleMesh target = weldExactly(model.mesh);
   std::vector<std::uint32_t> vertexOf;

@@ -28,18 +28,18 @@ enum class CulledBy : std::uint8_t {
 
 /// CPU time of each step in milliseconds; wall time in WebAssembly and on Windows, the only clock there.
 struct Timings {
-  double weld = 0;        ///< Checking the input and welding the target's vertices.
-  double build = 0;       ///< Building the search trees, and the boundary loops of the cage.
-  double project = 0;     ///< Step 1: the nearest point of the cage for every point of the target.
-  double occluded = 0;    ///< Step 2: rays against the target.
-  double covered = 0;     ///< Steps 2′ and 3: where rays meet the cage.
-  double segments = 0;    ///< Steps 4, 5′ and 5″: connected components, their areas and twins; with steps 1 to 3 of
-                          ///< interior samples, and writing the results of all steps per vertex.
-  double secondLook = 0;  ///< Step 6: more rays from occluded points.
-  double holes = 0;       ///< Step 7: uncovered points and the holes over them.
-  double seams = 0;       ///< Step 9: UVs per triangle corner.
-  double classify = 0;    ///< Steps 5 and 8: which segments are culled; zones of vertices and triangles.
-  double total = 0;       ///< The whole call.
+  double weld = 0;      ///< Checking the input and welding the target's vertices.
+  double build = 0;     ///< Building the search trees, and the boundary loops of the cage.
+  double project = 0;   ///< Step 1: the nearest point of the cage for every point of the target.
+  double occluded = 0;  ///< Step 2: rays against the target.
+  double covered = 0;   ///< Steps 2′ and 3: where rays meet the cage.
+  double segments = 0;  ///< Steps 4, 5′ and 5″: connected components, their areas and twins; with steps 1 to 3 of
+                        ///< interior samples, and writing the results of all steps per vertex.
+  double recheck = 0;   ///< Step 6: more rays from occluded points.
+  double holes = 0;     ///< Step 7: uncovered points and the holes over them.
+  double seams = 0;     ///< Step 9: UVs per triangle corner.
+  double classify = 0;  ///< Steps 5 and 8: which segments are culled; zones of vertices and triangles.
+  double total = 0;     ///< The whole call.
 };
 
 /// The properties of one segment: a connected component of the welded target. Areas are in squared units of the input,
@@ -106,7 +106,7 @@ struct Projection {
   Array<float> distances;            ///< 1 per vertex: the distance to it, or to that vertex, in units of the input.
   Array<std::uint32_t> segments;     ///< 1 per vertex: its segment. Segments are numbered by their first vertex.
   Array<SegmentStats> segmentStats;  ///< 1 per segment.
-  Array<std::uint32_t> recovery;     ///< 1 per vertex, see `Recovery`, with `secondLook` or `holes`;
+  Array<std::uint32_t> recovery;     ///< 1 per vertex, see `Recovery`, with `recheck` or `holes`;
                                      ///< else, and with `nearestVertex`, empty.
   Array<HoleShare> holeShares;       ///< 1 per hole and segment near it, with `holes` and not
                                      ///< `nearestVertex`; ordered by hole.

@@ -29,7 +29,7 @@ void PieceMerger::merge() noexcept {
     nextCorners_[corner] = std::exchange(vertices_[out.indices[i] - firstVertex_].firstCorner, corner);
   }
   bool isDone = false;
-  for (int round = 0; round < kMostRounds && !isDone; ++round) {
+  for (int round = 0; round < kMaxRounds && !isDone; ++round) {
     isDone = true;
     for (std::size_t i = 0; i < count && !failed(); ++i) {
       if (vertices_[i].stays || vertices_[i].isGone) continue;
@@ -86,7 +86,7 @@ bool PieceMerger::listAround(std::uint32_t vertex) noexcept {
     const std::size_t first = 3 * firstTriangle_ + corner / 3 * 3;
     if (indices[first + corner % 3] != vertex) continue;  // `kNoVertex`: of a triangle that was taken away.
     around_.add({first / 3, indices[first + (corner + 1) % 3], indices[first + (corner + 2) % 3]});
-    if (around_.size() > kMostAround) return false;
+    if (around_.size() > kMaxAround) return false;
   }
   if (around_.failed() || around_.size() < 3) return false;
   const std::size_t n = around_.size();

@@ -31,9 +31,9 @@ class PieceMerger {
 
  private:
   /// The most triangles around a vertex that is removed.
-  static constexpr std::size_t kMostAround = 16;
+  static constexpr std::size_t kMaxAround = 16;
   /// How often all vertices are tried: those around one that was removed may be removable then.
-  static constexpr int kMostRounds = 6;
+  static constexpr int kMaxRounds = 6;
   static constexpr std::uint32_t kNoCorner = UINT32_MAX;
 
   /// A vertex inside the target triangle.

@@ -19,7 +19,7 @@ constexpr std::size_t kStride = 4;
 
 /// The most others that may be near to each point, on average. Real meshes stay far below it, and at it 100,000 points
 /// take half a second.
-constexpr std::uint64_t kMostNear = 2000;
+constexpr std::uint64_t kMaxNear = 2000;
 
 /// Points as nanoflann wants to see them.
 struct Cloud {
@@ -108,7 +108,7 @@ Code mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t& cou
     const Tree tree(3, cloud);
     std::vector<std::uint32_t> parents(count);
     UnionFind sets(parents.data(), count);
-    JoinNear near(sets, groups, radius * radius, (kMostNear + 1) * count);  // Each meets itself, too.
+    JoinNear near(sets, groups, radius * radius, (kMaxNear + 1) * count);  // Each meets itself, too.
     for (std::uint32_t i = 0; i < count; ++i) {
       near.around(i);
       search(tree, positions + kStride * i, near);

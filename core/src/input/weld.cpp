@@ -30,7 +30,7 @@ constexpr std::uint32_t kFew = 16;
 /// Keys are sorted by two or three digits: 2 · 9, 2 · 12 or 3 · 10 bits.
 class Digits {
  public:
-  static constexpr std::uint32_t kMostValues = 2 << 12;
+  static constexpr std::uint32_t kMaxValues = 2 << 12;
 
   explicit Digits(int keyBits) : count_(keyBits > 24 ? 3 : 2), bits_(keyBits / count_) {}
 
@@ -179,7 +179,7 @@ Placed* sortAlongCurve(const MeshView& target, const Units& units, Site* sites, 
   const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
   const HilbertCurve curve(levels);
   const Digits digits(3 * levels);
-  std::uint32_t counts[Digits::kMostValues];
+  std::uint32_t counts[Digits::kMaxValues];
   std::fill(counts, counts + digits.allValues(), 0u);
   const float* position = target.positions.data();
   const std::uint32_t* groupOf = target.groups.empty() ? nullptr : target.groups.data();
@@ -200,14 +200,14 @@ Placed* sortAlongCurve(const MeshView& target, const Units& units, Site* sites, 
 
 }  // namespace
 
-void Points::split(Vec3 p, float* position, float* rest) noexcept {
+void Points::split(Vec3 p, float* position, float* positionLow) noexcept {
   const auto part = [](double x, float& rounded, float& left) {
     rounded = static_cast<float>(x);
     left = static_cast<float>(x - static_cast<double>(rounded));
   };
-  part(p.x, position[0], rest[0]);
-  part(p.y, position[1], rest[1]);
-  part(p.z, position[2], rest[2]);
+  part(p.x, position[0], positionLow[0]);
+  part(p.y, position[1], positionLow[1]);
+  part(p.z, position[2], positionLow[2]);
   position[3] = 0;
 }
 

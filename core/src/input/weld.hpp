@@ -21,15 +21,15 @@ struct Points {
   std::uint32_t triangleCount = 0;           ///< Triangles with an area; the others take no part in anything.
   const std::uint32_t* triangles = nullptr;  ///< 3 points per triangle with an area.
   const double* doubleAreas = nullptr;       ///< Twice the area of each of them, scaled.
-  const float* rests = nullptr;              ///< 3 per point, or none: the exact position minus `positions`.
+  const float* positionLow = nullptr;        ///< 3 per point, or none: the exact position minus `positions`.
 
   /// Splits a position into floats and the remainder.
-  static void split(Vec3 p, float* position, float* rest) noexcept;
+  static void split(Vec3 p, float* position, float* positionLow) noexcept;
 
   [[nodiscard]] const float* at(std::uint32_t point) const { return positions + kStride * point; }
   [[nodiscard]] Vec3 exactly(std::uint32_t point) const {
     const Vec3 p = Vec3::from(at(point));
-    return rests == nullptr ? p : p + Vec3::from(rests + std::size_t{3} * point);
+    return positionLow == nullptr ? p : p + Vec3::from(positionLow + std::size_t{3} * point);
   }
 };
 

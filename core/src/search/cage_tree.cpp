@@ -55,7 +55,7 @@ void fillNodes(Box* boxes, Node* nodes, CageTree& out) {
       setBoxes(nodes[levelBegin + i], children);
       boxes[i] = around;
     }
-    if (out.entryCount == 0 && levelSize <= CageTree::kMostEntries) {
+    if (out.entryCount == 0 && levelSize <= CageTree::kMaxEntries) {
       out.entry = levelBegin;
       out.entryCount = levelSize;
     }

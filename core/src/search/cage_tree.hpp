@@ -17,7 +17,7 @@ namespace cagecast {
 struct CageTree {
   /// A search for closest points begins at the lowest level with at most this many nodes: that is quicker than the way
   /// from the root to them.
-  static constexpr std::uint32_t kMostEntries = 16;
+  static constexpr std::uint32_t kMaxEntries = 16;
 
   RayTree rays;                            ///< Its nodes are stored level by level.
   const FlatLeaf* leaves = nullptr;        ///< The triangles of `rays`, four by four.

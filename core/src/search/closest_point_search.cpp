@@ -43,8 +43,8 @@ ClosestPointSearch::ClosestPointSearch(const CageTree& tree, double diagonal, Ar
       slack_(slackOf(tree, diagonal)),
       growth_(1 + static_cast<float>(kRelativeSlack)),
       fixedSlack_(fixedSlack(slack_, kRelativeSlack)),
-      list_(arena.allocate<std::uint32_t>(std::size_t{tree.leafCount} + CageTree::kMostEntries + 4)),
-      otherList_(arena.allocate<std::uint32_t>(std::size_t{tree.leafCount} + CageTree::kMostEntries + 4)) {}
+      list_(arena.allocate<std::uint32_t>(std::size_t{tree.leafCount} + CageTree::kMaxEntries + 4)),
+      otherList_(arena.allocate<std::uint32_t>(std::size_t{tree.leafCount} + CageTree::kMaxEntries + 4)) {}
 
 void ClosestPointSearch::widen(double more, double distance) noexcept {
   const double slack = slack_ + more;

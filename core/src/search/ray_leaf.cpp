@@ -39,13 +39,13 @@ constexpr float kDistanceRounding = 8.0f;
 constexpr float kDepthRounding = 0x1p-19f;
 
 /// The most that the edge functions of a ray through a leaf's box add up to, in squares of the box's size.
-constexpr float kMostSum = 24.0f;
+constexpr float kMaxSum = 24.0f;
 
 }  // namespace
 
 RayLeaf::RayLeaf(const RayTree& tree, std::uint32_t child, float size, float loose) noexcept
     : edgeRounding(size * kEdgeRounding * tree.sceneSize),
-      leastDistance(size * size * (std::min(loose, 0.0f) * kMostSum) -
+      leastDistance(size * size * (std::min(loose, 0.0f) * kMaxSum) -
                     edgeRounding * kDistanceRounding * tree.sceneSize) {
   const std::uint32_t* index = tree.corners + std::size_t{3} * firstOf(child);
   for (int i = 0; i < 3; ++i) {

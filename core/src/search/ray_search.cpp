@@ -30,7 +30,7 @@ RaySearch::RaySearch(const RayTree& tree, double from, Arena& arena) noexcept
       from_(from),
       boxFrom_(static_cast<float>(from)),
       limits_{static_cast<float>(from > 0 ? from / 2 : from * 2), static_cast<float>(from > 0 ? from * 2 : from / 2)},
-      floatRays_(arena.allocate<FloatRay>(kMostRays)),
+      floatRays_(arena.allocate<FloatRay>(kMaxRays)),
       lists_(arena.allocate<std::uint16_t>(kListRoom)) {}
 
 void RaySearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noexcept {
@@ -149,7 +149,7 @@ void RaySearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::
   const float soonest = limits_.loose;
   // The list becomes one of the rays that may hit something, each with its possible hits in the lowest four bits.
   // Without a branch, which could not be predicted: a ray without possible hits is overwritten by the next.
-  static_assert(kMostRays <= 1u << 12);
+  static_assert(kMaxRays <= 1u << 12);
   std::uint32_t left = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint16_t ray = rays[i];

@@ -19,7 +19,7 @@ namespace cagecast {
 class RaySearch {
  public:
   /// The most rays to trace together: enough to share nodes, few enough for their lists to stay in the cache.
-  static constexpr std::uint32_t kMostRays = 1792;
+  static constexpr std::uint32_t kMaxRays = 1792;
 
   /// Allocates its working memory; check `arena.failed()` afterwards.
   /// @param from  Scaled; may be negative.
@@ -30,14 +30,14 @@ class RaySearch {
     nearest,  ///< The distance of its first hit as well, which becomes the ray's end.
   };
 
-  /// @param rays      At most `kMostRays`.
+  /// @param rays      At most `kMaxRays`.
   /// @param[out] hit  1 per ray.
   void search(Ray* rays, std::uint32_t count, bool* hit, Find find = Find::any) noexcept;
 
  private:
   /// Entries for the lists of all levels: enough for usual trees. Where they run out, rays are traced in smaller
   /// groups.
-  static constexpr std::size_t kListRoom = std::size_t{8} * kMostRays;
+  static constexpr std::size_t kListRoom = std::size_t{8} * kMaxRays;
   /// The entries kept for single rays: at each level four lists of two entries. No tree is deeper than 64 levels.
   static constexpr std::ptrdiff_t kLastRoom = 8 * 64;
   /// Lists of at least this length are moved together.

@@ -99,7 +99,7 @@ void placeInteriorSamples(const Scene& scene, const PointData& data, const Array
   if (count == 0) return;
 
   auto* positions = arena.allocate<float>(std::size_t{4} * count * Points::kStride);
-  auto* rests = arena.allocate<float>(std::size_t{4} * count * 3);
+  auto* positionLow = arena.allocate<float>(std::size_t{4} * count * 3);
   if (arena.failed()) return;
   for (std::size_t i = 0; i < count; ++i) {
     const auto [a, b, c] = Corners(data.points, triangles[i]);
@@ -107,12 +107,12 @@ void placeInteriorSamples(const Scene& scene, const PointData& data, const Array
     // The centroids of the four triangles between the corners and the middles of the edges.
     const Vec3 samples[4] = {1.0 / 6 * (sum + 3 * a), 1.0 / 6 * (sum + 3 * b), 1.0 / 6 * (sum + 3 * c), 1.0 / 3 * sum};
     for (std::size_t k = 0; k < 4; ++k)
-      Points::split(samples[k], positions + (4 * i + k) * Points::kStride, rests + (4 * i + k) * 3);
+      Points::split(samples[k], positions + (4 * i + k) * Points::kStride, positionLow + (4 * i + k) * 3);
   }
   Points points;
   points.count = 4 * count;
   points.positions = positions;
-  points.rests = rests;
+  points.positionLow = positionLow;
   out.triangleCount = count;
   out.triangles = triangles;
   out.data = PointData(points, scene.options, arena);

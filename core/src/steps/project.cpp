@@ -18,7 +18,7 @@ void projectPoints(const Scene& scene, PointData& data) noexcept {
   auto* candidates = arena.allocate<Candidate>(cage.count);
   // Interior samples are rounded to floats before the search. With the size of the scene added to the diagonal, the
   // search's tolerance is larger than that rounding.
-  const double diagonal = units.diagonal + (points.rests == nullptr ? 0 : static_cast<double>(units.sceneSize));
+  const double diagonal = units.diagonal + (points.positionLow == nullptr ? 0 : static_cast<double>(units.sceneSize));
   ClosestPointSearch search(scene.cageTree, diagonal, arena);
   if (arena.failed()) return;
 

@@ -16,7 +16,7 @@ constexpr double kAreaTolerance = 0.01;
 constexpr double kExtentTolerance = 0.02;
 /// A segment is compared with this many kinds at most, the latest ones. In the order of `Order`, twins are seldom
 /// farther apart.
-constexpr std::uint32_t kMostKinds = 8;
+constexpr std::uint32_t kMaxKinds = 8;
 
 /// Segments in an order in which twins are close together: by points, area and number.
 class Order {
@@ -97,7 +97,7 @@ void findTwins(const Scene& scene, const PointData& data, Array<SegmentStats>& s
       return stats[s].points == stats[first].points && stats[s].area <= (1 + kAreaTolerance) * stats[first].area &&
              std::abs(extents[s] - extents[first]) <= kExtentTolerance * extents[first];
     };
-    const std::uint32_t oldest = kindCount - std::min(kMostKinds, kindCount);
+    const std::uint32_t oldest = kindCount - std::min(kMaxKinds, kindCount);
     std::uint32_t kind = kindCount;
     while (kind > oldest && !isTwinOf(kinds[kind - 1])) --kind;
     const bool isNew = kind == oldest;

@@ -18,9 +18,9 @@ template <typename IsWanted, typename Take>
 void sendToCage(const Scene& scene, const PointData& data, RaySearch::Find find, IsWanted isWanted, Take take) {
   Arena& arena = scene.arena;
   const Arena::Scope scope(arena);
-  auto* rays = arena.allocate<Ray>(RaySearch::kMostRays);
-  auto* pointOfRay = arena.allocate<std::uint32_t>(RaySearch::kMostRays);
-  auto* hit = arena.allocate<bool>(RaySearch::kMostRays);
+  auto* rays = arena.allocate<Ray>(RaySearch::kMaxRays);
+  auto* pointOfRay = arena.allocate<std::uint32_t>(RaySearch::kMaxRays);
+  auto* hit = arena.allocate<bool>(RaySearch::kMaxRays);
   RaySearch search(scene.cageTree.rays, -scene.length(kRayStart), arena);
   if (arena.failed()) return;
   std::uint32_t count = 0;
@@ -33,7 +33,7 @@ void sendToCage(const Scene& scene, const PointData& data, RaySearch::Find find,
     if (!isWanted(i)) continue;
     pointOfRay[count] = i;
     setNormalRay(rays[count++], data, scene.cage, i);
-    if (count == RaySearch::kMostRays) send();
+    if (count == RaySearch::kMaxRays) send();
   }
   send();
 }

@@ -104,7 +104,7 @@ double diagonalOfView(const MeshView& view) { return diagonalOf(weldExactly(view
 
 }  // namespace
 
-TEST_CASE("a model that encloses no volume is told as such, by a fit as by making a cage", "[cages][fit]") {
+TEST_CASE("a model that encloses no volume is reported as such, by a fit as by making a cage", "[cages][fit]") {
   // A strip between two layers of the grid, and a template as thin.
   HeadMesh strip;
   strip.positions = {-0.2f, -1, 0, 0.2f, -1, 0, 0.2f, 1.1f, 0, -0.2f, 1.1f, 0};

@@ -140,7 +140,7 @@ TEST_CASE("the first part at a hole is listed, whatever memory held before", "[m
   const scenes::Mesh cage = scenes::without(scenes::box({}, {2, 2, 2}, 8), isAbove);
   const scenes::Mesh target = scenes::box({}, {1.8f, 1.8f, 1.8f}, 6);
   TransferOptions options;
-  options.steps.secondLook = false;
+  options.steps.recheck = false;
   for (const int fill : {0, 255}) {
     Workspace workspace;
     TransferResult result;

@@ -10,7 +10,7 @@ namespace cagecast::reference {
 
 Differences compare(const Result& reference, const TransferResult& product, const MeshView& target) {
   constexpr std::size_t kMaxLines = 10;
-  constexpr double kUvTolerance = 1e-5, kDistanceTolerance = 1e-6, kAreaTolerance = 1e-9, kLeastArea = 1e-11,
+  constexpr double kUvTolerance = 1e-5, kDistanceTolerance = 1e-6, kAreaTolerance = 1e-9, kMinArea = 1e-11,
                    kScoreTolerance = 1e-6;
   Differences found;
   std::size_t lines = 0;
@@ -108,7 +108,7 @@ Differences compare(const Result& reference, const TransferResult& product, cons
     const SegmentStats& expected = reference.segmentStats[s];
     const SegmentStats& got = projection.segmentStats[s];
     // Slivers have areas that rounding makes; they are compared with what matters, the size of the target.
-    const double slack = kAreaTolerance * expected.area + kLeastArea * diag * diag;
+    const double slack = kAreaTolerance * expected.area + kMinArea * diag * diag;
     const auto differs = [&](double a, double b) { return !(std::abs(a - b) <= slack); };
     // Scores are ratios of areas; where what is asked is next to nothing they are huge, and rounding shows, and where
     // the areas themselves are next to nothing.

@@ -8,8 +8,8 @@
 // clang-format on
 ///
 /// --without leaves a step of the preset `default` out (may be given more than once): groups, end-of-self-ray, pokes,
-/// interior-samples, far-loops, floor, depth-weighting, twins, hole-contents, second-look, both-sides, exposed-side,
-/// holes, triangles, seams. --preset earlier is `default` with step 4', the floor and the second look as they were
+/// interior-samples, far-loops, floor, depth-weighting, twins, hole-contents, recheck, both-sides, exposed-side,
+/// holes, triangles, seams. --preset earlier is `default` with step 4', the floor and the recheck as they were
 /// first written down.
 /// --unchecked does not ask which vertices are stable. --product asks the library instead, which knows nothing of
 /// --without. The second form writes the scenes of the golden hashes, in their order, as FOLDER/0.scene and so on, and
@@ -154,7 +154,7 @@ constexpr std::pair<std::string_view, bool reference::Options::*> kSteps[] = {
     {"depth-weighting", &reference::Options::depthWeighting},
     {"twins", &reference::Options::twins},
     {"hole-contents", &reference::Options::holeContents},
-    {"second-look", &reference::Options::secondLook},
+    {"recheck", &reference::Options::recheck},
     {"both-sides", &reference::Options::bothSides},
     {"exposed-side", &reference::Options::exposedSide},
     {"holes", &reference::Options::holes},

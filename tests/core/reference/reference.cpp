@@ -522,7 +522,7 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, const Outlook&
 
 /// Step 6: the occluded points of passing, covered segments that are seen from elsewhere. Begins at the loop of what is
 /// occluded; a recovered point brings its neighbours in, a rejected one does not.
-std::vector<Verdict> secondLook(const Scene& scene, const Options& options, const State& state) {
+std::vector<Verdict> recheck(const Scene& scene, const Options& options, const State& state) {
   const std::size_t count = scene.points.count();
   std::vector<bool> firm;
   const std::vector<Outlook> outlook = outlooks(scene, options, state, firm);
@@ -816,7 +816,7 @@ Options Options::standard() {
   options.endOfSelfRay = options.pokes = options.interiorSamples = options.farLoops = true;
   options.floor = Floor::depth;
   options.depthWeighting = options.twins = options.holeContents = true;
-  options.secondLook = options.bothSides = options.exposedSide = true;
+  options.recheck = options.bothSides = options.exposedSide = true;
   options.holes = options.partialTriangles = options.seams = true;
   return options;
 }
@@ -874,7 +874,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
     }
   }
   std::vector<Verdict> seen(pointCount), underHole(pointCount);
-  if (filtered && options.secondLook) seen = secondLook(scene, options, state);
+  if (filtered && options.recheck) seen = recheck(scene, options, state);
   if (filtered && options.holes) underHole = underHoles(scene, state);
 
   result.uvs.resize(vertexCount * 2);
@@ -934,7 +934,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   options.depthWeighting = library.steps.depthWeighting;
   options.twins = library.steps.twins;
   options.holeContents = library.steps.holeContents;
-  options.secondLook = library.steps.secondLook;
+  options.recheck = library.steps.recheck;
   options.bothSides = library.steps.bothSides;
   options.exposedSide = library.steps.exposedSide;
   options.holes = library.steps.holes;

@@ -29,7 +29,7 @@ struct Options {
   bool depthWeighting = false;  ///< Step 5': covered area counts less where it lies deep; finds the twins, too.
   bool twins = false;           ///< Step 5": copies of one part that are in doubt are judged together.
   bool holeContents = false;    ///< Step 5‴: small parts that a hole bares which nothing explains fail; with `holes`.
-  bool secondLook = false;      ///< Step 6: occluded points that are seen from elsewhere are recovered.
+  bool recheck = false;         ///< Step 6: occluded points that are seen from elsewhere are recovered.
   bool bothSides = false;       ///< Step 6: where normals cancel out, look to both sides; else such points stay.
   bool exposedSide = false;     ///< Step 6: the side a segment looks to is that of its points that are not occluded.
   bool holes = false;           ///< Step 7: uncovered points whose hole is not meant for them are recovered.
@@ -39,7 +39,7 @@ struct Options {
 
   static Options paper();     ///< The literal method: none of the steps that can be switched.
   static Options standard();  ///< The preset `default`: all of them.
-  static Options earlier();   ///< The same with step 4', the floor and the second look as they were first written down.
+  static Options earlier();   ///< The same with step 4', the floor and the recheck as they were first written down.
 };
 
 /// The answer of the reference, with the same fields and meanings as `Projection` and `Zones`.
@@ -57,7 +57,7 @@ struct Result {
   ///
   /// Each ray that has a say is turned by `kRayNudge`, and moved by 1e-7 of the diagonal, to sixteen sides, and by a
   /// hundred-thousandth of both to four, and what may come of it is followed to the end: to the verdict over its
-  /// segment, to the neighbours that a second look brings in, to the hole that a failing segment explains. A vertex is
+  /// segment, to the neighbours that a recheck brings in, to the hole that a failing segment explains. A vertex is
   /// unstable if it may then end up in more than one zone; or if that hangs on the last bits of the sums. Nothing else
   /// is unstable: the nearest triangle and its ties are decided by tolerances of their own.
   std::vector<std::uint8_t> stable;

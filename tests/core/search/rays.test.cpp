@@ -69,7 +69,7 @@ struct Rays {
     const double origin[3] = {from.x, from.y, from.z};
     for (int k = 0; k < 3; ++k) {
       ray.position[k] = static_cast<float>(origin[k]);
-      ray.rest[k] = static_cast<float>(origin[k] - static_cast<double>(ray.position[k]));
+      ray.positionLow[k] = static_cast<float>(origin[k] - static_cast<double>(ray.position[k]));
     }
     ray.direction = &directions.back();
     rays.push_back(ray);
@@ -78,7 +78,7 @@ struct Rays {
 
 /// Whether each ray is hit, and where first.
 struct Hits {
-  bool hit[RaySearch::kMostRays];
+  bool hit[RaySearch::kMaxRays];
   std::vector<Ray> rays;
 
   Hits(const SmallTree& tree, const Rays& of, double from, RaySearch::Find find) : rays(of.rays) {

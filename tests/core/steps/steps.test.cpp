@@ -426,7 +426,7 @@ TEST_CASE("occluded points of a part that the cage covers nowhere get no more ra
   // At a threshold of 0 and without a floor, such parts pass unlocked.
   options = TransferOptions::paper();
   options.threshold = 0;
-  options.steps.secondLook = true;
+  options.steps.recheck = true;
   for (const float x : {1.25f, 2.25f})
     CHECK(requireSameAsReference("a shelf", cage.view(), shelf(x).view(), options).unstable == 0);
 }
@@ -434,7 +434,7 @@ TEST_CASE("occluded points of a part that the cage covers nowhere get no more ra
 TEST_CASE("a sheet with two sides, between two others, is seen from where the reference sees it", "[recheck]") {
   const scenes::Mesh cage = scenes::box({0, 0, 0.1f}, {5, 5, 1.2f}, 4);
   TransferOptions onlyOnce;
-  onlyOnce.steps.secondLook = false;
+  onlyOnce.steps.recheck = false;
   std::size_t occluded = 0, left = 0;
   for (int step = 1; step <= 12; ++step) {
     scenes::Mesh target;
@@ -495,7 +495,7 @@ TEST_CASE("a part that faces neither to the cage nor away from it is seen on the
     addRectangle({-0.5f, -3, 1.25f}, {0.5f, -3, 1.25f}, {0.5f, 0.6f, 1.25f}, {-0.5f, 0.6f, 1.25f});
     addRectangle({-0.1f, -3, -1}, {-0.1f, -3, 1.25f}, {-0.1f, 3, 1.25f}, {-0.1f, 3, -1});
     const auto occluded = [&](bool looksTwice) {
-      options.steps.secondLook = looksTwice;
+      options.steps.recheck = looksTwice;
       const std::vector<int> zones = zonesOf(transferred(cage.view(), target.view(), options));
       return std::count(zones.begin(), zones.begin() + 128, 1);
     };

@@ -32,7 +32,7 @@ export interface Projection extends Projected {
   /** The preset of the projection, which is also the default preset for `classify`. */
   preset: Preset;
   /**
-   * 1 per vertex, with `steps.secondLook` or `steps.holes`; else, and with `nearestVertex`, empty. Whether an occluded or uncovered
+   * 1 per vertex, with `steps.recheck` or `steps.holes`; else, and with `nearestVertex`, empty. Whether an occluded or uncovered
    * vertex becomes cosmetic if its segment is kept: 0 never, 1 always, 2 and above if a culled segment lies behind hole number
    * `value - 2` and explains it.
    */

@@ -3,7 +3,7 @@ import { CagecastError } from '../index.js';
 import { dot } from '../inspect/geometry.js';
 import { fillGutter } from './gutter.js';
 import { checkImage, checkNames, checkSize, colorByte, type Image, linearOf, wrongArgument } from './image.js';
-import { kMostLayers } from './pattern.js';
+import { kMaxLayers } from './pattern.js';
 import { type Corners, type Kind, Raster, type Wrap } from './raster.js';
 
 /** Triangles that lie in two textures: in the one that is filled, and in the image that fills it. */
@@ -141,7 +141,7 @@ export function paintedOnly(fn: string, layouts: readonly Layout[], image: Image
   let laid = 0;
   for (const { to } of layouts) {
     for (let at = 0; at < to.length; at += 6) laid += Math.abs(areaOf(to, at));
-    if (laid > kMostLayers || to.some((place) => Math.abs(place) > kFarthest)) return image;
+    if (laid > kMaxLayers || to.some((place) => Math.abs(place) > kFarthest)) return image;
   }
   const raster = new Raster({ width, height }, ['repeat', 'repeat'], image, 1, kind);
   // What is painted comes first: it may share its texels.

@@ -9,8 +9,8 @@ export interface MaskImages {
   always?: Image | undefined;
 }
 
-const kLeastSamples = 3; // along a side of a triangle
-const kMostSamples = 24;
+const kMinSamples = 3; // along a side of a triangle
+const kMaxSamples = 24;
 const kHalf = 0.5;
 
 /**
@@ -48,7 +48,7 @@ function maskedShare({ width, height, data }: Image, uvs: ArrayLike<number>): nu
   const [du, dv] = [uvs[2]! * width - u0, uvs[3]! * height - v0];
   const [eu, ev] = [uvs[4]! * width - u0, uvs[5]! * height - v0];
   const longest = Math.max(Math.hypot(du, dv), Math.hypot(eu, ev), Math.hypot(du - eu, dv - ev));
-  const n = Math.max(kLeastSamples, Math.min(kMostSamples, Math.ceil(longest)));
+  const n = Math.max(kMinSamples, Math.min(kMaxSamples, Math.ceil(longest)));
   let [sum, count] = [0, 0];
   for (let i = 0; i < n; ++i) {
     for (let j = 0; i + j < n; ++j) {

@@ -10,7 +10,7 @@ export type Kind = 'color' | 'data' | 'normal';
 
 /** Samples per texel and direction: two for edges, more where the image is finer than the texture. */
 const kFewestSamples = 2;
-const kMostSamples = 4;
+const kMaxSamples = 4;
 /**
  * If the image has fewer texels per texel than this, a texel shows one place, as a mean would blur the image: its middle in the
  * triangle that has most of it, or else the middle of what each triangle has. Samples are cubic, as bilinear ones blur too.
@@ -20,7 +20,7 @@ const kCoarse = 1.5;
 const kSharpness = -0.75;
 
 /** A triangle larger than this, in textures, would be drawn for minutes; its UVs are a mistake. */
-const kMostRepeats = 64;
+const kMaxRepeats = 64;
 
 /** Where the corners of triangles are in a texture. */
 export type Corners = ArrayLike<number>;
@@ -63,8 +63,8 @@ export class Raster {
   /** 1 per part: whether it shares texels with itself or another. */
   readonly #sharing = new Set<number>();
   /** Spans of the rows of samples in a row of texels. */
-  readonly #lefts = new Float64Array(kMostSamples);
-  readonly #rights = new Float64Array(kMostSamples);
+  readonly #lefts = new Float64Array(kMaxSamples);
+  readonly #rights = new Float64Array(kMaxSamples);
   /** Premultiplied RGBA, linear, of the last sample. */
   readonly #sum = new Float64Array(4);
   /** What a cubic sample works on. */
@@ -92,7 +92,7 @@ export class Raster {
     this.width = width;
     this.height = height;
     this.#image = image;
-    this.#samples = Math.max(kFewestSamples, Math.min(kMostSamples, Math.ceil(density)));
+    this.#samples = Math.max(kFewestSamples, Math.min(kMaxSamples, Math.ceil(density)));
     this.#isCoarse = density < kCoarse;
     this.columnOf = wrapping(width, wraps[0]);
     this.rowOf = wrapping(height, wraps[1]);
@@ -137,11 +137,11 @@ export class Raster {
     const area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
     if (area === 0) return;
     const [top, end] = [Math.ceil(Math.min(y0, y1, y2)), Math.ceil(Math.max(y0, y1, y2))];
-    if (Math.abs(area) > kMostRepeats * 2 * width * height || end - top > kMostRepeats * height)
+    if (Math.abs(area) > kMaxRepeats * 2 * width * height || end - top > kMaxRepeats * height)
       throw new CagecastError(
         'badArgument',
         '',
-        `a triangle extends over more than ${kMostRepeats} textures in UV space`,
+        `a triangle extends over more than ${kMaxRepeats} textures in UV space`,
       );
     // UVs are linear on the triangle.
     let [u, ux, uy, v, vx, vy] = [0, 0, 0, 0, 0, 0];

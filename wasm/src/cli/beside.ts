@@ -11,7 +11,7 @@ import type { Region } from './transfer/command.js';
 import { UsageError } from './usage.js';
 
 /** Files with more JSON hold their buffers in it, as a rule; parsing them would take long. */
-const kMostBytes = 2 ** 23;
+const kMaxBytes = 2 ** 23;
 
 /** The files that the JSON of a glTF in a folder names. */
 const filesNamedIn = ({ buffers = [], images = [] }: GLTF.IGLTF, folder: string): string[] =>
@@ -41,7 +41,7 @@ function withoutBinary(path: string): Uint8Array {
     const start = Buffer.alloc(20);
     const isGlb = readSync(file, start, 0, 20, 0) === 20 && start.toString('latin1', 0, 4) === 'glTF';
     const length = isGlb ? 20 + start.readUInt32LE(12) : size;
-    if (length > Math.min(size, kMostBytes)) return new Uint8Array();
+    if (length > Math.min(size, kMaxBytes)) return new Uint8Array();
     const bytes = Buffer.alloc(length);
     readSync(file, bytes, 0, length, 0);
     if (isGlb) bytes.writeUInt32LE(length, 8);

@@ -85,12 +85,12 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
     ...(templateLandmarks !== undefined && { landmarks: await readLandmarks(templateLandmarks) }),
   };
   const count = Object.keys(template.landmarks).length;
-  if (count < kLeastLandmarks) {
+  if (count < kMinLandmarks) {
     const has = `has ${count === 0 ? 'no landmarks' : counted(count, 'landmark')}`;
     if (templateLandmarks !== undefined)
-      throw new InputError(`${has}; at least ${kLeastLandmarks} are needed`).in(templateLandmarks);
+      throw new InputError(`${has}; at least ${kMinLandmarks} are needed`).in(templateLandmarks);
     throw new InputError(
-      `${has} in the extras of its nodes and meshes; give at least ${kLeastLandmarks} of the model that it was made for: --template-landmarks T.json`,
+      `${has} in the extras of its nodes and meshes; give at least ${kMinLandmarks} of the model that it was made for: --template-landmarks T.json`,
     ).in(templatePath);
   }
   const landmarks = landmarksPath === undefined ? undefined : await readLandmarks(landmarksPath);
@@ -124,10 +124,10 @@ async function readLandmarks(path: string): Promise<Landmarks> {
 }
 
 /** How many landmarks `fitCage` needs of a template. */
-const kLeastLandmarks = 4;
+const kMinLandmarks = 4;
 
 /** How many landmarks are listed at most. */
-const kMostNames = 12;
+const kMaxNames = 12;
 
 /** Landmarks less certain than this are listed. */
 const kCertain = 0.7;
@@ -135,7 +135,7 @@ const kCertain = 0.7;
 function describeFit({ used, confidence, missing }: Fit, given: Landmarks): FitNotes {
   const all = Object.keys(used);
   const own = all.filter((name) => Object.hasOwn(given, name)).length;
-  const list = (names: string[]) => listed(names, kMostNames, ' (--json lists all)');
+  const list = (names: string[]) => listed(names, kMaxNames, ' (--json lists all)');
   const doubtful = all
     .filter((name) => confidence[name]! < kCertain)
     .sort((a, b) => confidence[a]! - confidence[b]!)

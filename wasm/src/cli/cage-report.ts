@@ -19,8 +19,8 @@ export const cageReport = (file: string, { mesh }: Extracted, { excluded }: Run)
 });
 
 /** How many names a line has at most. */
-const kMostNames = 12;
+const kMaxNames = 12;
 
 /** Says which parts a cage was made without; empty if there are none. */
 export const excludedLine = ({ excluded = [] }: CageReport): string =>
-  excluded.length === 0 ? '' : `excluded from the cage by their names: ${listed(excluded, kMostNames)}`;
+  excluded.length === 0 ? '' : `excluded from the cage by their names: ${listed(excluded, kMaxNames)}`;

@@ -90,7 +90,7 @@ export function inspectionReport(
 }
 
 /** How many rows a table has at most. */
-const kMostRows = 15;
+const kMaxRows = 15;
 const conclusions: Record<Verdict, string> = {
   good: 'GOOD: the cage fits.',
   usable: 'USABLE: the cage fits, with reservations.',
@@ -121,8 +121,8 @@ function describe(report: InspectionReport, html: string | undefined): string[] 
   const listed = segments
     .map((segment, s) => ({ ...segment, s }))
     .sort((a, b) => b.exposedArea - a.exposedArea || a.s - b.s)
-    .slice(0, kMostRows);
-  const more = (n: number) => (n > kMostRows ? `, the ${kMostRows} largest` : '');
+    .slice(0, kMaxRows);
+  const more = (n: number) => (n > kMaxRows ? `, the ${kMaxRows} largest` : '');
   return [
     `target  ${target.file}: ${integer(target.vertices)} vertices (${integer(target.points)} points), ${integer(target.triangles)} triangles, diagonal ${short(target.diagonal)}`,
     `cage    ${cage.file}: ${integer(cage.vertices)} vertices, ${integer(cage.triangles)} triangles`,
@@ -147,7 +147,7 @@ function describe(report: InspectionReport, html: string | undefined): string[] 
       ? []
       : table([
           ['beneath', 'kind', 'size', 'perimeter', 'cut off'],
-          ...holes.slice(0, kMostRows).map(({ beneath, kind, diagonal: size, perimeter, cutOff }) => [
+          ...holes.slice(0, kMaxRows).map(({ beneath, kind, diagonal: size, perimeter, cutOff }) => [
             cut(
               beneath
                 .slice(0, 3)

@@ -24,9 +24,9 @@ const kBorderColor: Rgb = [20, 20, 20];
 /** Distances beyond this share of the diagonal all look alike. */
 const kFarthest = 0.1;
 /** How many triangles a UV layout is drawn with at most. */
-const kMostDrawn = 20000;
+const kMaxDrawn = 20000;
 /** How many segments are listed at most. */
-const kMostSegments = 40;
+const kMaxSegments = 40;
 
 const views: readonly { name: string; view: View }[] = [
   { name: 'front', view: { right: [1, 0, 0], up: [0, 1, 0], eye: [0, 0, 1] } },
@@ -92,7 +92,7 @@ ${rows(
   ['part', ...segmentColumns],
   [...segments]
     .sort((a, b) => b.exposedArea - a.exposedArea)
-    .slice(0, kMostSegments)
+    .slice(0, kMaxSegments)
     .map((segment) => [segment.part, ...segmentCells(segment)]),
 )}
 </html>
@@ -179,7 +179,7 @@ function drawUvs({ cage, surface }: Scene): string {
       .map((value, k) => Number((((value - (k === 0 ? left : top)) / side) * 1000).toFixed(1)))
       .join(' ');
   let paths = '';
-  for (let t = 0; t < Math.min(surface.areas.length, kMostDrawn); ++t) {
+  for (let t = 0; t < Math.min(surface.areas.length, kMaxDrawn); ++t) {
     paths += `<path d="M${place(cage.indices[3 * t]!)}L${place(cage.indices[3 * t + 1]!)}L${place(cage.indices[3 * t + 2]!)}Z"/>`;
   }
   const frame = `<rect x="${((0 - left) / side) * 1000}" y="${((0 - top) / side) * 1000}" width="${1000 / side}" height="${1000 / side}" fill="none" stroke="#b3261e" stroke-width="3"/>`;

@@ -218,8 +218,8 @@ export function transferOptions(
 /** No part has the name that a flag gives. */
 export function noSuchName(flag: string, parts: readonly { aliases: string[] }[]): InputError {
   const names = [...new Set(parts.flatMap(({ aliases }) => aliases))];
-  const shown = names.map((name) => cut(name, kMostCharacters));
-  return new InputError(`${flag}: no node or material has this name; there are: ${listed(shown, kMostNames)}`);
+  const shown = names.map((name) => cut(name, kMaxCharacters));
+  return new InputError(`${flag}: no node or material has this name; there are: ${listed(shown, kMaxNames)}`);
 }
 
 /** What to do about a finding, with the flags that reverse its verdicts, if there are any. */
@@ -230,12 +230,12 @@ export function adviceOn({ advice, places = [], locks }: Finding): string {
 }
 
 /** How many names a message lists at most. */
-const kMostNames = 20;
+const kMaxNames = 20;
 /** How many characters of a name a message shows at most. */
-const kMostCharacters = 60;
+const kMaxCharacters = 60;
 
 /** A name in a message. */
-export const quoted = (name: string): string => `"${cut(name, kMostCharacters)}"`;
+export const quoted = (name: string): string => `"${cut(name, kMaxCharacters)}"`;
 
 /**
  * Returns a test whether a name matches a pattern, in which `*` matches any text. Takes time in proportion to name and pattern at

@@ -16,7 +16,7 @@ export interface Timings {
    */
   segments: number;
   /** Step 6: more rays from occluded points. */
-  secondLook: number;
+  recheck: number;
   /** Step 7: uncovered points and the holes over them. */
   holes: number;
   /** Step 9: UVs per triangle corner. */

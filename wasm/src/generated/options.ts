@@ -65,7 +65,7 @@ export interface ProjectSteps {
    * Step 6: casts more rays from occluded points, and recovers a point if rays in other directions reach the cage
    * freely. True or false. Default: `true`; in the preset `paper`: `false`.
    */
-  secondLook?: boolean | undefined;
+  recheck?: boolean | undefined;
   /**
    * Step 6: casts these rays to both sides of the surface where every triangle has a copy with reverse winding. True or
    * false. Default: `true`; in the preset `paper`: `false`.
@@ -130,7 +130,7 @@ export const optionTable = {
   interiorSamples: { stage: 'project', isStep: true, kind: 'toggle' },
   farLoops: { stage: 'project', isStep: true, kind: 'toggle' },
   depthWeighting: { stage: 'project', isStep: true, kind: 'toggle' },
-  secondLook: { stage: 'project', isStep: true, kind: 'toggle' },
+  recheck: { stage: 'project', isStep: true, kind: 'toggle' },
   bothSides: { stage: 'project', isStep: true, kind: 'toggle' },
   exposedSide: { stage: 'project', isStep: true, kind: 'toggle' },
   holes: { stage: 'project', isStep: true, kind: 'toggle' },

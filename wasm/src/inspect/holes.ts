@@ -5,11 +5,11 @@ import { partsOf, type Scene } from './scene.js';
 import { placeOfSegment, type Segment } from './segments.js';
 
 /** A hole is explained if the unpainted parts at it have at least this share of the area that it cuts off. */
-const kLeastExplained = 0.02;
+const kMinExplained = 0.02;
 /** The area that a hole cuts off is reported from this share of the exposed area on. */
-const kLeastCut = 5e-4;
+const kMinCut = 5e-4;
 /** A surface does not lie beneath a hole if its direction from the hole deviates from the normal by more than this sine. */
-const kMostSideways = 0.7;
+const kMaxSideways = 0.7;
 
 /** A hole in the cage, or a border where it ends. Lengths are shares of the target's diagonal, areas of the target's exposed area. */
 export interface Hole {
@@ -110,13 +110,13 @@ const spanPoint = (p: Vector, q: Vector, centre: Vector, weight: number): Vector
 function isBeneath(reversed: Reverse, point: number, from: Vector, normal: Vector): boolean {
   const way = minus(reversed.nearest(point), from);
   const size = length(way) * length(normal);
-  return size === 0 || Math.abs(dot(way, normal)) >= Math.sqrt(1 - kMostSideways ** 2) * size;
+  return size === 0 || Math.abs(dot(way, normal)) >= Math.sqrt(1 - kMaxSideways ** 2) * size;
 }
 
 /** Holes that cut off paint although no unpainted part lies behind them. */
 export function checkHoles(holes: readonly Hole[], segments: readonly Segment[]): Finding[] {
   const unexplained = holes.filter(
-    ({ kind, cutOff, excluded }) => kind === 'hole' && cutOff >= kLeastCut && excluded < kLeastExplained * cutOff,
+    ({ kind, cutOff, excluded }) => kind === 'hole' && cutOff >= kMinCut && excluded < kMinExplained * cutOff,
   );
   if (unexplained.length === 0) return [];
   const cut = unexplained.reduce((sum, { cutOff }) => sum + cutOff, 0);

@@ -6,7 +6,7 @@ import type { Scene } from './scene.js';
 /** How deep in the target a vertex of the cage lies, as a share of the diagonal, before it counts as inside. */
 const kDepth = 0.0025;
 /** A cage is unfit if more than this share of its vertices, by area, is inside the target. */
-const kMostInside = 0.15;
+const kMaxInside = 0.15;
 
 /** The cage's vertices that lie inside the target. */
 export interface Inside {
@@ -57,7 +57,7 @@ export function checkInside({ vertices, area }: Inside): Finding[] {
   return [
     {
       code: 'cageInsideTarget',
-      weight: area / kMostInside,
+      weight: area / kMaxInside,
       sentence: `${vertices} of the cage's vertices, ${percent(area)} by area, lie inside the target`,
       advice: 'Move them outwards until they lie above its surface.',
       numbers: { vertices, area },

@@ -5,18 +5,18 @@ import type { Scene } from './scene.js';
 import { type Edge, middleOf, type Surface } from './surface.js';
 
 /** A cage is unfit if more than this share of its area faces inward, because the paint is lost there. */
-const kMostInward = 0.1;
+const kMaxInward = 0.1;
 /**
  * A piece of a cage, its holes spanned, is a solid if its volume is at least this share of its area to the power of 1.5
  * (a ball has 0.094, a bowl 0.13 of its own area, a flat patch 0). For a flatter piece, the side of the target decides which side
  * is the inner one.
  */
-const kLeastVolume = 0.02;
+const kMinVolume = 0.02;
 
 /** A flat piece faces inward if the target's area on its outer side exceeds that on its inner side by this share of both, */
 const kClearMajority = 0.5;
 /** and if at least this share of the target's area is near it; with less, it might only be near a fold of the target. */
-const kLeastArea = 0.005;
+const kMinArea = 0.005;
 
 /** Which triangles of the cage are turned inward. */
 interface Orientation {
@@ -44,10 +44,9 @@ export function orientationOf(scene: Scene): Orientation {
     const pieceArea = triangles.reduce((sum, t) => sum + surface.areas[t]!, 0);
     const volume = volumeOf(surface, triangles, borders[p]!, { pieceOf, piece: p, winding });
     const outward =
-      Math.abs(volume) >= kLeastVolume * pieceArea ** 1.5
+      Math.abs(volume) >= kMinVolume * pieceArea ** 1.5
         ? volume > 0
-        : targetSides.totals[p]! < kLeastArea * total ||
-          targetSides.sums[p]! >= -kClearMajority * targetSides.totals[p]!;
+        : targetSides.totals[p]! < kMinArea * total || targetSides.sums[p]! >= -kClearMajority * targetSides.totals[p]!;
     for (const t of triangles) {
       if ((winding[t] === 1) === outward) continue;
       inward[t] = 1;
@@ -182,7 +181,7 @@ export function checkNormals({ inward, share }: Orientation): Finding[] {
     {
       code: 'normalsInward',
       // Heavier than all findings that follow from it.
-      weight: share > kMostInward ? 20 * share + 1 : Math.max(share / kMostInward, 0.25),
+      weight: share > kMaxInward ? 20 * share + 1 : Math.max(share / kMaxInward, 0.25),
       sentence: all
         ? 'The cage is inside out: all its triangles face inward'
         : `${percent(share)} of the cage's area (${triangles} of its triangles) faces inward`,

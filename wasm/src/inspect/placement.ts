@@ -5,20 +5,20 @@ import { partsOf, type Scene } from './scene.js';
 /** How far outside the cage a vertex may lie, as a share of the diagonal, before it counts as poking through. */
 const kPokeThrough = 0.0025;
 /** A cage is unfit if more than this share of the exposed area pokes out of it. */
-const kMostOutside = 0.1;
+const kMaxOutside = 0.1;
 /** An uneven distance is reported if moving the cage by at least this share of the diagonal would even it out. */
 const kUnevenFrom = 0.02;
 /** A cage is unfit if its median distance to the target exceeds this share of the diagonal. */
 const kFarCage = 0.15;
 /** A cage must lie over at least this share of the exposed area; a face is a hundredth of a body. */
-const kLeastBeneath = 0.002;
+const kMinBeneath = 0.002;
 /**
  * A point that is farther outside than this share of the diagonal does not poke out, but belongs to another part of the target, if
  * the nearest triangle of the cage has some target close beneath it: the flank beside a sleeve, one leg beside the other.
  */
 const kElsewhere = 0.02;
 /** A triangle has target beneath it if that has at least this share of the triangle's own area. */
-const kLeastServed = 0.3;
+const kMinServed = 0.3;
 /** At least this share of the cage must have target beneath it; otherwise the cage is misplaced. */
 const kAllServed = 0.95;
 /** How close the target must be beneath such a triangle, as a share of the diagonal. */
@@ -69,7 +69,7 @@ export function placementOf(scene: Scene): Placement {
     candidates.push(v);
   }
   const [there, needed] = [overNeighbours(scene, within), overNeighbours(scene, scene.surface.areas)];
-  const served = (t: number) => there[t]! >= kLeastServed * needed[t]!;
+  const served = (t: number) => there[t]! >= kMinServed * needed[t]!;
   const servedShare =
     scene.surface.areas.reduce((sum, size, t) => sum + (served(t) ? size : 0), 0) / scene.surface.area;
   const beside = (v: number) =>
@@ -246,7 +246,7 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
   }
   const { outside, beneath } = placement;
   const findings = checkSize(scene);
-  if (beneath.share < kLeastBeneath && findings.length === 0) {
+  if (beneath.share < kMinBeneath && findings.length === 0) {
     findings.push({
       code: 'cageElsewhere',
       weight: 50,
@@ -268,7 +268,7 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
     const uneven = Math.hypot(...placement.correction.move) / (4 * kUnevenFrom);
     findings.push({
       code: cause,
-      weight: Math.max(share / kMostOutside, cause === 'cageMisplaced' ? Math.min(0.9, uneven) : 0),
+      weight: Math.max(share / kMaxOutside, cause === 'cageMisplaced' ? Math.min(0.9, uneven) : 0),
       sentence,
       advice,
       numbers: {
@@ -303,7 +303,7 @@ function causeOf({ outside, outsideOnceMoved, correction, room }: Placement): Ca
     return 'cageMisplaced';
   if (correction.grow > 0 || room[0] + room[1] + room[2] < 0) return 'cageTooSmall';
   // The cage is large enough, yet much is outside: it is moved or rotated too far for an estimate.
-  return share > 2 * kMostOutside ? 'cageMisplaced' : 'targetPokesOut';
+  return share > 2 * kMaxOutside ? 'cageMisplaced' : 'targetPokesOut';
 }
 
 function describe(

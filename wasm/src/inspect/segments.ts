@@ -6,11 +6,11 @@ import { partsOf, type Scene } from './scene.js';
 /** A segment is in doubt if its score is within this factor of 1. */
 const kDoubt = 1.25;
 /** Segments of a part are reported from this share of the exposed area on. */
-const kLeastArea = 0.001;
+const kMinArea = 0.001;
 /** From this share of the exposed area on, culling is worth a remark. */
 const kMuchCulled = 0.3;
 /** At least this share of the exposed area under the cage must be paintable. */
-const kLeastCosmetic = 0.02;
+const kMinCosmetic = 0.02;
 
 /** A connected component of the target. */
 export interface Segment {
@@ -85,7 +85,7 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
     if (result.zones[v] === 3) cut += areas[v]!;
   }
   const share = over > 0 ? cosmetic / over : 0;
-  if (share >= kLeastCosmetic) return [];
+  if (share >= kMinCosmetic) return [];
   const only =
     cosmetic === 0 ? 'No part of the target' : `Only ${percent(share)} of the target's exposed area under the cage`;
   const largest = cut > 0.5 * over ? numbered.find(({ culled }) => culled) : undefined;
@@ -111,7 +111,7 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
   return grouped(doubtful, ({ group, part, culled }) => `${group} ${culled} ${part}`).flatMap((alike): Finding[] => {
     const [largest] = alike;
     const area = alike.reduce((sum, { exposedArea }) => sum + exposedArea, 0) / exposed;
-    if (area < kLeastArea) return [];
+    if (area < kMinArea) return [];
     const { part, culled } = largest;
     const one = alike.length === 1 ? `"${part}"` : `${alike.length} segments of "${part}"`;
     const is = alike.length === 1 ? 'is' : 'are';
@@ -131,7 +131,7 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
 
 /** Segments of the same shape, of which only some are painted. */
 function checkTwins({ result }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
-  const seen = numbered.filter(({ exposedArea }) => exposedArea >= kLeastArea * exposed);
+  const seen = numbered.filter(({ exposedArea }) => exposedArea >= kMinArea * exposed);
   return grouped(seen, ({ s }) => result.segmentStats[s]!.twinOf).flatMap((twins): Finding[] => {
     const culled = twins.filter((twin) => twin.culled);
     if (culled.length === 0 || culled.length === twins.length) return [];
@@ -166,7 +166,7 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
       advice: `If some of it should be painted, override this, or close the holes of the cage over it.`,
       numbers: { share },
       places: all
-        .filter(({ exposedArea }) => exposedArea >= kLeastArea * exposed)
+        .filter(({ exposedArea }) => exposedArea >= kMinArea * exposed)
         .map((segment) => placeOfSegment(segment.s, segment)),
       locks: locksFor([largest]),
     },

@@ -10,7 +10,7 @@ const kNarrow = 0.002;
 /** or if its box has a diagonal of less than this share of the target's. */
 const kTiny = 0.004;
 /** A cage with more open edges than this is not searched for cracks, which would take too long. */
-const kMostOpenEdges = 20000;
+const kMaxOpenEdges = 20000;
 
 /** What is wrong with a cage as a surface. */
 export interface Topology {
@@ -56,7 +56,7 @@ function piecesOf(surface: Surface): number {
 /** Counts open edges both ends of which lie within `width` of the ends of another. */
 function cracksIn({ mesh, edges }: Surface, width: number): number {
   const open = edges.filter(({ uses }) => uses.length === 1);
-  if (open.length > kMostOpenEdges) return 0;
+  if (open.length > kMaxOpenEdges) return 0;
   const ends = [...new Set(open.flatMap(({ a, b }) => [a, b]))].sort(
     (v, w) => mesh.positions[3 * v]! - mesh.positions[3 * w]!,
   );

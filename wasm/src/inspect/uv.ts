@@ -6,11 +6,11 @@ import { countSets } from './surface.js';
 /** Samples along each side of the texture by which overlaps are found. */
 const kSamples = 1024;
 /** A UV triangle smaller than this, in units of the texture's area, shows nothing of it: a hundredth of a pixel of 4096². */
-const kLeastArea = 6e-10;
+const kMinArea = 6e-10;
 /** A cage is unfit if more than this share of its area has no UV area. */
-const kMostWithoutArea = 0.2;
+const kMaxWithoutArea = 0.2;
 /** Overlaps weigh half at this share of the used area; a mirrored layout uses all of it twice. */
-const kMostOverlap = 0.05;
+const kMaxOverlap = 0.05;
 
 /** The properties of a cage's UVs. */
 export interface UvLayout {
@@ -43,7 +43,7 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
     const area =
       Math.abs((uvs[b]! - uvs[a]!) * (uvs[c + 1]! - uvs[a + 1]!) - (uvs[c]! - uvs[a]!) * (uvs[b + 1]! - uvs[a + 1]!)) /
       2;
-    if (area >= kLeastArea) continue;
+    if (area >= kMinArea) continue;
     ++flat;
     flatArea += surface.areas[t]!;
   }
@@ -155,7 +155,7 @@ export function checkUvs(
   if (withoutArea.triangles > 0) {
     findings.push({
       code: 'uvsWithoutArea',
-      weight: withoutArea.share / kMostWithoutArea,
+      weight: withoutArea.share / kMaxWithoutArea,
       sentence: `${percent(withoutArea.share)} of the cage's area (${counted(withoutArea.triangles, 'triangle')}) has UVs without area, so a single point of the texture is smeared over it`,
       advice: 'Unwrap these triangles.',
       numbers: { share: withoutArea.share, triangles: withoutArea.triangles },
@@ -175,7 +175,7 @@ export function checkUvs(
   if (overlap.share > 1e-4) {
     findings.push({
       code: 'uvsOverlap',
-      weight: overlap.layers > 4 && overlap.share > 0.5 ? 1.2 : Math.min(0.9, (0.5 * overlap.share) / kMostOverlap),
+      weight: overlap.layers > 4 && overlap.share > 0.5 ? 1.2 : Math.min(0.9, (0.5 * overlap.share) / kMaxOverlap),
       sentence: `${percent(overlap.share)} of the used area of the texture belongs to more than one triangle of the cage, at most to ${overlap.layers}`,
       advice: 'This is fine if both sides should look alike (a mirrored layout); otherwise unwrap without overlaps.',
       numbers: { share: overlap.share, layers: overlap.layers },

@@ -136,7 +136,7 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
 /**
  * Returns the matrices from meshes to the scene: their world matrices; for skinned meshes, those by which their skeletons place them
  * in the bind pose; for instanced meshes, those of the first instance. World matrices must be up to date. Whether a skeleton has
- * moved is told by all meshes that it holds, so give them together. Cost: linear in the vertices of skinned meshes.
+ * moved follows from all meshes that it holds, so give them together. Cost: linear in the vertices of skinned meshes.
  */
 export function placesOf(meshes: readonly ThreeMesh[]): Matrix4[] {
   const held = skinMatrices(meshes.filter(isAttached).map(skinOf));

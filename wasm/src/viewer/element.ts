@@ -218,7 +218,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       if (this.#hasBadAppearance) this.#error.hidden = true;
       this.#hasBadAppearance = false;
     } catch (error) {
-      if (this.#loading) return; // it is told at the end of that
+      if (this.#loading) return; // the end of that reports it
       this.#fail(error);
       this.#hasBadAppearance = true;
     }

@@ -4,8 +4,8 @@ import { readFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 import { isCpp, isScript } from './files.mjs';
 
-const kMostFiles = 25;
-const kMostLines = 450;
+const kMaxFiles = 25;
+const kMaxLines = 450;
 
 const hasLineLimit = (path) => /^(core|wasm)\//.test(path) && (isCpp(path) || isScript(path));
 
@@ -22,11 +22,11 @@ export function checkLimits(root, files) {
     counts.set(dirname(path), (counts.get(dirname(path)) ?? 0) + 1);
   }
   for (const [folder, count] of counts) {
-    if (count > kMostFiles) problems.push(`${folder}/ has ${count} files; at most ${kMostFiles} are allowed`);
+    if (count > kMaxFiles) problems.push(`${folder}/ has ${count} files; at most ${kMaxFiles} are allowed`);
   }
   for (const path of files.filter(hasLineLimit)) {
     const lines = readFileSync(join(root, path), 'utf8').split('\n').length - 1;
-    if (lines > kMostLines) problems.push(`${path} has ${lines} lines; at most ${kMostLines} are allowed`);
+    if (lines > kMaxLines) problems.push(`${path} has ${lines} lines; at most ${kMaxLines} are allowed`);
   }
   return problems;
 }

@@ -6,8 +6,8 @@ import { element } from '../platform/page';
 export type Kind = 'brush' | 'eraser' | 'sticker' | 'fill';
 
 // The range of the size slider, as shares of the diagonal of the cage.
-const kLeastSize = 0.004;
-const kMostSize = 0.4;
+const kMinSize = 0.004;
+const kMaxSize = 0.4;
 const kSizeStep = 4; // of the slider, for a key
 
 /** The options of a sticker. */
@@ -75,7 +75,7 @@ export class PaintOptions extends Emitter<{
   /** The brush's diameter, or the longer side of a sticker, as a share of the diagonal of the cage. */
   get size(): number {
     // The slider is logarithmic.
-    return kLeastSize * (kMostSize / kLeastSize) ** (Number(this.#size.value) / 100);
+    return kMinSize * (kMaxSize / kMinSize) ** (Number(this.#size.value) / 100);
   }
 
   /** 0..1 */
@@ -146,7 +146,7 @@ export class PaintOptions extends Emitter<{
     if (outlined !== undefined) this.#outline.checked = outlined;
     if (mirrored !== undefined) this.#flip.checked = mirrored;
     if (size !== undefined)
-      this.#size.valueAsNumber = (100 * Math.log(size / kLeastSize)) / Math.log(kMostSize / kLeastSize);
+      this.#size.valueAsNumber = (100 * Math.log(size / kMinSize)) / Math.log(kMaxSize / kMinSize);
     if (opacity !== undefined) this.#opacity.valueAsNumber = 100 * opacity;
     if (angle !== undefined) this.#turn.valueAsNumber = (((180 * angle) / Math.PI + 540 + 3600) % 360) - 180;
     for (const input of [this.#color, this.#size]) input.dispatchEvent(new Event('input', { bubbles: true }));

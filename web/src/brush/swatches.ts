@@ -1,7 +1,7 @@
 import { element } from '../platform/page';
 import type { PaintOptions } from './paint-options';
 
-const kMost = 8;
+const kMax = 8;
 const kKey = 'cagecast-colors';
 const kFirst = ['#d81b60', '#111111', '#ffffff', '#e53935', '#fb8c00', '#fdd835', '#43a047', '#1e88e5'];
 
@@ -17,7 +17,7 @@ export class Swatches {
   /** Puts a colour first: it was painted with. */
   use(color: string): void {
     if (this.#colors[0] === color) return;
-    this.#colors = [color, ...this.#colors.filter((other) => other !== color)].slice(0, kMost);
+    this.#colors = [color, ...this.#colors.filter((other) => other !== color)].slice(0, kMax);
     try {
       localStorage.setItem(kKey, JSON.stringify(this.#colors));
     } catch {
@@ -43,7 +43,7 @@ export class Swatches {
 function stored(): string[] {
   try {
     const colors: unknown = JSON.parse(localStorage.getItem(kKey) ?? 'null');
-    if (Array.isArray(colors) && colors.every((color) => /^#[0-9a-f]{6}$/.test(color))) return colors.slice(0, kMost);
+    if (Array.isArray(colors) && colors.every((color) => /^#[0-9a-f]{6}$/.test(color))) return colors.slice(0, kMax);
   } catch {
     // As if there were none.
   }

@@ -10,9 +10,9 @@ import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
 
 // The radius of the brush, as a share of the model's diagonal.
-const kLeast = 0.004;
-const kMost = 0.1;
-const kMostBetween = 8; // spots that are filled in between two positions of the pointer
+const kMin = 0.004;
+const kMax = 0.1;
+const kMaxBetween = 8; // spots that are filled in between two positions of the pointer
 
 type Position = Pick<PointerEvent, 'clientX' | 'clientY'>;
 
@@ -71,7 +71,7 @@ export class BareBrush {
   }
 
   get #radius(): number {
-    return this.#diagonal * kLeast * (kMost / kLeast) ** (this.#size.valueAsNumber / 100);
+    return this.#diagonal * kMin * (kMax / kMin) ** (this.#size.valueAsNumber / 100);
   }
 
   #onTransfer(target: Model): void {
@@ -126,7 +126,7 @@ export class BareBrush {
     this.#stroke.last = { clientX: event.clientX, clientY: event.clientY };
     if (spot) {
       const apart = Math.hypot(dx, dy) / Math.max(1, this.#radius * this.#viewer.screen.pixelsAt(spot.seen));
-      const between = Math.min(kMostBetween, Math.floor(apart));
+      const between = Math.min(kMaxBetween, Math.floor(apart));
       for (let i = 1; i <= between; i++) {
         const share = i / (between + 1);
         const other = this.#viewer.screen.pick(clientX + share * dx, clientY + share * dy);

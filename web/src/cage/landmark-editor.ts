@@ -2,7 +2,7 @@ import type { Command, History } from 'cagecast/three/layers';
 import { Box3, Plane, Vector3 } from 'three';
 import { firstHit } from '../explain/ray';
 import { announce, element } from '../platform/page';
-import { type CageMaker, type Fitting, kLeastLandmarks, madeOf, readable } from '../scene/cage-maker';
+import { type CageMaker, type Fitting, kMinLandmarks, madeOf, readable } from '../scene/cage-maker';
 import type { Model } from '../scene/load-model';
 import type { Session } from '../scene/session';
 import type { RailTool, Tools } from '../view/tool-rail';
@@ -130,7 +130,7 @@ export class LandmarkEditor {
     this.#write();
     // What was brought back takes no other tool out of the hand; and beside other models, landmarks are too near each other.
     if (isNew && fitting === this.#maker.latest && !this.#viewer.stage.crowd) this.#tools.choose(this.#offer);
-    if (this.#tools.chosen === this.#offer && Object.keys(this.spots).length < kLeastLandmarks) this.#askForNext();
+    if (this.#tools.chosen === this.#offer && Object.keys(this.spots).length < kMinLandmarks) this.#askForNext();
     this.#viewer.redraw();
   }
 
@@ -155,7 +155,7 @@ export class LandmarkEditor {
     const own = Object.keys(this.given).length;
     const known = Object.keys(this.spots);
     // Too few for a fit, they are saved as they are now; a fit keeps those that it was made with.
-    if (known.length < kLeastLandmarks && this.#fitting === this.#maker.lacking)
+    if (known.length < kMinLandmarks && this.#fitting === this.#maker.lacking)
       Object.assign(this.#fitting!, { used: this.spots, given: this.given });
     element('landmark-count', HTMLElement).textContent = `${known.length}, ${own} by you`;
     element('landmark-missing', HTMLElement).hidden = unknown.length === 0;
@@ -360,7 +360,7 @@ export class LandmarkEditor {
     if (!name || !this.#put(name, x, y)) return;
     this.#record(`placing the ${readable(name)}`, before);
     this.#tell(undefined);
-    if (Object.keys(this.spots).length < kLeastLandmarks) this.#askForNext();
+    if (Object.keys(this.spots).length < kMinLandmarks) this.#askForNext();
     else {
       this.#askFor(undefined);
       this.#fit();
@@ -403,7 +403,7 @@ export class LandmarkEditor {
 
   #fit(): void {
     this.#stopWaiting();
-    if (this.#fitting && Object.keys(this.spots).length >= kLeastLandmarks)
+    if (this.#fitting && Object.keys(this.spots).length >= kMinLandmarks)
       void this.#maker.fit(this.given, this.#fitting.template);
   }
 }

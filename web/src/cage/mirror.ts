@@ -4,7 +4,7 @@ import { Vector3 } from 'three';
 export type Spots = Readonly<Record<string, readonly [number, number, number]>>;
 
 /** A pair whose spots are farther from each other's mirror image than this share of their distance is not symmetric: a bent arm. */
-const kMostSkew = 0.25;
+const kMaxSkew = 0.25;
 
 /** The name of a landmark's counterpart on the other side; undefined for those in the middle. */
 export function otherSide(name: string): string | undefined {
@@ -52,6 +52,6 @@ export class Mirror {
   holds(one: readonly [number, number, number], other: readonly [number, number, number]): boolean {
     const image = new Vector3(...this.image(one));
     const apart = new Vector3(...one).distanceTo(new Vector3(...other));
-    return image.distanceTo(new Vector3(...other)) <= kMostSkew * apart;
+    return image.distanceTo(new Vector3(...other)) <= kMaxSkew * apart;
   }
 }

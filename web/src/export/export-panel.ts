@@ -139,13 +139,13 @@ export class ExportPanel {
   }
 }
 
-const kMostNames = 3;
+const kMaxNames = 3;
 const kOverlapping = 0.005; // less is due to touching seams
 
 /** Names in a sentence; of many, the first few. */
 function listOf(names: readonly string[]): string {
-  const most = kMostNames - 1;
-  const few = names.length > kMostNames ? [...names.slice(0, most), `${names.length - most} more`] : names;
+  const most = kMaxNames - 1;
+  const few = names.length > kMaxNames ? [...names.slice(0, most), `${names.length - most} more`] : names;
   return new Intl.ListFormat('en').format(few);
 }
 

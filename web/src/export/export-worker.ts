@@ -49,8 +49,8 @@ async function paintModel({
   return { glb: await io.writeBinary(document), ...(baked && { baked }) };
 }
 
-const kLeastSide = 1024; // texels, longer side
-const kMostSide = 2048;
+const kMinSide = 1024; // texels, longer side
+const kMaxSide = 2048;
 
 /** The model's own textures, in a size that holds the paint. */
 const images: ImageCodec = {
@@ -60,7 +60,7 @@ const images: ImageCodec = {
 
 function fitSize(width: number, height: number): [number, number] {
   const longer = Math.max(width, height);
-  const scale = Math.max(kLeastSide, Math.min(kMostSide, longer)) / longer;
+  const scale = Math.max(kMinSide, Math.min(kMaxSide, longer)) / longer;
   return [Math.max(1, Math.round(scale * width)), Math.max(1, Math.round(scale * height))];
 }
 

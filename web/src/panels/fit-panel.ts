@@ -10,7 +10,7 @@ import type { Stage } from '../view/stage';
 import { type KnownVerdict, paintableShare, type Remedy, StageVerdict } from './stage-verdict';
 
 const kInspectDelay = 800; // milliseconds without a change before the cage is inspected
-const kMost = 60_000; // triangles that are inspected automatically; the time grows with their number
+const kMax = 60_000; // triangles that are inspected automatically; the time grows with their number
 const kSoon = 'The cage will be inspected in a moment.';
 const kVerdicts: Record<Inspection['verdict'], string> = {
   good: 'The cage fits this model.',
@@ -60,9 +60,9 @@ export class FitPanel {
     const { target, cage } = this.#session.shown!;
     const triangles = (target.mesh.indices.length + cage.mesh.indices.length) / 3;
     this.#forget();
-    if (triangles <= kMost) this.#waiting = setTimeout(() => void this.#inspect(), kInspectDelay);
+    if (triangles <= kMax) this.#waiting = setTimeout(() => void this.#inspect(), kInspectDelay);
     else this.#show('', [text('p', 'This model is large; inspecting it takes a while.')], this.#next);
-    this.#button.hidden = triangles <= kMost;
+    this.#button.hidden = triangles <= kMax;
   }
 
   /** Ends the inspection in progress: it is not of what is shown. */

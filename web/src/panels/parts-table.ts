@@ -8,9 +8,9 @@ import type { Stage } from '../view/stage';
 import { nameOfPart, paintedPoints } from './part-menu';
 
 /** A scan may consist of thousands of segments. */
-const kMostRows = 50;
-const kMostColors = 3; // per row
-const kMostNotes = 3; // about parts that are kept
+const kMaxRows = 50;
+const kMaxColors = 3; // per row
+const kMaxNotes = 3; // about parts that are kept
 const kLocks: Record<Choice, string> = { auto: 'auto', keep: 'keep', always: 'paint anyway', exclude: 'exclude' };
 
 /** Segments that share a row, and their sums. */
@@ -67,7 +67,7 @@ export class PartsTable {
   #list(shown: Shown, locks: Locks): void {
     const entries = entriesOf(shown.projection.segmentStats, shown.target.mesh.primitives, locks);
     const colors = segmentColors(shown);
-    const largest = named(entries.toSorted((a, b) => b.area - a.area).slice(0, kMostRows));
+    const largest = named(entries.toSorted((a, b) => b.area - a.area).slice(0, kMaxRows));
     // Sorting is stable: of two with equal coverage the larger comes first.
     const listed = largest.toSorted((a, b) => coverageOf(a) - coverageOf(b));
     this.#rows = listed.map((entry) => this.#row(entry, colors));
@@ -90,7 +90,7 @@ export class PartsTable {
     }
     const shown = this.#session.shown!;
     const kept = Object.entries(this.#session.locks).filter(([, lock]) => lock === 'keep');
-    const notes = kept.slice(0, kMostNotes).map(([key]) => {
+    const notes = kept.slice(0, kMaxNotes).map(([key]) => {
       const segment = Number(key);
       return `“${nameOfPart(shown, segment)}” is kept: ${paintedPoints(shown, zones, segment, 'keep')}`;
     });
@@ -106,7 +106,7 @@ export class PartsTable {
     const row = document.createElement('tr');
     const head = cell('th', name);
     head.scope = 'row';
-    head.prepend(swatch(segments.slice(0, kMostColors).map((segment) => colors[segment]!)));
+    head.prepend(swatch(segments.slice(0, kMaxColors).map((segment) => colors[segment]!)));
     const verdict = cell('td', '');
     const choice = this.#select(entry);
     const last = document.createElement('td');

@@ -11,14 +11,14 @@ const kSteps = {
   occluded: 'occluded',
   covered: 'covered',
   segments: 'segments',
-  secondLook: 'recheck',
+  recheck: 'recheck',
   holes: 'holes',
   seams: 'seams',
   classify: 'classify',
 } as const;
 /** A first run that took longer by this factor is mentioned. */
 const kMuchLonger = 1.5;
-const kBeyondPaper: readonly string[] = ['secondLook', 'holes', 'seams'];
+const kBeyondPaper: readonly string[] = ['recheck', 'holes', 'seams'];
 
 /** Shows the number of vertices per zone, and the timings. */
 export function showResults(session: Session): void {

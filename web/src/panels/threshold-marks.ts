@@ -6,8 +6,8 @@ import { nameOfPart } from './part-menu';
 
 const kSeekDelay = 500; // milliseconds without a change
 const kSteps = 100; // of the slider
-const kMostPoints = 300_000;
-const kMostNamed = 4;
+const kMaxPoints = 300_000;
+const kMaxNamed = 4;
 
 /** Marks on the slider of the threshold where a part would be painted or not from. */
 export class ThresholdMarks {
@@ -28,7 +28,7 @@ export class ThresholdMarks {
     this.#basis = basis;
     clearTimeout(this.#waiting);
     this.#write(new Map());
-    if (shown!.projection.zones.length <= kMostPoints)
+    if (shown!.projection.zones.length <= kMaxPoints)
       this.#waiting = setTimeout(() => void this.#seek(basis), kSeekDelay);
   }
 
@@ -60,9 +60,9 @@ export class ThresholdMarks {
     });
     element('threshold-marks', HTMLElement).replaceChildren(...marks);
     const listed = [...flips]
-      .slice(0, kMostNamed)
+      .slice(0, kMaxNamed)
       .map(([step, names]) => `${[...names].join(', ')} at ${step / kSteps}`);
-    const more = flips.size > kMostNamed ? `, and ${flips.size - kMostNamed} more` : '';
+    const more = flips.size > kMaxNamed ? `, and ${flips.size - kMaxNamed} more` : '';
     element('threshold-flips', HTMLElement).textContent =
       flips.size > 0 ? `Parts that change: ${listed.join('; ')}${more}.` : '';
   }

@@ -2,8 +2,8 @@ import type { Session } from '../scene/session';
 import { damaged, listOf, numberOf } from './checks';
 import type { Contribution } from './project';
 
-const kMostRuns = 1_000_000;
-const kMostTriangles = 2 ** 26;
+const kMaxRuns = 1_000_000;
+const kMaxTriangles = 2 ** 26;
 
 /** What the user marked to stay bare. */
 export function barePart(session: Session): Contribution {
@@ -36,9 +36,9 @@ export function runsOf(marks: Uint8Array): number[] {
 
 /** The marks that saved runs tell of. */
 export function marksOf(saved: unknown): Uint8Array {
-  const runs = listOf(saved, kMostRuns, 'marks').map((run) => Math.floor(numberOf(run, 0, kMostTriangles, 0)));
+  const runs = listOf(saved, kMaxRuns, 'marks').map((run) => Math.floor(numberOf(run, 0, kMaxTriangles, 0)));
   const count = runs.reduce((sum, run) => sum + run, 0);
-  if (count > kMostTriangles) damaged('it has too many marks');
+  if (count > kMaxTriangles) damaged('it has too many marks');
   const marks = new Uint8Array(count);
   let from = 0;
   runs.forEach((run, at) => {

@@ -7,8 +7,8 @@ import type { WardrobeOfPage } from '../wardrobe/set-up-wardrobe';
 import { damaged, listOf, numberOf, objectOf, textOf } from './checks';
 import type { Contribution } from './project';
 
-const kMostCages = 100;
-const kMostLandmarks = 1000;
+const kMaxCages = 100;
+const kMaxLandmarks = 1000;
 const kFarthest = 1e9; // of a landmark
 const kName = /^[a-z][a-z0-9_]{0,60}$/; // of a landmark
 
@@ -35,7 +35,7 @@ export function cagePart(session: Session, opener: Opener, wardrobe: WardrobeOfP
       return all.length > 0 ? all : undefined;
     },
     read(saved, files) {
-      const all = listOf(saved, kMostCages, 'cages').map((one) => {
+      const all = listOf(saved, kMaxCages, 'cages').map((one) => {
         const { cage, target, fitting, sample } = objectOf(one, 'cage');
         const file = files(cage);
         // The cage itself stands for a model that is gone: it is no target.
@@ -77,7 +77,7 @@ function fittingOf(saved: unknown): Fitting {
     given: landmarksOf(given),
     used: landmarksOf(used),
     confidence: Object.fromEntries(named(confidence).map(([name, value]) => [name, numberOf(value, 0, 1, 1)])),
-    missing: listOf(missing, kMostLandmarks, 'landmarks')
+    missing: listOf(missing, kMaxLandmarks, 'landmarks')
       .map((name) => textOf(name, ''))
       .filter((name) => kName.test(name)),
   };
@@ -86,7 +86,7 @@ function fittingOf(saved: unknown): Fitting {
 const named = (saved: unknown): [string, unknown][] =>
   Object.entries(objectOf(saved, 'landmarks'))
     .filter(([name]) => kName.test(name))
-    .slice(0, kMostLandmarks);
+    .slice(0, kMaxLandmarks);
 
 const landmarksOf = (saved: unknown): Landmarks =>
   Object.fromEntries(

@@ -7,9 +7,9 @@ const kHead = 16; // bytes
 /** Grows when older pages cannot read what newer ones write. */
 export const kVersion = 1;
 /** A number above this is no version, but letters of a text. */
-const kMostVersions = 255;
-const kMostText = 2 ** 24;
-const kMostFiles = 4096;
+const kMaxVersions = 255;
+const kMaxText = 2 ** 24;
+const kMaxFiles = 4096;
 
 /** The file of a project; the parts are not copied. */
 export function writeProject(parts: object, files: ReadonlyMap<string, Blob>): Blob {
@@ -26,12 +26,12 @@ export function writeProject(parts: object, files: ReadonlyMap<string, Blob>): B
 export async function readProject(file: Blob): Promise<{ parts: Record<string, unknown>; files: Files }> {
   const head = new DataView(await file.slice(0, kHead).arrayBuffer());
   const magic = String.fromCharCode(...new Uint8Array(head.buffer).subarray(0, kMagic.length));
-  if (magic !== kMagic || head.byteLength < kHead || head.getUint32(8, true) > kMostVersions)
+  if (magic !== kMagic || head.byteLength < kHead || head.getUint32(8, true) > kMaxVersions)
     throw new Error('this is not a Cagecast project');
   if (head.getUint32(8, true) !== kVersion)
     throw new Error('this project was saved by a newer version of the page: reload the page and try again');
   const length = head.getUint32(12, true);
-  if (length > kMostText) damaged('its text is too long');
+  if (length > kMaxText) damaged('its text is too long');
   const parsed: unknown = await file
     .slice(kHead, kHead + length)
     .text()
@@ -40,7 +40,7 @@ export async function readProject(file: Blob): Promise<{ parts: Record<string, u
   const saved = objectOf(parsed, 'content');
   const found = new Map<unknown, File>();
   let at = kHead + length;
-  for (const entry of listOf(saved.files, kMostFiles, 'files')) {
+  for (const entry of listOf(saved.files, kMaxFiles, 'files')) {
     const { key, name, type, size } = objectOf(entry, 'file');
     if (!(Number.isSafeInteger(size) && (size as number) >= 0)) damaged('a file has no size');
     const end = at + (size as number);

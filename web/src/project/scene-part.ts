@@ -5,7 +5,7 @@ import type { Scene, Session } from '../scene/session';
 import { listOf, objectOf } from './checks';
 import type { Files, Keep, SceneContribution } from './project';
 
-const kMostFiles = 1000; // of a model
+const kMaxFiles = 1000; // of a model
 
 /** The models, with all their files; those of samples too, so that a project outlives them. */
 export function scenePart(session: Session, opener: Opener, renderer: WebGLRenderer | undefined): SceneContribution {
@@ -15,7 +15,7 @@ export function scenePart(session: Session, opener: Opener, renderer: WebGLRende
   });
   const read = async (saved: unknown, files: Files): Promise<Model> => {
     const { files: keys, sample: name } = objectOf(saved, 'model');
-    const [file, ...others] = listOf(keys, kMostFiles, 'files').map(files);
+    const [file, ...others] = listOf(keys, kMaxFiles, 'files').map(files);
     const model = await loadModel(file ?? files(undefined), renderer, others);
     const sample = opener.samples.find((one) => one.name === name);
     return sample ? { ...model, sample } : model;
@@ -30,7 +30,7 @@ export function scenePart(session: Session, opener: Opener, renderer: WebGLRende
     },
     async read(saved, files): Promise<Scene> {
       const { target, cage } = objectOf(saved, 'models');
-      // One after the other: what is wrong with the first is told first.
+      // One after the other: what is wrong with the first is reported first.
       const models = { target: await read(target, files), cage: await read(cage, files) };
       // The layers bring their own paints.
       return { ...models, paint: session.checker };

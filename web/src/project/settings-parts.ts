@@ -7,7 +7,7 @@ import type { CameraControls } from '../view/camera-controls';
 import { listOf, locksOf, numberOf, objectOf, oneOf, textOf } from './checks';
 import type { Contribution } from './project';
 
-const kMostMorphs = 10_000;
+const kMaxMorphs = 10_000;
 /** Fields of the painting tools. */
 const kFields = ['color', 'size', 'hardness', 'opacity', 'mirror'].map((name) => `brush-${name}`);
 
@@ -49,7 +49,7 @@ export function settingsParts(session: Session, live: Live, controls: CameraCont
       save: () => ({ ...live.shape, morphs: [...live.shape.morphs] }),
       read(saved) {
         const { deform, amount, cage, morphs } = objectOf(saved, 'shape');
-        const weights = listOf(morphs ?? [], kMostMorphs, 'morphs').map((morph): [string, number] => {
+        const weights = listOf(morphs ?? [], kMaxMorphs, 'morphs').map((morph): [string, number] => {
           const [name, weight] = listOf(morph, 2, 'morphs');
           return [textOf(name, ''), numberOf(weight, -1e6, 1e6, 0)];
         });

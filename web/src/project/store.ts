@@ -1,7 +1,7 @@
 const kName = 'cagecast';
 /** Of the database; another page with a newer one refuses this one. */
 const kVersion = 1;
-const kMostWorks = 3; // beside those of open tabs
+const kMaxWorks = 3; // beside those of open tabs
 
 /** A saved state of the page. */
 export interface Work {
@@ -73,7 +73,7 @@ export class Store {
       if (!isWhole) transaction.abort();
       else {
         const all = ((await resultOf(worksOf.getAll())) as Work[]).toSorted((a, b) => b.at - a.at);
-        const kept = all.filter(({ slot }, at) => at < kMostWorks || open.has(slot));
+        const kept = all.filter(({ slot }, at) => at < kMaxWorks || open.has(slot));
         for (const one of all) if (!kept.includes(one)) worksOf.delete(one.slot);
         const used = new Set<IDBValidKey>(kept.flatMap((one) => one.files));
         for (const key of keys) if (!used.has(key)) filesOf.delete(key);

@@ -1,11 +1,11 @@
-import { kMostAvatars } from '../wardrobe/avatar';
+import { kMaxAvatars } from '../wardrobe/avatar';
 import type { KeptAvatar } from '../wardrobe/kept';
 import type { WardrobeOfPage } from '../wardrobe/set-up-wardrobe';
 import { marksOf, runsOf } from './bare-part';
 import { listOf, locksOf, numberOf, objectOf, textOf } from './checks';
 import type { Contribution, Files, Keep } from './project';
 
-const kMostFiles = 1000; // of a model
+const kMaxFiles = 1000; // of a model
 
 /** The avatars beside the one on the stage, with all their files. */
 export function wardrobePart(wardrobe: WardrobeOfPage): Contribution {
@@ -15,7 +15,7 @@ export function wardrobePart(wardrobe: WardrobeOfPage): Contribution {
   });
   const readModel = (saved: unknown, files: Files): NonNullable<KeptAvatar['cage']> => {
     const { files: keys, sample } = objectOf(saved, 'avatar');
-    const all = listOf(keys, kMostFiles, 'files').map(files);
+    const all = listOf(keys, kMaxFiles, 'files').map(files);
     return { files: all.length > 0 ? all : [files(undefined)], sample: textOf(sample, '') || undefined };
   };
   return {
@@ -39,7 +39,7 @@ export function wardrobePart(wardrobe: WardrobeOfPage): Contribution {
     },
     read(saved, files) {
       const { at, all, avatars } = objectOf(saved, 'wardrobe');
-      const read = listOf(avatars, kMostAvatars - 1, 'avatars').map((one): KeptAvatar => {
+      const read = listOf(avatars, kMaxAvatars - 1, 'avatars').map((one): KeptAvatar => {
         const { name, model, cage, follows, locks, bare } = objectOf(one, 'avatar');
         return {
           name: textOf(name, 'Avatar'),

@@ -32,9 +32,9 @@ export interface Fitting extends Omit<Fit, 'cage'> {
 }
 
 /** A fit needs so many landmarks. */
-export const kLeastLandmarks = 4;
+export const kMinLandmarks = 4;
 
-const lacksLandmarks = (known: Landmarks): boolean => Object.keys(known).length < kLeastLandmarks;
+const lacksLandmarks = (known: Landmarks): boolean => Object.keys(known).length < kMinLandmarks;
 
 /** How a cage was made here. */
 interface Made {
@@ -290,7 +290,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
   /** Asks the user for the landmarks that a fit lacks. */
   ask(fitting: Fitting): void {
     this.#missing.textContent = '';
-    this.#note.textContent = `Of ${kLeastLandmarks} landmarks that are needed, ${Object.keys(fitting.used).length} were found: place more on the model.`;
+    this.#note.textContent = `Of ${kMinLandmarks} landmarks that are needed, ${Object.keys(fitting.used).length} were found: place more on the model.`;
     this.latest = fitting;
     this.emit('fitting', fitting);
   }

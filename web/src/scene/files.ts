@@ -64,7 +64,7 @@ function sortFiles(all: readonly File[]): Intake {
   return intake;
 }
 
-const kMostFiles = 1000;
+const kMaxFiles = 1000;
 
 /** The dropped files, including those in folders. @throws Error with a message for people. */
 async function droppedFiles({ items, files }: DataTransfer): Promise<File[]> {
@@ -73,8 +73,8 @@ async function droppedFiles({ items, files }: DataTransfer): Promise<File[]> {
   if (!entries.some(({ isDirectory }) => isDirectory)) return [...files];
   const found: File[] = [];
   const open = async (entry: FileSystemEntry): Promise<void> => {
-    if (found.length >= kMostFiles)
-      throw new Error(`${entries[0]!.name}: the folder contains more than ${kMostFiles} files`);
+    if (found.length >= kMaxFiles)
+      throw new Error(`${entries[0]!.name}: the folder contains more than ${kMaxFiles} files`);
     if (isFile(entry)) {
       const file = await new Promise<File>((resolve, reject) => entry.file(resolve, reject));
       paths.set(file, entry.fullPath);

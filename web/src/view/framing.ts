@@ -8,7 +8,7 @@ export const kFieldOfView = 28;
 export const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14));
 
 const kMargin = 1.03;
-const kMostPoints = 50_000; // more are sampled evenly
+const kMaxPoints = 50_000; // more are sampled evenly
 const kTools = 70; // pixels at either side that tools cover
 
 /** Direction and distance of the camera. */
@@ -87,7 +87,7 @@ export function fittingDistance(part: FreePart, points: ArrayLike<number>, angle
   const right = new Vector3(Math.cos(angle.theta), 0, -Math.sin(angle.theta));
   const up = toCamera.clone().cross(right);
   const point = new Vector3();
-  const step = 3 * Math.ceil(points.length / 3 / kMostPoints);
+  const step = 3 * Math.ceil(points.length / 3 / kMaxPoints);
   let needed = 0;
   for (let i = 0; i < points.length; i += step) {
     point.fromArray(points, i);

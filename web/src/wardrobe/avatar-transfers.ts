@@ -12,7 +12,7 @@ import type { AvatarList } from './avatar-list';
 import type { Surroundings } from './set-up-wardrobe';
 import { measure } from './side-by-side';
 
-const kMostInspected = 60_000; // triangles; the time grows with their number
+const kMaxInspected = 60_000; // triangles; the time grows with their number
 
 /** Transfers the paint to the avatars that stand beside the stage. */
 export class AvatarTransfers {
@@ -56,8 +56,7 @@ export class AvatarTransfers {
 
   async #inspect(avatar: Avatar): Promise<void> {
     const { standing, cage, locks } = avatar;
-    if (!standing || !cage || standing.model.mesh.indices.length + cage.mesh.indices.length > 3 * kMostInspected)
-      return;
+    if (!standing || !cage || standing.model.mesh.indices.length + cage.mesh.indices.length > 3 * kMaxInspected) return;
     const { preset, threshold } = this.#session.rules;
     const parts = standing.model.mesh.primitives.map(({ name, firstVertex, vertexCount }) => ({
       name,

@@ -7,7 +7,7 @@ import type { KeptAvatar } from './kept';
 import type { Beside } from './side-by-side';
 
 /** The greatest number of avatars. */
-export const kMostAvatars = 12;
+export const kMaxAvatars = 12;
 
 /** A file's name without its ending. */
 export const nameOf = (file: string): string => file.replace(/\.\w+$/, '');

@@ -1,6 +1,6 @@
 import { download } from '../platform/download';
 import { announce, element, showError } from '../platform/page';
-import { type Avatar, kMostAvatars } from './avatar';
+import { type Avatar, kMaxAvatars } from './avatar';
 import { entriesOf, keptEntry, sampleEntry } from './entries';
 import { exportAll } from './export-all';
 import type { KeptWardrobe } from './kept';
@@ -141,7 +141,7 @@ export class WardrobeStrip {
     const said = note.querySelector('p')!;
     if (!note.hidden && said.textContent !== text) said.textContent = text;
     for (const control of [element('wardrobe-input', HTMLInputElement), element('wardrobe-sample', HTMLSelectElement)])
-      control.disabled = avatars.length >= kMostAvatars;
+      control.disabled = avatars.length >= kMaxAvatars;
     this.#export.disabled = taking.length === 0;
   }
 

@@ -7,7 +7,7 @@ import { reasonOf } from '../scene/wording';
 import { frontOf } from '../view/framing';
 import { pick } from '../view/pick';
 import type { Viewer } from '../view/viewer';
-import { type Avatar, type Entry, kMostAvatars, nameOf } from './avatar';
+import { type Avatar, type Entry, kMaxAvatars, nameOf } from './avatar';
 import { AvatarList } from './avatar-list';
 import { AvatarTransfers } from './avatar-transfers';
 import { fitLike } from './fit-like';
@@ -79,7 +79,7 @@ export class Wardrobe {
    * @param instead What is removed once the first of them was read.
    */
   async add(entries: readonly Entry[], instead?: Avatar): Promise<void> {
-    const left = entries.slice(Math.max(0, kMostAvatars - this.list.all.length + (instead ? 1 : 0)));
+    const left = entries.slice(Math.max(0, kMaxAvatars - this.list.all.length + (instead ? 1 : 0)));
     const added = entries.slice(0, entries.length - left.length).map((entry) => {
       const { name, sample, kept } = entry;
       const { follows = false, locks = {} } = kept ?? {};
@@ -369,6 +369,6 @@ export class Wardrobe {
 }
 
 const fullText = (names: readonly string[]): string =>
-  `The wardrobe is full: it holds ${kMostAvatars} avatars, and ${new Intl.ListFormat('en').format(
+  `The wardrobe is full: it holds ${kMaxAvatars} avatars, and ${new Intl.ListFormat('en').format(
     names.length > 3 ? [...names.slice(0, 2), `${names.length - 2} more`] : names,
   )} found no room. Remove one first.`;

@@ -40,11 +40,11 @@ VisibilityTest::VisibilityTest(const Scene& scene, const Facing& facing) noexcep
       lift_(scene.length(kLift)),
       pastTarget_(scene.targetTree, scene.length(kRayStart), scene.arena),
       toCage_(scene.cageTree.rays, -scene.length(kRayStart), scene.arena),
-      tests_(scene.arena.allocate<Test>(kMostTests)),
-      directions_(scene.arena.allocate<RayDirection>(RaySearch::kMostRays)),
-      rays_(scene.arena.allocate<Ray>(RaySearch::kMostRays)),
-      testOfRay_(scene.arena.allocate<std::uint16_t>(RaySearch::kMostRays)),
-      hit_(scene.arena.allocate<bool>(RaySearch::kMostRays)) {
+      tests_(scene.arena.allocate<Test>(kMaxTests)),
+      directions_(scene.arena.allocate<RayDirection>(RaySearch::kMaxRays)),
+      rays_(scene.arena.allocate<Ray>(RaySearch::kMaxRays)),
+      testOfRay_(scene.arena.allocate<std::uint16_t>(RaySearch::kMaxRays)),
+      hit_(scene.arena.allocate<bool>(RaySearch::kMaxRays)) {
   static_assert(std::size(kDirections) == kDirectionCount);
 }
 
@@ -57,7 +57,7 @@ void VisibilityTest::sendRays() noexcept {
   std::uint32_t rayCount = 0;
   for (std::uint32_t i = 0; i < count_; ++i) {
     const unsigned more = *std::upper_bound(std::begin(kStages), std::end(kStages), tests_[i].sent) - tests_[i].sent;
-    if (rayCount + more > RaySearch::kMostRays) break;
+    if (rayCount + more > RaySearch::kMaxRays) break;
     std::fill(testOfRay_ + rayCount, testOfRay_ + rayCount + more, static_cast<std::uint16_t>(i));
     setRays(tests_[i], more, rayCount);
     rayCount += more;
@@ -82,14 +82,14 @@ void VisibilityTest::setRays(Test& test, unsigned more, std::uint32_t firstRay) 
   const Vec3 t1 = 1 / length(across) * across;
   const Vec3 t2 = cross(normal, t1);
   float position[Points::kStride];
-  float rest[3];
-  Points::split(points_.exactly(test.point) + lift_ * normal, position, rest);
+  float positionLow[3];
+  Points::split(points_.exactly(test.point) + lift_ * normal, position, positionLow);
   for (std::uint32_t r = firstRay; r < firstRay + more; ++r) {
     const double(&d)[3] = kDirections[test.sent++];
     // Made in place: a direction that is copied right after it was written waits for those writes.
     new (&directions_[r]) RayDirection(RayDirection::along(d[2] * normal + (d[0] * t1 + d[1] * t2)));
     Ray& ray = rays_[r];
-    ray.startAt(position, rest);
+    ray.startAt(position, positionLow);
     ray.direction = &directions_[r];
     ray.end = std::numeric_limits<double>::infinity();
   }

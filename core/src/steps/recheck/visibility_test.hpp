@@ -17,7 +17,7 @@ class VisibilityTest {
 
   [[nodiscard]] bool isIdle() const noexcept { return count_ == 0; }
   /// Whether another point can be added, even a two-sided one.
-  [[nodiscard]] bool hasRoom() const noexcept { return count_ + 2 <= kMostTests; }
+  [[nodiscard]] bool hasRoom() const noexcept { return count_ + 2 <= kMaxTests; }
 
   /// Adds a point. It must have a normal, and there must be room.
   /// @param isTurned  Whether it faces against its normal.
@@ -47,7 +47,7 @@ class VisibilityTest {
   /// A point sends this many rays first, then, while it is undecided, up to the next of these. Fewer at a time would
   /// need fewer rays, but many rays that begin close together are faster than few.
   static constexpr unsigned kStages[] = {5, kDirectionCount - 1, kDirectionCount};
-  static constexpr std::uint32_t kMostTests = RaySearch::kMostRays / kStages[0];
+  static constexpr std::uint32_t kMaxTests = RaySearch::kMaxRays / kStages[0];
 
   /// A point on one of its sides.
   struct Test {

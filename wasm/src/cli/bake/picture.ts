@@ -29,7 +29,7 @@ interface Picture {
 /** Side of a picture if the model has no texture. */
 const kSide = 1024;
 /** How many names a message lists at most. */
-const kMostNames = 8;
+const kMaxNames = 8;
 
 /** The paint alone, in the model's UVs. @throws {InputError} */
 export async function paintForModel(
@@ -226,4 +226,4 @@ function oneTexture(model: FileModel, { result, targetFile, target }: Run, names
 }
 
 /** Names in a message. */
-export const listNames = (names: readonly string[]): string => listed(names.map(quoted), kMostNames);
+export const listNames = (names: readonly string[]): string => listed(names.map(quoted), kMaxNames);

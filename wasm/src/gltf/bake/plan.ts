@@ -10,7 +10,7 @@ import {
   resize,
   type Wrap,
 } from '../../bake/index.js';
-import { kMostLayers } from '../../bake/pattern.js';
+import { kMaxLayers } from '../../bake/pattern.js';
 import { CagecastError, type CutTarget, type TransferResult } from '../../index.js';
 import { blend } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
@@ -116,9 +116,9 @@ interface BakeInput {
 }
 
 /** If more of the paint than this has no area in the texture, it is a palette, which cannot hold paint. */
-const kMostFlat = 0.1; // of its area in the cage's UVs
+const kMaxFlat = 0.1; // of its area in the cage's UVs
 const kFlat = 0.01; // texels
-const kMostLost = 0.6; // of the paint; the same for a part of the texture
+const kMaxLost = 0.6; // of the paint; the same for a part of the texture
 /** Side of a texture that a material did not have. */
 const kNewSide = 1024;
 
@@ -242,7 +242,7 @@ async function bakeTexture<Material, Texture>(
   if (wrong) return wrong;
   const { width, height } = base;
   const baked = fill('bake', layouts, paint, { width, height, wrap: use.wraps, kind: kindOf[slot] });
-  if (baked.overlap.lost > kMostLost) return 'most of its paint would lie on that of others';
+  if (baked.overlap.lost > kMaxLost) return 'most of its paint would lie on that of others';
   const image = layOver(base, baked, slot === 'normal' ? [1, 1, 1] : factor);
   return { ...baked, png: await input.codec.encode(image) };
 }
@@ -336,6 +336,6 @@ function unusable(layouts: readonly Layout[], texels: number): string | undefine
       if (area * texels < kFlat) flat += own;
     });
   }
-  if (laid > kMostLayers) return 'its texture is a pattern that repeats';
-  return flat > kMostFlat * drawn ? 'its texture is a palette, or too small for paint' : undefined;
+  if (laid > kMaxLayers) return 'its texture is a pattern that repeats';
+  return flat > kMaxFlat * drawn ? 'its texture is a palette, or too small for paint' : undefined;
 }

@@ -2,7 +2,7 @@ import type { WebGLRenderer, WebGLRenderTarget } from 'three';
 import { disjoint, type Rect } from './rect.js';
 
 // Each rectangle takes a call per level: a few large ones cost less than many small ones.
-const kMostParts = 8;
+const kMaxParts = 8;
 const kTile = 256;
 
 /**
@@ -19,7 +19,7 @@ export function refreshMipmaps(renderer: WebGLRenderer, target: WebGLRenderTarge
   state.bindFramebuffer(gl.DRAW_FRAMEBUFFER, to);
   // Blits are clipped to the scissor.
   state.setScissorTest(false);
-  let parts = disjoint(rects, kMostParts, kTile);
+  let parts = disjoint(rects, kMaxParts, kTile);
   for (let level = 1; target.width >> level > 0; level++) {
     gl.framebufferTexture2D(gl.READ_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, level - 1);
     gl.framebufferTexture2D(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, level);

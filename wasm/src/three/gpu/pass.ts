@@ -17,7 +17,7 @@ import {
 import type { Rect } from './rect.js';
 
 /** Rectangles that one pass can be run over. */
-export const kMostRects = 128;
+export const kMaxRects = 128;
 
 const kVertexShader = /* glsl */ `
 in vec3 position;
@@ -26,7 +26,7 @@ void main() { gl_Position = vec4(position, 1.0); }
 
 /** Runs a fragment shader over rectangles of a render target. */
 export class Pass<Uniforms extends Record<string, IUniform>> {
-  readonly #corners = new BufferAttribute(new Float32Array(6 * 3 * kMostRects), 3).setUsage(DynamicDrawUsage);
+  readonly #corners = new BufferAttribute(new Float32Array(6 * 3 * kMaxRects), 3).setUsage(DynamicDrawUsage);
   readonly #geometry = new BufferGeometry().setAttribute('position', this.#corners);
   readonly #material: RawShaderMaterial;
   readonly #draw: (renderer: WebGLRenderer) => void;
@@ -52,7 +52,7 @@ export class Pass<Uniforms extends Record<string, IUniform>> {
     this.#draw = drawerOf(this.#geometry, this.#material);
   }
 
-  /** @param rects In texels of the target, at most `kMostRects`. */
+  /** @param rects In texels of the target, at most `kMaxRects`. */
   run(renderer: WebGLRenderer, target: WebGLRenderTarget, rects: readonly Rect[]): void {
     if (rects.length === 0) return;
     rects.forEach((rect, index) => this.#setCorners(index, rect, target));

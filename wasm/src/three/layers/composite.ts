@@ -10,13 +10,13 @@ import {
   type WebGLRenderer,
   WebGLRenderTarget,
 } from 'three';
-import { disjoint, kMostRects, kWhole, Pass, type Rect, refreshMipmaps, toTexels } from '../gpu/index.js';
+import { disjoint, kMaxRects, kWhole, Pass, type Rect, refreshMipmaps, toTexels } from '../gpu/index.js';
 import { fragmentShader } from './composite-shader.js';
 import { blendModes, type Layer, type Sheet } from './layer.js';
 
 /** Layers that one pass draws, as there may be only 16 textures in a shader. The stack has at most twice as many. */
-const kMostAtOnce = 8;
-const kLeastSize = 1024; // texels per side
+const kMaxAtOnce = 8;
+const kMinSize = 1024; // texels per side
 const kVideo = 2; // how its colours are stored, in the shader
 /** The greatest number of texels per side of a composite. */
 export const maxCompositeSize = 2048;
@@ -38,7 +38,7 @@ const kFormat = { colorSpace: SRGBColorSpace, depthBuffer: false } as const;
  * parts that changed.
  */
 export class Composite {
-  readonly #target = new WebGLRenderTarget(kLeastSize, kLeastSize, {
+  readonly #target = new WebGLRenderTarget(kMinSize, kMinSize, {
     ...kFormat,
     generateMipmaps: true,
     minFilter: LinearMipmapLinearFilter,
@@ -49,14 +49,14 @@ export class Composite {
   });
   readonly #uniforms = {
     sheets: { value: [] as (Texture | null)[] },
-    tints: { value: Array.from({ length: kMostAtOnce }, () => new Vector4()) },
-    blends: { value: new Array<number>(kMostAtOnce).fill(0) },
-    stored: { value: new Array<number>(kMostAtOnce).fill(0) },
+    tints: { value: Array.from({ length: kMaxAtOnce }, () => new Vector4()) },
+    blends: { value: new Array<number>(kMaxAtOnce).fill(0) },
+    stored: { value: new Array<number>(kMaxAtOnce).fill(0) },
     stroke: { value: null as Texture | null },
     below: { value: null as Texture | null },
     strokeOpacity: { value: 1 },
     strokeErases: { value: false },
-    size: { value: kLeastSize },
+    size: { value: kMinSize },
   };
   /** By recipe. */
   readonly #passes = new Map<string, Pass<Record<string, IUniform>>>();
@@ -114,8 +114,8 @@ export class Composite {
       this.#drawn[i] = version;
     }
     if (this.#stale.length === 0) return false;
-    const isLarge = this.#layers.some(({ sheet }) => Math.max(...sidesOf(sheet.texture)) > kLeastSize);
-    const size = this.#size ?? (isLarge ? maxCompositeSize : kLeastSize);
+    const isLarge = this.#layers.some(({ sheet }) => Math.max(...sidesOf(sheet.texture)) > kMinSize);
+    const size = this.#size ?? (isLarge ? maxCompositeSize : kMinSize);
     const whole = size !== this.size || this.#stale.includes(kWhole);
     this.#target.setSize(size, size);
     // In texels: upsampling a smaller sheet spreads each of its texels over the neighbours.
@@ -124,9 +124,9 @@ export class Composite {
       ? [toTexels(kWhole, size)]
       : disjoint(
           this.#stale.map((rect) => toTexels(rect, size, margin)),
-          kMostRects,
+          kMaxRects,
         );
-    const first = this.#layers.length > kMostAtOnce ? this.#layers.slice(0, kMostAtOnce) : [];
+    const first = this.#layers.length > kMaxAtOnce ? this.#layers.slice(0, kMaxAtOnce) : [];
     if (first.length > 0) {
       this.#below ??= new WebGLRenderTarget(size, size, kFormat);
       this.#below.setSize(size, size);
@@ -169,7 +169,7 @@ export class Composite {
   #fill(layers: readonly Layer[], hasBelow: boolean): void {
     const { sheets, tints, blends, stored, stroke, below, strokeOpacity, strokeErases, size } = this.#uniforms;
     // Set all entries: a stale one could be the texture that is drawn to, which WebGL forbids.
-    sheets.value = Array.from({ length: kMostAtOnce }, (_, index) => layers[index]?.sheet.texture ?? null);
+    sheets.value = Array.from({ length: kMaxAtOnce }, (_, index) => layers[index]?.sheet.texture ?? null);
     below.value = hasBelow ? this.#below!.texture : null;
     stored.value.fill(0);
     layers.forEach(({ sheet, tint, opacity, blend }, index) => {

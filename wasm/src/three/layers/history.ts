@@ -10,7 +10,7 @@ export interface Command {
   redo(): void;
 }
 
-const kMostBytes = 128 * 2 ** 20;
+const kMaxBytes = 128 * 2 ** 20;
 
 /** The undo history, limited to 128 MiB: the oldest commands are dropped first. */
 export class History extends Emitter<{ change: undefined }> {
@@ -35,7 +35,7 @@ export class History extends Emitter<{ change: undefined }> {
     this.#done.push(command);
     this.#undone = [];
     let bytes = this.#done.reduce((sum, one) => sum + one.bytes, 0);
-    while (bytes > kMostBytes) bytes -= this.#done.shift()!.bytes;
+    while (bytes > kMaxBytes) bytes -= this.#done.shift()!.bytes;
     this.emit('change', undefined);
   }
 

@@ -34,7 +34,7 @@ export interface Capsule {
 // others serve the first mipmap levels.
 const kGutter = 4;
 // At most this many repetitions of the texture are painted for one triangle, in either direction.
-const kMostTiles = 16;
+const kMaxTiles = 16;
 /** The least cosine between the brush's normal and a surface it paints: below it, the surface is the far side of a thin part. */
 export const kFacing = -0.25;
 /** Texels of 4 numbers for each patch in `table`. */
@@ -286,7 +286,7 @@ function patchesOf({ positions, indices, uvs }: CageMesh): Patch[] {
 /** The repetitions of the texture between two coordinates, in one direction. */
 function tilesOf(from: number, to: number): number[] {
   const first = Math.floor(from);
-  return Array.from({ length: Math.max(1, Math.min(kMostTiles, Math.ceil(to) - first)) }, (_, step) => first + step);
+  return Array.from({ length: Math.max(1, Math.min(kMaxTiles, Math.ceil(to) - first)) }, (_, step) => first + step);
 }
 
 /** The point of a patch at a UV; outside the patch, a point on its border. */

@@ -67,7 +67,7 @@ export class Painter {
   tool: Tool | undefined = 'brush';
   /** What pointers place with the tool `sticker`, upright as seen; the other fields are as those of `StickerPlace`. */
   picture: (StickerPicture & { size?: number; angle?: number; opacity?: number; mirrored?: boolean }) | undefined;
-  /** Is told why a pointer cannot paint, such as that there is no room for another layer. Default: throws it, so that the page is told. */
+  /** Gets the reason why a pointer cannot paint, such as no room for another layer. Default: throws it, so that the page reports it. */
   onError = (error: Error): void => {
     throw error;
   };

@@ -1,5 +1,5 @@
 import type { Vector2, Vector3 } from 'three';
-import { disjoint, kMostRects, type Rect, toShares, toTexels } from '../gpu/index.js';
+import { disjoint, kMaxRects, type Rect, toShares, toTexels } from '../gpu/index.js';
 import { freeName, type Layer, plainStyle } from '../layers/index.js';
 import type { SurfacePoint } from './cage-texels.js';
 import type { LayerPainter, PaintedLayers } from './layer-painter.js';
@@ -40,7 +40,7 @@ export interface StickerFrame {
   up: Vector3;
 }
 
-const kMostPictures = 24; // that are kept on the GPU while nothing shows them
+const kMaxPictures = 24; // that are kept on the GPU while nothing shows them
 
 /** Places stickers on a layer of their own, and changes them. */
 export class StickerPainter {
@@ -212,11 +212,11 @@ export class StickerPainter {
         const laid = this.#laid(one, surface);
         return laid ? surface.reach(laid.center, laid.sticker).map((rect) => toTexels(rect, sheet.size)) : [];
       }),
-      kMostRects,
+      kMaxRects,
     );
     const { renderer } = this.#layers;
     const [oldest] = this.#pictures;
-    if (oldest && this.#pictures.size > kMostPictures) {
+    if (oldest && this.#pictures.size > kMaxPictures) {
       oldest[1].dispose();
       this.#pictures.delete(oldest[0]);
     }

@@ -37,10 +37,10 @@ export interface PointerPosition {
 
 // Distance between two picks along the pointer's path: a share of the brush's radius, and a minimum in pixels.
 const kStep = 0.5;
-const kLeastStep = 4;
+const kMinStep = 4;
 // Picks are limited, as a pick visits every triangle: the rest of the path is interpolated on the cage.
 const kTrianglesVisited = 120_000;
-const kMostPicks = 24;
+const kMaxPicks = 24;
 
 /** Pens report how hard they are pressed; what others report says nothing. */
 const pressureOf = ({ pointerType, pressure }: PointerPosition): number =>
@@ -90,7 +90,7 @@ export class PointerStroke {
 
   /** Picks for an event, and between two of its points. */
   get #most(): number {
-    return Math.min(kMostPicks, Math.ceil(kTrianglesVisited / this.view.triangles));
+    return Math.min(kMaxPicks, Math.ceil(kTrianglesVisited / this.view.triangles));
   }
 
   /** Extends the stroke in a straight line. @param aim What lies under the pointer. */
@@ -102,7 +102,7 @@ export class PointerStroke {
     this.#pressure = pressure;
     // Off the model the brush keeps the screen size it had on it.
     if (aim) this.#scale = aim.scale;
-    const step = Math.max(kLeastStep, kStep * this.#radius * this.#scale);
+    const step = Math.max(kMinStep, kStep * this.#radius * this.#scale);
     const length = Math.hypot(x - from.x, y - from.y);
     const picks = Math.min(this.#most, Math.ceil(length / step) - 1);
     const between = length / (Math.max(0, picks) + 1) / this.#scale;

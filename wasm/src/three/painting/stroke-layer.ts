@@ -17,7 +17,7 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { disjoint, kMostRects, Pass, type Rect, toShares, toTexels } from '../gpu/index.js';
+import { disjoint, kMaxRects, Pass, type Rect, toShares, toTexels } from '../gpu/index.js';
 import type { ActiveStroke } from '../layers/index.js';
 import type { CageTexels, Capsule, SurfacePoint } from './cage-texels.js';
 import { FillPass } from './fill-pass.js';
@@ -29,7 +29,7 @@ import {
   kClearShader,
   kCommitShader,
   kEraseShader,
-  kMostCapsules,
+  kMaxCapsules,
   kTableWidth,
   stickerShader,
   stickerUniforms,
@@ -143,9 +143,9 @@ export class StrokeLayer {
 
   /** Draws part of a brush stroke. @returns The parts it touched, in shares. */
   stroke(renderer: WebGLRenderer, capsules: readonly Capsule[]): Rect[] {
-    const rest = capsules.slice(kMostCapsules);
+    const rest = capsules.slice(kMaxCapsules);
     if (rest.length > 0)
-      return [...this.stroke(renderer, capsules.slice(0, kMostCapsules)), ...this.stroke(renderer, rest)];
+      return [...this.stroke(renderer, capsules.slice(0, kMaxCapsules)), ...this.stroke(renderer, rest)];
     const { from, to, fromNormal, toNormal, radii, count, hardness, fade, paint } = this.#brush.uniforms;
     capsules.forEach((capsule, index) => {
       from.value[index]!.copy(capsule.from.point);
@@ -276,7 +276,7 @@ export class StrokeLayer {
   #draw(renderer: WebGLRenderer, pass: { run: Pass<never>['run'] }, touched: readonly Rect[]): Rect[] {
     const rects = disjoint(
       touched.map((rect) => toTexels(rect, this.cageTexels.size)),
-      kMostRects,
+      kMaxRects,
     );
     pass.run(renderer, this.#target, rects);
     return this.#add(rects);
@@ -284,7 +284,7 @@ export class StrokeLayer {
 
   /** Notes parts that are not empty any more. @returns them, in shares. */
   #add(rects: readonly Rect[]): Rect[] {
-    this.#rects = disjoint([...this.#rects, ...rects], kMostRects);
+    this.#rects = disjoint([...this.#rects, ...rects], kMaxRects);
     return rects.map((rect) => toShares(rect, this.cageTexels.size));
   }
 }

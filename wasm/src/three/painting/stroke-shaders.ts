@@ -3,7 +3,7 @@ import { kErased } from '../gpu/index.js';
 import { kFacing, kPatchTexels } from './cage-texels.js';
 
 export const kTableWidth = 1024; // a power of two
-export const kMostCapsules = 8; // per pass
+export const kMaxCapsules = 8; // per pass
 
 /**
  * `surfacePoint` finds the point of the cage at this texel; in the gutter of a chart, the nearest point of its border. It is false where
@@ -36,11 +36,11 @@ bool surfacePoint(out vec3 point, out vec3 normal) {
 // `radii` are those at both ends, `fade` is the least width of the edge.
 export const brushShader = (size: number): string => /* glsl */ `
 ${surfacePointShader(size)}
-uniform vec3 from[${kMostCapsules}];
-uniform vec3 to[${kMostCapsules}];
-uniform vec3 fromNormal[${kMostCapsules}];
-uniform vec3 toNormal[${kMostCapsules}];
-uniform vec2 radii[${kMostCapsules}];
+uniform vec3 from[${kMaxCapsules}];
+uniform vec3 to[${kMaxCapsules}];
+uniform vec3 fromNormal[${kMaxCapsules}];
+uniform vec3 toNormal[${kMaxCapsules}];
+uniform vec2 radii[${kMaxCapsules}];
 uniform int count;
 uniform float hardness;
 uniform float fade;
@@ -144,7 +144,7 @@ void main() { color = vec4(0.0); }
 `;
 
 export function brushUniforms(owners: Texture, patches: Texture) {
-  const vectors = (): Vector3[] => Array.from({ length: kMostCapsules }, () => new Vector3());
+  const vectors = (): Vector3[] => Array.from({ length: kMaxCapsules }, () => new Vector3());
   return {
     owners: { value: owners } as IUniform<Texture>,
     patches: { value: patches } as IUniform<Texture>,
@@ -152,7 +152,7 @@ export function brushUniforms(owners: Texture, patches: Texture) {
     to: { value: vectors() },
     fromNormal: { value: vectors() },
     toNormal: { value: vectors() },
-    radii: { value: Array.from({ length: kMostCapsules }, () => new Vector2()) },
+    radii: { value: Array.from({ length: kMaxCapsules }, () => new Vector2()) },
     count: { value: 0 },
     hardness: { value: 1 },
     fade: { value: 0 },

@@ -12,9 +12,9 @@ export interface StrokeShape {
 const kFarthest = 4;
 // A straight line may leave the cage: it is divided into pieces of this length, in radii, and each end is projected back.
 const kPiece = 1;
-const kMostPieces = 16;
+const kMaxPieces = 16;
 // A brush without a radius would divide by zero.
-const kLeastPressure = 0.05;
+const kMinPressure = 0.05;
 
 /** Turns the points of a pointer path into the capsules that a brush touches. */
 export class Stroke {
@@ -37,7 +37,7 @@ export class Stroke {
     this.#last = point;
     if (!point) return [];
     const { mirror } = this.shape;
-    const radius = this.shape.radius * Math.max(kLeastPressure, Math.min(1, pressure));
+    const radius = this.shape.radius * Math.max(kMinPressure, Math.min(1, pressure));
     this.#lastRadius = radius;
     // Behind the edge of a nose lies the cheek: do not connect the two.
     const near = last && last.point.distanceTo(point.point) <= kFarthest * Math.max(radius, lastRadius, step);
@@ -51,10 +51,7 @@ export class Stroke {
 
   #between(first: SurfacePoint, last: SurfacePoint, [from, to]: readonly [number, number]): Capsule[] {
     const radius = Math.max(from, to);
-    const pieces = Math.min(
-      kMostPieces,
-      Math.max(1, Math.ceil(first.point.distanceTo(last.point) / (kPiece * radius))),
-    );
+    const pieces = Math.min(kMaxPieces, Math.max(1, Math.ceil(first.point.distanceTo(last.point) / (kPiece * radius))));
     const outside = first.normal.clone().add(last.normal);
     const points = Array.from({ length: pieces + 1 }, (_, piece) => {
       if (piece === 0) return first;
