@@ -1,7 +1,7 @@
 // Installs what the project needs and this machine lacks: Debian packages by apt, npm packages by the lock file.
 // Uses nothing but Node, because it is the first thing that runs. A second run finds everything there and says nothing.
 //
-//   node wasm/tools/setup.mjs assets | start | format | lint | test | clang | bench | pictures | docs | catalogue
+//   node wasm/tools/setup.mjs assets | start | format | lint | test | test:all | clang | bench | pictures | docs | catalogue
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -55,28 +55,27 @@ const kNeeds = {
   llvm: { what: 'LLVM (llvm-profdata, llvm-cov)', there: command('llvm-profdata') },
 };
 const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev', 'libeigen3-dev'];
-// clang-tidy reads the sources as they are compiled, so it needs what they need.
-const kLint = ['cmake', 'ninja-build', 'g++', 'libnanoflann-dev', 'libeigen3-dev', 'clang-format', 'clang-tidy'];
-// Valgrind counts instructions, which a test holds against a budget.
 const kTests = [
   ...kPage,
-  ...kLint,
+  'g++',
   'libtinygltf-dev',
   'nlohmann-json3-dev',
   'catch2',
   'chromium',
   'libegl1',
-  'valgrind',
-  'redis-server',
+  'clang-format',
 ];
+// Valgrind counts instructions, which a test holds against a budget.
+const kAllTests = [...kTests, 'clang-tidy', 'valgrind', 'redis-server'];
 const kPurposes = {
   assets: [],
   start: kPage,
   format: ['clang-format'],
-  lint: kLint,
+  lint: ['clang-format'],
   test: kTests,
-  clang: [...kTests, 'clang', 'libclang-rt-dev', 'lld', 'llvm'],
-  bench: [...kTests, 'libembree-dev', 'qemu-user', 'g++-aarch64-linux-gnu'],
+  'test:all': kAllTests,
+  clang: [...kAllTests, 'clang', 'libclang-rt-dev', 'lld', 'llvm'],
+  bench: [...kAllTests, 'libembree-dev', 'qemu-user', 'g++-aarch64-linux-gnu'],
   pictures: [...kPage, 'chromium'],
   docs: ['doxygen'],
   catalogue: ['redis-server'],
@@ -105,7 +104,9 @@ function installSystemPackages(names) {
   }
   console.log(`Installing:\n${list}`);
   const apt = (...args) => {
-    const [program, ...rest] = [...asRoot, 'env', 'DEBIAN_FRONTEND=noninteractive', 'apt-get', ...args];
+    // Another program may hold the package manager's lock: wait for it, and say so.
+    const wait = ['-o', 'DPkg::Lock::Timeout=600'];
+    const [program, ...rest] = [...asRoot, 'env', 'DEBIAN_FRONTEND=noninteractive', 'apt-get', ...wait, ...args];
     return spawnSync(program, rest, { stdio: ['ignore', 'inherit', 'inherit'] }).status === 0;
   };
   if (!apt('update', '-qq') || !apt('install', '-y', '-qq', '--no-install-recommends', ...missing)) {
@@ -148,5 +149,6 @@ if (!(purpose in kPurposes)) fail(`usage: node wasm/tools/setup.mjs ${Object.key
 if (!isNewEnough(process.version)) fail(`Cagecast needs Node ${kNodes}; this is ${process.versions.node}.`);
 installSystemPackages(kPurposes[purpose]);
 installNpmPackages();
-if (purpose === 'test') installNpmPackages('tests/hosts/', ['install', '--no-save']);
-if (purpose === 'test' || purpose === 'catalogue') installNpmPackages('examples/catalogue/', ['install', '--no-save']);
+if (purpose === 'test:all') installNpmPackages('tests/release/hosts/', ['install', '--no-save']);
+if (purpose === 'test:all' || purpose === 'catalogue')
+  installNpmPackages('examples/catalogue/', ['install', '--no-save']);

@@ -1,0 +1,29 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { BufferAttribute, Mesh, MeshStandardMaterial, PlaneGeometry, Texture } from 'three';
+import { extractMesh } from '../../../web/src/scene/extract-mesh';
+
+test('UVs are of the channel of the base colour texture, the first ones without a texture', () => {
+  const geometry = new PlaneGeometry();
+  const second = Float32Array.of(0, 0, 0.5, 0, 0, 0.5, 0.5, 0.5);
+  geometry.setAttribute('uv1', new BufferAttribute(second, 2));
+  const material = new MeshStandardMaterial();
+  const uvs = () => extractMesh(new Mesh(geometry, material), () => 'plane').uvs;
+  assert.deepEqual(uvs(), geometry.getAttribute('uv').array);
+  material.map = new Texture();
+  assert.deepEqual(uvs(), geometry.getAttribute('uv').array);
+  material.map.channel = 1;
+  assert.deepEqual(uvs(), second);
+});
+
+test('UVs are where the transform of the base colour texture puts them, as in the command', () => {
+  const map = new Texture();
+  map.offset.set(0.5, 0.75);
+  map.rotation = Math.PI / 2;
+  map.repeat.set(0.5, 0.25);
+  const geometry = new PlaneGeometry();
+  const { uvs } = extractMesh(new Mesh(geometry, new MeshStandardMaterial({ map })));
+  const own = geometry.getAttribute('uv').array;
+  const expected = own.map((_, i) => (i % 2 === 0 ? 0.5 + 0.25 * own[i + 1]! : 0.75 - 0.5 * own[i - 1]!));
+  uvs!.forEach((value, i) => assert.ok(Math.abs(value - expected[i]!) < 1e-6, `${uvs} is not ${expected}`));
+});

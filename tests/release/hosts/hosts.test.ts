@@ -1,0 +1,306 @@
+import assert from 'node:assert/strict';
+import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
+import type { Browser } from 'playwright-core';
+import { createServer } from 'vite';
+import { launchChromium } from '../../support/chromium.js';
+import { hostTools, installPacked, run, serve } from './install.js';
+
+const user = installPacked();
+const dist = join(user, 'node_modules/cagecast/dist');
+const page = '<!doctype html><script type="module" src="program.js"></script>';
+const manifest = JSON.parse(readFileSync('package.json', 'utf8')) as {
+  engines: { node: string };
+  exports: Record<string, { types?: string }>;
+  typesVersions: { '*': Record<string, string[]> };
+};
+
+/** Each file of the package that a script names: the WebAssembly of the core, both workers, and a template. */
+const program = `
+import { init, transfer } from 'cagecast/slim';
+import { transfer as transferAsync } from 'cagecast/worker';
+import { loadTemplate, makeCage } from 'cagecast/cages';
+const mesh = (z) => ({ positions: new Float32Array([0, 0, z, 1, 0, z, 0, 1, z]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array([0, 0, 1, 0, 0, 1]) });
+const tetrahedron = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]), indices: new Uint32Array([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]) };
+const steps = [
+  async () => { await init(); return transfer(mesh(0.1), mesh(0)).zones.length; },
+  async () => (await transferAsync(mesh(0.1), mesh(0))).zones.length,
+  async () => (await makeCage(tetrahedron, { triangles: 100, voxels: 40 })).uvs.constructor.name,
+  async () => (await loadTemplate('car')).kind,
+];
+export const answer = await Promise.all(steps.map((step) => step().catch((error) => error.message)));
+globalThis.answer = answer;
+`;
+const answer = [3, 3, 'Float32Array', 'prop'];
+/** The same, of the entry with its WebAssembly within. */
+const inlined = program.replace('cagecast/slim', 'cagecast');
+
+const put = (folder: string, files: Record<string, string>) => {
+  mkdirSync(join(user, folder), { recursive: true });
+  for (const [name, text] of Object.entries(files)) writeFileSync(join(user, folder, name), text);
+};
+
+before(() => {
+  put('', { 'program.js': program, 'index.html': page });
+  put('inlined', { 'program.js': inlined, 'index.html': page });
+});
+after(() => rmSync(user, { recursive: true, force: true }));
+
+describe('TypeScript before 5.7', () => {
+  const entries = [
+    'cagecast',
+    'cagecast/slim',
+    'cagecast/worker',
+    'cagecast/inspect',
+    'cagecast/cages',
+    'cagecast/cages/sync',
+  ];
+  const consumer = `
+    type IsAny<T> = 0 extends 1 & T ? true : false;
+    type Anys<T> = { [K in keyof T]-?: IsAny<T[K]> extends true ? K : never }[keyof T];
+    import { init, transfer, type Classification, type CutTarget, type Mesh, type Projection, type SplitVertices, type TransferResult } from 'cagecast';
+    import { transfer as transferAsync } from 'cagecast/worker';
+    import { makeCage, type Cage } from 'cagecast/cages';
+    import { applyTransfer, type Applied, type Extracted } from 'cagecast/three';
+    import { inspect, type Inspection } from 'cagecast/inspect';
+    import { cagecast } from 'cagecast/gltf';
+    type All = [Classification, CutTarget, Mesh, Projection, SplitVertices, TransferResult, Cage, Applied, Extracted, Extracted['mesh'], Inspection, ReturnType<typeof applyTransfer>];
+    const none: [{ [K in keyof All]: Anys<All[K]> }[number], IsAny<typeof cagecast>, IsAny<typeof inspect>] extends [never, false, false] ? true : 'any' = true;
+    export async function main(mesh: Mesh) {
+      await init();
+      const result: TransferResult = transfer(mesh, mesh);
+      const cage: Cage = await makeCage(mesh);
+      const numbers: Float32Array[] = [result.uvs, (await transferAsync(mesh, mesh)).uvs, cage.uvs];
+      // @ts-expect-error numbers have no such method
+      result.uvs.notThere();
+      // @ts-expect-error nor have zones
+      result.zones[0]?.notThere();
+      return [none, numbers];
+    }`;
+  const checked: [string, string, string][] = [
+    ['5.0', 'esnext', 'node'],
+    ['5.0', 'node16', 'node16'],
+    ['5.0', 'esnext', 'bundler'],
+    ['5.6', 'node16', 'node16'],
+  ];
+  test('those that do not read exports find the types of every entry', () => {
+    const exported = Object.entries(manifest.exports).flatMap(([name, { types }]) =>
+      types && name !== '.' ? [[name.slice(2), [types]]] : [],
+    );
+    assert.deepEqual(manifest.typesVersions['*'], Object.fromEntries(exported));
+  });
+
+  test('no declaration has what they do not know', () => {
+    for (const name of readdirSync(dist, { recursive: true, encoding: 'utf8' }))
+      if (name.endsWith('.d.ts'))
+        assert.doesNotMatch(readFileSync(join(dist, name), 'utf8'), /\b(\w+\d+Array|DataView)<Array/, name);
+  });
+
+  test('no declaration has a type that was inferred from those of three.js, which have other parameters in r165', () => {
+    for (const name of readdirSync(dist, { recursive: true, encoding: 'utf8' }))
+      if (name.endsWith('.d.ts'))
+        assert.doesNotMatch(readFileSync(join(dist, name), 'utf8'), /import\("three"\)/, name);
+  });
+
+  for (const [version, module, moduleResolution] of checked)
+    test(`${version} sees no any, with moduleResolution ${moduleResolution}`, () => {
+      const folder = `types-${version}-${moduleResolution}`;
+      const compilerOptions = {
+        module,
+        moduleResolution,
+        target: 'es2022',
+        lib: ['es2022', 'dom'],
+        strict: true,
+        noEmit: true,
+        types: [],
+        // The types of three.js and glTF-Transform are for newer ones.
+        skipLibCheck: true,
+        preserveSymlinks: true,
+      };
+      const files = ['consumer.ts'];
+      put(folder, {
+        'package.json': '{ "type": "module" }',
+        'tsconfig.json': JSON.stringify({ compilerOptions, files }),
+        'consumer.ts': consumer,
+      });
+      put(`${folder}/node_modules/@types`, {});
+      mkdirSync(join(user, folder, 'node_modules/@gltf-transform'));
+      for (const name of ['three', '@types/three', '@gltf-transform/core', 'property-graph'])
+        symlinkSync(resolve('node_modules', name), join(user, folder, 'node_modules', name));
+      run(process.execPath, [join(hostTools, `typescript-${version}/bin/tsc`), '-p', '.'], join(user, folder));
+      // Its own types are checked too, where no others are needed.
+      const own = { ...compilerOptions, skipLibCheck: false };
+      put(folder, {
+        'tsconfig.json': JSON.stringify({ compilerOptions: own, files }),
+        'consumer.ts': entries.map((name, i) => `export * as e${i} from '${name}';`).join('\n'),
+      });
+      if (moduleResolution === 'node16')
+        run(process.execPath, [join(hostTools, `typescript-${version}/bin/tsc`), '-p', '.'], join(user, folder));
+    });
+});
+
+describe('hosts without a browser', () => {
+  test('Jest, with modules switched on', () => {
+    put('jest', {
+      'jest.config.json': '{ "transform": {}, "testEnvironment": "node" }',
+      'program.js': program,
+      'some.test.js': `import { answer } from './program.js';
+        test('runs', () => expect(answer).toEqual(${JSON.stringify(answer)}));`,
+    });
+    const flags = { NODE_OPTIONS: '--experimental-vm-modules' };
+    const said = run(process.execPath, [join(hostTools, 'jest/bin/jest.js'), '--ci', '-i'], join(user, 'jest'), flags);
+    assert.match(said, /1 passed/);
+  });
+
+  test('the Node that runs these tests is one that the package admits to', () => {
+    const [major = 0, minor = 0] = process.versions.node.split('.').map(Number);
+    assert.equal(manifest.engines.node, '^20.16.0 || >=22.3.0');
+    assert.ok(major > 22 || (major === 22 && minor >= 3) || (major === 20 && minor >= 16));
+    // What all uses of Node stand on: Node 20.16 and 22.3 brought it.
+    assert.ok(process.getBuiltinModule('node:worker_threads'));
+  });
+});
+
+describe('in Chromium', () => {
+  let browser: Browser;
+  let site: Awaited<ReturnType<typeof serve>>;
+  before(async () => {
+    site = await serve(user);
+    browser = await launchChromium({ drawing: false });
+  });
+  after(async () => {
+    await browser?.close();
+    site?.close();
+  });
+
+  async function visit(path: string, origin = site.origin): Promise<unknown> {
+    const visited = await browser.newPage();
+    const faults: string[] = [];
+    visited.on('pageerror', (error) => faults.push(String(error)));
+    await visited.goto(`${origin}/${path}`);
+    let found: unknown;
+    for (const end = Date.now() + 60000; found === undefined && Date.now() < end && faults.length === 0; ) {
+      found = await visited.evaluate('globalThis.answer');
+      await setTimeout(20);
+    }
+    assert.deepEqual(faults, [], path);
+    await visited.close();
+    return found;
+  }
+
+  test('an import map of the public names', async () => {
+    const at = (file: string) => `/node_modules/cagecast/dist/${file}.js`;
+    const imports = Object.fromEntries(['slim', 'worker', 'cages'].map((name) => [`cagecast/${name}`, at(name)]));
+    put('map', {
+      'program.js': program,
+      'index.html': page.replace(
+        '<script',
+        `<script type="importmap">${JSON.stringify({ imports: { cagecast: at('index'), ...imports } })}</script><script`,
+      ),
+    });
+    assert.deepEqual(await visit('map/index.html'), answer);
+  });
+
+  test('Vite, in development', async () => {
+    put('dev', { 'program.js': program, 'index.html': page });
+    const settings = { configFile: false, logLevel: 'error', server: { port: 0, host: '127.0.0.1' } } as const;
+    const server = await createServer({ ...settings, root: join(user, 'dev'), cacheDir: join(user, 'dev/.vite') });
+    await server.listen();
+    try {
+      assert.deepEqual(await visit('index.html', server.resolvedUrls!.local[0]!.replace(/\/$/, '')), answer);
+    } finally {
+      await server.close();
+    }
+  });
+
+  test('Parcel', async () => {
+    const options = [
+      '--dist-dir',
+      'parcel',
+      '--public-url',
+      './',
+      '--no-source-maps',
+      '--no-cache',
+      '--no-autoinstall',
+    ];
+    for (const [entry, out] of [
+      ['index.html', 'parcel'],
+      ['inlined/index.html', 'parcel-inlined'],
+    ] as const) {
+      run(
+        process.execPath,
+        [join(hostTools, 'parcel/lib/bin.js'), 'build', entry, ...options, '--dist-dir', out],
+        user,
+      );
+      assert.deepEqual(await visit(`${out}/index.html`), answer, entry);
+    }
+  });
+
+  test('webpack, whose script is a classic one, on a page in UTF-8; on another, the error says so', async () => {
+    const classic = '<script src="program.js"></script>';
+    for (const [entry, out] of [
+      ['./program.js', 'webpack'],
+      ['./inlined/program.js', 'webpack-inlined'],
+    ]) {
+      const settings = { entry, mode: 'production', output: { path: join(user, out!), filename: 'program.js' } };
+      const script = `require(${JSON.stringify(join(hostTools, 'webpack'))})(${JSON.stringify(settings)}, (fault, stats) => {
+        if (fault || stats.hasErrors()) throw fault ?? stats.toString();
+      })`;
+      run(process.execPath, ['-e', script], user);
+      put(out!, {
+        'index.html': `<!doctype html><meta charset="utf-8">${classic}`,
+        'other.html': `<!doctype html>${classic}`,
+      });
+      assert.deepEqual(await visit(`${out}/index.html`), answer, entry);
+    }
+    const [said] = (await visit('webpack-inlined/other.html')) as string[];
+    assert.equal(
+      said,
+      'init: the script of Cagecast was read in another encoding than UTF-8; its page needs <meta charset="utf-8">',
+    );
+  });
+
+  /** What `docs/hosts.md` says is to be copied beside a script that was made by esbuild or Rollup. */
+  const copyFiles = (out: string) => {
+    for (const name of ['cagecast.wasm', 'cagecast-cages.wasm', 'templates'])
+      cpSync(join(dist, name), join(user, out, name), { recursive: true });
+    writeFileSync(join(user, out, 'index.html'), page);
+  };
+  const workers = ['worker-thread', 'cages-thread'];
+
+  test('esbuild, with the workers as entries and the other files copied', async () => {
+    const entries = workers.map((name) => `${name}=node_modules/cagecast/dist/${name}.js`);
+    const flags = ['--bundle', '--format=esm', '--outdir=app/esbuild', '--log-level=warning'];
+    run(resolve('node_modules/esbuild/bin/esbuild'), ['program=program.js', ...entries, ...flags], user);
+    copyFiles('app/esbuild');
+    assert.deepEqual(await visit('app/esbuild/index.html'), answer);
+  });
+
+  test('Rollup, likewise', async () => {
+    put('', {
+      'rollup.config.js': `import resolve from ${JSON.stringify(join(hostTools, '@rollup/plugin-node-resolve/dist/es/index.js'))};
+        export default {
+          input: { program: 'program.js', ${workers.map((name) => `'${name}': 'node_modules/cagecast/dist/${name}.js'`).join()} },
+          output: { dir: 'rollup', format: 'es', entryFileNames: '[name].js' },
+          plugins: [resolve()],
+        };`,
+    });
+    run(process.execPath, [join(hostTools, 'rollup/dist/bin/rollup'), '-c', '--silent'], user);
+    copyFiles('rollup');
+    assert.deepEqual(await visit('rollup/index.html'), answer);
+  });
+
+  test('an error names the file that was not copied, also where the server answers with a page', async () => {
+    for (const folder of ['bare', 'app/bare']) {
+      mkdirSync(join(user, folder), { recursive: true });
+      cpSync(join(user, 'app/esbuild/program.js'), join(user, folder, 'program.js'));
+      writeFileSync(join(user, folder, 'index.html'), page);
+      const found = (await visit(`${folder}/index.html`)) as string[];
+      ['cagecast.wasm', 'worker-thread.js', 'cages-thread.js', 'templates/car.glb'].forEach((name, i) =>
+        assert.ok(found[i]!.includes(`${site.origin}/${folder}/${name}`), `${folder}: ${found[i]}`),
+      );
+    }
+  });
+});

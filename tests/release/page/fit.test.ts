@@ -1,0 +1,197 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { readFile } from 'node:fs/promises';
+import { after, before, test } from 'node:test';
+import { forPeople } from '../../../web/src/scene/wording';
+import { inspection, reportedCounts } from '../../support/command';
+import { glbOf, tetrahedron } from '../../support/glb';
+import { difference, look, modelArea } from '../../support/picture';
+import {
+  drop,
+  glb,
+  inRepository,
+  passed,
+  Site,
+  setThreshold,
+  settled,
+  shownCounts,
+  shownError,
+  shownParts,
+  type Visit,
+} from '../../support/site';
+
+let site: Site;
+let visit: Visit;
+before(async () => {
+  site = await Site.open();
+  visit = await site.visit({ viewport: { width: 700, height: 500 } });
+});
+after(() => site?.close());
+
+const asset = (...names: string[]): string => inRepository('build/assets', ...names);
+
+/** What the page finds, once it has looked. */
+async function found(): Promise<{ verdict: string; findings: { sentence: string; advice: string }[] }> {
+  const panel = visit.page.getByTestId('inspect-panel');
+  await visit.page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '');
+  const items = await panel
+    .locator('li')
+    .evaluateAll((all) => all.map((item) => [...item.querySelectorAll('p')].map(({ textContent }) => textContent!)));
+  return {
+    verdict: (await panel.locator('#fit-verdict').textContent())!,
+    findings: items.map(([sentence, advice]) => ({ sentence: sentence!.replace(/\.$/, ''), advice: advice! })),
+  };
+}
+
+for (const name of ['car', 'human-misaligned', 'lizard']) {
+  test(`${name}: the page shows the findings of cagecast inspect`, async () => {
+    const { page, complaints } = visit;
+    await drop(page, [
+      glb('target.glb', readFileSync(asset(name, 'target.glb'))),
+      glb('cage.glb', readFileSync(asset(name, 'cage.glb'))),
+    ]);
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    const { verdict, findings } = await inspection(asset(name, 'target.glb'), asset(name, 'cage.glb'));
+    assert.deepEqual(await found(), {
+      verdict,
+      findings: findings.map(({ sentence, advice }) => ({ sentence: forPeople(sentence), advice: forPeople(advice) })),
+    });
+    assert.deepEqual(complaints, []);
+  });
+}
+
+test('a finding highlights its part, and locks it as proposed', async () => {
+  const { page } = visit;
+  await page.getByTestId('sample-select').selectOption({ index: 0 });
+  await page.getByTestId('preset').selectOption('paper');
+  await setThreshold(page, 0.36);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  const eye = page
+    .getByTestId('inspect-panel')
+    .locator('li')
+    .filter({ hasText: /"l-eye" is not painted, but only just/ });
+  await eye.waitFor();
+  const area = await modelArea(page);
+  await page.mouse.move(5, 5);
+  const before = await look(page, area);
+  await eye.hover();
+  assert.ok(difference(before, await look(page, area)) > 0.002, 'it lights up');
+  await page.mouse.move(5, 5);
+  assert.ok(difference(before, await look(page, area)) < 0.0005);
+
+  await eye.getByRole('button', { name: 'Keep it' }).click();
+  assert.deepEqual(
+    await shownCounts(page),
+    await reportedCounts(asset('lizard', 'target.glb'), asset('lizard', 'cage.glb'), {
+      preset: 'paper',
+      threshold: 0.36,
+      keep: 'l-eye',
+    }),
+  );
+  assert.equal((await shownParts(page)).find(({ name }) => name === 'l-eye')!.lock, 'keep');
+  await eye.waitFor({ state: 'detached' });
+  await page.getByTestId('preset').selectOption('default');
+  await setThreshold(page, 0.5);
+  assert.equal(await settled(page), 'ready');
+});
+
+test('where a part only falls below the threshold, the stage offers to keep it, and not another cage', async () => {
+  const { page } = visit;
+  await page.getByTestId('sample-select').selectOption('human');
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await setThreshold(page, 1);
+  const remedy = page.getByTestId('stage-remedy');
+  await remedy.waitFor();
+  assert.equal(await page.locator('#stage-verdict').getAttribute('data-verdict'), 'unfit');
+  assert.equal(await remedy.textContent(), 'Keep “skin”');
+  assert.ok(await page.getByRole('button', { name: 'Make a cage' }).isHidden(), 'another cage would not help');
+  await remedy.click();
+  await remedy.waitFor({ state: 'hidden' });
+  await page.locator('#stage-verdict:not([data-verdict=""])').waitFor();
+  assert.notEqual(await page.locator('#stage-verdict').getAttribute('data-verdict'), 'unfit');
+  assert.ok((await shownCounts(page)).cosmetic > 0, 'the part is painted');
+  await setThreshold(page, 0.5);
+  assert.equal(await settled(page), 'ready');
+});
+
+test('a large model is inspected on request', async () => {
+  const { page } = visit;
+  const small = tetrahedron();
+  // Most of them without area, which cost no time to draw.
+  const indices = Uint16Array.from({ length: 3 * 70_000 }, (_, i) => small.indices[i] ?? 0);
+  await drop(page, [
+    glb('target.glb', glbOf({ ...small, indices }, 'thing')),
+    glb('cage.glb', glbOf(tetrahedron(2), 'thing')),
+  ]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await passed(page, 1500);
+  assert.equal(await page.locator('#fit-verdict').textContent(), '');
+  await page.getByRole('button', { name: 'Inspect the cage' }).click();
+  assert.match((await found()).verdict, /^(good|usable|unfit)$/);
+});
+
+const human = (): Buffer => readFileSync(asset('human', 'target.glb'));
+
+/** Clicks, and waits until the cage that comes of it is shown. @returns What the page says of it. */
+async function made(button: string): Promise<string> {
+  const { page } = visit;
+  const before = await page.locator('#cage-note').textContent();
+  await page.getByTestId(button).click();
+  await page.waitForFunction(
+    (text) =>
+      document.querySelector('#cage-note')!.textContent !== text ||
+      !document.querySelector<HTMLElement>('#alert')!.hidden,
+    before,
+  );
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  return (await page.locator('#cage-note').textContent())!;
+}
+
+test('a model without a cage gets one: made for it, or a template’s; it is saved as a file that fits', async () => {
+  const { page, complaints } = visit;
+  await page.getByTestId('sample-select').selectOption({ index: 0 });
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.ok(await page.locator('#no-cage').isHidden(), 'a sample has a cage');
+  await drop(page, [glb('figure.glb', human())]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+
+  assert.match(await made('make-cage'), /^A cage of \d+ triangles was made/);
+  assert.equal(await page.locator('#cage-name').textContent(), 'figure-cage.glb');
+  assert.notEqual((await found()).verdict, 'unfit');
+  const counts = await shownCounts(page);
+  assert.ok(counts.cosmetic > counts.uncovered && counts.uncovered > 0, JSON.stringify(counts));
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('save-cage').click()]);
+  assert.equal(download.suggestedFilename(), 'figure-cage.glb');
+  const bytes = await readFile(await download.path());
+
+  await page.locator('#template-select').selectOption('human-head');
+  assert.match(await made('fit-cage'), /^The template was fitted/);
+  const { verdict } = await found();
+  assert.notEqual(verdict, 'unfit');
+  const missing = await page.locator('#cage-missing').textContent();
+  assert.match(missing!, verdict === 'good' ? /^$/ : /^(Landmarks that were not found: [a-z, ]+\.)?$/);
+  assert.notDeepEqual(await shownCounts(page), counts);
+
+  await drop(page, [glb('figure.glb', human()), glb('figure-cage.glb', bytes)]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.deepEqual(await shownCounts(page), counts, 'the saved cage is the one that was shown');
+  assert.deepEqual(complaints, []);
+});
+
+test('a fit for which too little is found asks for landmarks; cancelling leaves everything as it was', async () => {
+  const { page } = visit;
+  const before = await page.locator('#cage-name').textContent();
+  await page.evaluate(() => {
+    for (const id of ['make-cage', 'cancel']) document.querySelector<HTMLElement>(`[data-testid=${id}]`)!.click();
+  });
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.equal(await page.locator('#cage-name').textContent(), before);
+
+  await drop(page, [glb('pyramid.glb', glbOf(tetrahedron()))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.locator('#template-select').selectOption('human-body');
+  await page.getByTestId('fit-cage').click();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.match((await page.getByTestId('cage-note').textContent())!, /^Of 4 landmarks that are needed, \d were found/);
+  await page.getByTestId('landmark-ask').waitFor();
+});

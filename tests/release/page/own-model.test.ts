@@ -1,0 +1,85 @@
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { asset, head, middleOf, ready } from '../../support/cages';
+import { packGlb, unpackGlb } from '../../support/glb';
+import { rows } from '../../support/layers';
+import { lumpyBall } from '../../support/models';
+import { saved, validModel } from '../../support/saved';
+import { drop, glb, Site } from '../../support/site';
+
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+const kDesk = { viewport: { width: 1440, height: 900 } };
+
+const choose = (page: Page, key: string): Promise<void> =>
+  page.locator(`#tools input[data-key=${key}]`).check({ force: true });
+
+/** Which layers are visible, from the uppermost. */
+const visible = (page: Page): Promise<boolean[]> =>
+  rows(page)
+    .locator('input[name=visible]')
+    .evaluateAll((boxes) => boxes.map((box) => (box as HTMLInputElement).checked));
+
+async function makeCage(page: Page): Promise<void> {
+  await page.getByTestId('stage-remedy').click();
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  await ready(page);
+}
+
+test('a model too large to be inspected by itself is offered a cage on the stage, and then an inspection', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true });
+  await drop(page, [await lumpyBall(180)]);
+  await ready(page);
+  assert.equal(await page.locator('#stage-verdict-text').textContent(), 'The cage is another model’s');
+  assert.equal(await page.getByTestId('stage-remedy').textContent(), 'Make a cage');
+  await makeCage(page);
+  assert.equal(await page.locator('#stage-verdict-text').textContent(), 'The cage is not checked yet');
+  assert.equal(await page.locator('#model-verdict').textContent(), 'not checked yet');
+  assert.equal(await page.getByTestId('stage-remedy').textContent(), 'Check it');
+  await page.getByTestId('stage-remedy').click();
+  await page.locator('#stage-verdict:not([data-verdict=""])').waitFor();
+  assert.match((await page.locator('#stage-verdict-text').textContent())!, /^\d+ % paintable/);
+  assert.deepEqual(complaints, []);
+});
+
+for (const key of ['b', 's'])
+  test(`the checker under a cage that was made goes away with the first paint: ${key}`, async () => {
+    const { page, complaints } = await site.visit(kDesk);
+    await drop(page, [head()]);
+    await ready(page);
+    await makeCage(page);
+    assert.deepEqual(await visible(page), [true]);
+    await page.locator('#view-mode input[value=result]').check({ force: true });
+    await choose(page, key);
+    const { x, y } = await middleOf(page);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 20, y + 20, { steps: 3 });
+    await page.mouse.up();
+    await rows(page).nth(1).waitFor();
+    assert.deepEqual(await visible(page), [true, false]);
+    await page.getByTestId('undo').click();
+    assert.deepEqual(await visible(page), [true], 'one step');
+    assert.deepEqual(complaints, []);
+  });
+
+test('a VRM stays one when it is saved', async () => {
+  const { page, complaints } = await site.visit();
+  const own = unpackGlb(asset('human', 'target.glb'));
+  const humanBones = [{ bone: 'head', node: own.json.scenes![0]!.nodes![0]! }];
+  own.json.extensions = { VRM: { exporterVersion: 'test', humanoid: { humanBones } } };
+  own.json.extensionsUsed = [...(own.json.extensionsUsed ?? []), 'VRM'];
+  await drop(page, [glb('ada.vrm', packGlb(own))]);
+  await ready(page);
+  for (const into of ['overlay', 'texture']) {
+    await page.locator(`#paint-into [value=${into}]`).check({ force: true });
+    const { name, bytes } = await saved(page, 'export-glb');
+    assert.equal(name, 'ada-painted.vrm');
+    await validModel(bytes);
+    assert.deepEqual(unpackGlb(bytes).json.extensions, own.json.extensions);
+  }
+  assert.deepEqual(complaints, []);
+});

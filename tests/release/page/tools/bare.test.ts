@@ -1,0 +1,154 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { NodeIO } from '@gltf-transform/core';
+import type { Page } from 'playwright-core';
+import { faults } from '../../../support/axe';
+import { asset, middleOf, ready } from '../../../support/cages';
+import { difference, frames, look, modelArea } from '../../../support/picture';
+import { drop, glb, passed, Site, shownCounts } from '../../../support/site';
+
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+/** Opens a head in one piece, eyes and all, with a cage that was made for it, and begins to mark. */
+async function begin(page: Page): Promise<void> {
+  await drop(page, [glb('scan.glb', asset('human-fused', 'target.glb'))]);
+  await ready(page);
+  await page.getByTestId('make-cage').click();
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  await ready(page);
+  await page.getByTestId('make-options').locator('summary').click();
+  await page.getByTestId('bare-brush').click();
+}
+
+/** How many edges of the saved cage have one triangle only. */
+async function openEdges(page: Page): Promise<number> {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('save-cage').click()]);
+  const document = await new NodeIO().readBinary(readFileSync(await download.path()));
+  const [primitive] = document.getRoot().listMeshes()[0]!.listPrimitives();
+  const position = primitive!.getAttribute('POSITION')!;
+  const corners = [...primitive!.getIndices()!.getArray()!].map((vertex) => position.getElement(vertex, []).join());
+  const edges = new Map<string, number>();
+  corners.forEach((from, i) => {
+    const key = [from, corners[i % 3 === 2 ? i - 2 : i + 1]!].sort().join(' ');
+    edges.set(key, (edges.get(key) ?? 0) + 1);
+  });
+  return [...edges.values()].filter((count) => count === 1).length;
+}
+
+const markedCount = async (page: Page): Promise<number> =>
+  Number(/^[\d,]+/.exec((await page.getByTestId('bare-count').textContent())!)?.[0].replace(',', '') ?? 0);
+
+/** Waits until the cage has followed the marks. */
+async function followed(page: Page): Promise<void> {
+  await passed(page, 1500); // longer than the page waits before it makes the cage again
+  await ready(page);
+}
+
+/** Waits until the browser keeps everything. */
+const kept = (page: Page): Promise<unknown> =>
+  page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
+
+test('marked spots stay bare, and the made cage has a hole there; marks are erased, undone, and back after a reload', async () => {
+  const { page, complaints } = await site.visit();
+  await begin(page);
+  const [unmarked, closed] = [await shownCounts(page), await openEdges(page)];
+  assert.deepEqual(await faults(page), []);
+  const area = await modelArea(page);
+  const plain = await look(page, area);
+  const { x, y } = await middleOf(page);
+  const stroke = async (): Promise<void> => {
+    await page.mouse.move(x - 25, y - 60);
+    await page.mouse.down();
+    await page.mouse.move(x + 25, y - 60, { steps: 2 });
+    await page.mouse.up();
+  };
+  await page.getByTestId('bare-size').fill('75');
+  await stroke();
+  const count = await markedCount(page);
+  assert.ok(count > 50, `${count} triangles are marked`);
+  const marked = await shownCounts(page);
+  assert.ok(marked.culled > unmarked.culled + 20, `${unmarked.culled} points were culled, and ${marked.culled} are`);
+  assert.ok(difference(plain, await look(page, area)) > 0.01, 'the marks are seen');
+  assert.deepEqual(await faults(page), []);
+  await followed(page);
+  const open = await openEdges(page);
+  assert.ok(open > closed + 3, `the cage had ${closed} open edges, and has ${open}`);
+
+  // Erased in one stroke, and back by undo.
+  await page.getByTestId('bare-erase').check({ force: true });
+  await stroke();
+  assert.ok((await markedCount(page)) < count / 10);
+  await page.keyboard.press('Control+z');
+  assert.equal(await markedCount(page), count);
+  assert.equal(await page.getByTestId('undo').getAttribute('title'), 'Undo: marking what stays bare');
+  await page.keyboard.press('Control+z');
+  assert.equal(await markedCount(page), 0);
+  await page.keyboard.press('Control+Shift+z');
+  assert.equal(await markedCount(page), count);
+
+  // Explained where it is.
+  await followed(page);
+  await page.locator('#tools input[data-key=x]').check({ force: true });
+  await page.mouse.click(x, y - 60);
+  assert.match((await page.getByTestId('explain-text').textContent())!, /^Not painted: marked/);
+
+  await kept(page);
+  const before = await shownCounts(page);
+  await page.reload();
+  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  await ready(page);
+  assert.deepEqual(await shownCounts(page), before);
+  await page.locator('#tools input[data-key=n]').waitFor({ state: 'attached' }); // its tool is there at once
+  await page.getByTestId('make-options').locator('summary').click();
+  await page.getByTestId('bare-brush').click();
+  assert.equal(await markedCount(page), count);
+  await page.getByTestId('bare-clear').click();
+  assert.equal(await markedCount(page), 0);
+  assert.ok((await shownCounts(page)).culled < before.culled - 20);
+  assert.deepEqual(complaints, []);
+});
+
+test('spots are marked by a finger and by the keyboard; a second finger turns the model and marks nothing', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true });
+  await begin(page);
+  const { x, y } = await middleOf(page);
+  await frames(page, 2);
+  await page.touchscreen.tap(x, y);
+  const tapped = await markedCount(page);
+  assert.ok(tapped > 0, `${tapped} triangles are marked`);
+  await followed(page);
+  const fingers = (type: string, ...points: [number, number][]): Promise<unknown> =>
+    touch.send('Input.dispatchTouchEvent', {
+      type: type as 'touchStart',
+      touchPoints: points.map(([x, y], id) => ({ x, y, id })),
+    });
+  const touch = await page.context().newCDPSession(page);
+  await fingers('touchStart', [x, y + 30]);
+  await fingers('touchStart', [x, y + 30], [x + 40, y + 30]);
+  await fingers('touchEnd');
+  assert.equal(await markedCount(page), tapped);
+
+  await page.locator('#view').focus();
+  await page.keyboard.press('1');
+  for (let i = 0; i < 3; i++) await page.keyboard.press('ArrowUp');
+  await page.keyboard.press('Enter');
+  const more = await markedCount(page);
+  assert.ok(more > tapped, `${more} are marked, not only ${tapped}`);
+  const covered = await page.locator('#tools label').evaluateAll((tools) =>
+    tools.flatMap((tool) => {
+      const { left, top, right, bottom } = tool.getBoundingClientRect();
+      const isHit = [top + 2, bottom - 2].every((y) => tool.contains(document.elementFromPoint((left + right) / 2, y)));
+      return isHit ? [] : [tool.textContent];
+    }),
+  );
+  assert.deepEqual(covered, [], 'all tools can be touched');
+  await page.getByTestId('bare-clear').focus();
+  await page.keyboard.press('Enter');
+  assert.equal(await markedCount(page), 0);
+  assert.equal(await page.evaluate(() => document.activeElement?.id), 'bare-center');
+  assert.deepEqual(await faults(page), []);
+  assert.deepEqual(complaints, []);
+});

@@ -1,0 +1,164 @@
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { PNG } from 'pngjs';
+import { difference, modelArea, shareOfHue } from '../../../support/picture';
+import { Site } from '../../../support/site';
+
+let site: Site;
+before(async () => void (site = await Site.open('real')));
+after(() => site?.close());
+
+const kScript = /\/index-[^/]*\.js$/;
+const kOrange = 24;
+
+/** The picture alone, without what lies on it. */
+async function picture(page: Page): Promise<PNG> {
+  await page.addStyleTag({ content: '#stage > :not(#view, #poster) { opacity: 0 }' });
+  return PNG.sync.read(await page.screenshot({ clip: await modelArea(page) }));
+}
+
+/** A picture with a pixel for each 8 × 8: how sharp it is, and half a pixel to the side, no longer matter. */
+function coarse({ width, height, data }: PNG): PNG {
+  const small = new PNG({ width: width >> 3, height: height >> 3 });
+  const at = (x: number, y: number, channel: number): number => data[4 * (y * width + x) + channel]!;
+  for (let y = 0; y < small.height; y++) {
+    for (let x = 0; x < small.width; x++) {
+      for (let channel = 0; channel < 4; channel++) {
+        let sum = 0;
+        for (let i = 0; i < 64; i++) sum += at(8 * x + (i & 7), 8 * y + (i >> 3), channel);
+        small.data[4 * (y * small.width + x) + channel] = sum / 64;
+      }
+    }
+  }
+  return small;
+}
+
+/** Holds back what is asked for from an address, until it is let go. */
+async function hold(page: Page, address: RegExp): Promise<() => void> {
+  let letGo = (): void => {};
+  const gate = new Promise<void>((done) => (letGo = done));
+  await page.route(address, async (route) => {
+    await gate;
+    await route.continue();
+  });
+  return letGo;
+}
+
+// On a phone the camera stands a little farther off, which no picture can follow.
+for (const [screen, viewport, most] of [
+  ['a desk', { width: 1440, height: 900 }, 0.01],
+  ['a phone', { width: 390, height: 844 }, 0.05],
+] as const) {
+  test(`before any script runs, the poster image matches the first frame on ${screen}`, async () => {
+    let early: PNG | undefined;
+    const { page, complaints } = await site.visit({ viewport, deviceScaleFactor: 1 }, async (page) => {
+      const letGo = await hold(page, kScript);
+      void page
+        .waitForFunction(() => document.querySelector<HTMLImageElement>('#poster')?.complete)
+        .then(async () => (early = await picture(page)))
+        .finally(letGo);
+    });
+    await page.locator('#poster').waitFor({ state: 'detached' });
+    const drawn = await picture(page);
+    assert.ok(early && shareOfHue(early, kOrange) > 0.05, 'a painted lizard');
+    const apart = difference(coarse(early), coarse(drawn));
+    assert.ok(apart < most, `${(100 * apart).toFixed(1)} % of the picture is another`);
+    assert.deepEqual(complaints, []);
+  });
+}
+
+test('no loading message covers the poster image, while scripts or the model load', async () => {
+  for (const viewport of [
+    { width: 390, height: 844 },
+    { width: 1440, height: 900 },
+  ]) {
+    const told: [string, number][] = [];
+    await site.visit({ viewport }, async (page) => {
+      const [script, model] = [await hold(page, kScript), await hold(page, /\/samples\/.*\.glb$/)];
+      const orangeUnder = async (id: string): Promise<void> => {
+        await page.locator(id).waitFor();
+        const clip = (await page.locator(id).boundingBox())!;
+        const style = await page.addStyleTag({ content: '#stage > :not(#view, #poster) { opacity: 0 }' });
+        told.push([id, shareOfHue(PNG.sync.read(await page.screenshot({ clip })), kOrange)]);
+        await style.evaluate((element) => (element as Element).remove());
+      };
+      void page
+        .waitForFunction(() => document.querySelector<HTMLImageElement>('#poster')?.complete)
+        .then(() => orangeUnder('#stage-notice'))
+        .finally(script)
+        .then(() => orangeUnder('#progress'))
+        .finally(model);
+    });
+    assert.deepEqual(
+      told,
+      [
+        ['#stage-notice', 0],
+        ['#progress', 0],
+      ],
+      `${viewport.width} wide`,
+    );
+  }
+});
+
+test('with the CPU slowed four times, the poster image appears before anything is drawn in 3D', async () => {
+  const { page } = await site.visit({}, async (page) => {
+    const session = await page.context().newCDPSession(page);
+    await session.send('Emulation.setCPUThrottlingRate', { rate: 4 });
+    await page.addInitScript(() => {
+      const times = ((globalThis as unknown as { times: object }).times = {} as { poster?: number; drawn?: number });
+      new PerformanceObserver((list) => {
+        for (const entry of list.getEntries() as (PerformanceEntry & { element?: Element })[])
+          if (entry.element?.id === 'poster') times.poster ??= entry.startTime;
+      }).observe({ type: 'largest-contentful-paint', buffered: true });
+      const { drawElements } = WebGL2RenderingContext.prototype;
+      WebGL2RenderingContext.prototype.drawElements = function (...args) {
+        times.drawn ??= performance.now();
+        return drawElements.apply(this, args);
+      };
+    });
+    // What comes after the first drawing need not be slow.
+    void page
+      .waitForFunction(() => (globalThis as unknown as { times?: { drawn?: number } }).times?.drawn)
+      .then(() => session.send('Emulation.setCPUThrottlingRate', { rate: 1 }))
+      .catch(() => {});
+  });
+  const { poster, drawn } = (await page.evaluate('times')) as { poster?: number; drawn?: number };
+  assert.ok(
+    poster !== undefined && drawn !== undefined && poster < drawn,
+    `the poster after ${poster} ms, the drawing after ${drawn} ms`,
+  );
+});
+
+test('the poster image fades out, or disappears at once with reduced motion', async () => {
+  for (const [reducedMotion, fades] of [
+    ['no-preference', 1],
+    ['reduce', 0],
+  ] as const) {
+    const { page } = await site.visit(
+      { reducedMotion },
+      `globalThis.fades = 0
+    Element.prototype.animate = new Proxy(Element.prototype.animate, {
+      apply: (original, element, args) => ((globalThis.fades += element.id === 'poster' ? 1 : 0), Reflect.apply(original, element, args)),
+    })`,
+    );
+    await page.locator('#poster').waitFor({ state: 'detached' });
+    assert.equal(await page.evaluate('fades'), fades, reducedMotion);
+  }
+});
+
+test('a link to another sample does not show the poster image of the first', async () => {
+  let seen: number | undefined;
+  await site.visit(
+    {},
+    async (page) => {
+      const letGo = await hold(page, /\/samples\/.*\.glb$/);
+      void page
+        .waitForFunction(() => document.querySelector('[data-testid=status]')?.textContent === 'working')
+        .then(async () => (seen = await page.locator('#poster').count()))
+        .finally(letGo);
+    },
+    '#sample=car',
+  );
+  assert.equal(seen, 0);
+});

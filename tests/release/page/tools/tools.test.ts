@@ -1,0 +1,427 @@
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import type { PNG } from 'pngjs';
+import { titleOfExpression, titleOfMorph } from '../../../../web/src/live/expression-names';
+import { faults } from '../../../support/axe';
+import { filled, names, savedTexture, texel } from '../../../support/layers';
+import { ball, islandCage, morphingBalls } from '../../../support/models';
+import { type Area, difference, look, modelArea, shareOfHue } from '../../../support/picture';
+import { drop, Site, settled, shownError, type Upload } from '../../../support/site';
+
+const kGreen = 140; // the hue of the paint; the ball is blue
+const kGreenPaint = '#00c040';
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+/** Opens a ball in a cube whose six sides are islands of the texture, and nothing on it. */
+async function openBall(page: Page): Promise<Area> {
+  await drop(page, [await ball(), await islandCage(1)]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.locator('input[value=result]').check({ force: true });
+  for (const name of await names(page)) await page.getByRole('button', { name: `Remove ${name}`, exact: true }).click();
+  await page.locator('#view').press('Home');
+  return modelArea(page);
+}
+
+const choose = (page: Page, title: string): Promise<void> =>
+  page.getByRole('radio', { name: title, exact: true }).check({ force: true });
+
+async function set(page: Page, options: Record<string, string>): Promise<void> {
+  for (const [name, value] of Object.entries(options)) await page.getByTestId(name).fill(value);
+}
+
+const at = ({ x, y, width, height }: Area, u: number, v: number) => ({ x: x + u * width, y: y + v * height });
+
+/** Drags the mouse from place to place; places are shares of an area. */
+async function drag(page: Page, area: Area, ...places: (readonly [number, number])[]): Promise<void> {
+  for (const [index, [u, v]] of places.entries()) {
+    const { x, y } = at(area, u, v);
+    await page.mouse.move(x, y, { steps: index === 0 ? 1 : 4 });
+    if (index === 0) await page.mouse.down();
+  }
+  await page.mouse.up();
+}
+
+const away = (page: Page): Promise<void> => page.mouse.move(5, 60);
+
+/** A picture of the model without what tools show over it. */
+async function bareLook(page: Page, area: Area): Promise<PNG> {
+  const hide = await page.addStyleTag({ content: '[class^=sticker-], .cross, .brush-ring { opacity: 0 }' });
+  const picture = await look(page, area);
+  await hide.evaluate((style) => (style as Element).remove());
+  return picture;
+}
+
+/** The middle of what is green, in shares of the picture, and its share. */
+async function green(page: Page, area: Area): Promise<{ x: number; y: number; share: number }> {
+  const picture = await bareLook(page, area);
+  let [count, x, y] = [0, 0, 0];
+  for (let i = 0; i < picture.data.length; i += 4) {
+    const [r, g, b] = picture.data.subarray(i, i + 3) as unknown as [number, number, number];
+    if (g < 90 || r > 0.6 * g || b > 0.7 * g) continue;
+    count++;
+    x += (i / 4) % picture.width;
+    y += Math.floor(i / 4 / picture.width);
+  }
+  return {
+    x: x / count / picture.width,
+    y: y / count / picture.height,
+    share: count / (picture.width * picture.height),
+  };
+}
+
+test('a sticker is seen before it is placed, and is moved, turned, scaled, mirrored, restyled and removed afterwards', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 640 }, deviceScaleFactor: 0.5 });
+  const area = await openBall(page);
+  await choose(page, 'Sticker');
+  await set(page, { 'brush-color': kGreenPaint, 'sticker-text': 'FLAG' });
+  const bare = await green(page, area);
+  assert.equal(bare.share, 0);
+
+  const place = at(area, 0.42, 0.5);
+  await page.mouse.move(place.x, place.y);
+  await page.mouse.move(place.x + 1, place.y);
+  const previewed = await green(page, area);
+  assert.ok(previewed.share > 0.004, `${previewed.share} is seen before`);
+  assert.ok(Math.abs(previewed.x - 0.42) < 0.03 && Math.abs(previewed.y - 0.5) < 0.05, 'at the pointer');
+  assert.deepEqual(await names(page), [], 'and nothing is placed');
+  assert.equal(filled(await savedTexture(page)), 0, 'nor saved');
+  await away(page);
+  assert.equal((await green(page, area)).share, 0);
+
+  await page.mouse.click(place.x, place.y);
+  await away(page);
+  const placed = await green(page, area);
+  assert.ok(Math.abs(placed.share / previewed.share - 1) < 0.1);
+  assert.deepEqual(await names(page), ['Stickers 1']);
+  assert.deepEqual(await faults(page), []);
+  const first = await bareLook(page, area);
+
+  await drag(page, area, [0.43, 0.5], [0.5, 0.45], [0.56, 0.42]);
+  await away(page);
+  const moved = await green(page, area);
+  assert.ok(moved.x - placed.x > 0.06, `moved by ${moved.x - placed.x}`);
+  assert.ok(Math.abs(moved.share / placed.share - 1) < 0.25, 'one sticker only');
+
+  // Its corner turns and scales it.
+  const handle = (await page.locator('.sticker-handle').boundingBox())!;
+  await page.mouse.move(handle.x + 22, handle.y + 22);
+  await page.mouse.down();
+  await page.mouse.move(handle.x + 22 - 10, handle.y + 22 + 60, { steps: 4 });
+  await page.mouse.up();
+  assert.notEqual(await page.getByTestId('sticker-turn').inputValue(), '0');
+  await away(page);
+  const turned = await bareLook(page, area);
+  assert.ok(difference(first, turned) > 0.005);
+  await page.getByRole('button', { name: 'Mirror', exact: true }).click();
+  assert.ok(difference(turned, await bareLook(page, area)) > 0.002);
+  assert.ok(await page.getByTestId('sticker-flip').isChecked());
+  await set(page, { 'brush-color': '#d00000' });
+  assert.ok(shareOfHue(await look(page, area), 0) > 0.003, 'in another colour');
+  assert.equal((await green(page, area)).share, 0);
+
+  // A second one, and the first is still there to be chosen.
+  await page.getByRole('button', { name: 'Done', exact: true }).click();
+  await set(page, { 'sticker-text': '2', 'sticker-turn': '0', 'brush-size': '60', 'brush-color': kGreenPaint });
+  await page.mouse.click(at(area, 0.34, 0.68).x, at(area, 0.34, 0.68).y);
+  await away(page);
+  assert.ok((await green(page, area)).share > 0.001);
+  await page.mouse.click(at(area, moved.x, moved.y).x, at(area, moved.x, moved.y).y);
+  assert.equal(await page.getByTestId('sticker-text').inputValue(), 'FLAG');
+  await page.locator('#view').press('Delete');
+  await away(page);
+  assert.ok(shareOfHue(await look(page, area), 0) < 0.001, 'removed');
+  assert.ok((await green(page, area)).share > 0.001, 'the other one stays');
+
+  // Every step can be undone: removed, second, colour, mirrored, turned, moved.
+  for (let i = 0; i < 6; i++) await page.keyboard.press('Control+z');
+  assert.equal(await page.locator('.sticker-bar').isVisible(), false);
+  const apart = difference(first, await bareLook(page, area));
+  assert.ok(apart < 0.0005, `as it was placed, but for ${apart}`);
+  await page.keyboard.press('Control+z');
+  assert.deepEqual(await names(page), []);
+  assert.deepEqual(complaints, []);
+});
+
+test('letters of a sticker are sharp, and legible as they are at first', async () => {
+  const { page } = await site.visit({ viewport: { width: 900, height: 500 } });
+  const area = await openBall(page);
+  await choose(page, 'Sticker');
+  await set(page, { 'sticker-text': 'WORD' });
+  await page.mouse.click(at(area, 0.5, 0.5).x, at(area, 0.5, 0.5).y);
+  await page.keyboard.press('Escape');
+  await away(page);
+  const texture = await savedTexture(page);
+  assert.equal(texture.width, 2048);
+  // Letters and the line around them differ in brightness; few texels are between them.
+  let [solid, between] = [0, 0];
+  for (let y = 0; y < 2048; y++)
+    for (let x = 0; x < 2048; x++) {
+      const [, g, , a] = texel(texture, x, y) as [number, number, number, number];
+      if (a < 250) continue;
+      if (g < 45 || g > 235) solid++;
+      else between++;
+    }
+  assert.ok(solid > 2000, `${solid} texels`);
+  assert.ok(between < 0.25 * solid, `${between} of ${solid} are blurred`);
+});
+
+test('the eraser takes away all that the brush left, with its soft edge, and stickers too', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } });
+  const area = await openBall(page);
+  const path = [
+    [0.44, 0.45],
+    [0.52, 0.5],
+    [0.56, 0.45],
+  ] as const;
+  await choose(page, 'Brush');
+  await set(page, { 'brush-color': kGreenPaint, 'brush-size': '55', 'brush-hardness': '0' });
+  await drag(page, area, ...path);
+  assert.ok(filled(await savedTexture(page)) > 500);
+  await choose(page, 'Erase');
+  await drag(page, area, ...path);
+  assert.equal(filled(await savedTexture(page)), 0);
+  await choose(page, 'Sticker');
+  await page.mouse.click(at(area, 0.5, 0.5).x, at(area, 0.5, 0.5).y);
+  await choose(page, 'Erase');
+  await away(page);
+  const before = await bareLook(page, area);
+  await set(page, { 'brush-size': '60', 'brush-hardness': '100' });
+  await drag(page, area, [0.5, 0.5], [0.51, 0.5]);
+  await away(page);
+  assert.ok(difference(before, await bareLook(page, area)) > 0.005);
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  await away(page);
+  assert.ok(difference(before, await bareLook(page, area)) < 0.0005);
+  await choose(page, 'Sticker');
+  await page.mouse.click(at(area, 0.5, 0.5).x, at(area, 0.5, 0.5).y);
+  assert.ok(await page.locator('.sticker-bar').isVisible(), 'a sticker again');
+  assert.deepEqual(complaints, []);
+});
+
+test('the eraser works on what lies under it: a sticker elsewhere stays one, and where nothing is, that is said', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } });
+  const area = await openBall(page);
+  const path = [
+    [0.45, 0.6],
+    [0.55, 0.6],
+  ] as const;
+  await choose(page, 'Brush');
+  await set(page, { 'brush-color': kGreenPaint, 'brush-size': '40', 'brush-hardness': '100' });
+  await drag(page, area, ...path);
+  await choose(page, 'Sticker');
+  await set(page, { 'brush-size': '60' });
+  const sticker = at(area, 0.5, 0.35);
+  await page.mouse.click(sticker.x, sticker.y);
+  assert.deepEqual(await names(page), ['Stickers 1', 'Painting 1']);
+  const both = filled(await savedTexture(page));
+  await choose(page, 'Erase');
+  await drag(page, area, [0.42, 0.68], ...path); // it begins beside the paint
+  const rest = filled(await savedTexture(page));
+  await page.getByRole('checkbox', { name: 'Show Painting 1' }).uncheck({ force: true });
+  assert.equal(rest, filled(await savedTexture(page)), `of ${both} texels only those of the sticker are left`);
+  await page.getByRole('checkbox', { name: 'Show Painting 1' }).check({ force: true });
+  const fine = page.getByTestId('painting-fine');
+  assert.equal(await fine.isChecked(), false);
+
+  await drag(page, area, [0.45, 0.75], [0.55, 0.75]);
+  assert.match(await shownError(page), /nothing to erase/i);
+  assert.equal(rest, filled(await savedTexture(page)));
+  await choose(page, 'Sticker');
+  await page.mouse.click(sticker.x, sticker.y);
+  assert.ok(await page.locator('.sticker-bar').isVisible(), 'it is a sticker still');
+  assert.deepEqual(await names(page), ['Stickers 1', 'Painting 1']);
+
+  // Stickers that are erased become paint, but the brush goes on as it was.
+  await choose(page, 'Erase');
+  await set(page, { 'brush-size': '30' });
+  await drag(page, area, [0.5, 0.5], [0.5, 0.35]);
+  assert.equal(await shownError(page), '');
+  assert.ok(filled(await savedTexture(page)) < rest);
+  assert.equal(await fine.isChecked(), false);
+  await choose(page, 'Brush');
+  await drag(page, area, ...path);
+  assert.equal(await page.locator('.layer [aria-pressed=true] .name').textContent(), 'Painting 1');
+  assert.deepEqual(complaints, []);
+});
+
+test('a click fills the whole part; its colour is taken by the eyedropper and stays among the swatches', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 640 } });
+  const area = await openBall(page);
+  await choose(page, 'Fill');
+  await set(page, { 'brush-color': kGreenPaint });
+  await page.mouse.click(at(area, 0.5, 0.5).x, at(area, 0.5, 0.5).y);
+  await away(page);
+  const front = await look(page, area);
+  const share = shareOfHue(front, kGreen);
+  assert.ok(share > 0.05, `${share}`);
+  await page.locator('#view').focus();
+  for (let i = 0; i < 15; i++) await page.keyboard.press('ArrowRight');
+  assert.ok(shareOfHue(await look(page, area), kGreen) > 0.95 * share, 'from behind too');
+  await page.keyboard.press('Home');
+  const swatch = page.getByTestId('swatches').getByRole('button');
+  assert.equal(await swatch.first().getAttribute('title'), kGreenPaint);
+  assert.ok((await swatch.count()) <= 8);
+
+  await choose(page, 'Brush');
+  const color = page.getByTestId('brush-color');
+  await color.fill('#112233');
+  await page.keyboard.down('Alt');
+  await page.mouse.click(at(area, 0.5, 0.5).x, at(area, 0.5, 0.5).y);
+  await page.keyboard.up('Alt');
+  assert.equal(await color.inputValue(), kGreenPaint);
+  await color.fill('#112233');
+  await page.locator('#pick-color').click();
+  assert.equal(await page.locator('#pick-color').getAttribute('aria-pressed'), 'true');
+  await page.mouse.click(at(area, 0.5, 0.5).x, at(area, 0.5, 0.5).y);
+  assert.equal(await color.inputValue(), kGreenPaint);
+  assert.equal(await page.locator('#pick-color').getAttribute('aria-pressed'), 'false');
+  await color.fill('#112233');
+  await page.locator('#view').press('i');
+  await page.locator('#view').press(' ');
+  assert.equal(await color.inputValue(), kGreenPaint, 'by keys, at the cross');
+  await swatch.nth(2).click();
+  assert.notEqual(await color.inputValue(), kGreenPaint);
+  assert.deepEqual(await faults(page), []);
+
+  await page.keyboard.press('Control+z');
+  await away(page);
+  assert.equal(shareOfHue(await look(page, area), kGreen), 0);
+  assert.ok(difference(front, await look(page, area)) > 0.05);
+  assert.deepEqual(complaints, []);
+});
+
+test('keys choose tools and sizes, and a list names them', async () => {
+  const { page } = await site.visit({ viewport: { width: 700, height: 844 }, hasTouch: true });
+  const view = page.locator('#view');
+  for (const [key, title] of Object.entries({ b: 'Brush', e: 'Erase', s: 'Sticker', f: 'Fill' })) {
+    await view.press(key);
+    assert.ok(await page.getByRole('radio', { name: title, exact: true }).isChecked(), title);
+  }
+  await view.press('b');
+  const size = async (): Promise<number> => Number(await page.getByTestId('brush-size').inputValue());
+  const before = await size();
+  await view.press(']');
+  const larger = await size();
+  assert.ok(larger > before);
+  await view.press('[');
+  assert.equal(await size(), before);
+  await view.press('?');
+  const list = page.getByRole('dialog', { name: 'Keys' });
+  assert.match((await list.textContent())!, /Erase/);
+  assert.deepEqual(await faults(page), []);
+  await page.keyboard.press('Escape');
+  assert.ok(await list.isHidden());
+  const button = page.getByRole('button', { name: 'Keys', exact: true });
+  const { width, height } = (await button.boundingBox())!;
+  assert.ok(Math.min(width, height) >= 44, `${width} × ${height}`);
+  await button.click();
+  await list.getByRole('button', { name: 'Close' }).click();
+  assert.ok(await list.isHidden());
+});
+
+test('where no paint is seen, nobody paints: the pointer turns the model again, and opens the menu of a part', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } });
+  const turn = page.getByRole('radio', { name: 'Turn', exact: true });
+  await choose(page, 'Brush');
+  await page.locator('#show-paint').uncheck({ force: true });
+  assert.ok(await turn.isChecked(), 'without paint');
+  await choose(page, 'Fill');
+  assert.ok(await page.locator('#show-paint').isChecked());
+  await page.locator('#view-mode input[value=segments]').check({ force: true });
+  assert.ok(await turn.isChecked(), 'in Parts');
+  const before = await names(page);
+  const { x, y } = at(await modelArea(page), 0.5, 0.5);
+  await page.mouse.click(x, y);
+  await page.getByTestId('part-menu').waitFor();
+  assert.deepEqual(await names(page), before, 'nothing was painted');
+  assert.deepEqual(complaints, []);
+});
+
+/** A model whose file has expressions, of either version of VRM. */
+async function vrm(version: 0 | 1): Promise<Upload> {
+  const file = await morphingBalls({ names: ['eyeBlinkLeft', 'Fcl_MTH_A'] });
+  return {
+    ...patched(file, (json) => {
+      const mesh = json.nodes.findIndex((node: { mesh?: number }) => node.mesh === 0);
+      const expression = (index: number) => ({ morphTargetBinds: [{ node: mesh, index, weight: 1 }] });
+      const group = (presetName: string, index: number) => ({
+        presetName,
+        name: presetName,
+        binds: [{ mesh: 0, index, weight: 80 }],
+      });
+      json.extensions =
+        version === 1
+          ? { VRMC_vrm: { expressions: { preset: { blinkLeft: expression(0), aa: expression(1) } } } }
+          : { VRM: { blendShapeMaster: { blendShapeGroups: [group('blink_l', 0), group('joy', 1)] } } };
+    }),
+    name: `figure-${version}.vrm`,
+  };
+}
+
+/** A GLB with another JSON. */
+// biome-ignore lint/suspicious/noExplicitAny: JSON of glTF
+function patched(file: Upload, change: (json: any) => void): Upload {
+  const length = file.buffer.readUInt32LE(12);
+  const json = JSON.parse(file.buffer.subarray(20, 20 + length).toString());
+  change(json);
+  const text = Buffer.from(JSON.stringify(json));
+  const padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]);
+  const head = Buffer.from(file.buffer.subarray(0, 20));
+  head.writeUInt32LE(padded.length, 12);
+  const rest = file.buffer.subarray(20 + length);
+  head.writeUInt32LE(20 + padded.length + rest.length, 8);
+  return { ...file, buffer: Buffer.concat([head, padded, rest]) };
+}
+
+test('morphs have names in words, and the expressions of a VRM are buttons', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true });
+  for (const version of [0, 1] as const) {
+    await drop(page, [await vrm(version), await islandCage(1)]);
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    const titles = page.getByTestId('expressions').getByRole('button');
+    assert.deepEqual(await titles.allTextContents(), version === 1 ? ['Blink left', 'Aa'] : ['Blink left', 'Happy']);
+    const blink = page.getByTestId('morphs').getByLabel('Left eye: blink');
+    const mouth = page.getByTestId('morphs').getByLabel('Mouth: A');
+    await titles.nth(1).click();
+    assert.equal(Number(await mouth.inputValue()), version === 1 ? 1 : 0.8);
+    await titles.nth(0).click();
+    assert.deepEqual([Number(await blink.inputValue()) > 0.7, Number(await mouth.inputValue())], [true, 0]);
+    assert.equal(await titles.nth(0).getAttribute('aria-pressed'), 'true');
+    assert.equal(await titles.nth(1).getAttribute('aria-pressed'), 'false');
+    await page.locator('#live[aria-busy=false]').waitFor();
+    if (version === 1) {
+      assert.deepEqual(await faults(page), []);
+      assert.ok((await titles.first().boundingBox())!.height >= 44);
+    }
+    await titles.nth(0).click();
+    assert.equal(Number(await blink.inputValue()), 0);
+  }
+  assert.deepEqual(complaints, []);
+});
+
+test('names of ARKit, VRoid and VRM in words; others stay as they are', () => {
+  const names = ['browOuterUpRight', 'mouthSmileLeft', 'mouthLeft', 'jawOpen', 'cheekPuff', 'eyeLookInLeft'];
+  assert.deepEqual([...names, 'Fcl_EYE_Close_L', 'Fcl_ALL_Joy', 'grow', 'Smile_L', 'eyelash'].map(titleOfMorph), [
+    'Right brow: outer up',
+    'Mouth: smile, left',
+    'Mouth: left',
+    'Jaw: open',
+    'Cheek: puff',
+    'Left eye: look in',
+    'Eyes: close, left',
+    'Face: joy',
+    'grow',
+    'Smile_L',
+    'eyelash',
+  ]);
+  assert.deepEqual(['fun', 'surprised', 'lookUp', 'E'].map(titleOfExpression), [
+    'Relaxed',
+    'Surprised',
+    'Look up',
+    'Ee',
+  ]);
+});
