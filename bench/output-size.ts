@@ -34,7 +34,7 @@ function cageFor(assets: string | undefined, name: string, target: string): stri
 function models(): Model[] {
   const assets = process.env['CAGECAST_ASSETS'];
   const found: Model[] = [];
-  for (const base of [join(root, 'build/assets'), ...(assets === undefined ? [] : [assets])]) {
+  for (const base of [join(root, 'examples/samples'), ...(assets === undefined ? [] : [assets])]) {
     for (const path of readdirSync(base, { recursive: true, encoding: 'utf8' }).sort()) {
       if (!/\.(glb|gltf)$/.test(path) || /^(cage|template)/.test(basename(path))) continue;
       const own = join(base, dirname(path), 'cage.glb');
@@ -66,7 +66,7 @@ async function bare({ name, target, cage }: Model): Promise<Model> {
   return { name: `${name}, bare`, target: path, cage };
 }
 
-const paint = join(root, 'build/assets/car/paint-rally.png');
+const paint = join(root, 'examples/samples/car/paint-rally.png');
 
 /** The size of what the command writes, without the bytes of the paint. */
 function written({ name, target, cage }: Model, how: string, ...flags: string[]): number {

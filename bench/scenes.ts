@@ -20,7 +20,7 @@ export interface BenchScene {
 
 const root = fileURLToPath(new URL('..', import.meta.url));
 const folder = `${root}build/bench/scenes`;
-const model = `${root}build/assets/lizard`;
+const model = `${root}examples/samples/lizard`;
 const sources = ['resize.ts', 'scenes.ts', 'scene-file.ts'].map((name) =>
   fileURLToPath(new URL(name, import.meta.url)),
 );

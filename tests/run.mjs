@@ -60,10 +60,7 @@ const kBuilds = {
     await cmake('release', '--target', 'cagecast_bench', 'cagecast_count_instructions');
   },
   twins: () => cmake('twins'),
-  wasm: async () => {
-    await mustRun('npm', ['run', '--silent', 'assets']);
-    await mustRun(process.execPath, ['wasm/tools/build.mjs']);
-  },
+  wasm: () => mustRun(process.execPath, ['wasm/tools/build.mjs']),
   scalar: () => mustRun(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar']),
   site: async () => {
     await built('wasm');

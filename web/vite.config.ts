@@ -7,9 +7,9 @@ import { precache } from './precache';
 import { share } from './share';
 
 const kRepository = fileURLToPath(new URL('..', import.meta.url));
-const kSamples = path.join(kRepository, 'build/assets');
+const kSamples = path.join(kRepository, 'examples/samples');
 
-/** Makes the sample models, which code generates, part of the page: under samples/, in development and in the build. */
+/** Makes the sample models part of the page: under samples/, in development and in the build. */
 function samples(): Plugin {
   let outDir: string;
   return {
@@ -35,11 +35,9 @@ function samples(): Plugin {
 
 /** The files in the list of samples, relative to it. */
 async function sampleFiles(): Promise<string[]> {
-  const text = await readFile(path.join(kSamples, 'index.json'), 'utf8').catch(() => {
-    throw new Error('build/assets/index.json is missing: make the sample models first (npm run assets)');
-  });
+  const text = await readFile(path.join(kSamples, 'index.json'), 'utf8');
   const samples: { target: string; cage: string; paints: { file: string }[] }[] = JSON.parse(text);
-  return samples.flatMap(({ target, cage, paints }) => [target, cage, ...paints.map(({ file }) => file)]);
+  return [...new Set(samples.flatMap(({ target, cage, paints }) => [target, cage, ...paints.map(({ file }) => file)]))];
 }
 
 /** Uses the package's separate .wasm file: page and worker share it, and it compiles while it loads. */

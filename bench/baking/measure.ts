@@ -1,5 +1,5 @@
 // Measures baking on the lizard: processor time, and how far a paint that went there and back is from itself.
-//   npx tsx bench/baking/measure.ts        needs `npm run assets` and `npm run build`
+//   npx tsx bench/baking/measure.ts        needs `npm run build`
 
 import { readFileSync } from 'node:fs';
 import { NodeIO } from '@gltf-transform/core';
@@ -7,7 +7,7 @@ import { init, type Mesh, transfer } from 'cagecast';
 import { type Baked, bake, cageTexture, type Image, resize } from 'cagecast/bake';
 import { PNG } from 'pngjs';
 
-const folder = 'build/assets/lizard';
+const folder = 'examples/samples/lizard';
 const kSide = 1024;
 const kRuns = 7;
 

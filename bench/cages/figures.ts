@@ -8,7 +8,7 @@ export const cagesFolder = `${root}build/cages`;
 /** What a model is; goals differ by it. */
 export type Kind = 'head' | 'body' | 'prop';
 
-/** What is known of each vertex of a target; see `examples/assets/truth.ts`. */
+/** What is known of each vertex of a target; see examples/samples/README.md. */
 export interface FigureTruth {
   ncz: number[];
   ignore: number[];
@@ -46,10 +46,13 @@ export interface Figure {
 /** Figures that fits are measured with, by kind. */
 export const templates: Readonly<Record<'head' | 'body', string>> = { head: 'makehuman_head', body: 'makehuman_body' };
 
+/** Per vertex: a string of 0 and 1, or an array of them. */
+type Labels = string | number[];
+
 interface TruthFile {
-  ncz: number[];
-  ignore: number[];
-  offCage?: number[];
+  ncz: Labels;
+  ignore: Labels;
+  offCage?: Labels;
   parts?: { name: string; firstVertex: number; vertexCount: number }[];
 }
 type PersonLandmarks = Record<'head' | 'body', Record<string, { position: [number, number, number] }>> & {
@@ -59,11 +62,11 @@ type PersonLandmarks = Record<'head' | 'body', Record<string, { position: [numbe
 /** The project's samples, and what is in the folder that CAGECAST_ASSETS names and in its subfolder `people`. */
 export function listFigures(): Figure[] {
   const assets = process.env['CAGECAST_ASSETS'];
-  const samples = `${root}build/assets`;
+  const samples = `${root}examples/samples`;
   return [
     ...foldersOf(samples)
       .filter((name) => name !== 'human-misaligned') // its target is that of `human`
-      .filter((name) => existsSync(`${samples}/${name}/target.glb`)) // models of templates are no samples
+      .filter((name) => existsSync(`${samples}/${name}/cage.glb`)) // models of templates are no samples
       .map((name) => readFolder(name, `${samples}/${name}`)),
     ...(assets === undefined ? [] : foldersOf(assets).map((name) => readFolder(name, `${assets}/${name}`))),
     ...(assets === undefined ? [] : foldersOf(`${assets}/people`)).flatMap((name) =>
@@ -86,7 +89,7 @@ const sampleTemplates: Readonly<Record<string, string>> = { human: 'human-head' 
 
 /** The landmarks that a template has in the extras of its mesh. */
 function landmarksOf(template: string): Figure['landmarks'] {
-  const bytes = readFileSync(`${root}examples/assets/templates/${template}.glb`);
+  const bytes = readFileSync(`${root}examples/samples/templates/${template}.glb`);
   const json = JSON.parse(bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12))) as {
     meshes: { extras?: { landmarks?: Figure['landmarks'] } }[];
   };
@@ -141,11 +144,15 @@ function readPerson(person: string, folder: string): Figure[] {
     });
 }
 
-function truthOf({ ncz, ignore, offCage, parts = [] }: TruthFile): FigureTruth {
+function truthOf(file: TruthFile): FigureTruth {
+  const { parts = [] } = file;
+  const [ncz, ignore, offCage] = [file.ncz, file.ignore, file.offCage ?? []].map((labels) =>
+    [...labels].map(Number),
+  ) as [number[], number[], number[]];
   const eyes = ncz.map(() => 0);
   for (const { name, firstVertex, vertexCount } of parts) {
     const what = /lash/i.test(name) ? 3 : /^l.*eye|eye.*(_l|left)$/i.test(name) ? 1 : /eye/i.test(name) ? 2 : 0;
     if (!/brow/i.test(name)) eyes.fill(what, firstVertex, firstVertex + vertexCount);
   }
-  return { ncz, ignore, offCage: offCage ?? ncz.map(() => 0), eyes };
+  return { ncz, ignore, offCage: file.offCage ? offCage : ncz.map(() => 0), eyes };
 }

@@ -17,8 +17,8 @@ import { cagesFolder } from './figures.js';
 import { meshOf } from './paint-score.js';
 
 const assets = process.env['CAGECAST_ASSETS'];
-const human = `${root}build/assets/human/target.glb`;
-const headTemplate = `${root}examples/assets/templates/human-head.glb`;
+const human = `${root}examples/samples/human/target.glb`;
+const headTemplate = `${root}examples/samples/templates/human-head.glb`;
 
 async function modelOf(path: string) {
   const { mesh, parts, joints } = await readGlb(path);
@@ -79,11 +79,11 @@ async function fitSheet(): Promise<Sheet> {
 function templatesSheet(): Sheet {
   const cells = [
     { name: 'human-head', target: human, turn: 24 },
-    { name: 'human-body', target: `${root}build/assets/human-body/model.glb`, turn: 24 },
-    { name: 'animal-head', target: `${root}build/assets/animal-head/model.glb`, turn: 42 },
-    { name: 'car', target: `${root}build/assets/car/target.glb`, turn: 38 },
+    { name: 'human-body', target: `${root}examples/samples/human-body/target.glb`, turn: 24 },
+    { name: 'animal-head', target: `${root}examples/samples/animal-head/target.glb`, turn: 42 },
+    { name: 'car', target: `${root}examples/samples/car/target.glb`, turn: 38 },
   ].map(({ name, ...view }): Cell => {
-    const cage = `${root}examples/assets/templates/${name}.glb`;
+    const cage = `${root}examples/samples/templates/${name}.glb`;
     return { ...view, cage, paint: undefined, rise: 8, look: 'cage' };
   });
   return {
@@ -97,14 +97,14 @@ function templatesSheet(): Sheet {
 const off = 0.03;
 
 async function refineSheet(): Promise<Sheet> {
-  const { mesh } = await readGlb(`${root}build/assets/human/cage.glb`);
+  const { mesh } = await readGlb(`${root}examples/samples/human/cage.glb`);
   const heights = mesh.positions.filter((_, i) => i % 3 === 1);
   const shift = off * (Math.max(...heights) - Math.min(...heights));
   const moved = { ...meshOf(mesh), positions: mesh.positions.map((x, i) => (i % 3 === 1 ? x - shift : x)) };
   const refined = await refineCage({ ...moved, uvs: mesh.uvs! }, await modelOf(human));
   const before = writeCageGlb('guide-moved', { ...moved, uvs: mesh.uvs! });
   const after = writeCageGlb('guide-refined', refined);
-  const paint = `${root}build/assets/human/paint-skull.png`;
+  const paint = `${root}examples/samples/human/paint-skull.png`;
   const cells = [before, after].flatMap((cage) =>
     (['cage', 'default'] as const).map((look): Cell => ({ target: human, cage, ...front, paint, look })),
   );

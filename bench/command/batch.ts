@@ -8,7 +8,7 @@ import { availableParallelism, tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
-const assets = fileURLToPath(new URL('../../build/assets', import.meta.url));
+const assets = fileURLToPath(new URL('../../examples/samples', import.meta.url));
 const command = fileURLToPath(new URL('../../dist/cli.js', import.meta.url));
 const jobs = Number(process.argv[2] ?? 200);
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-batch-'));

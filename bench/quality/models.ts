@@ -4,7 +4,7 @@ import { output, root } from '../native.js';
 import { readGlb } from '../read-glb.js';
 import { readScene, type Scene } from '../scene-file.js';
 
-/** What is known of each vertex of a target; see `examples/assets/truth.ts`. */
+/** What is known of each vertex of a target; see examples/samples/README.md. */
 export interface Truth {
   /** 1 = must not be painted. */
   ncz: ArrayLike<number>;
@@ -25,7 +25,7 @@ export interface Model {
   folder?: string;
 }
 
-const samplesFolder = `${root}build/assets`;
+const samplesFolder = `${root}examples/samples`;
 
 /** A model that lies in a folder. */
 export type ModelFiles = Pick<Model, 'name' | 'kind'> & { folder: string };
@@ -40,7 +40,7 @@ export function listFiles(): ModelFiles[] {
   );
   const assets = process.env['CAGECAST_ASSETS'];
   const given = (assets === undefined ? [] : readdirSync(assets).sort())
-    .filter((name) => existsSync(`${assets}/${name}/truth.json`))
+    .filter((name) => ['target.glb', 'cage.glb', 'truth.json'].every((file) => existsSync(`${assets}/${name}/${file}`)))
     .map((name): ModelFiles => ({ name, kind: 'asset', folder: `${assets}/${name}` }));
   return [...samples, ...given].sort((a, b) => Number(a.kind === 'spoiled') - Number(b.kind === 'spoiled'));
 }
@@ -70,11 +70,18 @@ export class NoSuchModel extends Error {}
  */
 export async function loadFiles({ name, kind, folder }: ModelFiles): Promise<Model> {
   const [target, cage] = await Promise.all(['target', 'cage'].map((file) => readGlb(`${folder}/${file}.glb`)));
-  const truth = JSON.parse(await readFile(`${folder}/truth.json`, 'utf8')) as Truth;
+  const truth = readTruth(await readFile(`${folder}/truth.json`, 'utf8'));
   const found = target!.mesh.positions.length / 3;
   if (found !== truth.ncz.length)
     throw new Error(`${folder}: the target has ${found} vertices, its truth.json speaks of ${truth.ncz.length}`);
   return { name, kind, truth, folder, scene: { cage: cage!.mesh, target: target!.mesh } };
+}
+
+/** Labels are a string of 0 and 1 in the samples, and may be an array in models of others. */
+function readTruth(text: string): Truth {
+  const { ncz, ignore, offCage } = JSON.parse(text) as Record<keyof Truth, string | number[]>;
+  const labelsOf = (labels: string | number[]): Uint8Array => Uint8Array.from(labels as number[]);
+  return { ncz: labelsOf(ncz), ignore: labelsOf(ignore), offCage: labelsOf(offCage) };
 }
 
 /** The models of tests/core/scenes/traps.cpp, which the reference writes. */

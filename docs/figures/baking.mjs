@@ -1,4 +1,4 @@
-// Draws docs/figures/baking.png: a paint, baked into the lizard's own texture, and back. Needs `npm run assets` and `npm run build`.
+// Draws docs/figures/baking.png: a paint, baked into the lizard's own texture, and back. Needs `npm run build`.
 //   node docs/figures/baking.mjs
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -10,7 +10,7 @@ import { resize } from 'cagecast/bake';
 import { PNG } from 'pngjs';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
-const lizard = (name) => join(root, 'build/assets/lizard', name);
+const lizard = (name) => join(root, 'examples/samples/lizard', name);
 const kSide = 280; // pixels
 const kGap = 12;
 

@@ -1,4 +1,4 @@
-// What npm start needs: Redis by apt, the packages of this folder, Cagecast itself and its sample models, if they are not there yet.
+// What npm start needs: Redis by apt, the packages of this folder and Cagecast itself, if they are not there yet.
 import { execFileSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -8,4 +8,3 @@ const run = (command, ...args) => execFileSync(command, args, { cwd: root, stdio
 
 run(process.execPath, 'wasm/tools/setup.mjs', 'catalogue');
 if (!existsSync(`${root}dist/index.js`)) run('npm', 'run', '--silent', 'build');
-if (!existsSync(`${root}build/assets/index.json`)) run('npm', 'run', '--silent', 'assets');

@@ -10,7 +10,7 @@ import { freePort, startRedis } from './redis.ts';
 const here = (path: string) => fileURLToPath(new URL(path, import.meta.url));
 const { values } = parseArgs({ options: { once: { type: 'boolean' } } });
 
-process.env.CATALOGUE_INPUTS ??= here('../../build/assets');
+process.env.CATALOGUE_INPUTS ??= here('../samples');
 process.env.CATALOGUE_OUTPUTS ??= here('outputs');
 const redis = process.env.REDIS_URL ? undefined : await startRedis(here('.redis'));
 process.env.REDIS_URL ??= redis!.url;

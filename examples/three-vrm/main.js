@@ -16,8 +16,8 @@ import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 const loader = new GLTFLoader().register((parser) => new VRMLoaderPlugin(parser));
 const [avatar, cage, paint] = await Promise.all([
   loader.loadAsync('avatar.vrm'),
-  loader.loadAsync('human/cage.glb'),
-  new TextureLoader().loadAsync('human/paint-harlequin.png'),
+  loader.loadAsync('cage.glb'),
+  new TextureLoader().loadAsync('paint-harlequin.png'),
 ]);
 paint.flipY = false; // textures of glTF begin at the top
 paint.colorSpace = SRGBColorSpace;

@@ -1,8 +1,9 @@
-// Makes avatar.vrm from the sample "human": the same model, and what VRM 1.0 asks for. An avatar of your own needs nothing of this.
-import { readFileSync, writeFileSync } from 'node:fs';
+// Makes models/avatar.vrm from the sample "human": the same model, and what VRM 1.0 asks for. An avatar of your own needs nothing of this.
+import { cpSync, readFileSync, writeFileSync } from 'node:fs';
 
-const assets = new URL('../../build/assets/', import.meta.url);
-const glb = readFileSync(new URL('human/target.glb', assets));
+const models = new URL('models/', import.meta.url);
+cpSync(new URL('../samples/human/', import.meta.url), models, { recursive: true });
+const glb = readFileSync(new URL('target.glb', models));
 const textLength = glb.readUInt32LE(12);
 const json = JSON.parse(glb.subarray(20, 20 + textLength).toString());
 const limbs = ['UpperLeg', 'LowerLeg', 'Foot', 'UpperArm', 'LowerArm', 'Hand'];
@@ -31,4 +32,4 @@ const head = Buffer.alloc(20);
 head.write('glTF');
 [2, 20 + chunk.length + rest.length, chunk.length].forEach((n, i) => head.writeUInt32LE(n, 4 + 4 * i));
 head.write('JSON', 16);
-writeFileSync(new URL('avatar.vrm', assets), Buffer.concat([head, chunk, rest]));
+writeFileSync(new URL('avatar.vrm', models), Buffer.concat([head, chunk, rest]));

@@ -1,7 +1,6 @@
 export default {
   base: './',
-  // The sample models, made by `npm run assets` in the repository, lie beside the page.
-  publicDir: '../../build/assets',
+  publicDir: 'models', // which make-avatar.js makes
   build: { target: 'es2022' },
   // Only because cagecast is a link to the repository: the page's own three.js, and files outside the example's folder.
   resolve: { dedupe: ['three'] },

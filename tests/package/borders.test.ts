@@ -173,7 +173,7 @@ describe('cutBorders', () => {
 
   test('paint on the lizard ends at the projected boundary loops of the cage, within 0.1 % of the diagonal', async (context) => {
     const [lizardCage, lizard] = (await Promise.all(
-      ['cage', 'target'].map((name) => readPlain(`build/assets/lizard/${name}.glb`)),
+      ['cage', 'target'].map((name) => readPlain(`examples/samples/lizard/${name}.glb`)),
     )) as [Mesh, Mesh];
     const result = transfer(lizardCage, lizard);
     const cut = cutBorders(lizardCage, lizard, result);
@@ -303,7 +303,7 @@ describe('with borders: cut', () => {
     test(`the command gives new vertices all attributes of those around them, in proportion: ${name}`, async () => {
       writeFileSync(at('rich.glb'), rich(scale));
       writeFileSync(at('cage.glb'), glbOf(cage));
-      writeFileSync(at('paint.png'), readFileSync('build/assets/lizard/paint-tiger.png'));
+      writeFileSync(at('paint.png'), readFileSync('examples/samples/lizard/paint-tiger.png'));
       const { status, stdout, stderr } = cagecast(
         'transfer',
         at('rich.glb'),
@@ -449,7 +449,7 @@ describe('with borders: cut', () => {
 
   /** What the command makes of two files. @returns its file. */
   function commanded(targetFile: string, cageFile: string): string {
-    writeFileSync(at('paint.png'), readFileSync('build/assets/lizard/paint-tiger.png'));
+    writeFileSync(at('paint.png'), readFileSync('examples/samples/lizard/paint-tiger.png'));
     const { status, stderr } = cagecast(
       'transfer',
       targetFile,
@@ -648,7 +648,7 @@ describe('with borders: cut', () => {
   test('segments excluded later have no painted piece, segments kept later no bare one', async () => {
     // Points that are hidden or uncovered never change to or from "culled".
     const [cage, mesh] = (await Promise.all(
-      ['cage', 'target'].map((name) => readPlain(`build/assets/lizard/${name}.glb`)),
+      ['cage', 'target'].map((name) => readPlain(`examples/samples/lizard/${name}.glb`)),
     )) as [Mesh, Mesh];
     const plain = { ...mesh, groups: undefined };
     const projection = project(cage, plain);

@@ -261,7 +261,7 @@ describe('with a loaded model', () => {
 });
 
 test('a model of two figures is refused: no cage fits both', async () => {
-  const model = gltf.cageModel(await new NodeIO().read('build/assets/human/target.glb'));
+  const model = gltf.cageModel(await new NodeIO().read('examples/samples/human/target.glb'));
   const count = model.positions.length / 3;
   const twice = {
     ...model,

@@ -278,7 +278,7 @@ describe('fitCage', () => {
   let model: CageModel;
   before(async () => {
     template = await loadTemplate('human-head');
-    const own = cageModel(await new NodeIO().read('build/assets/human/target.glb'));
+    const own = cageModel(await new NodeIO().read('examples/samples/human/target.glb'));
     // Another place and size than the template's.
     model = { ...own, positions: own.positions.map((x, i) => 2 * x + (i % 3 === 1 ? 5 : 0)) };
   });

@@ -173,7 +173,7 @@ export function smallest(): { cage: Required<Mesh>; target: Required<Mesh> } {
 
 /** Every folder with a target and a cage: of the samples that were built, and of CAGECAST_ASSETS where that is set. */
 export function modelFolders(): string[] {
-  const folders = ['build/assets', process.env['CAGECAST_ASSETS']].filter((folder) => folder !== undefined);
+  const folders = ['examples/samples', process.env['CAGECAST_ASSETS']].filter((folder) => folder !== undefined);
   return folders.flatMap((folder) =>
     existsSync(folder)
       ? readdirSync(folder)

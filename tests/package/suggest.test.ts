@@ -14,8 +14,8 @@ const find = (findings: readonly Finding[], code: string): Finding => {
   return found;
 };
 const sample = async (name: string): Promise<{ cage: Mesh; target: Mesh }> => ({
-  cage: await readPlain(`build/assets/${name}/cage.glb`),
-  target: await readPlain(`build/assets/${name}/target.glb`),
+  cage: await readPlain(`examples/samples/${name}/cage.glb`),
+  target: await readPlain(`examples/samples/${name}/target.glb`),
 });
 const culled = (options: TransferOptions): boolean[] =>
   transfer(cage, target, options).segmentStats.map((segment) => segment.culled);

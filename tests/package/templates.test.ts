@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { existsSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { CagecastError, init, transfer } from 'cagecast';
@@ -129,7 +129,7 @@ const kTemplates: readonly {
 ];
 
 const load = async (name: string) => {
-  const bytes = readFileSync(`examples/assets/templates/${name}.glb`);
+  const bytes = readFileSync(`examples/samples/templates/${name}.glb`);
   const document = await new NodeIO().readBinary(new Uint8Array(bytes));
   const meshes = document.getRoot().listMeshes();
   assert.equal(meshes.length, 1);
@@ -141,7 +141,7 @@ describe('loadTemplate', () => {
     assert.deepEqual([...templateNames].sort(), kTemplates.map(({ name }) => name).sort());
     for (const name of templateNames) {
       const cage = await loadTemplate(name);
-      const plain = await readPlain(`examples/assets/templates/${name}.glb`);
+      const plain = await readPlain(`examples/samples/templates/${name}.glb`);
       const { extras } = await load(name);
       assert.deepEqual(
         cage.positions.map((x) => x + 0), // not -0
@@ -175,18 +175,14 @@ describe('cagecast fit', () => {
 describe('the template', () => {
   for (const { name, model, kind, landmarks, holes, orders } of kTemplates)
     describe(name, () => {
-      test('is what its sources make, at most 60 kB', async () => {
+      test('has at most 60 kB', async () => {
         const { bytes } = await load(name);
         assert.ok(bytes.length <= 60_000, `${bytes.length} bytes`);
-        assert.ok(
-          bytes.equals(readFileSync(`build/assets/${model}/template.glb`)),
-          'examples/assets/templates is out of date: npm run assets -- --templates',
-        );
       });
 
       test('names its kind, landmarks and holes', async () => {
         const { extras } = await load(name);
-        const { positions } = await readPlain(`examples/assets/templates/${name}.glb`);
+        const { positions } = await readPlain(`examples/samples/templates/${name}.glb`);
         assert.equal(extras.kind, kind);
         for (const spot of landmarks) assert.equal(extras.landmarks[spot]?.length, 3, spot);
         for (const [spot, [x, y, z]] of Object.entries(extras.landmarks)) {
@@ -204,7 +200,7 @@ describe('the template', () => {
       });
 
       test('has UVs that are their own mirror image', async () => {
-        const { positions, uvs } = await readPlain(`examples/assets/templates/${name}.glb`);
+        const { positions, uvs } = await readPlain(`examples/samples/templates/${name}.glb`);
         const places = new Map<string, number[]>();
         const keyOf = (x: number, y: number, z: number): string => [x, y, z].map((a) => Math.round(a * 1e5)).join(' ');
         for (let v = 0; 3 * v < positions.length; v++) {
@@ -222,17 +218,14 @@ describe('the template', () => {
       });
 
       test('fits the model that it was made for', async () => {
-        const cage = await readPlain(`examples/assets/templates/${name}.glb`);
-        const file = ['target.glb', 'model.glb']
-          .map((end) => `build/assets/${model}/${end}`)
-          .find((path) => existsSync(path))!;
-        const target = await readPlain(file);
-        const truth = JSON.parse(readFileSync(`build/assets/${model}/truth.json`, 'utf8'));
-        const { offCage } = JSON.parse(readFileSync(`build/assets/${model}/template.json`, 'utf8'));
+        const cage = await readPlain(`examples/samples/templates/${name}.glb`);
+        const target = await readPlain(`examples/samples/${model}/target.glb`);
+        const truth = JSON.parse(readFileSync(`examples/samples/${model}/truth.json`, 'utf8'));
         const { zones } = transfer(cage, target);
-        const scored = Array.from(zones, (_, v) => v).filter((v) => !truth.ignore[v]);
-        const forbidden = scored.filter((v) => truth.ncz[v]);
-        const skin = scored.filter((v) => !truth.ncz[v] && !offCage[v]);
+        const isLabelled = (label: string, v: number): boolean => truth[label][v] === '1';
+        const scored = Array.from(zones, (_, v) => v).filter((v) => !isLabelled('ignore', v));
+        const forbidden = scored.filter((v) => isLabelled('ncz', v));
+        const skin = scored.filter((v) => !isLabelled('ncz', v) && !isLabelled('offTemplate', v));
         const suppressed = forbidden.filter((v) => zones[v] !== 0).length / forbidden.length;
         const kept = skin.filter((v) => zones[v] === 0).length / skin.length;
         assert.equal(suppressed, 1);

@@ -5,7 +5,6 @@ import { test } from 'node:test';
 const kProjects = {
   'the package, the command and these tests': 'wasm',
   'the measurements': 'bench',
-  'what makes the samples': 'examples/assets',
 };
 for (const [what, project] of Object.entries(kProjects)) {
   test(`${what}: all types are right`, () => {

@@ -42,10 +42,10 @@ test('keyboard only: load files, change the rules, and save the model', async ()
   page.on('filechooser', () => {});
   const sample = await shownCounts(page);
   await tabTo(page, 'target-input');
-  await chooseFile(page, inRepository('build/assets/human/target.glb'));
+  await chooseFile(page, inRepository('examples/samples/human/target.glb'));
   assert.equal(await settled(page), 'ready', await shownError(page));
   await tabTo(page, 'cage-input');
-  await chooseFile(page, inRepository('build/assets/human/cage.glb'));
+  await chooseFile(page, inRepository('examples/samples/human/cage.glb'));
   assert.equal(await settled(page), 'ready', await shownError(page));
   const loaded = await shownCounts(page);
   assert.notDeepEqual(loaded, sample);

@@ -4,7 +4,7 @@ import type { Locator, Page } from 'playwright-core';
 import { modelArea } from './picture';
 import { glb, inRepository, settled, shownError, type Upload } from './site';
 
-export const asset = (...names: string[]): Buffer => readFileSync(inRepository('build/assets', ...names));
+export const asset = (...names: string[]): Buffer => readFileSync(inRepository('examples/samples', ...names));
 
 /** A head without a cage. */
 export const head = (): Upload => glb('bust.glb', asset('human', 'target.glb'));

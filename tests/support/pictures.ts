@@ -54,7 +54,7 @@ async function busts(): Promise<Upload[]> {
   const shapes = { slim: [0.8, 1.05, 0.9], broad: [1.2, 1, 1.1], short: [1, 0.85, 1], tall: [0.95, 1.15, 1] };
   return Promise.all(
     Object.entries(shapes).map(async ([name, scale]) => {
-      const document = await io.read(inRepository('build/assets/human/target.glb'));
+      const document = await io.read(inRepository('examples/samples/human/target.glb'));
       const primitives = document
         .getRoot()
         .listMeshes()

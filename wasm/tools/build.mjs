@@ -34,8 +34,8 @@ const shipped = preset === 'wasm';
 const out = shipped ? at('dist') : at('build', preset, 'package');
 const stamp = at('build', preset, 'package.stamp');
 
-/** Template cages, made by `npm run assets` and checked in: the package is built without the models. */
-const kTemplates = 'examples/assets/templates';
+/** Template cages, which the package ships. */
+const kTemplates = 'examples/samples/templates';
 
 /** Folders of wasm/src and the files that are made of their index.ts. One that imports another has it as a file beside it. */
 const kEntries = {

@@ -1,7 +1,7 @@
 // Installs what the project needs and this machine lacks: Debian packages by apt, npm packages by the lock file.
 // Uses nothing but Node, because it is the first thing that runs. A second run finds everything there and says nothing.
 //
-//   node wasm/tools/setup.mjs assets | start | format | lint | test | test:all | clang | bench | pictures | docs | catalogue
+//   node wasm/tools/setup.mjs start | format | lint | test | test:all | clang | bench | pictures | docs | catalogue
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -68,7 +68,6 @@ const kTests = [
 // Valgrind counts instructions, which a test holds against a budget.
 const kAllTests = [...kTests, 'clang-tidy', 'valgrind', 'redis-server'];
 const kPurposes = {
-  assets: [],
   start: kPage,
   format: ['clang-format'],
   lint: ['clang-format'],

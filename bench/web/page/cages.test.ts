@@ -14,9 +14,13 @@ before(async () => void (site = await Site.open()));
 after(() => site?.close());
 
 for (const [title, button, model] of [
-  ['a cage is made for a head', 'make-cage', async () => readFileSync(inRepository('build/assets/human/target.glb'))],
+  [
+    'a cage is made for a head',
+    'make-cage',
+    async () => readFileSync(inRepository('examples/samples/human/target.glb')),
+  ],
   ['a cage is made for 51,200 triangles', 'make-cage', async () => (await lumpyBall(kSide)).buffer],
-  ['a template is fitted', 'fit-cage', async () => readFileSync(inRepository('build/assets/human/target.glb'))],
+  ['a template is fitted', 'fit-cage', async () => readFileSync(inRepository('examples/samples/human/target.glb'))],
 ] as const)
   test(`while ${title}, no task takes 100 ms`, async () => {
     const { page } = await site.visit({ viewport: { width: 800, height: 500 } });

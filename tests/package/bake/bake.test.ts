@@ -235,7 +235,7 @@ test('an image is resized by the areas that pixels cover', () => {
 /** The only primitive of a node, as a mesh, and the paint in the cage's UVs. */
 async function sample(name: string, node: string) {
   const read = async (file: string, of?: string): Promise<Mesh & { uvs: Float32Array }> => {
-    const document = await new NodeIO().read(`build/assets/${name}/${file}.glb`);
+    const document = await new NodeIO().read(`examples/samples/${name}/${file}.glb`);
     const nodes = document
       .getRoot()
       .listNodes()
@@ -255,7 +255,7 @@ async function sample(name: string, node: string) {
 
 test('there and back, from the cage to the lizard’s atlas and to the cage, the paint differs little on the mean', async () => {
   const { target, result } = await sample('lizard', 'skin');
-  const read = (name: string): Image => PNG.sync.read(readFileSync(`build/assets/lizard/paint-${name}.png`));
+  const read = (name: string): Image => PNG.sync.read(readFileSync(`examples/samples/lizard/paint-${name}.png`));
   // The tiger has stripes as fine as the texels of the atlas.
   const paints: [Image, number][] = [
     [smoothImage(1024, 1024), 1],

@@ -168,7 +168,7 @@ describe('cagecast transfer --cage auto', () => {
   });
 
   test('paints nothing of the parts that the cage is made without, unless they are to be kept', () => {
-    const lizard = 'build/assets/lizard/target.glb';
+    const lizard = 'examples/samples/lizard/target.glb';
     const { status, stdout, stderr } = cagecast(
       'transfer',
       lizard,
@@ -190,7 +190,7 @@ describe('cagecast transfer --cage auto', () => {
   });
 
   test('says which parts it is made without', () => {
-    const lizard = (name: string) => `build/assets/lizard/${name}.glb`;
+    const lizard = (name: string) => `examples/samples/lizard/${name}.glb`;
     for (const command of ['transfer', 'inspect']) {
       const { stdout } = cagecast(command, at('head.glb'), '--cage', 'auto');
       assert.match(stdout, /^excluded from the cage by their names: Eye\.L, ball$/m, command);
@@ -204,7 +204,7 @@ describe('cagecast transfer --cage auto', () => {
 });
 
 describe('cagecast fit', () => {
-  const target = 'build/assets/human/target.glb';
+  const target = 'examples/samples/human/target.glb';
 
   test('writes the template moved onto the model, and what it was moved by', async () => {
     const { status, stdout, stderr } = cagecast(
@@ -233,12 +233,12 @@ describe('cagecast fit', () => {
   });
 
   test('takes landmarks of the template and of the model from files', () => {
-    const { extras } = unpackGlb(readFileSync('examples/assets/templates/human-head.glb')).json.meshes![0]!;
+    const { extras } = unpackGlb(readFileSync('examples/samples/templates/human-head.glb')).json.meshes![0]!;
     const { landmarks } = extras as { landmarks: Record<string, number[]> };
     write('landmarks.json', JSON.stringify(landmarks));
     const { nose_tip, chin } = landmarks;
     write('some.json', JSON.stringify({ nose_tip, chin }));
-    const bare = unpackGlb(readFileSync('examples/assets/templates/human-head.glb'));
+    const bare = unpackGlb(readFileSync('examples/samples/templates/human-head.glb'));
     delete bare.json.meshes![0]!.extras;
     write('bare.glb', packGlb(bare));
     const { status, stdout, stderr } = cagecast(
@@ -283,7 +283,7 @@ describe('cagecast fit', () => {
     write('list.json', '[1, 2]');
     write('flat.json', '{ "chin": 3 }');
     write('empty.json', '{}');
-    const bare = unpackGlb(readFileSync('examples/assets/templates/human-head.glb'));
+    const bare = unpackGlb(readFileSync('examples/samples/templates/human-head.glb'));
     delete bare.json.meshes![0]!.extras;
     write('bare.glb', packGlb(bare));
     bare.json.meshes![0]!.extras = { landmarks: { chin: [0, 0, 0] } };

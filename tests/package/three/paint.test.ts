@@ -17,7 +17,7 @@ const server = createServer((request, response) => {
   const name = new URL(request.url ?? '/', 'http://localhost').pathname.slice(1) || 'index.html';
   try {
     const from = /^(target|cage)\.glb$/.test(name)
-      ? 'build/assets/lizard'
+      ? 'examples/samples/lizard'
       : /^(worker-thread|index|spawn|cages-thread)\.js$|\.wasm$/.test(name)
         ? 'dist'
         : folder;
@@ -47,7 +47,7 @@ before(async () => {
     define: { 'import.meta.url': 'location.href' },
     ...(three !== 'three' && { alias: { three } }),
   });
-  const lizard = (name: string) => `build/assets/lizard/${name}`;
+  const lizard = (name: string) => `examples/samples/lizard/${name}`;
   const options = [
     '--cage',
     lizard('cage.glb'),

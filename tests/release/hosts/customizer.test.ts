@@ -29,7 +29,11 @@ before(async () => {
   const [packed] = JSON.parse(run('npm', ...pack)) as [{ filename: string }];
   run('tar', '-xzf', join(folder, packed.filename), '-C', modules, '--transform', 's/^package/cagecast/');
   symlinkSync(realpathSync('node_modules/three'), join(modules, 'three'));
-  const options = { root: folder, publicDir: join(process.cwd(), 'build/assets/lizard'), logLevel: 'warn' } as const;
+  const options = {
+    root: folder,
+    publicDir: join(process.cwd(), 'examples/samples/lizard'),
+    logLevel: 'warn',
+  } as const;
   // What is linked lies outside of the folder.
   await build({ ...options, resolve: { preserveSymlinks: true } });
   server = await preview({ ...options, preview: { host: '127.0.0.1', port: 0 } });

@@ -7,7 +7,7 @@ import { after, describe, test } from 'node:test';
 import { validate } from '../../support/gltf.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-examples-'));
-const sample = 'build/assets/lizard';
+const sample = 'examples/samples/lizard';
 after(() => rmSync(folder, { recursive: true, force: true }));
 
 function node(...args: string[]): string {

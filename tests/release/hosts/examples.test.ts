@@ -18,7 +18,7 @@ const built: Record<string, string> = {
   'react-three-fiber': 'lizard',
   worker: 'lizard',
   'web-component': 'lizard',
-  'three-vrm': '.',
+  'three-vrm': '../three-vrm/models',
   'two-avatars': '.',
 };
 const policy =
@@ -58,10 +58,9 @@ async function buildExamples(): Promise<void> {
   const sources = join(user, 'examples');
   cpSync('examples', sources, {
     recursive: true,
-    filter: (path) => !/node_modules|examples\/(assets|native|node)/.test(path),
+    filter: (path) => !/node_modules|examples\/(native|node|samples)/.test(path),
   });
-  mkdirSync(join(user, 'build'));
-  symlinkSync(resolve('build/assets'), join(user, 'build/assets'));
+  symlinkSync(resolve('examples/samples'), join(user, 'examples/samples'));
   const peers: Record<string, string> = { three: 'node_modules', '@pixiv/three-vrm': 'node_modules' };
   for (const name of ['react', 'react-dom', '@react-three/fiber']) peers[name] = hostTools;
   for (const [name, from] of Object.entries(peers)) {
@@ -84,11 +83,11 @@ async function buildExamples(): Promise<void> {
     },
   });
   for (const [name, models] of Object.entries(built))
-    for (const file of readdirSync(join('build/assets', models)))
-      symlinkSync(resolve('build/assets', models, file), join(user, 'out', name, file));
+    for (const file of readdirSync(join(sources, 'samples', models)))
+      symlinkSync(join(sources, 'samples', models, file), join(user, 'out', name, file));
   // This one needs no build.
   symlinkSync(join(user, 'node_modules'), join(sources, 'import-map/node_modules'));
-  symlinkSync(resolve('build/assets/lizard'), join(sources, 'import-map/models'));
+  symlinkSync(resolve('examples/samples/lizard'), join(sources, 'import-map/models'));
 }
 
 before(async () => {

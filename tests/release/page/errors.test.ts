@@ -31,7 +31,7 @@ before(async () => {
 after(() => site?.close());
 
 const sound = tetrahedron();
-const lizard = readFileSync(inRepository('build/assets/lizard/target.glb'));
+const lizard = readFileSync(inRepository('examples/samples/lizard/target.glb'));
 const positions = (at: number, value: number): Float32Array =>
   Float32Array.from(sound.positions, (old, i) => (i === at ? value : old));
 const { uvs: _, ...withoutUvs } = tetrahedron(2);

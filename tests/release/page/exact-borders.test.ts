@@ -23,7 +23,7 @@ import {
   type Visit,
 } from '../../support/site';
 
-const lizard = (name: string): string => inRepository('build/assets/lizard', name);
+const lizard = (name: string): string => inRepository('examples/samples/lizard', name);
 
 let site: Site;
 let visit: Visit;
@@ -222,7 +222,7 @@ for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'sk
 test('what is marked to stay bare is bare with exact borders too', async () => {
   const { page, complaints } = await site.visit();
   const file = (name: string) =>
-    glb(`scan-${name}.glb`, readFileSync(inRepository('build/assets/human-fused', `${name}.glb`)));
+    glb(`scan-${name}.glb`, readFileSync(inRepository('examples/samples/human-fused', `${name}.glb`)));
   await drop(page, [file('target'), file('cage')]);
   assert.equal(await settled(page), 'ready', await shownError(page));
   await chooseMode(page, 'result');

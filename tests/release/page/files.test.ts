@@ -29,12 +29,12 @@ import {
 /** Pairs of a target and its cage: the samples, and the folders of env CAGECAST_ASSETS that hold one. */
 function pairs(): { name: string; target: string; cage: string }[] {
   const list: { name: string; target: string; cage: string }[] = JSON.parse(
-    readFileSync(inRepository('build/assets/index.json'), 'utf8'),
+    readFileSync(inRepository('examples/samples/index.json'), 'utf8'),
   );
   const samples = list.map(({ name, target, cage }) => ({
     name,
-    target: inRepository('build/assets', target),
-    cage: inRepository('build/assets', cage),
+    target: inRepository('examples/samples', target),
+    cage: inRepository('examples/samples', cage),
   }));
   const root = process.env.CAGECAST_ASSETS;
   const others = (root ? readdirSync(root) : []).map((name) => ({
@@ -46,7 +46,7 @@ function pairs(): { name: string; target: string; cage: string }[] {
 }
 
 const read = (file: string): Upload => glb(path.basename(file), readFileSync(file));
-const kLizard = inRepository('build/assets/lizard');
+const kLizard = inRepository('examples/samples/lizard');
 
 let site: Site;
 // One page for all of it: a file's result must not depend on the files before.

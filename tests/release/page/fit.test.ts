@@ -28,7 +28,7 @@ before(async () => {
 });
 after(() => site?.close());
 
-const asset = (...names: string[]): string => inRepository('build/assets', ...names);
+const asset = (...names: string[]): string => inRepository('examples/samples', ...names);
 
 /** What the page finds, once it has looked. */
 async function found(): Promise<{ verdict: string; findings: { sentence: string; advice: string }[] }> {

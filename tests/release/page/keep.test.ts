@@ -18,7 +18,7 @@ after(() => site?.close());
 /** Opens a model and a cage of the visitor's own. */
 async function openOwn(page: Page): Promise<void> {
   await drop(page, [
-    glb('bust.glb', asset('human-misaligned', 'target.glb')),
+    glb('bust.glb', asset('human', 'target.glb')),
     glb('bust-cage.glb', asset('human-misaligned', 'cage.glb')),
   ]);
   assert.equal(await settled(page), 'ready', await shownError(page));
@@ -460,7 +460,7 @@ test('the works of open tabs are kept however many there are, and a work whose f
       assert.equal(await settled(tab), 'ready', await shownError(tab));
     }
     await drop(tab, [
-      glb(`${name}.glb`, asset('human-misaligned', 'target.glb')),
+      glb(`${name}.glb`, asset('human', 'target.glb')),
       glb(`${name}-cage.glb`, asset('human-misaligned', 'cage.glb')),
     ]);
     assert.equal(await settled(tab), 'ready', await shownError(tab));

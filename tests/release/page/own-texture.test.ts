@@ -74,7 +74,7 @@ test('the lizard’s own texture has the paint where the overlay has it, and is 
         .getMaterial(),
     ),
   ];
-  const paint = PNG.sync.read(await readFile(inRepository('build/assets/lizard/paint-tiger.png')));
+  const paint = PNG.sync.read(await readFile(inRepository('examples/samples/lizard/paint-tiger.png')));
   assert.deepEqual([after.width, after.height], [before.width, before.height]);
   const places = new Map(middles(overlay, 'TEXCOORD_0').map((middle) => [middle.corners, middle]));
   const off: number[] = [];
@@ -128,7 +128,7 @@ test('exact borders are baked into the texture too', async () => {
   const triangles = (document: Document): number =>
     primitivesOf(document).reduce((sum, primitive) => sum + primitive.getIndices()!.getCount() / 3, 0);
   assert.ok(triangles(cut.document) > triangles(whole.document));
-  const bare = skinOf(await new NodeIO().read(inRepository('build/assets/lizard/target.glb')));
+  const bare = skinOf(await new NodeIO().read(inRepository('examples/samples/lizard/target.glb')));
   const [before, after] = [difference(bare, skinOf(whole.document)), difference(bare, skinOf(cut.document))];
   // What they cut off is 5 % of the painted area by the model's own UVs; its margin goes with it.
   assert.ok(after < before && after > 0.9 * before, `${before} of the texture is painted, ${after} with exact borders`);

@@ -31,7 +31,7 @@ after(() => site?.close());
 const table = (): Locator => visit.page.getByTestId('segment-table');
 /** What the command line counts on the sample that the page opens with. */
 const counted = (flags: { keep?: string; exclude?: string }) =>
-  reportedCounts(inRepository('build/assets/lizard/target.glb'), inRepository('build/assets/lizard/cage.glb'), {
+  reportedCounts(inRepository('examples/samples/lizard/target.glb'), inRepository('examples/samples/lizard/cage.glb'), {
     preset: 'default',
     ...flags,
   });

@@ -69,7 +69,7 @@ test('the preset starts as default; paper has other counts and fewer steps, and 
 
 test('with the default preset the threshold acts at once, as a new transfer would', async () => {
   const { page } = visit;
-  const file = (name: string): string => inRepository('build/assets/lizard', `${name}.glb`);
+  const file = (name: string): string => inRepository('examples/samples/lizard', `${name}.glb`);
   for (const threshold of [0, 0.9, 1]) {
     await setThreshold(page, threshold);
     assert.deepEqual(

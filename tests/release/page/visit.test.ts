@@ -6,7 +6,7 @@ import { asset } from '../../support/cages';
 import { difference, frames, look, modelArea } from '../../support/picture';
 import { drop, glb, Site, settled, shownCounts, shownError, shownParts, type Upload } from '../../support/site';
 
-const figure = (): Upload => glb('figure.glb', asset('human-body', 'model.glb'));
+const figure = (): Upload => glb('figure.glb', asset('human-body', 'target.glb'));
 
 /** The figure as a VRM 0 file, which looks the other way. */
 function vrm(): Upload {
@@ -221,7 +221,7 @@ test('a verdict on the model before is not shown for the one that comes', async 
   );
   await page.waitForFunction(() => 'held' in window);
   await open(page, [
-    glb('bust.glb', asset('human-misaligned', 'target.glb')),
+    glb('bust.glb', asset('human', 'target.glb')),
     glb('bust-cage.glb', asset('human-misaligned', 'cage.glb')),
   ]);
   assert.notEqual(await verdict(page), 'good');
@@ -231,7 +231,7 @@ test('a verdict on the model before is not shown for the one that comes', async 
 test('a cage beside its model is moved into place from the stage, and the layers stay', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
   await open(page, [
-    glb('bust.glb', asset('human-misaligned', 'target.glb')),
+    glb('bust.glb', asset('human', 'target.glb')),
     glb('bust-cage.glb', asset('human-misaligned', 'cage.glb')),
   ]);
   assert.notEqual(await verdict(page), 'good');

@@ -10,7 +10,7 @@ import { saved, validModel } from '../../support/saved';
 import { drop, glb, Site, settled, shownError, type Upload, type Visit } from '../../support/site';
 import { unzip } from '../../support/zip';
 
-const figure = (name: string): Upload => glb(`${name}.glb`, asset('human-body', 'model.glb'));
+const figure = (name: string): Upload => glb(`${name}.glb`, asset('human-body', 'target.glb'));
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -206,7 +206,7 @@ test('the avatars are back after a reload, with their cages, overrides and order
   await page.getByTestId('open-wardrobe').click();
   await avatars(page, 1);
   await drop(page, [
-    glb('bust.glb', asset('human-misaligned', 'target.glb')),
+    glb('bust.glb', asset('human', 'target.glb')),
     glb('bust-cage.glb', asset('human-misaligned', 'cage.glb')),
   ]);
   await page.getByTestId('wardrobe-sample').selectOption('car');

@@ -56,7 +56,7 @@ interface Json {
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 const kFloat = 5126;
 
-/** Reads a GLB with one mesh of floats and 16-bit indices, as examples/assets writes templates. */
+/** Reads a GLB with one mesh of floats and 16-bit indices, as those of examples/samples/templates are. */
 function readTemplate(bytes: Uint8Array<ArrayBuffer>): Cage {
   const view = new DataView(bytes.buffer, bytes.byteOffset);
   const textLength = view.getUint32(12, true);

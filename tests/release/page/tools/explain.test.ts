@@ -27,7 +27,7 @@ before(async () => {
 });
 after(() => site?.close());
 
-const kLizard = (file: string): string => inRepository('build/assets/lizard', `${file}.glb`);
+const kLizard = (file: string): string => inRepository('examples/samples/lizard', `${file}.glb`);
 const bubble = (page: Page): Promise<string> => page.getByTestId('explain-bubble').innerText();
 const explanation = (page: Page): Promise<string> => page.getByTestId('explain-text').innerText();
 const choose = (page: Page, title: string): Promise<void> =>

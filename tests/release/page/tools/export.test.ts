@@ -48,9 +48,9 @@ async function runCommand(line: string): Promise<string> {
     .match(/'[^']*'|\S+/g)!
     .map((word) => word.replaceAll("'", ''));
   const files: Record<string, string> = {
-    'target.glb': inRepository('build/assets/lizard/target.glb'),
-    'cage.glb': inRepository('build/assets/lizard/cage.glb'),
-    'paint.png': inRepository('build/assets/lizard/paint-tiger.png'),
+    'target.glb': inRepository('examples/samples/lizard/target.glb'),
+    'cage.glb': inRepository('examples/samples/lizard/cage.glb'),
+    'paint.png': inRepository('examples/samples/lizard/paint-tiger.png'),
     'painted.glb': path.join(folder, 'painted.glb'),
   };
   await promisify(execFile)(process.execPath, [
@@ -93,7 +93,7 @@ test('the saved model equals that of the command line: zones, UVs and overlay, w
   });
   const overlay = found.find((primitive) => primitive.getMaterial()?.getName() === 'Cagecast overlay')!;
   const image = PNG.sync.read(Buffer.from(overlay.getMaterial()!.getBaseColorTexture()!.getImage()!));
-  const paint = PNG.sync.read(await readFile(inRepository('build/assets/lizard/paint-tiger.png')));
+  const paint = PNG.sync.read(await readFile(inRepository('examples/samples/lizard/paint-tiger.png')));
   assert.ok(difference(image, paint) < 0.001);
   assert.equal(await shownError(page), '');
   assert.deepEqual(complaints, []);
