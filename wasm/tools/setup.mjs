@@ -12,6 +12,8 @@ const root = fileURLToPath(new URL('../..', import.meta.url));
 /** As Vite asks for: the least minor version of each major one that has such; the package itself runs on 20.16. */
 const kOldestNode = { 20: 19, 22: 12 };
 const kNodes = '20.19, or 22.12 and newer';
+/** Seconds to wait for another program that uses apt. */
+const kMaxWait = 600;
 
 const command = (name) => () => spawnSync('sh', ['-c', `command -v ${name}`]).status === 0;
 const header = (path) => () =>
@@ -103,14 +105,20 @@ function installSystemPackages(names) {
   }
   console.log(`Installing:\n${list}`);
   const apt = (...args) => {
-    // Another program may hold the package manager's lock: wait for it, and say so.
-    const wait = ['-o', 'DPkg::Lock::Timeout=600'];
-    const [program, ...rest] = [...asRoot, 'env', 'DEBIAN_FRONTEND=noninteractive', 'apt-get', ...wait, ...args];
-    return spawnSync(program, rest, { stdio: ['ignore', 'inherit', 'inherit'] }).status === 0;
+    const [program, ...rest] = [...asRoot, 'env', 'DEBIAN_FRONTEND=noninteractive', 'apt-get', ...args];
+    const { status, stderr } = spawnSync(program, rest, { stdio: ['ignore', 'inherit', 'pipe'], encoding: 'utf8' });
+    return { failed: status !== 0, isLocked: /Unable to lock|Could not get lock/.test(stderr), stderr };
   };
-  if (!apt('update', '-qq') || !apt('install', '-y', '-qq', '--no-install-recommends', ...missing)) {
-    fail(`apt-get could not install: ${missing.join(' ')}`);
+  // Another program may hold the package manager's lock. `install` waits by itself, `update` cannot.
+  let update = apt('update', '-qq');
+  for (let waited = 0; update.isLocked && waited < kMaxWait; waited += 5) {
+    if (waited === 0) console.log('Another program uses apt: waiting for it, for 10 minutes at most …');
+    Atomics.wait(new Int32Array(new SharedArrayBuffer(4)), 0, 0, 5000);
+    update = apt('update', '-qq');
   }
+  const install = ['install', '-y', '-qq', '--no-install-recommends', '-o', `DPkg::Lock::Timeout=${kMaxWait}`];
+  const { failed, stderr } = update.failed ? update : apt(...install, ...missing);
+  if (failed) fail(`${stderr.trim()}\napt-get could not install: ${missing.join(' ')}`);
   const still = missing.filter((name) => !kNeeds[name].there());
   if (still.length > 0) fail(`Installed, but still not found: ${still.map((name) => kNeeds[name].what).join(', ')}`);
   // Emscripten brings Debian's own Node along, which replaces one that was put into /usr/bin by hand.
