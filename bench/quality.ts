@@ -7,29 +7,21 @@
 //
 // Over the samples, those of the folder that CAGECAST_ASSETS names (folders with target.glb, cage.glb and truth.json), and
 // the models made to be difficult. Cages are made for samples and given models, and for the people in the given folder's
-// subfolder `people`, whom templates are fitted to as well. Tables on the terminal and in bench/results/quality.md, a plot and
-// all numbers beside it; the samples in pictures, docs/pictures/quality.jpg and failures.jpg, and the given models in another,
-// build/bench/quality.jpg.
+// subfolder `people`, whom templates are fitted to as well. Tables on the terminal and in bench/results/quality.md, all numbers beside it.
 
-import { cpus } from 'node:os';
+import { writeFile } from 'node:fs/promises';
 import { parseArgs } from 'node:util';
 import { init } from 'cagecast';
-import { root } from './native.js';
-import { cageSections } from './quality/cage-report.js';
+import { machine, writeJson } from './native.js';
 import { measureCages } from './quality/cages.js';
 import { missedCageGoals, missedGoals } from './quality/goals.js';
-import { measure, measureLargeTimes, measureTimes } from './quality/measure.js';
-import { loadModels, type Model, NoSuchModel } from './quality/models.js';
-import { type QualityResults, qualityReport, writeQuality } from './quality/report.js';
-import { drawSheet } from './quality/sheet.js';
+import { measure } from './quality/measure.js';
+import { loadModels, NoSuchModel } from './quality/models.js';
+import { cageSections, type QualityResults, qualityReport } from './quality/report.js';
 
 const began = performance.now();
 const say = (line: string): void =>
   console.error(`[${((performance.now() - began) / 1000).toFixed(0).padStart(3)} s] ${line}`);
-
-/** How often each way is timed. */
-const runs = 31;
-const largeRuns = 7;
 
 async function main(): Promise<void> {
   const { values: options } = parseArgs({
@@ -37,48 +29,24 @@ async function main(): Promise<void> {
   });
   const only = options.only?.split(',');
   await init();
-  if (options.cages) {
-    const cages = await measureCages(only, say);
-    const missed = missedCageGoals(cages);
-    console.log([...cageSections(cages), ...missed.map((line) => `- ${line}`)].join('\n\n'));
-    if (options.check && missed.length > 0) process.exitCode = 1;
-    return;
-  }
-  say('reading the models');
-  const models = await loadModels(only);
   const results: QualityResults = {
     date: new Date().toISOString().slice(0, 10),
-    machine: { processor: cpus()[0]!.model, cores: cpus().length, node: process.versions.node },
+    machine,
     models: {},
-    times: {},
-    largeTimes: { naive: 0, 'step 2': 0, 'step 3': 0, paper: 0, default: 0 },
-    cages: { made: {}, fitted: {}, given: {}, failed: [] },
+    cages: { made: {}, byHand: {}, fitted: {}, given: {}, failed: [] },
   };
-  for (const model of models) {
+  for (const model of options.cages ? [] : await loadModels(only)) {
     say(model.name);
-    try {
-      results.models[model.name] = await measure(model);
-    } catch (error) {
-      throw new Error(`${model.folder ?? model.name}: ${(error as Error).message}`, { cause: error });
-    }
+    results.models[model.name] = measure(model);
   }
-  // After all else, which has warmed up the engine.
-  say('times');
-  for (const model of models) results.times[model.name] = measureTimes(model, runs);
-  results.largeTimes = await measureLargeTimes(models[0]!, largeRuns);
   results.cages = await measureCages(only, say);
-  console.log(qualityReport(results));
-  if (options.only === undefined) {
-    await writeQuality(results);
-    say('drawing the samples');
-    const are = (kind: Model['kind']): Model[] => models.filter((model) => model.kind === kind);
-    await drawSheet(are('sample'), ['cage', 'naive', 'removed', 'default'], `${root}docs/pictures/quality.jpg`);
-    await drawSheet(are('spoiled'), ['cage', 'naive', 'paper', 'default'], `${root}docs/pictures/failures.jpg`);
-    if (are('asset').length > 0)
-      await drawSheet(are('asset'), ['cage', 'naive', 'paper', 'default'], `${root}build/bench/quality.jpg`);
-  }
-  say('done');
   const missed = [...missedGoals(results.models), ...missedCageGoals(results.cages)];
+  const list = missed.map((line) => `- ${line}`);
+  console.log(options.cages ? [...cageSections(results.cages), ...list].join('\n\n') : qualityReport(results));
+  if (!only && !options.cages) {
+    await writeJson('quality', results);
+    await writeFile('bench/results/quality.md', qualityReport(results));
+  }
   if (options.check && missed.length > 0) process.exitCode = 1;
 }
 

@@ -25,25 +25,20 @@ async function simplified(mesh: SceneMesh, triangles: number): Promise<SceneMesh
 }
 
 /** Drops the vertices that no triangle uses. */
-function compacted(mesh: SceneMesh): SceneMesh {
-  const places = new Int32Array(mesh.positions.length / 3).fill(-1);
+function compacted({ positions, uvs, groups, indices }: SceneMesh): SceneMesh {
+  const places = new Int32Array(positions.length / 3).fill(-1);
   const sources: number[] = [];
-  for (const v of mesh.indices) if (places[v] === -1) places[v] = sources.push(v) - 1;
-  return { ...gathered(mesh, sources), indices: mesh.indices.map((v) => places[v]!) };
-}
-
-/** The given vertices of a mesh, without triangles. */
-function gathered(mesh: SceneMesh, sources: ArrayLike<number>): Omit<SceneMesh, 'indices'> {
+  for (const v of indices) if (places[v] === -1) places[v] = sources.push(v) - 1;
   const pick = <A extends Float32Array | Uint32Array>(array: A, width: number): A => {
     const out = new (array.constructor as new (length: number) => A)(width * sources.length);
-    for (let i = 0; i < sources.length; ++i)
-      for (let k = 0; k < width; ++k) out[width * i + k] = array[width * sources[i]! + k]!;
+    sources.forEach((v, place) => out.set(array.subarray(width * v, width * (v + 1)), width * place));
     return out;
   };
   return {
-    positions: pick(mesh.positions, 3),
-    ...(mesh.uvs && { uvs: pick(mesh.uvs, 2) }),
-    ...(mesh.groups && { groups: pick(mesh.groups, 1) }),
+    positions: pick(positions, 3),
+    indices: indices.map((v) => places[v]!),
+    ...(uvs && { uvs: pick(uvs, 2) }),
+    ...(groups && { groups: pick(groups, 1) }),
   };
 }
 
@@ -134,37 +129,4 @@ export function bent({ cage, target }: Scene, share: number): Scene {
     return { ...mesh, positions };
   };
   return { cage: bend(cage), target: bend(target) };
-}
-
-/** The same mesh with its vertices and triangles in random order, the same each time. */
-export function shuffled(mesh: SceneMesh, seed: number): SceneMesh {
-  const random = randomNumbers(seed);
-  const permutation = (count: number): Uint32Array => {
-    const order = Uint32Array.from({ length: count }, (_, i) => i);
-    for (let i = count - 1; i > 0; --i) {
-      const j = Math.floor(random() * (i + 1));
-      [order[i], order[j]] = [order[j]!, order[i]!];
-    }
-    return order;
-  };
-  const vertices = permutation(mesh.positions.length / 3);
-  const places = new Uint32Array(vertices.length);
-  vertices.forEach((source, place) => (places[source] = place));
-  const triangles = permutation(mesh.indices.length / 3);
-  const indices = new Uint32Array(mesh.indices.length);
-  triangles.forEach((source, place) => {
-    for (let k = 0; k < 3; ++k) indices[3 * place + k] = places[mesh.indices[3 * source + k]!]!;
-  });
-  return { ...gathered(mesh, vertices), indices };
-}
-
-/** Numbers in 0..1, by mulberry32. */
-function randomNumbers(seed: number): () => number {
-  let state = seed;
-  return () => {
-    state = (state + 0x6d2b79f5) | 0;
-    let bits = Math.imul(state ^ (state >>> 15), state | 1);
-    bits ^= bits + Math.imul(bits ^ (bits >>> 7), bits | 61);
-    return ((bits ^ (bits >>> 14)) >>> 0) / 2 ** 32;
-  };
 }

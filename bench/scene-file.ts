@@ -1,4 +1,4 @@
-import type { Mesh } from '../wasm/src/api/mesh.js';
+import type { Mesh } from 'cagecast';
 
 /** A mesh whose arrays have the types of a scene file. */
 export interface SceneMesh extends Mesh {
@@ -37,10 +37,12 @@ export function writeScene({ cage, target }: Scene): Uint8Array {
 }
 
 /** Reads what `writeScene` wrote. */
-export function readScene(bytes: ArrayBuffer): Scene {
-  if (new TextDecoder().decode(bytes.slice(0, magic.length)) !== magic) throw new Error('not a scene file');
+export function readScene(bytes: ArrayBuffer | Uint8Array): Scene {
+  const all = new Uint8Array(bytes);
+  if (new TextDecoder().decode(all.subarray(0, magic.length)) !== magic) throw new Error('not a scene file');
   let at = magic.length;
-  const take = <A>(type: new (buffer: ArrayBuffer) => A, size: number): A => new type(bytes.slice(at, (at += size)));
+  const take = <A>(type: new (buffer: ArrayBuffer) => A, size: number): A =>
+    new type(all.slice(at, (at += size)).buffer);
   const takeMesh = (): SceneMesh => {
     const [vertices, indices] = take(Uint32Array, 8) as unknown as [number, number];
     const [hasUvs, hasGroups] = take(Uint8Array, 4);

@@ -5,44 +5,42 @@
 #include <limits>
 
 #include "peer.hpp"
-#include "pipeline.hpp"
-#include "stop_watch.hpp"
 
 // The form in which Embree is fastest at this, found by trying on heads of 4.8k and 9.9k triangles:
-// - both the scene's and the geometry's build quality low (Morton order): the geometry's alone decides how long the
-// build
-//   takes, 0.25 ms against 0.98 with the scene's set only; a cage tree of medium quality costs more than it saves;
-// - the point query starts with the sphere that the previous point's triangle gives: 2.35 → 2.05 ms;
-// - its callback, 19 a query, rejects by the distance of the plane: → 1.50 ms; and looks at triangles lying flat in a
-// frame
-//   of their own, without divisions: → 1.35 ms (a bounding sphere for each triangle and code for this very processor
-//   (-march=native) gave nothing);
-// - queries along a curve: −4 % of the queries, and much more where the input is shuffled;
-// - self rays in packets of 8: −8 %; of 4 and 16: nothing. No robust flag (+16 % of the rays), no compact one (+12 %);
-// new
-//   scenes every time or kept ones, coherent flag or not: the same.
+// - both the scene's and the geometry's build quality low (Morton order): 0.25 ms against 0.98 with the scene's only; a
+//   cage tree of medium quality costs more than it saves;
+// - the point query starts with the sphere that the previous point's triangle gives: 2.35 to 2.05 ms;
+// - its callback, 19 a query, rejects by the distance of the plane: to 1.50 ms; and looks at triangles lying flat in a
+//   frame of their own, without divisions: to 1.35 ms (a bounding sphere for each triangle and -march=native gave
+//   nothing);
+// - self rays in packets of 8: -8 %; of 4 and 16: nothing. No robust flag (+16 % of the rays), no compact one (+12 %).
 namespace cagecast::bench {
 namespace {
 
-/// A triangle of the cage, and its frame: origin at one end of its longest edge, x along that edge, z along the normal.
+struct Vec3f {
+  float x, y, z;
+  friend Vec3f operator+(Vec3f a, Vec3f b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vec3f operator-(Vec3f a, Vec3f b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Vec3f operator*(float s, Vec3f a) { return {s * a.x, s * a.y, s * a.z}; }
+};
+float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec3f cross(Vec3f a, Vec3f b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Vec3f at(const std::vector<float>& positions, std::size_t i) {
+  return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+}
+
+/// A triangle of the cage in a frame: origin at one end of its longest edge, x along that edge, z along the normal.
 struct CageTriangle {
-  Vec3f a, ab, ac;
   Vec3f origin, x, y, normal;
   float base;                   ///< The length of the longest edge, from the origin.
   float toCx, toCy, toC;        ///< The third corner from the origin: direction and length.
   float fromBx, fromBy, fromB;  ///< The same from the other end of the longest edge.
-  float uvs[6];
-  std::uint32_t index;
 };
 
 CageTriangle prepare(Vec3f a, Vec3f b, Vec3f c) {
   CageTriangle t{};
-  t.a = a;
-  t.ab = b - a;
-  t.ac = c - a;
-  const Vec3f n = cross(t.ab, t.ac);
-  const float doubleArea = std::sqrt(dot(n, n));
-  t.normal = 1 / doubleArea * n;
+  const Vec3f n = cross(b - a, c - a);
+  t.normal = 1 / std::sqrt(dot(n, n)) * n;
   const auto squaredLength = [](Vec3f d) { return dot(d, d); };
   const float ab = squaredLength(b - a);
   const float bc = squaredLength(c - b);
@@ -60,11 +58,11 @@ CageTriangle prepare(Vec3f a, Vec3f b, Vec3f c) {
   t.y = cross(t.normal, t.x);
   const float cx = dot(c - a, t.x);
   const float cy = dot(c - a, t.y);
-  t.toC = std::sqrt(cx * cx + cy * cy);
+  t.toC = std::hypot(cx, cy);
   t.toCx = cx / t.toC;
   t.toCy = cy / t.toC;
   const float bx = cx - t.base;
-  t.fromB = std::sqrt(bx * bx + cy * cy);
+  t.fromB = std::hypot(bx, cy);
   t.fromBx = bx / t.fromB;
   t.fromBy = cy / t.fromB;
   return t;
@@ -95,40 +93,12 @@ float distanceTo(Vec3f p, const CageTriangle& t) {
   return std::sqrt(z * z + squaredDistanceInPlane(d, t));
 }
 
-/// Where on the triangle the nearest point lies: after Ericson, "Real-Time Collision Detection", 2005, §5.1.5.
-struct Closest {
-  float squaredDistance, v, w;
-  bool inside;
-};
-
-Closest closestPoint(Vec3f p, const CageTriangle& t) {
-  const Vec3f ap = p - t.a;
-  const auto at = [&](float v, float w, bool inside) {
-    const Vec3f offset = ap - (v * t.ab + w * t.ac);
-    return Closest{dot(offset, offset), v, w, inside};
-  };
-  const float d1 = dot(t.ab, ap);
-  const float d2 = dot(t.ac, ap);
-  if (d1 <= 0 && d2 <= 0) return at(0, 0, false);
-  const Vec3f bp = ap - t.ab;
-  const float d3 = dot(t.ab, bp);
-  const float d4 = dot(t.ac, bp);
-  if (d3 >= 0 && d4 <= d3) return at(1, 0, false);
-  const float vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return at(d1 / (d1 - d3), 0, false);
-  const Vec3f cp = ap - t.ac;
-  const float d5 = dot(t.ab, cp);
-  const float d6 = dot(t.ac, cp);
-  if (d6 >= 0 && d5 <= d6) return at(0, 1, false);
-  const float vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return at(0, d2 / (d2 - d6), false);
-  const float va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const float w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return at(1 - w, w, false);
-  }
-  const float scale = 1 / (va + vb + vc);
-  return at(vb * scale, vc * scale, true);
+/// Whether the nearest point of a triangle lies inside of it.
+bool isAbove(Vec3f p, const CageTriangle& t) {
+  const Vec3f d = p - t.origin;
+  const float x = dot(d, t.x);
+  const float y = dot(d, t.y);
+  return y > 0 && t.toCx * y < t.toCy * x && t.fromBy * (x - t.base) < t.fromBx * y;
 }
 
 /// The search for one point: the nearest triangle so far, and those that are as near (the tie rule).
@@ -169,7 +139,7 @@ class Query {
     if (count_ == 0) return likely;
     if (count_ == 1) return found_[0].slot;
     const auto planeDistance = [&](const Found& f) {
-      return std::abs(dot(p_ - triangles_[f.slot].a, triangles_[f.slot].normal));
+      return std::abs(dot(p_ - triangles_[f.slot].origin, triangles_[f.slot].normal));
     };
     float farthest = 0;
     for (std::size_t i = 0; i < count_; ++i) farthest = std::max(farthest, planeDistance(found_[i]));
@@ -228,85 +198,67 @@ class Scene {
   RTCScene scene_ = nullptr;
 };
 
-class EmbreePeer final : public Peer {
+class EmbreePeer final : public Contestant {
  public:
   EmbreePeer() : device_(rtcNewDevice("threads=1,set_affinity=0")) {}
   ~EmbreePeer() override { rtcReleaseDevice(device_); }
 
-  Timings run(const MeshView& cage, const MeshView& target) override {
+  Timings run(const Model& model) override {
     Timings t;
     StopWatch watch;
-    welded_.weld(target);
-    const std::vector<std::uint32_t>& order = welded_.alongCurve();
-    gather(cage);
-    t.weld = watch.lap();
-    cageScene_.build(device_, cage.positions, cageIndices_);
-    targetScene_.build(device_, target.positions, target.indices);
+    gather(model.cage);
+    cageScene_.build(device_, model.cage.positions, cageIndices_);
+    targetScene_.build(device_, model.target.positions, model.target.indices);
     t.build = watch.lap();
-    project(order);
+    project(model.points);
     t.project = watch.lap();
-    occlude(order);
+    occlude(model.points);
     t.occluded = watch.lap();
-    cover(order);
+    cover(model.points);
     t.covered = watch.lap();
-    decision_.decide(target, welded_, pointZones_, uvs_, distances_, nearest_);
-    t.segments = watch.lap();
-    t.total = t.weld + t.build + t.project + t.occluded + t.covered + t.segments;
-    zones_ = decision_.zones;
-    triangles_ = decision_.triangles;
+    t.total = t.build + t.project + t.occluded + t.covered;
     return t;
   }
 
  private:
-  void gather(const MeshView& cage) {
+  void gather(const Mesh& cage) {
     cageTriangles_.clear();
     cageIndices_.clear();
     for (std::size_t i = 0; i < cage.indices.size(); i += 3) {
       const std::uint32_t* index = cage.indices.data() + i;
-      CageTriangle triangle =
+      const CageTriangle triangle =
           prepare(at(cage.positions, index[0]), at(cage.positions, index[1]), at(cage.positions, index[2]));
       if (!std::isfinite(triangle.normal.x)) continue;  // It has no area.
-      triangle.index = static_cast<std::uint32_t>(i / 3);
-      for (std::size_t corner = 0; corner < 3; ++corner)
-        for (std::size_t k = 0; k < 2; ++k) triangle.uvs[2 * corner + k] = cage.uvs[std::size_t{2} * index[corner] + k];
       cageTriangles_.push_back(triangle);
       cageIndices_.insert(cageIndices_.end(), index, index + 3);
     }
   }
 
-  void project(const std::vector<std::uint32_t>& order) {
-    const std::size_t count = welded_.points.size();
-    uvs_.resize(2 * count);
-    distances_.resize(count);
-    nearest_.resize(count);
+  void project(const Points& points) {
+    const std::size_t count = points.positions.size() / 3;
     slots_.resize(count);
     meetsCage_.resize(count);
+    rayStart_ = 1e-5f * points.diagonal;
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
-    Query query(cageTriangles_, welded_.diagonal);
+    Query query(cageTriangles_, points.diagonal);
     std::uint32_t slot = 0;
-    for (const std::uint32_t i : order) {
-      const Vec3f p = welded_.points[i];
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3f p = at(points.positions, i);
       RTCPointQuery sphere{p.x, p.y, p.z, 0, query.begin(p, slot)};
       rtcPointQuery(cageScene_.get(), &sphere, &context, offerPrimitive, &query);
       slot = query.answer(slot);
       const CageTriangle& t = cageTriangles_[slot];
-      const Closest q = closestPoint(p, t);
-      const float u = 1 - q.v - q.w;
-      uvs_[2 * i] = u * t.uvs[0] + q.v * t.uvs[2] + q.w * t.uvs[4];
-      uvs_[2 * i + 1] = u * t.uvs[1] + q.v * t.uvs[3] + q.w * t.uvs[5];
-      distances_[i] = std::sqrt(q.squaredDistance);
       slots_[i] = slot;
-      nearest_[i] = t.index;
-      meetsCage_[i] = q.inside && dot(p - t.a, t.normal) < rayStart();
+      meetsCage_[i] = isAbove(p, t) && dot(p - t.origin, t.normal) < rayStart_;
     }
   }
 
   /// Triangles at the point itself are hit at distance 0, or next to it, and so need no filter.
-  void occlude(const std::vector<std::uint32_t>& order) {
+  void occlude(const Points& points) {
     constexpr std::size_t kWidth = 8;
-    const std::size_t count = welded_.points.size();
-    pointZones_.assign(count, Zone::cosmetic);
+    const std::size_t count = points.positions.size() / 3;
+    zones_.assign(count, Zone::cosmetic);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay8 rays{};
@@ -314,9 +266,8 @@ class EmbreePeer final : public Peer {
       alignas(32) int valid[kWidth] = {};
       const std::size_t filled = std::min(kWidth, count - first);
       for (std::size_t k = 0; k < filled; ++k) {
-        const std::uint32_t i = order[first + k];
-        const Vec3f p = welded_.points[i];
-        const Vec3f n = cageTriangles_[slots_[i]].normal;
+        const Vec3f p = at(points.positions, first + k);
+        const Vec3f n = cageTriangles_[slots_[first + k]].normal;
         valid[k] = -1;
         rays.org_x[k] = p.x;
         rays.org_y[k] = p.y;
@@ -324,45 +275,40 @@ class EmbreePeer final : public Peer {
         rays.dir_x[k] = n.x;
         rays.dir_y[k] = n.y;
         rays.dir_z[k] = n.z;
-        rays.tnear[k] = rayStart();
+        rays.tnear[k] = rayStart_;
         rays.tfar[k] = std::numeric_limits<float>::infinity();
         rays.mask[k] = ~0u;
       }
       rtcOccluded8(valid, targetScene_.get(), &context, &rays);
       for (std::size_t k = 0; k < filled; ++k)
-        if (rays.tfar[k] < 0) pointZones_[order[first + k]] = Zone::occluded;
+        if (rays.tfar[k] < 0) zones_[first + k] = Zone::occluded;
     }
   }
 
   /// These are too few, and too far apart, for packets.
-  void cover(const std::vector<std::uint32_t>& order) {
+  void cover(const Points& points) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    for (const std::uint32_t i : order) {
-      if (pointZones_[i] != Zone::cosmetic || meetsCage_[i]) continue;
+    for (std::size_t i = 0; i < zones_.size(); ++i) {
+      if (zones_[i] != Zone::cosmetic || meetsCage_[i]) continue;
       const Vec3f n = cageTriangles_[slots_[i]].normal;
-      const Vec3f p = welded_.points[i] - rayStart() * n;
+      const Vec3f p = at(points.positions, i) - rayStart_ * n;
       RTCRay ray{p.x, p.y, p.z, 0, n.x, n.y, n.z, 0, std::numeric_limits<float>::infinity(), ~0u, 0, 0};
       rtcOccluded1(cageScene_.get(), &context, &ray);
-      if (ray.tfar >= 0) pointZones_[i] = Zone::uncovered;
+      if (ray.tfar >= 0) zones_[i] = Zone::uncovered;
     }
   }
 
-  [[nodiscard]] float rayStart() const { return 1e-5f * welded_.diagonal; }
-
   RTCDevice device_;
   Scene cageScene_, targetScene_;
-  Welded welded_;
-  Decision decision_;
   std::vector<CageTriangle> cageTriangles_;
-  std::vector<std::uint32_t> cageIndices_, nearest_, slots_;
-  std::vector<float> uvs_, distances_;
+  std::vector<std::uint32_t> cageIndices_, slots_;
   std::vector<std::uint8_t> meetsCage_;
-  std::vector<Zone> pointZones_;
+  float rayStart_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Peer> makeEmbreePeer() { return std::make_unique<EmbreePeer>(); }
+std::unique_ptr<Contestant> makeEmbreePeer() { return std::make_unique<EmbreePeer>(); }
 
 }  // namespace cagecast::bench

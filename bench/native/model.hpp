@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -7,7 +8,7 @@
 
 namespace cagecast::bench {
 
-/// A mesh that owns its arrays. A float's worth of memory follows the positions: peers read them 16 bytes at a time.
+/// A mesh that owns its arrays.
 struct Mesh {
   std::vector<float> positions, uvs;
   std::vector<std::uint32_t> indices, groups;
@@ -15,19 +16,21 @@ struct Mesh {
   [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups}; }
 };
 
-/// What is measured: a target and its cage.
-struct Model {
-  Mesh cage, target;
+/// Vertices of equal position and group are one point.
+struct Points {
+  std::vector<float> positions;         ///< 3 per point, in the order of a Morton curve.
+  std::vector<std::uint32_t> ofVertex;  ///< The point of each vertex.
+  float diagonal = 0;                   ///< Of the box around them.
 };
 
-/// Reads a target and a cage from two glTF files, or both from one scene file (one path). A scene file is
-/// little-endian: "CAGESCN1", then the cage, then the target, each as u32 vertexCount, u32 indexCount, u8 hasUvs, u8
-/// hasGroups, two bytes 0, f32 positions, u32 indices, f32 uvs (if any), u32 groups (if any).
-/// @return What is wrong, as one sentence; empty if nothing is.
-std::string readModel(const std::vector<std::string>& paths, Model& out);
+/// A target and its cage.
+struct Model {
+  Mesh cage, target;
+  Points points;  ///< Of the target.
+};
 
-/// Writes a scene file.
-/// @return What is wrong; empty if nothing is.
-std::string writeScene(const std::string& path, const Model& model);
+/// Reads a scene file, as bench/scene-file.ts writes it.
+/// @return Why that is not possible; empty if it is.
+std::string readModel(const std::string& path, Model& out);
 
 }  // namespace cagecast::bench

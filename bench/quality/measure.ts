@@ -1,94 +1,113 @@
-import { presetOptions, project, transfer } from 'cagecast';
-import { bent, resized } from '../resize.js';
-import {
-  atThresholds,
-  type Decision,
-  decide,
-  latencies,
-  type MethodName,
-  methodNames,
-  withoutEachStep,
-} from './methods.js';
+import { classify, type PresetOptions, presetOptions, project, type TransferOptions, transfer, Zone } from 'cagecast';
 import type { Model } from './models.js';
-import { measureSegments, type Score, type SegmentMeasure, type Smear, score, shifted, smear } from './score.js';
+import {
+  type Decision,
+  type PictureScore,
+  pictureScore,
+  type Score,
+  type Smear,
+  score,
+  shifted,
+  smear,
+} from './score.js';
 import { visiblePixels } from './visible.js';
+
+/** The ways that are compared, each with the steps of the one before it. */
+export const methodNames = ['naive', 'step 2', 'step 3', 'paper', 'default'] as const;
+export type MethodName = (typeof methodNames)[number];
 
 /** What is found out about one model. */
 export interface Quality {
   kind: Model['kind'];
   triangles: number;
-  methods: Record<MethodName, Score & { vertices: ZoneCounts }>;
-  /** By threshold. */
-  thresholds: Record<'paper' | 'default', Record<string, Score>>;
+  methods: Record<MethodName, Score & PictureScore>;
+  /** `default`, by threshold. */
+  thresholds: Record<string, Score>;
   /** `default` without a step, by the step's option. */
   without: Record<string, Score>;
   /** `default` with the cage moved by 1 % of the diagonal, by axis and sign. */
   shifted: Record<string, Score>;
   smear: Smear;
-  /** Most memory that a transfer uses beyond cage and target, in bytes. */
-  peakBytes: Record<'paper' | 'default', number>;
-  segments: SegmentMeasure[];
 }
-
-/** How many vertices are of each zone. */
-export type ZoneCounts = Record<'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
 
 export const thresholds: readonly number[] = [1, 2, 3, 4, 5, 6, 7, 8, 9].map((tenths) => tenths / 10);
 /** How far the cage is moved, as a share of the target's diagonal. */
 export const shift = 0.01;
 
-/** Measures all but times. `init` the package before. */
-export async function measure(model: Model): Promise<Quality> {
-  const { scene } = model;
+/** Measures a model. `init` the package before. */
+export function measure(model: Model): Quality {
+  const { scene, truth } = model;
   const { cage, target } = scene;
   const pixels = visiblePixels(target);
-  const scoreOf = (decision: Decision): Score => score(model, pixels, decision);
-  const scores = (some: [string, Decision][]): Record<string, Score> =>
-    Object.fromEntries(some.map(([name, decision]) => [name, scoreOf(decision)]));
+  const scoreOf = ({ zones }: Decision): Score => score(target, truth, zones);
   const decisions = decide(scene);
-  const moved = [0, 1, 2].flatMap((axis) =>
-    [1, -1].map((sign): [string, Decision] => {
-      const there = shifted(scene, axis, sign * shift);
-      return [`${sign > 0 ? '+' : '−'}${'xyz'[axis]}`, transfer(there.cage, there.target)];
-    }),
-  );
-  const result = transfer(cage, target);
-  const methods = methodNames.map((name) => [
-    name,
-    { ...scoreOf(decisions[name]), vertices: countZones(decisions[name]) },
-  ]);
+  const projection = project(cage, target);
+  const named = <T>(entries: [string, T][]): Record<string, T> => Object.fromEntries(entries);
   return {
     kind: model.kind,
     triangles: target.indices.length / 3,
-    methods: Object.fromEntries(methods) as Quality['methods'],
-    thresholds: {
-      paper: scores(atThresholds(project(cage, target, { preset: 'paper' }), thresholds)),
-      default: scores(atThresholds(project(cage, target), thresholds)),
-    },
-    without: scores(withoutEachStep(scene)),
-    shifted: scores(moved),
-    smear: await smear(scene, result),
-    peakBytes: { paper: transfer(cage, target, { preset: 'paper' }).peakBytes, default: result.peakBytes },
-    segments: measureSegments(model, result, presetOptions('default')),
+    methods: named(
+      methodNames.map((name) => [
+        name,
+        { ...scoreOf(decisions[name]), ...pictureScore(model, pixels, decisions[name]) },
+      ]),
+    ) as Quality['methods'],
+    thresholds: named(
+      thresholds.map((threshold) => [threshold.toFixed(1), scoreOf(classify(projection, { threshold }))]),
+    ),
+    without: named(withoutEachStep(scene).map(([step, decision]) => [step, scoreOf(decision)])),
+    shifted: named(
+      [0, 1, 2].flatMap((axis) =>
+        [1, -1].map((sign): [string, Score] => {
+          const there = shifted(scene, axis, sign * shift);
+          return [`${sign > 0 ? '+' : '−'}${'xyz'[axis]}`, scoreOf(transfer(there.cage, there.target))];
+        }),
+      ),
+    ),
+    smear: smear(scene, transfer(cage, target)),
   };
 }
 
-function countZones({ zones }: Decision): ZoneCounts {
-  const counts = [0, 0, 0, 0];
-  for (const zone of zones) ++counts[zone]!;
-  const [cosmetic = 0, occluded = 0, uncovered = 0, culled = 0] = counts;
-  return { cosmetic, occluded, uncovered, culled };
+/**
+ * Transfers in each of the ways: everything painted (`naive`), without what the target occludes (`step 2`), without what the
+ * cage does not cover either (`step 3`), and by the two presets.
+ */
+function decide({ cage, target }: Model['scene']): Record<MethodName, Decision> {
+  const { zones } = project(cage, target, { preset: 'paper' });
+  // As the poster has it: a triangle is painted if its three corners are.
+  const only = (...ncz: number[]): Decision => {
+    const isPainted = (t: number): boolean => [0, 1, 2].every((k) => !ncz.includes(zones[target.indices[3 * t + k]!]!));
+    return {
+      zones: zones.map((zone) => (ncz.includes(zone) ? zone : Zone.Cosmetic)),
+      cosmeticTriangles: Uint8Array.from({ length: target.indices.length / 3 }, (_, t) => +isPainted(t)),
+    };
+  };
+  return {
+    naive: only(),
+    'step 2': only(Zone.Occluded),
+    'step 3': only(Zone.Occluded, Zone.Uncovered),
+    paper: transfer(cage, target, { preset: 'paper' }),
+    default: transfer(cage, target),
+  };
 }
 
-/** Milliseconds that each method takes. @param runs  How often it is timed. */
-export function measureTimes({ scene }: Model, runs: number): Record<MethodName, number> {
-  return latencies(scene, runs);
-}
-
-/** About so many triangles has the model that says how the methods scale. */
-export const largeTriangles = 500_000;
-
-/** The same for a model whose target is cut into `largeTriangles` and bent a little, under its cage. */
-export async function measureLargeTimes({ scene }: Model, runs: number): Promise<Record<MethodName, number>> {
-  return latencies(bent({ cage: scene.cage, target: await resized(scene.target, largeTriangles) }, 0.002), runs);
+/** `default` with each of its steps left out: `groups` welds across parts, and every option in which the presets differ is as in `paper`. */
+function withoutEachStep({ cage, target }: Model['scene']): [step: string, Decision][] {
+  const { groups: _, ...whole } = target;
+  const [paper, ours] = [presetOptions('paper'), presetOptions('default')];
+  const differing = <O extends object>(a: O, b: O): (keyof O)[] =>
+    (Object.keys(b) as (keyof O)[]).filter((name) => typeof b[name] !== 'object' && a[name] !== b[name]);
+  // `seams` is about UVs, not zones.
+  const names = differing<PresetOptions>(paper, ours).filter((name) => name !== 'seams');
+  const variants: [string, TransferOptions][] = [
+    ...names.map((name): [string, TransferOptions] => [name, { [name]: paper[name] }]),
+    ...differing(paper.steps, ours.steps).map((name): [string, TransferOptions] => [
+      name,
+      { steps: { [name]: paper.steps[name] } },
+    ]),
+  ];
+  return [
+    ['groups', transfer(cage, whole)],
+    ...variants.map(([name, options]): [string, Decision] => [name, transfer(cage, target, options)]),
+  ];
 }

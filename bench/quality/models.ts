@@ -1,17 +1,22 @@
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
-import { mkdir, readFile } from 'node:fs/promises';
+import { mkdir } from 'node:fs/promises';
+import { gunzipSync } from 'node:zlib';
+import type { Mesh } from 'cagecast';
+import type { CageModel, Landmarks, Template } from 'cagecast/cages';
 import { output, root } from '../native.js';
-import { readGlb } from '../read-glb.js';
-import { readScene, type Scene } from '../scene-file.js';
+import { readCage, readTarget } from '../read-glb.js';
+import { readScene } from '../scene-file.js';
 
-/** What is known of each vertex of a target; see examples/samples/README.md. */
+/** What is known of each vertex of a target, as a 1 for yes; see examples/samples/README.md. */
 export interface Truth {
-  /** 1 = must not be painted. */
-  ncz: ArrayLike<number>;
-  /** 1 = not scored. */
-  ignore: ArrayLike<number>;
-  /** 1 = the cage says nothing about it. */
-  offCage: ArrayLike<number>;
+  /** Must not be painted. */
+  ncz: Uint8Array;
+  /** Not scored. */
+  ignore: Uint8Array;
+  /** Its cage says nothing about it. */
+  offCage: Uint8Array;
+  /** 1 the left eyeball, 2 the right one, 3 the lashes, 0 anything else. */
+  eyes: Uint8Array;
 }
 
 /** A target with its cage, and the truth about it. */
@@ -19,31 +24,43 @@ export interface Model {
   name: string;
   /** `sample`: of the project; `asset`: given by the user; `trap`: made to be difficult; `spoiled`: a sample that goes wrong on purpose. */
   kind: 'sample' | 'asset' | 'trap' | 'spoiled';
-  scene: Scene;
+  scene: { cage: Mesh; target: Mesh };
   truth: Truth;
-  /** Where its files are; none if it was made without. */
-  folder?: string;
 }
+
+/** The files of a model. */
+export type ModelFiles = Pick<Model, 'name' | 'kind'> & { target: string; cage: string; truth: string };
 
 const samplesFolder = `${root}examples/samples`;
+const assets = process.env['CAGECAST_ASSETS'];
 
-/** A model that lies in a folder. */
-export type ModelFiles = Pick<Model, 'name' | 'kind'> & { folder: string };
+const readJson = <T>(path: string): T => JSON.parse(readFileSync(path, 'utf8')) as T;
+const foldersOf = (folder: string | undefined, ...files: string[]): string[] =>
+  folder !== undefined && existsSync(folder)
+    ? readdirSync(folder)
+        .sort()
+        .filter((name) => files.every((file) => existsSync(`${folder}/${name}/${file}`)))
+    : [];
 
-/** The project's samples, and the models of the folder that CAGECAST_ASSETS names: folders with target.glb, cage.glb and truth.json. */
+/** The samples, and the models of the folder that CAGECAST_ASSETS names: folders with target.glb, cage.glb and truth.json. */
 export function listFiles(): ModelFiles[] {
-  const samples = (JSON.parse(readFileSync(`${samplesFolder}/index.json`, 'utf8')) as { name: string }[]).map(
-    ({ name }): ModelFiles => {
-      // Named after the model they were spoiled from.
-      return { name, kind: name.includes('-') ? 'spoiled' : 'sample', folder: `${samplesFolder}/${name}` };
-    },
+  const filesOf = (folder: string, name: string) => ({
+    target: `${folder}/${name}/target.glb`,
+    cage: `${folder}/${name}/cage.glb`,
+    truth: `${folder}/${name}/truth.json`,
+  });
+  const samples = readJson<{ name: string }[]>(`${samplesFolder}/index.json`).map(({ name }): ModelFiles => {
+    // Named after the model they were spoiled from.
+    return { name, kind: name.includes('-') ? 'spoiled' : 'sample', ...filesOf(samplesFolder, name) };
+  });
+  const given = foldersOf(assets, 'target.glb', 'cage.glb', 'truth.json').map(
+    (name): ModelFiles => ({ name, kind: 'asset', ...filesOf(assets!, name) }),
   );
-  const assets = process.env['CAGECAST_ASSETS'];
-  const given = (assets === undefined ? [] : readdirSync(assets).sort())
-    .filter((name) => ['target.glb', 'cage.glb', 'truth.json'].every((file) => existsSync(`${assets}/${name}/${file}`)))
-    .map((name): ModelFiles => ({ name, kind: 'asset', folder: `${assets}/${name}` }));
   return [...samples, ...given].sort((a, b) => Number(a.kind === 'spoiled') - Number(b.kind === 'spoiled'));
 }
+
+/** A name was given that no model has. */
+export class NoSuchModel extends Error {}
 
 /**
  * All models there are: of files, and those made to be difficult.
@@ -57,31 +74,43 @@ export async function loadModels(only?: readonly string[]): Promise<Model[]> {
   const names = [...files, ...traps].map(({ name }) => name);
   const unknown = only?.find((name) => !names.includes(name));
   if (unknown !== undefined) throw new NoSuchModel(`no model is called "${unknown}"; there are ${names.join(', ')}`);
-  const isWanted = ({ name }: { name: string }): boolean => only?.includes(name) ?? true;
-  return [...(await Promise.all(files.filter(isWanted).map(loadFiles))), ...traps.filter(isWanted)];
+  const isChosen = ({ name }: { name: string }): boolean => only?.includes(name) ?? true;
+  return [...(await Promise.all(files.filter(isChosen).map(loadFiles))), ...traps.filter(isChosen)];
 }
-
-/** A name was given that no model has. */
-export class NoSuchModel extends Error {}
 
 /**
  * Reads the files of a model.
  * @throws {Error} if its truth is not of its target.
  */
-export async function loadFiles({ name, kind, folder }: ModelFiles): Promise<Model> {
-  const [target, cage] = await Promise.all(['target', 'cage'].map((file) => readGlb(`${folder}/${file}.glb`)));
-  const truth = readTruth(await readFile(`${folder}/truth.json`, 'utf8'));
-  const found = target!.mesh.positions.length / 3;
-  if (found !== truth.ncz.length)
-    throw new Error(`${folder}: the target has ${found} vertices, its truth.json speaks of ${truth.ncz.length}`);
-  return { name, kind, truth, folder, scene: { cage: cage!.mesh, target: target!.mesh } };
+export async function loadFiles(files: ModelFiles): Promise<Model> {
+  const { parts, joints, ...target } = await readTarget(files.target);
+  const { positions, indices, uvs } = await readCage(files.cage);
+  const truth = truthOf(readJson(files.truth));
+  if (target.positions.length / 3 !== truth.ncz.length)
+    throw new Error(`${files.target} has ${target.positions.length / 3} vertices, its truth ${truth.ncz.length}`);
+  return { name: files.name, kind: files.kind, truth, scene: { cage: { positions, indices, uvs }, target } };
 }
 
-/** Labels are a string of 0 and 1 in the samples, and may be an array in models of others. */
-function readTruth(text: string): Truth {
-  const { ncz, ignore, offCage } = JSON.parse(text) as Record<keyof Truth, string | number[]>;
-  const labelsOf = (labels: string | number[]): Uint8Array => Uint8Array.from(labels as number[]);
-  return { ncz: labelsOf(ncz), ignore: labelsOf(ignore), offCage: labelsOf(offCage) };
+/** Per vertex: a string of 0 and 1, or an array of them. */
+type Labels = string | number[];
+
+interface TruthFile {
+  ncz: Labels;
+  ignore: Labels;
+  offCage?: Labels;
+  parts?: { name: string; firstVertex: number; vertexCount: number }[];
+}
+
+function truthOf(file: TruthFile): Truth {
+  const labelsOf = (labels: Labels): Uint8Array => Uint8Array.from(labels as number[]);
+  const ncz = labelsOf(file.ncz);
+  const eyes = new Uint8Array(ncz.length);
+  for (const { name, firstVertex, vertexCount } of file.parts ?? []) {
+    const what = /lash/i.test(name) ? 3 : /^l.*eye|eye.*(_l|left)$/i.test(name) ? 1 : /eye/i.test(name) ? 2 : 0;
+    if (!/brow/i.test(name)) eyes.fill(what, firstVertex, firstVertex + vertexCount);
+  }
+  const offCage = file.offCage ? labelsOf(file.offCage) : new Uint8Array(ncz.length);
+  return { ncz, ignore: labelsOf(file.ignore), offCage, eyes };
 }
 
 /** The models of tests/core/scenes/traps.cpp, which the reference writes. */
@@ -96,22 +125,100 @@ async function loadTraps(): Promise<Model[]> {
   await mkdir(folder, { recursive: true });
   await output(reference, ['--traps', folder]);
   const names = readdirSync(folder).flatMap((file) => (file.endsWith('.scene') ? [file.replace('.scene', '')] : []));
-  return Promise.all(
-    names.sort().map(async (name): Promise<Model> => {
-      const bytes = await readFile(`${folder}/${name}.scene`);
-      const scene = readScene(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) as ArrayBuffer);
-      // Per vertex 0: to be painted, 1: not to be, 2: either; padded to whole words.
-      const labels = new Uint8Array(await readFile(`${folder}/${name}.truth`)).subarray(
-        0,
-        scene.target.positions.length / 3,
-      );
-      const where = (wanted: number): Uint8Array => labels.map((label) => +(label === wanted));
-      return {
-        name,
-        kind: 'trap',
-        scene,
-        truth: { ncz: where(1), ignore: where(2), offCage: new Uint8Array(labels.length) },
-      };
-    }),
-  );
+  return names.sort().map((name): Model => {
+    const scene = readScene(readFileSync(`${folder}/${name}.scene`));
+    // Per vertex 0: to be painted, 1: not to be, 2: either; padded to whole words.
+    const count = scene.target.positions.length / 3;
+    const labels = new Uint8Array(readFileSync(`${folder}/${name}.truth`)).subarray(0, count);
+    const [ncz, ignore] = [1, 2].map((label) => labels.map((other) => +(other === label))) as [Uint8Array, Uint8Array];
+    const none = new Uint8Array(count);
+    return { name, kind: 'trap', scene, truth: { ncz, ignore, offCage: none, eyes: none } };
+  });
+}
+
+/** A model to make or to fit cages for. */
+export interface Figure {
+  name: string;
+  /** What it is; goals differ by it. */
+  kind: 'head' | 'body' | 'prop';
+  target: CageModel;
+  /** Made by hand, if there is one. */
+  cage?: Template;
+  truth: Truth;
+  /** Name → position, of those that are known. Joint centres are called `joint_…`. */
+  landmarks: Landmarks;
+  /** Whether its parts have names that say what they are. */
+  isNamed: boolean;
+  /** Of a person: the figure whose vertices correspond to its own, or to the points `source` of a figure of the same topology. */
+  template?: string;
+  source?: Source;
+}
+
+/** For each vertex a point of another mesh. */
+export interface Source {
+  triangle: number[];
+  barycentric: [number, number, number][];
+}
+
+/**
+ * The samples, the models of CAGECAST_ASSETS, with or without a cage, and the people in its subfolder `people`.
+ * @param only  Names; all if undefined.
+ */
+export async function loadFigures(only?: readonly string[]): Promise<Figure[]> {
+  const isChosen = (name: string): boolean => only?.includes(name) ?? true;
+  const figures: Figure[] = [];
+  // The target of human-misaligned is that of human.
+  const samples = foldersOf(samplesFolder, 'target.glb', 'cage.glb').filter((name) => name !== 'human-misaligned');
+  for (const [folder, names] of [
+    [samplesFolder, samples],
+    [assets, foldersOf(assets, 'target.glb', 'truth.json')],
+  ] as const)
+    for (const name of names.filter(isChosen)) figures.push(await loadFigure(name, `${folder}/${name}`));
+  const people = `${assets}/people`;
+  for (const person of foldersOf(people, 'truth.json'))
+    for (const file of readdirSync(`${people}/${person}`).sort())
+      if (file.endsWith('.glb') && isChosen(`${person}_${file.replace('.glb', '')}`))
+        figures.push(await loadPerson(`${people}/${person}`, file));
+  return figures;
+}
+
+/** Reads a figure by the name of its folder. */
+export async function loadFigure(name: string, folder = `${assets}/${name}`): Promise<Figure> {
+  const [cage, landmarks] = [`${folder}/cage.glb`, `${folder}/landmarks.json`];
+  const isHead = /head|face|bust|human|lizard|suzanne/.test(name) && !/body/.test(name);
+  return {
+    name,
+    kind: isHead ? 'head' : /body|avatar|figure/.test(name) ? 'body' : 'prop',
+    target: await readTarget(`${folder}/target.glb`),
+    ...(existsSync(cage) && { cage: await readCage(cage) }),
+    truth: truthOf(readJson(`${folder}/truth.json`)),
+    landmarks: existsSync(landmarks) ? readJson(landmarks) : {},
+    isNamed: !/fused|suzanne/.test(name),
+  };
+}
+
+type PersonLandmarks = Record<'head' | 'body', Record<string, { position: [number, number, number] }>> & {
+  joints: Landmarks;
+};
+
+async function loadPerson(folder: string, file: string): Promise<Figure> {
+  const kind = file.startsWith('body') ? 'body' : 'head';
+  const isFused = file === 'head_fused.glb';
+  const known = readJson<PersonLandmarks>(`${folder}/landmarks.json`);
+  const truth: TruthFile & { source?: Source } = isFused
+    ? (JSON.parse(gunzipSync(readFileSync(`${folder}/truth_fused.json.gz`)).toString()) as TruthFile)
+    : readJson<Record<'head' | 'body', TruthFile>>(`${folder}/truth.json`)[kind];
+  return {
+    name: `${folder.split('/').at(-1)}_${file.replace('.glb', '')}`,
+    kind,
+    target: await readTarget(`${folder}/${file}`),
+    truth: truthOf(truth),
+    landmarks: Object.fromEntries([
+      ...Object.entries(known[kind]).map(([name, { position }]) => [name, position]),
+      ...Object.entries(kind === 'body' ? known.joints : {}).map(([name, position]) => [`joint_${name}`, position]),
+    ]),
+    isNamed: !isFused && !file.includes('merged'),
+    template: `makehuman_${kind}`,
+    ...(truth.source && { source: truth.source }),
+  };
 }

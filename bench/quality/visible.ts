@@ -1,5 +1,5 @@
+import type { Mesh } from 'cagecast';
 import { boxOf, dot, minus, pointAt, type Vector } from '../../wasm/src/inspect/geometry.js';
-import type { SceneMesh } from '../scene-file.js';
 
 /** From where pictures are taken: all around, from a little above and a little below in turns. */
 const directions = Array.from({ length: 12 }, (_, i) => {
@@ -17,7 +17,7 @@ const size = 400;
  * them add up to the pixels that show the model. Whatever a method paints, the picture's shape is the same: so one count
  * serves all methods.
  */
-export function visiblePixels({ positions, indices }: SceneMesh): Uint32Array {
+export function visiblePixels({ positions, indices }: Mesh): Uint32Array {
   const counts = new Uint32Array(indices.length);
   const vertices = positions.length / 3;
   const { min, max, diagonal } = boxOf(positions);
@@ -42,7 +42,7 @@ export function visiblePixels({ positions, indices }: SceneMesh): Uint32Array {
 }
 
 /** Per pixel: of the triangle in front, the corner that is nearest; -1 where there is none. @param nears  1 ÷ depth. */
-function frontCorners(indices: Uint32Array, xs: Float64Array, ys: Float64Array, nears: Float64Array): Int32Array {
+function frontCorners(indices: Mesh['indices'], xs: Float64Array, ys: Float64Array, nears: Float64Array): Int32Array {
   const corners = new Int32Array(size * size).fill(-1);
   const depths = new Float64Array(size * size);
   for (let t = 0; t < indices.length; t += 3) {

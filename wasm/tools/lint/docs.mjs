@@ -1,6 +1,5 @@
-// Checks the pages of the documentation: links and paths lead somewhere, the two first pages stay short, figures are fresh, and
-// words that were given up do not come back, neither here nor where users read them.
-import { execFileSync } from 'node:child_process';
+// Checks the pages of the documentation: links and paths lead somewhere, the two first pages stay short, and words that were given
+// up do not come back, neither here nor where users read them.
 import { existsSync, readFileSync } from 'node:fs';
 import { dirname, join, normalize } from 'node:path';
 
@@ -91,10 +90,6 @@ export function checkDocs(root, files) {
       const found = read(path).match(new RegExp(`\\b(${word})\\b`, 'i'));
       if (found) problems.push(`${path} says "${found[0]}"; say ${instead}`);
     }
-  }
-  if (files.includes('docs/figures/make.mjs')) {
-    const stale = execFileSync(process.execPath, ['docs/figures/make.mjs', '--check'], { cwd: root, encoding: 'utf8' });
-    problems.push(...stale.split('\n').filter(Boolean));
   }
   return problems;
 }

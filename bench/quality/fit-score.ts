@@ -1,5 +1,7 @@
+import type { Template } from 'cagecast/cages';
 import { Vector3 } from 'three';
-import type { FigureTruth, Source } from './figures.js';
+import { vertexAreas } from '../../wasm/src/inspect/geometry.js';
+import type { Figure } from './models.js';
 import {
   bordersOf,
   diagonalOf,
@@ -10,74 +12,47 @@ import {
   type Shape,
   type SurfacePoint,
   triangleAt,
-  vertexAreas,
   vertexAt,
 } from './shape.js';
-import { similarity } from './similarity.js';
-
-type Landmarks = Readonly<Record<string, readonly [number, number, number]>>;
-
-/** A target, with what is known of it. */
-export interface Subject {
-  target: Shape;
-  truth: FigureTruth;
-  landmarks: Landmarks;
-}
-
-/** A template: a subject with a cage. */
-export interface TemplateFigure extends Subject {
-  cage: Shape & { uvs: ArrayLike<number> };
-}
-
-/** A figure that a template is fitted to. */
-export interface Person extends Subject {
-  /** Where its vertices are on the template's target; without it they are the template's, one by one. */
-  source?: Source;
-  /** Whether its vertices correspond to the template's. Default: yes. */
-  corresponds?: boolean;
-}
 
 /** Median and 95th percentile of an error, as shares of the diagonal of the template's target. */
 export interface Spread {
   median: number;
-  most: number;
-}
-
-/** How a hole lies over an eye, as shares of the area of the eye as it is seen along its own axis. */
-export interface EyeScore {
-  /** What is visible of the eye inside of the outline of the hole. */
-  cover: number;
-  /** What the outline of the hole encloses beside that. */
-  spill: number;
-  /** The same with the whole eyeball's outline, as if there were no lids. */
-  ball: { cover: number; spill: number };
+  high: number;
 }
 
 /** How well a cage fits. Shares of area are of the skin that is scored. */
 export interface FitScore {
   correspondence: Spread;
-  /** Of the left and the right eye. */
-  eyes: EyeScore[];
+  /**
+   * How the holes lie over the left and the right eye: the share of what is visible of it that is inside the outline of its hole, and
+   * what the outline encloses beside that, in the same unit. NaN without a hole.
+   */
+  eyes: { cover: number; spill: number }[];
   /** The share of the skin's area that is outside of the cage. */
   outside: number;
   /** Triangles that are folded over, and are not in the template. */
   folded: number;
   /** The 5th percentile of the triangles' smallest angles, in degrees. */
   angle: number;
-  /** Mean and largest error of the true landmarks on the skin that the fit did not use, as shares of the diagonal. */
-  unused: { mean: number; most: number; count: number };
+  /** Mean error of the true landmarks on the skin that the fit did not use, as a share of the diagonal. */
+  landmarks: number;
 }
 
 /** The template's closest points, computed once. */
 export class FitScorer {
+  readonly cage: Template;
   readonly diagonal: number;
   private readonly onCage: SurfacePoint[];
   private readonly own: Search;
   private readonly eyeLoops: (number[] | undefined)[];
   private readonly foldedBefore: Set<number>;
 
-  constructor(readonly template: TemplateFigure) {
-    const { cage, target, landmarks } = template;
+  /** @param template  A figure with a cage. */
+  constructor(readonly template: Figure) {
+    const { target, landmarks } = template;
+    const cage = template.cage!;
+    this.cage = cage;
     this.diagonal = diagonalOf(target.positions);
     this.own = new Search(cage);
     this.onCage = closestOf(this.own, target.positions);
@@ -94,104 +69,63 @@ export class FitScorer {
 
   /**
    * The error of correspondence: for each skin vertex the point of the template's cage nearest to the template's vertex, against
-   * the point of the cage nearest to the person's vertex, carried to the template's cage by the same triangle and weights. NaN if
-   * nothing corresponds.
+   * the point of the cage nearest to the person's vertex, carried to the template's cage by the same triangle and weights.
    */
-  correspondence(positions: ArrayLike<number>, person: Person): Spread {
-    const { cage } = this.template;
-    if (person.corresponds === false) return { median: NaN, most: NaN };
-    const fitted = new Search({ positions, indices: cage.indices });
+  private correspondence(fitted: Search, person: Figure): Spread {
     const errors: number[] = [];
     for (let v = 0; v < person.target.positions.length / 3; ++v) {
-      const expected = this.isScored(person, v) && this.expected(person, v);
-      if (!expected) continue;
+      if (!this.isScored(person, v)) continue;
       const { triangle, weights } = fitted.closest(vertexAt(person.target.positions, v));
-      errors.push(pointOn(cage, triangle, weights).distanceTo(expected) / this.diagonal);
+      const there = pointOn(this.cage, triangle, weights);
+      errors.push(there.distanceTo(this.expected(person, v)) / this.diagonal);
     }
-    return { median: percentile(errors, 0.5), most: percentile(errors, 0.95) };
+    return { median: percentile(errors, 0.5), high: percentile(errors, 0.95) };
   }
 
   /** Whether a vertex is skin in both truths. */
-  private isScored({ truth, source }: Person, v: number): boolean {
+  private isScored({ truth, source }: Figure, v: number): boolean {
     const { truth: own, target } = this.template;
     if (truth.ncz[v] === 1 || truth.ignore[v] === 1) return false;
     const corners = source ? [0, 1, 2].map((k) => target.indices[3 * source.triangle[v]! + k]!) : [v];
     return corners.every((w) => own.ncz[w] === 0 && own.ignore[w] === 0);
   }
 
-  private expected({ source }: Person, v: number): Vector3 {
+  private expected({ source }: Figure, v: number): Vector3 {
     if (source === undefined) return this.onCage[v]!.position;
     return this.own.closest(pointOn(this.template.target, source.triangle[v]!, source.barycentric[v]!)).position;
   }
 
-  /** The template's cage where the similarity by some landmarks brings it. @param found  On the person. */
-  bySimilarity(found: Landmarks): Float64Array | undefined {
-    const { cage, landmarks } = this.template;
-    const names = Object.keys(found).filter((name) => landmarks[name] !== undefined);
-    if (names.length < 3) return undefined;
-    const place = (of: Landmarks): Vector3[] => names.map((name) => new Vector3(...of[name]!));
-    const matrix = similarity(place(landmarks), place(found));
-    return mapped(cage.positions, (p) => p.applyMatrix4(matrix));
-  }
-
-  /** The template's cage carried by the true displacement of the nearest points of the target, offsets scaled. */
-  byTruth(person: Person): Float64Array | undefined {
-    if (person.source !== undefined || person.corresponds === false) return undefined;
-    const { cage, target } = this.template;
-    const search = new Search(target);
-    const scale = diagonalOf(person.target.positions) / this.diagonal;
-    return mapped(cage.positions, (p) => {
-      const { triangle, weights, position } = search.closest(p);
-      const offset = p.sub(position).multiplyScalar(scale);
-      return pointOn({ positions: person.target.positions, indices: target.indices }, triangle, weights).add(offset);
-    });
-  }
-
   /** @param used  Names of the landmarks that the fit used. */
-  score(positions: ArrayLike<number>, person: Person, used: readonly string[]): FitScore {
-    const cage = { positions, indices: this.template.cage.indices };
-    const eyes = [1, 2].map((eye, i) =>
-      coverOf(
-        person,
-        eye,
-        this.eyeLoops[i]?.map((v) => vertexAt(positions, v)),
-      ),
-    );
-    const folded = [...foldedTriangles(cage)].filter((t) => !this.foldedBefore.has(t)).length;
+  score(positions: Float32Array, person: Figure, used: readonly string[]): FitScore {
+    const cage = { positions, indices: this.cage.indices };
+    const search = new Search(cage);
+    const loopOf = (eye: number): Vector3[] | undefined => this.eyeLoops[eye]?.map((v) => vertexAt(positions, v));
     return {
-      correspondence: this.correspondence(positions, person),
-      eyes,
+      correspondence: this.correspondence(search, person),
+      eyes: [0, 1].map((eye) => coverOf(person, eye + 1, loopOf(eye))),
       outside: outsideOf(cage, person),
-      folded,
+      folded: [...foldedTriangles(cage)].filter((t) => !this.foldedBefore.has(t)).length,
       angle: percentile(smallestAngles(cage), 0.05),
-      unused: this.unusedOf(cage, person, used),
+      landmarks: this.landmarkError(search, person, used),
     };
   }
 
-  private unusedOf(cage: Shape, { target, landmarks }: Person, used: readonly string[]): FitScore['unused'] {
+  private landmarkError(fitted: Search, { target, landmarks }: Figure, used: readonly string[]): number {
     const diagonal = diagonalOf(target.positions);
-    const search = new Search(cage);
     const names = Object.keys(landmarks).filter(
       (name) => !/^joint_|^eye_centre|^wrist/.test(name) && !used.includes(name) && this.template.landmarks[name],
     );
     const errors = names.map((name) => {
       const { triangle, weights } = this.own.closest(new Vector3(...this.template.landmarks[name]!));
-      const there = search.closest(new Vector3(...landmarks[name]!));
-      return pointOn(cage, triangle, weights).distanceTo(there.position) / diagonal;
+      const there = fitted.closest(new Vector3(...landmarks[name]!));
+      return pointOn(fitted.shape, triangle, weights).distanceTo(there.position) / diagonal;
     });
-    const mean = errors.reduce((sum, error) => sum + error, 0) / errors.length;
-    return { mean, most: Math.max(...errors), count: errors.length };
+    return errors.reduce((sum, error) => sum + error, 0) / errors.length;
   }
 }
 
 const closestOf = (search: Search, positions: ArrayLike<number>): SurfacePoint[] =>
   Array.from({ length: positions.length / 3 }, (_, v) => search.closest(vertexAt(positions, v)));
-
-const mapped = (positions: ArrayLike<number>, move: (p: Vector3) => Vector3): Float64Array => {
-  const out = new Float64Array(positions.length);
-  for (let v = 0; v < positions.length / 3; ++v) move(vertexAt(positions, v)).toArray(out, 3 * v);
-  return out;
-};
 
 const middleOf = ({ positions }: Shape, vertices: readonly number[]): Vector3 =>
   vertices.reduce((sum, v) => sum.add(vertexAt(positions, v)), new Vector3()).divideScalar(vertices.length);
@@ -214,15 +148,17 @@ const kLift = 1e-4;
  * visible of it is what the lids leave free; lashes are looked through.
  * @param loop  The border of its hole.
  */
-function coverOf({ target, truth }: Subject, eye: number, loop: Vector3[] | undefined): EyeScore {
+function coverOf({ target, truth }: Figure, eye: number, loop: Vector3[] | undefined): FitScore['eyes'][number] {
   const { positions, indices } = target;
+  const partOf = (t: number): number => truth.eyes[indices[3 * t]!]!;
   const all = Array.from({ length: indices.length / 3 }, (_, t) => t);
-  const only = (triangles: readonly number[]): Search =>
-    new Search({ positions, indices: triangles.flatMap((t) => [0, 1, 2].map((k) => indices[3 * t + k]!)) });
-  const ball = all.filter((t) => truth.eyes[indices[3 * t]!] === eye);
-  if (ball.length === 0 || loop === undefined) return { cover: NaN, spill: NaN, ball: { cover: NaN, spill: NaN } };
-  const rest = all.filter((t) => truth.eyes[indices[3 * t]!] !== 3);
-  const whole = only(rest);
+  const ball = all.filter((t) => partOf(t) === eye);
+  if (ball.length === 0 || loop === undefined) return { cover: NaN, spill: NaN };
+  const seen = all.filter((t) => partOf(t) !== 3);
+  const whole = new Search({
+    positions,
+    indices: seen.flatMap((t) => [0, 1, 2].map((k) => indices[3 * t + k]!)),
+  });
   const size = diagonalOf(positions);
   const axis = new Vector3();
   const points = [...loop];
@@ -240,29 +176,20 @@ function coverOf({ target, truth }: Subject, eye: number, loop: Vector3[] | unde
   const [left, bottom] = [0, 1].map((k) => Math.min(...flat.map((p) => p[k]!))) as [number, number];
   const [width, height] = [Math.max(...flat.map(([x]) => x)) - left, Math.max(...flat.map(([, y]) => y)) - bottom];
   const far = size + Math.max(...points.map((p) => p.dot(axis)));
-  const alone = only(ball);
   const back = axis.clone().negate();
-  const [seen, disc] = [
-    { area: 0, inHole: 0 },
-    { area: 0, inHole: 0 },
-  ];
-  let hole = 0;
+  let [visible, inHole, hole] = [0, 0, 0];
   for (let i = 0; i < kRays * kRays; ++i) {
     const x = left + (((i % kRays) + 0.5) / kRays) * width;
     const y = bottom + ((Math.floor(i / kRays) + 0.5) / kRays) * height;
     const origin = new Vector3().addScaledVector(right, x).addScaledVector(up, y).addScaledVector(axis, far);
     const isHole = isWithin(flat.slice(0, loop.length), x, y);
     if (isHole) ++hole;
-    const count = (what: typeof seen): void => {
-      ++what.area;
-      if (isHole) ++what.inHole;
-    };
-    if (alone.firstHit(origin, back) < 0) continue;
-    count(disc);
-    if (truth.eyes[indices[3 * rest[whole.firstHit(origin, back)]!]!] === eye) count(seen);
+    const hit = whole.firstHit(origin, back);
+    if (hit < 0 || partOf(seen[hit]!) !== eye) continue;
+    ++visible;
+    if (isHole) ++inHole;
   }
-  const sharesOf = ({ area, inHole }: typeof seen) => ({ cover: inHole / area, spill: (hole - inHole) / area });
-  return { ...sharesOf(seen), ball: sharesOf(disc) };
+  return { cover: inHole / visible, spill: (hole - inHole) / visible };
 }
 
 function isWithin(loop: readonly [number, number][], x: number, y: number): boolean {
@@ -275,7 +202,7 @@ function isWithin(loop: readonly [number, number][], x: number, y: number): bool
 }
 
 /** The share of the skin in front of the nearest point of the cage; where that is on a border, it says nothing. */
-function outsideOf(cage: Shape, { target, truth }: Subject): number {
+function outsideOf(cage: Shape, { target, truth }: Figure): number {
   const at = places(cage.positions);
   const edges = edgesOf(cage, at);
   const normals = Array.from({ length: cage.indices.length / 3 }, (_, t) =>

@@ -35,16 +35,6 @@ export function diagonalOf(positions: ArrayLike<number>): number {
   return high.distanceTo(low);
 }
 
-/** A third of the area of each triangle goes to each of its corners. */
-export function vertexAreas({ positions, indices }: Shape): Float64Array {
-  const areas = new Float64Array(positions.length / 3);
-  for (let t = 0; t < indices.length; t += 3) {
-    const area = triangleAt({ positions, indices }, t / 3).getArea();
-    for (let k = 0; k < 3; ++k) areas[indices[t + k]!]! += area / 3;
-  }
-  return areas;
-}
-
 export const triangleAt = ({ positions, indices }: Shape, t: number): Triangle => {
   const [a, b, c] = [0, 1, 2].map((k) => vertexAt(positions, indices[3 * t + k]!));
   return new Triangle(a, b, c);
