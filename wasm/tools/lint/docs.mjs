@@ -6,9 +6,6 @@ import { dirname, join, normalize } from 'node:path';
 /** Read first, so they have to be short. */
 const kMaxLines = { 'README.md': 150, 'CONTRIBUTING.md': 150 };
 
-/** Where words of the first edition are quoted. */
-const kFrozen = /^(CHANGELOG\.md|docs\/lab-notes\/20)/;
-
 /** Given up for a word of the field, which is beside it. */
 const kWords = {
   'rims?': 'boundary loop',
@@ -25,9 +22,7 @@ const kWords = {
 const isForUsers = (path) =>
   /^(README|CONTRIBUTING|SECURITY)\.md$|^docs\/|^examples\/(node|three|native)\/|^core\/include\/|^wasm\/src\/(api|generated|cli)\/|^web\/index\.html$/.test(
     path,
-  ) &&
-  /\.(md|hpp|def|ts|js|cpp|html)$/.test(path) &&
-  !kFrozen.test(path);
+  ) && /\.(md|hpp|def|ts|js|cpp|html)$/.test(path);
 
 /** The anchors that GitHub makes of a page's headings. */
 const anchorsOf = (text) =>
@@ -81,7 +76,7 @@ export function checkDocs(root, files) {
     const lines = files.includes(path) ? read(path).split('\n').length - 1 : 0;
     if (lines > most) problems.push(`${path} has ${lines} lines; at most ${most} are allowed`);
   }
-  for (const path of files.filter((file) => file.endsWith('.md') && !kFrozen.test(file))) {
+  for (const path of files.filter((file) => file.endsWith('.md'))) {
     const text = read(path);
     problems.push(...checkLinks(root, path, text), ...checkPaths(files, path, text));
   }
