@@ -179,7 +179,7 @@ describe('examples, as examples/README.md says', () => {
     const folder = join(repository, 'examples/worker');
     cpSync(join(user, 'node_modules/cagecast'), repository, { recursive: true });
     cpSync(join(user, 'examples/worker'), folder, { recursive: true });
-    symlinkSync(join(user, 'build'), join(repository, 'build'));
+    symlinkSync(resolve('examples/samples'), join(repository, 'examples/samples'));
     mkdirSync(join(folder, 'node_modules'));
     symlinkSync(repository, join(folder, 'node_modules/cagecast'));
     symlinkSync(resolve('node_modules/three'), join(folder, 'node_modules/three'));
