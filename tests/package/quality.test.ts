@@ -4,6 +4,7 @@ import { init } from 'cagecast';
 import { missedGoals } from '../../bench/quality/goals.js';
 import { measure, type Quality } from '../../bench/quality/measure.js';
 import { listFiles, loadFiles, type ModelFiles } from '../../bench/quality/models.js';
+import { score } from '../../bench/quality/score.js';
 import { visiblePixels } from '../../bench/quality/visible.js';
 
 describe('quality', () => {
@@ -65,6 +66,30 @@ describe('quality', () => {
     );
     assert.match(withDefault(1, 0, 0, 1), /default: kept.*\n.*without paint/);
     assert.match(withDefault(NaN, NaN, NaN, NaN), /suppressed.*\n.*kept.*\n.*none must be.*\n.*without paint/);
+  });
+
+  test('a score leaves out what is ignored, and of what is to be painted what the cage says nothing about', () => {
+    // Four triangles of areas 1, 2, 4 and 8, side by side.
+    const positions = Float32Array.from([1, 2, 4, 8].flatMap((a, i) => [0, 0, i, 2 * a, 0, i, 0, 1, i]));
+    const target = { positions, indices: Uint32Array.from({ length: 12 }, (_, v) => v) };
+    const perVertex = (text: string): Uint8Array => Uint8Array.from([...text].flatMap((c) => [+c, +c, +c]));
+    for (const [ncz, ignore, offCage, zones, suppressed, kept] of [
+      ['0011', '0000', '0000', '0123', 1, 1 / 3],
+      ['0011', '0000', '0000', '0003', 8 / 12, 1],
+      ['0011', '0001', '0000', '0100', 0, 1 / 3],
+      ['0011', '0000', '0100', '0203', 8 / 12, 1],
+      ['0011', '0000', '0011', '0003', 8 / 12, 1],
+    ] as const) {
+      const truth = {
+        ncz: perVertex(ncz),
+        ignore: perVertex(ignore),
+        offCage: perVertex(offCage),
+        eyes: perVertex('0000'),
+      };
+      const found = score(target, truth, perVertex(zones));
+      const text = `${ncz} ${ignore} ${offCage} ${zones}: ${JSON.stringify(found)}`;
+      assert.ok(Math.abs(found.suppressed - suppressed) < 1e-6 && Math.abs(found.kept - kept) < 1e-6, text);
+    }
   });
 
   test('pictures show the front surface, from all sides', () => {
