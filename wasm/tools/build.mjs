@@ -171,16 +171,22 @@ function reading(name) {
   return { define: { ...common.define, CAGECAST_WASM: JSON.stringify(`./${name}.wasm`) } };
 }
 
+/** Bundles the command: cli.js, the program, and command.js beside it, the function that the program calls, as tests do. */
 async function bundleCommand(bundle) {
+  await bundle('cli/main.ts', 'cli.js', 'node', {
+    target: 'node20',
+    sourcemap: false,
+    external: ['./command.js'],
+    banner: { js: '#!/usr/bin/env node' },
+  });
   // Some of what is bundled is CommonJS and asks for these.
   const banner = [
-    '#!/usr/bin/env node',
     "import { createRequire as cagecastRequire } from 'node:module';",
     "import { dirname as cagecastDirname } from 'node:path';",
     "import { fileURLToPath as cagecastPath } from 'node:url';",
     'const require = cagecastRequire(import.meta.url), __filename = cagecastPath(import.meta.url), __dirname = cagecastDirname(__filename);',
   ];
-  await bundle('cli/main.ts', 'cli.js', 'node', {
+  await bundle('cli/command.ts', 'command.js', 'node', {
     ...reading('cagecast-cages'),
     target: 'node20',
     sourcemap: false, // most of it is what others wrote
