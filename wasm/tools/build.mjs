@@ -190,6 +190,8 @@ async function bundleCommand(bundle) {
     ...reading('cagecast-cages'),
     target: 'node20',
     sourcemap: false, // most of it is what others wrote
+    // By require: loaders of TypeScript, as tests have one, take long to rewrite a large script with dynamic imports.
+    supported: { 'dynamic-import': false },
     banner: { js: banner.join('\n') },
     loader: { '.wasm': 'binary' },
     plugins: [wasmModules('wasm-inline.ts')],
