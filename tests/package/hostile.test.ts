@@ -1,19 +1,27 @@
 // Files that strangers may send: each is refused with one clear line, or read at a cost in proportion to its size.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { chmodSync, existsSync, lstatSync, mkdirSync, readdirSync, readFileSync, rmSync, symlinkSync } from 'node:fs';
-import { describe, test } from 'node:test';
+import { existsSync, mkdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { before, describe, test } from 'node:test';
 import type { GLTF } from '@gltf-transform/core';
-import type { CagecastError } from 'cagecast';
+import { type CagecastError, init } from 'cagecast';
 import { checkGltf } from 'cagecast/gltf';
-import { cagecast, fails, ok, run } from '../support/command.js';
-import { type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from '../support/gltf.js';
-import { png, workplace, write } from './command/workplace.js';
+import { PNG } from 'pngjs';
+import { cagecast, type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from '../support/gltf.js';
+import { temporaryFolder } from '../support/temporary.js';
 
-const { at } = workplace('hostile', { name: 'tetrahedra', cage: tetrahedron(1), target: tetrahedron(0.9) });
-const transfer = 'transfer target.glb --cage cage.glb';
+const { at } = temporaryFolder('hostile');
+const write = (data: Uint8Array | string, ...names: string[]) => {
+  writeFileSync(at(...names), data);
+  return at(...names);
+};
+
 const whole = glbOf(tetrahedron(0.9), 'ball');
-mkdirSync('asset');
+before(async () => {
+  await init();
+  mkdirSync(at('asset'));
+  write(glbOf(tetrahedron(1)), 'cage.glb');
+});
 
 function changed(change: (json: GLTF.IGLTF, glb: Glb) => void): Buffer {
   const glb = unpackGlb(whole);
@@ -129,16 +137,16 @@ describe('a file that demands too much', () => {
     });
   }
 
-  test('the command refuses them with one line and writes nothing', async () => {
-    for (const [, make, message] of files.filter((_, f) => [0, 2, 4, 7].includes(f))) {
-      write('huge.glb', make());
-      await fails(
-        1,
-        new RegExp(`^cagecast: huge\\.glb: .*${message.source}`),
-        'transfer huge.glb --cage cage.glb -o never.glb',
-      );
+  test('the command refuses them with one line and writes nothing', () => {
+    for (const [name, make, message] of files.filter((_, f) => [0, 2, 4, 7].includes(f))) {
+      const target = write(make(), 'target.glb');
+      const { status, stdout, stderr } = cagecast('transfer', target, '--cage', at('cage.glb'), '-o', at('never.glb'));
+      assert.equal(status, 1, name);
+      assert.match(stderr, message);
+      assert.match(stderr, /^cagecast: .*target\.glb: [^\n]+\n$/);
+      assert.equal(stdout, '');
+      assert.ok(!existsSync(at('never.glb')));
     }
-    assert.ok(!existsSync('never.glb'), 'nothing is written');
   });
 
   test('zones that are not in the file are as many as the positions, and overlays are counted by themselves', () => {
@@ -162,7 +170,7 @@ describe('a file that demands too much', () => {
     assert.throws(() => checkGltf(painted(2)), /are in 1200 places/);
   });
 
-  test('what stays within the limits is read, and limits can be set', async () => {
+  test('what stays within the limits is read, and limits can be set', () => {
     for (const bytes of [imply(0, 1000), imply(2, 3000), instances(1000), nested(900)]) checkGltf(bytes);
     checkGltf(instances(1001), { limits: { instances: 2000 } });
     checkGltf(whole, { limits: { instances: undefined } });
@@ -188,77 +196,74 @@ describe('a file that demands too much', () => {
         /checkGltf: otherBytes = .* is not a number ≥ 0/,
       );
     assert.throws(() => checkGltf('a.glb' as never), /checkGltf: bytes is "a\.glb", not a Uint8Array/);
-    write('many.glb', instances(3));
-    const many = 'transfer many.glb --cage cage.glb --limit';
-    await fails(1, /many\.glb: .* in 3 places .* limit "instances" is 2\n/, `${many} instances=2`);
-    await fails(1, 'many.glb: has more than 100 bytes; the limit "bytes" is 100', `${many} bytes=100`);
-    await ok(`${many} instances=2 --limit instances=3`);
+    const target = write(instances(3), 'target.glb');
+    const run = (...flags: string[]) => cagecast('transfer', target, '--cage', at('cage.glb'), ...flags);
+    assert.match(run('--limit', 'instances=2').stderr, /target\.glb: .* in 3 places .* limit "instances" is 2\n/);
+    assert.match(run('--limit', 'bytes=100').stderr, /target\.glb: has more than 100 bytes; the limit "bytes" is 100/);
+    assert.equal(run('--limit', 'vertices=2').status, 2);
+    assert.equal(run('--limit', 'instances=2', '--limit', 'instances=3').status, 0);
   });
 });
 
 describe('what a file refers to', { skip: process.platform === 'win32' && 'there are no pipes and devices' }, () => {
-  const line = 'transfer asset/target.gltf --cage cage.glb -o out.glb';
-  const refused = async (uri: string, message: RegExp, flags = '', more = {}) => {
-    write('asset/target.gltf', gltf(uri, more));
-    await fails(1, message, line + flags);
-    assert.ok(!existsSync('out.glb'), uri);
+  const run = (...flags: string[]) =>
+    cagecast('transfer', at('asset', 'target.gltf'), '--cage', at('cage.glb'), '-o', at('out.glb'), ...flags);
+  const refused = (uri: string, message: RegExp, ...flags: string[]) => {
+    write(gltf(uri), 'asset', 'target.gltf');
+    const { status, stderr } = run(...flags);
+    assert.equal(status, 1, uri);
+    assert.match(stderr, message);
+    assert.match(stderr, /^cagecast: [^\n]+\n$/);
+    assert.ok(!existsSync(at('out.glb')));
   };
 
-  test('devices and pipes are not read', async () => {
-    execFileSync('mkfifo', ['asset/pipe.bin']);
-    await refused('pipe.bin', /target\.gltf: buffers\[0\] is in pipe\.bin: is a device or a pipe, not a file/);
-    await refused('/dev/zero', /is in \/dev\/zero: is a device or a pipe/, ' --allow-outside');
+  test('devices and pipes are not read', () => {
+    execFileSync('mkfifo', [at('asset', 'pipe.bin')]);
+    refused('pipe.bin', /target\.gltf: buffers\[0\] is in pipe\.bin: is a device or a pipe, not a file/);
+    refused('/dev/zero', /is in \/dev\/zero: is a device or a pipe/, '--allow-outside');
   });
 
-  test('files outside its folder are read with --allow-outside only', async () => {
-    write('secret.bin', unpackGlb(whole).bin);
-    write('asset/own.bin', unpackGlb(whole).bin);
-    write('secret.png', png(1, 1));
-    symlinkSync('../secret.bin', 'asset/link.bin');
+  test('files outside its folder are read with --allow-outside only', () => {
+    write(unpackGlb(whole).bin, 'secret.bin');
     const outside = /is outside the folder of the file that refers to it; --allow-outside permits it/;
-    for (const uri of ['../secret.bin', '..%2fsecret.bin', at('secret.bin'), '/dev/zero', 'link.bin'])
-      await refused(uri, outside);
-    const images = [{ uri: '../secret.png' }];
-    await refused('own.bin', /images\[0\] is in \.\.\/secret\.png: is outside/, '', { images });
-    write('asset/target.gltf', gltf('link.bin', { images }));
-    await ok(`${line} --allow-outside`);
-    assert.ok(readFileSync('out.glb').includes(png(1, 1)), 'the image is in the file');
-    rmSync('out.glb');
+    refused('../secret.bin', outside);
+    refused('..%2fsecret.bin', outside);
+    refused(at('secret.bin'), outside);
+    refused('/dev/zero', outside);
+    symlinkSync('../secret.bin', at('asset', 'link.bin'));
+    refused('link.bin', outside);
+    const png = PNG.sync.write(new PNG({ width: 1, height: 1 }));
+    write(png, 'secret.png');
+    write(gltf('link.bin', { images: [{ uri: '../secret.png' }] }), 'asset', 'target.gltf');
+    assert.equal(run('--allow-outside').status, 0);
+    assert.ok(readFileSync(at('out.glb')).includes(png));
+    rmSync(at('out.glb'));
+    write(unpackGlb(whole).bin, 'asset', 'own.bin');
+    write(gltf('own.bin', { images: [{ uri: '../secret.png' }] }), 'asset', 'target.gltf');
+    const { status, stderr } = run();
+    assert.equal(status, 1);
+    assert.match(stderr, /images\[0\] is in \.\.\/secret\.png: is outside/);
+    assert.ok(!existsSync(at('out.glb')));
   });
 
-  test('links to themselves, long names and devices are plain errors', async () => {
-    symlinkSync('loop.glb', 'loop.glb');
+  test('links to themselves, long names and devices are plain errors', () => {
+    symlinkSync('loop.glb', at('loop.glb'));
     const long = `${'a'.repeat(300)}.glb`;
+    const transfer = (target: string, out: string) => cagecast('transfer', target, '--cage', at('cage.glb'), '-o', out);
     for (const [target, out, message] of [
-      ['loop.glb', 'out.glb', /loop\.glb: is a link that leads back to itself/],
-      ['loop.glb/x.glb', 'out.glb', /x\.glb: is a link that leads back to itself/],
-      ['cage.glb/x.glb', 'out.glb', /x\.glb: no such file/],
-      [long, 'out.glb', /a\.glb: its name is too long/],
-      ['/dev/null', 'out.glb', /null: is a device, not a file/],
-      ['cage.glb', 'loop.glb/x.glb', /x\.glb: cannot be written \(is a link that leads back to itself\)/],
-      ['cage.glb', long, /a\.glb: cannot be written \(its name is too long\)/],
-    ] as const)
-      await fails(1, message, `transfer ${target} --cage cage.glb -o ${out}`);
-  });
-
-  test('links are written through, permissions stay, and two names of one file are one', async () => {
-    mkdirSync('folder');
-    symlinkSync('folder', 'way');
-    symlinkSync('folder/later.glb', 'link.glb'); // does not exist yet
-    await ok(`${transfer} -o link.glb`);
-    assert.ok(lstatSync('link.glb').isSymbolicLink(), 'the link is kept');
-    assert.equal(readFileSync('folder/later.glb').toString('latin1', 0, 4), 'glTF');
-    chmodSync('folder/later.glb', 0o600);
-    await ok(`${transfer} -o way/later.glb`);
-    assert.equal(lstatSync('folder/later.glb').mode & 0o777, 0o600);
-    await fails(
-      2,
-      /way\/a\.glb would overwrite folder\/a\.glb, which .* writes/,
-      `${transfer} -o folder/a.glb --report way/a.glb`,
-    );
-    const reads = 'link.glb would overwrite folder/later.glb, which this command reads; choose another output';
-    await fails(2, reads, 'transfer folder/later.glb --cage cage.glb -o link.glb');
-    assert.deepEqual(readdirSync('folder'), ['later.glb']);
+      [at('loop.glb'), at('out.glb'), /loop\.glb: is a link that leads back to itself/],
+      [at('loop.glb', 'x.glb'), at('out.glb'), /x\.glb: is a link that leads back to itself/],
+      [at('cage.glb', 'x.glb'), at('out.glb'), /x\.glb: no such file/],
+      [at(long), at('out.glb'), /a\.glb: its name is too long/],
+      ['/dev/null', at('out.glb'), /null: is a device, not a file/],
+      [at('cage.glb'), at('loop.glb', 'x.glb'), /x\.glb: cannot be written \(is a link that leads back to itself\)/],
+      [at('cage.glb'), at(long), /a\.glb: cannot be written \(its name is too long\)/],
+    ] as const) {
+      const { status, stderr } = transfer(target, out);
+      assert.match(stderr, message);
+      assert.match(stderr, /^cagecast: [^\n]+\n$/);
+      assert.equal(status, 1);
+    }
   });
 });
 
@@ -269,66 +274,67 @@ describe('names', () => {
       json.nodes![0]!.name = name;
     });
 
-  test('bytes that a terminal obeys are printed as text, also in JSON, which keeps its meaning', async () => {
-    write('named.glb', named());
+  test('bytes that a terminal obeys are printed as text, also in JSON, which keeps its meaning', () => {
+    const target = write(named(), 'named.glb');
     const commands = /(?!\n)[\p{Cc}\p{Bidi_Control}]/u;
-    const inspect = 'inspect named.glb --cage cage.glb';
-    const { stdout } = await run(inspect);
+    const inspect = (...flags: string[]) => cagecast('inspect', target, '--cage', at('cage.glb'), ...flags);
+    const { stdout } = inspect();
     assert.doesNotMatch(stdout, commands);
     assert.match(stdout, /\\u009b31m\\u001b\]0;title\\u0007\\u000a/);
-    const { stderr } = await run(`${inspect} --keep nothing`);
+    const json = inspect('--json').stdout;
+    assert.doesNotMatch(json, commands);
+    assert.equal(JSON.parse(json).segments[0].part, name);
+    const { stderr } = inspect('--keep', 'nothing');
     assert.match(stderr, /^cagecast: [^\n]+there are: \\u009b31m[^\n]+\n$/);
     assert.doesNotMatch(stderr, commands);
-    for (const line of [`${inspect} --json`, 'transfer named.glb --cage cage.glb --report -']) {
-      const json = (await run(line)).stdout;
-      assert.doesNotMatch(json, commands);
-      assert.equal(JSON.parse(json).segments[0].part, name);
-    }
-    const odd = 'named\u009b\u202e.glb';
-    write(odd, named());
-    const line = (await cagecast('batch', odd, '--cage', 'cage.glb')).stdout;
+    const report = cagecast('transfer', target, '--cage', at('cage.glb'), '--report', '-').stdout;
+    assert.doesNotMatch(report, commands);
+    assert.equal(JSON.parse(report).segments[0].part, name);
+    const odd = write(named(), 'named\u009b\u202e.glb');
+    const line = cagecast('batch', odd, '--cage', at('cage.glb')).stdout;
     assert.doesNotMatch(line, commands);
     assert.equal(JSON.parse(line).target, odd);
-    await run(`${inspect} --html page.html`);
-    assert.doesNotMatch(readFileSync('page.html', 'utf8'), /<script>alert/);
+    inspect('--html', at('page.html'));
+    assert.doesNotMatch(readFileSync(at('page.html'), 'utf8'), /<script>alert/);
   });
 
-  test('a line that names a file stays one line', async () => {
-    const target = 'named\ngood\tcage.glb';
-    write(target, whole);
-    const lines = async (...args: string[]) => (await cagecast(...args)).stdout.split('\n');
-    const transferred = await lines('transfer', target, '--cage', 'cage.glb', '-o', 'painted\nGOOD.glb');
-    assert.match(transferred[0]!, /^named\\u000agood\\u0009cage\.glb: 4 vertices/);
-    assert.ok(
-      transferred.some((line) => /^wrote painted\\u000aGOOD\.glb: /.test(line)),
-      transferred.join(),
-    );
-    assert.match(
-      (await lines('inspect', target, '--cage', 'cage.glb'))[0]!,
-      /^target {2}named\\u000agood\\u0009cage\.glb: 4/,
-    );
-    assert.match((await lines('make', target, '-o', 'made\nGOOD.glb'))[0]!, /^wrote made\\u000aGOOD\.glb: /);
+  test('a line that names a file stays one line', () => {
+    const target = write(whole, 'named\ngood\tcage.glb');
+    const output = at('painted\nGOOD.glb');
+    const lines = (...command: string[]) => cagecast(...command, '--cage', at('cage.glb')).stdout.split('\n');
+    assert.match(lines('transfer', target, '-o', output)[0]!, /named\\u000agood\\u0009cage\.glb: 4 vertices/);
+    assert.ok(lines('transfer', target, '-o', output).some((line) => /^wrote .*painted\\u000aGOOD\.glb: /.test(line)));
+    assert.match(lines('inspect', target)[0]!, /^target .*named\\u000agood\\u0009cage\.glb: 4 vertices/);
+    const made = cagecast('make', target, '-o', at('made\nGOOD.glb')).stdout.split('\n');
+    assert.match(made[0]!, /^wrote .*made\\u000aGOOD\.glb: /);
   });
 
-  test('a pattern with many stars is matched in time that grows with its length only', async () => {
+  test('a pattern with many stars is matched in time that grows with its length only', () => {
     const long = 'a'.repeat(4000);
-    write(
+    const target = write(
+      changed((json) => {
+        json.nodes![0]!.name = long;
+      }),
       'long.glb',
-      changed((json) => (json.nodes![0]!.name = long)),
     );
-    const keep = (pattern: string) => `transfer long.glb --cage cage.glb --keep ${pattern}`;
-    await fails(1, /no node or material has this name; there are: a{59}…\n$/, keep(`${'*a'.repeat(40)}*b`));
-    await ok(keep(`${'*a'.repeat(40)}*`));
+    const run = (pattern: string) => cagecast('transfer', target, '--cage', at('cage.glb'), '--keep', pattern);
+    const { status, stderr } = run(`${'*a'.repeat(40)}*b`);
+    assert.equal(status, 1);
+    assert.match(stderr, /no node or material has this name; there are: a{59}…\n$/);
+    assert.equal(run(`${'*a'.repeat(40)}*`).status, 0);
   });
 
-  test('patterns match what they say', async () => {
-    write(
+  test('patterns match what they say', () => {
+    const target = write(
+      changed((json) => {
+        json.nodes![0]!.name = 'abcab';
+      }),
       'abcab.glb',
-      changed((json) => (json.nodes![0]!.name = 'abcab')),
     );
-    const line = 'transfer abcab.glb --cage cage.glb';
-    await ok(line + ['abcab', '*', 'a*b', '*bc*', 'ab*ab', '**c**'].map((pattern) => ` --keep ${pattern}`).join(''));
-    for (const pattern of ['abca', 'ab*bcab', 'b*', 'abc*cab'])
-      await fails(1, /no node or material has this name/, `${line} --keep ${pattern}`);
+    const matches = (...patterns: string[]) =>
+      cagecast('transfer', target, '--cage', at('cage.glb'), ...patterns.flatMap((text) => ['--keep', text])).status ===
+      0;
+    assert.ok(matches('abcab', '*', 'a*b', '*bc*', 'ab*ab', '**c**'));
+    for (const pattern of ['abca', 'ab*bcab', 'b*', 'abc*cab']) assert.ok(!matches(pattern), pattern);
   });
 });

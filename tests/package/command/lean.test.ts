@@ -195,7 +195,7 @@ test('what Draco has rounded before stays where it was, and attributes of an own
   });
   const positionsById = (document: Document): Map<number, number[]> => {
     const [ids, positions] = ['_ID', 'POSITION'].map((semantic) => primitivesOf(document)[0]!.getAttribute(semantic)!);
-    return new Map(Array.from(ids!.getArray()!, (id, i) => [id, positions!.getElement(i, [] as number[])]));
+    return new Map(Array.from(ids!.getArray() as Float32Array, (id, i) => [id, positions!.getElement(i, [])]));
   };
   const before = positionsById(await io.read('draco-ids.glb'));
   const after = positionsById((await written('draco-ids.glb')).document);

@@ -18,8 +18,7 @@ const plain = 'transfer target.glb --cage cage.glb';
 interface Report {
   counts: Record<'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
   areas: Record<'total' | 'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
-  segments: Record<'points' | 'vertices' | 'exposedArea' | 'coveredArea' | 'coverage', number>[] &
-    { culled: boolean; culledBy: string; part: string }[];
+  segments: (Record<'points' | 'vertices', number> & { culled: boolean; culledBy: string; part: string })[];
   parts: { name: string; place: string; vertices: number; uvSet: string | null; splitVertices: number | null }[];
   target: { vertices: number; triangles: number };
   triangles: { total: number; cosmetic: number };

@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { existsSync, mkdirSync, readdirSync, readFileSync } from 'node:fs';
+import { chmodSync, existsSync, lstatSync, mkdirSync, readdirSync, readFileSync, symlinkSync } from 'node:fs';
 import { test } from 'node:test';
 import { cagecast, fails, json, ok, run, runCommand } from '../../support/command.js';
 import { GlbMaker, glbOf } from '../../support/gltf.js';
@@ -136,6 +136,23 @@ test('outputs are checked before anything is read', async () => {
     'make x.glb -o o.glb --html gone/page.html',
   );
   assert.equal(readFileSync('kept.glb', 'utf8'), 'before');
+});
+
+test('links are written through, permissions stay, and two names of one file are one', async () => {
+  mkdirSync('folder');
+  symlinkSync('folder', 'way');
+  symlinkSync('folder/later.glb', 'link.glb'); // does not exist yet
+  await ok(`${transfer} -o link.glb`);
+  assert.ok(lstatSync('link.glb').isSymbolicLink(), 'the link is kept');
+  assert.equal(readFileSync('folder/later.glb').toString('latin1', 0, 4), 'glTF');
+  chmodSync('folder/later.glb', 0o600);
+  await ok(`${transfer} -o way/later.glb`);
+  assert.equal(lstatSync('folder/later.glb').mode & 0o777, 0o600);
+  const writes = 'way/a.glb would overwrite folder/a.glb, which this command writes; choose another output';
+  await fails(2, writes, `${transfer} -o folder/a.glb --report way/a.glb`);
+  const reads = 'link.glb would overwrite folder/later.glb, which this command reads; choose another output';
+  await fails(2, reads, 'transfer folder/later.glb --cage cage.glb -o link.glb');
+  assert.deepEqual(readdirSync('folder'), ['later.glb']);
 });
 
 test('--json and --quiet', async () => {

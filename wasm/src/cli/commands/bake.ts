@@ -18,23 +18,10 @@ import type { Sources } from '../model/transfer-command.js';
 import { allFilesReadBy } from '../transfer/files-read.js';
 import { cutTarget, type Run, runTransfer } from '../transfer/run.js';
 import { listNames, paintForModel, paintOfModel } from './bake-picture.js';
-import {
-  addFlags,
-  bordersFlag,
-  endingIn,
-  inputsOf,
-  layersFor,
-  oneMore,
-  type PrintFlags,
-  parsed,
-  type ReadFlags,
-  readingOf,
-  type SettingFlags,
-  wholeNumberWithin,
-} from './flags.js';
+import * as common from './common.js';
 import { type Found, perform } from './perform.js';
 
-interface BakeFlags extends SettingFlags, ReadFlags, PrintFlags {
+interface BakeFlags extends common.SettingFlags, common.ReadFlags, common.PrintFlags {
   /** Files of images in the cage's UVs. */
   normal?: string;
   orm?: string;
@@ -48,7 +35,7 @@ interface BakeFlags extends SettingFlags, ReadFlags, PrintFlags {
 }
 
 /** The arguments of `cagecast bake`. */
-interface BakeCommand extends Sources, Omit<BakeFlags, keyof SettingFlags> {
+interface BakeCommand extends Sources, Omit<BakeFlags, keyof common.SettingFlags> {
   paint: string | undefined;
   borders: Borders;
 }
@@ -71,33 +58,36 @@ export function addBakeCommand(program: Command, io: Io): void {
     .argument('<CAGE>', 'GLB or glTF with UVs that the paint was drawn for; auto makes one')
     .argument('[PAINT]', "PNG in the cage's UV space; JPEG and WebP where sharp is installed")
     .addOption(
-      parsed(
-        '-o, --output <OUT>',
-        "a GLB or VRM, or a PNG of the paint alone, in TARGET's UVs; - for a GLB on the standard output",
-        endingIn('.glb', '.vrm', '.png'),
-      ).makeOptionMandatory(),
+      common
+        .parsed(
+          '-o, --output <OUT>',
+          "a GLB or VRM, or a PNG of the paint alone, in TARGET's UVs; - for a GLB on the standard output",
+          common.endingIn('.glb', '.vrm', '.png'),
+        )
+        .makeOptionMandatory(),
     )
     .option('--normal <MAP>', "a normal map in the cage's UV space")
     .option('--orm <MAP>', 'occlusion, roughness and metalness in it, as in glTF')
     .option('--back', "the way back: write what is painted on TARGET as a PNG in the cage's UV space")
-    .addOption(parsed('--part <NAME>', 'for a PNG: only these parts; as --keep', oneMore))
+    .addOption(common.parsed('--part <NAME>', 'for a PNG: only these parts; as --keep', common.oneMore))
     .addOption(
-      parsed(
+      common.parsed(
         '--size <TEXELS>',
         `the longer side of painted textures; 1 to ${mostTexels} (default: as before)`,
-        wholeNumberWithin(1, mostTexels, ' of texels'),
+        common.wholeNumberWithin(1, mostTexels, ' of texels'),
       ),
     )
-    .addOption(bordersFlag);
-  addFlags(command, 'What is painted', 'How files are read', 'What is printed')
+    .addOption(common.bordersFlag);
+  common
+    .addFlags(command, 'What is painted', 'How files are read', 'What is printed')
     .addHelpText('after', kHelp)
     .action((target: string, cage: string, paint: string | undefined, flags: BakeFlags) => {
       const fault = faultOf(paint, flags);
       if (fault !== undefined) throw new UsageError(fault);
-      const inputs = [target, ...inputsOf({ ...flags, cage, texture: paint }), flags.normal, flags.orm];
+      const inputs = [target, ...common.inputsOf({ ...flags, cage, texture: paint }), flags.normal, flags.orm];
       return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
-        const settings = resolveSettings(await layersFor(flags)(target));
-        return bakeCommand({ ...flags, target, cage, paint, ...settings, reading: readingOf(flags) }, io);
+        const settings = resolveSettings(await common.layersFor(flags)(target));
+        return bakeCommand({ ...flags, target, cage, paint, ...settings, reading: common.readingOf(flags) }, io);
       });
     });
 }

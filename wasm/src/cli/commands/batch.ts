@@ -8,25 +8,9 @@ import type { Region } from '../model/transfer-command.js';
 import { boundsFault } from '../model/uv-bounds.js';
 import { jobsOfManifest, jobsOfPatterns, placeholderFault, writtenBy } from './batch-jobs.js';
 import { type BatchSummary, runJobs } from './batch-run.js';
-import {
-  addFlags,
-  bordersFlag,
-  type CageFlags,
-  compressFlag,
-  endingIn,
-  inputsOf,
-  layersFor,
-  outputFault,
-  type PrintFlags,
-  parsed,
-  type ReadFlags,
-  readingOf,
-  regionFlag,
-  type SettingFlags,
-  wholeNumberWithin,
-} from './flags.js';
+import * as common from './common.js';
 
-interface BatchFlags extends SettingFlags, CageFlags, ReadFlags, PrintFlags {
+interface BatchFlags extends common.SettingFlags, common.CageFlags, common.ReadFlags, common.PrintFlags {
   cage?: string;
   texture?: string;
   output?: string;
@@ -66,16 +50,16 @@ export function addBatchCommand(program: Command, io: Io): void {
     .option('--cage <CAGE>', 'the cage of jobs that name none; auto makes one for each target')
     .option('--texture <PAINT>', 'the texture of jobs that name none')
     .addOption(
-      parsed(
+      common.parsed(
         '-o, --output <OUT.glb>',
         'where to write; {name} is the name of the target, {dir} its folder',
-        endingIn('.glb', '.vrm', '.gltf'),
+        common.endingIn('.glb', '.vrm', '.gltf'),
       ),
     )
     .option('--report <R.json>', 'where to write reports; {name} and {dir} as above')
-    .addOption(bordersFlag)
-    .addOption(compressFlag)
-    .addOption(regionFlag)
+    .addOption(common.bordersFlag)
+    .addOption(common.compressFlag)
+    .addOption(common.regionFlag)
     .option('--results <RESULTS.jsonl>', 'add the lines to this file instead of printing them')
     .option(
       '--resume',
@@ -87,8 +71,15 @@ export function addBatchCommand(program: Command, io: Io): void {
         'inspect each cage, and exit 3 if one is no better than this; reports have the verdict then',
       ).choices(['usable', 'unfit']),
     )
-    .addOption(parsed('--workers <N>', 'threads; 1 to 999 (default: one per processor)', wholeNumberWithin(1, 999)));
-  addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed')
+    .addOption(
+      common.parsed(
+        '--workers <N>',
+        'threads; 1 to 999 (default: one per processor)',
+        common.wholeNumberWithin(1, 999),
+      ),
+    );
+  common
+    .addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed')
     .addHelpText('after', kHelp)
     .action((targets: string[], flags: BatchFlags) => runBatch(targets, flags, io));
 }
@@ -102,8 +93,8 @@ async function runBatch(targets: string[], flags: BatchFlags, io: Io): Promise<v
   const defaults = {
     ...{ cage, uvBounds, referenceCage, texture, regions, output, report, results },
     inspects: failOn === undefined ? undefined : true,
-    layersFor: layersFor(flags),
-    reading: readingOf(flags),
+    layersFor: common.layersFor(flags),
+    reading: common.readingOf(flags),
   };
   const jobs = await (manifest === undefined ? jobsOfPatterns(targets, defaults) : jobsOfManifest(manifest, defaults));
   const summary = await runJobs({ jobs, results, resume, failOn, workers, quiet }, io);
@@ -122,10 +113,10 @@ function faultOf(targets: readonly string[], flags: BatchFlags): string | undefi
   if (resume && results === undefined) return '--resume needs --results, which says what is done';
   if (manifest === undefined && cage === undefined) return 'TARGETS need --cage';
   if ([output, report, results].includes(standard)) return 'a batch writes files; the standard output has its lines';
-  if ([...inputsOf({ ...flags, config: false }), ...targets].includes(standard))
+  if ([...common.inputsOf({ ...flags, config: false }), ...targets].includes(standard))
     return 'a batch reads files; its jobs have no standard input';
   if (manifest === standard && flags.config === standard) return 'only one file can be the standard input';
-  const withoutOutput = manifest === undefined ? outputFault(flags) : undefined;
+  const withoutOutput = manifest === undefined ? common.outputFault(flags) : undefined;
   return withoutOutput ?? placeholderFault(output, report) ?? boundsFault(texture, uvBounds);
 }
 

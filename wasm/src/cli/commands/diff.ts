@@ -9,8 +9,8 @@ import { kExit } from '../model/failures.js';
 import { cut, integer, short, table } from '../model/text.js';
 import { kZoneNames, type PerZone } from '../model/zones.js';
 import { isWorse } from '../transfer/inspection.js';
+import * as common from './common.js';
 import { type AnyReport, readReport } from './diff-report.js';
-import { addFlags, numberWithin, type PrintFlags, parsed } from './flags.js';
 import { type Found, perform } from './perform.js';
 
 /** The arguments of `cagecast diff`. */
@@ -29,13 +29,16 @@ export function addDiffCommand(program: Command, io: Io): void {
     .argument('<AFTER>', 'another; of folders, reports of the same names are compared')
     .description('show what changed between two reports: zones, parts, regions, stretch, distances, borders, verdict')
     .addOption(
-      parsed(
-        '--tolerance <SHARE>',
-        'how much a share, or the stretch of the texture, may change; 0 to 1',
-        numberWithin(0, 1),
-      ).default(0.01),
+      common
+        .parsed(
+          '--tolerance <SHARE>',
+          'how much a share, or the stretch of the texture, may change; 0 to 1',
+          common.numberWithin(0, 1),
+        )
+        .default(0.01),
     );
-  addFlags(command, 'What is printed')
+  common
+    .addFlags(command, 'What is printed')
     .addHelpText(
       'after',
       `
@@ -44,7 +47,7 @@ more, the verdict is worse, a part or a region is new or gone, or a report is go
 
 Example: cagecast diff approved build --tolerance 0.005`,
     )
-    .action((before: string, after: string, flags: PrintFlags & { tolerance: number }) =>
+    .action((before: string, after: string, flags: common.PrintFlags & { tolerance: number }) =>
       perform(io, flags, { inputs: [before, after], outputs: [] }, () =>
         diff({ before, after, tolerance: flags.tolerance }),
       ),

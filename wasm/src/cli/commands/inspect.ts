@@ -5,19 +5,17 @@ import { writeFiles } from '../io/output.js';
 import { kExit } from '../model/failures.js';
 import { resolveSettings } from '../model/settings.js';
 import { configLine, cut, integer, type Line, short, table } from '../model/text.js';
-import { kZoneNames } from '../model/zones.js';
 import {
-  beneathText,
   conclusionOf,
+  holeTable,
   type InspectionReport,
   inspectionReport,
-  kSegmentColumns,
-  segmentCells,
+  segmentTable,
 } from '../transfer/inspection.js';
 import { inspectionPage } from '../transfer/inspection-page.js';
-import { excludedLine } from '../transfer/report-parts.js';
+import { excludedLine, zoneTable } from '../transfer/report-parts.js';
 import { runTransfer } from '../transfer/run.js';
-import { addFlags, endingIn, inputsOf, layersFor, parsed, readingOf } from './flags.js';
+import * as common from './common.js';
 import { type Found, perform } from './perform.js';
 import { addTarget, type TargetFlags } from './transfer.js';
 
@@ -26,7 +24,7 @@ interface InspectFlags extends TargetFlags {
 }
 
 /** The flag for a page about a cage. */
-export const htmlFlag = parsed('--html <REPORT.html>', 'a page with pictures', endingIn('.html'));
+export const htmlFlag = common.parsed('--html <REPORT.html>', 'a page with pictures', common.endingIn('.html'));
 
 /** What the help of commands with a verdict says after the flags. */
 export const kVerdictHelp = `
@@ -38,7 +36,8 @@ export function addInspectCommand(program: Command, io: Io): void {
   const command = addTarget(program.command('inspect'))
     .description('check whether the cage fits TARGET; print a verdict, reasons and advice')
     .addOption(htmlFlag);
-  addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed')
+  common
+    .addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed')
     .addHelpText(
       'after',
       `${kVerdictHelp}
@@ -46,7 +45,7 @@ export function addInspectCommand(program: Command, io: Io): void {
 Example: cagecast inspect head.glb --cage cage.glb --html report.html`,
     )
     .action((target: string, flags: InspectFlags) => {
-      const files = { inputs: [target, ...inputsOf(flags)], outputs: [flags.html] };
+      const files = { inputs: [target, ...common.inputsOf(flags)], outputs: [flags.html] };
       return perform(io, flags, files, () => inspectTarget(target, flags, io));
     });
 }
@@ -54,8 +53,8 @@ Example: cagecast inspect head.glb --cage cage.glb --html report.html`,
 /** Checks whether a cage fits a target. @throws {InputError} that names the file at fault. */
 async function inspectTarget(target: string, flags: InspectFlags, io: Io): Promise<Found> {
   const { cage, uvBounds, referenceCage, html } = flags;
-  const { rules } = resolveSettings(await layersFor(flags)(target));
-  const sources = { target, cage, uvBounds, referenceCage, rules, reading: readingOf(flags) };
+  const { rules } = resolveSettings(await common.layersFor(flags)(target));
+  const sources = { target, cage, uvBounds, referenceCage, rules, reading: common.readingOf(flags) };
   const run = await runTransfer(sources, io);
   io.step('inspecting');
   const report = inspectionReport(sources, run, uvBounds ? [uvBounds] : []);
@@ -70,28 +69,14 @@ const kMaxRows = 15;
 function describe(report: InspectionReport, html: string | undefined): Line[] {
   const { target, cage, counts, coverage, placement, inside, inward, topology, uv, holes, segments } = report;
   const { outside, distances } = placement;
-  const listed = segments
-    .map((segment, s) => ({ segment, s }))
-    .sort((a, b) => b.segment.exposedArea - a.segment.exposedArea || a.s - b.s)
-    .slice(0, kMaxRows)
-    .map(({ segment, s }) => [cut(segment.part, 40), String(s), ...segmentCells(segment)]);
-  const listedHoles = holes
-    .slice(0, kMaxRows)
-    .map(({ beneath, kind, diagonal, perimeter, cutOff }) => [
-      cut(beneathText(beneath.slice(0, 3)), 60),
-      kind,
-      ...[diagonal, perimeter, cutOff].map(percent),
-    ]);
+  const cutNames = (rows: string[][]) => table(rows.map(([name, ...cells]) => [cut(name!, 50), ...cells]));
   const more = (n: number) => (n > kMaxRows ? `, the ${kMaxRows} largest` : '');
   return [
     `target  ${target.file}: ${integer(target.vertices)} vertices (${integer(target.points)} points), ${integer(target.triangles)} triangles, diagonal ${short(target.diagonal)}`,
     `cage    ${cage.file}: ${integer(cage.vertices)} vertices, ${integer(cage.triangles)} triangles`,
     '',
     'zones',
-    ...table([
-      ['', 'vertices', 'area'],
-      ...kZoneNames.map((zone) => [zone, integer(counts[zone]), percent(coverage[zone])]),
-    ]),
+    ...zoneTable(counts, coverage),
     '',
     'fit (lengths as shares of the diagonal)',
     `  outside the cage: ${percent(outside.vertices)} of the vertices, ${percent(outside.area)} of the area; ${percent(outside.exposedArea)} of the exposed area by more than 0.25 %`,
@@ -103,10 +88,10 @@ function describe(report: InspectionReport, html: string | undefined): Line[] {
     `  UVs: ${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}, ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that twice; ${counted(uv.outside.vertices, 'vertex', 'vertices')} outside 0..1; ${counted(uv.withoutArea.triangles, 'triangle')} without area`,
     '',
     `holes: ${integer(holes.length)}${more(holes.length)}`,
-    ...(holes.length === 0 ? [] : table([['beneath', 'kind', 'size', 'perimeter', 'cut off'], ...listedHoles])),
+    ...(holes.length === 0 ? [] : cutNames(holeTable(holes, kMaxRows))),
     '',
     `segments: ${integer(segments.length)}${more(segments.length)}`,
-    ...table([['part', 'segment', ...kSegmentColumns], ...listed]),
+    ...cutNames(segmentTable(segments, kMaxRows)),
     '',
     ...conclusionOf(report),
     html && `wrote ${html}`,

@@ -20,16 +20,7 @@ import { inspectionPage } from '../transfer/inspection-page.js';
 import { fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
 import { type ReadModel, readBack, readModel, withUvs } from '../transfer/models.js';
 import { transferModels } from '../transfer/run.js';
-import {
-  addFlags,
-  endingIn,
-  numberWithin,
-  type PrintFlags,
-  parsed,
-  type ReadFlags,
-  readingOf,
-  wholeNumberWithin,
-} from './flags.js';
+import * as common from './common.js';
 import { htmlFlag, kVerdictHelp } from './inspect.js';
 import { type Found, perform } from './perform.js';
 
@@ -39,7 +30,7 @@ const kTriangleRange = [50, 20_000] as const;
 /** The least and the most that gaps can be closed by, as a share of the diagonal. */
 const kClosingRange = [0.0005, 0.2] as const;
 
-interface CageFileFlags extends ReadFlags, PrintFlags {
+interface CageFileFlags extends common.ReadFlags, common.PrintFlags {
   output: string;
   html?: string;
   /** Patterns of names that replace the default ones. */
@@ -60,15 +51,17 @@ interface FitFlags extends CageFileFlags {
 const addCageFileFlags = (command: Command): Command =>
   command
     .addOption(
-      parsed(
-        '-o, --output <CAGE.glb>',
-        'where to write the cage; - for the standard output',
-        endingIn('.glb'),
-      ).makeOptionMandatory(),
+      common
+        .parsed(
+          '-o, --output <CAGE.glb>',
+          'where to write the cage; - for the standard output',
+          common.endingIn('.glb'),
+        )
+        .makeOptionMandatory(),
     )
     .addOption(htmlFlag)
     .addOption(
-      parsed(
+      common.parsed(
         '--exclude <NAME>',
         'do not paint parts with this word in the name of their node or material (* matches any text, case does not matter; a node that holds others means all below it); may be repeated; replaces the default list, such as eyes, teeth and hair; an empty name excludes nothing',
         (name: string, before: string[] = []) => (name === '' ? before : [...before, name]),
@@ -84,10 +77,10 @@ export function addCageCommands(program: Command, io: Io): void {
       'make a cage for TARGET: a hull with UVs, and a hole over each part that is not painted; print a verdict',
     )
     .addOption(
-      parsed(
+      common.parsed(
         '--triangles <N>',
         `about how many triangles; ${kTriangleRange[0]} to ${kTriangleRange[1]} (default: by kind)`,
-        wholeNumberWithin(...kTriangleRange),
+        common.wholeNumberWithin(...kTriangleRange),
       ),
     )
     .addOption(
@@ -96,13 +89,14 @@ export function addCageCommands(program: Command, io: Io): void {
         .default('automatic'),
     )
     .addOption(
-      parsed(
+      common.parsed(
         '--closing <SHARE>',
         `bridge gaps narrower than twice this share of TARGET's diagonal; ${kClosingRange[0]} to ${kClosingRange[1]} (default: by kind)`,
-        numberWithin(...kClosingRange),
+        common.numberWithin(...kClosingRange),
       ),
     );
-  addFlags(make, 'How files are read', 'What is printed')
+  common
+    .addFlags(make, 'How files are read', 'What is printed')
     .addHelpText(
       'after',
       `${kVerdictHelp}
@@ -124,7 +118,8 @@ Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o
       'landmarks of the model that TEMPLATE was made for (default: those in the file, as extras.landmarks)',
     )
     .option('--landmarks <L.json>', 'landmarks of TARGET; they override those that are found');
-  addFlags(fit, 'How files are read', 'What is printed')
+  common
+    .addFlags(fit, 'How files are read', 'What is printed')
     .addHelpText(
       'after',
       `
@@ -145,7 +140,7 @@ Examples:
 /** Makes a cage for a model and inspects it. @throws {InputError} that names the file at fault; then no file is written. */
 async function makeFor(target: string, flags: MakeFlags, io: Io): Promise<Found> {
   const { exclude, triangles, kind, closing } = flags;
-  const model = await readModel(target, readingOf(flags), io);
+  const model = await readModel(target, common.readingOf(flags), io);
   const cage = await makeCageFor(model, { exclude, triangles, kind, closing }, io);
   return finish({ ...cage, landmarks: await landmarksOf(model, io) }, model, flags, io);
 }
@@ -155,7 +150,7 @@ async function fitTo(path: string, target: string, flags: FitFlags, io: Io): Pro
   const { exclude } = flags;
   const template = await readTemplate(path, flags, io);
   const landmarks = flags.landmarks === undefined ? undefined : await readLandmarks(flags.landmarks);
-  const model = await readModel(target, readingOf(flags), io);
+  const model = await readModel(target, common.readingOf(flags), io);
   const files = { template: path, landmarks: flags.landmarks };
   const fit = await fitCageTo(model, { template, landmarks, files, options: { exclude } }, io);
   return finish(fit.cage, model, flags, io, describeFit(fit, landmarks ?? {}));
@@ -167,7 +162,7 @@ const kMinLandmarks = 4;
 /** Reads a template with its landmarks. @throws {InputError} that names the file at fault. */
 async function readTemplate(path: string, flags: FitFlags, io: Io): Promise<Template> {
   const { templateLandmarks } = flags;
-  const { file, extracted } = withUvs(await readModel(templateFile(path), readingOf(flags), io));
+  const { file, extracted } = withUvs(await readModel(templateFile(path), common.readingOf(flags), io));
   const own = templateOf(file, extracted);
   const landmarks = templateLandmarks === undefined ? own.landmarks : await readLandmarks(templateLandmarks);
   const count = Object.keys(landmarks).length;

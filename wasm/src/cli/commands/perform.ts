@@ -2,7 +2,7 @@ import { standard } from '../../gltf/files.js';
 import type { Io } from '../io/io.js';
 import { checkOutputs } from '../io/output.js';
 import { jsonText, type Line, oneLine } from '../model/text.js';
-import type { PrintFlags } from './flags.js';
+import type * as common from './common.js';
 
 /** What a command found: for people, and for programs. */
 export interface Found {
@@ -24,7 +24,7 @@ interface Files {
  */
 export async function perform(
   io: Io,
-  { json, quiet }: PrintFlags,
+  { json, quiet }: common.PrintFlags,
   { inputs, outputs }: Files,
   find: () => Promise<Found>,
 ): Promise<void> {

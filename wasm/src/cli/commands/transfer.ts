@@ -5,26 +5,11 @@ import { resolveSettings } from '../model/settings.js';
 import type { Region } from '../model/transfer-command.js';
 import { boundsFault } from '../model/uv-bounds.js';
 import { transferCommand } from '../transfer/transfer.js';
-import {
-  addFlags,
-  bordersFlag,
-  type CageFlags,
-  compressFlag,
-  endingIn,
-  inputsOf,
-  layersFor,
-  outputFault,
-  type PrintFlags,
-  parsed,
-  type ReadFlags,
-  readingOf,
-  regionFlag,
-  type SettingFlags,
-} from './flags.js';
+import * as common from './common.js';
 import { perform } from './perform.js';
 
 /** The flags of the commands that transfer to one target. */
-export interface TargetFlags extends SettingFlags, CageFlags, ReadFlags, PrintFlags {
+export interface TargetFlags extends common.SettingFlags, common.CageFlags, common.ReadFlags, common.PrintFlags {
   cage: string;
 }
 
@@ -76,26 +61,32 @@ export function addTransferCommand(program: Command, io: Io): void {
       "PNG, JPEG, WebP or KTX2 in the cage's UV space; with <UDIM> in its name, one for each tile",
     )
     .addOption(
-      parsed(
+      common.parsed(
         '-o, --output <OUT.glb>',
         'GLB, VRM, or glTF with its files beside it; - for the standard output',
-        endingIn('.glb', '.vrm', '.gltf'),
+        common.endingIn('.glb', '.vrm', '.gltf'),
       ),
     )
-    .addOption(bordersFlag)
-    .addOption(compressFlag)
-    .addOption(regionFlag)
+    .addOption(common.bordersFlag)
+    .addOption(common.compressFlag)
+    .addOption(common.regionFlag)
     .addOption(new Option('--report <R.json>', 'counts, areas, segments and timings as JSON'));
-  addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed')
+  common
+    .addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed')
     .addHelpText('after', kHelp)
     .action((target: string, flags: TransferFlags) => {
       const { cage, texture, output, report, uvBounds, referenceCage, region: regions } = flags;
-      const fault = outputFault(flags) ?? boundsFault(texture, uvBounds);
+      const fault = common.outputFault(flags) ?? boundsFault(texture, uvBounds);
       if (fault !== undefined) throw new UsageError(fault);
-      return perform(io, flags, { inputs: [target, ...inputsOf(flags)], outputs: [output, report] }, async () => {
-        const settings = resolveSettings(await layersFor(flags)(target));
-        const files = { target, cage, uvBounds, referenceCage, texture, regions, output, report };
-        return transferCommand({ ...files, ...settings, reading: readingOf(flags) }, io);
-      });
+      return perform(
+        io,
+        flags,
+        { inputs: [target, ...common.inputsOf(flags)], outputs: [output, report] },
+        async () => {
+          const settings = resolveSettings(await common.layersFor(flags)(target));
+          const files = { target, cage, uvBounds, referenceCage, texture, regions, output, report };
+          return transferCommand({ ...files, ...settings, reading: common.readingOf(flags) }, io);
+        },
+      );
     });
 }

@@ -4,7 +4,7 @@ import { boxOf, pointAt, type Vector } from '../../inspect/geometry.js';
 import { type Scene, sceneOf } from '../../inspect/scene.js';
 import { integer } from '../model/text.js';
 import { kZoneNames } from '../model/zones.js';
-import { adviceOn, beneathText, type InspectionReport, kSegmentColumns, segmentCells } from './inspection.js';
+import { adviceOn, holeTable, type InspectionReport, segmentTable } from './inspection.js';
 import { Picture, type Rgb, type View } from './raster.js';
 import type { Run } from './run.js';
 
@@ -74,27 +74,9 @@ ${findings.length > 0 ? `<ol>${findings.map((finding) => `<li><i class="${verdic
 <p>${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}; ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that more than once.</p>
 <div class="row" style="max-width: 28rem"><figure>${drawUvs(scene)}<figcaption>the cage in the texture; darker where triangles overlap</figcaption></figure></div>
 <h2>Holes</h2>
-${
-  holes.length > 0
-    ? rows(
-        ['beneath', 'kind', 'size', 'cut off'],
-        holes.map(({ beneath, kind, diagonal, cutOff }) => [
-          beneathText(beneath),
-          kind,
-          percent(diagonal),
-          percent(cutOff),
-        ]),
-      )
-    : '<p>None.</p>'
-}
+${holes.length > 0 ? rows(holeTable(holes, holes.length)) : '<p>None.</p>'}
 <h2>Segments</h2>
-${rows(
-  ['part', ...kSegmentColumns],
-  [...segments]
-    .sort((a, b) => b.exposedArea - a.exposedArea)
-    .slice(0, kMaxSegments)
-    .map((segment) => [segment.part, ...segmentCells(segment)]),
-)}
+${rows(segmentTable(segments, kMaxSegments))}
 </html>
 `;
 }
@@ -103,10 +85,10 @@ function text(value: string): string {
   return value.replace(/[&<>"]/g, (symbol) => `&#${symbol.charCodeAt(0)};`);
 }
 
-function rows(head: readonly string[], body: readonly (readonly string[])[]): string {
+function rows([head, ...body]: string[][]): string {
   const row = (cells: readonly string[], tag: string) =>
     `<tr>${cells.map((cell) => `<${tag}>${text(cell)}</${tag}>`).join('')}</tr>`;
-  return `<table>${row(head, 'th')}${body.map((cells) => row(cells, 'td')).join('')}</table>`;
+  return `<table>${row(head!, 'th')}${body.map((cells) => row(cells, 'td')).join('')}</table>`;
 }
 
 function figure(name: string, { pixels }: Picture): string {

@@ -1,3 +1,4 @@
+import { percent } from '../../inspect/finding.js';
 import { vertexAreas } from '../../inspect/geometry.js';
 import {
   type Finding,
@@ -97,9 +98,6 @@ export function adviceOn({ advice, places = [], locks }: Finding): string {
   return flags.size === 0 ? advice : `${advice} To override: ${[...flags].join(' ')}`;
 }
 
-/** The columns of a table of segments, after those that name it. */
-export const kSegmentColumns = ['points', 'exposed E', 'covered C', 'F = C/E', 'score', ''];
-
 /** Why a segment is not painted, if it is not. */
 const kFates: Record<Segment['culledBy'], string> = {
   none: '',
@@ -108,16 +106,29 @@ const kFates: Record<Segment['culledBy'], string> = {
   lock: 'culled (lock)',
 };
 
-/** A segment in these columns. */
-export const segmentCells = ({ points, exposedArea, coveredArea, coverage, score, culledBy }: Segment): string[] => [
-  integer(points),
-  short(exposedArea),
-  short(coveredArea),
-  coverage.toFixed(3),
-  score === null ? '∞' : Number(score.toPrecision(2)).toString(), // endless if it needs no area
-  kFates[culledBy],
-];
+/** The segments with the largest exposed areas, as a table. @param most  How many. */
+export function segmentTable(segments: readonly Segment[], most: number): string[][] {
+  const largest = [...segments.entries()].sort(([a, one], [b, other]) => other.exposedArea - one.exposedArea || a - b);
+  return [
+    ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
+    ...largest.slice(0, most).map(([s, { part, points, exposedArea, coveredArea, coverage, score, culledBy }]) => [
+      part,
+      String(s),
+      integer(points),
+      short(exposedArea),
+      short(coveredArea),
+      coverage.toFixed(3),
+      score === null ? '∞' : Number(score.toPrecision(2)).toString(), // endless if it needs no area
+      kFates[culledBy],
+    ]),
+  ];
+}
 
-/** The parts beneath a hole. */
-export const beneathText = (beneath: Hole['beneath']): string =>
-  beneath.map(({ part, share }) => `${part} ${Math.round(100 * share)} %`).join(', ') || 'nothing';
+/** The holes of a cage as a table. */
+export const holeTable = (holes: readonly Hole[], most: number): string[][] => [
+  ['beneath', 'kind', 'size', 'perimeter', 'cut off'],
+  ...holes.slice(0, most).map(({ beneath, kind, diagonal, perimeter, cutOff }) => {
+    const parts = beneath.slice(0, 3).map(({ part, share }) => `${part} ${Math.round(100 * share)} %`);
+    return [parts.join(', ') || 'nothing', kind, ...[diagonal, perimeter, cutOff].map(percent)];
+  }),
+];

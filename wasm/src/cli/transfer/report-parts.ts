@@ -1,7 +1,8 @@
 // What the reports of `transfer` and `inspect` have in common.
 import { type Preset, type PresetOptions, presetOptions, type TransferResult } from '../../index.js';
+import { percent } from '../../inspect/finding.js';
 import { boxOf } from '../../inspect/geometry.js';
-import { type Line, listed } from '../model/text.js';
+import { integer, type Line, listed, table } from '../model/text.js';
 import type { Sources } from '../model/transfer-command.js';
 import { kZoneNames, type PerZone } from '../model/zones.js';
 import type { ReadModel } from './models.js';
@@ -42,6 +43,13 @@ export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { e
   triangles: mesh.indices.length / 3,
   ...(excluded && { excluded }),
 });
+
+/** Vertices and shares of the area in each zone, for people. */
+export const zoneTable = (counts: PerZone, areas: PerZone, total = 1): string[] =>
+  table([
+    ['', 'vertices', 'area'],
+    ...kZoneNames.map((zone) => [zone, integer(counts[zone]), percent(areas[zone] / (total || 1))]),
+  ]);
 
 /** How many names a line has at most. */
 const kMaxNames = 12;

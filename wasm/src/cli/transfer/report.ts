@@ -2,7 +2,8 @@ import { type Part, primitivePath } from '../../gltf/extract.js';
 import type { Added } from '../../gltf/write.js';
 import type { SegmentStats, TransferResult } from '../../index.js';
 import { vertexAreas } from '../../inspect/geometry.js';
-import type { Finding, Verdict } from '../../inspect/index.js';
+import type { Finding, Segment, Verdict } from '../../inspect/index.js';
+import { segmentsOf } from '../../inspect/segments.js';
 import type { Borders } from '../../parts/borders-option.js';
 import type { Region, TransferCommand } from '../model/transfer-command.js';
 import type { PerZone } from '../model/zones.js';
@@ -41,12 +42,7 @@ export interface Report {
    */
   cut: { vertices: number; counts: PerZone; triangles: Triangles } | null;
   /** Every connected component of the target, in the order of their first vertices. */
-  segments: (Omit<SegmentStats, 'group' | 'twinOf' | 'score'> & {
-    part: string;
-    vertices: number;
-    /** `null` if no area is required. */
-    score: number | null;
-  })[];
+  segments: (Segment & Pick<SegmentStats, 'depthWeightedArea'> & { vertices: number })[];
   /**
    * Every primitive of every node, in scene order. `uvSet` is the added attribute, `splitVertices` the number of vertices that were
    * added because corners at the same vertex have different UVs, and `cutTriangles` the number of triangles that were added by
@@ -127,7 +123,7 @@ export function makeReport(command: TransferCommand, { run, shown, cut, ...rest 
           triangles: trianglesOf(cut.cosmeticTriangles, cut.shown, isBounded),
         }
       : null,
-    segments: segmentsOf(parts, result),
+    segments: segmentReports(parts, result),
     parts: parts.map((part, p) => partReport(part, result, written?.added[p])),
     replacedOverlays: written?.replaced ?? 0,
     regions: [],
@@ -136,30 +132,14 @@ export function makeReport(command: TransferCommand, { run, shown, cut, ...rest 
   };
 }
 
-function segmentsOf(parts: readonly Part[], { segments, segmentStats }: TransferResult): Report['segments'] {
-  const vertices = new Uint32Array(segmentStats.length);
-  const names: string[] = []; // of the part of each segment's first vertex
-  for (const { name, firstVertex, vertexCount } of parts)
-    for (let v = firstVertex; v < firstVertex + vertexCount; ++v) {
-      const s = segments[v]!;
-      names[s] ??= name;
-      ++vertices[s]!;
-    }
-  return segmentStats.map(
-    ({ points, area, exposedArea, coveredArea, coverage, depthWeightedArea, score, culled, culledBy }, s) => ({
-      part: names[s]!,
-      vertices: vertices[s]!,
-      points,
-      area,
-      exposedArea,
-      coveredArea,
-      coverage,
-      depthWeightedArea,
-      score: Number.isFinite(score) ? score : null, // no area is required
-      culled,
-      culledBy,
-    }),
-  );
+function segmentReports(parts: readonly Part[], result: TransferResult): Report['segments'] {
+  const vertices = new Uint32Array(result.segmentStats.length);
+  for (const s of result.segments) ++vertices[s]!;
+  return segmentsOf({ parts, result }).map((segment, s) => ({
+    ...segment,
+    vertices: vertices[s]!,
+    depthWeightedArea: result.segmentStats[s]!.depthWeightedArea,
+  }));
 }
 
 function partReport(part: Part, { zones }: TransferResult, added: Added | undefined): Report['parts'][number] {

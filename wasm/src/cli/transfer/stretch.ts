@@ -1,5 +1,6 @@
 import type { Mesh } from '../../api/mesh.js';
 import type { TransferResult } from '../../api/result.js';
+import { cross, dot, length, minus, pointAt, type Vector } from '../../inspect/geometry.js';
 
 /** How much the texture is stretched on the triangles that may be painted, by their area. */
 export interface Stretch {
@@ -22,21 +23,16 @@ export function stretchOf(
   for (let t = 0; t < cosmeticTriangles.length; ++t) {
     if (cosmeticTriangles[t] !== 1) continue;
     const [a, b, c] = [3 * t, 3 * t + 1, 3 * t + 2];
-    const edge = (to: number) =>
-      [0, 1, 2].map((k) => positions[3 * indices[to]! + k]! - positions[3 * indices[a]! + k]!) as [
-        number,
-        number,
-        number,
-      ];
-    const [p, q] = [edge(b), edge(c)];
+    const [origin, ...others] = [a, b, c].map((corner) => pointAt(positions, indices[corner]!));
+    const [p, q] = others.map((point) => minus(point, origin!)) as [Vector, Vector];
     const [pu, pv, qu, qv] = [uv(b, 0) - uv(a, 0), uv(b, 1) - uv(a, 1), uv(c, 0) - uv(a, 0), uv(c, 1) - uv(a, 1)];
-    const area = Math.hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]) / 2;
+    const area = length(cross(p, q)) / 2;
     if (area === 0) continue;
     const uvArea = pu * qv - pv * qu;
     // The steps on the target for a unit step in u, and in v.
-    const u = p.map((x, k) => (x * qv - q[k]! * pv) / uvArea);
-    const v = p.map((x, k) => (q[k]! * pu - x * qu) / uvArea);
-    const dot = (x: number[], y: number[]) => x.reduce((sum, value, k) => sum + value * y[k]!, 0);
+    const step = (along: number, across: number) =>
+      p.map((x, k) => (x * along - q[k]! * across) / uvArea) as never as Vector;
+    const [u, v] = [step(qv, pv), step(-qu, -pu)];
     const [uu, vv, both] = [dot(u, u), dot(v, v), dot(u, v)];
     const stretch = uvArea === 0 ? Infinity : Math.sqrt((uu + vv + Math.hypot(uu - vv, 2 * both)) / 2);
     measured.push({ area, stretch });

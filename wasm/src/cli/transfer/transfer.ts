@@ -1,18 +1,17 @@
 import { dirname, join } from 'node:path';
 import type { Form } from '../../gltf/glb-writer.js';
 import { zoneAttribute } from '../../gltf/overlay.js';
-import { counted, percent } from '../../inspect/finding.js';
+import { counted } from '../../inspect/finding.js';
 import type { Io } from '../io/io.js';
 import { refuseOverwriting, writeFiles } from '../io/output.js';
-import { configLine, integer, jsonText, type Line, table, takenAway } from '../model/text.js';
+import { configLine, integer, jsonText, type Line, takenAway } from '../model/text.js';
 import type { TransferCommand } from '../model/transfer-command.js';
-import { kZoneNames } from '../model/zones.js';
 import { allFilesReadBy } from './files-read.js';
 import { inspectionReport, isWorse } from './inspection.js';
 import type { readModel } from './models.js';
 import { compressionOf, transferRegion } from './region.js';
 import { makeReport, type Report, regionReport } from './report.js';
-import { excludedLine } from './report-parts.js';
+import { excludedLine, zoneTable } from './report-parts.js';
 
 /**
  * Runs the transfer and writes the requested files.
@@ -67,16 +66,12 @@ export async function transferCommand(
 /** The report for people. */
 function summary(command: TransferCommand, report: Report): Line[] {
   const { target, cage, counts, areas, triangles, cut, segments, regions, timings, output } = report;
-  const rows = [
-    ['', 'vertices', 'area'],
-    ...kZoneNames.map((zone) => [zone, integer(counts[zone]), percent(areas[zone] / (areas.total || 1))]),
-  ];
   const culled = segments.filter((segment) => segment.culled).length;
   const { outOfBounds = 0 } = cut?.triangles ?? triangles;
   const cutText = cut ? `; cut along borders, ${shareOf(cut.triangles)}` : '';
   return [
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${counted(segments.length, 'segment')} (${integer(culled)} culled)`,
-    ...table(rows),
+    ...zoneTable(counts, areas, areas.total),
     `${shareOf(triangles)} triangles may be painted${cutText}; ${timings.total.toFixed(1)} ms`,
     outOfBounds > 0 &&
       `${integer(outOfBounds)} more could be painted, but lie outside of --uv-bounds; zones do not depend on the bounds`,
