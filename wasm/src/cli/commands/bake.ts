@@ -77,9 +77,9 @@ export function addBakeCommand(program: Command, io: Io): void {
         common.wholeNumberWithin(1, mostTexels, ' of texels'),
       ),
     )
-    .addOption(common.bordersFlag);
-  common
-    .addFlags(command, 'What is painted', 'How files are read', 'What is printed')
+    .addOption(common.bordersFlag());
+  common.addFlags(command, 'What is painted', 'How files are read', 'What is printed');
+  command
     .addHelpText('after', kHelp)
     .action((target: string, cage: string, paint: string | undefined, flags: BakeFlags) => {
       const fault = faultOf(paint, flags);

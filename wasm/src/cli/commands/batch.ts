@@ -31,8 +31,7 @@ Its members: target, cage, referenceCage, uvBounds, texture, regions, output, re
 A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
 failed or skipped), ms, counts, triangles, and error, verdict and findings (codes) if there are. After the lines, a summary goes
 to the standard error; with --quiet, only the errors of jobs go there.
-A job that fails does not stop the others, and leaves what an earlier run wrote. Files are complete or not there, even if the
-batch is killed. Folders that are missing are made. Cages and textures that differ need a manifest.
+A job that fails does not stop the others. Files are complete or not there, even if the batch is killed. Missing folders are made.
 With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure or another batch.
 Exit codes: 0 all done, 1 a job failed, 2 wrong usage, 3 no job failed, but --fail-on found a cage that does not fit as demanded.
 
@@ -57,10 +56,10 @@ export function addBatchCommand(program: Command, io: Io): void {
       ),
     )
     .option('--report <R.json>', 'where to write reports; {name} and {dir} as above')
-    .addOption(common.bordersFlag)
-    .addOption(common.compressFlag)
-    .addOption(common.regionFlag)
-    .option('--results <RESULTS.jsonl>', 'add the lines to this file instead of printing them')
+    .option(
+      '--results <RESULTS.jsonl>',
+      'add the lines to this file instead of printing them; the last one about a target counts',
+    )
     .option(
       '--resume',
       'skip jobs that --results says are done, if what they read is unchanged and what they wrote is there',
@@ -78,10 +77,15 @@ export function addBatchCommand(program: Command, io: Io): void {
         common.wholeNumberWithin(1, 999),
       ),
     );
-  common
-    .addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed')
-    .addHelpText('after', kHelp)
-    .action((targets: string[], flags: BatchFlags) => runBatch(targets, flags, io));
+  common.addFlags(
+    command,
+    'What is written',
+    'What is painted',
+    'Part of the cage',
+    'How files are read',
+    'What is printed',
+  );
+  command.addHelpText('after', kHelp).action((targets: string[], flags: BatchFlags) => runBatch(targets, flags, io));
 }
 
 async function runBatch(targets: string[], flags: BatchFlags, io: Io): Promise<void> {

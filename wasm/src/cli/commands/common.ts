@@ -45,21 +45,39 @@ export const oneMore = (value: string, before: string[] = []): string[] => [...b
 const choice = (flags: string, text: string, words: readonly string[]): Option =>
   new Option(flags, `${text} (default: ${words[0]})`).choices(words);
 
-export const bordersFlag = choice(
-  '--borders <HOW>',
-  'triangle: the paint ends at edges of triangles; cut: they are cut at holes and seams',
-  kChoices.borders,
-);
-export const compressFlag = choice(
-  '--compress <HOW>',
-  'how painted meshes are compressed; keep: as in TARGET',
-  kChoices.compress,
-);
-export const regionFlag = parsed(
-  '--region <CAGE=PAINT>',
-  'another cage with its texture, for triangles that no cage before it paints; may be repeated',
-  regionOf,
-).default([], 'none');
+export const bordersFlag = (): Option =>
+  choice(
+    '--borders <HOW>',
+    'where paint ends: at edges of triangles, or exactly, where they are cut',
+    kChoices.borders,
+  );
+
+const kOutputFlags = [
+  bordersFlag(),
+  choice('--compress <HOW>', 'how painted meshes are compressed; keep: as in TARGET', kChoices.compress),
+  parsed(
+    '--region <CAGE=PAINT>',
+    'another cage with its texture, for triangles that no cage before it paints; may be repeated',
+    regionOf,
+  ).default([], 'none'),
+];
+
+/** The flag for a page about a cage. */
+export const htmlFlag = (): Option => parsed('--html <REPORT.html>', 'a page with pictures', endingIn('.html'));
+
+const kCageFileFlags = [
+  parsed(
+    '-o, --output <CAGE.glb>',
+    'where to write the cage; - for the standard output',
+    endingIn('.glb'),
+  ).makeOptionMandatory(),
+  htmlFlag(),
+  parsed(
+    '--exclude <NAME>',
+    'do not paint parts with this word in the name of their node or material, nor those below such a node (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair; an empty name excludes nothing',
+    (name: string, before: string[] = []) => (name === '' ? before : [...before, name]),
+  ),
+];
 
 /** A flag for each option of core/include/cagecast/options.def. Words in commander's help begin in lower case. */
 const optionOf = (option: (typeof optionFlags)[number]): Option => {
@@ -86,10 +104,14 @@ const kSettingFlags = [
   parsed('--exclude <NAME>', 'never paint parts of this node or material; as --keep', oneMore),
   new Option('--never-mask <IMAGE>', "never paint where this image, in TARGET's own UVs, is white"),
   new Option('--always-mask <IMAGE>', 'paint where this one is white, whatever the rules say'),
-  parsed('--mask-colors <ATTRIBUTE>', 'never paint red vertices, always green ones, of COLOR_0 say', (name) => {
-    if (!holdsColors(name)) throw new InvalidArgumentError(`It is not ${colorAttributes}.`);
-    return name;
-  }),
+  parsed(
+    '--mask-colors <ATTRIBUTE>',
+    'never paint red vertices, always green ones; by an attribute such as COLOR_0',
+    (name) => {
+      if (!holdsColors(name)) throw new InvalidArgumentError(`It is not ${colorAttributes}.`);
+      return name;
+    },
+  ),
   new Option('--config <FILE>', `settings for all files, and by their names (default: the nearest ${configName})`),
   new Option('--no-config', `read no ${configName}`),
 ];
@@ -97,7 +119,7 @@ const kSettingFlags = [
 const kCageFlags = [
   parsed(
     '--uv-bounds <U0,V0,U1,V1>',
-    "the part of the cage's UVs that the texture covers; nothing is painted wholly outside (default: 0,0,1,1, and nothing is left out)",
+    "the part of the cage's UVs that the texture covers; what lies outside is not painted (default: all; the texture covers 0..1)",
     boundsOf,
   ),
   new Option(
@@ -124,8 +146,10 @@ const kPrintFlags = [new Option('--json', 'print JSON'), new Option('--quiet', '
 
 /** Groups of flags, by their heading in the help. */
 const kGroups = {
+  'What is written': kOutputFlags,
   'What is painted': kSettingFlags,
   'Part of the cage': kCageFlags,
+  'Cages that are written': kCageFileFlags,
   'How files are read': kReadFlags,
   'What is printed': kPrintFlags,
 };

@@ -37,8 +37,8 @@ export function addDiffCommand(program: Command, io: Io): void {
         )
         .default(0.01),
     );
-  common
-    .addFlags(command, 'What is printed')
+  common.addFlags(command, 'What is printed');
+  command
     .addHelpText(
       'after',
       `

@@ -23,24 +23,18 @@ interface InspectFlags extends TargetFlags {
   html?: string;
 }
 
-/** The flag for a page about a cage. */
-export const htmlFlag = common.parsed('--html <REPORT.html>', 'a page with pictures', common.endingIn('.html'));
-
-/** What the help of commands with a verdict says after the flags. */
-export const kVerdictHelp = `
-The verdict is good, usable (fits, with reservations) or unfit. The most important reasons come first.
-Exit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.`;
-
 /** Adds the command that judges a cage. */
 export function addInspectCommand(program: Command, io: Io): void {
   const command = addTarget(program.command('inspect'))
     .description('check whether the cage fits TARGET; print a verdict, reasons and advice')
-    .addOption(htmlFlag);
-  common
-    .addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed')
+    .addOption(common.htmlFlag());
+  common.addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed');
+  command
     .addHelpText(
       'after',
-      `${kVerdictHelp}
+      `
+The verdict is good, usable (fits, with reservations) or unfit. The most important reasons come first.
+Exit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.
 
 Example: cagecast inspect head.glb --cage cage.glb --html report.html`,
     )

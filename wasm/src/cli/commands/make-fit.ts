@@ -21,7 +21,6 @@ import { fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
 import { type ReadModel, readBack, readModel, withUvs } from '../transfer/models.js';
 import { transferModels } from '../transfer/run.js';
 import * as common from './common.js';
-import { htmlFlag, kVerdictHelp } from './inspect.js';
 import { type Found, perform } from './perform.js';
 
 /** The fewest and the most triangles that a cage can be asked to have. */
@@ -48,31 +47,13 @@ interface FitFlags extends CageFileFlags {
   landmarks?: string;
 }
 
-const addCageFileFlags = (command: Command): Command =>
-  command
-    .addOption(
-      common
-        .parsed(
-          '-o, --output <CAGE.glb>',
-          'where to write the cage; - for the standard output',
-          common.endingIn('.glb'),
-        )
-        .makeOptionMandatory(),
-    )
-    .addOption(htmlFlag)
-    .addOption(
-      common.parsed(
-        '--exclude <NAME>',
-        'do not paint parts with this word in the name of their node or material (* matches any text, case does not matter; a node that holds others means all below it); may be repeated; replaces the default list, such as eyes, teeth and hair; an empty name excludes nothing',
-        (name: string, before: string[] = []) => (name === '' ? before : [...before, name]),
-      ),
-    );
+const kExitCodes = '\nExit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.';
 
 /** Adds the commands that make and fit cages. */
 export function addCageCommands(program: Command, io: Io): void {
-  const make = addCageFileFlags(
-    program.command('make').argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing'),
-  )
+  const make = program
+    .command('make')
+    .argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing')
     .description(
       'make a cage for TARGET: a hull with UVs, and a hole over each part that is not painted; print a verdict',
     )
@@ -95,13 +76,13 @@ export function addCageCommands(program: Command, io: Io): void {
         common.numberWithin(...kClosingRange),
       ),
     );
-  common
-    .addFlags(make, 'How files are read', 'What is printed')
+  common.addFlags(make, 'Cages that are written', 'How files are read', 'What is printed');
+  make
     .addHelpText(
       'after',
-      `${kVerdictHelp}
+      `${kExitCodes}
 
-Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o cage.glb --html report.html`,
+Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o cage.glb`,
     )
     .action((target: string, flags: MakeFlags) =>
       perform(io, flags, { inputs: [target], outputs: [flags.output, flags.html] }, () => makeFor(target, flags, io)),
@@ -111,19 +92,18 @@ Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o
     .command('fit')
     .argument('<TEMPLATE>', `GLB or glTF of a cage for another model; or ${templateNames.join(', ')}`)
     .argument('<TARGET>', 'GLB or glTF of the model that gets the cage')
-    .description('move a template cage onto TARGET, so that one texture fits both; print a verdict');
-  addCageFileFlags(fit)
+    .description('move a template cage onto TARGET, so that one texture fits both; print a verdict')
     .option(
       '--template-landmarks <T.json>',
       'landmarks of the model that TEMPLATE was made for (default: those in the file, as extras.landmarks)',
     )
     .option('--landmarks <L.json>', 'landmarks of TARGET; they override those that are found');
-  common
-    .addFlags(fit, 'How files are read', 'What is printed')
+  common.addFlags(fit, 'Cages that are written', 'How files are read', 'What is printed');
+  fit
     .addHelpText(
       'after',
       `
-Files of landmarks are JSON, name → [x, y, z] in the model's space: { "nose_tip": [0, 1.52, 0.11], … }${kVerdictHelp}
+Files of landmarks are JSON, name → [x, y, z] in the model's space: { "nose_tip": [0, 1.52, 0.11], … }${kExitCodes}
 
 Examples:
   cagecast fit human-head head.glb -o cage.glb

@@ -12,7 +12,7 @@ export function pageOf(program: Command): string {
 
 ${program.description()}
 
-${commands.map((command) => `- [\`${command.name()}\`](#cagecast-${command.name()}): ${command.description()}`).join('\n')}
+${commands.map((command) => `[${command.name()}](#cagecast-${command.name()})`).join(' · ')}
 
 \`cagecast help COMMAND\` prints what is below, \`cagecast --version\` the version.
 ${helpAfter(program)}
@@ -45,7 +45,7 @@ ${sentence(command.description())}
 
 ${arguments_.join('')}
 ${tableOf(own)}
-And those about ${links.join(', ')}.
+Also: ${links.join(', ')}.
 ${helpAfter(command)}`;
 }
 

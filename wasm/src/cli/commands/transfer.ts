@@ -32,22 +32,20 @@ The attribute _NCZ (Non-Cosmetic Zone) of a vertex is 0 where it may be painted.
   1  occluded: another surface of the target lies over it
   2  uncovered: the cage has a hole over it, or it lies outside the cage
   3  culled: the cage covers too little of its segment (connected part), or has a hole meant for that segment
-Vertices: where triangles need different UVs, copies are added after the existing vertices (not with --seams vertex); --borders
-cut adds some, too; Draco changes their order. What an earlier transfer added is replaced.
+What an earlier transfer added is replaced. Where triangles need different UVs, copies of vertices are added after the others (not
+with --seams vertex); --borders cut adds some, too; Draco changes their order. --region adds UVs and zones of its own (_NCZ_1, …).
 --cage auto makes a cage as cagecast make does, and excludes the parts that make leaves out, unless --keep names them. For a file
 named auto, write ./auto.
---region adds UVs and zones of its own (_NCZ_1, …).
 --uv-bounds and --reference-cage are about --cage alone. Within the bounds, the UVs in OUT are 0..1. A triangle across them is
 painted whole, also with --borders cut; zones do not depend on them.
-<UDIM> in the name of a texture stands for the tiles of the cage's UVs: 1001, 1002 to its right, 1011 above. A triangle shows the
-tile that the centre of its UVs is in.
+<UDIM> stands for the tiles of the cage's UVs: 1001, 1002 to its right, 1011 above. A triangle shows the tile that the centre of
+its UVs is in.
 An overlay fills what a material cuts out by its alpha (MASK), as between hairs; cagecast bake does not.
 Of several scenes, the default one is read. A mesh of many instances (EXT_mesh_gpu_instancing) is taken where its first one is.
 A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
-  cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json
   cagecast transfer body.glb --cage cage.glb --keep skin --exclude '*eye*' -o painted.glb
   cagecast transfer body.glb --cage face.glb --texture face.png --region arms.glb=arms.png -o painted.gltf
   cagecast transfer body.glb --cage tiled.glb --texture 'skin.<UDIM>.png' -o painted.glb`;
@@ -67,26 +65,23 @@ export function addTransferCommand(program: Command, io: Io): void {
         common.endingIn('.glb', '.vrm', '.gltf'),
       ),
     )
-    .addOption(common.bordersFlag)
-    .addOption(common.compressFlag)
-    .addOption(common.regionFlag)
     .addOption(new Option('--report <R.json>', 'counts, areas, segments and timings as JSON'));
-  common
-    .addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed')
-    .addHelpText('after', kHelp)
-    .action((target: string, flags: TransferFlags) => {
-      const { cage, texture, output, report, uvBounds, referenceCage, region: regions } = flags;
-      const fault = common.outputFault(flags) ?? boundsFault(texture, uvBounds);
-      if (fault !== undefined) throw new UsageError(fault);
-      return perform(
-        io,
-        flags,
-        { inputs: [target, ...common.inputsOf(flags)], outputs: [output, report] },
-        async () => {
-          const settings = resolveSettings(await common.layersFor(flags)(target));
-          const files = { target, cage, uvBounds, referenceCage, texture, regions, output, report };
-          return transferCommand({ ...files, ...settings, reading: common.readingOf(flags) }, io);
-        },
-      );
+  common.addFlags(
+    command,
+    'What is written',
+    'What is painted',
+    'Part of the cage',
+    'How files are read',
+    'What is printed',
+  );
+  command.addHelpText('after', kHelp).action((target: string, flags: TransferFlags) => {
+    const { cage, texture, output, report, uvBounds, referenceCage, region: regions } = flags;
+    const fault = common.outputFault(flags) ?? boundsFault(texture, uvBounds);
+    if (fault !== undefined) throw new UsageError(fault);
+    return perform(io, flags, { inputs: [target, ...common.inputsOf(flags)], outputs: [output, report] }, async () => {
+      const settings = resolveSettings(await common.layersFor(flags)(target));
+      const files = { target, cage, uvBounds, referenceCage, texture, regions, output, report };
+      return transferCommand({ ...files, ...settings, reading: common.readingOf(flags) }, io);
     });
+  });
 }
