@@ -42,6 +42,11 @@ test('settings come from the nearest file above the target; characters by name w
   assert.deepEqual([other.preset, other.threshold], ['default', 0.4]);
   const won = await optionsOf(`${transfer} --preset default --threshold 0.6`);
   assert.deepEqual([won.preset, won.threshold, won.exclude.length], ['default', 0.6, 2]);
+  assert.deepEqual(
+    (await optionsOf(`${transfer} --exclude only`)).exclude,
+    ['only'],
+    'a list of flags replaces others',
+  );
   // What a flag names must be there; what the file names need not.
   await fails(1, /--exclude gone: no node/, `${transfer} --exclude gone`);
   // Names that are numbers have their place, too.
