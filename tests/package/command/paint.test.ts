@@ -269,6 +269,9 @@ test('--reference-cage: triangles whose UVs it lacks count as cut away', async (
   assert.deepEqual([referred.counts, referred.triangles], [cut.counts, cut.triangles]);
   const whole = await json<Report>(`${transfer} --reference-cage cage.glb ${loose}`);
   assert.deepEqual(whole.counts, (await json<Report>(`${transfer} ${loose}`)).counts);
+  write('mirrored.glb', glbOf(uvsMoved((u, v) => [1 - u, v])));
+  const mirrored = `transfer target.glb --cage mirrored.glb --reference-cage mirrored.glb ${loose}`;
+  assert.deepEqual((await json<Report>(mirrored)).counts, whole.counts);
   write('away.glb', glbOf(uvsMoved((u, v) => [u + 7, v])));
   const none = 'cage.glb: none of its triangles has UVs that the reference cage away.glb has';
   await fails(1, none, 'inspect target.glb --cage cage.glb --reference-cage away.glb');

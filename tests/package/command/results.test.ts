@@ -243,7 +243,7 @@ test('diff shows what changed between two reports, and exits 4 over the limit', 
   const inspection = await ok('inspect target.glb --cage cage.glb --json');
   write('same.json', inspection);
   write('worse.json', inspection.replace(/"verdict": "\w+"/, '"verdict": "unfit"'));
-  assert.equal(await ok('diff a.json same.json'), 'nothing changed\n');
+  assert.equal(await ok('diff a.json same.json --tolerance 0'), 'nothing changed\n');
   const worse = await run('diff same.json worse.json');
   assert.equal(worse.status, 4);
   assert.match(worse.stdout, /verdict +(good|usable) +unfit +over/);
