@@ -35,7 +35,7 @@ test('reports the result of the package', async () => {
     Object.values(counts),
     [0, 1, 2, 3].map((zone) => result.zones.filter((one) => one === zone).length),
   );
-  assert.equal(found.vertices, result.zones.length);
+  assert.deepEqual([found.vertices, found.triangles], [result.zones.length, target.indices.length / 3]);
   const pick = ({
     points,
     exposedArea,
