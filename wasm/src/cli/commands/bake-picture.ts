@@ -9,8 +9,8 @@ import type { UvLayout } from '../../gltf/uv-transform.js';
 import type { CutTarget } from '../../index.js';
 import { decodeImage } from '../io/images.js';
 import { listed, quoted } from '../model/text.js';
-import { noSuchName, partsNamed } from '../transfer/names.js';
-import type { Run } from '../transfer/run.js';
+import { noSuchName, partsNamed } from '../transfer/part-names.js';
+import type { Run } from '../transfer/run-transfer.js';
 
 /** What a picture is made for. */
 interface PictureOptions {

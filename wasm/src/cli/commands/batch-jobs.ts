@@ -9,8 +9,8 @@ import { canonicalPath } from '../io/output.js';
 import { UsageError } from '../model/failures.js';
 import { isObject, type Json, parseObject, pathOf, refuseUnknown } from '../model/json.js';
 import { kSettingNames, type Layer, type ResolvedSettings, resolveSettings, settingsOf } from '../model/settings.js';
+import { kAutoCage, type Region, type TransferCommand } from '../model/sources.js';
 import { shown } from '../model/text.js';
-import { kAutoCage, type Region, type TransferCommand } from '../model/transfer-command.js';
 import { areBounds, boundsFault, boundsText } from '../model/uv-bounds.js';
 import { filesReadBy } from '../transfer/files-read.js';
 

@@ -4,10 +4,10 @@ import { parentPort } from 'node:worker_threads';
 import type { Verdict } from '../../inspect/index.js';
 import { Io } from '../io/io.js';
 import { messageOf } from '../model/failures.js';
-import type { TransferCommand } from '../model/transfer-command.js';
+import type { TransferCommand } from '../model/sources.js';
 import { cachedReading } from '../transfer/models.js';
 import type { Report } from '../transfer/report.js';
-import { transferCommand } from '../transfer/transfer.js';
+import { transferToFile } from '../transfer/transfer-to-file.js';
 
 /** What a worker found. */
 export type Outcome =
@@ -31,7 +31,7 @@ export function serveBatch(): void {
       parentPort!.postMessage({ ms: Math.round(performance.now() - began), ...outcome });
     try {
       makeFolders(command);
-      const { report } = await transferCommand(command, io, readCage);
+      const { report } = await transferToFile(command, io, readCage);
       const { counts, triangles, verdict, findings } = report;
       const inspected = verdict && { verdict, findings: findings!.map(({ code }) => code) };
       answer({ status: 'done', counts, triangles, ...inspected });

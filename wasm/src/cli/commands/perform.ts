@@ -2,7 +2,7 @@ import { standard } from '../../gltf/files.js';
 import type { Io } from '../io/io.js';
 import { checkOutputs } from '../io/output.js';
 import { jsonText, type Line, oneLine } from '../model/text.js';
-import type * as common from './common.js';
+import type * as common from './common-flags.js';
 
 /** What a command found: for people, and for programs. */
 export interface Found {

@@ -2,12 +2,12 @@ import { Command } from 'commander';
 import type { Io } from '../io/io.js';
 import { UsageError } from '../model/failures.js';
 import { oneLine } from '../model/text.js';
-import { addBakeCommand } from './bake.js';
-import { addBatchCommand } from './batch.js';
-import { addDiffCommand } from './diff.js';
-import { addInspectCommand } from './inspect.js';
-import { addCageCommands } from './make-fit.js';
-import { addTransferCommand } from './transfer.js';
+import { addBakeCommand } from './bake-command.js';
+import { addBatchCommand } from './batch-command.js';
+import { addCageCommands } from './cage-commands.js';
+import { addDiffCommand } from './diff-command.js';
+import { addInspectCommand } from './inspect-command.js';
+import { addTransferCommand } from './transfer-command.js';
 
 /** The command with all of its commands; it runs nothing yet. */
 export function makeProgram(io: Io): Command {

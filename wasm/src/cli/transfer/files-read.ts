@@ -1,9 +1,9 @@
 import { dirname } from 'node:path';
 import { filesBeside, filesNamedIn } from '../io/beside.js';
 import { filesOf } from '../io/glob.js';
-import { kAutoCage, type TransferCommand } from '../model/transfer-command.js';
+import { kAutoCage, type TransferCommand } from '../model/sources.js';
 import { isTiled, tilePath } from '../model/uv-bounds.js';
-import type { Run } from './run.js';
+import type { Run } from './run-transfer.js';
 
 /** What says which files a command reads. */
 type Reads = Omit<TransferCommand, 'borders' | 'compress'>;

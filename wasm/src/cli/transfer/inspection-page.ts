@@ -5,8 +5,8 @@ import { type Scene, sceneOf } from '../../inspect/scene.js';
 import { integer } from '../model/text.js';
 import { kZoneNames } from '../model/zones.js';
 import { adviceOn, holeTable, type InspectionReport, segmentTable } from './inspection.js';
-import { Picture, type Rgb, type View } from './raster.js';
-import type { Run } from './run.js';
+import type { Run } from './run-transfer.js';
+import { Picture, type Rgb, type View } from './view-picture.js';
 
 /** Pixels along each side of a picture. */
 const kSize = 420;

@@ -10,22 +10,13 @@ import {
   usableFrom,
   type Verdict,
 } from '../../inspect/index.js';
+import type { Sources } from '../model/sources.js';
 import { integer, short } from '../model/text.js';
-import type { Sources } from '../model/transfer-command.js';
 import { boundsAround, type UvBounds } from '../model/uv-bounds.js';
 import type { PerZone } from '../model/zones.js';
 import { withinBounds } from './cage-area.js';
-import {
-  type CageReport,
-  cageReport,
-  type EffectiveOptions,
-  effectiveOptions,
-  perZone,
-  type TargetReport,
-  targetReport,
-  versions,
-} from './report-parts.js';
-import type { Run } from './run.js';
+import { type CageReport, cageReport, effectiveOptions, perZone, targetReport, versions } from './report-parts.js';
+import type { Run } from './run-transfer.js';
 
 export const kVerdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
 
@@ -35,9 +26,9 @@ export const isWorse = (a: Verdict, b: Verdict): boolean => kVerdicts.indexOf(a)
 /** The JSON output of `inspect`: the inspection, and its inputs. */
 export interface InspectionReport extends Inspection {
   versions: ReturnType<typeof versions>;
-  target: TargetReport & { points: number };
+  target: ReturnType<typeof targetReport> & { points: number };
   cage: CageReport;
-  options: EffectiveOptions;
+  options: ReturnType<typeof effectiveOptions>;
   /** Vertices of the target in each zone. */
   counts: PerZone;
   /** Share of the target's area in each zone. */

@@ -6,7 +6,7 @@ import { InputError } from '../../gltf/input-error.js';
 import { CagecastError } from '../../index.js';
 import type { Io } from '../io/io.js';
 import type { ReadModel } from './models.js';
-import { noSuchName } from './names.js';
+import { noSuchName } from './part-names.js';
 
 /** Makes a cage for a model. @throws {InputError} that names the file. */
 export async function makeCageFor(model: ReadModel, options: MakeOptions, io: Io): Promise<Cage> {

@@ -6,10 +6,10 @@ import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/o
 import { writeTransfer } from '../../gltf/write.js';
 import type { CutTarget, TransferResult } from '../../index.js';
 import type { Io } from '../io/io.js';
-import type { TransferCommand } from '../model/transfer-command.js';
+import type { TransferCommand } from '../model/sources.js';
 import { boundsOfTile, isTiled, type UvBounds } from '../model/uv-bounds.js';
 import { readModel } from './models.js';
-import { cutTarget, type Run, runTransfer } from './run.js';
+import { cutTarget, type Run, runTransfer } from './run-transfer.js';
 import { readPaint, readTiles } from './textures.js';
 
 /** What a region's transfer is given besides its files. */

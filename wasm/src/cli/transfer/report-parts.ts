@@ -1,48 +1,32 @@
 // What the reports of `transfer` and `inspect` have in common.
-import { type Preset, type PresetOptions, presetOptions, type TransferResult } from '../../index.js';
+import { presetOptions, type TransferResult } from '../../index.js';
 import { percent } from '../../inspect/finding.js';
 import { boxOf } from '../../inspect/geometry.js';
+import type { Sources } from '../model/sources.js';
 import { integer, type Line, listed, table } from '../model/text.js';
-import type { Sources } from '../model/transfer-command.js';
 import { kZoneNames, type PerZone } from '../model/zones.js';
 import type { ReadModel } from './models.js';
-import type { Run } from './run.js';
+import type { Run } from './run-transfer.js';
 
-export const versions = (): { cagecast: string; node: string } => ({
-  cagecast: CAGECAST_VERSION,
-  node: process.versions.node,
-});
+export const versions = () => ({ cagecast: CAGECAST_VERSION, node: process.versions.node });
 
 /** What a report says of a target. */
-export interface TargetReport {
-  file: string;
-  vertices: number;
-  triangles: number;
-  diagonal: number;
-}
-
-export const targetReport = (file: string, { extracted: { mesh } }: ReadModel): TargetReport => ({
+export const targetReport = (file: string, { extracted: { mesh } }: ReadModel) => ({
   file,
   vertices: mesh.positions.length / 3,
   triangles: mesh.indices.length / 3,
   diagonal: boxOf(mesh.positions).diagonal,
 });
 
-/** What a report says of a cage. */
-export interface CageReport {
-  file: string;
-  vertices: number;
-  triangles: number;
-  /** Of a cage that was made on the way: the names of the parts that are not painted because of them. */
-  excluded?: readonly string[];
-}
-
-export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { excluded }: Run): CageReport => ({
+/** What a report says of a cage; of one that was made on the way, also the names of the parts that are not painted because of them. */
+export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { excluded }: Run) => ({
   file,
   vertices: mesh.positions.length / 3,
   triangles: mesh.indices.length / 3,
   ...(excluded && { excluded }),
 });
+
+export type CageReport = ReturnType<typeof cageReport>;
 
 /** Vertices and shares of the area in each zone, for people. */
 export const zoneTable = (counts: PerZone, areas: PerZone, total = 1): string[] =>
@@ -58,33 +42,18 @@ const kMaxNames = 12;
 export const excludedLine = ({ excluded = [] }: CageReport): Line =>
   excluded.length > 0 && `excluded from the cage by their names: ${listed(excluded, kMaxNames)}`;
 
-/** All options that a transfer was made with. */
-export interface EffectiveOptions
-  extends Omit<PresetOptions, 'occlusionReach'>,
-    Pick<Sources, 'uvBounds' | 'referenceCage'> {
-  preset: Preset;
-  /** JSON has no infinite numbers. */
-  occlusionReach: number | 'Infinity';
-  keep: string[];
-  exclude: string[];
-  /** If there are any. */
-  masks?: { never?: string | undefined; always?: string | undefined; colors?: string | undefined } | undefined;
-  /** The configuration file that some of them come from. */
-  config: string | null;
-}
-
-/** The options in full; needs `init`. */
+/** All options that a transfer was made with; needs `init`. */
 export function effectiveOptions({
   rules: { preset, single, names, masks, config },
   uvBounds,
   referenceCage,
-}: Pick<Sources, 'rules' | 'uvBounds' | 'referenceCage'>): EffectiveOptions {
+}: Pick<Sources, 'rules' | 'uvBounds' | 'referenceCage'>) {
   const all = { ...presetOptions(preset), ...single };
   const patterns = (lock: string) => [
     ...new Set(names.filter((rule) => rule.lock === lock).map(({ pattern }) => pattern)),
   ];
   const { never, always, colors } = masks;
-  // JSON leaves out what is undefined.
+  // JSON leaves out what is undefined, and has no infinite numbers.
   return {
     preset,
     ...all,
@@ -94,7 +63,7 @@ export function effectiveOptions({
     masks: (never ?? always ?? colors) ? { never: never?.path, always: always?.path, colors } : undefined,
     uvBounds,
     referenceCage,
-    config: config ?? null,
+    config: config ?? null, // the configuration file that some of them come from
   };
 }
 

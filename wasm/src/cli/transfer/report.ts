@@ -5,30 +5,21 @@ import { vertexAreas } from '../../inspect/geometry.js';
 import type { Finding, Segment, Verdict } from '../../inspect/index.js';
 import { segmentsOf } from '../../inspect/segments.js';
 import type { Borders } from '../../parts/borders-option.js';
-import type { Region, TransferCommand } from '../model/transfer-command.js';
+import type { Region, TransferCommand } from '../model/sources.js';
 import type { PerZone } from '../model/zones.js';
 import { countOf, type RegionRun } from './region.js';
-import {
-  type CageReport,
-  cageReport,
-  type EffectiveOptions,
-  effectiveOptions,
-  perZone,
-  type TargetReport,
-  targetReport,
-  versions,
-} from './report-parts.js';
+import { type CageReport, cageReport, effectiveOptions, perZone, targetReport, versions } from './report-parts.js';
 import { type Stretch, stretchOf } from './stretch.js';
 
 /** The JSON report of a transfer. Areas are in squared units of the target; lengths in its units. */
 export interface Report {
   versions: ReturnType<typeof versions>;
-  target: TargetReport;
+  target: ReturnType<typeof targetReport>;
   cage: CageReport;
   texture: string | null;
   output: string | null;
   borders: Borders;
-  options: EffectiveOptions;
+  options: ReturnType<typeof effectiveOptions>;
   /** Vertices of the target in each zone. The zones are the cage's, whatever part of it the texture covers. */
   counts: PerZone;
   /** Area of the target in each zone: a third of each triangle for each of its corners. */

@@ -14,10 +14,10 @@ import {
 } from '../transfer/inspection.js';
 import { inspectionPage } from '../transfer/inspection-page.js';
 import { excludedLine, zoneTable } from '../transfer/report-parts.js';
-import { runTransfer } from '../transfer/run.js';
-import * as common from './common.js';
+import { runTransfer } from '../transfer/run-transfer.js';
+import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
-import { addTarget, type TargetFlags } from './transfer.js';
+import { addTarget, type TargetFlags } from './transfer-command.js';
 
 interface InspectFlags extends TargetFlags {
   html?: string;

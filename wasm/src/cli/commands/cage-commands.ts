@@ -19,8 +19,8 @@ import { conclusionOf, inspectionReport } from '../transfer/inspection.js';
 import { inspectionPage } from '../transfer/inspection-page.js';
 import { fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
 import { type ReadModel, readBack, readModel, withUvs } from '../transfer/models.js';
-import { transferModels } from '../transfer/run.js';
-import * as common from './common.js';
+import { transferModels } from '../transfer/run-transfer.js';
+import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
 
 /** The fewest and the most triangles that a cage can be asked to have. */

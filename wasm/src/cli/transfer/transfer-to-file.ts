@@ -4,8 +4,8 @@ import { zoneAttribute } from '../../gltf/overlay.js';
 import { counted } from '../../inspect/finding.js';
 import type { Io } from '../io/io.js';
 import { refuseOverwriting, writeFiles } from '../io/output.js';
+import type { TransferCommand } from '../model/sources.js';
 import { configLine, integer, jsonText, type Line, takenAway } from '../model/text.js';
-import type { TransferCommand } from '../model/transfer-command.js';
 import { allFilesReadBy } from './files-read.js';
 import { inspectionReport, isWorse } from './inspection.js';
 import type { readModel } from './models.js';
@@ -19,7 +19,7 @@ import { excludedLine, zoneTable } from './report-parts.js';
  * @returns a summary for people, and the report.
  * @throws {InputError} that names the file at fault; then no file is written.
  */
-export async function transferCommand(
+export async function transferToFile(
   command: TransferCommand,
   io: Io,
   readCage?: typeof readModel,

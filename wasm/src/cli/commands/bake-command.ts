@@ -13,12 +13,12 @@ import type { Io } from '../io/io.js';
 import { refuseOverwriting, writeFiles } from '../io/output.js';
 import { UsageError } from '../model/failures.js';
 import { resolveSettings } from '../model/settings.js';
+import type { Sources } from '../model/sources.js';
 import { configLine, quoted, takenAway } from '../model/text.js';
-import type { Sources } from '../model/transfer-command.js';
 import { allFilesReadBy } from '../transfer/files-read.js';
-import { cutTarget, type Run, runTransfer } from '../transfer/run.js';
+import { cutTarget, type Run, runTransfer } from '../transfer/run-transfer.js';
 import { listNames, paintForModel, paintOfModel } from './bake-picture.js';
-import * as common from './common.js';
+import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
 
 interface BakeFlags extends common.SettingFlags, common.ReadFlags, common.PrintFlags {

@@ -9,7 +9,7 @@ import { kExit } from '../model/failures.js';
 import { cut, integer, short, table } from '../model/text.js';
 import { kZoneNames, type PerZone } from '../model/zones.js';
 import { isWorse } from '../transfer/inspection.js';
-import * as common from './common.js';
+import * as common from './common-flags.js';
 import { type AnyReport, readReport } from './diff-report.js';
 import { type Found, perform } from './perform.js';
 

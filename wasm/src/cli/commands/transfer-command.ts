@@ -2,10 +2,10 @@ import { type Command, Option } from 'commander';
 import type { Io } from '../io/io.js';
 import { UsageError } from '../model/failures.js';
 import { resolveSettings } from '../model/settings.js';
-import type { Region } from '../model/transfer-command.js';
+import type { Region } from '../model/sources.js';
 import { boundsFault } from '../model/uv-bounds.js';
-import { transferCommand } from '../transfer/transfer.js';
-import * as common from './common.js';
+import { transferToFile } from '../transfer/transfer-to-file.js';
+import * as common from './common-flags.js';
 import { perform } from './perform.js';
 
 /** The flags of the commands that transfer to one target. */
@@ -81,7 +81,7 @@ export function addTransferCommand(program: Command, io: Io): void {
     return perform(io, flags, { inputs: [target, ...common.inputsOf(flags)], outputs: [output, report] }, async () => {
       const settings = resolveSettings(await common.layersFor(flags)(target));
       const files = { target, cage, uvBounds, referenceCage, texture, regions, output, report };
-      return transferCommand({ ...files, ...settings, reading: common.readingOf(flags) }, io);
+      return transferToFile({ ...files, ...settings, reading: common.readingOf(flags) }, io);
     });
   });
 }

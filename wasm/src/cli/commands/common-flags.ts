@@ -4,7 +4,7 @@ import { optionFlags } from '../../generated/options.js';
 import { type ReadOptions, standard } from '../../gltf/files.js';
 import { defaultLimits, type ReadLimits } from '../../gltf/limits.js';
 import { colorAttributes, holdsColors, kChoices, kSettingNames, type Layer, type Settings } from '../model/settings.js';
-import { kAutoCage, type Region } from '../model/transfer-command.js';
+import { kAutoCage, type Region } from '../model/sources.js';
 import { areBounds, boundsText, type UvBounds } from '../model/uv-bounds.js';
 import { Configuration, configName } from './config-file.js';
 

@@ -3,12 +3,12 @@ import { standard } from '../../gltf/files.js';
 import { counted } from '../../inspect/finding.js';
 import type { Io } from '../io/io.js';
 import { kExit, UsageError } from '../model/failures.js';
+import type { Region } from '../model/sources.js';
 import { jsonText, oneLine } from '../model/text.js';
-import type { Region } from '../model/transfer-command.js';
 import { boundsFault } from '../model/uv-bounds.js';
 import { jobsOfManifest, jobsOfPatterns, placeholderFault, writtenBy } from './batch-jobs.js';
 import { type BatchSummary, runJobs } from './batch-run.js';
-import * as common from './common.js';
+import * as common from './common-flags.js';
 
 interface BatchFlags extends common.SettingFlags, common.CageFlags, common.ReadFlags, common.PrintFlags {
   cage?: string;

@@ -14,11 +14,11 @@ import {
 import { readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import type { Rules } from '../model/settings.js';
-import { kAutoCage, type Sources } from '../model/transfer-command.js';
+import { kAutoCage, type Sources } from '../model/sources.js';
 import { withinBounds, withoutLacking } from './cage-area.js';
 import { makeCageFor, partsLeftOut } from './made-cage.js';
 import { inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
-import { transferOptions } from './names.js';
+import { transferOptions } from './part-names.js';
 
 /** Two models, and what was transferred. */
 export interface Run {
