@@ -538,7 +538,7 @@ test('no file that was read is overwritten, whoever names it', async () => {
     }
     const { status, stderr } = cagecast('bake', target, at('cage.glb'), at('red.png'), ...more, '-o', path);
     assert.equal(status, 2);
-    assert.match(stderr, /^cagecast: .*\.png: would be overwritten, but is read by this command[^\n]*\n$/);
+    assert.match(stderr, /^cagecast: .*\.png would overwrite .*\.png, which this command reads[^\n]*\n$/);
     assert.deepEqual(readFileSync(path), before);
   }
 });
