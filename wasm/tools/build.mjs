@@ -219,6 +219,12 @@ function wasmModules(wasm, { index } = {}) {
           return file ? { path: file, external: true } : undefined;
         });
       }
+      // Emscripten's script calls a function as it is loaded, which bundlers could not leave out. Here it waits for the first call.
+      build.onLoad({ filter: /cagecast(-cages)?\.js$/ }, ({ path }) => ({
+        contents: `export default function createModule(options) {
+          ${readFileSync(path, 'utf8').replace(/export default Module;\s*$/, 'return Module(options);')}
+        }`,
+      }));
       build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({
         // Parcel writes a NUL before a digit as an octal escape, which modules do not have. U+0100 is the same byte when it is read.
         contents: readFileSync(path).toString('latin1').replaceAll('\0', '\u0100'),
