@@ -3,7 +3,7 @@ import { before, describe, test } from 'node:test';
 import { setFlagsFromString } from 'node:v8';
 import { CagecastError, classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
 import { type ApplyOptions, applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
-import { createLayers, Edits, History, LayerStack } from 'cagecast/three/layers';
+import { createLayers, Edits, History, LayerStack } from 'cagecast/three/paint';
 import { createPainter } from 'cagecast/three/paint';
 import { terminate } from 'cagecast/worker';
 import {

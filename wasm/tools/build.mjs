@@ -42,8 +42,6 @@ const kEntries = {
   inspect: 'inspect',
   bake: 'bake',
   three: 'three',
-  'three/gpu': 'three-gpu',
-  'three/layers': 'three-layers',
   'three/painting': 'three-paint',
   viewer: 'viewer',
   gltf: 'gltf',
@@ -159,10 +157,10 @@ async function bundleEntries(bundle) {
   await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager, ...reading('cagecast') });
   for (const [folder, name] of Object.entries(kEntries))
     await bundle(`${folder}/index.ts`, `${name}.js`, 'neutral', shared);
-  await bundle('worker/thread.ts', 'worker-thread.js', 'neutral', shared);
+  await bundle('worker/worker-thread.ts', 'worker-thread.js', 'neutral', shared);
   // What makes cages has a WebAssembly module of its own; its worker is a file that needs no other script.
   const alone = { ...reading('cagecast-cages'), plugins: [wasmModules('wasm-file.ts')] };
-  await bundle('cages/thread.ts', 'cages-thread.js', 'neutral', alone);
+  await bundle('cages/cages-thread.ts', 'cages-thread.js', 'neutral', alone);
   await bundle('cages/sync.ts', 'cages-sync.js', 'neutral', alone);
 }
 

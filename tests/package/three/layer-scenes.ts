@@ -1,6 +1,6 @@
 // What the page of the tests does with layers and painters. Runs in the browser.
 import { type Applied, applyTransfer, modelMasks } from 'cagecast/three';
-import { type Blend, createLayers, type Layers } from 'cagecast/three/layers';
+import { type Blend, createLayers, type Layers } from 'cagecast/three/paint';
 import {
   createPainter,
   LayerPainter,

@@ -1,6 +1,6 @@
 // Scenes of what others have to do with a painted model too: its materials, their hooks, earlier transfers. Runs in the browser.
 import { applyTransfer } from 'cagecast/three';
-import { createLayers } from 'cagecast/three/layers';
+import { createLayers } from 'cagecast/three/paint';
 import { createPainter } from 'cagecast/three/paint';
 import {
   Bone,

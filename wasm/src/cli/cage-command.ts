@@ -1,6 +1,6 @@
 import { statSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { cageGlb } from '../cages/glb.js';
+import { cageGlb } from '../cages/cage-glb.js';
 import { templateNames } from '../cages/template-names.js';
 import type { Cage, Fit, Kind, Landmarks } from '../cages/types.js';
 import { templateOf } from '../gltf/cage-file.js';
@@ -8,7 +8,7 @@ import { type ReadOptions, readBytes, standard } from '../gltf/files.js';
 import { InputError, withName } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
 import type { Verdict } from '../inspect/index.js';
-import { isPosition } from '../parts/template.js';
+import { isPosition } from '../parts/template-extras.js';
 import { parseObject, shown } from './config/settings.js';
 import { conclusionOf, inspectionReport } from './inspect-command.js';
 import { inspectionPage } from './inspect-page.js';

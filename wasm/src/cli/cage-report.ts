@@ -1,4 +1,4 @@
-import type { Extracted } from '../gltf/extract.js';
+import type { Extracted } from '../gltf/extract-file.js';
 import type { Run } from './run.js';
 import { listed } from './table.js';
 

@@ -1,7 +1,7 @@
 import type { GLTF } from '@gltf-transform/core';
 import { type Command, InvalidArgumentError, Option } from 'commander';
 import { optionFlags } from '../generated/options.js';
-import { type Part, partsBelow } from '../gltf/extract.js';
+import { type Part, partsBelow } from '../gltf/extract-file.js';
 import { InputError } from '../gltf/input-error.js';
 import { type Lock, type Preset, type PresetOptions, presetOptions, type TransferOptions } from '../index.js';
 import type { Finding } from '../inspect/finding.js';

@@ -1,11 +1,11 @@
-import { cageGlb } from '../cages/glb.js';
+import { cageGlb } from '../cages/cage-glb.js';
 import type { Cage } from '../cages/types.js';
-import { FileModel } from '../gltf/bake/file.js';
+import { FileModel } from '../gltf/bake/bake-file.js';
 import { masksOf } from '../gltf/bake/masks.js';
-import { type Extracted, extract, type Part, partOf, primitivePath, uvLayout } from '../gltf/extract.js';
+import { type Extracted, extract, type Part, partOf, primitivePath, uvLayout } from '../gltf/extract-file.js';
 import type { ReadOptions } from '../gltf/files.js';
 import { InputError, withName } from '../gltf/input-error.js';
-import { type GltfFile, readGltf } from '../gltf/read.js';
+import { type GltfFile, readGltf } from '../gltf/read-gltf.js';
 import {
   CagecastError,
   type CutTarget,

@@ -2,15 +2,15 @@ import { dirname, parse } from 'node:path';
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
 import { show } from '../core/error.js';
-import { type MeshoptView, meshoptExtensions, meshoptView } from './check.js';
+import { type MeshoptView, meshoptExtensions, meshoptView } from './check-geometry.js';
 import { localFile, type ReadOptions, readUri } from './files.js';
-import { imageType } from './image.js';
+import { imageType } from './image-file.js';
 import { InputError } from './input-error.js';
 import { type Contents, imageFile, type NamedFile, packGlb, packGltf, paddedLength } from './output/pack.js';
 import { subtract } from './output/ranges.js';
 import type { Paint } from './overlay.js';
 import { sparseElements } from './primitive-group.js';
-import type { GltfFile } from './read.js';
+import type { GltfFile } from './read-gltf.js';
 import { addedByTransfer, drop, eachAccessor, eachView, hasUnknownReferences, numbersOf } from './references.js';
 
 const kArrayBuffer = 34962;

@@ -3,7 +3,7 @@ import type { Mesh } from '../api/mesh.js';
 import { movePoints } from '../parts/points.js';
 import { InputError } from './input-error.js';
 import { identity, isMirrored, type Matrix } from './matrix.js';
-import { transformUvs, type UvLayout } from './uv-transform.js';
+import { layUvs, type UvLayout } from './uv-layout.js';
 
 /** One primitive of one node, and the ranges of its elements in the joined arrays. */
 export interface Piece {
@@ -127,7 +127,7 @@ export function decodeUvs(
   if (accessor.getCount() !== vertexCount)
     throw new InputError(`${place} has ${accessor.getCount()} ${set} for ${vertexCount} vertices`);
   const uvs = decodeFloats(accessor);
-  return transform ? transformUvs(uvs, transform) : uvs;
+  return layUvs(uvs, transform);
 }
 
 /** All components of an accessor as 32-bit floats, with normalised integers decoded. */

@@ -1,6 +1,6 @@
-import { type Extracted, type Part, primitivePath } from '../../gltf/extract.js';
+import { type Extracted, type Part, primitivePath } from '../../gltf/extract-file.js';
 import { zoneAttribute } from '../../gltf/overlay.js';
-import type { Added } from '../../gltf/write.js';
+import type { Added } from '../../gltf/write-transfer.js';
 import type { SegmentStats, TransferResult } from '../../index.js';
 import { counted } from '../../inspect/finding.js';
 import { boxOf, vertexAreas } from '../../inspect/geometry.js';
