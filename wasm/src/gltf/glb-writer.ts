@@ -6,7 +6,7 @@ import { type MeshoptView, meshoptExtensions, meshoptView } from './check-geomet
 import { localFile, type ReadOptions, readUri } from './files.js';
 import { imageType } from './image-file.js';
 import { InputError } from './input-error.js';
-import { type Contents, imageFile, type NamedFile, packGlb, packGltf, paddedLength } from './output/pack.js';
+import { type Contents, imageFile, type NamedFile, packGlb, packGltf, paddedLength } from './output/pack-gltf.js';
 import { subtract } from './output/ranges.js';
 import type { Paint } from './overlay.js';
 import { sparseElements } from './primitive-group.js';

@@ -8,7 +8,7 @@ import { dracoExtension, markForDraco, packDraco, unmarkDraco } from './draco-wr
 import { removeAttributes, removeOverlays } from './earlier-in-file.js';
 import type { Extracted, Part } from './extract-file.js';
 import { type Form, GlbWriter } from './glb-writer.js';
-import type { NamedFile } from './output/pack.js';
+import type { NamedFile } from './output/pack-gltf.js';
 import { separateMeshes } from './output/separate-meshes.js';
 import {
   cornersIn,
