@@ -5,7 +5,7 @@ import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } 
 import { readExtras } from '../../parts/template-extras.js';
 import { InputError } from '../input-error.js';
 import { createAccessor } from './add-transfer.js';
-import { type DocumentPart, extractDocument } from './extract-document.js';
+import { type DocumentPart, extractDocument, jointMatrix } from './extract-document.js';
 import { isDocument, read, wrong } from './transfer-document.js';
 
 /** What glTF-Transform does not keep of a file. */
@@ -136,7 +136,7 @@ function jointsOf(document: Document, parts: readonly DocumentPart[], bones: Map
   const atNode = (node: Node): ReadJoint<Node> => ({
     node,
     name: nameOf(node),
-    position: node.getWorldTranslation() as [number, number, number],
+    position: jointMatrix(node).slice(12, 15) as [number, number, number],
   });
   const joints = parts.flatMap(({ node: holder, matrix }) => {
     const skin = holder.getSkin();

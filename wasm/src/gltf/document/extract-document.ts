@@ -147,7 +147,7 @@ function listParts(document: Document): DocumentPart[] {
 }
 
 /** The matrix of a joint to the scene; the identity if it is below itself, which no node of a scene is. */
-function jointMatrix(joint: Node): Matrix {
+export function jointMatrix(joint: Node): Matrix {
   const above = new Set<Node>();
   for (let node: Node | null = joint; node; node = node.getParentNode()) {
     if (above.has(node)) return identity;
