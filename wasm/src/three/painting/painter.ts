@@ -108,8 +108,9 @@ export class Painter {
     return pickSpot(this.#models, raycaster, this.#painter.cageTexels);
   }
 
-  /** As `pick`, for a position of a page. @param position  Such as a pointer event. */
+  /** As `pick`, for a position of a page, such as a pointer event. @throws {CagecastError} `badArgument` without a camera. */
   pickAt({ clientX, clientY }: { clientX: number; clientY: number }, camera: Camera): Spot | undefined {
+    checkCamera(camera);
     const { left, top, width, height } = this.#canvas.getBoundingClientRect();
     const at = new Vector2((2 * (clientX - left)) / width - 1, 1 - (2 * (clientY - top)) / height);
     camera.updateMatrixWorld();
@@ -188,7 +189,7 @@ export class Painter {
    * @throws {CagecastError} `badArgument` without a camera.
    */
   listen(camera: Camera, element = this.#canvas): () => void {
-    if (!camera?.isCamera) throw notA('a Camera', 'camera', camera, kPaint);
+    checkCamera(camera);
     if (this.#isDisposed) return () => {};
     const stop = listenTo(element, (event) => {
       try {
@@ -310,6 +311,11 @@ export class Painter {
 function follow(layers: Layers, painter: LayerPainter): () => void {
   painter.on('change', () => layers.announce());
   return layers.on('restored', () => painter.restore());
+}
+
+/** @throws {CagecastError} `badArgument` */
+function checkCamera(camera: Camera): void {
+  if (!camera?.isCamera) throw notA('a Camera', 'camera', camera, kPaint);
 }
 
 /** @throws {CagecastError} `badOption` that names the field and its value. */
