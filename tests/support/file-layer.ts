@@ -1,21 +1,25 @@
 import { writeFileSync } from 'node:fs';
+import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { build } from 'esbuild';
 import { temporaryFolder } from './temporary.js';
 
-/** What the command reads files by, which the package does not export. */
-export interface FileLayer {
-  readGltf: typeof import('../../wasm/src/gltf/read-gltf.js').readGltf;
-  extract: typeof import('../../wasm/src/gltf/extract-file.js').extract;
-  defaultReading: typeof import('../../wasm/src/gltf/files.js').defaultReading;
-}
+/** What the command reads and writes files by, which the package does not export. */
+export type FileLayer = Pick<typeof import('../../wasm/src/gltf/read-gltf.js'), 'readGltf'> &
+  Pick<typeof import('../../wasm/src/gltf/extract-file.js'), 'extract'> &
+  Pick<typeof import('../../wasm/src/gltf/write-transfer.js'), 'writeTransfer'> &
+  Pick<typeof import('../../wasm/src/gltf/overlay.js'), 'paintOf'> &
+  Pick<typeof import('../../wasm/src/gltf/files.js'), 'defaultReading'>;
 
-/** Bundles the file layer, whose decoders are files that only a bundler reads. Takes some tenths of a second. */
+const kModules = ['read-gltf', 'extract-file', 'write-transfer', 'overlay', 'files'];
+
+/** Bundles the file layer, whose decoders are files that only a bundler reads. It uses the package's own index. */
 export async function loadFileLayer(): Promise<FileLayer> {
   const { at } = temporaryFolder('files');
+  const index = pathToFileURL(resolve('dist/index.js')).href;
   const { outputFiles } = await build({
     stdin: {
-      contents: ['read-gltf', 'extract-file', 'files'].map((name) => `export * from './${name}.js';`).join('\n'),
+      contents: kModules.map((name) => `export * from './${name}.js';`).join('\n'),
       resolveDir: 'wasm/src/gltf',
     },
     bundle: true,
@@ -27,6 +31,15 @@ export async function loadFileLayer(): Promise<FileLayer> {
     banner: {
       js: `import { createRequire } from 'node:module'; const require = createRequire(${JSON.stringify(import.meta.url)}), __dirname = '', __filename = '';`,
     },
+    plugins: [
+      {
+        name: 'index',
+        setup: ({ onResolve }) =>
+          onResolve({ filter: /^(\.\.\/)+index\.js$/ }, ({ path, resolveDir }) =>
+            resolve(resolveDir, path) === resolve('wasm/src/index.js') ? { path: index, external: true } : undefined,
+          ),
+      },
+    ],
   });
   writeFileSync(at('layer.mjs'), outputFiles[0]!.contents);
   return (await import(pathToFileURL(at('layer.mjs')).href)) as FileLayer;
