@@ -60,9 +60,9 @@ export async function transferDocument(
   return { target, model, result, cut: cuts ? cutBorders(source, target.mesh, result, rules) : undefined, paint };
 }
 
-/** The error of an argument of the wrong type. */
-export const wrong = (caller: string, argument: string, value: unknown, type: string) =>
-  new CagecastError('badArgument', caller, `${argument} is ${show(value)}, not ${type}`, { argument });
+/** The error of an argument, or of a member of one, of the wrong type. @param name  As in "cage.positions". */
+export const wrong = (caller: string, name: string, value: unknown, type: string) =>
+  new CagecastError('badArgument', caller, `${name} is ${show(value)}, not ${type}`, { argument: name.split('.')[0] });
 
 export const isDocument = (value: unknown): value is Document =>
   typeof (value as Document | null | undefined)?.getRoot === 'function';
