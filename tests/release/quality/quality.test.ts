@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { init } from 'cagecast';
-import { missedGoals } from '../../bench/quality/goals.js';
-import { measure, type Quality } from '../../bench/quality/measure.js';
-import { listFiles, loadFiles, type ModelFiles } from '../../bench/quality/models.js';
-import { score } from '../../bench/quality/score.js';
-import { visiblePixels } from '../../bench/quality/visible.js';
+import { missedGoals } from '../../../bench/quality/goals.js';
+import { measure, type Quality } from '../../../bench/quality/measure.js';
+import { listFiles, loadFiles, type ModelFiles } from '../../../bench/quality/models.js';
+import { score } from '../../../bench/quality/score.js';
+import { visiblePixels } from '../../../bench/quality/visible.js';
 
 describe('quality', () => {
   const results: Record<string, Quality> = {};

@@ -1,7 +1,7 @@
 // Whether memory stays the same however long a program runs: a hundred thousand transfers with `reuse` in one process, among them
 // cut borders, baked layers and fitted cages.
 //
-//   node --expose-gc --import tsx tests/package/properties/soak.ts [COUNT]      default: 100000
+//   node --expose-gc --import tsx tests/release/soak.ts [COUNT]      default: 100000
 //
 // Prints the memory after a hundredth of them and after all, and ends with 1 if what is allocated grew by more than 2 %.
 import { setImmediate } from 'node:timers/promises';
@@ -9,7 +9,7 @@ import { cutBorders, init, type TransferResult, transfer } from 'cagecast';
 import { bake, type Image, layOver } from 'cagecast/bake';
 import { loadTemplate } from 'cagecast/cages';
 import * as cages from 'cagecast/cages/sync';
-import { ball } from '../scenes.js';
+import { ball } from '../package/scenes.js';
 
 const count = Number(process.argv[2] ?? 100_000);
 const cage = ball([0, 0, 0], () => 1, 5, 10);

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { init, type Mesh, transfer } from 'cagecast';
 import { listFiles, loadFiles } from '../../../bench/quality/models.js';
-import { randomNumbers } from '../bake/reference.js';
+import { randomNumbers } from '../../package/bake/reference.js';
 
 before(init);
 

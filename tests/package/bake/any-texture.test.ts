@@ -4,7 +4,7 @@ import { test } from 'node:test';
 import { CagecastError } from 'cagecast';
 import { fill, type Image, type Layout, layOver, resize } from 'cagecast/bake';
 import fc from 'fast-check';
-import { smoothImage, texelsOf } from '../bake/reference.js';
+import { smoothImage, texelsOf } from './reference.js';
 
 const { CAGECAST_RUNS = 60, CAGECAST_SEED = 1 } = process.env;
 const runs = { numRuns: Number(CAGECAST_RUNS), seed: Number(CAGECAST_SEED) };

@@ -5,7 +5,7 @@ import { before, describe, test } from 'node:test';
 import { CagecastError, classify, cutBorders, init, type Mesh, project, splitVertices, transfer } from 'cagecast';
 import { inspect, suggest } from 'cagecast/inspect';
 import fc from 'fast-check';
-import { tetrahedron } from '../../support/gltf.js';
+import { tetrahedron } from '../support/gltf.js';
 
 const { CAGECAST_RUNS = 150, CAGECAST_SEED = 1 } = process.env;
 const runs = { numRuns: Number(CAGECAST_RUNS), seed: Number(CAGECAST_SEED) };
