@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { CagecastError, init, type Mesh, type TransferOptions, transfer } from 'cagecast';
 import { type Finding, inspect, suggest } from 'cagecast/inspect';
-import { ball, head, join3d, readPlain, smallHole } from './scenes.js';
+import { ball, head, join3d, readPlain, smallHole, within } from './scenes.js';
 
 before(init);
 
@@ -184,12 +184,7 @@ describe('suggest', () => {
     // Balls under the rim of a cage that ends at the equator: half of each is covered.
     const balls = join3d(...[0, 1, 2, 3, 4].map((i) => ball([2 * i, 0, 0], () => 0.5, 24, 24)));
     const shells = join3d(...[0, 1, 2, 3, 4].map((i) => ball([2 * i, 0, 0], () => 0.55, 24, 24)));
-    const upper = {
-      ...shells,
-      indices: shells.indices.filter((_, i) =>
-        [0, 1, 2].every((k) => shells.positions[3 * shells.indices[i - (i % 3) + k]! + 2]! > -0.01),
-      ),
-    };
+    const upper = within(shells, (_, __, z) => z > -0.01);
     const one = { ...balls, groups: undefined };
     const found = suggest(upper, one, { preset: 'paper' }).filter(({ code }) => code === 'segmentInDoubt');
     assert.equal(found.length, 1);
