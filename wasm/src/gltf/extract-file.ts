@@ -8,15 +8,13 @@ import { firstInstance, instancing } from './instancing.js';
 import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
 import { isOverlay } from './overlay.js';
 import {
-  aliasesOf,
   decodePositions,
   decodeTriangles,
   decodeUvs,
-  endOf,
   hasTriangles,
   joinPieces,
+  nextPiece,
   type Piece,
-  pieceName,
 } from './pieces.js';
 import type { GltfFile } from './read-gltf.js';
 import { type UvLayout, uvLayoutOf } from './uv-layout.js';
@@ -98,27 +96,21 @@ function listParts(file: GltfFile): Part[] {
     meshDef.primitives.forEach((primitive, p) => {
       if (isOverlay(primitive, file.json)) return;
       const ref = { mesh: nodeDef.mesh!, primitive: p };
-      const localPositions = readPositions(file, ref);
-      if (localPositions === undefined) return;
-      const localIndices = readTriangles(file, ref, localPositions.length / 3);
-      if (localIndices === undefined) return;
-      const name = nodeDef.name ?? meshDef.name ?? `nodes[${node}]`;
-      const material = primitive.material === undefined ? undefined : materials[primitive.material]?.name;
-      const fullName = pieceName(name, material, meshDef.primitives.length);
-      const [firstVertex, firstTriangle] = endOf(parts);
-      parts.push({
-        name: fullName,
-        aliases: aliasesOf(nodeDef.name, meshDef.name, material, fullName),
-        node,
-        ...ref,
+      const positions = readPositions(file, ref);
+      if (positions === undefined) return;
+      const indices = readTriangles(file, ref, positions.length / 3);
+      if (indices === undefined) return;
+      const piece = nextPiece(parts, {
+        node: nodeDef.name,
+        mesh: meshDef.name,
+        material: materials[primitive.material ?? -1]?.name,
+        place: `nodes[${node}]`,
+        primitives: meshDef.primitives.length,
         matrix,
-        firstVertex,
-        vertexCount: localPositions.length / 3,
-        firstTriangle,
-        triangleCount: localIndices.length / 3,
-        localPositions,
-        localIndices,
+        positions,
+        indices,
       });
+      parts.push({ ...piece, node, ...ref });
     });
   }
   const skinned = parts.filter(({ node }) => nodes[node]!.skin !== undefined);

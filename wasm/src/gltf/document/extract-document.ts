@@ -14,15 +14,13 @@ import { firstInstance, instancing } from '../instancing.js';
 import { identity, type Matrix, multiply } from '../matrix.js';
 import { isMarked } from '../overlay.js';
 import {
-  aliasesOf,
   decodePositions,
   decodeTriangles,
   decodeUvs,
-  endOf,
   hasTriangles,
   joinPieces,
+  nextPiece,
   type Piece,
-  pieceName,
 } from '../pieces.js';
 import type { UvLayout } from '../uv-layout.js';
 
@@ -114,31 +112,23 @@ function listParts(document: Document): DocumentPart[] {
       );
       const short = all.find(([, count]) => count < position.getCount());
       if (short) throw new InputError(`${place} has ${short[1]} ${short[0]} for ${position.getCount()} vertices`);
-      const localPositions = decodePositions(place, position);
-      const localIndices = decodeTriangles(
+      const positions = decodePositions(place, position);
+      const piece = nextPiece(parts, {
+        node: node.getName(),
+        mesh: mesh.getName(),
+        material: primitive.getMaterial()?.getName(),
         place,
-        primitive.getIndices()?.getArray() ?? null,
-        primitive.getMode(),
-        localPositions.length / 3,
-      );
-      const name = node.getName() || mesh.getName() || place;
-      const material = primitive.getMaterial()?.getName();
-      const fullName = pieceName(name, material, mesh.listPrimitives().length);
-      const [firstVertex, firstTriangle] = endOf(parts);
-      parts.push({
-        name: fullName,
-        aliases: aliasesOf(node.getName(), mesh.getName(), material, fullName),
-        node,
-        mesh,
-        primitive,
+        primitives: mesh.listPrimitives().length,
         matrix,
-        firstVertex,
-        vertexCount: localPositions.length / 3,
-        firstTriangle,
-        triangleCount: localIndices.length / 3,
-        localPositions,
-        localIndices,
+        positions,
+        indices: decodeTriangles(
+          place,
+          primitive.getIndices()?.getArray() ?? null,
+          primitive.getMode(),
+          positions.length / 3,
+        ),
       });
+      parts.push({ ...piece, node, mesh, primitive });
     });
   }
   const skinned = parts.filter(({ node }) => node.getSkin());

@@ -1,10 +1,10 @@
-import { Box3, BufferAttribute, BufferGeometry, type Material, type Mesh, type Texture, Vector3 } from 'three';
+import { Box3, BufferAttribute, BufferGeometry, type Material, Matrix3, type Mesh, type Texture, Vector3 } from 'three';
 import { show } from '../../core/error.js';
 import type { Classification } from '../../index.js';
 import type { PartRange, Prepared } from '../../parts/prepare.js';
 import { notA, wrong } from '../errors.js';
 import { removeOverlay, removeOverlays } from '../materials/overlay-mesh.js';
-import { PaintMatrix, paintAttribute } from '../materials/paint-shader.js';
+import { paintAttribute, refreshMatrix } from '../materials/paint-shader.js';
 import {
   canBePainted,
   isPainted,
@@ -131,7 +131,7 @@ export function* apply(
     texture: options.texture,
     opacity: options.opacity ?? 1,
     feather: options.feather ?? 0,
-    matrix: new PaintMatrix(),
+    matrix: new Matrix3(),
     meshes: new Set(parts.flatMap(({ mesh }) => mesh ?? [])),
   });
   parts.forEach(({ mesh, geometry }, p) => {
@@ -203,7 +203,7 @@ class Shown implements Applied {
   readonly setOpacity = (opacity: number): void => {
     if (!(opacity >= 0 && opacity <= 1)) throw notA('a number from 0 to 1', 'opacity', opacity, 'setOpacity');
     this.#painting.opacity = opacity;
-    this.#painting.matrix.refresh(this.#painting);
+    refreshMatrix(this.#painting);
   };
 
   readonly paint = (material: Material): boolean => {
@@ -241,7 +241,7 @@ class Shown implements Applied {
 
   #show(): void {
     if (this.#isDisposed) return;
-    const { texture, feather, matrix } = this.#painting;
+    const { texture, feather } = this.#painting;
     const shown = this.#current;
     if (this.#material) {
       for (const one of shown) showMaterial(one, this.#material);
@@ -253,7 +253,7 @@ class Shown implements Applied {
       for (const { part } of shown) shownPaintings.set(part.geometry, this.#painting);
       this.#hasPaint = true;
     }
-    matrix.refresh(this.#painting);
+    refreshMatrix(this.#painting);
     // Materials without paint for now stay ready for it: to make them what they were, and again, would compile their shaders twice.
     const paints = !!texture || this.#painted.size > 0;
     const painted = new Set(shown.flatMap((one) => showPaint(one, this.#painting, this.#copies, paints)));

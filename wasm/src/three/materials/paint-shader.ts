@@ -16,7 +16,8 @@ export interface Paint {
   opacity: number;
   /** The width of the soft border, in the unit of the attribute's distances. */
   feather: number;
-  matrix: PaintMatrix;
+  /** For the shader: `refreshMatrix` brings it up to date. */
+  matrix: Matrix3;
 }
 
 const kVertex = `attribute vec4 ${paintAttribute};
@@ -76,7 +77,7 @@ export const paintUniforms = (): PaintUniforms => ({
   cagecastMatrix: { value: kNoPaint },
 });
 
-/** Makes the uniforms of a material show a paint, or none. The matrix goes on following the paint by `PaintMatrix.refresh`. */
+/** Makes the uniforms of a material show a paint, or none. The matrix goes on following the paint by `refreshMatrix`. */
 export function setUniforms({ cagecastMap, cagecastMatrix }: PaintUniforms, paint: Paint | undefined): void {
   cagecastMap.value = paint?.texture ?? null;
   cagecastMatrix.value = paint?.texture ? paint.matrix : kNoPaint;
@@ -102,47 +103,17 @@ export function addPaint(shader: Shader, uniforms: PaintUniforms, alone: boolean
   shader.fragmentShader = kFragment + shader.fragmentShader;
 }
 
-/**
- * The transform of a texture's UVs, and in its last row how much of the texture shows, for the shader. It is refreshed in each frame,
- * so it is made again only if something has changed.
- */
-export class PaintMatrix extends Matrix3 {
-  /** What it was made of; undefined where the caller sets the matrix, which may change at any time. */
-  #made: readonly unknown[] | undefined;
-
-  refresh(paint: Paint): void {
-    const { texture } = paint;
-    if (!texture) return;
-    const { offset, repeat, center, rotation, matrixAutoUpdate } = texture;
-    const { opacity, feather } = paint;
-    const m = this.#made;
-    const isSame =
-      matrixAutoUpdate &&
-      m &&
-      m[0] === texture &&
-      m[1] === opacity &&
-      m[2] === feather &&
-      m[3] === rotation &&
-      m[4] === offset.x &&
-      m[5] === offset.y &&
-      m[6] === repeat.x &&
-      m[7] === repeat.y &&
-      m[8] === center.x &&
-      m[9] === center.y;
-    if (isSame) return;
-    this.#made = undefined;
-    if (matrixAutoUpdate) {
-      this.#made = [texture, opacity, feather, rotation, offset.x, offset.y, repeat.x, repeat.y, center.x, center.y];
-      texture.updateMatrix();
-    }
-    const { elements } = this.copy(texture.matrix);
-    elements[2] = opacity;
-    elements[5] = feather;
-    // The GPU decodes all but videos. What is drawn, as by `createLayers`, may be premultiplied; it is no video.
-    const isDrawn = (texture as { isRenderTargetTexture?: boolean }).isRenderTargetTexture;
-    const isVideo = (texture as { isVideoTexture?: true }).isVideoTexture;
-    elements[8] = isDrawn && texture.premultiplyAlpha ? 2 : isVideo && texture.colorSpace === 'srgb' ? 1 : 0;
-  }
+/** Brings the matrix of a paint up to date: the transform of its texture's UVs, and in its last row how much of the texture shows. */
+export function refreshMatrix({ texture, opacity, feather, matrix }: Paint): void {
+  if (!texture) return;
+  if (texture.matrixAutoUpdate) texture.updateMatrix();
+  const { elements } = matrix.copy(texture.matrix);
+  elements[2] = opacity;
+  elements[5] = feather;
+  // The GPU decodes all but videos. What is drawn, as by `createLayers`, may be premultiplied; it is no video.
+  const isDrawn = (texture as { isRenderTargetTexture?: boolean }).isRenderTargetTexture;
+  const isVideo = (texture as { isVideoTexture?: true }).isVideoTexture;
+  elements[8] = isDrawn && texture.premultiplyAlpha ? 2 : isVideo && texture.colorSpace === 'srgb' ? 1 : 0;
 }
 
 const kNoPaint = /* @__PURE__ */ new Matrix3().set(0, 0, 0, 0, 0, 0, 0, 0, 0);

@@ -1,5 +1,13 @@
 import { Material, type ShaderMaterial, type Mesh as ThreeMesh } from 'three';
-import { addPaint, type Paint, type PaintUniforms, paintUniforms, setUniforms, takesPaint } from './paint-shader.js';
+import {
+  addPaint,
+  type Paint,
+  type PaintUniforms,
+  paintUniforms,
+  refreshMatrix,
+  setUniforms,
+  takesPaint,
+} from './paint-shader.js';
 
 /** What is painted, and the meshes that show it. */
 export interface Painting extends Paint {
@@ -26,7 +34,7 @@ export function makePainting(paint: Omit<Painting, 'refresh' | 'number'>): Paint
       if (frame === lastFrame && renderer === last) return;
       last = renderer;
       lastFrame = frame;
-      painting.matrix.refresh(painting);
+      refreshMatrix(painting);
     },
   };
   return painting;
