@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
-import { init, type Mesh, project, type TransferResult, transfer } from 'cagecast';
-import { type FindingCode, type Inspection, inspect } from 'cagecast/inspect';
+import { init, type Mesh, project, transfer } from 'cagecast';
+import { type FindingCode, type Inspection, inspect, suggest } from 'cagecast/inspect';
 import { ball, head, join3d, within } from './scenes.js';
 
 before(init);
@@ -349,19 +349,6 @@ describe('UVs', () => {
 });
 
 describe('holes and segments', () => {
-  test('a result of another target is an error', () => {
-    const [target, other] = [ball([0, 0, 0], () => 1, 12, 24), ball([0, 0, 0], () => 1, 8, 12)];
-    assert.throws(() => inspect(cage, target, { result: transfer(cage, other) }), {
-      code: 'resultMismatch',
-      message: /result\.zones has \d+ entries, not 1 for each of the \d+ vertices of target/,
-    });
-    assert.throws(() => inspect(cage, target, { result: project(cage, target) as unknown as TransferResult }), {
-      code: 'badArgument',
-      message: /result\.cosmeticTriangles is undefined, as in a projection that was not classified/,
-    });
-    assert.throws(() => inspect(cage, target, { result: 5 as unknown as TransferResult }), { code: 'badArgument' });
-  });
-
   test('a hole over skin alone is reported', () => {
     const skin = ball([0, 0, 0], () => 1, 24, 48);
     const inspection = inspect(cage, skin);
@@ -394,30 +381,50 @@ describe('holes and segments', () => {
       assert.ok(!decided.findings.some(({ code }) => code === 'segmentInDoubt'), 'a lock settles it');
     }
   });
-
-  test('meshes are checked even where a result is given, and so are options and the names of parts', () => {
-    const result = transfer(cage, target);
-    const call = inspect as (...args: unknown[]) => unknown;
-    for (const [args, message] of [
-      [[cage, target, null], /^inspect: options is null, not an object$/],
-      [[cage, undefined, { result }], /^inspect: target\.positions is undefined, not a typed array/],
-      [[{}, target, { result }], /^inspect: cage\.positions is undefined, not a typed array/],
-      [[cage, target, { parts: 5 }], /^inspect: options\.parts is 5, not an array/],
-      [[cage, target, { parts: [null] }], /^inspect: options\.parts is of type Array, not an array of ranges/],
-    ] as const)
-      assert.throws(() => call(...args), { name: 'CagecastError', message });
-  });
-
-  test('a target of one triangle, and one without area, can be looked at', () => {
-    const tiny: Mesh = {
-      positions: new Float32Array([0, 0, 0, 0.1, 0, 0, 0, 0.1, 0]),
-      indices: new Uint32Array([0, 1, 2]),
-    };
-    assert.equal(inspect(cage, tiny).segments.length, 1);
-    assert.doesNotThrow(() => inspect(cage, { ...tiny, positions: new Float32Array(9) }));
-    assert.doesNotThrow(() => inspect(cage, join3d(tiny, target)));
-  });
 });
+
+test('a target of one triangle, and one without area, can be looked at', () => {
+  const tiny: Mesh = {
+    positions: new Float32Array([0, 0, 0, 0.1, 0, 0, 0, 0.1, 0]),
+    indices: new Uint32Array([0, 1, 2]),
+  };
+  assert.equal(inspect(cage, tiny).segments.length, 1);
+  inspect(cage, { ...tiny, positions: new Float32Array(9) });
+  inspect(cage, join3d(tiny, target));
+});
+
+for (const [fn, look] of Object.entries({ inspect, suggest }))
+  test(`${fn} names itself, the argument and its value in errors, also of meshes whose result is given`, () => {
+    const result = transfer(cage, target);
+    const other = transfer(
+      cage,
+      ball([0, 0, 0], () => 1, 8, 12),
+    );
+    const call = look as (...args: unknown[]) => unknown;
+    const cases: [unknown[], RegExp, string?][] = [
+      [[cage, target, null], /: options is null, not an object$/, 'badOption'],
+      [[cage, target, { parts: 5 }], /: options\.parts is 5, not an array of ranges of vertices$/, 'badOption'],
+      [[cage, target, { parts: [null] }], /: options\.parts is of type Array, not an array of ranges/, 'badOption'],
+      [[cage, undefined, { result }], /: target\.positions is undefined, not a typed array/],
+      [[{}, target, { result }], /: cage\.positions is undefined, not a typed array/],
+      [[cage, target, { result: 5 }], /: result is 5; pass what transfer\(\) returned$/],
+      [
+        [cage, target, { result: { ...result, segmentStats: 5 } }],
+        /: result\.segmentStats is 5, not an array; pass what/,
+      ],
+      [
+        [cage, target, { result: project(cage, target) }],
+        /: result\.cosmeticTriangles is undefined, as in a projection that/,
+      ],
+      [
+        [cage, target, { result: other }],
+        /: result\.zones has \d+ entries, not 1 for each of the \d+/,
+        'resultMismatch',
+      ],
+    ];
+    for (const [args, message, code = 'badArgument'] of cases)
+      assert.throws(() => call(...args), { name: 'CagecastError', code, fn, message });
+  });
 
 test('the guide explains every finding, and none that does not exist', () => {
   const named = (file: string, pattern: RegExp) =>
