@@ -42,8 +42,6 @@ const kEntries = {
   inspect: 'inspect',
   bake: 'bake',
   three: 'three',
-  'three/gpu': 'three-gpu',
-  'three/layers': 'three-layers',
   'three/painting': 'three-paint',
   viewer: 'viewer',
   gltf: 'gltf',
@@ -159,10 +157,10 @@ async function bundleEntries(bundle) {
   await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager, ...reading('cagecast') });
   for (const [folder, name] of Object.entries(kEntries))
     await bundle(`${folder}/index.ts`, `${name}.js`, 'neutral', shared);
-  await bundle('worker/thread.ts', 'worker-thread.js', 'neutral', shared);
+  await bundle('worker/worker-thread.ts', 'worker-thread.js', 'neutral', shared);
   // What makes cages has a WebAssembly module of its own; its worker is a file that needs no other script.
   const alone = { ...reading('cagecast-cages'), plugins: [wasmModules('wasm-file.ts')] };
-  await bundle('cages/thread.ts', 'cages-thread.js', 'neutral', alone);
+  await bundle('cages/cages-thread.ts', 'cages-thread.js', 'neutral', alone);
   await bundle('cages/sync.ts', 'cages-sync.js', 'neutral', alone);
 }
 
@@ -227,6 +225,12 @@ function wasmModules(wasm, { index } = {}) {
           return file ? { path: file, external: true } : undefined;
         });
       }
+      // Emscripten's script calls a function as it is loaded, which bundlers could not leave out. Here it waits for the first call.
+      build.onLoad({ filter: /cagecast(-cages)?\.js$/ }, ({ path }) => ({
+        contents: `export default function createModule(options) {
+          ${readFileSync(path, 'utf8').replace(/export default Module;\s*$/, 'return Module(options);')}
+        }`,
+      }));
       build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({
         // Parcel writes a NUL before a digit as an octal escape, which modules do not have. U+0100 is the same byte when it is read.
         contents: readFileSync(path).toString('latin1').replaceAll('\0', '\u0100'),

@@ -1,8 +1,8 @@
 import type { Command } from 'commander';
 import { type Baked, type Image, mostTexels } from '../../bake/index.js';
-import { FileModel } from '../../gltf/bake/file.js';
+import { FileModel } from '../../gltf/bake/bake-file.js';
 import { type BakeReport, bakeModel, type Paints } from '../../gltf/bake/plan.js';
-import { removeOverlays } from '../../gltf/earlier-transfer.js';
+import { removeOverlays } from '../../gltf/earlier-in-file.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError, withName } from '../../gltf/input-error.js';
 import { CagecastError, type CutTarget } from '../../index.js';

@@ -1,11 +1,11 @@
 import { mostTexels } from '../../bake/image.js';
 import { type Baked, cageTexture, fill, type Image, type Layout, resize, type Wrap } from '../../bake/index.js';
-import { FileModel } from '../../gltf/bake/file.js';
+import { FileModel } from '../../gltf/bake/bake-file.js';
 import { colorUseOf, isPainted, layoutOf, scaledTo, uvsOf } from '../../gltf/bake/plan.js';
-import type { Part } from '../../gltf/extract.js';
+import type { Part } from '../../gltf/extract-file.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
-import type { UvLayout } from '../../gltf/uv-transform.js';
+import type { UvLayout } from '../../gltf/uv-layout.js';
 import type { CutTarget } from '../../index.js';
 import { decodeImage } from '../io/images.js';
 import { listed, quoted } from '../model/text.js';

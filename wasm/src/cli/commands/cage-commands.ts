@@ -1,14 +1,14 @@
 import { statSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { type Command, Option } from 'commander';
-import { cageGlb } from '../../cages/glb.js';
+import { cageGlb } from '../../cages/cage-glb.js';
 import { templateNames } from '../../cages/template-names.js';
 import type { Cage, Fit, Kind, Landmarks, Template } from '../../cages/types.js';
 import { templateOf } from '../../gltf/cage-file.js';
 import { readBytes, standard } from '../../gltf/files.js';
 import { InputError, withName } from '../../gltf/input-error.js';
 import { counted } from '../../inspect/finding.js';
-import { isPosition } from '../../parts/template.js';
+import { isPosition } from '../../parts/template-extras.js';
 import type { Io } from '../io/io.js';
 import { writeFiles } from '../io/output.js';
 import { kExit } from '../model/failures.js';

@@ -1,7 +1,7 @@
 import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
 import { type ReadOptions, readBeside, readBytes } from '../../gltf/files.js';
-import { imageIsWhole, imageType, pngLength } from '../../gltf/image.js';
+import { imageIsWhole, imageType, pngLength } from '../../gltf/image-file.js';
 import { firstLine, InputError, withName } from '../../gltf/input-error.js';
 
 /**

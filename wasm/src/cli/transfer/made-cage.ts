@@ -1,7 +1,7 @@
 import { defaultExclusions, findLandmarks, fitCage, init, makeCage, matchingParts } from '../../cages/sync.js';
 import type { Cage, CageModel, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../../cages/types.js';
 import { cageModelOf } from '../../gltf/cage-file.js';
-import { partsBelow } from '../../gltf/extract.js';
+import { partsBelow } from '../../gltf/extract-file.js';
 import { InputError } from '../../gltf/input-error.js';
 import { CagecastError } from '../../index.js';
 import type { Io } from '../io/io.js';

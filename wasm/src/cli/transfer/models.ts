@@ -1,9 +1,9 @@
-import { cageGlb } from '../../cages/glb.js';
+import { cageGlb } from '../../cages/cage-glb.js';
 import type { Cage } from '../../cages/types.js';
-import { type Extracted, extract, type Part, partOf, primitivePath, uvLayout } from '../../gltf/extract.js';
+import { type Extracted, extract, type Part, partOf, primitivePath, uvLayout } from '../../gltf/extract-file.js';
 import type { ReadOptions } from '../../gltf/files.js';
 import { InputError } from '../../gltf/input-error.js';
-import { type GltfFile, readGltf } from '../../gltf/read.js';
+import { type GltfFile, readGltf } from '../../gltf/read-gltf.js';
 import { CagecastError } from '../../index.js';
 import type { Io } from '../io/io.js';
 import { quoted } from '../model/text.js';

@@ -1,4 +1,4 @@
-import { partsBelow } from '../../gltf/extract.js';
+import { partsBelow } from '../../gltf/extract-file.js';
 import { InputError } from '../../gltf/input-error.js';
 import type { TransferOptions } from '../../index.js';
 import { matcher } from '../model/patterns.js';

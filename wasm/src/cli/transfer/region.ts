@@ -1,9 +1,9 @@
 import { basename } from 'node:path';
-import { dracoOf, meshoptView } from '../../gltf/check.js';
+import { dracoOf, meshoptView } from '../../gltf/check-geometry.js';
 import type { Form } from '../../gltf/glb-writer.js';
 import { withName } from '../../gltf/input-error.js';
 import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/overlay.js';
-import { writeTransfer } from '../../gltf/write.js';
+import { writeTransfer } from '../../gltf/write-transfer.js';
 import type { CutTarget, TransferResult } from '../../index.js';
 import type { Io } from '../io/io.js';
 import type { TransferCommand } from '../model/sources.js';

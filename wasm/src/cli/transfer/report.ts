@@ -1,5 +1,5 @@
-import { type Part, primitivePath } from '../../gltf/extract.js';
-import type { Added } from '../../gltf/write.js';
+import { type Part, primitivePath } from '../../gltf/extract-file.js';
+import type { Added } from '../../gltf/write-transfer.js';
 import type { SegmentStats, TransferResult } from '../../index.js';
 import { vertexAreas } from '../../inspect/geometry.js';
 import type { Finding, Segment, Verdict } from '../../inspect/index.js';

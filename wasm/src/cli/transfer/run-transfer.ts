@@ -1,4 +1,4 @@
-import { FileModel } from '../../gltf/bake/file.js';
+import { FileModel } from '../../gltf/bake/bake-file.js';
 import { masksOf } from '../../gltf/bake/masks.js';
 import type { ReadOptions } from '../../gltf/files.js';
 import { withName } from '../../gltf/input-error.js';

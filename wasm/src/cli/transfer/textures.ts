@@ -1,5 +1,5 @@
 import { basename } from 'node:path';
-import { partOf, primitivePath } from '../../gltf/extract.js';
+import { partOf, primitivePath } from '../../gltf/extract-file.js';
 import { readBytes } from '../../gltf/files.js';
 import { InputError, withName } from '../../gltf/input-error.js';
 import type { ReadLimits } from '../../gltf/limits.js';
