@@ -1,20 +1,10 @@
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import type { Accessor, Primitive } from '@gltf-transform/core';
 import type { TransferResult } from 'cagecast';
 
 export * from './glb.js';
-
-/** Runs the command. */
-export function cagecast(...args: string[]): { status: number | null; stdout: string; stderr: string } {
-  const { status, stdout, stderr } = spawnSync(process.execPath, ['dist/cli.js', ...args], {
-    encoding: 'utf8',
-    timeout: 300_000,
-  });
-  return { status, stdout, stderr };
-}
 
 /**
  * What the Khronos validator says about a file, by its path or its bytes.

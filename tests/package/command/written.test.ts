@@ -1,7 +1,6 @@
 // What is written: UVs, zones and overlays, and all that the target had.
 import assert from 'node:assert/strict';
-import { existsSync, readFileSync } from 'node:fs';
-import { basename, join } from 'node:path';
+import { existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import type { GLTF } from '@gltf-transform/core';
 import { transfer } from 'cagecast';
@@ -18,21 +17,9 @@ import {
   validate,
 } from '../../support/gltf.js';
 import { ktx2Of } from '../../support/ktx2.js';
-import { ball, readPlain } from '../scenes.js';
-import {
-  io,
-  isOverlay,
-  jsonOf,
-  modelsLike,
-  png,
-  primitivesOf,
-  workplace,
-  write,
-  writeChanged,
-  writeMade,
-} from './workplace.js';
+import { ball } from '../scenes.js';
+import { io, isOverlay, jsonOf, png, primitivesOf, workplace, write, writeChanged, writeMade } from './workplace.js';
 
-const models = modelsLike(/lizard/);
 const { cage, target } = workplace('written');
 const vertices = target.positions.length / 3;
 const paint = png(200);
@@ -307,65 +294,113 @@ test('a WebP or KTX2 texture is the file as it is; what glTF cannot hold is an e
   assert.ok(!existsSync('never.glb'));
 });
 
-test('the UVs of a cage are those of its base colour texture, moved as it says; without a texture, the first', async () => {
-  const KHR_texture_transform = { offset: [0.5, 0.9], rotation: Math.PI / 2, scale: [0.5, 0.25], texCoord: 1 };
-  const moved = (u: number, v: number) => [0.5 + 0.25 * v, 0.9 - 0.5 * u];
-  const uvsOf = (name: string, texture: object | undefined, sets = [0, 1]) =>
-    writeMade(name, (maker) => {
-      const mesh = maker.mesh({ ...cage, uvs: undefined }, { material: 0 });
-      const { attributes } = maker.json.meshes[mesh]!.primitives[0]!;
-      for (const set of sets)
-        attributes[`TEXCOORD_${set}`] = maker.accessor(
-          cage.uvs!.map((x) => (set === 0 ? x / 2 : x)),
-          'VEC2',
-        );
-      maker.node({ mesh, name: 'around' });
-      maker.json.images = [{ uri: `data:image/png;base64,${png(0, 1).toString('base64')}` }];
-      maker.json.textures = [{ source: 0 }];
-      maker.json.extensionsUsed = ['KHR_texture_transform'];
-      maker.json.materials = [{ pbrMetallicRoughness: texture ? { baseColorTexture: { index: 0, ...texture } } : {} }];
-    });
-  for (const [texture, uvOf] of [
-    [{ texCoord: 1 }, (u, v) => [u, v]],
-    [{}, (u, v) => [u / 2, v / 2]],
-    [undefined, (u, v) => [u / 2, v / 2]],
-    [{ extensions: { KHR_texture_transform } }, moved],
-  ] as [object | undefined, typeof moved][]) {
-    uvsOf('sets.glb', texture);
-    await ok('transfer target.glb --cage sets.glb --seams vertex -o sets-out.glb');
-    const transformed = await io.read('target.glb');
-    await transformed.transform(cagecastTransform({ cage: await io.read('sets.glb'), seams: 'vertex' }));
-    const { uvs } = transfer(cage, target, { seams: 'vertex' });
-    for (const document of [await io.read('sets-out.glb'), transformed]) {
-      const accessor = primitivesOf(document)[0]!.getAttribute('TEXCOORD_1')!;
-      for (let v = 0; v < vertices; ++v) {
-        const [is, should] = [accessor.getElement(v, [] as number[]), uvOf(uvs[2 * v]!, uvs[2 * v + 1]!)];
-        for (const k of [0, 1]) assert.ok(Math.abs(is[k]! - should[k]!) < 1e-4, `${JSON.stringify(texture)}: ${v}`);
-      }
-    }
-  }
-  uvsOf('lacking.glb', { texCoord: 1 }, [0]);
-  const message = /lacking\.glb: meshes\[0\]\.primitives\[0\] \("around"\) has no TEXCOORD_1: the texture is drawn/;
-  await fails(1, message, 'transfer target.glb --cage lacking.glb');
+const countsOf = async (path: string) => (await json<Report>(`transfer ${path} --cage cage.glb`)).counts;
+
+test('an unknown extension that is required, and nodes outside the scene that are their own ancestors, are no matter', async () => {
+  writeChanged('odd.glb', glbOf(target), (json) => {
+    json.extensionsUsed = json.extensionsRequired = ['ACME_materials'];
+    json.nodes!.push({ children: [2] }, { children: [1] });
+  });
+  assert.deepEqual(await countsOf('odd.glb'), await countsOf('target.glb'));
 });
 
-for (const model of models)
-  test(`${basename(model)}: the file is valid, its vertices keep what they have, UVs and zones are the package's`, async () => {
-    const [from, around] = [join(model, 'target.glb'), join(model, 'cage.glb')];
-    const { counts } = await json<Report>(`transfer ${from} --cage ${around} --texture paint.png -o model.glb`);
-    assert.deepEqual(await validate('model.glb'), []);
-    const result = transfer(await readPlain(around), await readPlain(from));
-    assert.deepEqual(
-      Object.values(counts),
-      [0, 1, 2, 3].map((zone) => result.zones.filter((one) => one === zone).length),
-    );
-    const [before, after] = [await read(from), (await read('model.glb')).filter((primitive) => !isOverlay(primitive))];
-    // In the order of meshes, which is that of the scene in all of these.
-    const first = { vertex: 0, triangle: 0 };
-    before.forEach((primitive, p) => {
-      assertTransferred(primitive, after[p]!, result, first);
-      first.vertex += primitive.getAttribute('POSITION')!.getCount();
-      first.triangle += primitive.getIndices()!.getCount() / 3;
-    });
-    assert.equal(first.vertex, result.zones.length);
+test('quantised positions, normalised, with the scale in the node; vertices that are split stay so, in words of four bytes', async () => {
+  const words = Int16Array.from({ length: 4 * vertices }, (_, i) =>
+    i % 4 === 3 ? 0 : Math.round((target.positions[3 * Math.floor(i / 4) + (i % 4)]! / 2) * 32767),
+  );
+  const rounded = target.positions.map((x) => (Math.round((x / 2) * 32767) / 32767) * 2);
+  write('rounded.glb', glbOf({ ...target, positions: rounded }));
+  writeMade('quantised.glb', (maker) => {
+    const bound = (pick: typeof Math.min) => [0, 1, 2].map((k) => pick(...words.filter((_, i) => i % 4 === k)));
+    const accessor = { componentType: 5122, normalized: true, count: vertices, type: 'VEC3' } as const;
+    const bufferView = maker.view(new Uint8Array(words.buffer), { byteStride: 8 });
+    const POSITION =
+      maker.json.accessors.push({ ...accessor, bufferView, min: bound(Math.min), max: bound(Math.max) }) - 1;
+    const primitive = { attributes: { POSITION }, indices: maker.accessor(target.indices as Uint32Array, 'SCALAR') };
+    maker.node({ mesh: maker.json.meshes.push({ primitives: [primitive] }) - 1, scale: [2, 2, 2] });
+    maker.json.extensionsUsed = maker.json.extensionsRequired = ['KHR_mesh_quantization'];
   });
+  assert.deepEqual(await countsOf('quantised.glb'), await countsOf('rounded.glb'));
+  assert.match(await ok('transfer quantised.glb --cage cage.glb -o split.glb'), / split at seams/);
+  assert.deepEqual(await validate('split.glb'), []);
+  const [primitive] = await read('split.glb');
+  const positions = primitive!.getAttribute('POSITION')!;
+  assert.ok(positions.getNormalized());
+  assert.deepEqual(
+    positions.getArray()!.slice(0, 3 * vertices),
+    words.filter((_, i) => i % 4 < 3),
+  );
+});
+
+test('strips and fans', async () => {
+  const positions = new Float32Array([-0.1, -0.1, 0.9, 0.1, -0.1, 0.9, -0.1, 0.1, 0.9, 0.1, 0.1, 0.9]);
+  const answers = [];
+  for (const [mode, indices] of [
+    [4, [0, 1, 2, 2, 1, 3]],
+    [5, [0, 1, 2, 3]],
+    [6, [1, 3, 2, 0]],
+  ] as const) {
+    write('mode.glb', glbOf({ positions, indices: Uint16Array.from(indices), mode }));
+    answers.push(await countsOf('mode.glb'));
+    await ok('transfer mode.glb --cage cage.glb --texture paint.png -o wound.glb');
+    const overlay = (await read('wound.glb'))[1]!;
+    const corners = [...overlay.getIndices()!.getArray()!].map((v) =>
+      overlay.getAttribute('POSITION')!.getElement(v, [] as number[]),
+    );
+    // All triangles of the overlay face up, as the cage is above.
+    for (let i = 0; i < corners.length; i += 3) {
+      const [a, b, c] = corners.slice(i, i + 3) as [number[], number[], number[]];
+      assert.ok((b[0]! - a[0]!) * (c[1]! - a[1]!) > (b[1]! - a[1]!) * (c[0]! - a[0]!), `mode ${mode}`);
+    }
+  }
+  assert.deepEqual(answers, Array(3).fill(answers[0]));
+});
+
+test('buffers and images beside a glTF, or in it as data URIs of any kind, become one GLB', async () => {
+  const { json: whole, bin } = unpackGlb(glbOf(target));
+  const base64 = (bytes: Uint8Array) => Buffer.from(bytes).toString('base64');
+  const escaped = (bytes: Uint8Array) => [...bytes].map((byte) => `%${byte.toString(16).padStart(2, '0')}`).join('');
+  const encoded = (bytes: Uint8Array) => encodeURIComponent(base64(bytes));
+  const embedded = (kind: string, encode: (bytes: Uint8Array) => string): [string, string, string] => [
+    `data:application/octet-stream${kind},${encode(bin)}`,
+    `data:image/png${kind},${encode(paint)}`,
+    'first',
+  ];
+  mkdirSync('loose');
+  write('loose/mesh data.bin', bin);
+  write('loose/head 50%.bin', bin);
+  for (const name of ['skin', 'own name']) write(`loose/${name}.png`, paint);
+  for (const [buffer, image, name] of [
+    ['mesh%20data.bin', 'skin.png', 'skin'],
+    ['head 50%.bin', 'own%20name.png', 'own name'], // as no URI is
+    embedded(';base64', base64),
+    embedded(';BASE64', base64),
+    embedded(';base64', encoded),
+    embedded('', escaped),
+  ] as const) {
+    whole.buffers![0]!.uri = buffer;
+    whole.images = [{ uri: image, ...(name === 'first' && { name }) }];
+    whole.textures = [{ source: 0 }];
+    whole.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }];
+    whole.meshes![0]!.primitives[0]!.material = 0;
+    write('loose/target.gltf', JSON.stringify(whole));
+    await ok('transfer loose/target.gltf --cage cage.glb -o packed.glb');
+    assert.deepEqual(await countsOf('loose/target.gltf'), await countsOf('target.glb'), buffer.slice(0, 60));
+    assert.deepEqual(await validate('packed.glb'), []);
+    const { images, bufferViews } = unpackGlb(readFileSync('packed.glb')).json;
+    const { byteOffset = 0, byteLength } = bufferViews![images![0]!.bufferView!]!;
+    const stored = unpackGlb(readFileSync('packed.glb')).bin.subarray(byteOffset, byteOffset + byteLength);
+    assert.deepEqual([images![0]!.name, Buffer.from(stored)], [name, paint]);
+  }
+});
+
+test('images of kinds that only an extension admits are known by the endings of their names', async () => {
+  const images: GLTF.IImage[] = [{ uri: 'skin.avif' }, { uri: 'skin.DDS' }, { uri: 'skin.bmp', mimeType: 'image/bmp' }];
+  for (const { uri } of images) write(uri!, 'image');
+  writeChanged('avif.glb', glbOf(target), (json) =>
+    Object.assign(json, { images, extensionsUsed: ['EXT_texture_avif'] }),
+  );
+  await ok('transfer avif.glb --cage cage.glb -o avif-out.glb');
+  const types = unpackGlb(readFileSync('avif-out.glb')).json.images!.map(({ mimeType }) => mimeType);
+  assert.deepEqual(types, ['image/avif', 'image/vnd-ms.dds', 'image/bmp']);
+});
