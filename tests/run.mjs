@@ -48,6 +48,8 @@ const kSuites = {
   lanes: { needs: ['twins', 'scalar'], of: ['core', 'tests/release/lanes'], run: compareLanes },
   budgets: { needs: ['bench', 'wasm'], of: ['core', 'wasm', 'web'], tests: 'tests/release/budgets' },
   hosts: { needs: ['wasm'], of: ['wasm', 'examples', 'tests/release/hosts'], tests: 'tests/release/hosts' },
+  cages: { needs: ['wasm'], of: ['core', 'wasm', 'tests/release/cages'], tests: 'tests/release/cages' },
+  quality: { needs: ['wasm'], of: ['core', 'wasm', 'bench', 'tests/release/quality'], tests: 'tests/release/quality' },
   catalogue: { needs: ['wasm'], of: ['wasm', 'examples'], tests: 'tests/release/catalogue' },
   visits: { needs: ['wasm', 'site'], of: ['wasm', 'web', 'tests/release/page'], tests: 'tests/release/page' },
 };

@@ -1,9 +1,9 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
-import { CagecastError, init, type Mesh, project, type TransferResult, transfer } from 'cagecast';
-import { type FindingCode, type Inspection, inspect } from 'cagecast/inspect';
-import { ball, head, join3d } from './scenes.js';
+import { init, type Mesh, project, transfer } from 'cagecast';
+import { type FindingCode, type Inspection, inspect, suggest } from 'cagecast/inspect';
+import { ball, head, join3d, within } from './scenes.js';
 
 before(init);
 
@@ -117,10 +117,15 @@ describe('a cage out of place', () => {
   });
 
   test('too small, too large, elsewhere', () => {
-    assert.equal(codes(look({ positions: moved((p) => p.map((x) => 0.8 * x)) }))[0], 'cageTooSmall');
-    assert.ok(look({ positions: moved((p) => p.map((x) => 0.8 * x)) }).inside.area > 0.5);
-    assert.equal(codes(look({ positions: moved((p) => p.map((x) => 3 * x)) }))[0], 'cageTooFar');
-    assert.equal(codes(look({ positions: moved((p) => p.map((x) => 100 * x)) }))[0], 'cageTooFar');
+    const scaled = (by: number) => look({ positions: moved((p) => p.map((x) => by * x)) });
+    for (const [by, code] of [
+      [0.8, 'cageTooSmall'],
+      [3, 'cageTooFar'],
+      [100, 'cageTooFar'],
+    ] as const)
+      assert.equal(codes(scaled(by))[0], code);
+    assert.ok(scaled(0.8).inside.area > 0.5);
+    assert.equal(scaled(1e-20).verdict, 'unfit', 'however tiny, it is no error');
     assert.equal(codes(look({ positions: moved(([x, y, z]) => [x + 50, y, z]) }))[0], 'cageElsewhere');
   });
 
@@ -178,12 +183,7 @@ describe('a cage for a part of the target', () => {
   test('a sleeve on an arm beside a body: the flank, which is near, does not count as outside', () => {
     const body = join3d(tube(0, 1.4, 0.5), tube(0.75, 0.8, 0.12));
     const around = tube(0.75, 0.8, 0.16);
-    const sleeve = {
-      ...around,
-      indices: Uint32Array.from(around.indices).filter((_, i) =>
-        [0, 1, 2].every((k) => Math.abs(around.positions[3 * around.indices[i - (i % 3) + k]! + 2]!) < 0.6),
-      ),
-    };
+    const sleeve = within(around, (_, __, z) => Math.abs(z) < 0.6);
     const inspection = inspect(sleeve, body);
     assert.ok(inspection.placement.outside.area > 0.1, 'the flank is on the outer side');
     assert.notEqual(inspection.verdict, 'unfit', JSON.stringify(inspection.findings));
@@ -193,12 +193,7 @@ describe('a cage for a part of the target', () => {
   });
 
   test('half a cage: the segment does not pass, and the reason', () => {
-    const cap = {
-      ...cage,
-      indices: Uint32Array.from(cage.indices).filter((_, i) =>
-        [0, 1, 2].every((k) => cage.positions[3 * cage.indices[i - (i % 3) + k]! + 2]! > 0.6),
-      ),
-    };
+    const cap = within(cage, (_, __, z) => z > 0.6);
     const inspection = inspect(cap, target, { parts });
     assert.match(
       find(inspection, 'nothingToPaint').sentence,
@@ -259,35 +254,35 @@ describe('normals', () => {
 });
 
 describe('the surface', () => {
-  test('triangles without area, doubled triangles', () => {
-    const flat = look({ indices: Uint32Array.from([...cage.indices, 5, 5, 6]) });
-    assert.equal(flat.topology.degenerateTriangles, 1);
-    assert.equal(flat.verdict, 'good');
-    const doubled = look({ indices: Uint32Array.from([...cage.indices, ...cage.indices.slice(60, 90)]) });
-    assert.equal(doubled.topology.doubledTriangles, 10);
-    assert.equal(doubled.topology.nonManifoldEdges, 0);
-    assert.equal(doubled.verdict, 'usable');
-    assert.ok(!codes(doubled).includes('normalsInward'));
-  });
-
-  test('a cage of two-sided triangles keeps its hole', () => {
-    const both = look({ indices: Uint32Array.from([...cage.indices, ...cage.indices.slice().reverse()]) });
-    assert.equal(both.holes.length, 1);
-    assert.equal(both.topology.pieces, 1);
-    assert.equal(both.verdict, 'usable');
-    assert.equal(codes(both)[0], 'doubledTriangles');
-  });
-
-  test('a fin is an edge of three triangles', () => {
-    const finned = look({
-      groups: undefined,
-      positions: Float32Array.from([...cage.positions, 3, 3, 3]),
-      uvs: Float32Array.from([...cage.uvs, 0.5, 0.5]),
-      indices: Uint32Array.from([...cage.indices, 100, 101, cage.positions.length / 3]),
+  const triangles = (...more: number[]) => ({ indices: Uint32Array.from([...cage.indices, ...more]) });
+  const fin = {
+    groups: undefined,
+    positions: Float32Array.from([...cage.positions, 3, 3, 3]),
+    uvs: Float32Array.from([...cage.uvs, 0.5, 0.5]),
+    ...triangles(100, 101, cage.positions.length / 3),
+  };
+  // The meridian where the UVs meet: the last column of every ring is moved by a hair.
+  const cracked = cage.positions.slice();
+  for (let ring = 1; ring < 10; ++ring) cracked[3 * (19 * ring + 18) + 1]! += 1e-6;
+  const [flat, doubled] = [triangles(5, 5, 6), triangles(...cage.indices.slice(60, 90))];
+  const cases: Record<string, [Partial<Mesh>, verdict: string, FindingCode | undefined, topology: object]> = {
+    'a triangle without area': [flat, 'good', undefined, { degenerateTriangles: 1 }],
+    'doubled triangles': [doubled, 'usable', 'doubledTriangles', { doubledTriangles: 10, nonManifoldEdges: 0 }],
+    'two-sided triangles': [triangles(...cage.indices.slice().reverse()), 'usable', 'doubledTriangles', { pieces: 1 }],
+    'a fin: an edge of three triangles': [fin, 'usable', 'nonManifoldEdges', { nonManifoldEdges: 1 }],
+    'a seam that does not meet': [{ positions: cracked }, 'usable', 'cracks', {}],
+  };
+  for (const [name, [change, verdict, code, topology]] of Object.entries(cases))
+    test(name, () => {
+      const inspection = look(change);
+      assert.equal(inspection.verdict, verdict, JSON.stringify(inspection.findings));
+      if (code) assert.ok(codes(inspection).includes(code), codes(inspection).join());
+      assert.deepEqual({ ...inspection.topology, ...topology }, inspection.topology);
+      assert.equal(inspection.topology.crackEdges >= 8, code === 'cracks');
+      if (code !== 'nonManifoldEdges')
+        assert.equal(inspection.holes.length, code === 'cracks' ? inspection.holes.length : 1);
+      assert.ok(!codes(inspection).includes('normalsInward'));
     });
-    assert.ok(finned.topology.nonManifoldEdges >= 1);
-    assert.ok(codes(finned).includes('nonManifoldEdges'));
-  });
 
   test('a single open edge has nothing beneath it', () => {
     const corners = Array.from(
@@ -310,41 +305,23 @@ describe('the surface', () => {
     }
     assert.ok(lone > 0);
   });
-
-  test('a seam that does not meet is a crack', () => {
-    // The meridian where the UVs meet: the last column of every ring is moved by a hair.
-    const positions = cage.positions.slice();
-    for (let ring = 1; ring < 10; ++ring) positions[3 * (19 * ring + 18) + 1]! += 1e-6;
-    const inspection = look({ positions });
-    assert.ok(inspection.topology.crackEdges >= 8, JSON.stringify(inspection.topology));
-    assert.ok(codes(inspection).includes('cracks'));
-    assert.equal(look({}).topology.crackEdges, 0);
-  });
 });
 
 describe('UVs', () => {
-  test('outside 0..1: a few, in another tile, in pixels', () => {
-    const tile = look({ uvs: cage.uvs.map((x, i) => (i % 2 === 0 ? x + 1 : x)) });
+  const laid = (change: (x: number, k: number) => number) => look({ uvs: cage.uvs.map((x, i) => change(x, i % 2)) });
+
+  test('outside 0..1, without area, mirrored', () => {
+    const tile = laid((x, k) => (k === 0 ? x + 1 : x));
     assert.equal(tile.verdict, 'usable');
     assert.ok(tile.uv.outside.share > 0.9);
-    const pixels = look({ uvs: cage.uvs.map((x) => 1024 * x) });
-    assert.equal(pixels.verdict, 'unfit');
-    assert.equal(codes(pixels)[0], 'uvsOutside');
-  });
-
-  test('without area', () => {
-    const inspection = look({ uvs: cage.uvs.map(() => 0.5) });
-    assert.equal(inspection.verdict, 'unfit');
-    assert.equal(codes(inspection)[0], 'uvsWithoutArea');
-    assert.ok(inspection.uv.withoutArea.share > 0.999);
-  });
-
-  test('mirrored: most of the texture is used twice, the cage is usable', () => {
-    const inspection = look({ uvs: cage.uvs.map((x, i) => (i % 2 === 0 ? Math.min(x, 1 - x) : x)) });
-    assert.equal(inspection.verdict, 'usable');
+    const [pixels, point] = [laid((x) => 1024 * x), laid(() => 0.5)];
+    assert.deepEqual([pixels.verdict, codes(pixels)[0]], ['unfit', 'uvsOutside']);
+    assert.deepEqual([point.verdict, codes(point)[0]], ['unfit', 'uvsWithoutArea']);
+    assert.ok(point.uv.withoutArea.share > 0.999);
+    const { verdict, uv } = laid((x, k) => (k === 0 ? Math.min(x, 1 - x) : x));
+    assert.equal(verdict, 'usable');
     // All but the hole, which has no mirror image, and the serrations at the poles.
-    assert.ok(inspection.uv.overlap.share > 0.75, String(inspection.uv.overlap.share));
-    assert.equal(inspection.uv.overlap.layers, 2);
+    assert.ok(uv.overlap.share > 0.75 && uv.overlap.layers === 2, JSON.stringify(uv.overlap));
   });
 
   test('every triangle a chart of its own', () => {
@@ -372,19 +349,6 @@ describe('UVs', () => {
 });
 
 describe('holes and segments', () => {
-  test('a result of another target is an error', () => {
-    const [target, other] = [ball([0, 0, 0], () => 1, 12, 24), ball([0, 0, 0], () => 1, 8, 12)];
-    assert.throws(() => inspect(cage, target, { result: transfer(cage, other) }), {
-      code: 'resultMismatch',
-      message: /result\.zones has \d+ entries, not 1 for each of the \d+ vertices of target/,
-    });
-    assert.throws(() => inspect(cage, target, { result: project(cage, target) as unknown as TransferResult }), {
-      code: 'badArgument',
-      message: /result\.cosmeticTriangles is undefined, as in a projection that was not classified/,
-    });
-    assert.throws(() => inspect(cage, target, { result: 5 as unknown as TransferResult }), { code: 'badArgument' });
-  });
-
   test('a hole over skin alone is reported', () => {
     const skin = ball([0, 0, 0], () => 1, 24, 48);
     const inspection = inspect(cage, skin);
@@ -394,12 +358,7 @@ describe('holes and segments', () => {
 
   test('a border over nothing is an end of the cage', () => {
     // The lower half of both is gone.
-    const upper = (mesh: Mesh): Mesh => ({
-      ...mesh,
-      indices: Uint32Array.from(mesh.indices).filter((_, i) =>
-        [0, 1, 2].every((k) => mesh.positions[3 * mesh.indices[i - (i % 3) + k]! + 2]! > -0.05),
-      ),
-    });
+    const upper = (mesh: Mesh): Mesh => within(mesh, (_, __, z) => z > -0.05);
     const shell = ball([0, 0, 0], () => 1.1, 16, 24);
     const { holes } = inspect(upper(shell), upper(ball([0, 0, 0], () => 1, 16, 24)));
     assert.deepEqual(
@@ -422,44 +381,50 @@ describe('holes and segments', () => {
       assert.ok(!decided.findings.some(({ code }) => code === 'segmentInDoubt'), 'a lock settles it');
     }
   });
-
-  test('a cage that is tiny beside its target is unfit, not an error', () => {
-    const { verdict } = look({ positions: cage.positions.map((x) => 1e-20 * x) });
-    assert.equal(verdict, 'unfit');
-  });
-
-  test('options that are not an object are an error', () => {
-    assert.throws(
-      () => (inspect as (...args: unknown[]) => unknown)(cage, target, null),
-      (error) => error instanceof CagecastError && error.message === 'inspect: options is null, not an object',
-    );
-  });
-
-  test('meshes are checked even where a result is given, and so are the names of parts', () => {
-    const result = transfer(cage, target);
-    const call = inspect as (...args: unknown[]) => unknown;
-    for (const [args, message] of [
-      [[cage, undefined, { result }], /^inspect: target\.positions is undefined, not a typed array/],
-      [[{}, target, { result }], /^inspect: cage\.positions is undefined, not a typed array/],
-      [[cage, target, { parts: 5 }], /^inspect: options\.parts is 5, not an array/],
-      [[cage, target, { parts: [null] }], /^inspect: options\.parts is of type Array, not an array of ranges/],
-    ] as const)
-      assert.throws(
-        () => call(...args),
-        (error) => error instanceof CagecastError && message.test(error.message),
-      );
-  });
-
-  test('a target of one triangle, and one without area, can be looked at', () => {
-    const tiny: Mesh = {
-      positions: new Float32Array([0, 0, 0, 0.1, 0, 0, 0, 0.1, 0]),
-      indices: new Uint32Array([0, 1, 2]),
-    };
-    assert.equal(inspect(cage, tiny).segments.length, 1);
-    assert.doesNotThrow(() => inspect(cage, { ...tiny, positions: new Float32Array(9) }));
-    assert.doesNotThrow(() => inspect(cage, join3d(tiny, target)));
-  });
 });
+
+test('a target of one triangle, and one without area, can be looked at', () => {
+  const tiny: Mesh = {
+    positions: new Float32Array([0, 0, 0, 0.1, 0, 0, 0, 0.1, 0]),
+    indices: new Uint32Array([0, 1, 2]),
+  };
+  assert.equal(inspect(cage, tiny).segments.length, 1);
+  inspect(cage, { ...tiny, positions: new Float32Array(9) });
+  inspect(cage, join3d(tiny, target));
+});
+
+for (const [fn, look] of Object.entries({ inspect, suggest }))
+  test(`${fn} names itself, the argument and its value in errors, also of meshes whose result is given`, () => {
+    const result = transfer(cage, target);
+    const other = transfer(
+      cage,
+      ball([0, 0, 0], () => 1, 8, 12),
+    );
+    const call = look as (...args: unknown[]) => unknown;
+    const cases: [unknown[], RegExp, string?][] = [
+      [[cage, target, null], /: options is null, not an object$/, 'badOption'],
+      [[cage, target, { parts: 5 }], /: options\.parts is 5, not an array of ranges of vertices$/, 'badOption'],
+      [[cage, target, { parts: [null] }], /: options\.parts is of type Array, not an array of ranges/, 'badOption'],
+      [[cage, undefined, { result }], /: target\.positions is undefined, not a typed array/],
+      [[{}, target, { result }], /: cage\.positions is undefined, not a typed array/],
+      [[cage, target, { result: 5 }], /: result is 5; pass what transfer\(\) returned$/],
+      [
+        [cage, target, { result: { ...result, segmentStats: 5 } }],
+        /: result\.segmentStats is 5, not an array; pass what/,
+      ],
+      [
+        [cage, target, { result: project(cage, target) }],
+        /: result\.cosmeticTriangles is undefined, as in a projection that/,
+      ],
+      [
+        [cage, target, { result: other }],
+        /: result\.zones has \d+ entries, not 1 for each of the \d+/,
+        'resultMismatch',
+      ],
+    ];
+    for (const [args, message, code = 'badArgument'] of cases)
+      assert.throws(() => call(...args), { name: 'CagecastError', code, fn, message });
+  });
 
 test('the guide explains every finding, and none that does not exist', () => {
   const named = (file: string, pattern: RegExp) =>

@@ -80,6 +80,14 @@ export function join3d(...meshes: Mesh[]): Required<Mesh> & { indices: Uint32Arr
   };
 }
 
+/** A mesh without the triangles of which a corner is not kept. */
+export function within<M extends Mesh>(mesh: M, isKept: (x: number, y: number, z: number) => boolean): M {
+  const { positions, indices } = mesh;
+  const keeps = (v: number) => isKept(positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!);
+  const kept = Uint32Array.from(indices).filter((_, i, all) => [0, 1, 2].every((k) => keeps(all[i - (i % 3) + k]!)));
+  return { ...mesh, indices: kept };
+}
+
 /** A bumpy head with an eye in a socket and a tongue inside, and a cage with a hole over the eye. */
 export function head(seed: number, detail = 20): Scene {
   const next = random(seed);

@@ -1,5 +1,4 @@
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import type { Accessor, Primitive } from '@gltf-transform/core';
@@ -7,27 +6,23 @@ import type { TransferResult } from 'cagecast';
 
 export * from './glb.js';
 
-/** Runs the command. */
-export function cagecast(...args: string[]): { status: number | null; stdout: string; stderr: string } {
-  const { status, stdout, stderr } = spawnSync(process.execPath, ['dist/cli.js', ...args], {
-    encoding: 'utf8',
-    timeout: 300_000,
-  });
-  return { status, stdout, stderr };
-}
-
 /**
- * What the Khronos validator says about a file.
+ * What the Khronos validator says about a file, by its path or its bytes.
  * @param most  The mildest that counts: 0 errors, 1 warnings, 2 information such as what is unused, 3 hints.
  */
-export async function validate(path: string, most = 0): Promise<string[]> {
+export async function validate(file: string | Uint8Array, most = 0): Promise<string[]> {
   const validator = createRequire(import.meta.url)('gltf-validator') as {
     validateBytes(
       bytes: Uint8Array,
       options: object,
     ): Promise<{ issues: { messages: { severity: number; code: string; message: string; pointer: string }[] } }>;
   };
-  const { issues } = await validator.validateBytes(new Uint8Array(readFileSync(path)), { maxIssues: 100 });
+  const { issues } = await validator.validateBytes(
+    new Uint8Array(typeof file === 'string' ? readFileSync(file) : file),
+    {
+      maxIssues: 100,
+    },
+  );
   return issues.messages
     .filter(({ severity }) => severity <= most)
     .map(({ code, message, pointer }) => `${pointer}: ${code}: ${message}`);

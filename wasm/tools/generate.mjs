@@ -167,9 +167,9 @@ async function makeCommandPage() {
   };
   try {
     const contents =
-      "export { makeProgram } from './program.ts'; export { pageOf } from './page.ts'; export { Progress } from '../progress.ts';";
+      "export { makeProgram } from './program.ts'; export { pageOf } from './page.ts'; export { Io } from '../io/io.ts';";
     await build({
-      stdin: { contents, resolveDir: join(root, 'wasm/src/cli/program'), loader: 'ts' },
+      stdin: { contents, resolveDir: join(root, 'wasm/src/cli/commands'), loader: 'ts' },
       outfile,
       bundle: true,
       format: 'esm',
@@ -182,8 +182,8 @@ async function makeCommandPage() {
       loader: { '.wasm': 'empty' },
       plugins: [withoutModules],
     });
-    const { makeProgram, pageOf, Progress } = await import(pathToFileURL(outfile));
-    return pageOf(makeProgram(new Progress()));
+    const { makeProgram, pageOf, Io } = await import(pathToFileURL(outfile));
+    return pageOf(makeProgram(new Io({})));
   } finally {
     rmSync(folder, { recursive: true });
   }
@@ -196,7 +196,7 @@ const files = {
   'wasm/src/generated/zone.ts': makeZones(readZones(root)),
   'docs/options.md': makePage(options),
   // Made last, as it depends on the first of these. A test's tree has no command.
-  ...(existsSync(join(root, 'wasm/src/cli/program')) && { 'docs/cli.md': makeCommandPage }),
+  ...(existsSync(join(root, 'wasm/src/cli')) && { 'docs/cli.md': makeCommandPage }),
 };
 let stale = 0;
 for (const [name, made] of Object.entries(files)) {

@@ -1,5 +1,5 @@
 import { init } from 'cagecast';
-import { Edits, History, LayerStack } from 'cagecast/three/layers';
+import { Edits, History, LayerStack } from 'cagecast/three/paint';
 import type { Texture } from 'three';
 import type { Painter } from './brush/painter';
 import { setUpPainting } from './brush/set-up-painting';

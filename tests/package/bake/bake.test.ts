@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { before, test } from 'node:test';
-import { NodeIO, type Primitive } from '@gltf-transform/core';
 import { CagecastError, init, type Mesh, type TransferResult, transfer } from 'cagecast';
 import { bake, cageTexture, fill, type Image, type Layout, layOver, resize } from 'cagecast/bake';
 import { PNG } from 'pngjs';
+import { readPlain } from '../scenes.js';
 import { picture, randomNumbers, smoothImage, texelsOf } from './reference';
 
 before(init);
@@ -62,9 +62,9 @@ for (const seed of [1, 2, 3]) {
 }
 
 test('UVs beyond 0 to 1 repeat', () => {
-  const layouts = randomLayouts(7, 2);
-  compare(layouts, smoothImage(20, 20), 64, 3);
-  compare(layouts, smoothImage(600, 600), 40, 3);
+  const layouts = randomLayouts(7, 1.5);
+  compare(layouts, smoothImage(20, 20), 40, 2);
+  compare(layouts, smoothImage(400, 400), 32, 2);
 });
 
 /** A square of two triangles in the whole texture, `n` by `n`, beside which nothing is. */
@@ -189,9 +189,9 @@ test('on the way back, what is painted is seen though it shares its texels with 
 test('on the way back, a pattern that repeats is seen as it is', () => {
   const mesh = square();
   const stripes = picture(16, (x) => (x < 8 ? [230, 30, 40, 255] : [20, 40, 250, 255]));
-  const uvs = mesh.uvs.map((value) => 100 * value);
+  const uvs = mesh.uvs.map((value) => 40 * value);
   const result = { ...resultOf(mesh), cosmeticTriangles: Uint8Array.of(0, 1) };
-  const { data, mask } = cageTexture({ ...mesh, uvs }, result, stripes, { width: 800 });
+  const { data, mask } = cageTexture({ ...mesh, uvs }, result, stripes, { width: 320 });
   const seen = new Set([...mask.keys()].filter((i) => mask[i] === 255).map((i) => data[4 * i]! > 125));
   assert.equal(seen.size, 2);
 });
@@ -232,40 +232,27 @@ test('an image is resized by the areas that pixels cover', () => {
   assert.deepEqual(resize(resize(image, 64, 64), 64, 64).width, 64);
 });
 
-/** The only primitive of a node, as a mesh, and the paint in the cage's UVs. */
-async function sample(name: string, node: string) {
-  const read = async (file: string, of?: string): Promise<Mesh & { uvs: Float32Array }> => {
-    const document = await new NodeIO().read(`examples/samples/${name}/${file}.glb`);
-    const nodes = document
-      .getRoot()
-      .listNodes()
-      .filter((one) => one.getMesh());
-    const primitive: Primitive = (of ? nodes.find((one) => one.getName() === of)! : nodes[0]!)
-      .getMesh()!
-      .listPrimitives()[0]!;
-    return {
-      positions: primitive.getAttribute('POSITION')!.getArray() as Float32Array,
-      indices: Uint32Array.from(primitive.getIndices()!.getArray()!),
-      uvs: primitive.getAttribute('TEXCOORD_0')!.getArray() as Float32Array,
-    };
-  };
-  const [cage, target] = [await read('cage'), await read('target', node)];
-  return { cage, target, result: transfer(cage, target) };
-}
-
 test('there and back, from the cage to the lizard’s atlas and to the cage, the paint differs little on the mean', async () => {
-  const { target, result } = await sample('lizard', 'skin');
-  const read = (name: string): Image => PNG.sync.read(readFileSync(`examples/samples/lizard/paint-${name}.png`));
-  // The tiger has stripes as fine as the texels of the atlas.
+  const [cage, whole] = await Promise.all(
+    ['cage', 'target'].map((name) => readPlain(`examples/samples/lizard/${name}.glb`)),
+  );
+  // Its skin alone, which is the first part.
+  const indices = Uint32Array.from(whole!.indices).filter((_, i, all) => whole!.groups![all[i - (i % 3)]!] === 0);
+  const target = { ...whole!, indices };
+  const result = transfer(cage!, target);
+  const side = 256;
+  const read = (name: string): Image =>
+    resize(PNG.sync.read(readFileSync(`examples/samples/lizard/paint-${name}.png`)), side, side);
+  // War paint and stripes are as fine as the texels of the atlas.
   const paints: [Image, number][] = [
-    [smoothImage(1024, 1024), 1],
-    [read('war-paint'), 0.95],
-    [read('tiger'), 2],
+    [smoothImage(side, side), 0.9],
+    [read('war-paint'), 3.8],
+    [read('tiger'), 4.3],
   ];
   for (const [paint, most] of paints) {
-    const atlas = bake(target, result, paint, { width: 1024 });
-    const back = cageTexture(target, result, atlas, { width: 1024 });
-    const before = resize(paint, 1024, 1024);
+    const atlas = bake(target, result, paint, { width: side });
+    const back = cageTexture(target, result, atlas, { width: side });
+    const before = resize(paint, side, side);
     let [sum, covered] = [0, 0];
     back.mask.forEach((share, i) => {
       if (share !== 255) return;
@@ -276,9 +263,9 @@ test('there and back, from the cage to the lizard’s atlas and to the cage, the
         sum += Math.abs(seen(back) - seen(before)) / 4;
       }
     });
-    assert.ok(covered > 300_000 && sum / covered <= most, `${sum / covered} over ${covered} texels`);
+    assert.ok(covered > 0.3 * side * side && sum / covered <= most, `${sum / covered} over ${covered} texels`);
     // The left eye is a hole of the cage.
-    assert.deepEqual(texel(back, 374, 786), [0, 0, 0, 0]);
+    assert.deepEqual(texel(back, 93, 196), [0, 0, 0, 0]);
   }
 });
 

@@ -1,30 +1,18 @@
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
+import { spawn } from 'node:child_process';
 import { once } from 'node:events';
-import {
-  chmodSync,
-  existsSync,
-  mkdirSync,
-  mkdtempSync,
-  readdirSync,
-  readFileSync,
-  renameSync,
-  rmSync,
-  symlinkSync,
-  writeFileSync,
-} from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { before, test } from 'node:test';
-import { pathToFileURL } from 'node:url';
-import { PNG } from 'pngjs';
-import { cagecast, glbOf, packGlb, unpackGlb } from '../../support/gltf.js';
-import { temporaryFolder } from '../../support/temporary.js';
+import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, symlinkSync } from 'node:fs';
+import { watch } from 'node:fs/promises';
+import { test } from 'node:test';
+import { fails, kProgram, ok, run } from '../../support/command.js';
+import { glbOf, packGlb, unpackGlb } from '../../support/gltf.js';
 import { head } from '../scenes.js';
+import { png, workplace, write } from './workplace.js';
 
-const { at } = temporaryFolder('batch');
-const scene = head(6, 8);
-const target = glbOf({ ...scene.target, groups: undefined });
+const { at, cage, target } = workplace('batch', head(6, 8));
+const glb = glbOf(target);
+const batch = 'batch target.glb --cage cage.glb';
+write('away.glb', glbOf({ ...cage, positions: cage.positions.map((x) => x + 9) }));
 
 interface Line {
   target: string;
@@ -33,541 +21,310 @@ interface Line {
   status: 'done' | 'failed' | 'skipped';
   error?: string;
   verdict?: string;
-  counts?: object;
 }
 
 const linesOf = (text: string): Line[] =>
   text
     .split('\n')
-    .filter(Boolean)
-    .map((line) => JSON.parse(line) as Line);
-
-before(() => {
-  for (const name of ['in', 'in/deep', 'out']) mkdirSync(at(name));
-  writeFileSync(at('in/0.glb'), target);
-  writeFileSync(at('cage.glb'), glbOf(scene.cage));
-  writeFileSync(at('away.glb'), glbOf({ ...scene.cage, positions: scene.cage.positions.map((x) => x + 9) }));
-});
-
-test('200 jobs, five of them broken, killed in the middle and resumed: every good job once, nothing half-written', async () => {
-  const broken = [3, 40, 77, 120, 199];
-  for (let i = 0; i < 200; ++i)
-    writeFileSync(at('in', `${i}.glb`), broken.includes(i) ? target.subarray(0, target.length / 2) : target);
-  const results = at('results.jsonl');
-  const args = ['batch', at('in/*.glb'), '--cage', at('cage.glb'), '-o', at('out/{name}.glb'), '--results', results];
-  const first = spawn(process.execPath, ['dist/cli.js', ...args, '--workers', '2'], { stdio: 'ignore' });
-  const written = () => (existsSync(results) ? readFileSync(results, 'utf8').split('\n').length - 1 : 0);
-  const ended = once(first, 'exit');
-  while (written() < 30 && first.exitCode === null && first.signalCode === null)
-    await new Promise((resolve) => setTimeout(resolve, 5));
-  first.kill('SIGKILL');
-  await ended;
-  const doneBefore = linesOf(readFileSync(results, 'utf8').replace(/[^\n]*$/, '')).length;
-  assert.ok(doneBefore < 190, `${doneBefore} jobs were done before it was killed`);
-  writeFileSync(results, '{"target":"cut o', { flag: 'a' }); // as if killed within a line
-
-  const { status, stdout, stderr } = cagecast(...args, '--resume');
-  assert.equal(status, 1);
-  assert.equal(stdout, '');
-  assert.match(stderr, /^200 jobs: \d+ done, 5 failed, \d+ done before; [\d.]+ s\n$/);
-  const lines = readFileSync(results, 'utf8')
-    .split('\n')
     .filter((line) => line.endsWith('}'))
     .map((line) => JSON.parse(line) as Line);
-  const done = lines.filter((line) => line.status === 'done').map((line) => line.target);
-  assert.equal(new Set(done).size, 195);
-  assert.equal(done.length, 195);
-  const failed = new Set(lines.filter((line) => line.status === 'failed').map((line) => line.target));
-  assert.deepEqual([...failed].sort(), broken.map((i) => at('in', `${i}.glb`)).sort());
-  assert.ok(lines.every((line) => line.status === 'done' || /: is truncated/.test(line.error!)));
-  const files = readdirSync(at('out'));
-  assert.equal(files.length, 195, 'no file under a temporary name is left');
-  for (const name of files) {
-    const bytes = readFileSync(at('out', name));
+const linesIn = (name: string) => linesOf(readFileSync(name, 'utf8'));
+const writeJobs = (name: string, jobs: readonly (object | string)[]) =>
+  write(name, jobs.map((job) => (typeof job === 'string' ? job : JSON.stringify(job))).join('\n'));
+/** Runs a batch. @returns how many jobs were done, failed and done before. */
+const counted = async (line: string) => (await run(line)).stderr.replace(/;.*\n/, '');
+
+test('jobs, some of them broken, killed in the middle and resumed: every good job once, nothing half-written', async () => {
+  const [count, broken] = [40, [3, 30, 39]];
+  mkdirSync('in');
+  for (let i = 0; i < count; ++i) write(`in/${i}.glb`, broken.includes(i) ? glb.subarray(0, glb.length / 2) : glb);
+  const line = 'batch in/*.glb --cage cage.glb -o out/{name}.glb --results results.jsonl';
+  write('results.jsonl', '');
+  const first = spawn(process.execPath, [kProgram, ...line.split(' '), '--workers', '2'], { stdio: 'ignore' });
+  const ended = once(first, 'exit');
+  for await (const _ of watch('results.jsonl')) if (linesIn('results.jsonl').length >= 10) break;
+  first.kill('SIGKILL');
+  await ended;
+  const doneBefore = linesIn('results.jsonl').length;
+  assert.ok(doneBefore < count - 5, `${doneBefore} jobs were done before it was killed`);
+  write('results.jsonl', `${readFileSync('results.jsonl', 'utf8')}{"target":"cut o`); // as if killed within a line
+
+  const { status, stdout, stderr } = await run(`${line} --resume`);
+  assert.deepEqual([status, stdout], [1, '']);
+  assert.match(stderr, /^40 jobs: \d+ done, 3 failed, \d+ done before; [\d.]+ s\n$/);
+  const lines = linesIn('results.jsonl');
+  const done = lines.filter((one) => one.status === 'done').map((one) => one.target);
+  assert.deepEqual([done.length, new Set(done).size], [37, 37]);
+  const failed = new Set(lines.filter((one) => one.status === 'failed').map((one) => one.target));
+  assert.deepEqual([...failed].sort(), broken.map((i) => `in/${i}.glb`).sort());
+  assert.ok(lines.every((one) => one.status === 'done' || /: is truncated/.test(one.error!)));
+  assert.equal(readdirSync('out').length, 37, 'no file under a temporary name is left');
+  for (const name of readdirSync('out')) {
+    const bytes = readFileSync(`out/${name}`);
     assert.equal(bytes.readUInt32LE(8), bytes.length, name);
   }
-
   // What has changed is done again, and nothing else.
-  writeFileSync(at('in/5.glb'), target);
-  rmSync(at('out/6.glb'));
-  const again = cagecast(...args, '--resume', '--json');
+  write('in/5.glb', glb);
+  rmSync('out/6.glb');
+  const again = await run(`${line} --resume --json`);
   const { seconds: _, ...summary } = JSON.parse(again.stderr) as { seconds: number };
-  assert.deepEqual(summary, { jobs: 200, done: 2, failed: 5, skipped: 193, misfits: 0, configs: [] });
+  assert.deepEqual(summary, { jobs: count, done: 2, failed: 3, skipped: 35, misfits: 0, configs: [] });
 });
 
-test('patterns reach into folders, lines are printed, and --fail-on exits 3', () => {
-  writeFileSync(at('in/deep/a.glb'), target);
-  writeFileSync(at('in/deep/.hidden.glb'), target);
-  const found = cagecast('batch', at('**/deep/*.glb'), '--cage', at('cage.glb'), '--fail-on', 'unfit', '--quiet');
-  assert.deepEqual([found.status, found.stdout, found.stderr], [0, '', '']);
-  const away = cagecast('batch', at('in/deep/a.glb'), '--cage', at('away.glb'), '--fail-on', 'unfit');
-  assert.equal(away.status, 3);
-  const [line, ...others] = linesOf(away.stdout);
-  assert.equal(others.length, 0);
-  assert.deepEqual(
-    [line!.target, line!.output, line!.status, line!.verdict],
-    [at('in/deep/a.glb'), null, 'done', 'unfit'],
+test('patterns reach into folders, follow links to them, and ** does not go round in circles', async () => {
+  for (const folder of ['linked/own', 'far', 'odd']) mkdirSync(folder, { recursive: true });
+  for (const name of ['far/a.glb', 'linked/own/b.glb', 'linked/own/.hidden.glb']) write(name, glb);
+  symlinkSync(at('far'), 'linked/link');
+  symlinkSync(at('linked'), 'linked/own/round');
+  symlinkSync('self', 'linked/self');
+  // A name may hold {dir} or $&, and gives its output that very name.
+  const odd = ['a$$b.glb', 'a$&b.glb', 'a{dir}b.glb', 'a{name}b.glb'];
+  for (const name of odd) write(`odd/${name}`, glb);
+  const { stdout } = await run(
+    'batch linked/*/a.glb linked/**/*.glb odd/*.glb --cage cage.glb -o {dir}/out/{name}.glb --workers 1',
   );
-  assert.match(away.stderr, /1 with a cage that does not fit as demanded/);
-  // A region's cage counts, too.
-  writeFileSync(at('paint.png'), PNG.sync.write(new PNG({ width: 4, height: 4 })));
-  const region = [
-    '--region',
-    `${at('away.glb')}=${at('paint.png')}`,
-    '--texture',
-    at('paint.png'),
-    '-o',
-    at('out.glb'),
-  ];
-  const both = cagecast('batch', at('in/0.glb'), '--cage', at('cage.glb'), ...region, '--fail-on', 'unfit');
-  assert.deepEqual([both.status, linesOf(both.stdout)[0]!.verdict], [3, 'unfit'], both.stdout);
+  const found = ['linked/link/a.glb', 'linked/own/b.glb', ...odd.map((name) => `odd/${name}`)];
+  assert.deepEqual(
+    linesOf(stdout)
+      .map((line) => [line.target, line.status])
+      .sort(),
+    found.map((name) => [name, 'done']),
+  );
+  assert.deepEqual(readdirSync('odd/out').sort(), odd.sort());
+  await fails(1, 'linked/self: is a link that leads back to itself', 'batch linked/self/*.glb --cage cage.glb');
+  // Where a file is given whole, a * in its name is no pattern.
+  write('sta*r.glb', glb);
+  await ok('transfer sta*r.glb --cage cage.glb -o star.glb --quiet');
 });
 
-test('borders that a configuration cuts are no matter where nothing is written', () => {
-  const config = at('in/cagecast.config.json');
-  const check = ['batch', at('in/0.glb'), '--cage', at('cage.glb'), '--fail-on', 'unfit'];
-  writeFileSync(config, '{ "borders": "cut" }');
-  try {
-    assert.equal(cagecast(...check).status, 0);
-  } finally {
-    rmSync(config);
-  }
-  const asked = cagecast(...check, '--borders', 'cut');
-  assert.deepEqual([asked.status, /--borders cut needs -o OUT\.glb/.test(asked.stderr)], [2, true]);
-  writeFileSync(at('checks.jsonl'), JSON.stringify({ target: 'in/0.glb', cage: 'cage.glb' }));
-  const lines = cagecast('batch', '--manifest', at('checks.jsonl'), '--borders', 'cut');
-  assert.deepEqual([lines.status, /has no output/.test(lines.stdout)], [1, true]);
+test('--fail-on exits 3 for a cage that does not fit, of a region too; reports have the verdict, which diff compares', async () => {
+  const job = { target: 'target.glb', cage: 'cage.glb', report: 'good.json' };
+  const regions = [{ cage: 'away.glb', texture: 'paint.png' }];
+  writeJobs('verdicts.jsonl', [
+    job,
+    { ...job, cage: 'away.glb', report: 'bad.json' },
+    { ...job, texture: 'paint.png', regions, output: 'region.glb', report: 'region.json' },
+  ]);
+  const judged = await run('batch --manifest verdicts.jsonl --fail-on unfit --workers 1');
+  assert.equal(judged.status, 3);
+  assert.match(judged.stderr, /^3 jobs: 3 done, 0 failed, 2 with a cage that does not fit as demanded; /);
+  const lines = linesOf(judged.stdout).map(({ output, status, verdict }) => [output, status, verdict]);
+  assert.deepEqual(lines, [
+    [null, 'done', 'good'],
+    [null, 'done', 'unfit'],
+    [at('region.glb'), 'done', 'unfit'],
+  ]);
+  const { verdict, findings } = JSON.parse(readFileSync('bad.json', 'utf8')) as { verdict: string; findings: object[] };
+  assert.equal(verdict, 'unfit');
+  assert.ok('sentence' in findings[0]!, 'a finding has a sentence');
+  const { status, stdout } = await run('diff good.json bad.json');
+  assert.equal(status, 4);
+  assert.match(stdout, /verdict +good +unfit +over/);
 });
 
-test('a manifest has a job per line, with options of its own; a wrong line is a job that fails', () => {
-  const jobs = [
-    { target: 'in/0.glb', cage: 'cage.glb', output: 'new/{name}/kept.glb', report: 'kept.json', exclude: ['only'] },
-    { target: 'in/0.glb', cage: 'cage.glb', report: 'high.json', threshold: 1 },
-    { target: 'in/0.glb', cage: 'cage.glb', treshold: 1 },
-    { target: 'in/gone.glb' },
-  ];
-  writeFileSync(at('jobs.jsonl'), `${jobs.map((job) => JSON.stringify(job)).join('\n')}\nno JSON\n\n`);
-  const { status, stdout } = cagecast('batch', '--manifest', at('jobs.jsonl'), '--workers', '1');
-  assert.equal(status, 1);
-  const lines = linesOf(stdout);
-  const errors = lines.flatMap(({ error }) => error ?? []).sort();
-  assert.equal(errors.length, 3);
-  assert.match(errors[0]!, /^line 3 of .*jobs\.jsonl: "treshold" is unknown; there are: target, cage, /);
-  assert.match(errors[1]!, /^line 4 of .*jobs\.jsonl: .*has no cage/);
-  assert.match(errors[2]!, /^line 5 of .*jobs\.jsonl: is not JSON/);
-  assert.equal(lines.filter((line) => line.status === 'done').length, 2);
-  assert.ok(existsSync(at('new/0/kept.glb')), 'folders are made');
-  const { counts } = JSON.parse(readFileSync(at('kept.json'), 'utf8')) as { counts: { cosmetic: number } };
-  assert.equal(counts.cosmetic, 0);
-  const { options } = JSON.parse(readFileSync(at('high.json'), 'utf8')) as { options: { threshold: number } };
-  assert.equal(options.threshold, 1);
-});
-
-test('a batch that cannot be right does not begin', () => {
-  const cage = ['--cage', at('cage.glb')];
-  // The second target's buffer is named as what the first job would write beside its output.
-  mkdirSync(at('beside'));
-  const { json, bin } = unpackGlb(target);
-  json.buffers![0]!.uri = '0.bin';
-  writeFileSync(at('beside/second.gltf'), JSON.stringify(json));
-  writeFileSync(at('beside/0.bin'), bin);
-  writeFileSync(at('beside/0.glb'), target);
-  const cases: [string[], number, RegExp][] = [
-    [['batch'], 2, /give either TARGETS or --manifest/],
-    [['batch', at('in/*.glb')], 2, /TARGETS need --cage/],
-    [['batch', at('in/*.glb'), '--cage', '-', '-o', at('{name}.glb')], 2, /its jobs have no standard input/],
-    [['batch', at('in/*.glb'), '--cage', at('cage.glb'), '--region', '-=p.png'], 2, /its jobs have no standard input/],
-    [['batch', at('in/*.glb'), ...cage, '--never-mask', '-'], 2, /its jobs have no standard input/],
-    [['batch', at('in/*.glb'), ...cage, '--results', '-'], 2, /the standard output has its lines/],
-    [['batch', at('in/*.glb'), ...cage, '--results', at('out')], 1, /out: cannot be written \(is a folder\)/],
-    [['batch', at('in/*.glb'), ...cage, '--resume'], 2, /--resume needs --results/],
-    [['batch', at('in/*.gltf'), ...cage], 1, /in\/\*\.gltf: no file has such a name/],
-    [['batch', at('in/*.glb'), ...cage, '-o', at('same.glb')], 2, /same\.glb: is written for .* and .*; use \{name\}/],
-    [['batch', at('in/*.glb'), ...cage, '-o', at('in/{name}.glb')], 2, /: is read and written by this batch/],
+test('a manifest has a job per line, with settings of its own; a wrong line is a job that fails', async () => {
+  const job = { target: 'target.glb', cage: 'cage.glb' };
+  const region = { cage: 'cage.glb', texture: 'other.png' };
+  write('other.png', png(90));
+  write('half.glb', glbOf({ ...cage, indices: cage.indices.slice(0, 3 * Math.floor(cage.indices.length / 6)) }));
+  const wrong: [line: object | string, message: RegExp][] = [
+    ['no JSON', /^is not JSON/],
+    [{ cage: 'cage.glb' }, /^has no "target"$/],
+    [{ target: 'gone.glb' }, /^has no cage; give one with --cage, or as "cage" in the manifest$/],
+    [{ ...job, treshold: 1 }, /^"treshold" is unknown; there are: target, cage, /],
+    [{ ...job, threshold: 2 }, /^"threshold" is 2, not a number within 0\.\.1$/],
+    ...['target', 'cage', 'report', 'neverMask'].map((name): [object, RegExp] => [
+      { ...job, [name]: '' },
+      new RegExp(`^"${name}" is empty$`),
+    ]),
+    [{ ...job, output: 'o.fbx' }, /^its output .*o\.fbx does not end in \.glb, \.vrm or \.gltf$/],
+    [{ ...job, output: 'o/{foo}.glb' }, /^\{foo\} is unknown; paths may hold \{name\} and \{dir\}$/],
+    [{ ...job, report: '{nmae}.json' }, /^\{nmae\} is unknown/],
+    ...[{ texture: 'paint.png' }, { borders: 'cut' }, { regions: [region] }].map((more): [object, RegExp] => [
+      { ...job, ...more },
+      /^has no output, where its texture or its cut target would be written$/,
+    ]),
     [
-      ['batch', at('beside/0.glb'), at('beside/second.gltf'), ...cage, '-o', at('beside/{name}.gltf')],
+      { ...job, texture: 'p.<UDIM>.png', uvBounds: [0, 0, 1, 1], output: 'o.glb' },
+      /cannot be given with a texture of <UDIM>/,
+    ],
+    [{ ...job, uvBounds: [0, 0] }, /^"uvBounds" is \[0,0\], not an array of four numbers/],
+    [{ ...job, regions: {} }, /^"regions" is \{\}, not an array of \{"cage": …, "texture": …\}$/],
+    [{ ...job, regions: ['cage.glb'] }, /^regions\[0\]: is "cage\.glb", not \{"cage": …, "texture": …\}$/],
+    [{ ...job, regions: [region, { cage: 'cage.glb' }] }, /^regions\[1\]: has no "texture"$/],
+    [{ ...job, regions: [{ ...region, texture: '' }] }, /^regions\[0\]: "texture" is empty$/],
+  ];
+  const all = { texture: 'paint.png', referenceCage: 'cage.glb', uvBounds: [0, 0, 1, 1], threshold: 0, minCovered: 0 };
+  const right = [
+    { ...job, output: 'new/{name}/kept.glb', report: 'kept.json', exclude: ['only'] },
+    { ...job, ...all, cage: 'half.glb', regions: [region], output: 'all.gltf', report: 'all.json' },
+  ];
+  writeJobs('jobs.jsonl', [...wrong.map(([line]) => line), ...right, '']);
+  const { status, stdout, stderr } = await run('batch --manifest jobs.jsonl --workers 1');
+  assert.equal(status, 1);
+  assert.match(stderr, new RegExp(`^${wrong.length + 2} jobs: 2 done, ${wrong.length} failed; `));
+  const errors = linesOf(stdout).flatMap(({ error }) => error ?? []);
+  assert.equal(errors.length, wrong.length);
+  for (const [i, [, message]] of wrong.entries()) {
+    const [place, ...others] = [`line ${i + 1} of jobs.jsonl: `].flatMap((place) =>
+      errors.filter((error) => error.startsWith(place)),
+    );
+    assert.deepEqual(others, []);
+    assert.match(place!.replace(/^.*?: /, ''), message);
+  }
+  assert.ok(existsSync('new/target/kept.glb'), 'folders are made');
+  const reports = ['kept', 'all'].map((name) => JSON.parse(readFileSync(`${name}.json`, 'utf8')));
+  assert.equal(reports[0].counts.cosmetic, 0);
+  assert.deepEqual([reports[1].options.threshold, reports[1].regions[0].uvSet], [0, 'TEXCOORD_2']);
+  assert.deepEqual(
+    readdirSync('.').filter((name) => name.startsWith('all')),
+    ['all-image0.png', 'all-image1.png', 'all.bin', 'all.gltf', 'all.json'],
+  );
+});
+
+test('a batch that cannot be right does not begin', async () => {
+  // The second target's buffer is named as what the first job would write beside its output.
+  mkdirSync('beside');
+  const { json, bin } = unpackGlb(glb);
+  json.buffers![0]!.uri = '0.bin';
+  write('beside/second.gltf', JSON.stringify(json));
+  write('beside/0.bin', bin);
+  write('beside/0.glb', glb);
+  const line = '{"target": "target.glb", "cage": "cage.glb"}';
+  write('clash.jsonl', line);
+  write('clash.json', '{}');
+  write('empty.jsonl', '\n\n');
+  writeJobs(
+    'twins.jsonl',
+    ['gltf', 'GLTF'].map((ending) => ({ ...JSON.parse(line), output: `e.${ending}` })),
+  );
+  const manifest = 'batch --manifest clash.jsonl';
+  for (const [line, status, message] of [
+    ['batch in/*.gltf --cage cage.glb', 1, /in\/\*\.gltf: no file has such a name/],
+    ['batch --manifest gone.jsonl', 1, /gone\.jsonl: no such file/],
+    ['batch --manifest empty.jsonl', 1, /empty\.jsonl: has no jobs: each line is one, as a JSON object/],
+    [`${batch} --results in`, 1, /in: cannot be written \(is a folder\)/],
+    ['batch in/*.glb --cage cage.glb -o same.glb', 2, /same\.glb: is written for .* and .*; use \{name\}/],
+    ['batch in/*.glb --cage cage.glb -o in/{name}.glb', 2, /: is read and written by this batch/],
+    [
+      'batch beside/0.glb beside/second.gltf --cage cage.glb -o beside/{name}.gltf',
       2,
       /0\.gltf: is written beside a file of its name that this batch reads/,
     ],
-  ];
-  // Two outputs that share what is beside them.
-  const twins = at('twins.jsonl');
-  const jobs = ['gltf', 'GLTF'].map((ending) => ({ target: 'in/0.glb', cage: 'cage.glb', output: `out/e.${ending}` }));
-  writeFileSync(twins, jobs.map((job) => JSON.stringify(job)).join('\n'));
-  cases.push([['batch', '--manifest', twins], 2, /e\.bin: is written for .* and /]);
-  // What the batch itself reads and writes.
-  const manifest = at('clash.jsonl');
-  const line = `{"target": "beside/0.glb", "cage": "cage.glb"}\n`;
-  writeFileSync(manifest, line);
-  const config = at('clash.config.json');
-  writeFileSync(config, '{}');
-  const one = ['batch', at('beside/0.glb'), ...cage];
-  cases.push(
-    [['batch', '--manifest', manifest, '--report', manifest], 2, /clash\.jsonl: is read and written by this batch/],
-    [['batch', '--manifest', manifest, '--results', manifest], 2, /clash\.jsonl: is read by this batch/],
-    [[...one, '--results', at('cage.glb')], 2, /cage\.glb: is read by this batch/],
-    [[...one, '--config', config, '--report', config], 2, /clash\.config\.json: is read and written by this batch/],
-    [[...one, '--results', at('r.json'), '--report', at('r.json')], 2, /r\.json: is written for the results and /],
-    [
-      [...one, '-o', at('{name}.glb'), '--report', at('{name}.glb')],
-      2,
-      /\/0\.glb: is both output and report of .*beside\/0\.glb;/,
-    ],
-    [[...one, '-o', at('{foo}.glb')], 2, /\{foo\} is unknown; paths may hold \{name\} and \{dir\}/],
-    [[...one, '--report', at('{name}{stem}.json')], 2, /\{stem\} is unknown/],
-    [[...one, '-o', '-'], 2, /the standard output has its lines/],
-    [
-      [...one, '--texture', 'p.<UDIM>.png', '--uv-bounds', '0,0,1,1', '-o', at('{name}.glb')],
-      2,
-      /bounds of UVs cannot be given with a texture of <UDIM> tiles/,
-    ],
-  );
-  for (const [args, code, message] of cases) {
-    const { status, stdout, stderr } = cagecast(...args);
-    assert.deepEqual([status, stdout], [code, ''], args.join(' '));
-    assert.match(stderr, message);
-    assert.match(stderr, /^cagecast: [^\n]+\n$/);
-  }
-  assert.equal(readFileSync(manifest, 'utf8'), line);
-  assert.equal(readFileSync(config, 'utf8'), '{}');
-  assert.deepEqual(readFileSync(at('cage.glb')), Buffer.from(glbOf(scene.cage)));
+    ['batch --manifest twins.jsonl', 2, /e\.bin: is written for .* and /],
+    [`${manifest} --report clash.jsonl`, 2, /clash\.jsonl: is read and written by this batch/],
+    [`${manifest} --results clash.jsonl`, 2, /clash\.jsonl: is read by this batch/],
+    [`${batch} --results cage.glb`, 2, /cage\.glb: is read by this batch/],
+    [`${batch} --config clash.json --report clash.json`, 2, /clash\.json: is read and written by this batch/],
+    [`${batch} --results r.json --report r.json`, 2, /r\.json: is written for the results and /],
+    [`${batch} -o {name}-x.glb --report {name}-x.glb`, 2, /target-x\.glb: is both output and report of target\.glb;/],
+  ] as const)
+    await fails(status, message, line);
+  assert.deepEqual([readFileSync('clash.jsonl', 'utf8'), readFileSync('clash.json', 'utf8')], [line, '{}']);
+  assert.deepEqual(readFileSync('cage.glb'), glbOf(cage));
 });
 
-test('a job with a wrong output, or none where it writes something, fails', () => {
-  const jobs = [
-    { output: 'o.fbx' },
-    { output: 'o/{foo}.glb' },
-    { report: '{nmae}.json' },
-    { texture: 'paint.png' },
-    { borders: 'cut' },
-    { regions: [{ cage: 'cage.glb', texture: 'paint.png' }] },
-  ];
-  const lines = jobs.map((job) => JSON.stringify({ target: 'in/0.glb', cage: 'cage.glb', ...job }));
-  writeFileSync(at('wrong.jsonl'), lines.join('\n'));
-  const { status, stdout } = cagecast('batch', '--manifest', at('wrong.jsonl'));
+test('borders that a configuration cuts are no matter where nothing is written; wrong settings fail their own jobs only', async () => {
+  for (const folder of ['cut', 'wrong']) mkdirSync(folder);
+  for (const name of ['cut/a.glb', 'wrong/b.glb']) write(name, glb);
+  write('cut/cagecast.config.json', '{ "borders": "cut" }');
+  write('wrong/cagecast.config.json', '{ "treshold": 1 }');
+  const { status, stdout, stderr } = await run('batch cut/a.glb wrong/b.glb --cage cage.glb');
   assert.equal(status, 1);
-  assert.deepEqual(
-    linesOf(stdout).map(({ error }) => error?.replace(/^.*0\.glb: /, '').replace(/ \/.*\//, ' ')),
-    [
-      'its output o.fbx does not end in .glb, .vrm or .gltf',
-      'line 2 of wrong.jsonl: {foo} is unknown; paths may hold {name} and {dir}',
-      'line 3 of wrong.jsonl: {nmae} is unknown; paths may hold {name} and {dir}',
-      ...Array<string>(3).fill('has no output, where its texture or its cut target would be written'),
-    ],
-  );
+  assert.match(stderr, /\nno model or report written; for these, add -o OUT\.glb or --report R\.json\n$/);
+  const lines = linesOf(stdout).map((line) => [line.target, line.status]);
+  assert.deepEqual(lines.sort(), [
+    ['cut/a.glb', 'done'],
+    ['wrong/b.glb', 'failed'],
+  ]);
+  const quiet = await run('batch wrong/b.glb --cage cage.glb --quiet');
+  assert.deepEqual([quiet.status, quiet.stdout], [1, '']);
+  assert.match(quiet.stderr, /^cagecast: wrong\/b\.glb: wrong\/cagecast\.config\.json: "treshold" is unknown[^\n]*\n$/);
 });
 
-test('patterns follow links to folders, and ** does not go round in circles', () => {
-  mkdirSync(at('linked/own'), { recursive: true });
-  mkdirSync(at('far'));
-  writeFileSync(at('far/a.glb'), target);
-  writeFileSync(at('linked/own/b.glb'), target);
-  symlinkSync(at('far'), at('linked/link'));
-  symlinkSync(at('linked'), at('linked/own/round'));
-  symlinkSync('self', at('linked/self'));
-  const targets = (pattern: string) =>
-    linesOf(cagecast('batch', at(pattern), '--cage', at('cage.glb')).stdout).map((line) => line.target);
-  assert.deepEqual(targets('linked/*/a.glb'), [at('linked/link/a.glb')]);
-  assert.deepEqual(targets('linked/**/*.glb'), [at('linked/own/b.glb')]);
-  const round = cagecast('batch', at('linked/self/*.glb'), '--cage', at('cage.glb'));
-  assert.deepEqual([round.status, round.stdout], [1, '']);
-  assert.match(round.stderr, /^cagecast: [^\n]*linked\/self: is a link that leads back to itself\n$/);
-});
-
-test('a folder that may not be read is an error that names it, of batch and of diff', (context) => {
-  const closed = mkdtempSync(join(tmpdir(), 'cagecast-closed-'));
-  context.after(() => rmSync(closed, { recursive: true }));
-  chmodSync(closed, 0o755);
-  for (const name of ['a', 'b']) {
-    mkdirSync(join(closed, name, 'deep'), { recursive: true });
-    writeFileSync(join(closed, name, 'a.glb'), target);
-    writeFileSync(join(closed, name, 'a.json'), '{}');
-  }
-  chmodSync(join(closed, 'b/deep'), 0);
-  // Root may read everything, so another user is asked.
-  const as = process.getuid?.() === 0 ? { uid: 65534 } : {};
-  const node = (...args: string[]) => spawnSync(process.execPath, args, { encoding: 'utf8', timeout: 60_000, ...as });
-  if (node('dist/cli.js', '--version').status !== 0) return context.skip('another user may not read the package');
-  if (node('-e', 'fs.readdirSync(process.argv[1])', join(closed, 'b/deep')).status === 0)
-    return context.skip('this system lets everybody read it');
-  const calls = [
-    ['batch', join(closed, '**/*.glb'), '--cage', at('cage.glb')],
-    ['diff', join(closed, 'a'), join(closed, 'b')],
-  ];
-  for (const args of calls) {
-    const { status, stdout, stderr } = node('dist/cli.js', ...args);
-    assert.deepEqual([status, stdout], [1, ''], stderr);
-    assert.match(stderr, /^cagecast: [^\n]*\/b\/deep: cannot be read: permission denied\n$/);
-  }
-});
-
-test('a * in the name of a file that is given whole is no pattern', () => {
-  writeFileSync(at('sta*r.glb'), target);
-  writeFileSync(at('star.glb'), target);
-  const args = ['transfer', at('sta*r.glb'), '--cage', at('cage.glb'), '-o', at('star.glb'), '--quiet'];
-  assert.deepEqual(cagecast(...args), { status: 0, stdout: '', stderr: '' });
-});
-
-test('results that cannot be written end the batch at once; their folder is made', () => {
-  mkdirSync(at('some'));
-  for (let i = 0; i < 12; ++i) writeFileSync(at('some', `${i}.glb`), target);
-  const batch = (results: string, out: string) =>
-    spawnSync(
-      process.execPath,
-      [
-        ...['dist/cli.js', 'batch', at('some/*.glb'), '--cage', at('cage.glb'), '--workers', '2'],
-        ...['-o', at(out, '{name}.glb'), '--results', results],
-      ],
-      { encoding: 'utf8', timeout: 60_000 },
-    );
-  const refused = batch(at('some'), 'refused');
-  assert.deepEqual([refused.status, refused.stdout, existsSync(at('refused'))], [1, '', false]);
-  assert.match(refused.stderr, /^cagecast: [^\n]*some: cannot be written [^\n]*\n$/);
+test('results that cannot be written end the batch at once; their folder is made', async () => {
+  const some = Array.from({ length: 12 }, (_, i) => `in/${i + 10}.glb`).join(' ');
   if (existsSync('/dev/full')) {
-    const full = batch('/dev/full', 'full');
-    assert.equal(full.status, 1);
-    assert.match(full.stderr, /^cagecast: \/dev\/full: cannot be written [^\n]*\n$/);
-    assert.ok(readdirSync(at('full')).length < 9, 'no thread goes on with what is waiting');
+    const full = `batch ${some} --cage cage.glb --workers 2 -o full/{name}.glb --results /dev/full`;
+    await fails(1, /^cagecast: \/dev\/full: cannot be written /, full);
+    assert.ok(readdirSync('full').length < 9, 'no thread goes on with what is waiting');
   }
-  batch(at('made/for/results.jsonl'), 'made');
-  assert.equal(linesOf(readFileSync(at('made/for/results.jsonl'), 'utf8')).length, 12);
+  const { stderr } = await run(`${batch} --results made/for/results.jsonl`);
+  assert.match(stderr, /^1 job: 1 done, .*\n$/);
+  assert.equal(linesIn('made/for/results.jsonl').length, 1);
 });
 
-test('--resume does again what another job has overwritten since, and the last line about a target is true', () => {
-  const results = at('there-and-back.jsonl');
-  const output = at('there-and-back.glb');
-  const batch = (...more: string[]) =>
-    cagecast(
-      'batch',
-      at('in/0.glb'),
-      '--cage',
-      at('cage.glb'),
-      '-o',
-      output,
-      '--results',
-      results,
-      '--resume',
-      ...more,
-    );
-  const last = () => linesOf(readFileSync(results, 'utf8')).at(-1)!;
-  assert.equal(batch().status, 0);
-  const first = readFileSync(output);
-  batch('--threshold', '1');
-  assert.notDeepEqual(readFileSync(output), first);
-  assert.match(batch().stderr, /^1 job: 1 done, 0 failed;/);
-  assert.deepEqual(readFileSync(output), first);
-  assert.match(batch().stderr, /1 done before/);
-
+test('--resume does again what another job has overwritten since, and the last line about a target is true', async () => {
+  const line = `${batch} -o once/{name}.glb --results back.jsonl --resume`;
+  const last = () => linesIn('back.jsonl').at(-1)!;
+  assert.equal((await run(line)).status, 0);
+  const first = readFileSync('once/target.glb');
+  await run(`${line} --threshold 1`);
+  assert.notDeepEqual(readFileSync('once/target.glb'), first);
+  assert.equal(await counted(line), '1 job: 1 done, 0 failed');
+  assert.deepEqual(readFileSync('once/target.glb'), first);
+  assert.equal(await counted(line), '1 job: 0 done, 0 failed, 1 done before');
   // A job that failed, and then is as it was: the file is still its own.
-  const config = at('in/cagecast.config.json');
-  writeFileSync(config, '{ "treshold": 1 }');
-  try {
-    assert.equal(batch().status, 1);
-    assert.deepEqual([last().status, last().target], ['failed', at('in/0.glb')]);
-    assert.match(last().error!, /cagecast\.config\.json: "treshold" is unknown/);
-  } finally {
-    rmSync(config);
-  }
-  assert.equal(batch().status, 0);
-  assert.deepEqual([last().status, last().target], ['skipped', at('in/0.glb')]);
-
+  write('cagecast.config.json', '{ "treshold": 1 }');
+  assert.equal((await run(line)).status, 1);
+  assert.match(last().error!, /cagecast\.config\.json: "treshold" is unknown/);
+  rmSync('cagecast.config.json');
+  assert.equal((await run(line)).status, 0);
+  assert.deepEqual([last().status, last().target], ['skipped', 'target.glb']);
   // The same job fails, and then its file is there again.
-  const inFolder = [
-    'batch',
-    at('in/0.glb'),
-    '--cage',
-    at('cage.glb'),
-    '-o',
-    at('once/{name}.glb'),
-    '--results',
-    results,
-  ];
-  assert.equal(cagecast(...inFolder).status, 0);
-  renameSync(at('once'), at('twice'));
-  writeFileSync(at('once'), '');
-  assert.equal(cagecast(...inFolder).status, 1);
-  rmSync(at('once'));
-  renameSync(at('twice'), at('once'));
-  assert.equal(cagecast(...inFolder, '--resume').status, 0);
+  renameSync('once', 'twice');
+  write('once', '');
+  assert.equal((await run(line.replace(' --resume', ''))).status, 1);
+  rmSync('once');
+  renameSync('twice', 'once');
+  assert.equal((await run(line)).status, 0);
   assert.equal(last().status, 'skipped');
 });
 
-test('--resume adds no line for jobs of the same target that are all done', () => {
-  writeFileSync(at('other-cage.glb'), glbOf(scene.cage));
-  const jobs = ['cage', 'other-cage'].map((name) =>
-    JSON.stringify({ target: 'in/0.glb', cage: `${name}.glb`, output: `${name}-out.glb` }),
+test('--resume adds no line for jobs of one target that are all done, and does again what has no verdict', async () => {
+  write('other-cage.glb', glbOf(cage));
+  const cages = ['cage', 'other-cage'];
+  writeJobs(
+    'same.jsonl',
+    cages.map((name) => ({ target: 'target.glb', cage: `${name}.glb`, output: `${name}-out.glb` })),
   );
-  writeFileSync(at('same-target.jsonl'), jobs.join('\n'));
-  const results = at('same-target-results.jsonl');
-  for (const done of ['2 done', '0 done', '0 done']) {
-    const { stderr } = cagecast('batch', '--manifest', at('same-target.jsonl'), '--results', results, '--resume');
-    assert.match(stderr, new RegExp(`^2 jobs: ${done}, 0 failed`));
-    assert.equal(linesOf(readFileSync(results, 'utf8')).length, 2, done);
-  }
+  const line = 'batch --manifest same.jsonl --results same-results.jsonl --resume --workers 1';
+  assert.equal(await counted(`${line} --fail-on unfit`), '2 jobs: 2 done, 0 failed');
+  assert.equal(await counted(`${line} --fail-on unfit`), '2 jobs: 0 done, 0 failed, 2 done before');
+  assert.equal(linesIn('same-results.jsonl').length, 2);
+  const text = readFileSync('same-results.jsonl', 'utf8');
+  write(
+    'same-results.jsonl',
+    text.replace(/"verdict":"\w+"/, '"verdict":7').replace(/"verdict":"\w+"/, '"other":"good"'),
+  );
+  assert.equal(await counted(`${line} --fail-on unfit`), '2 jobs: 2 done, 0 failed');
 });
 
-test('--resume minds what a glTF has beside it, as it is read and as it is written', () => {
-  mkdirSync(at('text'));
-  for (const [name, bytes] of [
-    ['head', target],
-    ['cage', glbOf(scene.cage)],
-  ] as const) {
+test('--resume minds what a glTF has beside it, as it is read and as it is written', async () => {
+  for (const [name, bytes] of Object.entries({ head: glb, cage: glbOf(cage) })) {
     const { json, bin } = unpackGlb(bytes);
     json.buffers![0]!.uri = `${name}%20mesh.bin`;
-    writeFileSync(at('text', `${name}.gltf`), JSON.stringify(json));
-    writeFileSync(at('text', `${name} mesh.bin`), bin);
+    write(`${name}.gltf`, JSON.stringify(json));
+    write(`${name} mesh.bin`, bin);
   }
-  writeFileSync(at('text/wrong.gltf'), '{ "buffers": 1');
-  const names = [at('text/head.gltf'), at('text/wrong.gltf')];
-  const files = [
-    '--cage',
-    at('text/cage.gltf'),
-    '-o',
-    at('text/out/{name}.gltf'),
-    '--results',
-    at('text/results.jsonl'),
-  ];
-  const batch = () => cagecast('batch', ...names, ...files, '--resume').stderr.replace(/;.*\n/, '');
-  assert.equal(batch(), '2 jobs: 1 done, 1 failed');
-  assert.equal(batch(), '2 jobs: 0 done, 1 failed, 1 done before');
-  for (const read of ['head mesh.bin', 'cage mesh.bin']) {
-    writeFileSync(at('text', read), readFileSync(at('text', read)));
-    assert.equal(batch(), '2 jobs: 1 done, 1 failed', read);
+  const { json, bin } = unpackGlb(glb);
+  json.images = [{ uri: 'skin.png' }]; // a GLB may name files, too
+  write('named.glb', packGlb({ json, bin }));
+  write('skin.png', png(1, 1));
+  write('wrong.gltf', '{ "buffers": 1');
+  const line =
+    'batch head.gltf named.glb wrong.gltf --cage cage.gltf -o text/{name}.gltf --results text.jsonl --resume --workers 1';
+  assert.equal(await counted(line), '3 jobs: 2 done, 1 failed');
+  assert.equal(await counted(line), '3 jobs: 0 done, 1 failed, 2 done before');
+  for (const [change, done] of [
+    [() => write('head mesh.bin', readFileSync('head mesh.bin')), 1],
+    [() => write('skin.png', png(2, 1)), 1],
+    [() => write('cage mesh.bin', readFileSync('cage mesh.bin')), 2],
+    [() => rmSync('text/head.bin'), 1],
+  ] as const) {
+    change();
+    const before = done < 2 ? `, ${2 - done} done before` : '';
+    assert.equal(await counted(line), `3 jobs: ${done} done, 1 failed${before}`, String(change));
   }
-  assert.equal(batch(), '2 jobs: 0 done, 1 failed, 1 done before');
-  // A GLB may name files, too.
-  const { json, bin } = unpackGlb(target);
-  json.images = [{ uri: 'skin.png' }];
-  writeFileSync(at('text/named.glb'), packGlb({ json, bin }));
-  const skin = (red: number) => {
-    const png = Object.assign(new PNG({ width: 1, height: 1 }), { data: Buffer.from([red, 0, 0, 255]) });
-    writeFileSync(at('text/skin.png'), PNG.sync.write(png));
-  };
-  skin(1);
-  names[1] = at('text/named.glb');
-  assert.equal(batch(), '2 jobs: 1 done, 0 failed, 1 done before');
-  assert.equal(batch(), '2 jobs: 0 done, 0 failed, 2 done before');
-  skin(2);
-  assert.equal(batch(), '2 jobs: 1 done, 0 failed, 1 done before');
-  rmSync(at('text/out/head.bin'));
-  assert.equal(batch(), '2 jobs: 1 done, 0 failed, 1 done before');
-  assert.ok(existsSync(at('text/out/head.bin')));
-});
-
-test('a glTF gets its name after what it has beside it', () => {
-  const stopped = at('stop.mjs');
-  writeFileSync(
-    stopped,
-    `import fs from 'node:fs';
-    import { syncBuiltinESMExports } from 'node:module';
-    const { renameSync } = fs;
-    fs.renameSync = (...paths) => {
-      renameSync(...paths);
-      process.kill(process.pid, 'SIGKILL');
-    };
-    syncBuiltinESMExports();`,
-  );
-  mkdirSync(at('killed'));
-  spawnSync(process.execPath, [
-    ...['--import', pathToFileURL(stopped).href, 'dist/cli.js', 'transfer', at('in/0.glb')],
-    ...['--cage', at('cage.glb'), '-o', at('killed/head.gltf')],
-  ]);
-  const renamed = readdirSync(at('killed')).filter((name) => !name.endsWith('.tmp'));
-  assert.deepEqual(renamed, ['head.bin']);
-});
-
-test('a target whose name holds {dir} or $& gives its outputs that very name', () => {
-  mkdirSync(at('odd'));
-  const names = ['a$$b.glb', 'a$&b.glb', 'a{dir}b.glb', 'a{name}b.glb'];
-  for (const name of names) writeFileSync(at('odd', name), target);
-  const { stderr } = cagecast(
-    'batch',
-    at('odd/*.glb'),
-    '--cage',
-    at('cage.glb'),
-    '-o',
-    '{dir}/out/{name}.glb',
-    '--quiet',
-  );
-  assert.equal(stderr, '');
-  assert.deepEqual(readdirSync(at('odd/out')).sort(), names.sort());
-});
-
-test('settings that are wrong fail the jobs that they are for, and no other', () => {
-  mkdirSync(at('one'));
-  mkdirSync(at('two'));
-  for (const name of ['one/a.glb', 'two/b.glb']) writeFileSync(at(name), target);
-  writeFileSync(at('two/cagecast.config.json'), '{ "treshold": 1 }');
-  const { status, stdout } = cagecast('batch', at('one/a.glb'), at('two/b.glb'), '--cage', at('cage.glb'));
-  assert.equal(status, 1);
-  const lines = linesOf(stdout).sort((a, b) => a.target.localeCompare(b.target));
-  assert.deepEqual(
-    lines.map((line) => [line.target, line.status]),
-    [
-      [at('one/a.glb'), 'done'],
-      [at('two/b.glb'), 'failed'],
-    ],
-  );
-  writeFileSync(at('wrong.jsonl'), JSON.stringify({ target: 'one/a.glb', cage: 'cage.glb', treshold: 1 }));
-  const [line] = linesOf(cagecast('batch', '--manifest', at('wrong.jsonl')).stdout);
-  assert.deepEqual([line!.target, line!.status], [at('one/a.glb'), 'failed']);
-  assert.match(line!.error!, /^line 1 of /);
-  const quiet = cagecast('batch', at('one/a.glb'), at('two/b.glb'), '--cage', at('cage.glb'), '--quiet');
-  assert.deepEqual([quiet.status, quiet.stdout], [1, '']);
-  assert.match(quiet.stderr, /^cagecast: [^\n]*two\/cagecast\.config\.json: "treshold" is unknown[^\n]*\n$/);
-});
-
-test('an empty path fails its job, which names the member', () => {
-  const job = { target: 'in/0.glb', cage: 'cage.glb' };
-  const regions = [{ cage: 'cage.glb', texture: '' }];
-  const wrong = [{ target: '' }, { cage: '' }, { report: '' }, { neverMask: '' }, { regions }];
-  writeFileSync(at('empty.jsonl'), [{}, ...wrong].map((one) => JSON.stringify({ ...job, ...one })).join('\n'));
-  const { status, stdout, stderr } = cagecast('batch', '--manifest', at('empty.jsonl'));
-  assert.equal(status, 1);
-  assert.match(stderr, /^6 jobs: 1 done, 5 failed; /);
-  const errors = linesOf(stdout).flatMap(({ error }) => error ?? []);
-  const members = errors.map((error) => /^line (\d) of [^:]*: (.+) is empty/.exec(error)?.slice(1));
-  const empty = ['"target"', '"cage"', '"report"', '"neverMask"', 'regions[0]: "texture"'];
-  assert.deepEqual(
-    members.sort(),
-    empty.map((name, i) => [String(i + 2), name]),
-  );
-  const nothing = (...more: string[]) => cagecast('batch', at('in/0.glb'), '--cage', at('cage.glb'), ...more).stderr;
-  assert.match(
-    nothing(),
-    /^1 job: 1 done, .*\nno model or report written; for these, add -o OUT\.glb or --report R\.json\n$/,
-  );
-  assert.match(nothing('--results', at('nothing.jsonl')), /^1 job: 1 done, .*\n$/);
-});
-
-test('--resume does again what should have a verdict in the results, and has none', () => {
-  const results = at('verdicts.jsonl');
-  const batch = () => {
-    const files = [at('in/0.glb'), '--cage', at('cage.glb'), '--results', results];
-    return cagecast('batch', ...files, '--resume', '--fail-on', 'unfit').stderr.replace(/;.*\n/, '');
-  };
-  assert.equal(batch(), '1 job: 1 done, 0 failed');
-  const text = readFileSync(results, 'utf8');
-  for (const wrong of ['"verdict":7', '"other":"good"']) {
-    writeFileSync(results, text.replace(/"verdict":"\w+"/, wrong));
-    assert.equal(batch(), '1 job: 1 done, 0 failed', wrong);
-  }
-});
-
-test('with --fail-on reports have the verdict, which diff compares', () => {
-  const report = (cage: string) => {
-    const path = at(`${cage}.json`);
-    cagecast('batch', at('in/0.glb'), '--cage', at(`${cage}.glb`), '--report', path, '--fail-on', 'unfit');
-    return path;
-  };
-  const [good, bad] = [report('cage'), report('away')];
-  const { verdict, findings } = JSON.parse(readFileSync(bad, 'utf8')) as {
-    verdict: string;
-    findings: { sentence: string }[];
-  };
-  assert.equal(verdict, 'unfit');
-  assert.ok(findings[0]!.sentence);
-  const { status, stdout } = cagecast('diff', good, bad);
-  assert.equal(status, 4);
-  assert.match(stdout, /verdict +good +unfit +over/);
+  assert.ok(existsSync('text/head.bin'));
 });

@@ -2,7 +2,6 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { BoxGeometry, type BufferGeometry, SphereGeometry, Vector3 } from 'three';
 import { disjoint, type Rect } from '../../../wasm/src/three/gpu/rect';
-import { History } from '../../../wasm/src/three/layers/history';
 import { type CageMesh, CageTexels, kFacing, type SurfacePoint } from '../../../wasm/src/three/painting/cage-texels';
 import { Stroke } from '../../../wasm/src/three/painting/stroke';
 
@@ -125,38 +124,6 @@ test('`disjoint` covers the same texels without overlap', () => {
       }
     }
   }
-});
-
-test('the history drops the oldest commands at its memory limit, and undone ones after a new command', () => {
-  const history = new History();
-  const log: string[] = [];
-  const command = (name: string, megabytes = 0) => ({
-    name,
-    bytes: megabytes * 2 ** 20,
-    undo: () => log.push(`-${name}`),
-    redo: () => log.push(`+${name}`),
-  });
-  history.add(command('a', 60));
-  history.add(command('b', 60));
-  history.add(command('c', 60));
-  while (history.undo()) {}
-  assert.deepEqual(log, ['-c', '-b']);
-  history.redo();
-  history.add(command('d'));
-  assert.equal(history.redo(), undefined);
-  assert.deepEqual(log, ['-c', '-b', '+b']);
-  assert.equal(history.last!.name, 'd');
-  const failing = {
-    name: 'e',
-    bytes: 0,
-    undo: () => {
-      throw new Error('full');
-    },
-    redo: () => {},
-  };
-  history.add(failing);
-  assert.throws(() => history.undo(), /full/);
-  assert.equal(history.last, failing, 'what cannot be undone stays done');
 });
 
 test('a stroke around an edge of the cage stays on the cage', () => {

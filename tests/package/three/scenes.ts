@@ -1,6 +1,8 @@
-// Builds the models that the page draws, and reads what it has drawn. Runs in the browser.
+// What the scenes share: models, what is seen of them, and what must hold. Runs in the browser.
+import type { Painter } from 'cagecast/three/paint';
 import {
   AmbientLight,
+  Bone,
   BufferAttribute,
   Color,
   DataTexture,
@@ -8,13 +10,50 @@ import {
   Group,
   type Material,
   Mesh,
+  MeshStandardMaterial,
   type Object3D,
   PerspectiveCamera,
+  Raycaster,
   Scene,
+  Skeleton,
+  SkinnedMesh,
   SphereGeometry,
   SRGBColorSpace,
+  Vector2,
   WebGLRenderer,
 } from 'three';
+
+/** Scenes by what they show: each throws an error that says what it found instead. */
+export type Scenes = Record<string, () => void | Promise<void>>;
+
+/** @param found  What was found, for the message. */
+export function ok(condition: unknown, found: unknown): asserts condition {
+  if (!condition) throw new Error(`found: ${typeof found === 'string' ? found : JSON.stringify(found)}`);
+}
+
+/** Compares plain data. */
+export function equal(found: unknown, expected: unknown, what = 'it'): void {
+  const [is, should] = [found, expected].map((value) => JSON.stringify(value));
+  ok(is === should, `${what} is ${is}, not ${should}`);
+}
+
+/** Compares numbers one by one. @param most  By how much they may differ. */
+export const near = (found: readonly number[], expected: readonly number[], most = 3): void =>
+  ok(
+    found.every((value, k) => Math.abs(value - expected[k]!) <= most),
+    `${found} is not ${expected}`,
+  );
+
+/** Asserts that a call fails with a message. */
+export function refuses(call: () => unknown, message: RegExp): void {
+  let found = 'no error';
+  try {
+    call();
+  } catch (error) {
+    found = (error as Error).message;
+  }
+  ok(message.test(found), `${found} is not ${message}`);
+}
 
 /** Pixels on each side of what is drawn. */
 export const kSize = 64;
@@ -64,6 +103,20 @@ export function flat(color: number): DataTexture {
   return texture;
 }
 
+/** A texture of one colour with alpha, given as sRGB. */
+export function clear(color: number, alpha: number): DataTexture {
+  const texture = flat(color);
+  const data = texture.image.data as Uint8Array;
+  for (let at = 3; at < data.length; at += 4) data[at] = alpha;
+  return texture;
+}
+
+/** Texels with paint, and the highest of their alphas. */
+export function filled(painter: Painter): { texels: number; most: number } {
+  const alphas = painter.layers.toImageData().data.filter((_, at) => at % 4 === 3);
+  return { texels: alphas.filter((alpha) => alpha > 0).length, most: alphas.reduce((a, b) => Math.max(a, b)) };
+}
+
 /** A texture of two colours by turns, four columns wide: on a ball the first is seen on the left and the second on the right. */
 export function halves(left: number, right: number): DataTexture {
   const [a, b] = [flat(left), flat(right)].map(({ image }) => [...(image.data as Uint8Array).subarray(0, 4)]);
@@ -71,6 +124,22 @@ export function halves(left: number, right: number): DataTexture {
   texture.colorSpace = SRGBColorSpace;
   texture.needsUpdate = true;
   return texture;
+}
+
+export const white = (): MeshStandardMaterial => new MeshStandardMaterial({ color: 0xbbbbbb });
+
+/** A ball with one bone, and as many morph targets as asked. */
+export function skinned(morphs = 0): { model: Group; mesh: SkinnedMesh; bone: Bone } {
+  const geometry = ball(1, morphs);
+  const { count } = geometry.getAttribute('position');
+  const weights = Float32Array.from({ length: 4 * count }, (_, i) => Number(i % 4 === 0));
+  geometry.setAttribute('skinIndex', new BufferAttribute(new Uint16Array(4 * count), 4));
+  geometry.setAttribute('skinWeight', new BufferAttribute(weights, 4));
+  const [mesh, bone] = [new SkinnedMesh(geometry, white()), new Bone()];
+  mesh.frustumCulled = false;
+  const model = new Group().add(bone, mesh);
+  mesh.bind(new Skeleton([bone]));
+  return { model, mesh, bone };
 }
 
 /** Draws a model under a light from the side. @returns 4 numbers per pixel, and the number of draw calls. */
@@ -103,6 +172,33 @@ export function countOf(pixels: readonly number[], channel: 0 | 1 | 2): number {
     if (pixels[at + channel]! > 40 && pixels[at + channel]! > 2 * Math.max(...others)) ++count;
   }
   return count;
+}
+
+/** How many pixels of a model are red, green and blue. */
+export const colorsOf = (model: Object3D, layer = 0, from = camera): number[] => {
+  const { pixels } = draw(model, layer, from);
+  return ([0, 1, 2] as const).map((channel) => countOf(pixels, channel));
+};
+
+/** The colour that most of a model has: red, green, blue, or none. */
+export function lookOf(model: Object3D): string {
+  const seen = colorsOf(model).map((count) => count > 100);
+  return ['red', 'green', 'blue'].filter((_, channel) => seen[channel]).join() || 'none';
+}
+
+/** What a pixel of a picture is, 0 to 255. */
+export const pixelAt = (pixels: readonly number[], x: number, y: number): number[] =>
+  pixels.slice(4 * (y * kSize + x), 4 * (y * kSize + x) + 3);
+
+/** The colour in the middle of the picture. */
+export const middleOf = (model: Object3D): number[] => pixelAt(draw(model).pixels, kSize / 2, kSize / 2);
+
+/** A ray through a pixel of the picture. */
+export function ray(x: number, y: number): Raycaster {
+  const raycaster = new Raycaster();
+  camera.updateMatrixWorld();
+  raycaster.setFromCamera(new Vector2((2 * (x + 0.5)) / kSize - 1, (2 * (y + 0.5)) / kSize - 1), camera);
+  return raycaster;
 }
 
 /** The calls of WebGL that a frame takes, once everything is on the GPU. */

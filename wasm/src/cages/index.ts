@@ -8,7 +8,7 @@
 import type { Mesh } from '../api/mesh.js';
 import { CagecastError } from '../index.js';
 import { type CallOptions, type OnProgress, WorkerQueue } from '../worker/queue.js';
-import { spawn } from './spawn.js';
+import { spawn } from './spawn-cages.js';
 import type {
   Cage,
   CageModel,
@@ -21,7 +21,7 @@ import type {
   Template,
 } from './types.js';
 
-export { cageGlb } from './glb.js';
+export { cageGlb } from './cage-glb.js';
 export { type TemplateName, templateNames } from './template-names.js';
 export { loadTemplate } from './templates.js';
 export type * from './types.js';

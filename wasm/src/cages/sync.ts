@@ -11,6 +11,7 @@ import { CagecastError, type Code, isRecord, show } from '../core/error.js';
 import { failureOf, instantiate, notInitialised, unsupported } from '../core/instantiate.js';
 import { nameOf } from '../core/module.js';
 import { compileFile } from '../core/read-file.js';
+import type { CageAnswer, CagesAnswer, CagesModule, CoreLandmark, CoreOptions, CoreTemplate } from './cages-module.js';
 import {
   checkHoles,
   checkLandmarks,
@@ -19,8 +20,7 @@ import {
   checkParts,
   checkPatterns,
   checkTemplate,
-} from './check.js';
-import type { CageAnswer, CagesAnswer, CagesModule, CoreLandmark, CoreOptions, CoreTemplate } from './module.js';
+} from './check-arguments.js';
 import type {
   Cage,
   CageModel,

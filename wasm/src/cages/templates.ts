@@ -1,7 +1,7 @@
 import { show } from '../core/error.js';
 import { readFile } from '../core/read-file.js';
 import { CagecastError } from '../index.js';
-import { readExtras } from '../parts/template.js';
+import { readExtras } from '../parts/template-extras.js';
 import { type TemplateName, templateNames } from './template-names.js';
 import type { Cage } from './types.js';
 

@@ -1,9 +1,9 @@
 import type { CageModel, Template } from '../cages/types.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
-import { readExtras } from '../parts/template.js';
-import { type Extracted, type Part, worldMatrices } from './extract.js';
+import { readExtras } from '../parts/template-extras.js';
+import { type Extracted, type Part, worldMatrices } from './extract-file.js';
 import { InputError } from './input-error.js';
-import type { GltfFile } from './read.js';
+import type { GltfFile } from './read-gltf.js';
 
 /** What `cagecast/cages` needs of a file: its mesh, the names of its parts, and its joints. */
 export function cageModelOf(file: GltfFile, { mesh, parts }: Extracted): CageModel {

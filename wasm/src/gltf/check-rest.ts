@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { isObject, requireList } from './check.js';
+import { isObject, requireList } from './check-geometry.js';
 import { InputError } from './input-error.js';
 
 /**

@@ -2,9 +2,9 @@ import { type Accessor, Document, type GLTF, Logger, NodeIO, type TypedArray } f
 import { KHRDracoMeshCompression } from '@gltf-transform/extensions';
 import wasmBinary from 'draco3dgltf/draco_encoder.wasm';
 import createEncoderModule from 'draco3dgltf/draco_encoder_gltf_nodejs.js';
-import { dracoOf } from './check.js';
+import { dracoOf } from './check-geometry.js';
 import type { GlbWriter } from './glb-writer.js';
-import type { GltfFile } from './read.js';
+import type { GltfFile } from './read-gltf.js';
 
 const silent = new Logger(Logger.Verbosity.SILENT);
 

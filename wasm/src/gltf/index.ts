@@ -7,13 +7,13 @@ import type { Document, Transform } from '@gltf-transform/core';
 import type { Mesh, TransferOptions, TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import type { MaskSources } from './bake/masks.js';
-import { transferDocument, wrong } from './document/transfer.js';
-import { addTransfer } from './document/write.js';
+import { addTransfer } from './document/add-transfer.js';
+import { transferDocument, wrong } from './document/transfer-document.js';
 
-export { type BakeOptions, bake } from './bake/document.js';
+export { type BakeOptions, bake } from './bake/bake-document.js';
 export type { MaskSources } from './bake/masks.js';
 export type { BakeReport, ImageCodec, Paints } from './bake/plan.js';
-export { type CheckOptions, checkGltf } from './check-file.js';
+export { type CheckOptions, checkGltf } from './check-gltf.js';
 export {
   addCage,
   cageModel,
@@ -23,7 +23,7 @@ export {
   fitCage,
   makeCage,
   refineCage,
-} from './document/cages.js';
+} from './document/document-cages.js';
 export type { ReadLimits } from './limits.js';
 
 /** The ranges of a part of a document in the arrays of a result. */

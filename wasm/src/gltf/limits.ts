@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { bytesOf, dracoOf, meshoptView, topNodes } from './check.js';
+import { bytesOf, dracoOf, meshoptView, topNodes } from './check-geometry.js';
 import { InputError } from './input-error.js';
 import { isMarked } from './overlay.js';
 import { hasTriangles } from './pieces.js';

@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { imageIsWhole, imageType, ktx2Problem } from './image.js';
+import { imageIsWhole, imageType, ktx2Problem } from './image-file.js';
 import { InputError } from './input-error.js';
 
 /** The attribute with the `Zone` of each vertex, a byte: 0 may be painted, other values are Non-Cosmetic Zones. */

@@ -1,6 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import { show } from '../core/error.js';
-import { checkLists } from './check.js';
+import { checkLists } from './check-geometry.js';
 import { InputError } from './input-error.js';
 import { checkNesting, type ReadLimits } from './limits.js';
 

@@ -3,7 +3,7 @@ import type { Mesh } from '../api/mesh.js';
 import { movePoints } from '../parts/points.js';
 import { InputError } from './input-error.js';
 import { identity, isMirrored, type Matrix } from './matrix.js';
-import { transformUvs, type UvLayout } from './uv-transform.js';
+import { layUvs, type UvLayout } from './uv-layout.js';
 
 /** One primitive of one node, and the ranges of its elements in the joined arrays. */
 export interface Piece {
@@ -23,19 +23,43 @@ export interface Piece {
   localIndices: Uint32Array;
 }
 
-/** Where the next piece begins: how many vertices and triangles there are before it. */
+/** A primitive of a node, as a reader finds it. */
+interface Found {
+  node: string | undefined;
+  mesh: string | undefined;
+  material: string | undefined;
+  /** What it is called if neither node nor mesh has a name. */
+  place: string;
+  /** How many primitives its mesh has. */
+  primitives: number;
+  matrix: Matrix;
+  positions: Float32Array;
+  indices: Uint32Array;
+}
+
+/** The piece that a primitive makes after others. */
+export function nextPiece(pieces: readonly Piece[], { node, mesh, material, ...found }: Found): Piece {
+  const own = node || mesh || found.place;
+  const name = material && material !== own && found.primitives > 1 ? `${own}/${material}` : own;
+  const [firstVertex, firstTriangle] = endOf(pieces);
+  return {
+    name,
+    aliases: [...new Set([node, mesh, material, name])].filter((one) => one !== undefined && one !== '') as string[],
+    matrix: found.matrix,
+    firstVertex,
+    vertexCount: found.positions.length / 3,
+    firstTriangle,
+    triangleCount: found.indices.length / 3,
+    localPositions: found.positions,
+    localIndices: found.indices,
+  };
+}
+
+/** How many vertices and triangles there are in pieces. */
 export function endOf(pieces: readonly Piece[]): [vertices: number, triangles: number] {
   const last = pieces.at(-1);
   return last ? [last.firstVertex + last.vertexCount, last.firstTriangle + last.triangleCount] : [0, 0];
 }
-
-/** The names among some, each once. */
-export const aliasesOf = (...names: (string | undefined)[]): string[] =>
-  [...new Set(names.filter((name) => name !== undefined && name !== ''))] as string[];
-
-/** The name of a piece. @param name  Of its node. @param primitives  How many its mesh has. */
-export const pieceName = (name: string, material: string | undefined, primitives: number): string =>
-  material && material !== name && primitives > 1 ? `${name}/${material}` : name;
 
 const kTriangles = 4;
 const kTriangleStrip = 5;
@@ -127,7 +151,7 @@ export function decodeUvs(
   if (accessor.getCount() !== vertexCount)
     throw new InputError(`${place} has ${accessor.getCount()} ${set} for ${vertexCount} vertices`);
   const uvs = decodeFloats(accessor);
-  return transform ? transformUvs(uvs, transform) : uvs;
+  return layUvs(uvs, transform);
 }
 
 /** All components of an accessor as 32-bit floats, with normalised integers decoded. */

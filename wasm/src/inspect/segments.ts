@@ -31,7 +31,7 @@ export interface Segment {
 }
 
 /** The segments in the order of their numbers, with the parts they belong to. */
-export function segmentsOf({ parts, result }: Scene): Segment[] {
+export function segmentsOf({ parts, result }: Pick<Scene, 'parts' | 'result'>): Segment[] {
   const partOf = partsOf(parts, result.segments.length);
   const partOfSegment = new Uint32Array(result.segmentStats.length);
   for (let v = result.segments.length - 1; v >= 0; --v) partOfSegment[result.segments[v]!] = partOf[v]!;

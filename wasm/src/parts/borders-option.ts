@@ -1,3 +1,4 @@
+import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 
 /** Where the paint ends: at existing triangle edges, or at the borders of the cage, along which triangles are cut. */
@@ -9,7 +10,7 @@ export function isCut(fn: string, borders: Borders = 'triangle'): boolean {
     throw new CagecastError(
       'badOption',
       fn,
-      `options.borders = ${JSON.stringify(borders)} is unknown; there are: "triangle", "cut"`,
+      `options.borders = ${show(borders)} is unknown; there are: "triangle", "cut"`,
     );
   return borders === 'cut';
 }

@@ -36,9 +36,14 @@ export function listJoints<Node>(
   for (const joint of joints) if (!first.has(joint.node)) first.set(joint.node, joint);
   const numbers = new Map([...first.keys()].map((node, j) => [node, j]));
   return [...first.values()].map(({ node, name, position }) => {
+    // In a damaged file a node may be below itself.
+    const passed = new Set([node]);
     let above = parentOf(node) ?? undefined;
-    while (above !== undefined && !numbers.has(above)) above = parentOf(above) ?? undefined;
-    return { name, position, parent: above === undefined ? -1 : numbers.get(above)! };
+    while (above !== undefined && !numbers.has(above) && !passed.has(above)) {
+      passed.add(above);
+      above = parentOf(above) ?? undefined;
+    }
+    return { name, position, parent: above === undefined || passed.has(above) ? -1 : numbers.get(above)! };
   });
 }
 

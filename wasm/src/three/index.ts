@@ -10,15 +10,21 @@ import type { CutPart } from '../parts/cut-part.js';
 import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
-import { apply, rangesOf, statesOf } from './apply.js';
-import { type Calling, nextTask, runInTasks } from './async.js';
-import { cutGeometry } from './cut.js';
-import { type Extracted, extract, type Part, placesOf } from './extract.js';
-import { type Applied, type ApplyOptions, checkLengths, checkOptions, transferOptions } from './options.js';
-import { paintAttribute } from './paint.js';
-import { checkSaved, deserialize, keyOf, remember, type Saved, serialize } from './saved.js';
-import { zoneAttribute } from './shown-parts.js';
-import { atOnce } from './split.js';
+import { apply, rangesOf, statesOf } from './apply/apply.js';
+import {
+  type Applied,
+  type ApplyOptions,
+  checkLengths,
+  checkOptions,
+  type Saved,
+  transferOptions,
+} from './apply/apply-options.js';
+import { cutGeometry } from './apply/cut-geometry.js';
+import { type Extracted, extract, type Part } from './apply/extract-scene.js';
+import { atOnce } from './apply/remake.js';
+import { checkSaved, deserialize, keyOf, remember, serialize } from './apply/saved-transfer.js';
+import { zoneAttribute } from './apply/shown-parts.js';
+import { type Calling, nextTask, runInTasks } from './apply/tasks.js';
 
 export {
   cageGeometry,
@@ -30,7 +36,7 @@ export {
   type LoadedGltf,
   makeCage,
   refineCage,
-} from './loaded-cages.js';
+} from './apply/loaded-cages.js';
 export { type ModelMasks, modelMasks } from './masks.js';
 export {
   type Applied,
@@ -44,8 +50,6 @@ export {
   type Part,
   type PartRange,
   type Prepared,
-  paintAttribute,
-  placesOf,
   type Saved,
   type SplitPart,
   serialize,

@@ -2,9 +2,9 @@ import type { BufferGeometry, Object3D, Texture } from 'three';
 import { type Image, maskTriangles, maskVertices } from '../bake/index.js';
 import type { Masks } from '../index.js';
 import { localIndices } from '../parts/prepare.js';
-import { wrong } from './error.js';
-import { extract, valuesOf } from './extract.js';
-import { checkObject } from './options.js';
+import { checkObject } from './apply/apply-options.js';
+import { extract, valuesOf } from './apply/extract-scene.js';
+import { wrong } from './errors.js';
 
 /** Where the masks of a model come from. */
 export interface ModelMasks {

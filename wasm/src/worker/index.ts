@@ -76,7 +76,7 @@ export function presetOptions(preset?: Preset, options: CallOptions = {}): Promi
   return withOptions('presetOptions', [preset], options);
 }
 
-/** What `applyTransferAsync` of `cagecast/three` does in the worker; not meant for others. */
+/** What `applyTransferAsync` of `cagecast/three` does in the worker; not meant for others. @internal */
 export function prepareParts(input: PrepareInput, options: CallOptions = {}): Promise<Prepared> {
   return queue.call('prepareParts', [input], options);
 }

@@ -22,6 +22,7 @@ const kPackageOrder = [
   'viewer',
   'cli',
 ];
+const kCommandOrder = ['model', 'io', 'transfer', 'commands', 'command', 'main'];
 const kPageOrder = [
   'platform',
   'scene',
@@ -40,8 +41,9 @@ const kPageOrder = [
   'app',
 ];
 
-/** The orders, by where they hold. */
+/** The orders, by where they hold: of those that hold two files, the first counts. */
 const kOrders = {
+  'wasm/src/cli/': kCommandOrder,
   'core/src/': kCoreOrder,
   'core/cages/': kCagesOrder,
   'wasm/src/': kPackageOrder,

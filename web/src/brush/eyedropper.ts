@@ -1,4 +1,4 @@
-import { type Composite, readStraight } from 'cagecast/three/layers';
+import { type Composite, readStraight } from 'cagecast/three/paint';
 import { announce, element } from '../platform/page';
 import type { Spot } from '../view/pick';
 import type { Viewer } from '../view/viewer';

@@ -1,5 +1,4 @@
-import { Emitter } from 'cagecast/three/layers';
-import { type PaintingSize, paintingSizes } from 'cagecast/three/paint';
+import { Emitter, type PaintingSize, paintingSizes } from 'cagecast/three/paint';
 import { element } from '../platform/page';
 
 /** The painting tools; each shows its own options. */

@@ -1,12 +1,13 @@
-import { type Layer, readStraight } from 'cagecast/three/layers';
 import {
   type Aim,
   type CageMesh,
+  type Layer,
   LayerPainter,
   type PaintedLayers,
   PaintedSheet,
   type PaintingSize,
   type PointerView,
+  readStraight,
   StickersSheet,
 } from 'cagecast/three/paint';
 import { showError } from '../platform/page';

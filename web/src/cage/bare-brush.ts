@@ -1,4 +1,4 @@
-import type { Command, History } from 'cagecast/three/layers';
+import type { Command, History } from 'cagecast/three/paint';
 import type { Vector3 } from 'three';
 import { Ring } from '../brush/ring';
 import { announce, element } from '../platform/page';

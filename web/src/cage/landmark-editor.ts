@@ -1,4 +1,4 @@
-import type { Command, History } from 'cagecast/three/layers';
+import type { Command, History } from 'cagecast/three/paint';
 import { Box3, Plane, Vector3 } from 'three';
 import { firstHit } from '../explain/ray';
 import { announce, element } from '../platform/page';

@@ -1,6 +1,6 @@
 import type { CageModel } from 'cagecast/cages';
 import { cageModel } from 'cagecast/three';
-import type { History } from 'cagecast/three/layers';
+import type { History } from 'cagecast/three/paint';
 import { announce, element } from '../platform/page';
 import type { CageMaker } from '../scene/cage-maker';
 import { loadModel, type Model } from '../scene/load-model';

@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/layers';
+import type { History } from 'cagecast/three/paint';
 import { element } from '../platform/page';
 import type { CageMaker } from '../scene/cage-maker';
 import type { Session } from '../scene/session';

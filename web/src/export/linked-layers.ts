@@ -1,4 +1,4 @@
-import { type Blend, blendModes, type Edits, type Layer, type LayerStack, type Style } from 'cagecast/three/layers';
+import { type Blend, blendModes, type Edits, type Layer, type LayerStack, type Style } from 'cagecast/three/paint';
 import { pngOf } from '../platform/png';
 import type { Opener } from '../scene/opener';
 import { type Paint, titleOf } from '../scene/paint';

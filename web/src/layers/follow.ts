@@ -1,4 +1,4 @@
-import { Composite, type Edits, type LayerStack } from 'cagecast/three/layers';
+import { Composite, type Edits, type LayerStack } from 'cagecast/three/paint';
 import type { Model } from '../scene/load-model';
 import { type Paint, titleOf } from '../scene/paint';
 import { haveSameUvs } from '../scene/same-uvs';

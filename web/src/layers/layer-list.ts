@@ -6,7 +6,7 @@ import {
   type LayerStack,
   maxLayers,
   type Style,
-} from 'cagecast/three/layers';
+} from 'cagecast/three/paint';
 import { announce, element } from '../platform/page';
 
 // One transparent pixel.

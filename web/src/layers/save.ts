@@ -1,4 +1,4 @@
-import { type Composite, readStraight } from 'cagecast/three/layers';
+import { type Composite, readStraight } from 'cagecast/three/paint';
 import type { WebGLRenderer } from 'three';
 import { download } from '../platform/download';
 import { requireGraphics } from '../platform/graphics';

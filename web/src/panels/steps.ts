@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/layers';
+import type { History } from 'cagecast/three/paint';
 import type { ChosenShape } from '../live/deform';
 import type { Live } from '../live/live-panel';
 import { type Controlled, ControlSteps } from '../platform/controls';

@@ -1,4 +1,4 @@
-import type { Command, History } from 'cagecast/three/layers';
+import type { Command, History } from 'cagecast/three/paint';
 
 /** A state that people change by controls of the page, other than the layers. */
 export interface Controlled<State = unknown> {

@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/layers';
+import type { History } from 'cagecast/three/paint';
 
 const kSaving = ['export-glb', 'stage-save', 'save-texture', 'save-project'];
 

@@ -1,4 +1,4 @@
-import type { Command, History } from 'cagecast/three/layers';
+import type { Command, History } from 'cagecast/three/paint';
 import { readLink } from '../export/link';
 import { showError } from '../platform/page';
 import type { Session } from '../scene/session';

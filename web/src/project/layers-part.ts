@@ -4,10 +4,11 @@ import {
   type Layer,
   type LayerStack,
   maxLayers,
+  PaintedSheet,
+  paintingSizes,
   type Sheet,
   type Style,
-} from 'cagecast/three/layers';
-import { PaintedSheet, paintingSizes } from 'cagecast/three/paint';
+} from 'cagecast/three/paint';
 import type { Painter } from '../brush/painter';
 import type { Opener } from '../scene/opener';
 import { loadPaint, type Paint } from '../scene/paint';

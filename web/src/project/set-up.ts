@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/layers';
+import type { History } from 'cagecast/three/paint';
 import type { Live } from '../live/live-panel';
 import { download } from '../platform/download';
 import { announce, element, showError } from '../platform/page';

@@ -1,6 +1,6 @@
 import type { Cage, CageModel, Fit, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
 import { cageModel } from 'cagecast/three';
-import { Emitter } from 'cagecast/three/layers';
+import { Emitter } from 'cagecast/three/paint';
 import type { WebGLRenderer } from 'three';
 import { download } from '../platform/download';
 import { announce, element } from '../platform/page';

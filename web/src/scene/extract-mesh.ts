@@ -1,5 +1,5 @@
 import { extract, type Part } from 'cagecast/three';
-import type { Mesh, MeshStandardMaterial, Object3D, Texture } from 'three';
+import type { Mesh, Object3D } from 'three';
 
 /** One triangle mesh of the scene, and the ranges of its elements in the concatenated arrays; its name is for people. */
 export interface Primitive extends Omit<Part, 'geometry'> {
@@ -40,21 +40,7 @@ export function extractMesh(
     const name = nameOf(mesh) || part.name;
     return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0 };
   });
-  for (const { mesh: one, firstVertex, vertexCount } of mesh.uvs ? primitives : []) {
-    const { map } = one.material as Partial<MeshStandardMaterial>;
-    if (map) transformUvs(mesh.uvs!.subarray(2 * firstVertex, 2 * (firstVertex + vertexCount)), map);
-  }
   return { ...mesh, primitives };
-}
-
-/** Moves UVs to where they are in a texture, as KHR_texture_transform says: scaled, rotated, then moved. `Texture.matrix` scales last. */
-function transformUvs(uvs: Float32Array, { offset, rotation, repeat }: Texture): void {
-  const [cos, sin] = [Math.cos(rotation), Math.sin(rotation)];
-  for (let i = 0; i < uvs.length; i += 2) {
-    const [u, v] = [repeat.x * uvs[i]!, repeat.y * uvs[i + 1]!];
-    uvs[i] = offset.x + cos * u + sin * v;
-    uvs[i + 1] = offset.y - sin * u + cos * v;
-  }
 }
 
 /** Swaps the last two corners of every triangle. */

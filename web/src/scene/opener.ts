@@ -1,4 +1,4 @@
-import type { Edits, LayerStack, Sheet } from 'cagecast/three/layers';
+import type { Edits, LayerStack, Sheet } from 'cagecast/three/paint';
 import type { WebGLRenderer } from 'three';
 import { element, showError } from '../platform/page';
 import { madeOf, sampleOf } from './cage-maker';

@@ -1,4 +1,4 @@
-import { maxCompositeSize } from 'cagecast/three/layers';
+import { maxCompositeSize } from 'cagecast/three/paint';
 import { CanvasTexture, RepeatWrapping, SRGBColorSpace, Texture } from 'three';
 import type { Sample } from './samples';
 

@@ -1,4 +1,4 @@
-import { type Edits, type Layer, type LayerStack, maxLayers, type Sheet } from 'cagecast/three/layers';
+import { type Edits, type Layer, type LayerStack, maxLayers, type Sheet } from 'cagecast/three/paint';
 import { element, showError } from '../platform/page';
 import type { Model } from './load-model';
 import { haveSameUvs } from './same-uvs';

@@ -10,7 +10,7 @@ import {
 } from 'cagecast';
 import type { Inspection } from 'cagecast/inspect';
 import type { Borders } from 'cagecast/three';
-import { Emitter } from 'cagecast/three/layers';
+import { Emitter } from 'cagecast/three/paint';
 import { Pace } from '../platform/pace';
 import type { Model } from './load-model';
 import { makeChecker, type Paint } from './paint';

@@ -1,4 +1,4 @@
-import { Emitter } from 'cagecast/three/layers';
+import { Emitter } from 'cagecast/three/paint';
 import { addError } from '../platform/page';
 import type { Avatar } from './avatar';
 

@@ -1,4 +1,4 @@
-import type { LayerStack } from 'cagecast/three/layers';
+import type { LayerStack } from 'cagecast/three/paint';
 import type { Texture } from 'three';
 import { element, showError } from '../platform/page';
 import { modelsAmong } from '../scene/files';

@@ -2,7 +2,7 @@ import { type MaskImages, maskTriangles, maskVertices } from '../../bake/index.j
 import type { Masks } from '../../index.js';
 import { InputError } from '../input-error.js';
 import { endOf } from '../pieces.js';
-import { transformUvs } from '../uv-transform.js';
+import { layUvs } from '../uv-layout.js';
 import { type BakeModel, colorsOf, colorUseOf, uvsOf } from './plan.js';
 
 /** Where masks can come from, beside arrays. */
@@ -44,7 +44,7 @@ export function masksOf<Material, Texture>(
     const stored = shown && uvsOf(model, part, use?.set ?? 'TEXCOORD_0');
     if (!stored) continue;
     hasUvs = true;
-    const uvs = transformUvs(stored, use?.transform);
+    const uvs = layUvs(stored, use?.transform);
     triangles.set(maskTriangles({ indices: part.localIndices, uvs }, shown), part.firstTriangle);
   }
   if (colors !== undefined && !hasColors) throw new InputError(`no part has ${colors} of 3 or 4 numbers`);

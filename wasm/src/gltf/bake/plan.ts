@@ -16,7 +16,7 @@ import { blend } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
 import { decodeFloats, type Piece, requireFinite } from '../pieces.js';
 import { groupMember } from '../primitive-group.js';
-import { transformUvs, type UvLayout } from '../uv-transform.js';
+import { layUvs, type UvLayout } from '../uv-layout.js';
 
 /** What of a material a paint goes to: its base colour, its normals, or occlusion, roughness and metalness. */
 export const slots = ['color', 'normal', 'orm'] as const;
@@ -316,7 +316,7 @@ export function layoutOf<Material, Texture>(
   };
   return {
     name: part.name,
-    to: ofCorners(transformUvs(stored, transform), 2),
+    to: ofCorners(layUvs(stored, transform), 2),
     from: gather(split.uvs, 2, split.indices),
     painted: cosmetic,
     positions: ofCorners(part.localPositions, 3),

@@ -34,6 +34,7 @@ const uniforms = () => ({ source: { value: null as Texture | null }, level: { va
 /**
  * Reads a premultiplied texture as an image file has it: sRGB, colours not multiplied by alpha, upper row first.
  * @param size Pixels a side of the image. Waits for the GPU.
+ * @internal
  */
 export function readStraight(renderer: WebGLRenderer, source: Texture, size: number): ImageData {
   const target = new WebGLRenderTarget(size, size, { colorSpace: NoColorSpace, depthBuffer: false });

@@ -1,4 +1,4 @@
-import { kErased } from '../gpu/index.js';
+import { kErased } from '../gpu/erased.js';
 
 /** How layers are read. */
 interface Recipe {

@@ -10,7 +10,9 @@ import {
   type WebGLRenderer,
   WebGLRenderTarget,
 } from 'three';
-import { disjoint, kMaxRects, kWhole, Pass, type Rect, refreshMipmaps, toTexels } from '../gpu/index.js';
+import { refreshMipmaps } from '../gpu/mipmaps.js';
+import { kMaxRects, Pass } from '../gpu/pass.js';
+import { disjoint, kWhole, type Rect, toTexels } from '../gpu/rect.js';
 import { fragmentShader } from './composite-shader.js';
 import { blendModes, type Layer, type Sheet } from './layer.js';
 
@@ -18,7 +20,7 @@ import { blendModes, type Layer, type Sheet } from './layer.js';
 const kMaxAtOnce = 8;
 const kMinSize = 1024; // texels per side
 const kVideo = 2; // how its colours are stored, in the shader
-/** The greatest number of texels per side of a composite. */
+/** The greatest number of texels per side of a composite. @internal */
 export const maxCompositeSize = 2048;
 
 /** A stroke in progress: shown over one sheet, or erased from it, until it is committed. */
@@ -36,6 +38,7 @@ const kFormat = { colorSpace: SRGBColorSpace, depthBuffer: false } as const;
 /**
  * The layers blended into one texture, with mipmaps and premultiplied alpha. `update` redraws it after a change, and only the
  * parts that changed.
+ * @internal
  */
 export class Composite {
   readonly #target = new WebGLRenderTarget(kMinSize, kMinSize, {

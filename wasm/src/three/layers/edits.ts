@@ -4,7 +4,7 @@ import type { LayerStack } from './stack.js';
 
 const kOneGo = 600; // milliseconds: equal edits of a layer in quick succession, such as by a held key, become one step
 
-/** Records changes of the layers in the undo history. */
+/** Records changes of the layers in the undo history. @internal */
 export class Edits {
   readonly #stack: LayerStack;
   readonly #history: History;

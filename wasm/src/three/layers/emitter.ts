@@ -1,4 +1,4 @@
-/** Typed events. */
+/** Typed events. @internal */
 export class Emitter<Events> {
   readonly #listeners: { [Name in keyof Events]?: Set<(event: Events[Name]) => void> } = {};
 

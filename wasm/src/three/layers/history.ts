@@ -1,6 +1,6 @@
 import { Emitter } from './emitter.js';
 
-/** An action that can be undone. */
+/** An action that can be undone. @internal */
 export interface Command {
   /** For people, such as “stroke”. */
   name: string;
@@ -12,7 +12,7 @@ export interface Command {
 
 const kMaxBytes = 128 * 2 ** 20;
 
-/** The undo history, limited to 128 MiB: the oldest commands are dropped first. */
+/** The undo history, limited to 128 MiB: the oldest commands are dropped first. @internal */
 export class History extends Emitter<{ change: undefined }> {
   #done: Command[] = [];
   #undone: Command[] = [];

@@ -1,6 +1,5 @@
 import type { Texture } from 'three';
-import { CagecastError } from '../../index.js';
-import { describe } from '../describe.js';
+import { check, checkColor, checkShare, kPaint, notA } from '../errors.js';
 
 /** How a layer is blended with the layers below: as in “Compositing and Blending” of the W3C, in linear light. */
 export const blendModes = ['normal', 'multiply', 'screen', 'add'] as const;
@@ -33,20 +32,21 @@ export interface Style {
 /** The style of a layer by default. */
 export const plainStyle: Style = { opacity: 1, tint: '#ffffff', blend: 'normal', visible: true };
 
-/** The fields of a style that are not undefined, and no others that were given with it. @throws {CagecastError} `badOption` that names the field and its value. */
-export function readStyle(style: Partial<Style>): Partial<Style> {
-  const check = (fits: boolean, name: string, value: unknown, what: string): void => {
-    if (!fits)
-      throw new CagecastError('badOption', 'cagecast/three/layers', `${name} is ${describe(value)}, not ${what}`);
-  };
-  check(typeof style === 'object' && !!style, 'style', style, 'an object');
-  const { opacity = 1, tint = '#ffffff', blend = 'normal', visible = true } = style;
-  check(opacity >= 0 && opacity <= 1, 'opacity', opacity, 'a number from 0 to 1');
-  check(/^#[0-9a-f]{6}$/i.test(tint), 'tint', tint, 'a colour such as #ff8800');
+/**
+ * The fields of a style that are not undefined, and no others that were given with it.
+ * @param argument  The name of the argument, for messages.
+ * @throws {CagecastError} `badOption` that names the field and its value.
+ */
+export function readStyle(style: Partial<Style>, argument = 'style'): Partial<Style> {
+  check(typeof style === 'object' && style !== null, argument, style, 'an object');
+  const isGiven = ([name, value]: [string, unknown]) => name in plainStyle && value !== undefined;
+  const given = Object.fromEntries(Object.entries(style).filter(isGiven));
+  const { opacity, tint, blend, visible } = { ...plainStyle, ...given };
+  checkShare('opacity', opacity);
+  checkColor('tint', tint);
   check(blendModes.includes(blend), 'blend', blend, `one of ${blendModes.join(', ')}`);
   check(typeof visible === 'boolean', 'visible', visible, 'true or false');
-  // Spread, undefined would take the place of a value.
-  return Object.fromEntries(Object.entries(style).filter(([name, value]) => name in plainStyle && value !== undefined));
+  return given;
 }
 
 /** A name that no layer has: a kind and a number. */
@@ -58,12 +58,7 @@ export function freeName(kind: string, layers: readonly Layer[]): string {
 
 /** @throws {CagecastError} `badArgument` if a value is not a texture. */
 export function checkTexture(texture: Texture, argument: string): void {
-  if (texture?.isTexture !== true)
-    throw new CagecastError(
-      'badArgument',
-      'cagecast/three/layers',
-      `${argument} is ${describe(texture)}, not a Texture`,
-    );
+  if (texture?.isTexture !== true) throw notA('a Texture', argument, texture, kPaint);
 }
 
 /** One layer of paint. A change of the stack makes a new object; the `id` stays. */

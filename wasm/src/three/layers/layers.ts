@@ -1,6 +1,6 @@
 import type { Texture, WebGLRenderer } from 'three';
-import { CagecastError } from '../../index.js';
-import { readStraight } from '../gpu/index.js';
+import { check, kPaint, notA, wrong } from '../errors.js';
+import { readStraight } from '../gpu/straight.js';
 import { Composite, maxCompositeSize } from './composite.js';
 import { Edits } from './edits.js';
 import { Emitter } from './emitter.js';
@@ -33,10 +33,13 @@ export class Layers extends Emitter<{
   /** The graphics context was lost and is back: what was painted has to be uploaded again. For painters. */
   restored: undefined;
 }> {
-  /** The layers by themselves, with their events; what is changed here cannot be undone. */
+  /** The layers by themselves, with their events; what is changed here cannot be undone. @internal */
   readonly stack = new LayerStack();
+  /** @internal */
   readonly history = new History();
+  /** @internal */
   readonly edits = new Edits(this.stack, this.history);
+  /** @internal */
   readonly composite: Composite;
   readonly renderer: WebGLRenderer;
   readonly #restored = (): void => {
@@ -49,10 +52,8 @@ export class Layers extends Emitter<{
     super();
     const { renderer, size } = options ?? {};
     // Other renderers have no such map.
-    if (typeof renderer?.properties?.get !== 'function')
-      throw new CagecastError('badArgument', 'cagecast/three/layers', 'options.renderer is not a WebGLRenderer');
-    if (size !== undefined && !kSizes.includes(size))
-      throw new CagecastError('badOption', 'cagecast/three/layers', `size is ${size}, not one of ${kSizes.join(', ')}`);
+    if (typeof renderer?.properties?.get !== 'function') throw wrong('options.renderer is not a WebGLRenderer', kPaint);
+    if (size !== undefined) check(kSizes.includes(size), 'size', size, `one of ${kSizes.join(', ')}`);
     this.renderer = renderer;
     this.composite = new Composite(size);
     this.stack.on('change', (layers) => {
@@ -83,7 +84,7 @@ export class Layers extends Emitter<{
    */
   add(texture: Texture, options: NewLayer = {}): Layer {
     checkTexture(texture, 'texture');
-    const style = readStyle(options);
+    const style = readStyle(options, 'options');
     const { name, place } = options;
     const title = name ?? (texture.name || freeName('Layer', this.list));
     return this.edits.do(`adding ${title}`, () => {
@@ -146,13 +147,13 @@ export class Layers extends Emitter<{
     return this.composite.update(this.renderer);
   }
 
-  /** Announces that a part of the texture has changed, or that a stroke is in progress. For painters. */
+  /** Announces that a part of the texture has changed, or that a stroke is in progress. For painters. @internal */
   touch(...change: Parameters<Composite['touch']>): void {
     this.composite.touch(...change);
     this.announce();
   }
 
-  /** Tells that the texture will change. For painters that have told `composite` what changed. */
+  /** Tells that the texture will change. For painters that have told `composite` what changed. @internal */
   announce(): void {
     this.emit('change', undefined);
   }
@@ -164,11 +165,7 @@ export class Layers extends Emitter<{
    */
   toImageData(size = this.composite.size): ImageData {
     if (!(Number.isInteger(size) && size > 0 && size <= maxCompositeSize))
-      throw new CagecastError(
-        'badArgument',
-        'cagecast/three/layers',
-        `size is ${size}, not an integer from 1 to ${maxCompositeSize}`,
-      );
+      throw notA(`an integer from 1 to ${maxCompositeSize}`, 'size', size, kPaint);
     this.update();
     return readStraight(this.renderer, this.texture, size);
   }
@@ -180,8 +177,9 @@ export class Layers extends Emitter<{
     this.composite.dispose();
   }
 
-  #nameOf({ id }: Pick<Layer, 'id'>): string {
-    return this.list.find((layer) => layer.id === id)?.name ?? 'a layer';
+  #nameOf(layer: Pick<Layer, 'id'>): string {
+    if (typeof layer?.id !== 'number') throw notA('a layer', 'layer', layer, kPaint);
+    return this.list.find(({ id }) => id === layer.id)?.name ?? 'a layer';
   }
 }
 

@@ -1,4 +1,5 @@
-import { CagecastError } from '../../index.js';
+import type { CagecastError } from '../../index.js';
+import { kPaint, notA, wrong } from '../errors.js';
 import { Emitter } from './emitter.js';
 import { checkTexture, difference, type Layer, plainStyle, readStyle, type Sheet, type Style } from './layer.js';
 
@@ -6,8 +7,7 @@ import { checkTexture, difference, type Layer, plainStyle, readStyle, type Sheet
 export const maxLayers = 16;
 
 /** @returns the error for a layer too many. */
-const full = (): CagecastError =>
-  new CagecastError('badArgument', '', `There are already ${maxLayers} layers, the maximum. Remove one first.`);
+const full = (): CagecastError => wrong(`There are already ${maxLayers} layers, the maximum. Remove one first.`, '');
 
 export interface StackEvents {
   /** Layers were added, removed, moved or restyled. */
@@ -18,7 +18,7 @@ export interface StackEvents {
   select: Layer | undefined;
 }
 
-/** Up to `maxLayers` layers of paint, from the lowest to the uppermost. It is kept when the model changes. */
+/** Up to `maxLayers` layers of paint, from the lowest to the uppermost. It is kept when the model changes. @internal */
 export class LayerStack extends Emitter<StackEvents> {
   #layers: readonly Layer[] = [];
   #selected: number | undefined;
@@ -101,12 +101,7 @@ export class LayerStack extends Emitter<StackEvents> {
   /** Moves a layer. @param place From 0, the lowest; what is out of range is clamped. */
   move(layer: Pick<Layer, 'id'>, place: number): void {
     const from = this.#indexOf(layer);
-    if (!Number.isInteger(place))
-      throw new CagecastError(
-        'badArgument',
-        'cagecast/three/layers',
-        `the place of a layer is ${place}, not an integer`,
-      );
+    if (!Number.isInteger(place)) throw notA('an integer', 'the place of a layer', place, kPaint);
     const to = Math.max(0, Math.min(this.#layers.length - 1, place));
     if (from === to) return;
     const layers = [...this.#layers];
@@ -140,7 +135,7 @@ export class LayerStack extends Emitter<StackEvents> {
 
   #indexOf({ id }: Pick<Layer, 'id'>): number {
     const index = this.#layers.findIndex((layer) => layer.id === id);
-    if (index < 0) throw new CagecastError('badArgument', '', 'That layer was removed.');
+    if (index < 0) throw wrong('That layer was removed.', '');
     return index;
   }
 

@@ -1,7 +1,7 @@
 import { Box3, Line3, Triangle, Vector2, Vector3 } from 'three';
-import type { Rect } from '../gpu/index.js';
+import type { Rect } from '../gpu/rect.js';
 
-/** The arrays of a cage that painting needs. */
+/** The arrays of a cage that painting needs. @internal */
 export interface CageMesh {
   /** 3 per vertex. */
   positions: Float32Array;
@@ -20,7 +20,7 @@ export interface SurfacePoint {
   uv?: Vector2;
 }
 
-/** What a brush touches between two points: everything within a radius of the line segment between them. */
+/** What a brush touches between two points: everything within a radius of the line segment between them. @internal */
 export interface Capsule {
   from: SurfacePoint;
   to: SurfacePoint;
@@ -58,6 +58,7 @@ interface Patch {
 /**
  * Maps each texel of a texture to the triangle of the cage that lies there, and so to a point of the cage. This lets a brush
  * be a ball in space: it paints both sides of a UV seam alike, and has the same size everywhere.
+ * @internal
  */
 export class CageTexels {
   readonly #patches: Patch[];

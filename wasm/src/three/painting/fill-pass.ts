@@ -12,7 +12,8 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { drawerOf, drawTo, type Rect, toTexels } from '../gpu/index.js';
+import { drawerOf, drawTo } from '../gpu/pass.js';
+import { type Rect, toTexels } from '../gpu/rect.js';
 import { fillShader } from './stroke-shaders.js';
 
 // `position` is a UV.

@@ -1,15 +1,18 @@
 import type { Vector3, WebGLRenderer } from 'three';
-import { CagecastError } from '../../index.js';
-import { type Rect, toShares } from '../gpu/index.js';
-import { type Composite, type Edits, Emitter, freeName, type Layer, type LayerStack } from '../layers/index.js';
+import { check, wrong } from '../errors.js';
+import { type Rect, toShares } from '../gpu/rect.js';
+import type { Composite } from '../layers/composite.js';
+import type { Edits } from '../layers/edits.js';
+import { Emitter } from '../layers/emitter.js';
+import { freeName, type Layer } from '../layers/layer.js';
+import type { LayerStack } from '../layers/stack.js';
 import { type CageMesh, CageTexels, type Capsule, type SurfacePoint } from './cage-texels.js';
-import { check } from './check.js';
 import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';
-import { StickersSheet } from './placed-stickers.js';
 import type { StickerSheet, StickerStyle } from './sticker.js';
+import { StickersSheet } from './stickers-sheet.js';
 import { StrokeLayer, type StrokeStyle } from './stroke-layer.js';
 
-/** The layers that are painted on, their composite, and the undo steps, as `Layers` has them. */
+/** The layers that are painted on, their composite, and the undo steps, as `Layers` has them. @internal */
 export interface PaintedLayers {
   renderer: WebGLRenderer;
   stack: LayerStack;
@@ -27,6 +30,7 @@ export interface LayerPainterEvents {
 /**
  * Paints in the space of a cage: holds the stroke in progress, and commits it to a layer as an undo step. It knows nothing of
  * models and pointers; `Painter` does.
+ * @internal
  */
 export class LayerPainter extends Emitter<LayerPainterEvents> {
   readonly #layers: PaintedLayers;
@@ -92,8 +96,8 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
     this.cancel();
     const stroke = this.#surface();
     const painted = this.#paintedLayer();
-    if (!stroke) throw new CagecastError('badArgument', '', 'There is no cage to paint on yet.');
-    if (!painted && style.erases) throw new CagecastError('badArgument', '', 'There is no painting to erase yet.');
+    if (!stroke) throw wrong('There is no cage to paint on yet.', '');
+    if (!painted && style.erases) throw wrong('There is no painting to erase yet.', '');
     edits.begin();
     try {
       const layer = painted ?? this.addLayer();

@@ -1,6 +1,6 @@
 import { DataTexture, SRGBColorSpace, type Texture, Vector2, type WebGLRenderer, WebGLRenderTarget } from 'three';
-import { isEmpty, type Rect } from '../gpu/index.js';
-import type { Sheet } from '../layers/index.js';
+import { isEmpty, type Rect } from '../gpu/rect.js';
+import type { Sheet } from '../layers/layer.js';
 
 /** Sizes of paintings, in texels per side. */
 export const paintingSizes = [1024, 2048] as const;
@@ -14,6 +14,7 @@ export function makePaintTarget(size: number): WebGLRenderTarget {
 /**
  * A sheet to paint on. Its texels are kept twice: on the GPU, where strokes are drawn, and as bytes, for undo steps and to
  * restore the texture after the graphics context was lost.
+ * @internal
  */
 export class PaintedSheet implements Sheet {
   readonly premultiplied = true;

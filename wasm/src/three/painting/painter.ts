@@ -1,9 +1,9 @@
 import { type BufferGeometry, type Camera, type Object3D, Raycaster, type Texture, Vector2, Vector3 } from 'three';
-import { describe } from '../describe.js';
+import { show } from '../../core/error.js';
+import { check, checkColor, checkShare, kPaint, notA, wrong } from '../errors.js';
 import { type Applied, extract } from '../index.js';
-import { createLayers, type Layers, type LayersOptions } from '../layers/index.js';
+import { createLayers, type Layers, type LayersOptions } from '../layers/layers.js';
 import type { SurfacePoint } from './cage-texels.js';
-import { check, wrong } from './check.js';
 import { LayerPainter } from './layer-painter.js';
 import type { PaintingSize } from './painted-sheet.js';
 import { pickSpot, pixelsPerUnit, type Spot } from './pick.js';
@@ -14,7 +14,7 @@ import { Stroke } from './stroke.js';
 
 /** Options of `createPainter`. */
 export interface PainterOptions extends Partial<Pick<LayersOptions, 'renderer'>> {
-  /** The layers to paint on, of `cagecast/three/layers`. Default: new ones, for which `renderer` is needed. */
+  /** The layers to paint on, of `createLayers`. Default: new ones, for which `renderer` is needed. */
   layers?: Layers | undefined;
   /** The lowest of new layers, as for `layers.add`. It is ignored where there are `layers`: add it to those. */
   texture?: Texture | undefined;
@@ -48,8 +48,6 @@ export interface StickerPlace {
   up?: Vector3 | undefined;
 }
 
-const checkShare = (name: string, value: number): void =>
-  check(value >= 0 && value <= 1, name, value, 'a number from 0 to 1');
 const checkSize = (size: number): void => check(size > 0 && size <= 2, 'size', size, 'a number from 0 to 2');
 
 /** Paints on models, in the cage's UV space. */
@@ -82,9 +80,9 @@ export class Painter {
     const { layers, renderer, texture, applied, cage, size } = options ?? {};
     this.#models = [applied].flat();
     if (this.#models.some((model) => typeof model?.setTexture !== 'function'))
-      throw wrong('options.applied is not what applyTransfer returned');
+      throw wrong('options.applied is not what applyTransfer returned', kPaint);
     const { positions, indices, uvs } = extract(cage, 'cage').mesh;
-    if (!uvs) throw wrong('options.cage has no UVs');
+    if (!uvs) throw wrong('options.cage has no UVs', kPaint);
     this.layers = layers ?? createLayers({ renderer } as LayersOptions);
     if (texture && !layers) {
       this.layers.add(texture);
@@ -110,8 +108,9 @@ export class Painter {
     return pickSpot(this.#models, raycaster, this.#painter.cageTexels);
   }
 
-  /** As `pick`, for a position of a page. @param position  Such as a pointer event. */
+  /** As `pick`, for a position of a page, such as a pointer event. @throws {CagecastError} `badArgument` without a camera. */
   pickAt({ clientX, clientY }: { clientX: number; clientY: number }, camera: Camera): Spot | undefined {
+    checkCamera(camera);
     const { left, top, width, height } = this.#canvas.getBoundingClientRect();
     const at = new Vector2((2 * (clientX - left)) / width - 1, 1 - (2 * (clientY - top)) / height);
     camera.updateMatrixWorld();
@@ -146,7 +145,7 @@ export class Painter {
    */
   sticker(picture: StickerPicture, place: StickerPlace): void {
     checkPicture(picture);
-    if (!('at' in Object(place))) throw wrong(`the place is ${describe(place)}, not an object with "at"`);
+    if (!('at' in Object(place))) throw notA('an object with "at"', 'the place', place, kPaint);
     const surface = this.#surfaceAt(place.at);
     if (!surface) return;
     this.#beginSticker(picture, place)(surface, place.up);
@@ -190,7 +189,7 @@ export class Painter {
    * @throws {CagecastError} `badArgument` without a camera.
    */
   listen(camera: Camera, element = this.#canvas): () => void {
-    if (!camera?.isCamera) throw wrong(`camera is ${describe(camera)}, not a Camera`);
+    checkCamera(camera);
     if (this.#isDisposed) return () => {};
     const stop = listenTo(element, (event) => {
       try {
@@ -280,7 +279,7 @@ export class Painter {
 
   #stroke(points: readonly (StrokePoint | undefined)[], style: BrushStyle): void {
     checkBrush(style);
-    if (!Array.isArray(points)) throw wrong(`points is ${describe(points)}, not an array`);
+    if (!Array.isArray(points)) throw notA('an array', 'points', points, kPaint);
     const texels = this.#painter.cageTexels;
     if (!texels) return; // disposed of
     const stroke = new Stroke(texels, { radius: (style.size / 2) * texels.diagonal, mirror: style.mirror });
@@ -303,7 +302,7 @@ export class Painter {
     const { toCage, surface, x, y } = Object(point) as Partial<Spot & { x: number; y: number }>;
     const { cageTexels: texels } = this.#painter;
     if (toCage) return texels && surface;
-    if (![x, y].every(Number.isFinite)) throw wrong(`a point is (${x}, ${y}), not a UV`);
+    if (![x, y].every(Number.isFinite)) throw wrong(`a point is (${show(x)}, ${show(y)}), not a UV`, kPaint);
     return texels?.at(x!, y!);
   }
 }
@@ -314,9 +313,14 @@ function follow(layers: Layers, painter: LayerPainter): () => void {
   return layers.on('restored', () => painter.restore());
 }
 
+/** @throws {CagecastError} `badArgument` */
+function checkCamera(camera: Camera): void {
+  if (!camera?.isCamera) throw notA('a Camera', 'camera', camera, kPaint);
+}
+
 /** @throws {CagecastError} `badOption` that names the field and its value. */
 function checkBrush({ color, size, hardness, opacity }: BrushStyle): void {
-  check(/^#[0-9a-f]{6}$/i.test(color), 'color', color, 'a colour such as #ff8800');
+  checkColor('color', color);
   checkShare('opacity', opacity);
   checkShare('hardness', hardness);
   checkSize(size);

@@ -13,7 +13,10 @@ import {
   Vector2,
   Vector3,
 } from 'three';
-import { type Applied, type Part, paintAttribute, zoneAttribute } from '../index.js';
+import type { Applied } from '../apply/apply-options.js';
+import type { Part } from '../apply/extract-scene.js';
+import { zoneAttribute } from '../apply/shown-parts.js';
+import { paintAttribute } from '../materials/paint-shader.js';
 import type { CageTexels, SurfacePoint } from './cage-texels.js';
 
 /** A spot on a painted model. */

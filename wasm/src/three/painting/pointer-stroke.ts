@@ -11,7 +11,7 @@ export interface BrushStyle extends StrokeStyle {
   mirror: boolean;
 }
 
-/** What lies under a pointer. */
+/** What lies under a pointer. @internal */
 export interface Aim {
   /** Where the surface takes its paint from; undefined where nothing may be painted. */
   surface: SurfacePoint | undefined;
@@ -19,7 +19,7 @@ export interface Aim {
   scale: number;
 }
 
-/** Where a pointer paints. */
+/** Where a pointer paints. @internal */
 export interface PointerView {
   /** @returns what lies at a position of the screen, in pixels. */
   aimAt(x: number, y: number): Aim | undefined;
@@ -27,7 +27,7 @@ export interface PointerView {
   readonly triangles: number;
 }
 
-/** The position of a pointer on the screen. */
+/** The position of a pointer on the screen. @internal */
 export interface PointerPosition {
   clientX: number;
   clientY: number;
@@ -46,7 +46,7 @@ const kMaxPicks = 24;
 const pressureOf = ({ pointerType, pressure }: PointerPosition): number =>
   pointerType === 'pen' ? (pressure ?? 1) : 1;
 
-/** Paints or erases along the path of a pointer. The pressure of a pen makes the brush smaller. */
+/** Paints or erases along the path of a pointer. The pressure of a pen makes the brush smaller. @internal */
 export class PointerStroke {
   #stroke: Stroke | undefined;
   #radius = 0;

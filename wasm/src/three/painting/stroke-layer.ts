@@ -17,8 +17,9 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { disjoint, kMaxRects, Pass, type Rect, toShares, toTexels } from '../gpu/index.js';
-import type { ActiveStroke } from '../layers/index.js';
+import { kMaxRects, Pass } from '../gpu/pass.js';
+import { disjoint, type Rect, toShares, toTexels } from '../gpu/rect.js';
+import type { ActiveStroke } from '../layers/composite.js';
 import type { CageTexels, Capsule, SurfacePoint } from './cage-texels.js';
 import { FillPass } from './fill-pass.js';
 import { makePaintTarget, type PaintedSheet } from './painted-sheet.js';

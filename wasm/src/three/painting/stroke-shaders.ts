@@ -1,5 +1,5 @@
 import { type IUniform, type Texture, Vector2, Vector3 } from 'three';
-import { kErased } from '../gpu/index.js';
+import { kErased } from '../gpu/erased.js';
 import { kFacing, kPatchTexels } from './cage-texels.js';
 
 export const kTableWidth = 1024; // a power of two

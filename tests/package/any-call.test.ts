@@ -1,0 +1,253 @@
+// What holds for any call at all: a clear error or a consistent result, and the next call works. A failure prints the call and a
+// seed; CAGECAST_SEED and CAGECAST_RUNS try others, and more of them.
+import assert from 'node:assert/strict';
+import { before, describe, test } from 'node:test';
+import { CagecastError, classify, cutBorders, init, type Mesh, project, splitVertices, transfer } from 'cagecast';
+import { inspect, suggest } from 'cagecast/inspect';
+import fc from 'fast-check';
+import { tetrahedron } from '../support/gltf.js';
+
+const { CAGECAST_RUNS = 150, CAGECAST_SEED = 1 } = process.env;
+const runs = { numRuns: Number(CAGECAST_RUNS), seed: Number(CAGECAST_SEED) };
+const [cage, target] = [tetrahedron(1), tetrahedron(0.9)];
+const usual = () => [...transfer(cage, target).zones];
+
+before(init);
+
+/** Mostly on a grid, where coincidences are frequent. */
+const coordinate = fc.oneof(
+  { weight: 8, arbitrary: fc.integer({ min: -32, max: 32 }).map((value) => value / 16) },
+  { weight: 1, arbitrary: fc.float({ noNaN: true, min: -1000, max: 1000 }) },
+);
+
+/** A mesh with nothing wrong in it. */
+const mesh = fc.integer({ min: 3, max: 14 }).chain((vertices) => {
+  const numbers = (count: number) => fc.array(coordinate, { minLength: count, maxLength: count });
+  return fc.record({
+    positions: numbers(3 * vertices).map((all) => Float32Array.from(all)),
+    uvs: numbers(2 * vertices).map((all) => Float32Array.from(all)),
+    indices: fc
+      .array(fc.integer({ min: 0, max: vertices - 1 }), { minLength: 3, maxLength: 60 })
+      .map((all) => Uint32Array.from(all.slice(0, all.length - (all.length % 3)))),
+    groups: fc.option(
+      fc
+        .array(fc.integer({ min: 0, max: 2 }), { minLength: vertices, maxLength: vertices })
+        .map((all) => Uint32Array.from(all)),
+      { nil: undefined },
+    ),
+  });
+});
+
+/** What someone may put where a number, an array or an object belongs. */
+const junk = fc.oneof(
+  fc.constantFrom(undefined, null, NaN, -1, 1e9, Infinity, 2 ** 32, 'vertex', '', true, 5n, Symbol('s'), () => 1),
+  fc.constantFrom({}, [], [1, 2, 3], { length: 3 }, new ArrayBuffer(12), new DataView(new ArrayBuffer(12)), new Date()),
+  fc.uint8Array({ maxLength: 12 }),
+  fc.float32Array({ maxLength: 12 }),
+  fc.array(fc.double(), { maxLength: 12 }),
+  fc.anything({ maxDepth: 2 }),
+);
+
+const share = fc.double({ min: 0, max: 1, noNaN: true });
+const validOptions = fc.record(
+  {
+    preset: fc.constantFrom('default' as const, 'paper' as const),
+    threshold: share,
+    minCovered: share,
+    seams: fc.constantFrom('vertex' as const, 'corner' as const),
+    weldTolerance: share.map((value) => value / 100),
+    pokeThrough: share.map((value) => value / 100),
+    steps: fc.record(
+      {
+        interiorSamples: fc.boolean(),
+        depthWeighting: fc.boolean(),
+        recheck: fc.boolean(),
+        holes: fc.boolean(),
+        twins: fc.boolean(),
+        floor: fc.constantFrom('none' as const, 'area' as const, 'depth' as const),
+      },
+      { requiredKeys: [] },
+    ),
+  },
+  { requiredKeys: [] },
+);
+
+/** The names that mean something in an object, each with anything for a value. */
+const anyOf = (...names: string[]) =>
+  fc.record(Object.fromEntries(names.map((name) => [name, junk])), { requiredKeys: [] });
+const anyOptions = fc.oneof(
+  anyOf('preset', 'threshold', 'minCovered', 'seams', 'weldTolerance', 'occlusionReach', 'pokeThrough'),
+  anyOf('steps', 'locks', 'reuse', 'result', 'parts'),
+  anyOf('interiorSamples', 'floor', 'projection', 'nothing').map((steps) => ({ steps })),
+  anyOf('segments', 'groups').map((locks) => ({ locks })),
+  junk,
+);
+
+/** The result, or undefined if the call fails as calls may: by one line of `CagecastError`. */
+function outcomeOf<T>(call: () => T): T | undefined {
+  try {
+    return call();
+  } catch (error) {
+    assert.ok(error instanceof CagecastError, `not a CagecastError: ${(error as Error)?.stack ?? String(error)}`);
+    assert.notEqual(error.code, 'internal', error.message);
+    assert.match(error.message, /^[^\n]{10,400}$/);
+    assert.ok(Number.isInteger(error.at) && error.at >= 0);
+    return undefined;
+  }
+}
+
+/** The result of a call in which nothing can be wrong but a cage that is flat. */
+function resultOf<T>(call: () => T): T | undefined {
+  try {
+    return call();
+  } catch (error) {
+    if ((error as CagecastError).code !== 'noUsableCageTriangle') throw error;
+    return undefined;
+  }
+}
+
+const plain = ({ timings: _, peakBytes: __, ...rest }: ReturnType<typeof transfer>) => rest;
+
+describe('for any valid scene and options', () => {
+  test('a transfer is consistent, the same again, and the same into the arrays of another', () => {
+    const other = transfer(cage, target);
+    fc.assert(
+      fc.property(mesh, mesh, validOptions, (cage, target, options) => {
+        const result = resultOf(() => transfer(cage, target, options));
+        if (!result) return;
+        const vertices = target.positions.length / 3;
+        assert.equal(result.zones.length, vertices);
+        assert.equal(result.cosmeticTriangles.length, target.indices.length / 3);
+        assert.ok(result.zones.every((zone) => zone <= 3));
+        assert.ok(result.uvs.every(Number.isFinite) && result.cornerUvs.every(Number.isFinite));
+        assert.ok(result.distances.every((distance) => Number.isFinite(distance) && distance >= 0));
+        assert.ok(result.triangles.every((triangle) => 3 * triangle < cage.indices.length));
+        assert.ok(result.segments.every((segment) => segment < result.segmentStats.length));
+        for (const { area, exposedArea, coveredArea } of result.segmentStats)
+          assert.ok(coveredArea <= exposedArea && exposedArea <= area * (1 + 1e-9));
+        assert.deepEqual(plain(transfer(cage, target, options)), plain(result));
+        const copy = structuredClone(plain(result));
+        assert.deepEqual(plain(transfer(cage, target, { ...options, reuse: other })), copy);
+      }),
+      runs,
+    );
+  });
+
+  test('projecting and classifying is transferring', () => {
+    fc.assert(
+      fc.property(mesh, mesh, validOptions, (cage, target, { threshold, minCovered, steps, ...first }) => {
+        const classifying = { threshold, minCovered, steps: { floor: steps?.floor } };
+        const result = resultOf(() => transfer(cage, target, { ...first, ...classifying }));
+        if (!result) return;
+        const classified = classify(project(cage, target, first), classifying);
+        assert.deepEqual(classified.zones, result.zones);
+        assert.deepEqual(classified.cosmeticTriangles, result.cosmeticTriangles);
+        assert.deepEqual(classified.segmentStats, result.segmentStats);
+      }),
+      runs,
+    );
+  });
+
+  test('cut triangles blend corners of the triangle that they were cut from', () => {
+    fc.assert(
+      fc.property(mesh, mesh, validOptions, (cage, target, options) => {
+        const result = resultOf(() => transfer(cage, target, options));
+        if (!result) return;
+        const cut = cutBorders(cage, target, result, options);
+        const vertices = target.positions.length / 3;
+        const added = cut.sources.length / 3;
+        for (let n = 0; n < added; ++n) {
+          const weights = [...cut.weights.subarray(3 * n, 3 * n + 3)];
+          assert.equal(weights[0]! + weights[1]! + weights[2]!, 1);
+          assert.ok(weights.every((weight) => weight >= 0));
+        }
+        assert.ok(cut.sources.every((vertex) => vertex < vertices));
+        assert.ok(cut.indices.every((vertex) => vertex < vertices + added));
+        cut.indices.forEach((vertex, i) => {
+          const of = [...target.indices.subarray(3 * cut.triangles[Math.floor(i / 3)]!).subarray(0, 3)];
+          const blended =
+            vertex < vertices
+              ? [vertex]
+              : [0, 1, 2]
+                  .filter((k) => cut.weights[3 * (vertex - vertices) + k]! > 0)
+                  .map((k) => cut.sources[3 * (vertex - vertices) + k]!);
+          const positionOf = (v: number) => String(target.positions.subarray(3 * v, 3 * v + 3));
+          const corners = of.map(positionOf);
+          assert.ok(blended.every((v) => corners.includes(positionOf(v))));
+        });
+      }),
+      runs,
+    );
+  });
+
+  test('split vertices have the UVs of their corners', () => {
+    fc.assert(
+      fc.property(mesh, mesh, (cage, target) => {
+        const result = resultOf(() => transfer(cage, target, { seams: 'corner' }));
+        if (!result) return;
+        const { indices, sources, uvs } = splitVertices(target, result.cornerUvs);
+        indices.forEach((vertex, corner) => {
+          assert.equal(sources[vertex], target.indices[corner]);
+          assert.deepEqual(
+            [...uvs.subarray(2 * vertex, 2 * vertex + 2)],
+            [...result.cornerUvs.subarray(2 * corner, 2 * corner + 2)],
+          );
+        });
+      }),
+      runs,
+    );
+  });
+
+  test('inspect gives plain data, the most severe finding first, and locks that transfer takes', () => {
+    fc.assert(
+      fc.property(mesh, mesh, validOptions, (cage, target, options) => {
+        const found = resultOf(() => inspect(cage, target, options));
+        if (!found) return;
+        assert.ok(['good', 'usable', 'unfit'].includes(found.verdict), found.verdict);
+        const { findings, segments } = found;
+        for (let i = 1; i < findings.length; ++i) assert.ok(findings[i - 1]!.weight >= findings[i]!.weight);
+        for (const { sentence, advice, locks } of findings) {
+          assert.match(sentence, /^[^\n]+$/);
+          assert.match(advice, /^[^\n]*$/);
+          if (locks) transfer(cage, target, { ...options, locks });
+        }
+        assert.equal(segments.length, transfer(cage, target, options).segmentStats.length);
+        assert.deepEqual(JSON.parse(JSON.stringify(found)).verdict, found.verdict);
+        assert.doesNotMatch(JSON.stringify(found), /NaN/);
+      }),
+      { ...runs, numRuns: Math.ceil(runs.numRuns / 3) },
+    );
+  });
+});
+
+describe('for any arguments at all: a clear error, or a result, and the next call works', () => {
+  const expected: number[] = [];
+  before(() => expected.push(...usual()));
+  const calls: [string, (mesh: Mesh, options: object) => unknown][] = [
+    ['transfer', (mesh, options) => transfer(cage, mesh, options)],
+    ['transfer with a cage', (mesh, options) => transfer(mesh as Mesh & { uvs: Float32Array }, target, options)],
+    ['project', (mesh, options) => project(cage, mesh, options)],
+    ['inspect', (mesh, options) => inspect(cage, mesh, options)],
+    ['suggest', (mesh, options) => suggest(cage, mesh, options)],
+    ['cutBorders', (mesh, options) => cutBorders(cage, target, mesh as never, options)],
+    ['splitVertices', (mesh, options) => splitVertices(mesh, options as never)],
+    ['classify', (mesh, options) => classify(mesh as never, options)],
+  ];
+  const anyMesh = fc.oneof(
+    junk,
+    anyOf('positions', 'indices', 'uvs', 'groups'),
+    mesh.chain((good) => anyOf('positions', 'indices', 'uvs', 'groups').map((bad) => ({ ...good, ...bad }))),
+    mesh.chain((good) => anyOf('zones', 'segments', 'segmentStats', 'recovery').map((bad) => ({ ...good, ...bad }))),
+  );
+  for (const [name, call] of calls) {
+    test(name, () => {
+      fc.assert(
+        fc.property(fc.oneof(anyMesh, fc.constant(target)), anyOptions, (given, options) => {
+          outcomeOf(() => call(given as Mesh, options as object));
+          assert.deepEqual(usual(), expected);
+        }),
+        runs,
+      );
+    });
+  }
+});

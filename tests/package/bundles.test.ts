@@ -1,0 +1,56 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { gzipSync } from 'node:zlib';
+import { build } from 'esbuild';
+
+/**
+ * What pages import, and how many bytes of the package they may carry, minified and gzipped: 10 % above what the code has as it
+ * is plainly written. A page that needs more after a change that is worth it gets a higher bound.
+ */
+const kPages: [what: string, most: number, script: string][] = [
+  ['Zone', 430, "import { Zone } from 'cagecast'; console.log(Zone.Cosmetic);"],
+  ['init and transfer', 102_000, "import { init, transfer } from 'cagecast'; console.log(init, transfer);"],
+  ['transfer of cagecast/slim', 16_200, "import { init, transfer } from 'cagecast/slim'; console.log(init, transfer);"],
+  ['transfer of cagecast/worker', 2650, "import { transfer } from 'cagecast/worker'; console.log(transfer);"],
+  [
+    'init and applyTransfer',
+    117_000,
+    `import { init } from 'cagecast';
+    import { applyTransfer } from 'cagecast/three';
+    console.log(init, applyTransfer);`,
+  ],
+  [
+    'applyTransferAsync',
+    16_200,
+    "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
+  ],
+  [
+    'applyTransferAsync, layers and painting',
+    35_000,
+    `import { applyTransferAsync } from 'cagecast/three';
+    import { createLayers, createPainter } from 'cagecast/three/paint';
+    console.log(applyTransferAsync, createLayers, createPainter);`,
+  ],
+  ['layers', 8500, "import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);"],
+  ['inspect', 29_500, "import { inspect } from 'cagecast/inspect'; console.log(inspect);"],
+  ['bake', 6500, "import { bake } from 'cagecast/bake'; console.log(bake);"],
+  ['cagecast of cagecast/gltf', 114_000, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
+  ['makeCage', 2700, "import { makeCage } from 'cagecast/cages'; console.log(makeCage);"],
+];
+
+for (const [what, most, contents] of kPages)
+  test(`a page that imports ${what} carries at most ${most} bytes`, async (context) => {
+    const { outputFiles } = await build({
+      stdin: { contents, resolveDir: import.meta.dirname },
+      bundle: true,
+      minify: true,
+      format: 'esm',
+      charset: 'utf8',
+      target: 'es2022',
+      external: ['three', 'three/*', '@gltf-transform/*', 'node:*'],
+      write: false,
+    });
+    const { length } = gzipSync(outputFiles[0]!.contents, { level: 9 });
+    context.diagnostic(`${length} bytes`);
+    assert.ok(length <= most, `${length} bytes`);
+  });

@@ -1,0 +1,313 @@
+// What is found: the report of transfer, the verdict of inspect, and what diff says of both.
+import assert from 'node:assert/strict';
+import { mkdirSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { type Mesh, presetOptions, transfer } from 'cagecast';
+import { PNG } from 'pngjs';
+import { fails, json, ok, run } from '../../support/command.js';
+import { type GlbMaker, glbOf } from '../../support/gltf.js';
+import { head } from '../scenes.js';
+import { modelsLike, workplace, write, writeMade } from './workplace.js';
+
+const models = modelsLike(/lizard|misaligned/);
+const { groups } = head(1, 10).target;
+const { cage, target } = workplace('results');
+const plain = 'transfer target.glb --cage cage.glb';
+
+interface Report {
+  counts: Record<'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
+  areas: Record<'total' | 'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
+  segments: (Record<'points' | 'vertices', number> & { culled: boolean; culledBy: string; part: string })[];
+  parts: { name: string; place: string; vertices: number; uvSet: string | null; splitVertices: number | null }[];
+  target: { vertices: number; triangles: number };
+  triangles: { total: number; cosmetic: number };
+  stretch: Record<'median' | 'p95' | 'overTwice', number>;
+  options: { occlusionReach: unknown; keep: string[]; exclude: string[] };
+  timings: { total: number };
+  versions: { cagecast: string };
+}
+
+test('reports the result of the package', async () => {
+  const { counts, areas, segments, parts, target: found, options, versions, timings } = await json<Report>(plain);
+  const result = transfer(cage, target);
+  assert.deepEqual(
+    Object.values(counts),
+    [0, 1, 2, 3].map((zone) => result.zones.filter((one) => one === zone).length),
+  );
+  assert.deepEqual([found.vertices, found.triangles], [result.zones.length, target.indices.length / 3]);
+  const pick = ({
+    points,
+    exposedArea,
+    coveredArea,
+    coverage,
+    culled,
+    culledBy,
+  }: (typeof result.segmentStats)[number]) => [...[points, exposedArea, coveredArea, coverage], ...[culled, culledBy]];
+  assert.deepEqual(
+    segments.map((segment) => pick(segment as never)),
+    result.segmentStats.map(pick),
+  );
+  const verticesOf = (s: number) => result.segments.filter((one) => one === s).length;
+  assert.deepEqual(
+    segments.map(({ vertices }) => vertices),
+    segments.map((_, s) => verticesOf(s)),
+  );
+  const sum = areas.cosmetic + areas.occluded + areas.uncovered + areas.culled;
+  assert.ok(Math.abs(sum - areas.total) < 1e-9 * areas.total);
+  const [part, ...others] = parts.map((one) => [one.name, one.place, one.vertices, one.uvSet, one.splitVertices]);
+  assert.deepEqual([part, others], [['only', 'meshes[0].primitives[0]', found.vertices, null, null], []]);
+  assert.deepEqual(options, { preset: 'default', ...presetOptions(), keep: [], exclude: [], config: null });
+  assert.match(versions.cagecast, /^\d+\.\d+\.\d+/);
+  assert.ok(timings.total > 0);
+});
+
+test('the preset and single options are obeyed', async () => {
+  const painted = (options: object) => transfer(cage, target, options).cosmeticTriangles.filter(Boolean).length;
+  for (const [flags, options] of [
+    ['--threshold 0', { threshold: 0 }],
+    ['--threshold 1', { threshold: 1 }],
+    ['--preset paper', { preset: 'paper' }],
+    ['--min-covered 1 --poke-through 0.1 --occlusion-reach 0', { minCovered: 1, pokeThrough: 0.1, occlusionReach: 0 }],
+  ] as const)
+    assert.equal((await json<Report>(`${plain} ${flags}`)).triangles.cosmetic, painted(options), flags);
+  assert.notEqual(painted({}), painted({ preset: 'paper' }));
+  assert.equal((await json<Report>(`${plain} --preset paper`)).options.occlusionReach, 'Infinity');
+});
+
+/** The mesh of one of the groups of the target: head, eye and tongue. */
+const meshOf = (maker: GlbMaker, group: number, more = {}) =>
+  maker.mesh(
+    { ...target, indices: (target.indices as Uint32Array).filter((_, i, all) => groups![all[i - (i % 3)]!] === group) },
+    more,
+  );
+
+/** Which of some parts are culled, by a lock if that is asked. Vertices in no triangle are segments as well. */
+const culledIn = async (line: string, names: readonly string[], by?: string) => {
+  const { segments } = await json<Report>(line);
+  const isCulled = (one: Report['segments'][number]) => (by ? one.culledBy === by : one.culled);
+  return names.map((name) => segments.filter((one) => one.part === name && one.points > 1).every(isCulled));
+};
+
+test('--keep and --exclude lock parts by the names of nodes and materials', async () => {
+  writeMade('named.glb', (maker) => {
+    maker.json.materials = ['skin', 'glass', 'flesh'].map((name) => ({ name }));
+    for (const [group, name] of ['head', 'eye.left', 'tongue'].entries())
+      maker.node({ mesh: meshOf(maker, group, { material: group }), name });
+  });
+  const named = 'transfer named.glb --cage cage.glb';
+  for (const [flags, culled] of [
+    ['', [false, true]],
+    [' --exclude skin --keep eye*', [true, false]],
+    [' --exclude head --exclude tongue --keep *glas*', [true, false, true]],
+  ] as const)
+    assert.deepEqual(
+      await culledIn(`${named}${flags}`, ['head', 'eye.left', 'tongue'].slice(0, culled.length)),
+      culled,
+    );
+  const { options } = await json<Report>(`${named} --keep eye* --exclude head`);
+  assert.deepEqual([options.keep, options.exclude], [['eye*'], ['head']]);
+  await fails(1, /named\.glb: --exclude eye\?left: no node or material has this name/, `${named} --exclude eye?left`);
+  await fails(1, 'named.glb: --keep * and --exclude skin both match "head"', `${named} --keep * --exclude skin`);
+});
+
+test('--keep and --exclude take a node that holds others for all below it, unless a part has its name', async () => {
+  writeMade('holding.glb', (maker) => {
+    const [face, eye, tongue] = ['head', 'eye', 'tongue'].map((name, group) =>
+      maker.node({ name, mesh: meshOf(maker, group) }, false),
+    );
+    const mouth = maker.node({ name: 'mouth', children: [tongue!] }, false);
+    maker.node({ name: 'Face', children: [eye!, mouth] });
+    maker.node({ children: [maker.node({ name: 'eye', children: [face!] }, false)] });
+  });
+  const holding = 'transfer holding.glb --cage cage.glb';
+  for (const [name, culled] of [
+    ['Fa*', [false, true, true]],
+    ['mouth', [false, false, true]],
+    ['eye', [false, true, false]],
+  ] as const)
+    assert.deepEqual(await culledIn(`${holding} --exclude ${name}`, ['head', 'eye', 'tongue'], 'lock'), culled, name);
+  const both = 'holding.glb: --keep tongue and --exclude Face both match "tongue"';
+  await fails(1, both, `${holding} --exclude Face --keep tongue`);
+});
+
+interface Inspection {
+  verdict: 'good' | 'usable' | 'unfit';
+  findings: { code: string }[];
+  counts: object;
+  coverage: Record<string, number>;
+  placement: { distances: Record<'p50' | 'p90' | 'p99' | 'max', number> };
+  holes: object[];
+  segments: { part: string }[];
+}
+
+test('inspect calls a good cage good, in text and JSON', async () => {
+  const text = await ok('inspect target.glb --cage cage.glb');
+  for (const word of [/cosmetic/, /outside the cage/, /median/, /F = C\/E/, /beneath/, /(GOOD|USABLE): the cage fits/])
+    assert.match(text, word);
+  const inspection = await json<Inspection>('inspect target.glb --cage cage.glb');
+  assert.notEqual(inspection.verdict, 'unfit');
+  assert.deepEqual(inspection.counts, (await json<Report>(plain)).counts);
+  assert.ok(Math.abs(Object.values(inspection.coverage).reduce((a, b) => a + b) - 1) < 1e-9);
+  assert.equal(inspection.holes.length, 1);
+  assert.ok(inspection.segments.every(({ part }) => part === 'only'));
+  const { p50, p90, p99, max } = inspection.placement.distances;
+  assert.ok(p50 <= p90 && p90 <= p99 && p99 <= max && max < 1);
+});
+
+test('a cage that is inside out, too small, elsewhere is unfit: exit 3, the cause first, with advice', async () => {
+  const moved = (by: number): Mesh => ({
+    ...cage,
+    positions: cage.positions.map((x, i) => (i % 3 === 0 ? x + by : x)),
+  });
+  for (const [wrong, code] of [
+    [{ ...cage, indices: cage.indices.slice().reverse() }, 'normalsInward'],
+    [{ ...cage, positions: cage.positions.map((x) => 0.8 * x) }, 'cageTooSmall'],
+    [moved(0.3), 'cageMisplaced'],
+    [moved(9), 'cageElsewhere'],
+  ] as const) {
+    write('unfit.glb', glbOf(wrong));
+    const { status, stdout } = await run('inspect target.glb --cage unfit.glb');
+    assert.equal(status, 3, code);
+    assert.match(stdout, /UNFIT: the cage does not fit\.\n✗ .*\.\n {2}→ /, code);
+    const { verdict, findings } = await json<Inspection>('inspect target.glb --cage unfit.glb', 3);
+    assert.deepEqual([verdict, findings[0]!.code], ['unfit', code]);
+  }
+});
+
+test('inspect finds bad cages of models unfit, for the right reason first, and good ones good or usable', async () => {
+  const reasons: [RegExp, string][] = [
+    [/shifted|misaligned/, 'cageMisplaced'],
+    [/shrunk/, 'cageTooSmall'],
+    [/flipped/, 'normalsInward'],
+  ];
+  for (const model of models)
+    for (const name of readdirSync(model).filter((file) => /^cage.*\.glb$/.test(file))) {
+      const path = join(model, name);
+      const reason = reasons.find(([pattern]) => pattern.test(path))?.[1];
+      const line = `inspect ${join(model, 'target.glb')} --cage ${path}`;
+      const { verdict, findings } = await json<Inspection>(line, reason ? 3 : 0);
+      assert.equal(verdict === 'unfit', reason !== undefined, path);
+      if (reason) assert.equal(findings[0]!.code, reason, path);
+    }
+});
+
+test('an advice to override a verdict comes with the flag that does', async () => {
+  const strict = 'inspect target.glb --cage cage.glb --threshold 1';
+  const { stdout } = await run(strict);
+  assert.match(stdout, /✗ No part of the target may be painted: .*\n {2}→ .* To override: --keep "only"\n/);
+  assert.doesNotMatch((await run(`${strict} --keep only`)).stdout, /No part of the target|To override/);
+});
+
+test('--html writes a page that needs nothing else', async () => {
+  assert.match(await ok('inspect target.glb --cage cage.glb --html page.html'), /\nwrote page\.html\n$/);
+  const html = readFileSync('page.html', 'utf8');
+  assert.doesNotMatch(html, /(?:src|href)="(?!data:)|https?:\/\/|<script/);
+  const pictures = [...html.matchAll(/data:image\/png;base64,([^"]+)"/g)].map(([, data]) =>
+    PNG.sync.read(Buffer.from(data!, 'base64')),
+  );
+  assert.equal(pictures.length, 8);
+  // Something is to be seen in each, and not everywhere.
+  for (const { data } of pictures) {
+    const shown = data.filter((alpha, i) => i % 4 === 3 && alpha > 0).length / (data.length / 4);
+    assert.ok(shown > 0.1 && shown < 0.95, `${shown} of a picture shows the model`);
+  }
+  assert.match(html, /<svg.*<path/s);
+});
+
+interface Difference {
+  over: number;
+  changes: { measure: string; before: number; after: number; isOver: boolean }[];
+}
+
+test('diff shows what changed between two reports, and exits 4 over the limit', async () => {
+  const report = (name: string, flags = '') => ok(`${plain} --report ${name}.json --quiet${flags}`);
+  await Promise.all([report('a'), report('b'), report('c', ' --exclude only')]);
+  assert.equal(await ok('diff a.json b.json'), 'nothing changed\n');
+  const { status, stdout } = await run('diff a.json c.json');
+  assert.equal(status, 4);
+  assert.match(stdout, /area cosmetic +[\d.]+ % +0\.0 % +over/);
+  assert.match(stdout, /part only: culled/);
+  const { over, changes } = await json<Difference>('diff a.json c.json', 4);
+  assert.equal(over, changes.filter(({ isOver }) => isOver).length);
+  await ok('diff a.json c.json --tolerance 1 --quiet');
+  // A cage with half of the texture: all of it is stretched twice as much.
+  write('half.glb', glbOf({ ...cage, uvs: cage.uvs!.map((x) => x / 2) }));
+  await ok('transfer target.glb --cage half.glb --report half.json --quiet');
+  const stretched = await json<Difference>('diff a.json half.json', 4);
+  const median = stretched.changes.find(({ measure }) => measure === 'stretch, median')!;
+  assert.ok(median.isOver && Math.abs(median.after / median.before - 2) < 1e-4);
+  const { stretch } = JSON.parse(readFileSync('a.json', 'utf8')) as Report;
+  assert.ok(stretch.median > 0 && stretch.p95 >= stretch.median && stretch.overTwice < 0.5);
+  // A report of the same by another command: shares differ in digits that nobody sees.
+  const inspection = await ok('inspect target.glb --cage cage.glb --json');
+  write('same.json', inspection);
+  write('worse.json', inspection.replace(/"verdict": "\w+"/, '"verdict": "unfit"'));
+  assert.equal(await ok('diff a.json same.json --tolerance 0'), 'nothing changed\n');
+  const worse = await run('diff same.json worse.json');
+  assert.equal(worse.status, 4);
+  assert.match(worse.stdout, /verdict +(good|usable) +unfit +over/);
+});
+
+test('diff compares the regions of reports, if both have them', async () => {
+  const report = await json(plain);
+  const region = (cosmetic: number) => ({
+    counts: { cosmetic, occluded: 10 - cosmetic, uncovered: 0, culled: 0 },
+    triangles: { total: 10, cosmetic },
+  });
+  for (const [name, regions] of Object.entries({ none: [], five: [region(5)], two: [region(2)] }))
+    write(`${name}.json`, JSON.stringify({ ...report, regions }));
+  const { status, stdout } = await run('diff five.json two.json');
+  assert.equal(status, 4);
+  assert.match(stdout, /region 1: triangles painted +50\.0 % +20\.0 % +over/);
+  assert.match(stdout, /region 1: vertices occluded +50\.0 % +80\.0 % +over/);
+  assert.match((await run('diff five.json none.json')).stdout, /region 1 +there +– +over/);
+  write('inspected.json', await ok('inspect target.glb --cage cage.glb --json'));
+  assert.equal(await ok('diff inspected.json five.json'), 'nothing changed\n');
+});
+
+test('diff compares the reports of two folders: what changed, is gone and is new', async () => {
+  for (const folder of ['approved/deep', 'build/deep', 'none']) mkdirSync(folder, { recursive: true });
+  const [same, other] = [JSON.stringify(await json(plain)), JSON.stringify(await json(`${plain} --exclude only`))];
+  for (const name of ['same', 'other', 'gone', 'deep/same', 'deep/gone']) write(`approved/${name}.json`, same);
+  for (const name of ['same', 'new', 'deep/same']) write(`build/${name}.json`, same);
+  write('build/other.json', other);
+  const { status, stdout } = await run('diff approved build');
+  assert.equal(status, 4);
+  assert.match(stdout, /^other\.json\n +before +after/);
+  assert.match(
+    stdout,
+    /\ngone: deep.gone\.json\ngone: gone\.json\nnew: new\.json\n3 reports compared: 1 changed, 1 over the limit; 2 gone, 1 new\n$/,
+  );
+  const found = await json<{ over: number; reports: { name: string; over: number }[] }>('diff approved build', 4);
+  assert.equal(found.over, 2 + found.reports.find(({ name }) => name === 'other.json')!.over);
+  // A report that is gone is a change by itself; a new one is not.
+  for (const name of ['approved/gone', 'approved/deep/gone', 'approved/other', 'build/other']) rmSync(`${name}.json`);
+  assert.match(await ok('diff approved build'), /^new: new\.json\n2 reports compared: 0 changed/);
+  assert.equal((await run('diff build approved')).status, 4);
+  await fails(1, /approved: is a folder, and the other is a file/, 'diff approved build/same.json');
+  await fails(1, 'none: has no reports (*.json)', 'diff approved none');
+  await fails(1, 'nowhere: no such file', 'diff approved nowhere');
+});
+
+test('diff says in a line which file is no report, and why', async () => {
+  const whole = await json<Report & { target: object }>(plain);
+  write('whole.json', JSON.stringify(whole));
+  for (const [wrong, fault] of [
+    [{ target: null }, 'target is null, not an object'],
+    [{ target: { ...whole.target, diagonal: -1 } }, 'target.diagonal is -1, not a number from 0 on'],
+    [{ areas: undefined }, 'areas is missing'],
+    [{ segments: [null] }, 'segments[0] is null, not an object'],
+    [{ segments: [whole.segments[0], { ...whole.segments[0], part: 5 }] }, 'segments[1].part is 5, not a text'],
+    [{ parts: {} }, 'parts is {}, not an array'],
+    [{ stretch: {} }, 'stretch.median is missing'],
+    [{ regions: [{}] }, 'regions[0].counts is missing'],
+    [{ verdict: 'bad' }, 'verdict is "bad", not one of unfit, usable, good'],
+  ] as const) {
+    write('wrong.json', JSON.stringify({ ...whole, ...wrong }));
+    const text = 'is no report of cagecast transfer (--report) or inspect (--json)';
+    await fails(1, `wrong.json: ${text}: ${fault}`, 'diff whole.json wrong.json');
+  }
+  await fails(1, /^cagecast: wrong\.json: is no report of /, 'diff wrong.json whole.json');
+  await fails(1, /^cagecast: target\.glb: is not JSON/, 'diff whole.json target.glb');
+});

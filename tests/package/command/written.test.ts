@@ -1,0 +1,406 @@
+// What is written: UVs, zones and overlays, and all that the target had.
+import assert from 'node:assert/strict';
+import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import type { GLTF } from '@gltf-transform/core';
+import { transfer } from 'cagecast';
+import { cagecast as cagecastTransform } from 'cagecast/gltf';
+import { fails, json, ok } from '../../support/command.js';
+import {
+  assertNear,
+  assertTransferred,
+  type Glb,
+  GlbMaker,
+  glbOf,
+  storedUv,
+  unpackGlb,
+  validate,
+} from '../../support/gltf.js';
+import { ktx2Of } from '../../support/ktx2.js';
+import { ball } from '../scenes.js';
+import { io, isOverlay, jsonOf, png, primitivesOf, workplace, write, writeChanged, writeMade } from './workplace.js';
+
+const { cage, target } = workplace('written');
+const vertices = target.positions.length / 3;
+const paint = png(200);
+
+interface Report {
+  counts: Record<'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
+  triangles: { cosmetic: number };
+  parts: { uvSet: string | null; overlayTriangles: number; fillsCutOuts: boolean; splitVertices: number | null }[];
+}
+
+const glb = (name: string): Glb => unpackGlb(readFileSync(name));
+const read = async (name: string) => primitivesOf(await io.read(name));
+
+test('vertices are split so that no triangle stretches across the texture', async () => {
+  const { parts } = await json<Report>('transfer target.glb --cage cage.glb -o split.glb');
+  assert.deepEqual(await validate('split.glb'), []);
+  const [[before], [written]] = [await read('target.glb'), await read('split.glb')];
+  const added = assertTransferred(before!, written!, transfer(cage, target));
+  assert.ok(added > 0);
+  assert.deepEqual(
+    parts.map(({ splitVertices, uvSet }) => [splitVertices, uvSet]),
+    [[added, 'TEXCOORD_1']],
+  );
+});
+
+test('a target without UVs gets its first set; UVs that 16 bits cannot hold are floats', async () => {
+  const { uvs: _, ...plain } = target;
+  write('plain.glb', glbOf(plain));
+  write('wide.glb', glbOf({ ...cage, uvs: cage.uvs!.map((x) => 3 * x) }));
+  const { parts } = await json<Report>('transfer plain.glb --cage wide.glb -o plain-out.glb');
+  assert.deepEqual(
+    parts.map(({ uvSet }) => uvSet),
+    ['TEXCOORD_0'],
+  );
+  assert.ok((await read('plain-out.glb'))[0]!.getAttribute('TEXCOORD_0')!.getArray() instanceof Float32Array);
+});
+
+test('nothing to paint, no overlay', async () => {
+  write('far.glb', glbOf({ ...cage, positions: cage.positions.map((x, i) => (i % 3 === 0 ? x + 50 : x)) }));
+  const { parts, counts } = await json<Report>('transfer target.glb --cage far.glb --texture paint.png -o bare.glb');
+  assert.deepEqual([counts.cosmetic, parts[0]!.overlayTriangles], [0, 0]);
+  assert.deepEqual(
+    await validate('bare.glb', 2),
+    [0, 1].map((set) => `/meshes/0/primitives/0/attributes/TEXCOORD_${set}: UNUSED_OBJECT: This object may be unused.`),
+  );
+  assert.equal(jsonOf('bare.glb').meshes![0]!.primitives.length, 1);
+});
+
+test('the overlay has the cosmetic triangles only, and the vertices of its base; the same input gives the same bytes', async () => {
+  for (const name of ['overlay', 'again'])
+    await ok(`transfer target.glb --cage cage.glb --texture paint.png -o ${name}.glb`);
+  assert.deepEqual(readFileSync('overlay.glb'), readFileSync('again.glb'));
+  const [base, overlay] = await read('overlay.glb');
+  const { cosmeticTriangles } = transfer(cage, target);
+  const corners = [...base!.getIndices()!.getArray()!].filter((_, i) => cosmeticTriangles[Math.floor(i / 3)]);
+  assert.deepEqual([...overlay!.getIndices()!.getArray()!], corners);
+  assert.equal(overlay!.getAttribute('POSITION'), base!.getAttribute('POSITION'));
+});
+
+test('an overlay is lit as its base is, and as transparent; where it fills what a material cuts out, it says so', async () => {
+  writeChanged('unlit.glb', glbOf(target), (json) => {
+    const pbrMetallicRoughness = { baseColorFactor: [1, 1, 1, 0.25] };
+    json.materials = [{ alphaMode: 'BLEND', pbrMetallicRoughness, extensions: { KHR_materials_unlit: {} } }];
+    json.meshes![0]!.primitives[0]!.material = 0;
+    json.extensionsUsed = ['KHR_materials_unlit'];
+  });
+  await ok('transfer unlit.glb --cage cage.glb --texture paint.png -o unlit-out.glb');
+  assert.deepEqual(await validate('unlit-out.glb'), []);
+  const transformed = await io.read('unlit.glb');
+  await transformed.transform(cagecastTransform({ cage, texture: paint }));
+  for (const document of [await io.read('unlit-out.glb'), transformed]) {
+    const material = primitivesOf(document).find(isOverlay)!.getMaterial()!;
+    assert.ok(material.getExtension('KHR_materials_unlit'));
+    assert.equal(material.getAlpha(), 0.25);
+  }
+  writeChanged('hair.glb', readFileSync('unlit.glb'), (json) => (json.materials![0]!.alphaMode = 'MASK'));
+  const line = 'transfer hair.glb --cage cage.glb --texture paint.png -o hair-out.glb';
+  assert.ok((await json<Report>(line)).parts[0]!.fillsCutOuts);
+  assert.match(await ok(line), /\nthe overlay fills what the material cuts out of “only”; cagecast bake paints/);
+});
+
+/** A target with a bit of everything. */
+function rich(): Uint8Array {
+  const maker = new GlbMaker();
+  const own = maker.json;
+  const mesh = maker.mesh(target, { material: 0, extras: { part: 'skin' } });
+  const floats = (size: number, value: (i: number) => number) =>
+    Float32Array.from({ length: size * vertices }, (_, i) => value(i));
+  const primitive = own.meshes[mesh]!.primitives[0]!;
+  Object.assign(primitive.attributes, {
+    NORMAL: maker.accessor(
+      floats(3, (i) => Number(i % 3 === 2)),
+      'VEC3',
+    ),
+    COLOR_0: maker.accessor(new Uint8Array(4 * vertices).fill(255), 'VEC4', { normalized: true }),
+    JOINTS_0: maker.accessor(new Uint8Array(4 * vertices), 'VEC4'),
+    WEIGHTS_0: maker.accessor(
+      floats(4, (i) => Number(i % 4 === 0)),
+      'VEC4',
+    ),
+    _TEMPERATURE: maker.accessor(
+      floats(1, () => 37),
+      'SCALAR',
+    ),
+  });
+  primitive.targets = [
+    {
+      POSITION: maker.accessor(
+        target.positions.map((x) => 0.1 * x),
+        'VEC3',
+      ),
+    },
+  ];
+  Object.assign(own.meshes[mesh]!, { weights: [0.25], extras: { targetNames: ['smile'] } });
+  const identity = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+  own.skins = [{ joints: [1], inverseBindMatrices: maker.accessor(identity, 'MAT4') }];
+  maker.node({ mesh, skin: 0, name: 'head', extras: { id: 7 }, extensions: { ACME_avatar: { node: 0, mesh: 0 } } });
+  maker.node({ name: 'bone' });
+  const input = maker.accessor(new Float32Array([0, 1]), 'SCALAR', { min: [0], max: [1] });
+  const output = maker.accessor(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1]), 'VEC4');
+  const channels: GLTF.IAnimationChannel[] = [{ sampler: 0, target: { node: 1, path: 'rotation' } }];
+  own.animations = [{ name: 'nod', samplers: [{ input, output }], channels }];
+  own.images = [{ bufferView: maker.view(paint), mimeType: 'image/png', name: 'freckles' }];
+  own.textures = [{ source: 0 }];
+  own.materials = [
+    {
+      name: 'skin',
+      doubleSided: true,
+      pbrMetallicRoughness: { baseColorTexture: { index: 0 }, roughnessFactor: 0.4 },
+      extensions: {
+        KHR_materials_sheen: { sheenRoughnessFactor: 0.5 },
+        VRMC_materials_mtoon: { specVersion: '1.0', shadeColorFactor: [0.1, 0.25, 1] },
+        ACME_secret: { a: [1, 2, { b: null }] },
+      },
+    },
+  ];
+  own.extensionsUsed = ['KHR_materials_sheen', 'VRMC_vrm', 'VRMC_materials_mtoon', 'ACME_secret', 'ACME_avatar'];
+  const preset = { happy: { morphTargetBinds: [{ node: 0, index: 0, weight: 0.3 }] } };
+  const VRMC_vrm = { specVersion: '1.0', meta: { name: 'Ünïcode', authors: ['a', 'b'] }, expressions: { preset } };
+  own.extensions = { ACME_avatar: { meshes: [0], textures: [0], stiffness: 1e-7 }, VRMC_vrm };
+  own.extras = { author: 'someone' };
+  own.asset.generator = 'by hand';
+  return maker.finish();
+}
+
+test('split vertices keep skins, morphs, colours and attributes of others; all else is as it was, in a VRM too', async () => {
+  write('rich.vrm', rich());
+  await ok('transfer rich.vrm --cage cage.glb --texture paint.png -o split.vrm');
+  const [[before], [base, overlay]] = [await read('rich.vrm'), await read('split.vrm')];
+  assert.deepEqual(
+    before!.listSemantics().sort().join(),
+    'COLOR_0,JOINTS_0,NORMAL,POSITION,TEXCOORD_0,WEIGHTS_0,_TEMPERATURE',
+  );
+  assert.equal(before!.listTargets().length, 1);
+  assert.ok(assertTransferred(before!, base!, transfer(cage, target)) > 0);
+  for (const name of ['NORMAL', 'JOINTS_0', 'WEIGHTS_0'])
+    assert.deepEqual(overlay!.getAttribute(name)!.getArray(), base!.getAttribute(name)!.getArray());
+  const morph = (primitive = base!) => primitive.listTargets()[0]!.getAttribute('POSITION')!.getArray();
+  assert.deepEqual(morph(overlay), morph());
+  const [old, own] = [jsonOf('rich.vrm'), jsonOf('split.vrm')];
+  for (const field of ['nodes', 'skins', 'animations', 'extensions', 'extras', 'extensionsUsed', 'scenes'] as const)
+    assert.equal(JSON.stringify(own[field]), JSON.stringify(old[field]), field);
+  const [{ weights, extras, primitives }] = own.meshes as [GLTF.IMesh];
+  assert.deepEqual([weights, extras, primitives[0]!.extras], [[0.25], { targetNames: ['smile'] }, { part: 'skin' }]);
+});
+
+test('with --seams vertex no vertex is added, and every byte and member stays what it was', async () => {
+  write('rich.glb', rich());
+  assert.deepEqual(await validate('rich.glb'), []);
+  await ok('transfer rich.glb --cage cage.glb --seams vertex --texture paint.png -o rich-out.glb');
+  assert.deepEqual(await validate('rich-out.glb'), []);
+  const [before, after] = [glb('rich.glb'), glb('rich-out.glb')];
+  const assertHolds = (whole: unknown, part: unknown, path = ''): void => {
+    if (typeof part !== 'object' || part === null) {
+      assert.deepEqual(whole, part, path);
+      return;
+    }
+    for (const [key, value] of Object.entries(part))
+      if (path !== '/buffers/0' || key !== 'byteLength')
+        assertHolds((whole as Record<string, unknown>)[key], value, `${path}/${key}`);
+  };
+  assertHolds(after.json, before.json);
+  assert.deepEqual(after.bin.subarray(0, before.bin.length), before.bin);
+  const [base, overlay] = after.json.meshes![0]!.primitives as [GLTF.IMeshPrimitive, GLTF.IMeshPrimitive];
+  assert.deepEqual(overlay.targets, base.targets);
+  for (const name of ['NORMAL', 'JOINTS_0', 'WEIGHTS_0']) assert.equal(overlay.attributes[name], base.attributes[name]);
+  assert.equal(overlay.attributes['TEXCOORD_0'], base.attributes['TEXCOORD_1']);
+  assert.equal(overlay.attributes['COLOR_0'], undefined);
+  const { materials, textures, images, bufferViews } = after.json;
+  const { alphaMode, doubleSided, pbrMetallicRoughness } = materials![overlay.material!]!;
+  assert.deepEqual([alphaMode, doubleSided], ['BLEND', true]);
+  const image = images![textures![pbrMetallicRoughness!.baseColorTexture!.index]!.source!]!;
+  const { byteOffset = 0, byteLength } = bufferViews![image.bufferView!]!;
+  assert.deepEqual(Buffer.from(after.bin.subarray(byteOffset, byteOffset + byteLength)), paint);
+  const result = transfer(cage, target);
+  const [written] = await read('rich-out.glb');
+  const [uvs, zones] = [written!.getAttribute('TEXCOORD_1')!, written!.getAttribute('_NCZ')!.getArray()!];
+  assert.ok(uvs.getArray() instanceof Uint16Array && uvs.getNormalized() && zones instanceof Uint8Array);
+  for (let v = 0; v < vertices; ++v) assertNear(storedUv(uvs, v), result.uvs.subarray(2 * v, 2 * v + 2), `vertex ${v}`);
+  assert.deepEqual([...zones], [...result.zones]);
+});
+
+test('what animates a mesh, or is an expression of it, does so with its copies; what only another scene shows stays as it is', async () => {
+  writeMade('moved.glb', (maker) => {
+    const small = ball([0, 0, 0], () => 0.2, 8, 12);
+    const POSITION = maker.accessor(new Float32Array(small.positions.length), 'VEC3');
+    const mesh = maker.mesh(small, { targets: [{ POSITION }] });
+    for (const x of [-0.6, 0.6]) maker.node({ mesh, translation: [x, 0, 0] });
+    maker.json.scenes!.push({ nodes: [maker.node({ mesh }, false)] });
+    const target = { path: 'pointer', extensions: { KHR_animation_pointer: { pointer: `/meshes/${mesh}/weights` } } };
+    const times = maker.accessor(Float32Array.of(0, 1), 'SCALAR', { min: [0], max: [1] });
+    const channel = { sampler: 0, target } as GLTF.IAnimationChannel;
+    maker.json.animations = [{ samplers: [{ input: times, output: times }], channels: [channel] }];
+    maker.json.extensionsUsed = ['KHR_animation_pointer', 'VRM'];
+    const blendShapeGroups = [{ name: 'A', binds: [{ mesh, index: 0, weight: 100 }] }, null];
+    const firstPerson = { meshAnnotations: [{ mesh, firstPersonFlag: 'Auto' }] };
+    maker.json.extensions = { VRM: { blendShapeMaster: { blendShapeGroups }, firstPerson } };
+  });
+  await ok('transfer moved.glb --cage cage.glb --texture paint.png -o moved-out.glb');
+  const { nodes, meshes, animations, extensions } = jsonOf('moved-out.glb');
+  assert.deepEqual(
+    nodes!.map(({ mesh }) => mesh),
+    [0, 1, 2],
+  );
+  assert.deepEqual(
+    meshes!.map(({ primitives }) => primitives.length),
+    [2, 2, 1],
+  );
+  assert.deepEqual(Object.keys(meshes![2]!.primitives[0]!.attributes), ['POSITION', 'TEXCOORD_0']);
+  const pointers = animations![0]!.channels.map(({ target }) => JSON.stringify(target.extensions));
+  const all = [0, 1, 2];
+  assert.deepEqual(
+    pointers.sort(),
+    all.map((n) => `{"KHR_animation_pointer":{"pointer":"/meshes/${n}/weights"}}`),
+  );
+  assert.deepEqual(extensions!['VRM'], {
+    blendShapeMaster: {
+      blendShapeGroups: [{ name: 'A', binds: all.map((mesh) => ({ mesh, index: 0, weight: 100 })) }, null],
+    },
+    firstPerson: { meshAnnotations: all.map((mesh) => ({ mesh, firstPersonFlag: 'Auto' })) },
+  });
+});
+
+test('a WebP or KTX2 texture is the file as it is; what glTF cannot hold is an error', async () => {
+  const webp = Buffer.from('UklGRhoAAABXRUJQVlA4TA0AAAAvAAAAEAcQERGIiP4HAA==', 'base64'); // 1 × 1 pixel, lossless
+  const ktx2 = Buffer.from(ktx2Of(200, 30, 60));
+  for (const [type, bytes, extension] of [
+    ['webp', webp, 'EXT_texture_webp'],
+    ['ktx2', ktx2, 'KHR_texture_basisu'],
+  ] as const) {
+    write(`paint.${type}`, bytes);
+    await ok(`transfer target.glb --cage cage.glb --texture paint.${type} -o textured.glb`);
+    assert.deepEqual(await validate('textured.glb'), []);
+    assert.deepEqual(jsonOf('textured.glb').extensionsRequired, [extension]);
+    const [texture] = (await io.read('textured.glb')).getRoot().listTextures();
+    assert.deepEqual([texture!.getMimeType(), Buffer.from(texture!.getImage()!)], [`image/${type}`, bytes]);
+  }
+  const patched = (offset: number, value: number) => {
+    const bytes = Buffer.from(ktx2);
+    bytes.writeUInt32LE(value, offset);
+    return bytes;
+  };
+  for (const [bytes, message] of [
+    [webp.subarray(0, 20), /bad: is truncated: the WebP image is incomplete/],
+    [ktx2.subarray(0, 150), /bad: is truncated: the KTX2 image/],
+    [patched(12, 37), /bad: .*that glTF cannot hold: vkFormat is 37, not 0 \(Basis Universal\)/],
+    [patched(20, 5), /bad: .*it has 5 × 4 pixels, not multiples of 4/],
+  ] as const) {
+    write('bad', bytes);
+    await fails(1, message, 'transfer target.glb --cage cage.glb --texture bad -o never.glb');
+  }
+  assert.ok(!existsSync('never.glb'));
+});
+
+const countsOf = async (path: string) => (await json<Report>(`transfer ${path} --cage cage.glb`)).counts;
+
+test('an unknown extension that is required, and nodes outside the scene that are their own ancestors, are no matter', async () => {
+  writeChanged('odd.glb', glbOf(target), (json) => {
+    json.extensionsUsed = json.extensionsRequired = ['ACME_materials'];
+    json.nodes!.push({ children: [2] }, { children: [1] });
+  });
+  assert.deepEqual(await countsOf('odd.glb'), await countsOf('target.glb'));
+});
+
+test('quantised positions, normalised, with the scale in the node; vertices that are split stay so, in words of four bytes', async () => {
+  const words = Int16Array.from({ length: 4 * vertices }, (_, i) =>
+    i % 4 === 3 ? 0 : Math.round((target.positions[3 * Math.floor(i / 4) + (i % 4)]! / 2) * 32767),
+  );
+  const rounded = target.positions.map((x) => (Math.round((x / 2) * 32767) / 32767) * 2);
+  write('rounded.glb', glbOf({ ...target, positions: rounded }));
+  writeMade('quantised.glb', (maker) => {
+    const bound = (pick: typeof Math.min) => [0, 1, 2].map((k) => pick(...words.filter((_, i) => i % 4 === k)));
+    const accessor = { componentType: 5122, normalized: true, count: vertices, type: 'VEC3' } as const;
+    const bufferView = maker.view(new Uint8Array(words.buffer), { byteStride: 8 });
+    const POSITION =
+      maker.json.accessors.push({ ...accessor, bufferView, min: bound(Math.min), max: bound(Math.max) }) - 1;
+    const primitive = { attributes: { POSITION }, indices: maker.accessor(target.indices as Uint32Array, 'SCALAR') };
+    maker.node({ mesh: maker.json.meshes.push({ primitives: [primitive] }) - 1, scale: [2, 2, 2] });
+    maker.json.extensionsUsed = maker.json.extensionsRequired = ['KHR_mesh_quantization'];
+  });
+  assert.deepEqual(await countsOf('quantised.glb'), await countsOf('rounded.glb'));
+  assert.match(await ok('transfer quantised.glb --cage cage.glb -o split.glb'), / split at seams/);
+  assert.deepEqual(await validate('split.glb'), []);
+  const [primitive] = await read('split.glb');
+  const positions = primitive!.getAttribute('POSITION')!;
+  assert.ok(positions.getNormalized());
+  assert.deepEqual(
+    positions.getArray()!.slice(0, 3 * vertices),
+    words.filter((_, i) => i % 4 < 3),
+  );
+});
+
+test('strips and fans', async () => {
+  const positions = new Float32Array([-0.1, -0.1, 0.9, 0.1, -0.1, 0.9, -0.1, 0.1, 0.9, 0.1, 0.1, 0.9]);
+  const answers = [];
+  for (const [mode, indices] of [
+    [4, [0, 1, 2, 2, 1, 3]],
+    [5, [0, 1, 2, 3]],
+    [6, [1, 3, 2, 0]],
+  ] as const) {
+    write('mode.glb', glbOf({ positions, indices: Uint16Array.from(indices), mode }));
+    answers.push(await countsOf('mode.glb'));
+    await ok('transfer mode.glb --cage cage.glb --texture paint.png -o wound.glb');
+    const overlay = (await read('wound.glb'))[1]!;
+    const corners = [...overlay.getIndices()!.getArray()!].map((v) =>
+      overlay.getAttribute('POSITION')!.getElement(v, [] as number[]),
+    );
+    // All triangles of the overlay face up, as the cage is above.
+    for (let i = 0; i < corners.length; i += 3) {
+      const [a, b, c] = corners.slice(i, i + 3) as [number[], number[], number[]];
+      assert.ok((b[0]! - a[0]!) * (c[1]! - a[1]!) > (b[1]! - a[1]!) * (c[0]! - a[0]!), `mode ${mode}`);
+    }
+  }
+  assert.deepEqual(answers, Array(3).fill(answers[0]));
+});
+
+test('buffers and images beside a glTF, or in it as data URIs of any kind, become one GLB', async () => {
+  const { json: whole, bin } = unpackGlb(glbOf(target));
+  const base64 = (bytes: Uint8Array) => Buffer.from(bytes).toString('base64');
+  const escaped = (bytes: Uint8Array) => [...bytes].map((byte) => `%${byte.toString(16).padStart(2, '0')}`).join('');
+  const encoded = (bytes: Uint8Array) => encodeURIComponent(base64(bytes));
+  const embedded = (kind: string, encode: (bytes: Uint8Array) => string): [string, string, string] => [
+    `data:application/octet-stream${kind},${encode(bin)}`,
+    `data:image/png${kind},${encode(paint)}`,
+    'first',
+  ];
+  mkdirSync('loose');
+  write('loose/mesh data.bin', bin);
+  write('loose/head 50%.bin', bin);
+  for (const name of ['skin', 'own name']) write(`loose/${name}.png`, paint);
+  for (const [buffer, image, name] of [
+    ['mesh%20data.bin', 'skin.png', 'skin'],
+    ['head 50%.bin', 'own%20name.png', 'own name'], // as no URI is
+    embedded(';base64', base64),
+    embedded(';BASE64', base64),
+    embedded(';base64', encoded),
+    embedded('', escaped),
+  ] as const) {
+    whole.buffers![0]!.uri = buffer;
+    whole.images = [{ uri: image, ...(name === 'first' && { name }) }];
+    whole.textures = [{ source: 0 }];
+    whole.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }];
+    whole.meshes![0]!.primitives[0]!.material = 0;
+    write('loose/target.gltf', JSON.stringify(whole));
+    await ok('transfer loose/target.gltf --cage cage.glb -o packed.glb');
+    assert.deepEqual(await countsOf('loose/target.gltf'), await countsOf('target.glb'), buffer.slice(0, 60));
+    assert.deepEqual(await validate('packed.glb'), []);
+    const { images, bufferViews } = unpackGlb(readFileSync('packed.glb')).json;
+    const { byteOffset = 0, byteLength } = bufferViews![images![0]!.bufferView!]!;
+    const stored = unpackGlb(readFileSync('packed.glb')).bin.subarray(byteOffset, byteOffset + byteLength);
+    assert.deepEqual([images![0]!.name, Buffer.from(stored)], [name, paint]);
+  }
+});
+
+test('images of kinds that only an extension admits are known by the endings of their names', async () => {
+  const images: GLTF.IImage[] = [{ uri: 'skin.avif' }, { uri: 'skin.DDS' }, { uri: 'skin.bmp', mimeType: 'image/bmp' }];
+  for (const { uri } of images) write(uri!, 'image');
+  writeChanged('avif.glb', glbOf(target), (json) =>
+    Object.assign(json, { images, extensionsUsed: ['EXT_texture_avif'] }),
+  );
+  await ok('transfer avif.glb --cage cage.glb -o avif-out.glb');
+  const types = unpackGlb(readFileSync('avif-out.glb')).json.images!.map(({ mimeType }) => mimeType);
+  assert.deepEqual(types, ['image/avif', 'image/vnd-ms.dds', 'image/bmp']);
+});

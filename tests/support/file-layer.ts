@@ -1,0 +1,46 @@
+import { writeFileSync } from 'node:fs';
+import { resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { build } from 'esbuild';
+import { temporaryFolder } from './temporary.js';
+
+/** What the command reads and writes files by, which the package does not export. */
+export type FileLayer = Pick<typeof import('../../wasm/src/gltf/read-gltf.js'), 'readGltf'> &
+  Pick<typeof import('../../wasm/src/gltf/extract-file.js'), 'extract'> &
+  Pick<typeof import('../../wasm/src/gltf/write-transfer.js'), 'writeTransfer'> &
+  Pick<typeof import('../../wasm/src/gltf/overlay.js'), 'paintOf'> &
+  Pick<typeof import('../../wasm/src/gltf/files.js'), 'defaultReading'>;
+
+const kModules = ['read-gltf', 'extract-file', 'write-transfer', 'overlay', 'files'];
+
+/** Bundles the file layer, whose decoders are files that only a bundler reads. It uses the package's own index. */
+export async function loadFileLayer(): Promise<FileLayer> {
+  const { at } = temporaryFolder('files');
+  const index = pathToFileURL(resolve('dist/index.js')).href;
+  const { outputFiles } = await build({
+    stdin: {
+      contents: kModules.map((name) => `export * from './${name}.js';`).join('\n'),
+      resolveDir: 'wasm/src/gltf',
+    },
+    bundle: true,
+    format: 'esm',
+    platform: 'node',
+    target: 'node20',
+    write: false,
+    loader: { '.wasm': 'binary' },
+    banner: {
+      js: `import { createRequire } from 'node:module'; const require = createRequire(${JSON.stringify(import.meta.url)}), __dirname = '', __filename = '';`,
+    },
+    plugins: [
+      {
+        name: 'index',
+        setup: ({ onResolve }) =>
+          onResolve({ filter: /^(\.\.\/)+index\.js$/ }, ({ path, resolveDir }) =>
+            resolve(resolveDir, path) === resolve('wasm/src/index.js') ? { path: index, external: true } : undefined,
+          ),
+      },
+    ],
+  });
+  writeFileSync(at('layer.mjs'), outputFiles[0]!.contents);
+  return (await import(pathToFileURL(at('layer.mjs')).href)) as FileLayer;
+}

@@ -1,0 +1,502 @@
+/**
+ * Small glTF files, one for each fact about how the format is read, and what every reader must make of them.
+ *   node --import tsx tests/support/gltf-files.ts FOLDER   writes them, and what is in them as expected.json, for readers elsewhere
+ */
+import { mkdirSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import type { GLTF } from '@gltf-transform/core';
+import { MeshoptEncoder } from 'meshoptimizer/encoder';
+import { GlbMaker, tetrahedron, unpackGlb } from './glb.js';
+
+/** What is read of a file: the triangles of its scene as arrays. */
+export interface Read {
+  positions: number[];
+  indices: number[];
+  /** Null if they must not be read. */
+  uvs: number[] | null;
+  /** The number of the part of each vertex. */
+  groups: number[];
+}
+
+/** Who reads files: the package's three readers, and that of `core/gltf`. */
+export type Reader = 'file' | 'document' | 'three' | 'native';
+
+export interface GltfFile {
+  name: string;
+  bytes: Uint8Array;
+  /** What is read; or what the error says. */
+  expected: Read | RegExp;
+  /** Readers for which this does not hold, by the reason. */
+  not?: Partial<Record<Reader, string>>;
+}
+
+type Primitive = GLTF.IMeshPrimitive;
+const solid = tetrahedron(1);
+const kVertices = 4;
+/** What is read of a plain tetrahedron. */
+const plain: Read = {
+  positions: [...solid.positions],
+  indices: [...solid.indices],
+  uvs: [...solid.uvs],
+  groups: [0, 0, 0, 0],
+};
+const moved = (by: readonly [number, number, number], { positions } = plain): number[] =>
+  positions.map((value, i) => value + by[i % 3]!);
+
+/** A file with a tetrahedron in a node. @param change  Changes it, before its bytes are put together. */
+function file(change: (maker: GlbMaker, primitive: Primitive, node: GLTF.INode) => void = () => {}): Uint8Array {
+  const maker = new GlbMaker();
+  const node: GLTF.INode = { mesh: maker.mesh(solid), name: 'node' };
+  maker.node(node);
+  change(maker, maker.json.meshes[0]!.primitives[0]!, node);
+  return maker.finish();
+}
+
+/** The accessor of a semantic. */
+const accessorOf = (maker: GlbMaker, { attributes }: Primitive, semantic: string) =>
+  maker.json.accessors[attributes[semantic]!]!;
+
+/** Several pieces, one after the other. */
+function joined(...pieces: Pick<Read, 'positions' | 'uvs'>[]): Read {
+  const all = pieces.flatMap(({ uvs }) => uvs ?? []);
+  return {
+    positions: pieces.flatMap(({ positions }) => positions),
+    indices: pieces.flatMap((_, p) => plain.indices.map((vertex) => kVertices * p + vertex)),
+    uvs: pieces.some(({ uvs }) => uvs === null) ? null : all,
+    groups: pieces.flatMap((_, p) => Array<number>(kVertices).fill(p)),
+  };
+}
+
+/** The winding of a mirrored mesh is reversed: the last two corners change places. */
+const reversed = (indices: readonly number[]): number[] =>
+  indices.map((_, i) => indices[i % 3 === 0 ? i : i % 3 === 1 ? i + 1 : i - 1]!);
+
+/** Adds a material whose base colour texture is used so. @returns its number. */
+function textured(maker: GlbMaker, info: object): number {
+  maker.json.images = [{ bufferView: maker.view(Uint8Array.of(0x89, 0x50)), mimeType: 'image/png' }];
+  maker.json.textures = [{ source: 0 }];
+  return (maker.json.materials ??= []).push({ pbrMetallicRoughness: { baseColorTexture: { index: 0, ...info } } }) - 1;
+}
+
+const kTurn = Math.sin(0.2);
+const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+/** The inverse of a joint at a place, for a mesh that is stored so much larger than it is shown. */
+const inverseOf = ([x, y, z]: readonly number[], scale = 1): number[] =>
+  identity.map((value, i) => (i < 12 ? value / scale : i < 15 ? -[x, y, z][i - 12]! : value));
+
+/** Holds a primitive by joints: each of its vertices by one. */
+function held(maker: GlbMaker, primitive: Primitive, joints: readonly number[]): void {
+  const slots = Uint8Array.from({ length: 4 * kVertices }, (_, i) => (i % 4 === 0 ? joints[i / 4]! : 0));
+  primitive.attributes['JOINTS_0'] = maker.accessor(slots, 'VEC4');
+  const weights = Float32Array.from(slots, (_, i) => Number(i % 4 === 0));
+  primitive.attributes['WEIGHTS_0'] = maker.accessor(weights, 'VEC4');
+}
+
+/** Positions that are stored larger than they are shown. */
+const scaled = (maker: GlbMaker, by: number): number =>
+  maker.accessor(
+    solid.positions.map((x) => by * x),
+    'VEC3',
+  );
+
+/** A tetrahedron on two joints, of which the second has moved if `isPosed`; and a second one on that joint alone. */
+function figure(isPosed: boolean, scale = 1): Uint8Array {
+  return file((maker, primitive, node) => {
+    const pose = isPosed ? { rotation: [0, kTurn, 0, Math.sqrt(1 - kTurn * kTurn)] } : {};
+    const head = maker.node({ name: 'head', translation: [0, 0, 0.5], ...pose }, false);
+    const hips = maker.node({ name: 'hips', children: [head] });
+    const second = maker.mesh(solid);
+    for (const [one, joints] of [
+      [primitive, [0, 1, 0, 1]],
+      [maker.json.meshes[second]!.primitives[0]!, [1, 1, 1, 1]],
+    ] as const) {
+      one.attributes['POSITION'] = scaled(maker, scale);
+      held(maker, one, joints);
+    }
+    const inverses = [...inverseOf([0, 0, 0], scale), ...inverseOf([0, 0, 0.5], scale)];
+    const inverseBindMatrices = maker.accessor(Float32Array.from(inverses), 'MAT4');
+    maker.json.skins = [{ joints: [hips, head], inverseBindMatrices }];
+    Object.assign(node, { skin: 0, translation: [9, 9, 9] }); // which a skin ignores
+    maker.node({ name: 'second', mesh: second, skin: 0 });
+  });
+}
+
+const all = joined(plain, plain);
+const cases: Record<string, Omit<GltfFile, 'name'>> = {
+  tetrahedron: { bytes: file(), expected: plain },
+
+  // Triangles
+  'not-indexed': {
+    bytes: file((maker, primitive) => {
+      delete primitive.indices;
+      for (const [semantic, size, type] of [
+        ['POSITION', 3, 'VEC3'],
+        ['TEXCOORD_0', 2, 'VEC2'],
+      ] as const) {
+        const values = semantic === 'POSITION' ? solid.positions : solid.uvs;
+        const corners = [...solid.indices].flatMap((v) => [...values.subarray(size * v, size * (v + 1))]);
+        primitive.attributes[semantic] = maker.accessor(Float32Array.from(corners), type);
+      }
+    }),
+    expected: {
+      positions: plain.indices.flatMap((v) => plain.positions.slice(3 * v, 3 * v + 3)),
+      indices: [...plain.indices.keys()],
+      uvs: plain.indices.flatMap((v) => plain.uvs!.slice(2 * v, 2 * v + 2)),
+      groups: plain.indices.map(() => 0),
+    },
+  },
+  'indices-of-8-bits': {
+    bytes: file((maker, primitive) => (primitive.indices = maker.accessor(Uint8Array.from(solid.indices), 'SCALAR'))),
+    expected: plain,
+  },
+  'indices-of-32-bits': {
+    bytes: file((maker, primitive) => (primitive.indices = maker.accessor(Uint32Array.from(solid.indices), 'SCALAR'))),
+    expected: plain,
+  },
+  strip: {
+    bytes: file((maker, primitive) => {
+      primitive.indices = maker.accessor(Uint16Array.of(0, 1, 2, 3), 'SCALAR');
+      primitive.mode = 5;
+    }),
+    expected: { ...plain, indices: [0, 1, 2, 1, 3, 2] },
+    not: { three: 'GLTFLoader orders the corners of every other triangle in another way' },
+  },
+  fan: {
+    bytes: file((maker, primitive) => {
+      primitive.indices = maker.accessor(Uint16Array.of(0, 1, 2, 3), 'SCALAR');
+      primitive.mode = 6;
+    }),
+    expected: { ...plain, indices: [1, 2, 0, 2, 3, 0] },
+    not: { three: 'GLTFLoader begins each triangle at the middle of the fan' },
+  },
+  'points-and-lines-beside': {
+    bytes: file((maker, primitive) => {
+      for (const mode of [0, 1, 3] as const) maker.node({ mesh: maker.mesh(solid, { mode }) });
+      primitive.mode = 4;
+    }),
+    expected: plain,
+  },
+
+  // Numbers
+  interleaved: {
+    bytes: file((maker, primitive) => {
+      const words = Array.from({ length: kVertices }, (_, v) => [
+        ...solid.uvs.subarray(2 * v, 2 * v + 2),
+        ...solid.positions.subarray(3 * v, 3 * v + 3),
+      ]);
+      const view = maker.view(new Uint8Array(Float32Array.from(words.flat()).buffer), { byteStride: 20 });
+      Object.assign(accessorOf(maker, primitive, 'TEXCOORD_0'), { bufferView: view });
+      Object.assign(accessorOf(maker, primitive, 'POSITION'), { bufferView: view, byteOffset: 8 });
+    }),
+    expected: plain,
+  },
+  'normalised-positions-and-uvs': {
+    bytes: file((maker, primitive, node) => {
+      const corners = solid.positions.map((x) => 32767 * Math.sign(x));
+      primitive.attributes['POSITION'] = maker.accessor(Int16Array.from(corners), 'VEC3', { normalized: true });
+      const uvs = solid.uvs.map((x) => 65535 * x);
+      primitive.attributes['TEXCOORD_0'] = maker.accessor(Uint16Array.from(uvs), 'VEC2', { normalized: true });
+      node.scale = [1, 1, 1].map((x) => x / Math.sqrt(3));
+      maker.json.extensionsUsed = maker.json.extensionsRequired = ['KHR_mesh_quantization'];
+    }),
+    expected: plain,
+  },
+  'positions-of-8-bits': {
+    bytes: file((maker, primitive, node) => {
+      primitive.attributes['POSITION'] = maker.accessor(Int8Array.from(solid.positions, Math.sign), 'VEC3');
+      node.scale = [1, 1, 1].map((x) => x / Math.sqrt(3));
+      maker.json.extensionsUsed = maker.json.extensionsRequired = ['KHR_mesh_quantization'];
+    }),
+    expected: plain,
+  },
+  'sparse-over-values': {
+    bytes: file((maker, primitive) => {
+      primitive.attributes['POSITION'] = scaled(maker, 2);
+      Object.assign(accessorOf(maker, primitive, 'POSITION'), sparse(maker, [0, 1, 2, 3], [...solid.positions]));
+    }),
+    expected: plain,
+  },
+  'sparse-over-nothing': {
+    bytes: file((maker, primitive) => {
+      const uvs = accessorOf(maker, primitive, 'TEXCOORD_0');
+      delete uvs.bufferView;
+      Object.assign(uvs, sparse(maker, [3], [0.25, 0.5]));
+    }),
+    expected: { ...plain, uvs: [0, 0, 0, 0, 0, 0, 0.25, 0.5] },
+  },
+  'zeros-that-are-not-in-the-file': {
+    bytes: file((maker, primitive) => delete accessorOf(maker, primitive, 'TEXCOORD_0').bufferView),
+    expected: { ...plain, uvs: Array(8).fill(0) },
+  },
+  'morph-targets': {
+    bytes: file((maker, primitive) => {
+      primitive.targets = [{ POSITION: scaled(maker, 0.5) }];
+      maker.json.meshes[0]!.weights = [1];
+    }),
+    expected: plain,
+  },
+  meshopt: {
+    bytes: await compressed(),
+    expected: plain,
+    not: { native: 'it has no decoders' },
+  },
+  'text-with-a-data-uri': {
+    bytes: (() => {
+      const { json, bin } = unpackGlb(file());
+      json.buffers![0]!.uri = `data:application/octet-stream;base64,${Buffer.from(bin).toString('base64')}`;
+      return Buffer.from(JSON.stringify(json));
+    })(),
+    expected: plain,
+  },
+
+  // Nodes
+  'translation-rotation-scale': {
+    bytes: file((_, __, node) => {
+      // A quarter turn about z, after doubling.
+      Object.assign(node, { translation: [1, 2, 3], rotation: [0, 0, Math.SQRT1_2, Math.SQRT1_2], scale: [2, 2, 2] });
+    }),
+    expected: {
+      ...plain,
+      positions: plain.positions.map((_, i, p) => {
+        const v = i - (i % 3);
+        return [1 - 2 * p[v + 1]!, 2 + 2 * p[v]!, 3 + 2 * p[v + 2]!][i % 3]!;
+      }),
+    },
+  },
+  'matrices-of-parents': {
+    bytes: file((maker, _, node) => {
+      node.matrix = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1]; // a quarter turn about z, then along x
+      maker.json.scenes![0]!.nodes = [];
+      maker.node({ children: [0], matrix: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 5, 1, 0, 1] }); // and back
+    }),
+    expected: { ...plain, positions: moved([5, 0, 0]) },
+  },
+  mirrored: {
+    bytes: file((_, __, node) => (node.scale = [-1, 1, 1])),
+    expected: {
+      ...plain,
+      positions: plain.positions.map((x, i) => (i % 3 === 0 ? -x : x)),
+      indices: reversed(plain.indices),
+    },
+  },
+  'a-mesh-in-two-places': {
+    bytes: file((maker) => maker.node({ mesh: 0, translation: [4, 0, 0] })),
+    expected: joined(plain, { ...plain, positions: moved([4, 0, 0]) }),
+  },
+  'children-before-siblings': {
+    bytes: file((maker, _, node) => {
+      const child = maker.node({ mesh: 0, translation: [1, 0, 0] }, false);
+      node.children = [child];
+      maker.node({ mesh: 0, translation: [2, 0, 0] });
+    }),
+    expected: joined(...[0, 1, 2].map((x) => ({ ...plain, positions: moved([x, 0, 0]) }))),
+  },
+  'two-primitives': {
+    bytes: file((maker) => {
+      const other = maker.mesh({ ...solid, positions: solid.positions.map((x) => 2 * x) });
+      maker.json.meshes[0]!.primitives.push(maker.json.meshes[other]!.primitives[0]!);
+    }),
+    expected: joined(plain, { ...plain, positions: plain.positions.map((x) => 2 * x) }),
+  },
+  'the-default-scene': {
+    bytes: file((maker) => {
+      const other = maker.node({ mesh: 0, translation: [1, 0, 0] }, false);
+      maker.json.scenes!.push({ nodes: [other] });
+      maker.json.scene = 1;
+    }),
+    expected: { ...plain, positions: moved([1, 0, 0]) },
+  },
+  'no-default-scene': {
+    bytes: file((maker) => {
+      const other = maker.node({ mesh: 0, translation: [1, 0, 0] }, false);
+      maker.json.scenes!.push({ nodes: [other] });
+      delete maker.json.scene;
+    }),
+    expected: plain,
+  },
+  'no-scenes': {
+    bytes: file((maker) => {
+      delete maker.json.scenes;
+      delete maker.json.scene;
+    }),
+    expected: plain,
+    not: { three: 'GLTFLoader gives no scene' },
+  },
+  instances: {
+    bytes: file((maker, _, node) => {
+      const places = maker.accessor(Float32Array.of(1, 0, 0, 100, 0, 0), 'VEC3');
+      const sizes = maker.accessor(Float32Array.of(2, 2, 2, 1, 1, 1), 'VEC3');
+      node.extensions = { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: places, SCALE: sizes } } };
+      node.translation = [-1, 0, 0];
+      maker.json.extensionsUsed = ['EXT_mesh_gpu_instancing'];
+    }),
+    expected: { ...plain, positions: plain.positions.map((x) => 2 * x) },
+  },
+  'overlays-of-an-earlier-transfer': {
+    bytes: file((maker, primitive) => {
+      const marked = maker.json.meshes[0]!.primitives;
+      const indices = maker.accessor(solid.indices.subarray(3), 'SCALAR');
+      marked.push({ ...primitive, indices, extras: { cagecastOverlay: true } });
+      // What is left of the mark when overlays were joined.
+      maker.json.materials = [{ extras: { cagecastOverlay: true } }];
+      marked.push({ ...primitive, material: 0 });
+    }),
+    expected: plain,
+  },
+
+  // UVs
+  'uvs-of-the-texture': {
+    bytes: file((maker, primitive) => {
+      primitive.attributes['TEXCOORD_1'] = maker.accessor(
+        solid.uvs.map((x) => x / 2),
+        'VEC2',
+      );
+      primitive.material = textured(maker, { texCoord: 1 });
+    }),
+    expected: { ...plain, uvs: plain.uvs!.map((x) => x / 2) },
+  },
+  'uvs-that-are-transformed': {
+    bytes: file((maker, primitive) => {
+      primitive.attributes['TEXCOORD_1'] = primitive.attributes['TEXCOORD_0']!;
+      delete primitive.attributes['TEXCOORD_0'];
+      const transform = { offset: [0.5, 0.75], rotation: Math.PI / 2, scale: [0.5, 0.25], texCoord: 1 };
+      primitive.material = textured(maker, { extensions: { KHR_texture_transform: transform } });
+      maker.json.extensionsUsed = ['KHR_texture_transform'];
+    }),
+    // Scaled, turned, then moved.
+    expected: {
+      ...plain,
+      uvs: plain.uvs!.map((_, i, uvs) => (i % 2 === 0 ? 0.5 + 0.25 * uvs[i + 1]! : 0.75 - 0.5 * uvs[i - 1]!)),
+    },
+  },
+  'uvs-of-one-part-only': {
+    bytes: file((maker) => maker.node({ mesh: maker.mesh({ positions: solid.positions, indices: solid.indices }) })),
+    expected: { ...all, uvs: null },
+  },
+
+  // Skins
+  'skin-at-rest': { bytes: figure(false), expected: all },
+  'skin-in-another-unit': { bytes: figure(false, 64), expected: all },
+  'skin-that-is-posed': { bytes: figure(true), expected: all },
+  'skin-in-another-unit-that-is-posed': { bytes: figure(true, 64), expected: all },
+  'skin-that-stands-elsewhere': {
+    bytes: file((maker, primitive, node) => {
+      held(maker, primitive, [0, 0, 0, 0]);
+      const joint = maker.node({ translation: [3, 0, 0] });
+      maker.json.skins = [
+        { joints: [joint], inverseBindMatrices: maker.accessor(Float32Array.from(inverseOf([1, 0, 0])), 'MAT4') },
+      ];
+      node.skin = 0;
+    }),
+    expected: { ...plain, positions: moved([2, 0, 0]) },
+  },
+  'skin-without-matrices': {
+    bytes: file((maker, primitive, node) => {
+      held(maker, primitive, [0, 0, 0, 0]);
+      maker.json.skins = [{ joints: [maker.node({ translation: [3, 0, 0] })] }];
+      node.skin = 0;
+    }),
+    expected: { ...plain, positions: moved([3, 0, 0]) },
+  },
+  'a-joint-below-itself': {
+    bytes: file((maker, primitive, node) => {
+      held(maker, primitive, [0, 0, 0, 0]);
+      maker.json.skins = [{ joints: [1] }];
+      node.skin = 0;
+      maker.json.nodes.push({ children: [2] }, { children: [1], translation: [2, 0, 0] });
+    }),
+    expected: plain,
+    not: { three: 'GLTFLoader does not end' },
+  },
+
+  // What cannot be read
+  'an-index-out-of-range': {
+    bytes: file((maker, primitive) => (primitive.indices = maker.accessor(Uint16Array.of(0, 1, 7), 'SCALAR'))),
+    expected: /indices\[2\] = 7,?( which)? is out of range \(4 vertices\)/,
+  },
+  'corners-without-a-triangle': {
+    bytes: file((maker, primitive) => (primitive.indices = maker.accessor(Uint16Array.of(0, 1, 2, 3), 'SCALAR'))),
+    expected: /has 4 corners, not 3 per triangle/,
+  },
+  'positions-that-are-not-finite': {
+    bytes: file((maker, primitive) => {
+      const positions = solid.positions.slice();
+      positions[4] = Number.NaN;
+      primitive.attributes['POSITION'] = maker.accessor(positions, 'VEC3', { min: undefined, max: undefined });
+    }),
+    expected: /POSITION of vertex 1 has NaN, which is not a finite number/,
+    not: { three: 'the transfer names them', native: 'the transfer names them' },
+  },
+  'positions-of-two-numbers': {
+    bytes: file((_, primitive) => (primitive.attributes['POSITION'] = primitive.attributes['TEXCOORD_0']!)),
+    expected: /POSITION is VEC2, not VEC3|positions of 2 numbers, not 3/,
+  },
+  'uvs-of-three-numbers': {
+    bytes: file((_, primitive) => (primitive.attributes['TEXCOORD_0'] = primitive.attributes['POSITION']!)),
+    expected: /TEXCOORD_0 is VEC3, not VEC2|has 4 UVs of 3 numbers, not 4 of 2/,
+  },
+  'fewer-uvs-than-vertices': {
+    bytes: file((maker, primitive) => (accessorOf(maker, primitive, 'TEXCOORD_0').count = 2)),
+    expected: /has 2 (elements|uv|TEXCOORD_0) for 4 vertices/,
+  },
+  'a-transform-of-no-numbers': {
+    bytes: file((maker, primitive) => {
+      primitive.material = textured(maker, { extensions: { KHR_texture_transform: { scale: ['a', 1] } } });
+      maker.json.extensionsUsed = ['KHR_texture_transform'];
+    }),
+    expected: /scale of KHR_texture_transform is not of finite numbers/,
+    not: { three: 'the transfer names the UVs' },
+  },
+  'instances-of-no-place': {
+    bytes: file((maker, _, node) => {
+      const places = maker.accessor(Float32Array.of(Number.NaN, 0, 0), 'VEC3', { min: undefined, max: undefined });
+      node.extensions = { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: places } } };
+      maker.json.extensionsUsed = ['EXT_mesh_gpu_instancing'];
+    }),
+    expected: /TRANSLATION of EXT_mesh_gpu_instancing is not of 3 finite numbers/,
+    not: { three: 'the transfer names the positions' },
+  },
+};
+
+function sparse(maker: GlbMaker, elements: readonly number[], values: readonly number[]): object {
+  const indices = { bufferView: maker.view(Uint8Array.from(elements)), componentType: 5121 };
+  const bufferView = maker.view(new Uint8Array(Float32Array.from(values).buffer));
+  return { sparse: { count: elements.length, indices, values: { bufferView } } };
+}
+
+/** Positions that meshopt has compressed. */
+async function compressed(): Promise<Uint8Array> {
+  await MeshoptEncoder.ready;
+  return file((maker, primitive) => {
+    const bytes = new Uint8Array(solid.positions.buffer);
+    const packed = MeshoptEncoder.encodeGltfBuffer(bytes, kVertices, 12, 'ATTRIBUTES', 0);
+    const view = maker.view(packed);
+    const { byteOffset, byteLength } = maker.json.bufferViews[view]!;
+    const meshopt = { buffer: 0, byteOffset, byteLength, byteStride: 12, count: kVertices, mode: 'ATTRIBUTES' };
+    maker.json.buffers!.push({ byteLength: 48, extensions: { EXT_meshopt_compression: { fallback: true } } } as never);
+    maker.json.bufferViews[view] = {
+      ...{ buffer: 1, byteLength: 48, byteStride: 12 },
+      extensions: { EXT_meshopt_compression: meshopt },
+    };
+    accessorOf(maker, primitive, 'POSITION').bufferView = view;
+    maker.json.extensionsUsed = maker.json.extensionsRequired = ['EXT_meshopt_compression'];
+  });
+}
+
+export const gltfFiles: readonly GltfFile[] = Object.entries(cases).map(([name, one]) => ({ name, ...one }));
+
+/** The names by which a reader of other kind finds a file: `.gltf` for text. */
+export const fileNameOf = ({ name, bytes }: GltfFile): string =>
+  `${name}.${Buffer.from(bytes.subarray(0, 4)).toString() === 'glTF' ? 'glb' : 'gltf'}`;
+
+if (import.meta.url === pathToFileURL(process.argv[1] ?? '').href) {
+  const folder = process.argv[2]!;
+  mkdirSync(folder, { recursive: true });
+  const list = gltfFiles.map((one) => {
+    writeFileSync(join(folder, fileNameOf(one)), one.bytes);
+    const expected = one.expected instanceof RegExp ? { error: one.expected.source } : one.expected;
+    return { file: fileNameOf(one), ...expected, not: one.not ?? {} };
+  });
+  writeFileSync(join(folder, 'expected.json'), `${JSON.stringify(list, null, 1)}\n`);
+}

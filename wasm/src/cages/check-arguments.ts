@@ -1,0 +1,149 @@
+import { checkMesh, count } from '../api/mesh.js';
+import { CagecastError, isRecord, show } from '../core/error.js';
+import { type EnumValue, namesOf } from '../core/module.js';
+import { plainArray, showArray } from '../core/typed-arrays.js';
+import { isPosition } from '../parts/template-extras.js';
+import type { CagesModule, CoreLandmark, CoreModel, CoreOptions, CoreTemplate } from './cages-module.js';
+import type { CageModel, Holes, Landmarks, Template } from './types.js';
+
+/** The error for a part of an argument. @param place  Where it is, such as `template.landmarks`. */
+const wrong = (fn: string, place: string, text: string) =>
+  new CagecastError('badArgument', fn, `${place}${text}`, { argument: place.split('.')[0] });
+
+/**
+ * Checks the types of a model, as far as C++ does not.
+ * @throws {CagecastError} `badArgument`
+ */
+export function checkModel(fn: string, model: unknown): CoreModel {
+  const mesh = checkMesh(fn, 'model', model);
+  const { parts = [], joints = [], marks } = model as CageModel;
+  const bad = (field: string, value: unknown, type: string) =>
+    wrong(fn, `model.${field}`, ` is ${show(value)}, not ${type}`);
+  if (!Array.isArray(joints)) throw bad('joints', joints, 'an array of joints { name, position, parent }');
+  const plainMarks = plainArray(marks, 'Uint8Array');
+  if (marks !== undefined && !plainMarks)
+    throw wrong(fn, 'model.marks', ` is ${showArray(marks, 'Uint8Array')}, not a Uint8Array`);
+  // An array that was moved to a worker is empty, which C++ would take for "no marks".
+  if (plainMarks?.length === 0 && mesh.indices.length > 0)
+    throw wrong(fn, 'model.marks', ` has 0 numbers, not 1 for each of ${count(mesh.indices.length / 3, 'triangle')}`);
+  return {
+    mesh,
+    marks: plainMarks ?? new Uint8Array(0),
+    parts: checkParts(fn, 'model.parts', parts),
+    joints: joints.map((joint, j) => {
+      if (typeof joint?.name !== 'string') throw bad(`joints[${j}].name`, joint?.name, 'a name');
+      if (!isPosition(joint.position)) throw bad(`joints[${j}].position`, joint.position, '3 finite numbers');
+      const { parent = -1 } = joint;
+      if (!Number.isInteger(parent)) throw bad(`joints[${j}].parent`, parent, 'a whole number');
+      return { name: joint.name, position: joint.position, parent };
+    }),
+  };
+}
+
+/** Checks the names of parts. @returns one name for each. @throws {CagecastError} `badArgument` */
+export function checkParts(fn: string, argument: string, parts: unknown): string[] {
+  if (!Array.isArray(parts)) throw wrong(fn, argument, ` is ${show(parts)}, not an array of names`);
+  return parts.map((part: unknown, p) => {
+    const names = Array.isArray(part) ? part : [part];
+    for (const name of names)
+      if (typeof name !== 'string')
+        throw wrong(fn, argument, `[${p}] is ${show(name)}, not a name, or an array of names`);
+    return names.join('/');
+  });
+}
+
+/** Checks patterns of names. @param bad  Makes the error. */
+export function checkPatterns(patterns: unknown, bad: (type: string) => CagecastError): string[] {
+  if (!Array.isArray(patterns) || !patterns.every((pattern) => typeof pattern === 'string'))
+    throw bad('an array of patterns');
+  return patterns;
+}
+
+/** Checks the types of a cage. @throws {CagecastError} `badArgument`, `missingUvs` */
+function checkCage(fn: string, name: 'cage' | 'template', cage: unknown) {
+  const mesh = checkMesh(fn, name, cage);
+  if (mesh.uvs.length === 0)
+    throw new CagecastError('missingUvs', fn, `${name}.uvs is missing: the texture is drawn in the cage's UVs`, {
+      argument: name,
+    });
+  return mesh;
+}
+
+/** Checks the types of a cage that may have landmarks and a kind. @throws {CagecastError} `badArgument`, `missingUvs` */
+export function checkTemplate(
+  fn: string,
+  name: 'cage' | 'template',
+  module: CagesModule,
+  template: unknown,
+): CoreTemplate {
+  const mesh = checkCage(fn, name, template);
+  const { landmarks, kind = 'automatic' } = template as Template;
+  return {
+    mesh,
+    landmarks: checkLandmarks(fn, `${name}.landmarks`, landmarks),
+    kind: kindOf(module, kind, (kinds) => wrong(fn, `${name}.kind`, ` is ${show(kind)}, not one of ${kinds}`)),
+  };
+}
+
+/** Checks the types of a cage's holes. @returns copies. @throws {CagecastError} `badArgument` */
+export function checkHoles(fn: string, argument: string, holes: unknown): Holes {
+  if (holes === undefined || holes === null) return {};
+  if (!isRecord(holes)) throw wrong(fn, argument, ` is ${show(holes)}, not an object of names and vertices`);
+  return Object.fromEntries(
+    Object.entries(holes).map(([name, vertices]: [string, unknown]) => {
+      if (!Array.isArray(vertices) && !ArrayBuffer.isView(vertices))
+        throw wrong(fn, argument, `.${name} is ${show(vertices)}, not an array of vertices`);
+      return [name, Array.from(vertices as Uint32Array)];
+    }),
+  );
+}
+
+/** The value in C++ of a kind. @param bad  Makes the error from the names that there are. */
+function kindOf(module: CagesModule, kind: unknown, bad: (kinds: string) => CagecastError): EnumValue {
+  const kinds = namesOf({ module: module as never }, 'Kind');
+  if (!kinds.includes(kind as string)) throw bad(kinds.map(show).join(', '));
+  return module.Kind[kind as string]!;
+}
+
+/** Checks the types of landmarks. @throws {CagecastError} `badArgument` */
+export function checkLandmarks(fn: string, argument: string, landmarks: unknown): CoreLandmark[] {
+  if (landmarks === undefined || landmarks === null) return [];
+  if (!isRecord(landmarks) || Array.isArray(landmarks))
+    throw wrong(fn, argument, ` is ${show(landmarks)}, not an object of names and positions`);
+  return Object.entries(landmarks as Landmarks).map(([name, position]) => {
+    if (!isPosition(position))
+      throw wrong(fn, argument, `.${name} is ${show(position)}, not 3 finite numbers [x, y, z]`);
+    return { name, position: [...position], confidence: 1 };
+  });
+}
+
+/**
+ * Puts options in the place of their defaults.
+ * @throws {CagecastError} `badOption`
+ */
+export function checkOptions(
+  fn: string,
+  module: CagesModule,
+  defaults: CoreOptions,
+  options: Record<string, unknown>,
+): CoreOptions {
+  const bad = (text: string) => new CagecastError('badOption', fn, `options${text}`);
+  const merged = { ...defaults };
+  for (const [name, value] of Object.entries(options)) {
+    if (value === undefined) continue;
+    if (!(name in defaults)) throw bad(`.${name} is unknown; there are: ${Object.keys(defaults).join(', ')}`);
+    if (name === 'kind') {
+      merged[name] = kindOf(module, value, (kinds) => bad(`.kind = ${show(value)} is unknown; there are: ${kinds}`));
+    } else if (name === 'exclude') {
+      merged[name] = checkPatterns(value, (type) => bad(`.exclude is ${show(value)}, not ${type}`));
+    } else {
+      if (typeof value !== 'number' || !(value >= 0) || !Number.isFinite(value))
+        throw bad(`.${name} is ${show(value)}, not a number of at least 0`);
+      // C++ would take a share of a triangle or voxel for none.
+      if ((name === 'triangles' || name === 'voxels') && !(Number.isInteger(value) && value < 2 ** 31))
+        throw bad(`.${name} is ${show(value)}, not a whole number`);
+      merged[name] = value;
+    }
+  }
+  return merged;
+}

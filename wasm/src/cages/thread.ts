@@ -1,8 +1,0 @@
-// What runs in a worker.
-import { listen } from '../worker/thread-of.js';
-import { serve } from './serve.js';
-
-listen(async (request, post) => {
-  const { reply, move } = await serve(request, post);
-  post(reply, move);
-});

@@ -1,0 +1,194 @@
+import type { Command } from 'commander';
+import { type Baked, type Image, mostTexels } from '../../bake/index.js';
+import { FileModel } from '../../gltf/bake/bake-file.js';
+import { type BakeReport, bakeModel, type Paints } from '../../gltf/bake/plan.js';
+import { removeOverlays } from '../../gltf/earlier-in-file.js';
+import { GlbWriter } from '../../gltf/glb-writer.js';
+import { InputError, withName } from '../../gltf/input-error.js';
+import { CagecastError, type CutTarget } from '../../index.js';
+import { percent } from '../../inspect/finding.js';
+import type { Borders } from '../../parts/borders-option.js';
+import { decodeImage, encodePng, readImage } from '../io/images.js';
+import type { Io } from '../io/io.js';
+import { refuseOverwriting, writeFiles } from '../io/output.js';
+import { UsageError } from '../model/failures.js';
+import { resolveSettings } from '../model/settings.js';
+import type { Sources } from '../model/sources.js';
+import { configLine, quoted, takenAway } from '../model/text.js';
+import { allFilesReadBy } from '../transfer/files-read.js';
+import { cutTarget, type Run, runTransfer } from '../transfer/run-transfer.js';
+import { listNames, paintForModel, paintOfModel } from './bake-picture.js';
+import * as common from './common-flags.js';
+import { type Found, perform } from './perform.js';
+
+interface BakeFlags extends common.SettingFlags, common.ReadFlags, common.PrintFlags {
+  /** Files of images in the cage's UVs. */
+  normal?: string;
+  orm?: string;
+  /** A GLB or VRM, or a PNG: the paint alone, in the model's UVs. */
+  output: string;
+  /** Whether the PNG is in the cage's UVs: what is painted on the model. */
+  back?: boolean;
+  /** Names of the parts whose texture is meant, for a PNG; none for all. */
+  part?: string[];
+  size?: number;
+}
+
+/** The arguments of `cagecast bake`. */
+interface BakeCommand extends Sources, Omit<BakeFlags, keyof common.SettingFlags> {
+  paint: string | undefined;
+  borders: Borders;
+}
+
+/** What its help says after the flags. */
+const kHelp = `
+A part is not painted if its material has no texture, or its UVs are not an unwrapping; the summary says which. Where UVs
+overlap, as those of mirrored halves do, the part that comes first has the texels. Overlays of an earlier transfer are taken away.
+
+Examples:
+  cagecast bake head.glb cage.glb paint.png --normal scales.png --size 2048 -o painted.glb
+  cagecast bake head.glb cage.glb --back -o paint-again.png`;
+
+/** Adds the command that bakes paint into textures. */
+export function addBakeCommand(program: Command, io: Io): void {
+  const command = program
+    .command('bake')
+    .description("bake PAINT into TARGET's own textures, in its own UVs; its geometry stays as it is")
+    .argument('<TARGET>', 'GLB, glTF or VRM')
+    .argument('<CAGE>', 'GLB or glTF with UVs that the paint was drawn for; auto makes one')
+    .argument('[PAINT]', "PNG in the cage's UV space; JPEG and WebP where sharp is installed")
+    .addOption(
+      common
+        .parsed(
+          '-o, --output <OUT>',
+          "a GLB or VRM, or a PNG of the paint alone, in TARGET's UVs; - for a GLB on the standard output",
+          common.endingIn('.glb', '.vrm', '.png'),
+        )
+        .makeOptionMandatory(),
+    )
+    .option('--normal <MAP>', "a normal map in the cage's UV space")
+    .option('--orm <MAP>', 'occlusion, roughness and metalness in it, as in glTF')
+    .option('--back', "the way back: write what is painted on TARGET as a PNG in the cage's UV space")
+    .addOption(common.parsed('--part <NAME>', 'for a PNG: only these parts; as --keep', common.oneMore))
+    .addOption(
+      common.parsed(
+        '--size <TEXELS>',
+        `the longer side of painted textures; 1 to ${mostTexels} (default: as before)`,
+        common.wholeNumberWithin(1, mostTexels, ' of texels'),
+      ),
+    )
+    .addOption(common.bordersFlag());
+  common.addFlags(command, 'What is painted', 'How files are read', 'What is printed');
+  command
+    .addHelpText('after', kHelp)
+    .action((target: string, cage: string, paint: string | undefined, flags: BakeFlags) => {
+      const fault = faultOf(paint, flags);
+      if (fault !== undefined) throw new UsageError(fault);
+      const inputs = [target, ...common.inputsOf({ ...flags, cage, texture: paint }), flags.normal, flags.orm];
+      return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
+        const settings = resolveSettings(await common.layersFor(flags)(target));
+        return bakeCommand({ ...flags, target, cage, paint, ...settings, reading: common.readingOf(flags) }, io);
+      });
+    });
+}
+
+/** What is wrong with the arguments together, if anything is. */
+function faultOf(paint: string | undefined, { output, normal, orm, back, part = [] }: BakeFlags): string | undefined {
+  const isPicture = output.toLowerCase().endsWith('.png');
+  const hasMaps = normal !== undefined || orm !== undefined;
+  if (back && (!isPicture || paint !== undefined || hasMaps))
+    return '--back takes TARGET and CAGE only, and writes a PNG';
+  if (!back && isPicture && paint === undefined) return 'to write a PNG, PAINT is needed';
+  if (isPicture && hasMaps) return '--normal and --orm need an OUT.glb';
+  if (!back && paint === undefined && !hasMaps) return 'there is nothing to bake: give PAINT, --normal or --orm';
+  return !isPicture && part.length > 0 ? '--part is for a PNG; for a GLB, use --exclude' : undefined;
+}
+
+/**
+ * Bakes paints into a model's own textures, or into a PNG.
+ * @throws {InputError} that names the file at fault; then no file is written.
+ */
+async function bakeCommand(command: BakeCommand, io: Io): Promise<Found> {
+  const { target, paint, normal, orm, reading } = command;
+  const [color, normals, rough] = await Promise.all(
+    [paint, normal, orm].map((path) => (path === undefined ? undefined : readImage(path, reading))),
+  );
+  const run = await runTransfer(command, io);
+  const cut = command.borders === 'cut' ? cutTarget(run, io) : undefined;
+  io.step('baking');
+  const isPicture = command.output.toLowerCase().endsWith('.png');
+  const maps = { color, normal: normals, orm: rough };
+  const baked = isPicture ? bakePicture(command, run, cut, color) : bakeFile(command, run, cut, maps);
+  const { data, ...found } = await baked.catch((error) => {
+    throw withName(error instanceof CagecastError ? new InputError(error.reason, { cause: error }) : error, target);
+  });
+  refuseOverwriting([...allFilesReadBy(command, run), paint, normal, orm], [command.output]);
+  writeFiles([{ path: command.output, data }], io);
+  return found;
+}
+
+/** A file that is to be written, and what is said of it. */
+type Made = Found & { data: Uint8Array };
+
+/** The model with the paint in its textures. @throws {InputError} */
+async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefined, paints: Paints): Promise<Made> {
+  const { output, size } = command;
+  const { file, extracted } = run.target;
+  const writer = await GlbWriter.from(file, 'keep');
+  const overlays = removeOverlays(
+    writer,
+    extracted.parts.map(({ mesh }) => writer.json.meshes![mesh]!),
+  );
+  const codec = { decode: decodeImage, encode: encodePng };
+  const model = new FileModel(file, extracted.parts, writer);
+  const { report } = await bakeModel(model, { result: run.result, cut, paints, codec, size });
+  if (report.textures.length === 0) {
+    // The reason of a part's own material before those of variants.
+    const first = report.left.find(({ material }) => material === undefined) ?? report.left[0];
+    throw new InputError(first ? `nothing can be baked: ${leftText(first)}` : 'nothing of it may be painted');
+  }
+  const { config } = command.rules;
+  const lines = [...summary(output, report), overlays > 0 && takenAway(overlays), configLine(config)];
+  return {
+    data: writer.finish(),
+    lines,
+    report: { output, ...report, replacedOverlays: overlays, config: config ?? null },
+  };
+}
+
+function summary(output: string, { textures, left }: BakeReport): string[] {
+  return [
+    `wrote ${output}`,
+    ...textures.map(
+      ({ slot, parts, width, height, overlap }) =>
+        `${slot}: ${width} × ${height}, on ${listNames(parts)}${overlapText(overlap)}`,
+    ),
+    ...left.map((one) => `not painted: ${leftText(one)}`),
+  ];
+}
+
+/** Which part is not painted, and why. */
+const leftText = ({ part, material, reason }: BakeReport['left'][number]): string =>
+  `${quoted(part)}${material === undefined ? '' : `, with ${quoted(material)} of its variants`}: ${reason}`;
+
+const kFewTexels = 0.001; // is due to touching edges
+
+const overlapText = ({ texels, lost, parts }: Baked['overlap']): string =>
+  texels < kFewTexels
+    ? ''
+    : `; UVs overlap: ${percent(texels)} of its texels are claimed twice, ${percent(lost)} of the paint found no room (${listNames(parts)})`;
+
+/** A PNG: the paint alone in the model's UVs, or what is painted on the model in the cage's. */
+async function bakePicture(command: BakeCommand, run: Run, cut: CutTarget | undefined, paint?: Image): Promise<Made> {
+  const { output, back } = command;
+  const { image, parts } = await (back ? paintOfModel(command, run, cut) : paintForModel(command, run, cut, paint!));
+  const { width, height, overlap } = image;
+  const names = parts.map(({ name }) => name);
+  const { config } = command.rules;
+  const use = back ? `of ${listNames(names)}` : `for ${listNames(names)}${overlapText(overlap)}`;
+  return {
+    data: await encodePng(image),
+    lines: [`wrote ${output}: ${width} × ${height}, ${use}`, configLine(config)],
+    report: { output, parts: names, width, height, overlap, config: config ?? null },
+  };
+}

@@ -1,0 +1,137 @@
+import { type Command, Option } from 'commander';
+import { standard } from '../../gltf/files.js';
+import { counted } from '../../inspect/finding.js';
+import type { Io } from '../io/io.js';
+import { kExit, UsageError } from '../model/failures.js';
+import type { Region } from '../model/sources.js';
+import { jsonText, oneLine } from '../model/text.js';
+import { boundsFault } from '../model/uv-bounds.js';
+import { jobsOfManifest, jobsOfPatterns, placeholderFault, writtenBy } from './batch-jobs.js';
+import { type BatchSummary, runJobs } from './batch-run.js';
+import * as common from './common-flags.js';
+
+interface BatchFlags extends common.SettingFlags, common.CageFlags, common.ReadFlags, common.PrintFlags {
+  cage?: string;
+  texture?: string;
+  output?: string;
+  report?: string;
+  region: Region[];
+  manifest?: string;
+  results?: string;
+  resume?: boolean;
+  failOn?: 'usable' | 'unfit';
+  workers?: number;
+}
+
+/** What its help says after the flags. */
+const kHelp = `
+A line of a manifest, with paths relative to the manifest:
+  {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
+Its members: target, cage, referenceCage, uvBounds, texture, regions, output, report, and any setting of cagecast.config.json.
+A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
+failed or skipped), ms, counts, triangles, and error, verdict and findings (codes) if there are. After the lines, a summary goes
+to the standard error; with --quiet, only the errors of jobs go there.
+A job that fails does not stop the others. Files are complete or not there, even if the batch is killed. Missing folders are made.
+With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure or another batch.
+Exit codes: 0 all done, 1 a job failed, 2 wrong usage, 3 no job failed, but --fail-on found a cage that does not fit as demanded.
+
+Examples:
+  cagecast batch 'in/**/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
+  cagecast batch --manifest jobs.jsonl --results results.jsonl --resume --fail-on unfit`;
+
+/** Adds the command that runs many transfers. */
+export function addBatchCommand(program: Command, io: Io): void {
+  const command = program
+    .command('batch')
+    .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders but linked ones')
+    .description('transfer to many files, in threads; print a line of JSON for each')
+    .option('--manifest <JOBS.jsonl>', 'a JSON object per line, for a job each; - for the standard input')
+    .option('--cage <CAGE>', 'the cage of jobs that name none; auto makes one for each target')
+    .option('--texture <PAINT>', 'the texture of jobs that name none')
+    .addOption(
+      common.parsed(
+        '-o, --output <OUT.glb>',
+        'where to write; {name} is the name of the target, {dir} its folder',
+        common.endingIn('.glb', '.vrm', '.gltf'),
+      ),
+    )
+    .option('--report <R.json>', 'where to write reports; {name} and {dir} as above')
+    .option(
+      '--results <RESULTS.jsonl>',
+      'add the lines to this file instead of printing them; the last one about a target counts',
+    )
+    .option(
+      '--resume',
+      'skip jobs that --results says are done, if what they read is unchanged and what they wrote is there',
+    )
+    .addOption(
+      new Option(
+        '--fail-on <VERDICT>',
+        'inspect each cage, and exit 3 if one is no better than this; reports have the verdict then',
+      ).choices(['usable', 'unfit']),
+    )
+    .addOption(
+      common.parsed(
+        '--workers <N>',
+        'threads; 1 to 999 (default: one per processor)',
+        common.wholeNumberWithin(1, 999),
+      ),
+    );
+  common.addFlags(
+    command,
+    'What is written',
+    'What is painted',
+    'Part of the cage',
+    'How files are read',
+    'What is printed',
+  );
+  command.addHelpText('after', kHelp).action((targets: string[], flags: BatchFlags) => runBatch(targets, flags, io));
+}
+
+async function runBatch(targets: string[], flags: BatchFlags, io: Io): Promise<void> {
+  const { manifest, results, resume = false, failOn, workers, quiet, json } = flags;
+  const { cage, uvBounds, referenceCage, texture, region: regions, output, report } = flags;
+  const fault = faultOf(targets, flags);
+  if (fault !== undefined) throw new UsageError(fault);
+  if (quiet) io.silence();
+  const defaults = {
+    ...{ cage, uvBounds, referenceCage, texture, regions, output, report, results },
+    inspects: failOn === undefined ? undefined : true,
+    layersFor: common.layersFor(flags),
+    reading: common.readingOf(flags),
+  };
+  const jobs = await (manifest === undefined ? jobsOfPatterns(targets, defaults) : jobsOfManifest(manifest, defaults));
+  const summary = await runJobs({ jobs, results, resume, failOn, workers, quiet }, io);
+  const savesNothing = !failOn && !results && summary.done > 0 && jobs.every((job) => writtenBy(job).length === 0);
+  const text = `${describe(summary)}${savesNothing ? kNothingSaved : ''}\n`;
+  if (!quiet) io.err(json ? jsonText(summary) : text);
+  io.exitCode = summary.failed > 0 ? kExit.unusable : summary.misfits > 0 ? kExit.unfit : 0;
+}
+
+const kNothingSaved = '\nno model or report written; for these, add -o OUT.glb or --report R.json';
+
+/** What is wrong with the arguments together, if anything is. */
+function faultOf(targets: readonly string[], flags: BatchFlags): string | undefined {
+  const { manifest, results, resume, cage, uvBounds, texture, output, report } = flags;
+  if (targets.length > 0 === (manifest !== undefined)) return 'give either TARGETS or --manifest';
+  if (resume && results === undefined) return '--resume needs --results, which says what is done';
+  if (manifest === undefined && cage === undefined) return 'TARGETS need --cage';
+  if ([output, report, results].includes(standard)) return 'a batch writes files; the standard output has its lines';
+  if ([...common.inputsOf({ ...flags, config: false }), ...targets].includes(standard))
+    return 'a batch reads files; its jobs have no standard input';
+  if (manifest === standard && flags.config === standard) return 'only one file can be the standard input';
+  const withoutOutput = manifest === undefined ? common.outputFault(flags) : undefined;
+  return withoutOutput ?? placeholderFault(output, report) ?? boundsFault(texture, uvBounds);
+}
+
+/** A summary for people. */
+function describe({ jobs, done, failed, skipped, misfits, configs, seconds }: BatchSummary): string {
+  const parts = [
+    `${done} done`,
+    `${failed} failed`,
+    ...(skipped > 0 ? [`${skipped} done before`] : []),
+    ...(misfits > 0 ? [`${misfits} with a cage that does not fit as demanded`] : []),
+  ];
+  const from = configs.length > 0 ? `; settings from ${configs.join(', ')}` : '';
+  return oneLine(`${counted(jobs, 'job')}: ${parts.join(', ')}; ${seconds.toFixed(1)} s${from}`);
+}

@@ -1,0 +1,53 @@
+import { mkdirSync } from 'node:fs';
+import { dirname } from 'node:path';
+import { parentPort } from 'node:worker_threads';
+import type { Verdict } from '../../inspect/index.js';
+import { Io } from '../io/io.js';
+import { messageOf } from '../model/failures.js';
+import type { TransferCommand } from '../model/sources.js';
+import { cachedReading } from '../transfer/models.js';
+import type { Report } from '../transfer/report.js';
+import { transferToFile } from '../transfer/transfer-to-file.js';
+
+/** What a worker found. */
+export type Outcome =
+  | {
+      status: 'done';
+      ms: number;
+      counts: Report['counts'];
+      triangles: Report['triangles'];
+      verdict?: Verdict;
+      findings?: string[];
+    }
+  | { status: 'failed'; ms: number; error: string };
+
+/** Runs the jobs that the thread is sent, until it is ended. A cage of many jobs is read once. */
+export function serveBatch(): void {
+  const io = new Io({ stdout: () => {}, stderr: () => {} });
+  const readCage = cachedReading();
+  parentPort!.on('message', async (command: TransferCommand) => {
+    const began = performance.now();
+    const answer = (outcome: object) =>
+      parentPort!.postMessage({ ms: Math.round(performance.now() - began), ...outcome });
+    try {
+      makeFolders(command);
+      const { report } = await transferToFile(command, io, readCage);
+      const { counts, triangles, verdict, findings } = report;
+      const inspected = verdict && { verdict, findings: findings!.map(({ code }) => code) };
+      answer({ status: 'done', counts, triangles, ...inspected });
+    } catch (error) {
+      answer({ status: 'failed', error: messageOf(error) });
+    }
+  });
+}
+
+/** Makes the folders that a job writes to: with `{name}` and `{dir}` in paths there may be many. */
+function makeFolders({ output, report }: TransferCommand): void {
+  for (const path of [output, report]) {
+    try {
+      if (path !== undefined) mkdirSync(dirname(path), { recursive: true });
+    } catch {
+      // What writes the file says what is wrong.
+    }
+  }
+}

@@ -1,0 +1,244 @@
+import { statSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { type Command, Option } from 'commander';
+import { cageGlb } from '../../cages/cage-glb.js';
+import { templateNames } from '../../cages/template-names.js';
+import type { Cage, Fit, Kind, Landmarks, Template } from '../../cages/types.js';
+import { templateOf } from '../../gltf/cage-file.js';
+import { readBytes, standard } from '../../gltf/files.js';
+import { InputError, withName } from '../../gltf/input-error.js';
+import { counted } from '../../inspect/finding.js';
+import { isPosition } from '../../parts/template-extras.js';
+import type { Io } from '../io/io.js';
+import { writeFiles } from '../io/output.js';
+import { kExit } from '../model/failures.js';
+import { parseObject } from '../model/json.js';
+import { resolveSettings } from '../model/settings.js';
+import { integer, type Line, listed, shown } from '../model/text.js';
+import { conclusionOf, inspectionReport } from '../transfer/inspection.js';
+import { inspectionPage } from '../transfer/inspection-page.js';
+import { fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
+import { type ReadModel, readBack, readModel, withUvs } from '../transfer/models.js';
+import { transferModels } from '../transfer/run-transfer.js';
+import * as common from './common-flags.js';
+import { type Found, perform } from './perform.js';
+
+/** The fewest and the most triangles that a cage can be asked to have. */
+const kTriangleRange = [50, 20_000] as const;
+
+/** The least and the most that gaps can be closed by, as a share of the diagonal. */
+const kClosingRange = [0.0005, 0.2] as const;
+
+interface CageFileFlags extends common.ReadFlags, common.PrintFlags {
+  output: string;
+  html?: string;
+  /** Patterns of names that replace the default ones. */
+  exclude?: string[];
+}
+
+interface MakeFlags extends CageFileFlags {
+  triangles?: number;
+  kind: Kind;
+  closing?: number;
+}
+
+interface FitFlags extends CageFileFlags {
+  templateLandmarks?: string;
+  landmarks?: string;
+}
+
+const kExitCodes = '\nExit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.';
+
+/** Adds the commands that make and fit cages. */
+export function addCageCommands(program: Command, io: Io): void {
+  const make = program
+    .command('make')
+    .argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing')
+    .description(
+      'make a cage for TARGET: a hull with UVs, and a hole over each part that is not painted; print a verdict',
+    )
+    .addOption(
+      common.parsed(
+        '--triangles <N>',
+        `about how many triangles; ${kTriangleRange[0]} to ${kTriangleRange[1]} (default: by kind)`,
+        common.wholeNumberWithin(...kTriangleRange),
+      ),
+    )
+    .addOption(
+      new Option('--kind <KIND>', 'what TARGET is, which decides how tight the cage is and where its seams are')
+        .choices(['automatic', 'head', 'body', 'prop'])
+        .default('automatic'),
+    )
+    .addOption(
+      common.parsed(
+        '--closing <SHARE>',
+        `bridge gaps narrower than twice this share of TARGET's diagonal; ${kClosingRange[0]} to ${kClosingRange[1]} (default: by kind)`,
+        common.numberWithin(...kClosingRange),
+      ),
+    );
+  common.addFlags(make, 'Cages that are written', 'How files are read', 'What is printed');
+  make
+    .addHelpText(
+      'after',
+      `${kExitCodes}
+
+Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o cage.glb`,
+    )
+    .action((target: string, flags: MakeFlags) =>
+      perform(io, flags, { inputs: [target], outputs: [flags.output, flags.html] }, () => makeFor(target, flags, io)),
+    );
+
+  const fit = program
+    .command('fit')
+    .argument('<TEMPLATE>', `GLB or glTF of a cage for another model; or ${templateNames.join(', ')}`)
+    .argument('<TARGET>', 'GLB or glTF of the model that gets the cage')
+    .description('move a template cage onto TARGET, so that one texture fits both; print a verdict')
+    .option(
+      '--template-landmarks <T.json>',
+      'landmarks of the model that TEMPLATE was made for (default: those in the file, as extras.landmarks)',
+    )
+    .option('--landmarks <L.json>', 'landmarks of TARGET; they override those that are found');
+  common.addFlags(fit, 'Cages that are written', 'How files are read', 'What is printed');
+  fit
+    .addHelpText(
+      'after',
+      `
+Files of landmarks are JSON, name → [x, y, z] in the model's space: { "nose_tip": [0, 1.52, 0.11], … }${kExitCodes}
+
+Examples:
+  cagecast fit human-head head.glb -o cage.glb
+  cagecast fit template.glb head.glb --landmarks head.json -o cage.glb --html report.html`,
+    )
+    .action((template: string, target: string, flags: FitFlags) => {
+      const inputs = [template, target, flags.templateLandmarks, flags.landmarks];
+      return perform(io, flags, { inputs, outputs: [flags.output, flags.html] }, () =>
+        fitTo(template, target, flags, io),
+      );
+    });
+}
+
+/** Makes a cage for a model and inspects it. @throws {InputError} that names the file at fault; then no file is written. */
+async function makeFor(target: string, flags: MakeFlags, io: Io): Promise<Found> {
+  const { exclude, triangles, kind, closing } = flags;
+  const model = await readModel(target, common.readingOf(flags), io);
+  const cage = await makeCageFor(model, { exclude, triangles, kind, closing }, io);
+  return finish({ ...cage, landmarks: await landmarksOf(model, io) }, model, flags, io);
+}
+
+/** Fits a template cage to a model and inspects it. @throws {InputError} that names the file at fault; then no file is written. */
+async function fitTo(path: string, target: string, flags: FitFlags, io: Io): Promise<Found> {
+  const { exclude } = flags;
+  const template = await readTemplate(path, flags, io);
+  const landmarks = flags.landmarks === undefined ? undefined : await readLandmarks(flags.landmarks);
+  const model = await readModel(target, common.readingOf(flags), io);
+  const files = { template: path, landmarks: flags.landmarks };
+  const fit = await fitCageTo(model, { template, landmarks, files, options: { exclude } }, io);
+  return finish(fit.cage, model, flags, io, describeFit(fit, landmarks ?? {}));
+}
+
+/** How many landmarks `fitCage` needs of a template. */
+const kMinLandmarks = 4;
+
+/** Reads a template with its landmarks. @throws {InputError} that names the file at fault. */
+async function readTemplate(path: string, flags: FitFlags, io: Io): Promise<Template> {
+  const { templateLandmarks } = flags;
+  const { file, extracted } = withUvs(await readModel(templateFile(path), common.readingOf(flags), io));
+  const own = templateOf(file, extracted);
+  const landmarks = templateLandmarks === undefined ? own.landmarks : await readLandmarks(templateLandmarks);
+  const count = Object.keys(landmarks).length;
+  if (count >= kMinLandmarks) return { ...own, landmarks };
+  const has = `has ${count === 0 ? 'no landmarks' : counted(count, 'landmark')}`;
+  if (templateLandmarks !== undefined)
+    throw new InputError(`${has}; at least ${kMinLandmarks} are needed`).in(templateLandmarks);
+  throw new InputError(
+    `${has} in the extras of its nodes and meshes; give at least ${kMinLandmarks} of the model that it was made for: --template-landmarks T.json`,
+  ).in(path);
+}
+
+/** The file of a template: of one that comes with the package if its name is given, and no file is called so. */
+function templateFile(path: string): string {
+  const isFolder = statSync(path, { throwIfNoEntry: false })?.isDirectory();
+  if (path === standard || isFolder === false || /[./\\]/.test(path)) return path;
+  if (!(templateNames as readonly string[]).includes(path))
+    throw new InputError(`no such file, and no template of the package: there are ${templateNames.join(', ')}`).in(
+      path,
+    );
+  return fileURLToPath(new URL(`./templates/${path}.glb`, import.meta.url));
+}
+
+/** Reads landmarks: a JSON object, name → [x, y, z]. @throws {InputError} that names the file and the landmark. */
+async function readLandmarks(path: string): Promise<Landmarks> {
+  try {
+    const landmarks = parseObject(new TextDecoder().decode(await readBytes(path)));
+    for (const [name, position] of Object.entries(landmarks))
+      if (!isPosition(position)) throw new InputError(`"${name}" is ${shown(position)}, not 3 numbers [x, y, z]`);
+    return landmarks as Landmarks;
+  } catch (error) {
+    throw withName(error, path);
+  }
+}
+
+/** How many landmarks are listed at most. */
+const kMaxNames = 12;
+
+/** Landmarks less certain than this are listed. */
+const kCertain = 0.7;
+
+/** What a fit says of landmarks: lines for people, what could make it better, and all of it for programs. */
+interface FitNotes {
+  lines: Line[];
+  advice?: Line;
+  report: object;
+}
+
+function describeFit({ used, confidence, missing }: Fit, given: Landmarks): FitNotes {
+  const all = Object.keys(used);
+  const own = all.filter((name) => Object.hasOwn(given, name)).length;
+  const list = (names: string[]) => listed(names, kMaxNames, ' (--json lists all)');
+  const doubtful = all
+    .filter((name) => confidence[name]! < kCertain)
+    .sort((a, b) => confidence[a]! - confidence[b]!)
+    .map((name) => `${name} (${confidence[name]!.toFixed(2)})`);
+  const isJoint = (name: string) => name.startsWith('joint_');
+  const lines = [
+    `landmarks: ${integer(all.length)} used, ${integer(own)} of them given`,
+    doubtful.length > 0 && `found, but not certain (1 would be): ${list(doubtful)}`,
+    missing.length > 0 && `not found: ${list(missing)}`,
+    missing.some(isJoint) &&
+      !all.some(isJoint) &&
+      'no joint is found: TARGET has no skeleton, or names of bones that are not known',
+  ];
+  const advice = doubtful.length + missing.length > 0 && 'give these for a better fit: --landmarks L.json';
+  return { lines, advice, report: { landmarks: { used, confidence, missing } } };
+}
+
+/** Said where findings advise flags that these commands do not have, or have for something else. */
+const kOtherFlags = '--keep and --exclude, as advised here, are flags of cagecast transfer';
+
+/** Inspects a cage, as `inspect` does without flags, and writes the files. */
+async function finish(
+  cage: Cage,
+  model: ReadModel,
+  { output, html }: CageFileFlags,
+  io: Io,
+  notes: FitNotes = { lines: [], report: {} },
+): Promise<Found> {
+  const { rules } = resolveSettings([]);
+  const run = await transferModels(model, await readBack(cage, output), { preset: rules.preset }, io);
+  io.step('inspecting');
+  const report = inspectionReport({ target: model.file.path, cage: output, rules }, run, []);
+  const page = html === undefined ? [] : [{ path: html, data: inspectionPage(report, run) }];
+  writeFiles([{ path: output, data: cageGlb(cage) }, ...page], io);
+  const conclusion = conclusionOf(report);
+  const { verdict, uv, holes } = report;
+  const lines = [
+    `wrote ${output}: ${integer(report.cage.vertices)} vertices, ${integer(report.cage.triangles)} triangles, ${counted(uv.charts, 'chart')}, ${counted(holes.length, 'hole')}`,
+    ...notes.lines,
+    verdict !== 'good' && notes.advice,
+    ...conclusion,
+    conclusion.some((line) => /--(keep|exclude) "/.test(line)) && kOtherFlags,
+    html && `wrote ${html}`,
+  ];
+  const exitCode = verdict === 'unfit' ? kExit.unfit : 0;
+  return { lines, report: { ...report, ...notes.report }, exitCode };
+}

@@ -1,0 +1,265 @@
+// Flags that several commands have, as commander parses them.
+import { type Command, InvalidArgumentError, Option } from 'commander';
+import { optionFlags } from '../../generated/options.js';
+import { type ReadOptions, standard } from '../../gltf/files.js';
+import { defaultLimits, type ReadLimits } from '../../gltf/limits.js';
+import { colorAttributes, holdsColors, kChoices, kSettingNames, type Layer, type Settings } from '../model/settings.js';
+import { kAutoCage, type Region } from '../model/sources.js';
+import { areBounds, boundsText, type UvBounds } from '../model/uv-bounds.js';
+import { Configuration, configName } from './config-file.js';
+
+/** The flags that say what is painted. */
+export interface SettingFlags extends Settings {
+  config?: string | false;
+}
+
+/** The flags that say which part of a cage counts. */
+export interface CageFlags {
+  uvBounds?: UvBounds;
+  referenceCage?: string;
+}
+
+/** The flags that say how files are read. */
+export interface ReadFlags {
+  allowOutside?: boolean;
+  limit?: Partial<ReadLimits>;
+}
+
+/** The flags that say what is printed. */
+export interface PrintFlags {
+  json?: boolean;
+  quiet?: boolean;
+}
+
+/** An option with a parser of its value. */
+export const parsed = <Value>(
+  flags: string,
+  text: string,
+  parse: (value: string, before: Value | undefined) => Value,
+): Option => new Option(flags, text).argParser(parse);
+
+/** Parses an option that may be repeated. */
+export const oneMore = (value: string, before: string[] = []): string[] => [...before, value];
+
+/** An option that is one of some words. Settings have no default here: a configuration may say otherwise. */
+const choice = (flags: string, text: string, words: readonly string[]): Option =>
+  new Option(flags, `${text} (default: ${words[0]})`).choices(words);
+
+export const bordersFlag = (): Option =>
+  choice(
+    '--borders <HOW>',
+    'where paint ends: at edges of triangles, or exactly, where they are cut',
+    kChoices.borders,
+  );
+
+const kOutputFlags = [
+  bordersFlag(),
+  choice('--compress <HOW>', 'how painted meshes are compressed; keep: as in TARGET', kChoices.compress),
+  parsed(
+    '--region <CAGE=PAINT>',
+    'another cage with its texture, for triangles that no cage before it paints; may be repeated',
+    regionOf,
+  ).default([], 'none'),
+];
+
+/** The flag for a page about a cage. */
+export const htmlFlag = (): Option => parsed('--html <REPORT.html>', 'a page with pictures', endingIn('.html'));
+
+const kCageFileFlags = [
+  parsed(
+    '-o, --output <CAGE.glb>',
+    'where to write the cage; - for the standard output',
+    endingIn('.glb'),
+  ).makeOptionMandatory(),
+  htmlFlag(),
+  parsed(
+    '--exclude <NAME>',
+    'do not paint parts with this word in the name of their node or material, nor those below such a node (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair; an empty name excludes nothing',
+    (name: string, before: string[] = []) => (name === '' ? before : [...before, name]),
+  ),
+];
+
+/** A flag for each option of core/include/cagecast/options.def. Words in commander's help begin in lower case. */
+const optionOf = (option: (typeof optionFlags)[number]): Option => {
+  const { flag, kind, range, standard, paper, text } = option;
+  const limits = range[1] === Infinity ? `at least ${range[0]}` : `${range[0]} to ${range[1]}`;
+  const help = [
+    `${text[0]!.toLowerCase()}${text.slice(1).replace(/\.$/, '')}`,
+    ...(kind === 'choice' ? [] : [kind === 'length' ? `a share of the target's diagonal, ${limits}` : limits]),
+    `default: ${standard}${standard === paper ? '' : `, or ${paper} with --preset paper`}`,
+  ].join('; ');
+  return kind === 'choice'
+    ? new Option(`${flag} <HOW>`, help).choices(range)
+    : parsed(`${flag} <SHARE>`, help, numberWithin(range[0], range[1]));
+};
+
+const kSettingFlags = [
+  choice('--preset <NAME>', 'values of the options that are not given', kChoices.preset),
+  ...optionFlags.map(optionOf),
+  parsed(
+    '--keep <NAME>',
+    'keep parts of this node or material, whatever the rules say. * matches any text; a node that holds others means all below it; may be repeated',
+    oneMore,
+  ),
+  parsed('--exclude <NAME>', 'never paint parts of this node or material; as --keep', oneMore),
+  new Option('--never-mask <IMAGE>', "never paint where this image, in TARGET's own UVs, is white"),
+  new Option('--always-mask <IMAGE>', 'paint where this one is white, whatever the rules say'),
+  parsed(
+    '--mask-colors <ATTRIBUTE>',
+    'never paint red vertices, always green ones; by an attribute such as COLOR_0',
+    (name) => {
+      if (!holdsColors(name)) throw new InvalidArgumentError(`It is not ${colorAttributes}.`);
+      return name;
+    },
+  ),
+  new Option('--config <FILE>', `settings for all files, and by their names (default: the nearest ${configName})`),
+  new Option('--no-config', `read no ${configName}`),
+];
+
+const kCageFlags = [
+  parsed(
+    '--uv-bounds <U0,V0,U1,V1>',
+    "the part of the cage's UVs that the texture covers; what lies outside is not painted (default: all; the texture covers 0..1)",
+    boundsOf,
+  ),
+  new Option(
+    '--reference-cage <CAGE>',
+    'another version of the cage. Where its UVs have no triangle, --cage counts as having a hole',
+  ),
+];
+
+const kReadFlags = [
+  new Option(
+    '--allow-outside',
+    `read also files outside the folder of the glTF, or found ${configName}, that names them`,
+  ),
+  parsed(
+    '--limit <NAME=VALUE>',
+    `what reading a file may cost; may be repeated (default: ${Object.entries(defaultLimits)
+      .map(([name, value]) => `${name}=${value}`)
+      .join(', ')})`,
+    limitOf,
+  ),
+];
+
+const kPrintFlags = [new Option('--json', 'print JSON'), new Option('--quiet', 'print nothing but errors')];
+
+/** Groups of flags, by their heading in the help. */
+const kGroups = {
+  'What is written': kOutputFlags,
+  'What is painted': kSettingFlags,
+  'Part of the cage': kCageFlags,
+  'Cages that are written': kCageFileFlags,
+  'How files are read': kReadFlags,
+  'What is printed': kPrintFlags,
+};
+
+/** Adds groups of flags, after the flags that a command has for itself. */
+export function addFlags(command: Command, ...headings: (keyof typeof kGroups)[]): Command {
+  for (const heading of headings)
+    for (const option of kGroups[heading]) command.addOption(option.helpGroup(`${heading}:`));
+  return command;
+}
+
+/** What the flags say of settings. */
+const flagsLayer = (flags: SettingFlags): Layer => ({
+  settings: Object.fromEntries(Object.entries(flags).filter(([name]) => kSettingNames.includes(name))),
+  isFlags: true,
+});
+
+/** Returns what finds the settings of a target: those of its configuration file, then flags. */
+export function layersFor(flags: SettingFlags & ReadFlags): (target: string) => Promise<Layer[]> {
+  const files = new Configuration(flags.config, readingOf(flags));
+  return async (target) => [...(await files.layersFor(target)), flagsLayer(flags)];
+}
+
+/** How files are read, by the flags. */
+export const readingOf = ({ allowOutside = false, limit }: ReadFlags): ReadOptions => ({
+  allowOutside,
+  limits: { ...defaultLimits, ...limit },
+});
+
+interface InputFlags extends SettingFlags, CageFlags {
+  cage?: string | undefined;
+  texture?: string | undefined;
+  region?: readonly Region[];
+}
+
+/** The files that flags name as inputs. */
+export const inputsOf = ({
+  cage,
+  referenceCage,
+  texture,
+  region = [],
+  neverMask,
+  alwaysMask,
+  config,
+}: InputFlags): string[] =>
+  [
+    ...[cage, ...region.map((one) => one.cage)].filter((path) => path !== kAutoCage),
+    ...[referenceCage, texture, ...region.map((one) => one.texture), neverMask, alwaysMask, config || undefined],
+  ].filter((path) => path !== undefined);
+
+/** What is wrong with flags about an output that is not given, if anything is. */
+export function outputFault({
+  output,
+  texture,
+  region = [],
+  borders,
+}: InputFlags & { output?: string | undefined }): string | undefined {
+  if (output !== undefined) return undefined;
+  if (texture !== undefined) return '--texture needs -o OUT.glb, the file to add it to';
+  if (region.length > 0) return '--region needs -o OUT.glb, the file to add it to';
+  return borders === 'cut' ? '--borders cut needs -o OUT.glb, the file for the cut target' : undefined;
+}
+
+/** Returns a parser for a whole number within two others. @param unit  What is counted, for its message: " of texels". */
+export function wholeNumberWithin(least: number, most: number, unit = ''): (text: string) => number {
+  return (text) => {
+    const value = Number(text);
+    if (!/^\d+$/.test(text) || value < least || value > most)
+      throw new InvalidArgumentError(`It is not a whole number${unit} within ${least}..${most}.`);
+    return value;
+  };
+}
+
+/** Returns a parser for a number within two others. */
+export function numberWithin(least: number, most: number): (text: string) => number {
+  return (text) => {
+    const value = Number(text);
+    if (text.trim() === '' || !(value >= least && value <= most))
+      throw new InvalidArgumentError(`It is not a number within ${least}..${most}.`);
+    return value;
+  };
+}
+
+/** Returns a parser for the name of a file with one of some endings, or of the standard output. */
+export function endingIn(...endings: string[]): (text: string) => string {
+  return (text) => {
+    if (text !== standard && !endings.some((ending) => text.toLowerCase().endsWith(ending)))
+      throw new InvalidArgumentError(`Its name must end in ${endings.join(' or ')}, or be -, the standard output.`);
+    return text;
+  };
+}
+
+function boundsOf(text: string): UvBounds {
+  const bounds = text.split(',').map((number) => (number.trim() === '' ? Number.NaN : Number(number)));
+  if (!areBounds(bounds)) throw new InvalidArgumentError(`It is not ${boundsText}.`);
+  return bounds;
+}
+
+function regionOf(text: string, before: Region[] = []): Region[] {
+  // Names of folders may have a = in them, such as run=3.
+  const [, cage, texture] = /^(.+?\.(?:glb|gltf|vrm)|[^=]+)=(.+)$/i.exec(text) ?? [];
+  if (cage === undefined || texture === undefined)
+    throw new InvalidArgumentError('It is not the file of a cage and that of a texture, with = between them.');
+  return [...before, { cage, texture }];
+}
+
+function limitOf(text: string, before: Partial<ReadLimits> = {}): Partial<ReadLimits> {
+  const [name = '', value = ''] = text.split('=', 2);
+  if (!Object.hasOwn(defaultLimits, name))
+    throw new InvalidArgumentError(`There are the limits ${Object.keys(defaultLimits).join(', ')}.`);
+  if (!/^\d+$/.test(value)) throw new InvalidArgumentError(`A limit is a whole number, such as ${name}=5000.`);
+  return { ...before, [name]: Number(value) };
+}

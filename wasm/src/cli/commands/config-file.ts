@@ -1,0 +1,113 @@
+import { lstatSync } from 'node:fs';
+import { basename, dirname, extname, join, relative, resolve } from 'node:path';
+import { type ReadOptions, readBeside, readBytes, standard } from '../../gltf/files.js';
+import { InputError, withName } from '../../gltf/input-error.js';
+import { isObject, parseObject, refuseUnknown } from '../model/json.js';
+import { matcher } from '../model/patterns.js';
+import { kSettingNames, type Layer, type Settings, settingsOf } from '../model/settings.js';
+import { shown } from '../model/text.js';
+
+/** The name under which configuration files are found. */
+export const configName = 'cagecast.config.json';
+
+interface ConfigFile {
+  /** As it is shown: from the current folder, or absolute if it is not below. */
+  path: string;
+  common: Settings;
+  characters: { matches: (name: string) => boolean; settings: Settings }[];
+}
+
+/** Finds the configuration files of targets, and reads each once. */
+export class Configuration {
+  readonly #given: string | false | undefined;
+  readonly #reading: ReadOptions;
+  readonly #byPath = new Map<string, Promise<ConfigFile>>();
+  readonly #byFolder = new Map<string, string | undefined>();
+
+  /** @param given  The file for all targets; `false` for none; by default, the nearest from the folder of a target upwards. */
+  constructor(given: string | false | undefined, reading: ReadOptions) {
+    this.#given = given;
+    this.#reading = reading;
+  }
+
+  /**
+   * What the file says of a target: of all, then by the characters that match, in their order. Nothing if there is no file.
+   * @throws {InputError} that names the file, the member and its value.
+   */
+  async layersFor(target: string): Promise<Layer[]> {
+    if (this.#given === false) return [];
+    const path = this.#given ?? this.#find(resolve(target === standard ? '.' : dirname(target)));
+    if (path === undefined) return [];
+    const file = await this.#read(path);
+    const name = basename(target);
+    const own = file.characters.filter(({ matches }) => matches(name) || matches(basename(name, extname(name))));
+    const config = { path: file.path, folder: this.#given === undefined ? dirname(path) : undefined };
+    return [file.common, ...own.map(({ settings }) => settings)].map((settings) => ({ settings, config }));
+  }
+
+  #find(folder: string): string | undefined {
+    if (!this.#byFolder.has(folder)) {
+      const path = join(folder, configName);
+      const parent = dirname(folder);
+      this.#byFolder.set(folder, isThere(path) ? path : parent === folder ? undefined : this.#find(parent));
+    }
+    return this.#byFolder.get(folder);
+  }
+
+  #read(path: string): Promise<ConfigFile> {
+    const known = this.#byPath.get(path) ?? this.#readNew(path);
+    this.#byPath.set(path, known);
+    return known;
+  }
+
+  async #readNew(path: string): Promise<ConfigFile> {
+    const shown = relative('.', path).startsWith('..') ? path : relative('.', path);
+    const folder = dirname(path);
+    try {
+      // The file itself may be a link to anywhere.
+      const bytes =
+        this.#given === undefined
+          ? await readBeside(path, folder, { ...this.#reading, allowOutside: true })
+          : await readBytes(path, this.#reading.limits);
+      return { path: shown, ...parseConfig(new TextDecoder().decode(bytes), folder) };
+    } catch (error) {
+      throw withName(error, shown);
+    }
+  }
+}
+
+/** Whether there is a file, or a link, even one that leads nowhere. If the path cannot be followed, reading the model tells why. */
+function isThere(path: string): boolean {
+  try {
+    return lstatSync(path, { throwIfNoEntry: false }) !== undefined;
+  } catch {
+    return false;
+  }
+}
+
+function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
+  const all = parseObject(text);
+  refuseUnknown(all, [...kSettingNames, 'characters']);
+  const { characters = {} } = all;
+  if (!isObject(characters))
+    throw new InputError(`"characters" is ${shown(characters)}, not an object of patterns and settings`);
+  return {
+    common: settingsOf(all, folder),
+    characters: inOrder(text).map((pattern) => {
+      const given = characters[pattern];
+      try {
+        if (!isObject(given)) throw new InputError(`is ${shown(given)}, not an object of settings`);
+        refuseUnknown(given, kSettingNames);
+        return { matches: matcher(pattern), settings: settingsOf(given, folder) };
+      } catch (error) {
+        throw withName(error, `"characters" "${pattern}"`);
+      }
+    }),
+  };
+}
+
+/** The names of the characters in the order of the file. Objects put integers first; with a NUL before them, they keep their place. */
+function inOrder(text: string): string[] {
+  const { characters = {} } = parseObject(text.replace(/"(\d+)"(?=\s*:)/g, '"\\u0000$1"'));
+  return Object.keys(characters as object).map((name) => name.replace('\0', ''));
+}

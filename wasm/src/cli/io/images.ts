@@ -1,0 +1,83 @@
+import { PNG } from 'pngjs';
+import { type Image, mostTexels } from '../../bake/index.js';
+import { type ReadOptions, readBeside, readBytes } from '../../gltf/files.js';
+import { imageIsWhole, imageType, pngLength } from '../../gltf/image-file.js';
+import { firstLine, InputError, withName } from '../../gltf/input-error.js';
+
+/**
+ * Reads an image file.
+ * @param folder  Where it has to be, as a regular file, unless files outside may be read. Default: anywhere, and pipes too.
+ * @throws {InputError} that names the file.
+ */
+export async function readImage(path: string, reading: ReadOptions, folder?: string): Promise<Image> {
+  try {
+    return await decodeImage(
+      await (folder === undefined ? readBytes(path, reading.limits) : readBeside(path, folder, reading)),
+    );
+  } catch (error) {
+    throw withName(error, path);
+  }
+}
+
+/**
+ * Decodes a PNG; other types by sharp, if it is installed.
+ * @throws {InputError}
+ */
+export async function decodeImage(bytes: Uint8Array): Promise<Image> {
+  const type = imageType(bytes);
+  if (type === undefined) throw new InputError('is not a PNG, JPEG or WebP image');
+  if (type === 'image/ktx2') throw new InputError('is a KTX2 image, which cannot be baked; convert it to PNG');
+  if (!imageIsWhole(bytes)) throw new InputError('is truncated: the image is incomplete');
+  if (type === 'image/png') return decodePng(bytes);
+  const sharp = await loadSharp();
+  if (!sharp)
+    throw new InputError(
+      `is a ${type === 'image/jpeg' ? 'JPEG' : 'WebP'} image; to read those, npm install sharp beside cagecast`,
+    );
+  try {
+    const { data, info } = await sharp(bytes).ensureAlpha().raw().toBuffer({ resolveWithObject: true });
+    return { width: info.width, height: info.height, data };
+  } catch (error) {
+    throw new InputError(`cannot be decoded (${firstLine(error)})`);
+  }
+}
+
+function decodePng(bytes: Uint8Array): Image {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  // The header comes first: nothing is decoded that is too large.
+  const [width, height] = bytes.byteLength < 24 ? [0, 0] : [view.getUint32(16), view.getUint32(20)];
+  if (width === 0 || height === 0 || width > mostTexels || height > mostTexels)
+    throw new InputError(`has ${width} × ${height} pixels; both must be from 1 to ${mostTexels}`);
+  try {
+    const { data } = PNG.sync.read(Buffer.from(bytes.subarray(0, pngLength(bytes))));
+    return { width, height, data };
+  } catch (error) {
+    throw new InputError(`cannot be decoded (${firstLine(error)})`);
+  }
+}
+
+/** Encodes a PNG. */
+export async function encodePng({ width, height, data }: Image): Promise<Uint8Array> {
+  const png = new PNG({ width, height });
+  png.data = Buffer.from(data.buffer, data.byteOffset, data.byteLength);
+  return PNG.sync.write(png);
+}
+
+/** The parts of sharp that are used here. */
+type Sharp = (bytes: Uint8Array) => {
+  ensureAlpha(): {
+    raw(): {
+      toBuffer(options: object): Promise<{ data: Uint8Array; info: { width: number; height: number } }>;
+    };
+  };
+};
+
+/** sharp, which has native code and is no dependency. */
+async function loadSharp(): Promise<Sharp | undefined> {
+  const name = 'sharp';
+  try {
+    return ((await import(name)) as { default: Sharp }).default;
+  } catch {
+    return undefined;
+  }
+}

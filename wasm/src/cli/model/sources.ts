@@ -1,0 +1,35 @@
+import type { ReadOptions } from '../../gltf/files.js';
+import type { ResolvedSettings, Rules } from './settings.js';
+import type { UvBounds } from './uv-bounds.js';
+
+/** The files of a transfer, and how they are read. */
+export interface Sources {
+  target: string;
+  cage: string;
+  /** The part of the cage's UVs that the texture covers; by default 0..1. */
+  uvBounds?: UvBounds | undefined;
+  /** A cage with the UVs of all triangles that count; others count as cut away. */
+  referenceCage?: string | undefined;
+  rules: Rules;
+  reading: ReadOptions;
+}
+
+/** The name of a cage that is made on the way; a file of this name is `./auto`. */
+export const kAutoCage = 'auto';
+
+/** A further cage, and the texture that was drawn for it. */
+export interface Region {
+  cage: string;
+  texture: string;
+}
+
+/** The arguments of `cagecast transfer`. */
+export interface TransferCommand extends Sources, ResolvedSettings {
+  texture?: string | undefined;
+  output?: string | undefined;
+  report?: string | undefined;
+  /** Further cages with textures: each paints only what none before it does. */
+  regions?: readonly Region[] | undefined;
+  /** Whether to inspect the cage as well. */
+  inspects?: boolean | undefined;
+}

@@ -1,0 +1,71 @@
+import { cageGlb } from '../../cages/cage-glb.js';
+import type { Cage } from '../../cages/types.js';
+import { type Extracted, extract, type Part, partOf, primitivePath, uvLayout } from '../../gltf/extract-file.js';
+import type { ReadOptions } from '../../gltf/files.js';
+import { InputError } from '../../gltf/input-error.js';
+import { type GltfFile, readGltf } from '../../gltf/read-gltf.js';
+import { CagecastError } from '../../index.js';
+import type { Io } from '../io/io.js';
+import { quoted } from '../model/text.js';
+
+/** A file, and all triangles of its scene. */
+export interface ReadModel {
+  file: GltfFile;
+  extracted: Extracted;
+}
+
+/** Reads a model. @param bytes  Its content, if it is known already. @throws {InputError} that names the file. */
+export async function readModel(path: string, reading: ReadOptions, io: Io, bytes?: Uint8Array): Promise<ReadModel> {
+  io.step(`reading ${path}`);
+  const file = await readGltf(path, reading, bytes);
+  const extracted = extract(file);
+  if (extracted.mesh.indices.length > 0) return { file, extracted };
+  const what = (file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene';
+  throw new InputError(`has no ${what}; at least one triangle is needed`).in(path);
+}
+
+/** How many models a batch keeps. */
+const kMaxKept = 8;
+
+/** Returns a `readModel` that keeps the last models that it was asked for. */
+export function cachedReading(): typeof readModel {
+  const known = new Map<string, Promise<ReadModel>>();
+  return (path, reading, io) => {
+    const key = JSON.stringify([path, reading]);
+    const model = known.get(key) ?? readModel(path, reading, io);
+    known.delete(key);
+    known.set(key, model);
+    for (const [oldest] of known) if (known.size > kMaxKept) known.delete(oldest);
+    return model;
+  };
+}
+
+/** The same if it has UVs, as a cage must. @throws {InputError} that names the file and the primitive. */
+export function withUvs(model: ReadModel): ReadModel {
+  const { file, extracted } = model;
+  if (extracted.mesh.uvs !== undefined) return model;
+  const setOf = (part: Part) => uvLayout(file.json, part).set;
+  const part = extracted.parts.find(
+    (one) => file.json.meshes![one.mesh]!.primitives[one.primitive]!.attributes[setOf(one)] === undefined,
+  )!;
+  throw new InputError(
+    `${primitivePath(part)} (${quoted(part.name)}) has no ${setOf(part)}: the texture is drawn in the cage's UVs`,
+  ).in(file.path);
+}
+
+/** A cage as if it was read from a file. */
+export async function readBack(cage: Cage, path: string): Promise<ReadModel> {
+  const file = await readGltf(path, undefined, cageGlb(cage));
+  return { file, extracted: extract(file) };
+}
+
+/** An error of the core as one of the model at fault, and of the place in it; any other error as it is. */
+export function inFile(error: unknown, models: { target: ReadModel; cage: ReadModel }): unknown {
+  if (!(error instanceof CagecastError)) return error;
+  const { reason, argument, code, at } = error;
+  const { file, extracted } = models[argument === 'cage' ? 'cage' : 'target'];
+  const perVertex = { nonFinitePosition: 3, tooLarge: 3, nonFiniteUv: 2 }[code as string];
+  const part = perVertex === undefined ? undefined : partOf(extracted.parts, Math.floor(at / perVertex));
+  const where = part ? ` (${primitivePath(part)}, ${quoted(part.name)})` : '';
+  return new InputError(`${reason}${where}`).in(file.path);
+}

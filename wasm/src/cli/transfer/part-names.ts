@@ -1,0 +1,63 @@
+import { partsBelow } from '../../gltf/extract-file.js';
+import { InputError } from '../../gltf/input-error.js';
+import type { TransferOptions } from '../../index.js';
+import { matcher } from '../model/patterns.js';
+import type { Rules } from '../model/settings.js';
+import { cut, kMaxCharacters, listed, quoted } from '../model/text.js';
+import type { ReadModel } from './models.js';
+
+/** The numbers of the parts that a pattern names. The name of a node that no part has stands for all parts below it. */
+export function partsNamed(pattern: string, { file: { json }, extracted: { parts } }: ReadModel): number[] {
+  const matches = matcher(pattern);
+  const own = [...parts.keys()].filter((p) => parts[p]!.aliases.some(matches));
+  if (own.length > 0) return own;
+  const isAbove = (json.nodes ?? []).map(({ name }) => name !== undefined && matches(name));
+  return partsBelow(json, parts, isAbove);
+}
+
+/** How many names a message lists at most. */
+const kMaxNames = 20;
+
+/** No part has the name that a flag gives. */
+export function noSuchName(flag: string, { file: { json }, extracted: { parts } }: ReadModel): InputError {
+  const nodes = json.nodes ?? [];
+  const parents = new Map(nodes.flatMap(({ children = [] }, n) => children.map((child) => [child, n])));
+  const above = new Set<number>();
+  for (const { node } of parts)
+    for (let n = parents.get(node); n !== undefined && !above.has(n); n = parents.get(n)) above.add(n);
+  const holding = [...above].sort((a, b) => a - b).flatMap((n) => nodes[n]!.name ?? []);
+  const names = new Set([...parts.flatMap(({ aliases }) => aliases), ...holding]);
+  const shown = [...names].map((name) => cut(name, kMaxCharacters));
+  return new InputError(`${flag}: no node or material has this name; there are: ${listed(shown, kMaxNames)}`);
+}
+
+/**
+ * The options of `transfer`. Names of parts become locks by group, because each part is a group.
+ * @param leftOut  Whether each part is excluded if nothing is said of it.
+ * @throws {InputError} that names the file, if nothing has a given name, or a part is both kept and excluded in one place.
+ */
+export function transferOptions(
+  { preset, single, names, config }: Rules,
+  model: ReadModel,
+  leftOut: readonly boolean[],
+): TransferOptions {
+  const { parts } = model.extracted;
+  const saidOf: Rules['names'][] = parts.map(() => []);
+  for (const rule of names) {
+    const found = partsNamed(rule.pattern, model).filter((p) => parts[p]!.vertexCount > 0);
+    if (found.length === 0 && !rule.isOptional)
+      throw noSuchName(`--${rule.lock} ${rule.pattern}`, model).in(model.file.path);
+    for (const p of found) saidOf[p]!.push(rule);
+  }
+  const groups = parts.flatMap(({ name }, p) => {
+    const rank = Math.max(...saidOf[p]!.map((rule) => rule.rank));
+    const [first, ...others] = saidOf[p]!.filter((rule) => rule.rank === rank);
+    if (first === undefined) return leftOut[p] ? [[p, 'exclude']] : [];
+    const other = others.find(({ lock }) => lock !== first.lock);
+    if (other === undefined) return [[p, first.lock]];
+    const place = first.isOptional ? ` (in ${config})` : '';
+    const both = [first, other].map(({ lock, pattern }) => `--${lock} ${pattern}`).join(' and ');
+    throw new InputError(`${both} both match ${quoted(name)}${place}`).in(model.file.path);
+  });
+  return { preset, ...single, locks: { groups: Object.fromEntries(groups) } };
+}

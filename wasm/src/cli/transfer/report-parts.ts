@@ -1,0 +1,80 @@
+// What the reports of `transfer` and `inspect` have in common.
+import { presetOptions, type TransferResult } from '../../index.js';
+import { percent } from '../../inspect/finding.js';
+import { boxOf } from '../../inspect/geometry.js';
+import type { Sources } from '../model/sources.js';
+import { integer, type Line, listed, table } from '../model/text.js';
+import { kZoneNames, type PerZone } from '../model/zones.js';
+import type { ReadModel } from './models.js';
+import type { Run } from './run-transfer.js';
+
+export const versions = () => ({ cagecast: CAGECAST_VERSION, node: process.versions.node });
+
+/** What a report says of a target. */
+export const targetReport = (file: string, { extracted: { mesh } }: ReadModel) => ({
+  file,
+  vertices: mesh.positions.length / 3,
+  triangles: mesh.indices.length / 3,
+  diagonal: boxOf(mesh.positions).diagonal,
+});
+
+/** What a report says of a cage; of one that was made on the way, also the names of the parts that are not painted because of them. */
+export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { excluded }: Run) => ({
+  file,
+  vertices: mesh.positions.length / 3,
+  triangles: mesh.indices.length / 3,
+  ...(excluded && { excluded }),
+});
+
+export type CageReport = ReturnType<typeof cageReport>;
+
+/** Vertices and shares of the area in each zone, for people. */
+export const zoneTable = (counts: PerZone, areas: PerZone, total = 1): string[] =>
+  table([
+    ['', 'vertices', 'area'],
+    ...kZoneNames.map((zone) => [zone, integer(counts[zone]), percent(areas[zone] / (total || 1))]),
+  ]);
+
+/** How many names a line has at most. */
+const kMaxNames = 12;
+
+/** Says which parts a cage was made without, if there are any. */
+export const excludedLine = ({ excluded = [] }: CageReport): Line =>
+  excluded.length > 0 && `excluded from the cage by their names: ${listed(excluded, kMaxNames)}`;
+
+/** All options that a transfer was made with; needs `init`. */
+export function effectiveOptions({
+  rules: { preset, single, names, masks, config },
+  uvBounds,
+  referenceCage,
+}: Pick<Sources, 'rules' | 'uvBounds' | 'referenceCage'>) {
+  const all = { ...presetOptions(preset), ...single };
+  const patterns = (lock: string) => [
+    ...new Set(names.filter((rule) => rule.lock === lock).map(({ pattern }) => pattern)),
+  ];
+  const { never, always, colors } = masks;
+  // JSON leaves out what is undefined, and has no infinite numbers.
+  return {
+    preset,
+    ...all,
+    occlusionReach: Number.isFinite(all.occlusionReach) ? all.occlusionReach : 'Infinity',
+    keep: patterns('keep'),
+    exclude: patterns('exclude'),
+    masks: (never ?? always ?? colors) ? { never: never?.path, always: always?.path, colors } : undefined,
+    uvBounds,
+    referenceCage,
+    config: config ?? null, // the configuration file that some of them come from
+  };
+}
+
+/** Adds up a weight per vertex (1 by default) for each zone, over a range of vertices. */
+export function perZone(
+  zones: TransferResult['zones'],
+  weights?: Float64Array,
+  first = 0,
+  end = zones.length,
+): PerZone {
+  const sums: PerZone = { cosmetic: 0, occluded: 0, uncovered: 0, culled: 0 };
+  for (let v = first; v < end; ++v) sums[kZoneNames[zones[v]!]!] += weights ? weights[v]! : 1;
+  return sums;
+}

@@ -1,0 +1,112 @@
+import { FileModel } from '../../gltf/bake/bake-file.js';
+import { masksOf } from '../../gltf/bake/masks.js';
+import type { ReadOptions } from '../../gltf/files.js';
+import { withName } from '../../gltf/input-error.js';
+import {
+  type CutTarget,
+  cutBorders,
+  init,
+  type Masks,
+  type TransferOptions,
+  type TransferResult,
+  transfer,
+} from '../../index.js';
+import { readImage } from '../io/images.js';
+import type { Io } from '../io/io.js';
+import type { Rules } from '../model/settings.js';
+import { kAutoCage, type Sources } from '../model/sources.js';
+import { withinBounds, withoutLacking } from './cage-area.js';
+import { makeCageFor, partsLeftOut } from './made-cage.js';
+import { inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
+import { transferOptions } from './part-names.js';
+
+/** Two models, and what was transferred. */
+export interface Run {
+  target: ReadModel;
+  cage: ReadModel;
+  /** The cage before its UVs were moved to those of the texture. */
+  wholeCage: ReadModel;
+  /** The names of the parts that the cage was made without, if it was made on the way. */
+  excluded?: readonly string[] | undefined;
+  /** What `transfer` was called with. */
+  options: TransferOptions;
+  result: TransferResult;
+}
+
+/**
+ * Reads target and cage, or makes a cage, and runs the transfer.
+ * @param readCage  How cages are read.
+ * @param read      The target, if it is read already.
+ * @throws {InputError} that names the file at fault.
+ */
+export async function runTransfer(
+  { target: path, cage, uvBounds, referenceCage, rules, reading }: Sources,
+  io: Io,
+  readCage: typeof readModel = readModel,
+  read?: ReadModel,
+): Promise<Run> {
+  const target = read ?? (await readModel(path, reading, io));
+  const masks = await readMasks(target, rules.masks, reading);
+  const isMade = cage === kAutoCage;
+  const leftOut = isMade ? await partsLeftOut(target) : [];
+  const options = { ...transferOptions(rules, target, leftOut), ...(masks && { masks }) };
+  const cageOf = async (file: string) => withUvs(await readCage(file, reading, io));
+  const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage) : await cageOf(cage);
+  const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
+  const wholeCage = withoutLacking(whole, reference);
+  const run = await transferModels(target, withinBounds(wholeCage, uvBounds), options, io);
+  const isLeftOut = (p: number) => leftOut[p] && options.locks?.groups?.[p] !== 'keep';
+  const names = target.extracted.parts.filter((_, p) => isLeftOut(p)).map(({ name }) => name);
+  return { ...run, wholeCage, excluded: isMade ? [...new Set(names)] : undefined };
+}
+
+/** The masks of a target. @throws {InputError} that names the file at fault. */
+async function readMasks(
+  { file, extracted }: ReadModel,
+  { never, always, colors }: Rules['masks'],
+  reading: ReadOptions,
+): Promise<Masks | undefined> {
+  if (!(never || always || colors)) return undefined;
+  const [neverImage, alwaysImage] = await Promise.all(
+    Object.entries({ never, always }).map(
+      ([kind, mask]) =>
+        mask &&
+        readImage(mask.path, reading, mask.config?.folder).catch((error: unknown) => {
+          throw mask.config ? withName(error, `${mask.config.path}: "${kind}Mask"`) : error;
+        }),
+    ),
+  );
+  try {
+    const images = never || always ? { never: neverImage, always: alwaysImage } : undefined;
+    return masksOf(new FileModel(file, extracted.parts), undefined, { images, colors });
+  } catch (error) {
+    throw withName(error, file.path);
+  }
+}
+
+/** Transfers from a cage to a target that are read. @throws {InputError} that names the file at fault. */
+export async function transferModels(
+  target: ReadModel,
+  cage: ReadModel,
+  options: TransferOptions,
+  io: Io,
+): Promise<Run> {
+  io.step(`transferring to ${(target.extracted.mesh.positions.length / 3).toLocaleString('en')} vertices`);
+  await init();
+  try {
+    const result = transfer(cage.extracted.mesh, target.extracted.mesh, options);
+    return { target, cage, wholeCage: cage, options, result };
+  } catch (error) {
+    throw inFile(error, { target, cage });
+  }
+}
+
+/** Cuts the target. @throws {InputError} that names the file and the element at fault. */
+export function cutTarget({ cage, target, result, options }: Run, io: Io): CutTarget {
+  io.step('cutting borders');
+  try {
+    return cutBorders(cage.extracted.mesh, target.extracted.mesh, result, options);
+  } catch (error) {
+    throw inFile(error, { target, cage });
+  }
+}

@@ -1,0 +1,220 @@
+import { dirname } from 'node:path';
+import type { Accessor, GLTF } from '@gltf-transform/core';
+import type { Part } from '../extract-file.js';
+import { readUri } from '../files.js';
+import type { GlbWriter } from '../glb-writer.js';
+import { imageType } from '../image-file.js';
+import type { GltfFile } from '../read-gltf.js';
+import { uvLayoutOf } from '../uv-layout.js';
+import { type BakeModel, type Slot, type TextureUse, wrapOf } from './plan.js';
+
+/** Extensions that give a texture another image than its own `source`. */
+const sourceExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
+
+/** The image of a texture. */
+function sourceOf({ source, extensions }: GLTF.ITexture): number | undefined {
+  const other = sourceExtensions.map((name) => (extensions?.[name] as { source?: number } | undefined)?.source);
+  return other.find((found) => found !== undefined) ?? source;
+}
+
+/** A file as baking sees it. Materials and textures are their numbers. What is painted goes to a writer of the file. */
+export class FileModel implements BakeModel<number, number> {
+  readonly #file: GltfFile;
+  readonly #json: GLTF.IGLTF;
+  readonly #writer: GlbWriter | undefined;
+  readonly parts: readonly Part[];
+
+  /** @param writer  Without one, nothing can be replaced. */
+  constructor(file: GltfFile, parts: readonly Part[], writer?: GlbWriter) {
+    this.#file = file;
+    this.#json = writer?.json ?? file.json;
+    this.#writer = writer;
+    this.parts = parts;
+  }
+
+  #primitive({ mesh, primitive }: Part): GLTF.IMeshPrimitive {
+    return this.#file.json.meshes![mesh]!.primitives[primitive]!;
+  }
+
+  #material(number: number): GLTF.IMaterial {
+    return this.#json.materials![number]!;
+  }
+
+  materialOf(part: Part): number | undefined {
+    const { material } = this.#primitive(part);
+    return material !== undefined && this.#json.materials?.[material] ? material : undefined;
+  }
+
+  variantsOf(part: Part): number[] {
+    const { mappings = [] } = (this.#primitive(part).extensions?.['KHR_materials_variants'] ?? {}) as {
+      mappings?: { material: number }[];
+    };
+    return mappings.map(({ material }) => material).filter((material) => this.#json.materials?.[material]);
+  }
+
+  nameOf(material: number): string {
+    return this.#material(material).name ?? `materials[${material}]`;
+  }
+
+  attributeOf(part: Part, semantic: string): Accessor | undefined {
+    return this.#file.accessors[this.#primitive(part).attributes[semantic] ?? -1];
+  }
+
+  useOf(material: number, slot: Slot): TextureUse<number> | undefined {
+    const info = infoOf(this.#material(material), slot);
+    if (!info) return undefined;
+    const texture = this.#json.textures?.[info.index];
+    if (!texture) return undefined;
+    const sampler = texture.sampler === undefined ? undefined : this.#json.samplers?.[texture.sampler];
+    return {
+      texture: info.index,
+      ...uvLayoutOf(info),
+      wraps: [wrapOf(sampler?.wrapS), wrapOf(sampler?.wrapT)],
+    };
+  }
+
+  factorOf(material: number, slot: Slot): [number, number, number] {
+    const {
+      baseColorFactor = [1, 1, 1],
+      roughnessFactor = 1,
+      metallicFactor = 1,
+    } = this.#material(material).pbrMetallicRoughness ?? {};
+    if (slot === 'normal') return [1, 1, 1];
+    if (slot === 'orm') return [1, roughnessFactor, metallicFactor];
+    return [baseColorFactor[0]!, baseColorFactor[1]!, baseColorFactor[2]!];
+  }
+
+  /** Whether the alpha of its texture does not count. */
+  isOpaque(material: number): boolean {
+    return (this.#material(material).alphaMode ?? 'OPAQUE') === 'OPAQUE';
+  }
+
+  hasOcclusion(material: number): boolean {
+    return this.#material(material).occlusionTexture !== undefined;
+  }
+
+  async imageOf(texture: number): Promise<{ bytes: Uint8Array; mimeType: string } | undefined> {
+    const { json, buffers, path, reading } = this.#file;
+    const source = sourceOf(json.textures![texture]!);
+    const image = source === undefined ? undefined : json.images?.[source];
+    if (!image) return undefined;
+    let bytes: Uint8Array;
+    if (image.uri !== undefined) bytes = await readUri(`images[${source}]`, image.uri, dirname(path), reading);
+    else {
+      const view = json.bufferViews?.[image.bufferView ?? -1];
+      const buffer = view && buffers[view.buffer];
+      if (!buffer) return undefined;
+      bytes = buffer.subarray(view.byteOffset ?? 0, (view.byteOffset ?? 0) + view.byteLength);
+    }
+    return { bytes, mimeType: imageType(bytes) ?? image.mimeType ?? 'an unknown type' };
+  }
+
+  replace(materials: readonly number[], slot: Slot, png: Uint8Array, use: TextureUse<number>): void {
+    const [json, writer] = [this.#json, this.#writer!];
+    const before = json.textures![use.texture]!;
+    const isOwn = infoOf(this.#material(materials[0]!), slot) !== undefined;
+    const name = before.name ?? json.images?.[sourceOf(before) ?? -1]?.name ?? 'painted';
+    let number = writer.addTexture({ bytes: png, mimeType: 'image/png', name });
+    const made = json.textures![number]!;
+    if (before.sampler !== undefined) made.sampler = before.sampler;
+    if (isOwn && this.#isOnlyFor(use.texture, materials, slot)) {
+      // In its place, so that extensions with materials of their own, such as those of avatars, show it, too.
+      const image = json.images!.pop()!;
+      json.textures!.pop();
+      number = use.texture;
+      const source = sourceOf(before)!;
+      const isShared = json.textures!.some((other) => other !== before && sourceOf(other) === source);
+      for (const extension of sourceExtensions) delete before.extensions?.[extension];
+      if (before.extensions && Object.keys(before.extensions).length === 0) delete before.extensions;
+      if (isShared) before.source = json.images!.push(image) - 1;
+      else {
+        const { name: own = name, extras } = json.images![source]!;
+        json.images![source] = { ...image, name: own, ...(extras && { extras }) };
+        before.source = source;
+      }
+      for (const extension of sourceExtensions)
+        if (!json.textures!.some((texture) => texture.extensions?.[extension])) writer.unlistExtension(extension);
+    }
+    for (const material of materials) {
+      if (isOwn && slot === 'color') this.#followInExtensions(material, use.texture, number);
+      lay(this.#material(material), slot, number);
+      resetFactors(this.#material(material), slot);
+    }
+  }
+
+  /** Makes the materials of avatars, which name their textures once more, show a new one, too. */
+  #followInExtensions(material: number, before: number, now: number): void {
+    const vrm = this.#json.extensions?.['VRM'] as
+      | {
+          materialProperties?: {
+            textureProperties?: Record<string, number>;
+            vectorProperties?: Record<string, number[]>;
+          }[];
+        }
+      | undefined;
+    const { textureProperties: textures = {}, vectorProperties: colors } = vrm?.materialProperties?.[material] ?? {};
+    // The factor, once more: it is in the texture now.
+    if (colors?.['_Color']) colors['_Color'] = [1, 1, 1, colors['_Color'][3] ?? 1];
+    for (const [name, texture] of Object.entries(textures)) if (texture === before) textures[name] = now;
+    const mtoon = this.#material(material).extensions?.['VRMC_materials_mtoon'] as
+      | { shadeMultiplyTexture?: GLTF.ITextureInfo }
+      | undefined;
+    if (mtoon?.shadeMultiplyTexture?.index === before) mtoon.shadeMultiplyTexture.index = now;
+  }
+
+  /** Whether the standard materials and their extensions, which add to them, use a texture in no other way. */
+  #isOnlyFor(texture: number, materials: readonly number[], slot: Slot): boolean {
+    return (this.#json.materials ?? []).every((material, m) => {
+      const { pbrMetallicRoughness: pbr, normalTexture, occlusionTexture, emissiveTexture } = material;
+      const uses: [GLTF.ITextureInfo | undefined, Slot | undefined][] = [
+        [pbr?.baseColorTexture, 'color'],
+        [pbr?.metallicRoughnessTexture, 'orm'],
+        [occlusionTexture, 'orm'],
+        [normalTexture, 'normal'],
+        [emissiveTexture, undefined],
+        ...addedTextures(material).map((info) => [info, undefined] as [GLTF.ITextureInfo, undefined]),
+      ];
+      return uses.every(([info, used]) => info?.index !== texture || (used === slot && materials.includes(m)));
+    });
+  }
+}
+
+/** The textures of extensions that add to a material, such as KHR_materials_transmission; not of the one that replaces it. */
+function addedTextures({ extensions }: GLTF.IMaterial): GLTF.ITextureInfo[] {
+  return Object.entries(extensions ?? {})
+    .filter(([name]) => /^KHR_materials_(?!pbrSpecularGlossiness)/.test(name))
+    .flatMap(([, added]) => Object.values((added ?? {}) as object))
+    .filter((value) => Number.isInteger(value?.index));
+}
+
+function infoOf(material: GLTF.IMaterial, slot: Slot): GLTF.ITextureInfo | undefined {
+  if (slot === 'color') return material.pbrMetallicRoughness?.baseColorTexture;
+  return slot === 'normal' ? material.normalTexture : material.pbrMetallicRoughness?.metallicRoughnessTexture;
+}
+
+/** Gives a material a texture. A new one lies as that of the base colour does. */
+function lay(material: GLTF.IMaterial, slot: Slot, index: number): void {
+  const pbr = (material.pbrMetallicRoughness ??= {});
+  const info = { ...(infoOf(material, slot) ?? pbr.baseColorTexture), index };
+  if (slot === 'color') pbr.baseColorTexture = info;
+  else if (slot === 'normal') material.normalTexture = info;
+  else {
+    const { occlusionTexture } = material;
+    if (!occlusionTexture || occlusionTexture.index === pbr.metallicRoughnessTexture?.index)
+      material.occlusionTexture = { ...occlusionTexture, ...info };
+    pbr.metallicRoughnessTexture = info;
+  }
+}
+
+/** The factors are in the texture now. */
+function resetFactors({ pbrMetallicRoughness: pbr }: GLTF.IMaterial, slot: Slot): void {
+  if (!pbr || slot === 'normal') return;
+  if (slot === 'orm') {
+    delete pbr.roughnessFactor;
+    delete pbr.metallicFactor;
+    return;
+  }
+  const alpha = pbr.baseColorFactor?.[3] ?? 1;
+  if (alpha === 1) delete pbr.baseColorFactor;
+  else pbr.baseColorFactor = [1, 1, 1, alpha];
+}

@@ -1,0 +1,295 @@
+import type {
+  Accessor,
+  Document,
+  Mesh as DocumentMesh,
+  ExtensionProperty,
+  Material,
+  Node,
+  Primitive,
+  PrimitiveTarget,
+  Texture,
+  TypedArray,
+} from '@gltf-transform/core';
+import type { CutTarget, TransferResult } from '../../index.js';
+import { type AttributeArray, type Blends, blend, blendSkin, ruleOf } from '../../parts/blend.js';
+import { gather } from '../../parts/split-part.js';
+import {
+  cosmeticCorners,
+  type Finish,
+  freeUvSet,
+  isMorphed,
+  isOverlaid,
+  overlayMark,
+  type Paint,
+  unlitExtension,
+  uvsMark,
+  zoneAttribute,
+} from '../overlay.js';
+import type { Piece } from '../pieces.js';
+import { type GroupMember, groupMember, shareVertices, sparseElements, storedUvs } from '../primitive-group.js';
+import { disposeUnused, removeAttributes, removeOverlays } from './earlier-in-document.js';
+import type { DocumentPart, ExtractedDocument } from './extract-document.js';
+
+/** A part, and what it becomes. */
+interface Member extends GroupMember {
+  part: DocumentPart;
+  primitive: Primitive;
+  /** What shows the texture on it, if anything does. */
+  overlay: OverlayWriter | undefined;
+}
+
+/**
+ * Adds the result of a transfer to a document, as the command does to a file: every primitive gets a new UV set and `_NCZ` and, with
+ * a texture, an overlay primitive of its cosmetic triangles. New vertices at cut borders, and copies of vertices whose triangles
+ * need different UVs, are added after the existing ones. It replaces an earlier transfer. If several nodes share a mesh, each gets a copy.
+ * @param baked  Parts that show the texture already, and get no overlay.
+ */
+export function addTransfer(
+  document: Document,
+  { parts }: ExtractedDocument,
+  result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
+  { paint, cut, baked }: { paint: Paint | undefined; cut: CutTarget | undefined; baked?: ReadonlySet<Piece> },
+): void {
+  const primitiveOf = separatePrimitives(document, parts);
+  removeOverlays(document, parts);
+  removeAttributes(document, primitiveOf);
+  const overlay = paint && new OverlayWriter(document, paint);
+  const members = parts.map(
+    (part, p): Member => ({
+      ...groupMember(part, result, cut),
+      part,
+      primitive: primitiveOf[p]!,
+      overlay: baked?.has(part) ? undefined : overlay,
+    }),
+  );
+  for (const group of groupsOf(members)) addToGroup(document, group);
+}
+
+/** The parts by the attributes that their primitives share. */
+function groupsOf(members: readonly Member[]): Member[][] {
+  const numbers = new Map<object, number>();
+  const numberOf = (property: object) => {
+    if (!numbers.has(property)) numbers.set(property, numbers.size);
+    return numbers.get(property)!;
+  };
+  const keyOf = (of: Primitive | PrimitiveTarget) =>
+    of.listSemantics().map((semantic) => `${semantic} ${numberOf(of.getAttribute(semantic)!)}`);
+  const groups = new Map<string, Member[]>();
+  for (const member of members) {
+    const { primitive, part } = member;
+    const key = JSON.stringify([numberOf(part.node), keyOf(primitive), primitive.listTargets().map(keyOf)]);
+    groups.set(key, [...(groups.get(key) ?? []), member]);
+  }
+  return [...groups.values()];
+}
+
+/** Makes an accessor of some values, in the document's first buffer. */
+export const createAccessor = (document: Document, array: AttributeArray, type: 'SCALAR' | 'VEC2' | 'VEC3'): Accessor =>
+  document
+    .createAccessor()
+    .setType(type)
+    // A copy with a buffer of its own: for a view, the whole shared buffer would be written, once per view.
+    .setArray(array.slice() as TypedArray)
+    .setBuffer(document.getRoot().listBuffers()[0] ?? document.createBuffer());
+
+/** Adds UVs, zones and overlays to primitives that share their attributes. */
+function addToGroup(document: Document, members: readonly Member[]): void {
+  const { part, primitive: first } = members[0]!;
+  const shared = shareVertices(part.vertexCount, members);
+  const { sources, blends } = shared;
+  const indices = (corners: Uint32Array) =>
+    createAccessor(document, sources.length < 65536 ? Uint16Array.from(corners) : corners, 'SCALAR');
+  if (shared.isNew) {
+    const before = members.flatMap(({ primitive }) => primitive.getIndices() ?? []);
+    remakePrimitives(
+      document,
+      members.map(({ primitive }) => primitive),
+      sources,
+      blends.sources.length > 0 ? blender(first, blends) : undefined,
+    );
+    members.forEach(({ primitive }, m) => primitive.setIndices(indices(shared.indices[m]!)).setMode(4)); // strips and fans have become lists
+    for (const accessor of before) disposeUnused(document, accessor);
+  }
+  const stored = storedUvs(shared.uvs);
+  const uvs = createAccessor(document, stored, 'VEC2')
+    .setNormalized(stored instanceof Uint16Array)
+    .setExtras({ ...uvsMark });
+  const zones = createAccessor(document, shared.zones, 'SCALAR').setSparse(isSparse(shared.zones, 1));
+  const uvSet = freeUvSet((semantic) => first.getAttribute(semantic) !== null);
+  members.forEach(({ primitive, part: { node }, cosmetic, overlay }, m) => {
+    const corners = cosmeticCorners(shared.indices[m]!, cosmetic);
+    if (overlay && corners.length > 0)
+      node.getMesh()!.addPrimitive(overlay.primitive(primitive, indices(corners), uvs));
+    primitive.setAttribute(uvSet, uvs).setAttribute(zoneAttribute, zones);
+  });
+}
+
+/** Whether to store only elements that are not 0: if it saves bytes. glTF-Transform warns where most are not 0. */
+function isSparse(values: AttributeArray, size: number): boolean {
+  const listed = sparseElements(values, size);
+  return listed !== undefined && 2 * listed.length <= values.length / size;
+}
+
+/** The values of an accessor, with those of new vertices after them. @param semantic  None of a morph target's. */
+type Extend = (accessor: Accessor, semantic?: string) => TypedArray;
+
+/** Blends the attributes of a primitive. */
+function blender(primitive: Primitive, blends: Blends): Extend {
+  const skin = blendSkin((semantic) => primitive.getAttribute(semantic)?.getArray() ?? undefined, blends);
+  return (accessor, semantic) => {
+    const array = accessor.getArray()!;
+    const pulls = semantic === undefined ? undefined : skin.get(semantic);
+    return (
+      pulls ??
+      blend(
+        array,
+        accessor.getElementSize(),
+        blends,
+        semantic === undefined ? 'mean' : ruleOf(semantic, array, accessor.getNormalized()),
+      )
+    );
+  };
+}
+
+/**
+ * Adds new vertices, those that `extend` makes and copies, to all attributes and morph targets that primitives share. Accessors that
+ * nothing else uses are disposed.
+ */
+function remakePrimitives(
+  document: Document,
+  primitives: readonly Primitive[],
+  sources: Uint32Array,
+  extend: Extend = (accessor) => accessor.getArray()!,
+): void {
+  const made = new Map<Accessor, Accessor>();
+  const remake = (accessor: Accessor, semantic?: string): Accessor => {
+    const known = made.get(accessor);
+    if (known) return known;
+    const values = gather(extend(accessor, semantic), accessor.getElementSize(), sources);
+    const own = accessor.clone().setArray(values);
+    if (own.getSparse()) own.setSparse(isSparse(values, own.getElementSize()));
+    made.set(accessor, own);
+    return own;
+  };
+  for (const primitive of primitives) {
+    for (const semantic of primitive.listSemantics())
+      primitive.setAttribute(semantic, remake(primitive.getAttribute(semantic)!, semantic));
+    for (const target of primitive.listTargets()) {
+      const own = target.clone();
+      for (const semantic of own.listSemantics()) own.setAttribute(semantic, remake(own.getAttribute(semantic)!));
+      primitive.removeTarget(target).addTarget(own);
+      disposeUnused(document, target);
+    }
+  }
+  for (const accessor of made.keys()) disposeUnused(document, accessor);
+}
+
+/**
+ * Gives every node of the transfer a mesh and primitives of its own. Other nodes, such as those of other scenes, share an unchanged
+ * copy. The first node with a mesh keeps the original.
+ * @returns the primitive of each part.
+ */
+function separatePrimitives(document: Document, parts: readonly DocumentPart[]): Primitive[] {
+  const nodes = new Set(parts.map(({ node }) => node));
+  const [meshes, primitives] = [new Set<DocumentMesh>(), new Set<Primitive>()];
+  const ownOf = new Map<Node, Map<Primitive, Primitive>>();
+  for (const node of nodes) {
+    const mesh = node.getMesh()!;
+    const own = meshes.has(mesh) ? mesh.clone() : mesh;
+    const before = mesh.listPrimitives();
+    const after = before.map((primitive) => (primitives.has(primitive) ? primitive.clone() : primitive));
+    before.forEach((primitive) => own.removePrimitive(primitive));
+    after.forEach((primitive) => own.addPrimitive(primitive));
+    node.setMesh(own);
+    meshes.add(own);
+    after.forEach((primitive) => primitives.add(primitive));
+    ownOf.set(node, new Map(before.map((primitive, p) => [primitive, after[p]!])));
+  }
+  for (const mesh of document.getRoot().listMeshes()) {
+    const others = mesh
+      .listParents()
+      .filter((parent) => parent.propertyType === 'Node' && !nodes.has(parent as Node)) as Node[];
+    if (others.length === 0 || !mesh.listPrimitives().some((primitive) => primitives.has(primitive))) continue;
+    const own = mesh.clone();
+    for (const primitive of mesh.listPrimitives()) own.removePrimitive(primitive).addPrimitive(primitive.clone());
+    for (const node of others) node.setMesh(own);
+  }
+  return parts.map(({ node, primitive }) => ownOf.get(node)!.get(primitive)!);
+}
+
+/** Writes overlays that show a texture. */
+class OverlayWriter {
+  readonly #document: Document;
+  readonly #paint: Paint;
+  #texture: Texture | undefined;
+  readonly #materials = new Map<string, Material>();
+
+  constructor(document: Document, paint: Paint) {
+    this.#document = document;
+    this.#paint = paint;
+  }
+
+  /** A primitive of some triangles of `base`, with the same vertices, skin and morph targets. */
+  primitive(base: Primitive, indices: Accessor, uvs: Accessor): Primitive {
+    const overlay = this.#document
+      .createPrimitive()
+      .setIndices(indices)
+      .setMaterial(this.#material(base.getMaterial()))
+      .setExtras({ ...overlayMark })
+      .setAttribute('TEXCOORD_0', uvs);
+    for (const semantic of base.listSemantics())
+      if (isOverlaid(semantic)) overlay.setAttribute(semantic, base.getAttribute(semantic));
+    for (const morph of base.listTargets()) {
+      const target = this.#document.createPrimitiveTarget(morph.getName());
+      for (const semantic of morph.listSemantics()) {
+        if (isMorphed(semantic, overlay.getAttribute('NORMAL') !== null))
+          target.setAttribute(semantic, morph.getAttribute(semantic));
+      }
+      // An empty morph target is not allowed.
+      if (target.listSemantics().length === 0) target.setAttribute('POSITION', this.#still(uvs));
+      overlay.addTarget(target);
+    }
+    return overlay;
+  }
+
+  /** Deltas that move nothing. */
+  #still(like: Accessor): Accessor {
+    return createAccessor(this.#document, new Float32Array(3 * like.getCount()), 'VEC3').setSparse(true);
+  }
+
+  /** The texture, which the document only gets if something shows it. */
+  #shown(): Texture {
+    const { name, mimeType, bytes } = this.#paint;
+    this.#texture ??= this.#document
+      .createTexture(name)
+      .setMimeType(mimeType)
+      .setImage(bytes as Uint8Array<ArrayBuffer>);
+    return this.#texture;
+  }
+
+  /** A material that shows the texture, lit as the base's material is. */
+  #material(base: Material | null): Material {
+    const unlit = base?.getExtension<ExtensionProperty>(unlitExtension) ?? null;
+    const finish: Finish = {
+      roughness: base?.getRoughnessFactor() ?? 1,
+      doubleSided: base?.getDoubleSided() ?? false,
+      alpha: base?.getAlphaMode() === 'BLEND' ? base.getAlpha() : 1,
+      unlit: unlit !== null,
+    };
+    const key = JSON.stringify(finish);
+    const known = this.#materials.get(key);
+    if (known) return known;
+    const material = this.#document
+      .createMaterial('Cagecast overlay')
+      .setExtras({ ...overlayMark })
+      .setAlphaMode('BLEND')
+      .setAlpha(finish.alpha)
+      .setDoubleSided(finish.doubleSided)
+      .setMetallicFactor(0)
+      .setRoughnessFactor(finish.roughness)
+      .setBaseColorTexture(this.#shown());
+    if (unlit) material.setExtension(unlitExtension, unlit);
+    this.#materials.set(key, material);
+    return material;
+  }
+}

@@ -1,0 +1,150 @@
+import type { Document, Node } from '@gltf-transform/core';
+import * as cages from '../../cages/index.js';
+import { CagecastError, type Mesh } from '../../index.js';
+import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../../parts/joints.js';
+import { readExtras } from '../../parts/template-extras.js';
+import { InputError } from '../input-error.js';
+import { createAccessor } from './add-transfer.js';
+import { type DocumentPart, extractDocument, jointMatrix } from './extract-document.js';
+import { isDocument, read, wrong } from './transfer-document.js';
+
+/** What glTF-Transform does not keep of a file. */
+export interface FileOptions {
+  /** The `extensions` of the file's JSON. A VRM's skeleton is in them: without it, bones are known by the names of nodes. */
+  extensions?: VrmExtensions | undefined;
+}
+
+/**
+ * What `cagecast/cages` needs of a document: the triangles of its default scene, a part for each primitive of each node, and the
+ * joints of its skins, in the bind pose.
+ * @throws {CagecastError} `badArgument` that names the primitive.
+ */
+export function cageModel(document: Document, { extensions }: FileOptions = {}): cages.CageModel {
+  const { mesh, parts } = read('cageModel', 'model', document, () => extractDocument(document));
+  const { positions, indices, groups } = mesh;
+  return {
+    positions,
+    indices,
+    groups,
+    parts: parts.map(({ aliases, name }) => (aliases.length > 0 ? aliases : [name])),
+    joints: jointsOf(document, parts, vrmBones(extensions)),
+  };
+}
+
+/**
+ * A document as a template: its mesh, and the landmarks that the `extras` of its cage's node or mesh have.
+ * @throws {CagecastError} `badArgument`, `missingUvs`
+ */
+export function cageTemplate(document: Document): cages.Template {
+  return read('cageTemplate', 'template', document, () => {
+    const { mesh, parts } = extractDocument(document);
+    if (mesh.uvs === undefined)
+      throw new CagecastError('missingUvs', 'cageTemplate', 'template has a primitive without UVs', {
+        argument: 'template',
+      });
+    const sources = parts.flatMap((part) => [
+      { ...part, extras: part.mesh.getExtras(), place: `mesh of "${part.name}"` },
+      { ...part, extras: part.node.getExtras(), place: `"${part.name}"` },
+    ]);
+    const { positions, indices, uvs } = mesh;
+    return { positions, indices, uvs, ...readExtras(sources, (text) => new InputError(text)) };
+  });
+}
+
+/**
+ * As `makeCage` of `cagecast/cages`, for the default scene of a document.
+ * @throws {CagecastError} as `makeCage` and `cageModel`.
+ */
+export async function makeCage(
+  document: Document,
+  { extensions, ...options }: cages.MakeOptions & cages.CageCallOptions & FileOptions = {},
+): Promise<cages.Cage> {
+  return cages.makeCage(cageModel(document, { extensions }), options);
+}
+
+/**
+ * As `fitCage` of `cagecast/cages`, for documents.
+ * @throws {CagecastError} as `fitCage`, `cageModel` and `cageTemplate`.
+ */
+export async function fitCage(
+  template: Document | cages.Template,
+  document: Document,
+  landmarks?: cages.Landmarks,
+  { extensions, ...options }: cages.FitOptions & cages.CageCallOptions & FileOptions = {},
+): Promise<cages.Fit> {
+  const from = isDocument(template) ? cageTemplate(template) : template;
+  return cages.fitCage(from, cageModel(document, { extensions }), landmarks, options);
+}
+
+/**
+ * As `findLandmarks` of `cagecast/cages`, for the default scene of a document.
+ * @throws {CagecastError} as `findLandmarks` and `cageModel`.
+ */
+export async function findLandmarks(
+  document: Document,
+  { extensions, ...options }: cages.CageCallOptions & FileOptions = {},
+): Promise<cages.FoundLandmarks> {
+  return cages.findLandmarks(cageModel(document, { extensions }), options);
+}
+
+/**
+ * As `refineCage` of `cagecast/cages`, for documents.
+ * @throws {CagecastError} as `refineCage`, `cageModel` and `cageTemplate`.
+ */
+export async function refineCage(
+  cage: Document | Mesh | cages.Cage | cages.Template,
+  document: Document,
+  { extensions, ...options }: cages.RefineOptions & cages.CageCallOptions & FileOptions = {},
+): Promise<cages.Cage> {
+  const from = isDocument(cage) ? cageTemplate(cage) : cage;
+  return cages.refineCage(from, cageModel(document, { extensions }), options);
+}
+
+/**
+ * Adds a cage to a document: a node named `cage` in its default scene, with landmarks, holes and kind in its `extras`, so that the
+ * document is a template. `cageGlb` of `cagecast/cages` writes a file at once.
+ * @throws {CagecastError} `badArgument`
+ *
+ * @example
+ * await new NodeIO().write('cage.glb', addCage(new Document(), await makeCage(document)).document);
+ */
+export function addCage<D extends Document>(
+  document: D,
+  cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
+): { document: D; node: Node } {
+  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
+  const root = read('addCage', 'document', document, () => document.getRoot());
+  for (const [name, array] of Object.entries({ positions, uvs, indices }))
+    if (!ArrayBuffer.isView(array)) throw wrong('addCage', `cage.${name}`, array, 'an array');
+  const primitive = document
+    .createPrimitive()
+    .setAttribute('POSITION', createAccessor(document, positions, 'VEC3'))
+    .setAttribute('TEXCOORD_0', createAccessor(document, uvs, 'VEC2'))
+    .setIndices(createAccessor(document, indices, 'SCALAR'));
+  const node = document
+    .createNode('cage')
+    .setMesh(document.createMesh('cage').addPrimitive(primitive))
+    .setExtras({ landmarks, holes, kind } as object as Record<string, unknown>);
+  (root.getDefaultScene() ?? root.listScenes()[0] ?? document.createScene()).addChild(node);
+  return { document, node };
+}
+
+function jointsOf(document: Document, parts: readonly DocumentPart[], bones: Map<number, string>) {
+  const nodes = document.getRoot().listNodes();
+  const boneOf = new Map([...bones].flatMap(([n, bone]) => (nodes[n] ? [[nodes[n], bone] as const] : [])));
+  const nameOf = (node: Node) => boneOf.get(node) ?? (node.getName() || `nodes[${nodes.indexOf(node)}]`);
+  const atNode = (node: Node): ReadJoint<Node> => ({
+    node,
+    name: nameOf(node),
+    position: jointMatrix(node).slice(12, 15) as [number, number, number],
+  });
+  const joints = parts.flatMap(({ node: holder, matrix }) => {
+    const skin = holder.getSkin();
+    const inverses = skin?.getInverseBindMatrices()?.getArray();
+    return (skin?.listJoints() ?? []).map((node, j) => {
+      const position = inverses ? jointPlace(matrix, inverses.subarray(16 * j)) : undefined;
+      return position ? { node, name: nameOf(node), position } : atNode(node);
+    });
+  });
+  return listJoints([...joints, ...[...boneOf.keys()].map(atNode)], (node) => node.getParentNode());
+}

@@ -1,0 +1,35 @@
+import type { Document, Primitive, Property } from '@gltf-transform/core';
+import { isOfTransfer } from '../overlay.js';
+import { type DocumentPart, isOverlay } from './extract-document.js';
+
+/** Disposes a property that nothing in its document uses, and then what only that used. */
+export function disposeUnused(document: Document, property: Property): void {
+  if (property.isDisposed() || property.listParents().some((parent) => parent.propertyType !== 'Root')) return;
+  const used = document.getGraph().listChildren(property);
+  property.dispose();
+  for (const child of used) disposeUnused(document, child);
+}
+
+/** Removes the UVs and zones of an earlier transfer from primitives. */
+export function removeAttributes(document: Document, primitives: readonly Primitive[]): void {
+  for (const primitive of primitives) {
+    for (const semantic of primitive.listSemantics()) {
+      const accessor = primitive.getAttribute(semantic)!;
+      if (!isOfTransfer(semantic, accessor.getExtras())) continue;
+      primitive.setAttribute(semantic, null);
+      disposeUnused(document, accessor);
+    }
+  }
+}
+
+/** Removes the overlays of earlier transfers from the meshes of parts, with all that only they used. */
+export function removeOverlays(document: Document, parts: readonly DocumentPart[]): void {
+  for (const { node } of parts) {
+    const mesh = node.getMesh()!;
+    for (const primitive of mesh.listPrimitives()) {
+      if (!isOverlay(primitive)) continue;
+      mesh.removePrimitive(primitive);
+      disposeUnused(document, primitive);
+    }
+  }
+}

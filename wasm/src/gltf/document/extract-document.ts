@@ -1,0 +1,165 @@
+import type {
+  Accessor,
+  Document,
+  Mesh as DocumentMesh,
+  ExtensionProperty,
+  Node,
+  Primitive,
+  TextureInfo,
+} from '@gltf-transform/core';
+import type { Mesh } from '../../index.js';
+import { type Skinned, skinMatrices } from '../../parts/skin.js';
+import { InputError } from '../input-error.js';
+import { firstInstance, instancing } from '../instancing.js';
+import { identity, type Matrix, multiply } from '../matrix.js';
+import { isMarked } from '../overlay.js';
+import {
+  decodePositions,
+  decodeTriangles,
+  decodeUvs,
+  hasTriangles,
+  joinPieces,
+  nextPiece,
+  type Piece,
+} from '../pieces.js';
+import type { UvLayout } from '../uv-layout.js';
+
+/** A piece, and its place in the document. */
+export interface DocumentPart extends Piece {
+  node: Node;
+  mesh: DocumentMesh;
+  primitive: Primitive;
+}
+
+/** All triangles of a document's scene as arrays, and the parts that they come from. */
+export interface ExtractedDocument {
+  /** With one group per part; with UVs if every primitive has the set of its base colour texture, or the first without one. */
+  mesh: Mesh & { indices: Uint32Array };
+  /** In the order of their vertices. */
+  parts: DocumentPart[];
+}
+
+/**
+ * Collects the triangles of a document's default scene (else its first), depth first, in the scene's space, by the same
+ * rules as the command: vertices keep their order, every primitive of every node is a group of its own, and skinned meshes are placed
+ * by their skeletons, in the bind pose.
+ * @throws {InputError} that names the primitive and the element.
+ */
+export function extractDocument(document: Document): ExtractedDocument {
+  const parts = listParts(document);
+  const mesh = joinPieces(parts);
+  const layouts = parts.map(({ primitive }) => uvLayoutOf(primitive.getMaterial()?.getBaseColorTextureInfo()));
+  const sets = parts.map(({ primitive }, p) => primitive.getAttribute(layouts[p]!.set));
+  if (parts.length === 0 || sets.some((set) => set === null)) return { mesh, parts };
+  const uvs = new Float32Array((mesh.positions.length / 3) * 2);
+  parts.forEach(({ name, firstVertex, vertexCount }, p) =>
+    uvs.set(decodeUvs(`"${name}"`, layouts[p]!, sets[p]!, vertexCount), 2 * firstVertex),
+  );
+  return { mesh: { ...mesh, uvs }, parts };
+}
+
+export function uvLayoutOf(info: TextureInfo | null | undefined): UvLayout {
+  const found = info?.getExtension('KHR_texture_transform') as KHRTransform | null | undefined;
+  return {
+    set: `TEXCOORD_${found?.getTexCoord() ?? info?.getTexCoord() ?? 0}`,
+    transform: found
+      ? { offset: found.getOffset(), rotation: found.getRotation(), scale: found.getScale() }
+      : undefined,
+  };
+}
+
+/** Whether a primitive is an overlay. */
+export const isOverlay = (primitive: Primitive): boolean =>
+  isMarked(primitive.getExtras(), primitive.getMaterial()?.getExtras());
+
+/** KHR_texture_transform, as glTF-Transform has it, whose extensions are no dependency. */
+interface KHRTransform extends ExtensionProperty {
+  getOffset(): number[];
+  getRotation(): number;
+  getScale(): number[];
+  getTexCoord(): number | null;
+}
+
+/** EXT_mesh_gpu_instancing, as glTF-Transform has it. */
+interface InstancedMesh extends ExtensionProperty {
+  getAttribute(semantic: string): Accessor | null;
+}
+
+function listParts(document: Document): DocumentPart[] {
+  const root = document.getRoot();
+  const meshNumbers = new Map(root.listMeshes().map((mesh, m) => [mesh, m]));
+  const scene = root.getDefaultScene() ?? root.listScenes()[0];
+  const stack = scene ? scene.listChildren() : root.listNodes().filter((node) => node.getParentNode() === null);
+  const parts: DocumentPart[] = [];
+  stack.reverse();
+  for (let node = stack.pop(); node; node = stack.pop()) {
+    stack.push(...node.listChildren().reverse());
+    const mesh = node.getMesh();
+    if (!mesh) continue;
+    let matrix: Matrix = node.getWorldMatrix();
+    const instances = node.getExtension(instancing) as InstancedMesh | null;
+    if (instances)
+      matrix = multiply(
+        matrix,
+        firstInstance(`"${node.getName() || mesh.getName()}"`, (semantic) => instances.getAttribute(semantic)),
+      );
+    mesh.listPrimitives().forEach((primitive, p) => {
+      const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
+      const position = primitive.getAttribute('POSITION');
+      if (position === null || !hasTriangles(primitive.getMode()) || isOverlay(primitive)) return;
+      const all = [primitive, ...primitive.listTargets()].flatMap((of) =>
+        of.listSemantics().map((semantic) => [semantic, of.getAttribute(semantic)!.getCount()] as const),
+      );
+      const short = all.find(([, count]) => count < position.getCount());
+      if (short) throw new InputError(`${place} has ${short[1]} ${short[0]} for ${position.getCount()} vertices`);
+      const positions = decodePositions(place, position);
+      const piece = nextPiece(parts, {
+        node: node.getName(),
+        mesh: mesh.getName(),
+        material: primitive.getMaterial()?.getName(),
+        place,
+        primitives: mesh.listPrimitives().length,
+        matrix,
+        positions,
+        indices: decodeTriangles(
+          place,
+          primitive.getIndices()?.getArray() ?? null,
+          primitive.getMode(),
+          positions.length / 3,
+        ),
+      });
+      parts.push({ ...piece, node, mesh, primitive });
+    });
+  }
+  const skinned = parts.filter(({ node }) => node.getSkin());
+  skinMatrices(skinned.map(skinOf)).forEach((matrix, s) => (skinned[s]!.matrix = matrix));
+  return parts;
+}
+
+/** The matrix of a joint to the scene; the identity if it is below itself, which no node of a scene is. */
+export function jointMatrix(joint: Node): Matrix {
+  const above = new Set<Node>();
+  for (let node: Node | null = joint; node; node = node.getParentNode()) {
+    if (above.has(node)) return identity;
+    above.add(node);
+  }
+  return joint.getWorldMatrix();
+}
+
+/** How its skin holds a part. */
+function skinOf({ node, primitive, localPositions: positions }: DocumentPart): Skinned<Matrix> {
+  const skin = node.getSkin()!;
+  const inverses = skin.getInverseBindMatrices()?.getArray();
+  const arrayOf = (semantic: string) => primitive.getAttribute(semantic)?.getArray() ?? [];
+  return {
+    matrices: skin.listJoints().map((joint, j) => {
+      const matrix = jointMatrix(joint);
+      return inverses ? multiply(matrix, inverses.subarray(16 * j)) : matrix;
+    }),
+    held: arrayOf('JOINTS_0'),
+    weights: arrayOf('WEIGHTS_0'),
+    positions,
+    isFloat: arrayOf('POSITION') instanceof Float32Array,
+    stored: [identity],
+  };
+}

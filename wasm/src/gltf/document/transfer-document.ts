@@ -1,0 +1,89 @@
+import type { Document } from '@gltf-transform/core';
+import { show } from '../../core/error.js';
+import {
+  CagecastError,
+  type CutTarget,
+  cutBorders,
+  init,
+  type Mesh,
+  type TransferOptions,
+  type TransferResult,
+  transfer,
+} from '../../index.js';
+import { type MaskSources, masksOf } from '../bake/masks.js';
+import { InputError } from '../input-error.js';
+import { type Paint, paintOf } from '../overlay.js';
+import { DocumentModel } from './document-model.js';
+import { type ExtractedDocument, extractDocument } from './extract-document.js';
+
+/** Options of a transfer from a cage to a document. */
+interface DocumentTransferOptions extends TransferOptions, MaskSources {
+  cage: Document | Mesh;
+  texture?: Uint8Array | undefined;
+}
+
+/** A transfer to a document, which is not changed by it. */
+interface DocumentTransfer {
+  target: ExtractedDocument;
+  model: DocumentModel;
+  result: TransferResult;
+  /** With borders that are cut. */
+  cut: CutTarget | undefined;
+  paint: Paint | undefined;
+}
+
+/**
+ * Transfers a cage's UVs to a document.
+ * @param caller The function that errors name.
+ * @throws {CagecastError} that names the argument, the element and the value.
+ */
+export async function transferDocument(
+  caller: string,
+  document: Document,
+  options: DocumentTransferOptions,
+  cuts: boolean,
+): Promise<DocumentTransfer> {
+  const { cage, texture, maskImages, maskColors, ...own } = options;
+  if (typeof cage !== 'object' || cage === null) throw wrong(caller, 'cage', cage, 'a document or a mesh');
+  if (texture !== undefined && !(texture instanceof Uint8Array))
+    throw wrong(caller, 'texture', texture, 'a Uint8Array');
+  if (Object.keys(maskImages ?? {}).some((name) => name !== 'never' && name !== 'always'))
+    throw wrong(caller, 'maskImages', maskImages, '{ never, always }');
+  await init();
+  const paint = texture && within(caller, 'texture', () => paintOf(texture));
+  const source = isDocument(cage) ? within(caller, 'cage', () => extractDocument(cage).mesh) : cage;
+  const target = read(caller, 'target', document, () => extractDocument(document));
+  const model = new DocumentModel(document, target.parts);
+  const masks = within(caller, 'target', () => masksOf(model, own.masks, { images: maskImages, colors: maskColors }));
+  const rules = { ...own, masks };
+  const result = transfer(source, target.mesh, rules);
+  return { target, model, result, cut: cuts ? cutBorders(source, target.mesh, result, rules) : undefined, paint };
+}
+
+/** The error of an argument, or of a member of one, of the wrong type. @param name  As in "cage.positions". */
+export const wrong = (caller: string, name: string, value: unknown, type: string) =>
+  new CagecastError('badArgument', caller, `${name} is ${show(value)}, not ${type}`, { argument: name.split('.')[0] });
+
+export const isDocument = (value: unknown): value is Document =>
+  typeof (value as Document | null | undefined)?.getRoot === 'function';
+
+/** Reads a document, if it is one. Errors name the argument. */
+export function read<T>(caller: string, argument: string, document: unknown, work: () => T): T {
+  if (!isDocument(document)) throw wrong(caller, argument, document, 'a document of glTF-Transform');
+  return within(caller, argument, work);
+}
+
+/** Names the argument in errors of a file or document. */
+export function within<T>(caller: string, argument: string, read: () => T): T {
+  try {
+    return read();
+  } catch (error) {
+    throw ofArgument(caller, argument, error);
+  }
+}
+
+/** An error that names the argument, if it is of a file or document; any other as it is. */
+export const ofArgument = (caller: string, argument: string, error: unknown): unknown =>
+  error instanceof InputError
+    ? new CagecastError('badArgument', caller, `${argument}: ${error.message}`, { argument, cause: error })
+    : error;

@@ -1,0 +1,218 @@
+import type { Accessor, GLTF } from '@gltf-transform/core';
+import type { Mesh } from '../api/mesh.js';
+import { show } from '../core/error.js';
+import { type Skinned, skinMatrices } from '../parts/skin.js';
+import { topNodes } from './check-geometry.js';
+import { InputError, withName } from './input-error.js';
+import { firstInstance, instancing } from './instancing.js';
+import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
+import { isOverlay } from './overlay.js';
+import {
+  decodePositions,
+  decodeTriangles,
+  decodeUvs,
+  hasTriangles,
+  joinPieces,
+  nextPiece,
+  type Piece,
+} from './pieces.js';
+import type { GltfFile } from './read-gltf.js';
+import { type UvLayout, uvLayoutOf } from './uv-layout.js';
+
+/** A primitive, by the numbers of its mesh and itself in the file's JSON. */
+interface PrimitiveRef {
+  mesh: number;
+  primitive: number;
+}
+
+/** A piece, and where it is in the file's JSON. */
+export interface Part extends Piece, PrimitiveRef {
+  node: number;
+}
+
+/** All triangles of a glTF's scene as arrays, and the parts that they come from. */
+export interface Extracted {
+  /** With one group per part; with UVs if every primitive has the set of its base colour texture, or the first without one. */
+  mesh: Mesh & { indices: Uint32Array };
+  /** In the order of their vertices. */
+  parts: Part[];
+}
+
+/**
+ * Collects the triangles of a glTF's default scene (else its first), depth first, in the scene's space.
+ *
+ * Vertices keep their order and number; each primitive of each node is a group of its own. Transforms are applied in
+ * double precision and rounded once; the winding of mirrored parts is reversed. Skinned meshes are placed by their skeleton, in the
+ * bind pose; as the format demands, the transform of their node is ignored. Points, lines and overlays that were added before are
+ * left out, and morph targets are not applied.
+ * @throws {InputError} that names the file, the primitive and the element.
+ */
+export function extract(file: GltfFile): Extracted {
+  try {
+    const parts = listParts(file);
+    const mesh = joinPieces(parts);
+    const uvs = readUvs(file, parts, mesh.positions.length / 3);
+    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts };
+  } catch (error) {
+    throw withName(error, file.path);
+  }
+}
+
+/** The path of a primitive in the file's JSON: "meshes[0].primitives[1]". */
+export function primitivePath({ mesh, primitive }: PrimitiveRef): string {
+  return `meshes[${mesh}].primitives[${primitive}]`;
+}
+
+/** The part that a vertex belongs to. */
+export function partOf(parts: readonly Part[], vertex: number): Part | undefined {
+  return parts.find((part) => vertex >= part.firstVertex && vertex < part.firstVertex + part.vertexCount);
+}
+
+/** The numbers of the parts below nodes of which some number is true. */
+export function partsBelow({ nodes = [] }: GLTF.IGLTF, parts: readonly Part[], isMeant: readonly boolean[]): number[] {
+  const below = new Set<number>();
+  const stack = nodes.flatMap((_, node) => (isMeant[node] ? [node] : []));
+  for (let node = stack.pop(); node !== undefined; node = stack.pop()) {
+    if (!below.has(node)) stack.push(...(nodes[node]!.children ?? []));
+    below.add(node);
+  }
+  return [...parts.keys()].filter((p) => below.has(parts[p]!.node));
+}
+
+function listParts(file: GltfFile): Part[] {
+  const { meshes = [], nodes = [], materials = [] } = file.json;
+  const parts: Part[] = [];
+  // An explicit stack: a chain of nodes may be longer than JavaScript's call stack.
+  const matrices = worldMatrices(file.json);
+  const stack = [...roots(file.json)].reverse();
+  for (let node = stack.pop(); node !== undefined; node = stack.pop()) {
+    const nodeDef = nodes[node]!;
+    let matrix = matrices[node]!;
+    for (const child of [...(nodeDef.children ?? [])].reverse()) stack.push(child);
+    if (nodeDef.mesh === undefined) continue;
+    const instances = nodeDef.extensions?.[instancing] as { attributes?: Record<string, unknown> } | undefined;
+    if (instances !== undefined) matrix = multiply(matrix, instanceOf(file, `nodes[${node}]`, instances.attributes));
+    const meshDef = meshes[nodeDef.mesh]!;
+    meshDef.primitives.forEach((primitive, p) => {
+      if (isOverlay(primitive, file.json)) return;
+      const ref = { mesh: nodeDef.mesh!, primitive: p };
+      const positions = readPositions(file, ref);
+      if (positions === undefined) return;
+      const indices = readTriangles(file, ref, positions.length / 3);
+      if (indices === undefined) return;
+      const piece = nextPiece(parts, {
+        node: nodeDef.name,
+        mesh: meshDef.name,
+        material: materials[primitive.material ?? -1]?.name,
+        place: `nodes[${node}]`,
+        primitives: meshDef.primitives.length,
+        matrix,
+        positions,
+        indices,
+      });
+      parts.push({ ...piece, node, ...ref });
+    });
+  }
+  const skinned = parts.filter(({ node }) => nodes[node]!.skin !== undefined);
+  const skins = skinned.map((part) => skinOf(file, part, matrices));
+  skinMatrices(skins).forEach((matrix, s) => (skinned[s]!.matrix = matrix));
+  return parts;
+}
+
+/** The matrix of the first instance of a node. */
+function instanceOf(file: GltfFile, path: string, attributes: Record<string, unknown> = {}): Matrix {
+  const { accessors } = file;
+  return firstInstance(path, (semantic) => {
+    const number = attributes[semantic];
+    if (number === undefined) return undefined;
+    const accessor = Number.isInteger(number) ? accessors[number as number] : undefined;
+    if (accessor) return accessor;
+    throw new InputError(
+      `${path}: ${semantic} of ${instancing} is ${show(number)}, not one of ${accessors.length} accessors`,
+    );
+  });
+}
+
+/** How its skin holds a part. */
+function skinOf(file: GltfFile, part: Part, matrices: readonly Matrix[]): Skinned<Matrix> {
+  const { joints = [], inverseBindMatrices } = file.json.skins![file.json.nodes![part.node]!.skin!]!;
+  const inverses = file.accessors[inverseBindMatrices ?? -1]?.getArray();
+  const arrayOf = (semantic: string) => accessorOf(file, part, semantic)?.getArray() ?? [];
+  return {
+    matrices: joints.map((joint, j) =>
+      inverses ? multiply(matrices[joint]!, inverses.subarray(16 * j)) : matrices[joint]!,
+    ),
+    held: arrayOf('JOINTS_0'),
+    weights: arrayOf('WEIGHTS_0'),
+    positions: part.localPositions,
+    isFloat: arrayOf('POSITION') instanceof Float32Array,
+    stored: [identity],
+  };
+}
+
+/** The matrix of each node to the scene, including nodes that are in no scene. */
+export function worldMatrices({ nodes = [] }: GLTF.IGLTF): Matrix[] {
+  const matrices = nodes.map(() => identity);
+  // Nodes in a cycle have no root and are never reached.
+  const stack = topNodes(nodes).map((node) => ({ node, parent: identity }));
+  for (let next = stack.pop(); next; next = stack.pop()) {
+    const matrix = multiply(next.parent, localMatrix(nodes[next.node]!));
+    matrices[next.node] = matrix;
+    for (const node of nodes[next.node]!.children ?? []) stack.push({ node, parent: matrix });
+  }
+  return matrices;
+}
+
+function roots({ scene, scenes = [], nodes = [] }: GLTF.IGLTF): number[] {
+  const chosen = scenes[scene ?? 0];
+  // A file without scenes is a library of nodes; all of them are used.
+  return chosen ? (chosen.nodes ?? []) : topNodes(nodes);
+}
+
+const primitiveOf = ({ json }: GltfFile, { mesh, primitive }: PrimitiveRef): GLTF.IMeshPrimitive =>
+  json.meshes![mesh]!.primitives[primitive]!;
+
+/** The accessor of a primitive, decoded, and checked to have as many elements as the file says. */
+function accessorOf(file: GltfFile, ref: PrimitiveRef, semantic: string): Accessor | undefined {
+  const { attributes } = primitiveOf(file, ref);
+  if (attributes[semantic] === undefined) return undefined;
+  const accessor = file.accessors[attributes[semantic]];
+  const expected = file.json.accessors![attributes[semantic]]!.count;
+  if (accessor?.getArray() === null || accessor?.getCount() !== expected) {
+    throw new InputError(
+      `${primitivePath(ref)}.attributes.${semantic} has ${accessor?.getCount() ?? 0} elements, not the ${expected} of its accessor`,
+    );
+  }
+  return accessor;
+}
+
+function readPositions(file: GltfFile, ref: PrimitiveRef): Float32Array | undefined {
+  const accessor = accessorOf(file, ref, 'POSITION');
+  return accessor && decodePositions(primitivePath(ref), accessor);
+}
+
+/** The triangles of a primitive, strips and fans expanded; `undefined` if it is of points or lines. */
+function readTriangles(file: GltfFile, ref: PrimitiveRef, vertexCount: number): Uint32Array | undefined {
+  const { indices, mode = 4 } = primitiveOf(file, ref);
+  if (!hasTriangles(mode)) return undefined;
+  const array = file.accessors[indices ?? -1]?.getArray() ?? null;
+  if (indices !== undefined && array === null) throw new InputError(`${primitivePath(ref)}.indices has no data`);
+  return decodeTriangles(primitivePath(ref), array, mode, vertexCount);
+}
+
+function readUvs(file: GltfFile, parts: Part[], vertexCount: number): Float32Array | undefined {
+  const uvs = new Float32Array(2 * vertexCount);
+  for (const part of parts) {
+    const layout = uvLayout(file.json, part);
+    const accessor = accessorOf(file, part, layout.set);
+    if (accessor === undefined) return undefined;
+    uvs.set(decodeUvs(primitivePath(part), layout, accessor, part.vertexCount), 2 * part.firstVertex);
+  }
+  return parts.length > 0 ? uvs : undefined;
+}
+
+/** How the base colour texture of a part is laid on it. */
+export function uvLayout({ meshes, materials = [] }: GLTF.IGLTF, { mesh, primitive }: Part): UvLayout {
+  const material = materials[meshes![mesh]!.primitives[primitive]!.material ?? -1];
+  return uvLayoutOf(material?.pbrMetallicRoughness?.baseColorTexture);
+}

@@ -1,0 +1,316 @@
+import type { GLTF } from '@gltf-transform/core';
+import type { CutTarget } from '../api/cut-borders.js';
+import type { TransferResult } from '../api/result.js';
+import { blend, blendSkin, ruleOf } from '../parts/blend.js';
+import { gather } from '../parts/split-part.js';
+import { dracoOf } from './check-geometry.js';
+import { dracoExtension, markForDraco, packDraco, unmarkDraco } from './draco-write.js';
+import { removeAttributes, removeOverlays } from './earlier-in-file.js';
+import type { Extracted, Part } from './extract-file.js';
+import { type Form, GlbWriter } from './glb-writer.js';
+import type { NamedFile } from './output/pack-gltf.js';
+import { separateMeshes } from './output/separate-meshes.js';
+import {
+  cornersIn,
+  cosmeticCorners,
+  type Finish,
+  freeUvSet,
+  isMorphed,
+  isOverlaid,
+  overlayMark,
+  type Paint,
+  unlitExtension,
+  uvsMark,
+  zoneAttribute,
+} from './overlay.js';
+import { type GroupMember, groupMember, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
+import type { GltfFile } from './read-gltf.js';
+
+/** What was added to a primitive. */
+export interface Added {
+  /** The name of the new UV set: the first one that was free. */
+  uvSet: string;
+  /** Triangles of the overlay; 0 if there is none. */
+  overlayTriangles: number;
+  /** Whether the overlay also covers what the material beneath it cuts out by the alpha of its texture. */
+  fillsCutOuts: boolean;
+  /** Number of vertices added because corners at the same vertex have different UVs. */
+  splitVertices: number;
+  /** Number of triangles added by cutting. */
+  cutTriangles: number;
+}
+
+/** How a target is written. */
+interface Writing {
+  /** Textures, each on its own triangles. Default: none */
+  paints?: readonly Paint[];
+  /** What `cutBorders` made from the result. */
+  cut?: CutTarget | undefined;
+  /** The form of the geometry. Default: that of the file */
+  form?: Form;
+  /** The name of the attribute with the zones. Default: `_NCZ` */
+  zones?: string;
+  /** Whether it adds to what another cage painted of the same target, instead of replacing it. Default: no */
+  isFurther?: boolean;
+  /** Writes a glTF of text, whose file is named so, with files beside it. Default: a GLB */
+  stem?: string | undefined;
+}
+
+/**
+ * Writes the target with the result of a transfer: every primitive gets a new UV set and `_NCZ` and, with a texture, an overlay
+ * primitive of its cosmetic triangles. All other contents of the file stay unchanged, including compression. If triangles at the
+ * same vertex have different UVs, copies of the vertex with all its attributes are added after the existing vertices. New vertices
+ * of a cut target are added in the same way, as blends of their sources. An earlier transfer is replaced. What is replaced is dropped
+ * from the file, and its replacement has the same form: sparse, quantised, or compressed by meshopt or Draco. If several nodes share
+ * a mesh, each gets a copy.
+ * @returns the bytes of the file, what belongs beside it, what was added to each part, and how many overlays were replaced.
+ * @throws {InputError} if an image beside the target cannot be read.
+ */
+export async function writeTransfer(
+  file: GltfFile,
+  { parts }: Extracted,
+  result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
+  { paints = [], cut, form = 'keep', zones = zoneAttribute, isFurther = false, stem }: Writing = {},
+): Promise<{ data: Uint8Array; beside: NamedFile[]; added: Added[]; replaced: number }> {
+  const writer = await GlbWriter.from(file, form);
+  const { json } = writer;
+  const meshOfNode = separateMeshes(json, parts);
+  const meshes = parts.map(({ node }) => json.meshes![meshOfNode.get(node)!]!);
+  const primitives = parts.map(({ primitive }, p) => meshes[p]!.primitives[primitive]!);
+  const replaced = isFurther ? 0 : removeOverlays(writer, meshes);
+  if (!isFurther) removeAttributes(writer, primitives);
+  const overlays = paints.map((paint) => new OverlayWriter(writer, paint));
+
+  const members = parts.map((part, p): Member => {
+    const member = groupMember(part, result, cut);
+    const cutTriangles = member.cosmetic.length - part.triangleCount;
+    const added = { uvSet: '', overlayTriangles: 0, fillsCutOuts: false, splitVertices: 0, cutTriangles };
+    return { ...member, primitives: meshes[p]!.primitives, primitive: primitives[p]!, part, added };
+  });
+  if (form === 'draco') markForDraco(primitives);
+  for (const group of groupsOf(members)) addToGroup(writer, file, group, { overlays, form, zones });
+  await packDraco(writer, file);
+  const added = members.map((member) => member.added);
+  if (stem === undefined) return { data: writer.finish(), beside: [], added, replaced };
+  const { text, beside } = writer.finishText(stem);
+  return { data: text, beside, added, replaced };
+}
+
+/** A part, and what it becomes. */
+interface Member extends GroupMember {
+  /** Those of its mesh. */
+  primitives: GLTF.IMeshPrimitive[];
+  primitive: GLTF.IMeshPrimitive;
+  part: Part;
+  added: Added;
+}
+
+/** The parts by the attributes that their primitives share. */
+function groupsOf(members: readonly Member[]): Member[][] {
+  const groups = new Map<GLTF.IMeshPrimitive[], Map<string, Member[]>>();
+  for (const member of members) {
+    const { attributes, targets } = member.primitive;
+    const ofMesh = groups.get(member.primitives) ?? new Map<string, Member[]>();
+    groups.set(member.primitives, ofMesh);
+    const key = dracoOf(member.primitive) ? String(ofMesh.size) : JSON.stringify([attributes, targets]);
+    ofMesh.set(key, [...(ofMesh.get(key) ?? []), member]);
+  }
+  return [...groups.values()].flatMap((ofMesh) => [...ofMesh.values()]);
+}
+
+/** Adds UVs, zones and overlays to primitives that share their attributes. */
+function addToGroup(
+  writer: GlbWriter,
+  file: GltfFile,
+  members: readonly Member[],
+  { overlays, form, zones }: { overlays: readonly OverlayWriter[]; form: Form; zones: string },
+): void {
+  const { primitive: first, part } = members[0]!;
+  const shared = shareVertices(part.vertexCount, members);
+  const isNew = shared.isNew || form !== 'keep';
+  if (isNew)
+    rewriteAttributes(
+      writer,
+      file,
+      members.map(({ primitive }) => primitive),
+      shared,
+    );
+  if (form === 'none' || form === 'meshopt') unmarkDraco(members.map(({ primitive }) => primitive));
+  const uvSet = freeUvSet((semantic) => first.attributes[semantic] !== undefined);
+  const uvs = storedUvs(shared.uvs);
+  const attributes = {
+    [uvSet]: writer.addAttribute(uvs, 2, {
+      ...(uvs instanceof Uint16Array && { normalized: true }),
+      extras: uvsMark,
+    }),
+    [zones]: writer.addAttribute(shared.zones, 1, {}, true),
+  };
+  let copies = shared.sources.length - part.vertexCount - shared.blends.sources.length / 3;
+  members.forEach((member, m) => {
+    const { primitive, primitives, cosmetic, added } = member;
+    Object.assign(primitive.attributes, attributes);
+    const all = cosmeticCorners(shared.indices[m]!, cosmetic);
+    for (const overlay of overlays) {
+      const corners = overlay.cornersOf(all, shared.uvs);
+      if (corners.length === 0) continue;
+      primitives.push(overlay.primitive(primitive, corners, attributes[uvSet]!));
+      added.overlayTriangles += corners.length / 3;
+      added.fillsCutOuts = writer.json.materials?.[primitive.material ?? -1]?.alphaMode === 'MASK';
+    }
+    added.uvSet = uvSet;
+    added.splitVertices = copies;
+    copies = 0; // counted once
+    // Draco's streams are of indexed triangles.
+    if (!isNew && (primitive.indices !== undefined || !dracoOf(primitive))) return;
+    primitive.indices = writer.addIndices(shared.indices[m]!, shared.sources.length);
+    delete primitive.mode; // strips and fans have become lists
+  });
+}
+
+/** Adds new vertices, blends and copies, to all attributes and morph targets that primitives share. */
+function rewriteAttributes(
+  writer: GlbWriter,
+  file: GltfFile,
+  primitives: readonly GLTF.IMeshPrimitive[],
+  { sources, blends }: SharedVertices,
+): void {
+  const { attributes, targets } = primitives[0]!;
+  const skin = blendSkin(
+    (semantic) => (attributes[semantic] === undefined ? undefined : file.accessors[attributes[semantic]]!.getArray()!),
+    blends,
+  );
+  // With other forms, primitives are marked that were not compressed.
+  const fromDraco = primitives.some((primitive) => (dracoOf(primitive)?.bufferView ?? -1) >= 0);
+  const made = new Map<string, number>();
+  const rewrite = (accessor: number, semantic: string, isDelta: boolean): number => {
+    const decoded = file.accessors[accessor]!;
+    const { normalized, min, name, extras, sparse, bufferView } = file.json.accessors![accessor]!;
+    const size = decoded.getElementSize();
+    const array = decoded.getArray()!;
+    const rule = isDelta ? 'mean' : ruleOf(semantic, array, normalized ?? false);
+    const pulls = isDelta ? undefined : skin.get(semantic);
+    const key = `${accessor} ${pulls ? semantic : rule}`;
+    const known = made.get(key);
+    if (known !== undefined) return known;
+    const values = gather(pulls ?? blend(array, size, blends, rule), size, sources);
+    // Draco has rounded the values, so the bounds in the file may be wrong.
+    const more = {
+      type: decoded.getType(),
+      ...(normalized && { normalized }),
+      ...(min && boundsOf(values, size)),
+      ...(name !== undefined && { name }),
+      ...(extras && { extras }),
+    };
+    const wasSparse = sparse !== undefined || (bufferView === undefined && !fromDraco);
+    const number = writer.addAttribute(values, size, more, wasSparse);
+    made.set(key, number);
+    return number;
+  };
+  const rewriteAll = (of: Record<string, number>, isDelta: boolean) =>
+    Object.fromEntries(
+      Object.entries(of).map(([semantic, accessor]) => [semantic, rewrite(accessor, semantic, isDelta)]),
+    );
+  const [ownAttributes, ownTargets] = [
+    rewriteAll(attributes, false),
+    targets?.map((deltas) => rewriteAll(deltas, true)),
+  ];
+  for (const primitive of primitives) {
+    primitive.attributes = { ...ownAttributes };
+    if (ownTargets) primitive.targets = ownTargets.map((deltas) => ({ ...deltas }));
+  }
+}
+
+/** The least and the greatest value of each component. */
+function boundsOf(values: ArrayLike<number>, size: number): { min: number[]; max: number[] } {
+  const min = new Array<number>(size).fill(Infinity);
+  const max = new Array<number>(size).fill(-Infinity);
+  for (let i = 0; i < values.length; ++i) {
+    min[i % size] = Math.min(min[i % size]!, values[i]!);
+    max[i % size] = Math.max(max[i % size]!, values[i]!);
+  }
+  return { min, max };
+}
+
+/** Writes overlays that show a texture. */
+class OverlayWriter {
+  readonly #writer: GlbWriter;
+  readonly #paint: Paint;
+  #texture: number | undefined;
+  readonly #materials = new Map<string, number>();
+
+  constructor(writer: GlbWriter, paint: Paint) {
+    this.#writer = writer;
+    this.#paint = paint;
+  }
+
+  /** Those of some triangles that show the texture. */
+  cornersOf(corners: Uint32Array, uvs: Float32Array): Uint32Array {
+    return cornersIn(this.#paint.area, corners, uvs);
+  }
+
+  /** A primitive of some triangles of `base`, with the same vertices, skin and morph targets. @param uvs  Its UVs' accessor. */
+  primitive(base: GLTF.IMeshPrimitive, corners: Uint32Array, uvs: number): GLTF.IMeshPrimitive {
+    const attributes: Record<string, number> = { TEXCOORD_0: uvs };
+    for (const [semantic, accessor] of Object.entries(base.attributes))
+      if (isOverlaid(semantic)) attributes[semantic] = accessor;
+    const { count } = this.#writer.json.accessors![uvs]!;
+    return {
+      attributes,
+      indices: this.#writer.addIndices(corners, count),
+      material: this.#material(base),
+      ...(base.targets && {
+        targets: base.targets.map((deltas) => this.#morph(deltas, 'NORMAL' in attributes, count)),
+      }),
+      ...(dracoOf(base) && { extensions: { [dracoExtension]: dracoOf(base) } }),
+      extras: overlayMark,
+    };
+  }
+
+  /** What a morph target of the base is to the overlay. One without anything in it is not allowed: it moves nothing then. */
+  #morph(deltas: Record<string, number>, hasNormals: boolean, count: number): Record<string, number> {
+    const own = Object.entries(deltas).filter(([semantic]) => isMorphed(semantic, hasNormals));
+    if (own.length > 0) return Object.fromEntries(own);
+    const still = { min: [0, 0, 0], max: [0, 0, 0] };
+    return { POSITION: this.#writer.addAttribute(new Float32Array(3 * count), 3, still, true) };
+  }
+
+  /** The texture, which is only written if something shows it. */
+  #shown(): number {
+    this.#texture ??= this.#writer.addTexture(this.#paint, this.#paint.area === 'bounded');
+    return this.#texture;
+  }
+
+  /** A material that shows the texture, lit as the base's material is. */
+  #material(base: GLTF.IMeshPrimitive): number {
+    const { json } = this.#writer;
+    const source = base.material === undefined ? undefined : json.materials?.[base.material];
+    const { roughnessFactor = 1, baseColorFactor } = source?.pbrMetallicRoughness ?? {};
+    const finish: Finish = {
+      roughness: roughnessFactor,
+      doubleSided: source?.doubleSided ?? false,
+      alpha: source?.alphaMode === 'BLEND' ? (baseColorFactor?.[3] ?? 1) : 1,
+      unlit: source?.extensions?.[unlitExtension] !== undefined,
+    };
+    const key = JSON.stringify(finish);
+    const number = this.#materials.get(key) ?? (json.materials ??= []).push(this.#made(finish)) - 1;
+    this.#materials.set(key, number);
+    return number;
+  }
+
+  #made({ roughness, doubleSided, alpha, unlit }: Finish): GLTF.IMaterial {
+    return {
+      name: 'Cagecast overlay',
+      extras: overlayMark,
+      alphaMode: 'BLEND',
+      doubleSided,
+      pbrMetallicRoughness: {
+        baseColorTexture: { index: this.#shown() },
+        ...(alpha < 1 && { baseColorFactor: [1, 1, 1, alpha] }),
+        metallicFactor: 0,
+        roughnessFactor: roughness,
+      },
+      // The base has it, so the file names it already.
+      ...(unlit && { extensions: { [unlitExtension]: {} } }),
+    };
+  }
+}

@@ -1,0 +1,146 @@
+import type { Material, Mesh, Texture } from 'three';
+import type { Classification, TransferOptions, TransferResult } from '../../index.js';
+import type { Borders } from '../../parts/borders-option.js';
+import type { Prepared } from '../../parts/prepare.js';
+import { notA, wrong } from '../errors.js';
+import type { Part } from './extract-scene.js';
+import type { Calling } from './tasks.js';
+
+/** A transfer that was made earlier, for `applyTransfer`. */
+export interface Saved {
+  /** Hashes of the target, the cage and the options, as hexadecimal digits. It is the same for the same three only. */
+  key: string;
+  prepared: Prepared;
+}
+
+/** Options of `applyTransfer`: those of `transfer`, and what to display. */
+export interface ApplyOptions extends TransferOptions {
+  /**
+   * A result of `transfer`, also from `cagecast/worker`, for the arrays that `extract` returned for `cage` and `target`. No transfer is
+   * made, so the options of `transfer` count only where `borders` are cut, which needs the cage.
+   */
+  result?: TransferResult | undefined;
+  /** What `deserialize` returned: instead of a transfer, whose options and `borders` it keeps. Needs neither a cage nor `init`. */
+  saved?: Saved | undefined;
+  /**
+   * The paint, in the cage's UV space, mixed into the colour of the cosmetic triangles before they are lit. It is read, never
+   * changed: its offset, repeat and rotation apply, its `channel` does not. Set its `flipY` to false, as for all textures of glTF.
+   * Default: none, as null.
+   */
+  texture?: Texture | null | undefined;
+  /** How much of the paint shows, 0 to 1. Default: 1. */
+  opacity?: number | undefined;
+  /**
+   * The width of a soft border, inside the painted zone, as a share of the target's diagonal, 0 to 1. Default: 0. The edge of a mesh
+   * is no border, nor is a seam of UVs. Cost: some milliseconds per 10,000 vertices. No effect on a `material`.
+   */
+  feather?: number | undefined;
+  /**
+   * A material to show on the cosmetic triangles instead of paint, as an overlay: a second mesh for each part. It finds the UVs in
+   * the channel that `Applied` names. `texture` is not shown then. Default: none, as null.
+   */
+  material?: Material | null | undefined;
+  /**
+   * The channel of the new UVs, 1 to 3: the attribute `uv1`, `uv2` or `uv3`, which is overwritten. Default: the lowest that no
+   * geometry uses already; an error if all are in use.
+   */
+  channel?: 1 | 2 | 3 | undefined;
+  /**
+   * Where the paint ends: at existing triangle edges (`triangle`, the default), or exactly at holes and seams, where triangles are
+   * then cut (`cut`): smooth borders, but more triangles.
+   */
+  borders?: Borders | undefined;
+}
+
+/**
+ * What was added to a scene. Where a later transfer shows its paint on the same meshes, the methods change nothing but what is left of
+ * the earlier one.
+ */
+export interface Applied {
+  /** The result for the original vertices of the target. */
+  result: TransferResult;
+  /**
+   * The number of vertices added because triangles at the same vertex need different UVs, or because not all of them are painted.
+   * Without a texture it is 0 with `seams: 'vertex'`.
+   */
+  splitVertices: number;
+  /** The number of triangles added by cutting borders. */
+  cutTriangles: number;
+  /** The channel of the new UVs. */
+  channel: 1 | 2 | 3;
+  parts: Part[];
+  /**
+   * With a texture: one for each part with a material that cannot be painted. With a material: one for each part. They are children
+   * of the meshes below, and follow them; those without triangles are in no scene.
+   */
+  overlays: Mesh[];
+  /**
+   * Shows another texture in the next frame, or none (undefined or null). At no cost, but for the first texture since an
+   * `applyTransfer` or `update` without one: it costs about as much as `update`, and shaders are compiled for it. No effect where a
+   * material is shown.
+   * @throws {CagecastError} `badArgument` if it is not a texture.
+   */
+  setTexture(texture: Texture | null | undefined): void;
+  /** Changes how much of the paint shows, 0 to 1. In the next frame, at no cost. @throws {CagecastError} `badArgument` */
+  setOpacity(opacity: number): void;
+  /**
+   * Paints one more material, such as one that a mesh is given later. Materials that the meshes have at a call of `update` or
+   * `setTexture` are painted then.
+   * @returns whether it can be painted; without a texture it will be with the first one.
+   */
+  paint(material: Material): boolean;
+  /**
+   * Shows another classification. If borders were cut, segments whose verdict has changed are painted by whole triangles. The
+   * classification is not kept, so the next `classify` may overwrite it (`reuse`); it must not overwrite `result`.
+   *
+   * Cost: about 10 ms per 100,000 triangles; with `feather` more.
+   * @throws {CagecastError} `badArgument` if the classification is of another target, or a geometry has changed since.
+   */
+  update(classification: Classification): void;
+  /**
+   * Removes the paint and the overlays, and makes the materials what they were. The UVs and zones stay. Geometries that are disposed
+   * of as well come first, so that their buffers are freed at once.
+   */
+  dispose(): void;
+}
+
+/** @throws {CagecastError} `badOption` */
+export function checkObject(fn: string, options: unknown): void {
+  if (typeof options !== 'object' || !options) throw notA('an object', 'options', options, fn, 'badOption');
+}
+
+/** @throws {CagecastError} `badOption` that names the function, the option and its value. */
+export function checkOptions(fn: string, options: ApplyOptions & Calling): void {
+  checkObject(fn, options);
+  const check = (name: keyof typeof options, fits: unknown, what: string): void => {
+    if (!fits) throw notA(what, `options.${name}`, options[name], fn, 'badOption');
+  };
+  const { texture, material, channel = 1, saved, signal, onProgress } = options;
+  check('texture', !texture || texture.isTexture, 'a Texture');
+  check('material', !material || material.isMaterial, 'a Material');
+  check('channel', [1, 2, 3].includes(channel), '1, 2 or 3');
+  for (const name of ['opacity', 'feather'] as const) {
+    const share = options[name] ?? 1;
+    check(name, share >= 0 && share <= 1, 'a number from 0 to 1');
+  }
+  check('saved', !saved || typeof saved.key === 'string', 'what deserialize returned');
+  check('signal', signal == null || signal.throwIfAborted, 'an AbortSignal');
+  check('onProgress', onProgress == null || typeof onProgress === 'function', 'a function');
+}
+
+/** The options of `transfer` among those of `applyTransfer`. */
+export function transferOptions(options: ApplyOptions): TransferOptions {
+  const { result, saved, texture, opacity, feather, material, channel, borders, ...rest } = options;
+  return rest;
+}
+
+/** Checks by the lengths of its arrays that an argument belongs to this target. @throws {CagecastError} `badArgument` */
+export function checkLengths(name: string, given: object | null, lengths: Record<string, number>, hint = ''): void {
+  for (const [field, length] of Object.entries(lengths)) {
+    const found = (given as Record<string, ArrayLike<unknown> | undefined> | null)?.[field]?.length;
+    if (found !== length)
+      throw wrong(
+        `${name}.${field} ${found === undefined ? 'is not an array' : `has ${found} entries`}, the target needs ${length}${hint}`,
+      );
+  }
+}

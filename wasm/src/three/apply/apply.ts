@@ -1,0 +1,297 @@
+import { Box3, BufferAttribute, BufferGeometry, type Material, Matrix3, type Mesh, type Texture, Vector3 } from 'three';
+import { show } from '../../core/error.js';
+import type { Classification } from '../../index.js';
+import type { PartRange, Prepared } from '../../parts/prepare.js';
+import { notA, wrong } from '../errors.js';
+import { removeOverlay, removeOverlays } from '../materials/overlay-mesh.js';
+import { paintAttribute, refreshMatrix } from '../materials/paint-shader.js';
+import {
+  canBePainted,
+  isPainted,
+  makePainting,
+  type Painting,
+  paintOn,
+  unpaint,
+} from '../materials/painted-materials.js';
+import { type Applied, type ApplyOptions, checkLengths } from './apply-options.js';
+import { type Extracted, isMirrored, type Part } from './extract-scene.js';
+import { disposeOwn, own } from './own-attributes.js';
+import { type Remade, remake, replace } from './remake.js';
+import { type ShownPart, showMaterial, showPaint, writePaint, writeZones, zoneAttribute } from './shown-parts.js';
+
+/** The channels that earlier transfers added to geometries, to be overwritten by the next one. */
+const givenChannels = new WeakMap<BufferGeometry, 1 | 2 | 3>();
+
+/** The paintings that geometries were made for. */
+const paintings = new WeakMap<BufferGeometry, Painting>();
+
+/** The paintings whose paint geometries show. */
+const shownPaintings = new WeakMap<BufferGeometry, Painting>();
+
+export const rangesOf = ({ parts }: Extracted): PartRange[] =>
+  parts.map(({ firstVertex, vertexCount, firstTriangle, triangleCount, matrix }) => ({
+    firstVertex,
+    vertexCount,
+    firstTriangle,
+    triangleCount,
+    mirrored: isMirrored(matrix),
+  }));
+
+function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
+  const free = ([1, 2, 3] as const).find((channel) =>
+    parts.every(({ geometry }) => givenChannels.get(geometry) === channel || !geometry.hasAttribute(`uv${channel}`)),
+  );
+  if (free === undefined)
+    throw wrong('target has uv1, uv2 and uv3 of its own; choose one to overwrite: options.channel');
+  return free;
+}
+
+/** Whether a mesh that is not of the target shows what an earlier transfer made of a geometry. */
+function isShownElsewhere(geometry: BufferGeometry, parts: readonly Part[]): boolean {
+  const others = [...(paintings.get(geometry)?.meshes ?? [])];
+  return others.some((other) => other.geometry === geometry && parts.every(({ mesh }) => mesh !== other));
+}
+
+/**
+ * Gives every part a geometry of its own: meshes that share one get copies, within the target and where a mesh elsewhere shows what
+ * an earlier transfer made of it.
+ * @param sources  What is copied, for each part.
+ */
+function ownGeometries(parts: readonly Part[], sources: readonly BufferGeometry[]): void {
+  const taken = new Set<BufferGeometry>();
+  for (const [p, part] of parts.entries()) {
+    const { mesh, geometry } = part;
+    if (mesh && (taken.has(geometry) || isShownElsewhere(geometry, parts))) {
+      mesh.geometry = part.geometry = sources[p]!.clone();
+      const channel = givenChannels.get(geometry);
+      if (channel) givenChannels.set(part.geometry, channel);
+    }
+    taken.add(part.geometry);
+  }
+}
+
+/** Holds what a geometry has now: transfers give it other attributes, but do not change these. */
+function stateOf(geometry: BufferGeometry): BufferGeometry {
+  const { name, userData, attributes, morphAttributes, morphTargetsRelative, index, groups, drawRange } = geometry;
+  const held = { name, userData, morphTargetsRelative, index, groups };
+  return Object.assign(new BufferGeometry(), held, {
+    attributes: { ...attributes },
+    morphAttributes: { ...morphAttributes },
+    drawRange: { ...drawRange },
+  });
+}
+
+/** The state of geometries when they are extracted, for `apply`. */
+export const statesOf = ({ parts }: Extracted): BufferGeometry[] => parts.map(({ geometry }) => stateOf(geometry));
+
+const hasOthers = (geometry: BufferGeometry, state: BufferGeometry): boolean =>
+  geometry.attributes['position'] !== state.attributes['position'] || geometry.index !== state.index;
+
+/** Node materials are for `WebGPURenderer`, which would show an overlay of ours without its paint. */
+function checkMaterials(parts: readonly Part[]): void {
+  const isNode = (material: object | undefined) => (material as { isNodeMaterial?: true } | undefined)?.isNodeMaterial;
+  const part = parts.find(({ mesh }) => [mesh?.material].flat().some(isNode));
+  if (!part) return;
+  throw wrong(
+    `${show(part.name)} has a node material, which cannot show options.texture; give options.material`,
+    undefined,
+    'badOption',
+  );
+}
+
+/**
+ * Applies what was prepared to the geometries and materials of a target. Nothing is changed before the last step; yields after each
+ * attribute that was extended, for callers that share the thread.
+ */
+export function* apply(
+  { mesh: arrays, parts }: Extracted,
+  extracted: readonly BufferGeometry[],
+  prepared: Prepared,
+  options: ApplyOptions,
+): Generator<void, Applied> {
+  const channel = options.channel ?? freeChannel(parts);
+  if (options.texture && !options.material) checkMaterials(parts);
+  const states = parts.map(({ geometry }, p) =>
+    hasOthers(geometry, extracted[p]!) ? extracted[p]! : stateOf(geometry),
+  );
+  const remades: (Remade | undefined)[] = [];
+  for (const [p, part] of parts.entries())
+    remades.push(yield* remake(states[p]!, prepared.parts[p]!, part.firstTriangle));
+  const sources = parts.map(({ name, mesh, geometry }, p) => {
+    const isLate = (attribute: string) => remades[p] && !remades[p].attributes.has(attribute);
+    const isChanged = hasOthers(geometry, states[p]!) || Object.keys(geometry.attributes).some(isLate);
+    // The transfer of a mesh elsewhere may change the geometry: this one gets a copy of what it was.
+    if ((mesh && mesh.geometry !== geometry) || (isChanged && !(mesh && isShownElsewhere(geometry, parts))))
+      throw wrong(`the geometry of ${show(name)} was changed meanwhile`);
+    return isChanged ? states[p]! : geometry;
+  });
+
+  ownGeometries(parts, sources);
+  const painting = makePainting({
+    texture: options.texture,
+    opacity: options.opacity ?? 1,
+    feather: options.feather ?? 0,
+    matrix: new Matrix3(),
+    meshes: new Set(parts.flatMap(({ mesh }) => mesh ?? [])),
+  });
+  parts.forEach(({ mesh, geometry }, p) => {
+    // Earlier overlays show paint, or UVs of a channel, that is overwritten here.
+    const isReplaced = options.material ? givenChannels.get(geometry) === channel : options.texture;
+    if (mesh && isReplaced) removeOverlays(mesh);
+    if (remades[p]) replace(geometry, remades[p]!);
+    else disposeOwn(geometry, [`uv${channel}`, zoneAttribute]); // or the GPU buffers of what is replaced here would be left to the garbage collector
+    const { split } = prepared.parts[p]!;
+    geometry.setAttribute(`uv${channel}`, own(new BufferAttribute(split.uvs.slice(), 2)));
+    geometry.setAttribute(zoneAttribute, own(new BufferAttribute(new Float32Array(split.sources.length), 1)));
+    givenChannels.set(geometry, channel);
+    paintings.set(geometry, painting);
+  });
+  const shown = parts.map((part, p): ShownPart => ({ ...prepared.parts[p]!, part, cosmetic: new Uint8Array(0) }));
+  return new Shown(arrays, prepared, shown, { painting, material: options.material, channel });
+}
+
+interface Display {
+  painting: Painting;
+  material: Material | null | undefined;
+  channel: 1 | 2 | 3;
+}
+
+/** Its methods are fields, so that they may be taken out of it. */
+class Shown implements Applied {
+  readonly result;
+  readonly splitVertices;
+  readonly cutTriangles;
+  readonly channel;
+  readonly parts;
+  readonly #target: Extracted['mesh'];
+  readonly #shown: ShownPart[];
+  readonly #painting: Painting;
+  readonly #material: Display['material'];
+  /** The verdicts of the result. A copy: the caller may overwrite `result` later (`reuse`). */
+  readonly #culled: boolean[];
+  readonly #copies = new Map<Material, Material>();
+  /** Materials that were added by hand. */
+  readonly #added = new Set<Material>();
+  #painted = new Set<Material>();
+  #isDisposed = false;
+  #hasPaint = false;
+
+  constructor(target: Extracted['mesh'], prepared: Prepared, shown: ShownPart[], display: Display) {
+    this.result = prepared.result;
+    this.splitVertices = prepared.parts.reduce((sum, { split }) => sum + split.copies, 0);
+    this.cutTriangles = prepared.cutTriangles ?? 0;
+    this.channel = display.channel;
+    this.parts = shown.map(({ part }) => part);
+    this.#target = target;
+    this.#shown = shown;
+    this.#painting = display.painting;
+    this.#material = display.material;
+    this.#culled = this.result.segmentStats.map(({ culled }) => culled);
+    this.#decide(this.result);
+  }
+
+  get overlays(): Mesh[] {
+    return this.#shown.flatMap(({ overlay }) => overlay ?? []);
+  }
+
+  readonly setTexture = (texture: Texture | null | undefined): void => {
+    if (texture && !texture.isTexture) throw notA('a Texture', 'texture', texture, 'setTexture');
+    this.#painting.texture = texture;
+    this.#show();
+  };
+
+  readonly setOpacity = (opacity: number): void => {
+    if (!(opacity >= 0 && opacity <= 1)) throw notA('a number from 0 to 1', 'opacity', opacity, 'setOpacity');
+    this.#painting.opacity = opacity;
+    refreshMatrix(this.#painting);
+  };
+
+  readonly paint = (material: Material): boolean => {
+    if (!material?.isMaterial) throw notA('a Material', 'material', material, 'paint');
+    if (!canBePainted(material)) return false;
+    this.#added.add(material);
+    this.#show();
+    return true;
+  };
+
+  readonly update = (classification: Classification): void => {
+    checkLengths('classification', classification, {
+      zones: this.result.zones.length,
+      cosmeticTriangles: this.result.cosmeticTriangles.length,
+      segmentStats: this.#culled.length,
+    });
+    this.#decide(classification);
+  };
+
+  #decide(now: Classification): void {
+    const { segments } = this.result;
+    const hasChanged = this.#culled.map((culled, s) => Number(now.segmentStats[s]!.culled !== culled));
+    const isOther = new Uint8Array(segments.length);
+    if (hasChanged.includes(1)) for (let v = 0; v < segments.length; ++v) isOther[v] = hasChanged[segments[v]!]!;
+    for (const one of this.#current) writeZones(one, now, isOther, this.#target.indices);
+    this.#hasPaint = false;
+    this.#show();
+  }
+
+  /** The parts on which no later transfer shows its paint. */
+  get #current(): ShownPart[] {
+    const { number } = this.#painting;
+    return this.#shown.filter(({ part }) => !((shownPaintings.get(part.geometry)?.number ?? 0) > number));
+  }
+
+  #show(): void {
+    if (this.#isDisposed) return;
+    const { texture, feather } = this.#painting;
+    const shown = this.#current;
+    if (this.#material) {
+      for (const one of shown) showMaterial(one, this.#material);
+      return;
+    }
+    const isShown = shown.every(({ part }) => shownPaintings.get(part.geometry) === this.#painting);
+    if (texture && !(this.#hasPaint && isShown)) {
+      writePaint(shown, feather, feather > 0 ? diagonal(this.#target.positions) : 1);
+      for (const { part } of shown) shownPaintings.set(part.geometry, this.#painting);
+      this.#hasPaint = true;
+    }
+    refreshMatrix(this.#painting);
+    // Materials without paint for now stay ready for it: to make them what they were, and again, would compile their shaders twice.
+    const paints = !!texture || this.#painted.size > 0;
+    const painted = new Set(shown.flatMap((one) => showPaint(one, this.#painting, this.#copies, paints)));
+    if (paints && shown.length > 0) for (const material of this.#added) painted.add(paintOn(material, this.#painting));
+    for (const material of this.#painted) if (!painted.has(material)) unpaint(material, this.#painting);
+    this.#painted = painted;
+  }
+
+  readonly dispose = (): void => {
+    if (this.#isDisposed) return;
+    this.#isDisposed = true;
+    for (const material of this.#painted) unpaint(material, this.#painting);
+    for (const [material, copy] of this.#copies) {
+      if (isPainted(copy)) continue; // By a later transfer, which puts the original back.
+      for (const { part } of this.#shown) showInstead(part.mesh, copy, material);
+      copy.dispose();
+    }
+    for (const one of this.#shown) {
+      const { overlay, part } = one;
+      const geometry = part.mesh?.geometry ?? part.geometry;
+      if (paintings.get(part.geometry) === this.#painting) paintings.delete(part.geometry);
+      if (shownPaintings.get(part.geometry) === this.#painting) {
+        shownPaintings.delete(part.geometry);
+        disposeOwn(geometry, [paintAttribute]); // or the attribute's GPU buffer would be left to the garbage collector
+        geometry.deleteAttribute(paintAttribute);
+      }
+      if (!overlay) continue;
+      removeOverlay(overlay);
+      if (overlay.material !== this.#material) (overlay.material as Material).dispose();
+    }
+  };
+}
+
+function showInstead(mesh: Mesh | undefined, was: Material, now: Material): void {
+  const change = (m: Material) => (m === was ? now : m);
+  if (mesh) mesh.material = Array.isArray(mesh.material) ? mesh.material.map(change) : change(mesh.material);
+}
+
+/** The diagonal of the points' box. */
+const diagonal = (positions: Float32Array): number =>
+  new Box3().setFromArray(positions).getSize(new Vector3()).length() || 1;

@@ -1,0 +1,299 @@
+import {
+  type BufferAttribute,
+  type BufferGeometry,
+  type InstancedBufferAttribute,
+  type InstancedMesh,
+  type InterleavedBufferAttribute,
+  Matrix4,
+  type Object3D,
+  type SkinnedMesh,
+  type Texture,
+  type Mesh as ThreeMesh,
+} from 'three';
+import { show } from '../../core/error.js';
+import type { CagecastError, Mesh } from '../../index.js';
+import { movePoints } from '../../parts/points.js';
+import { type Skinned, skinMatrices } from '../../parts/skin.js';
+import { transformUvs } from '../../parts/uv-transform.js';
+import { wrong } from '../errors.js';
+
+/** One mesh of a scene, or a single geometry, and the ranges of its elements in the joined arrays. */
+export interface Part {
+  /** The name of the mesh, or of its parent if it has none. */
+  name: string;
+  /** The mesh; `undefined` if a geometry was given. */
+  mesh: ThreeMesh | undefined;
+  geometry: BufferGeometry;
+  /** From the geometry's space to that of the arrays. */
+  matrix: Matrix4;
+  firstVertex: number;
+  vertexCount: number;
+  firstTriangle: number;
+  triangleCount: number;
+}
+
+/** All triangles of a scene as arrays, and the parts that they come from. */
+export interface Extracted {
+  /** With UVs if every part has those of its base colour texture, where they are in it, or the attribute `uv` without one. */
+  mesh: Mesh & { indices: Uint32Array; groups: Uint32Array };
+  /** In the order of their vertices. */
+  parts: Part[];
+}
+
+const identity = new Matrix4();
+
+/**
+ * Collects the triangles of a geometry, or of all meshes of a scene, depth first, as arrays for `transfer`.
+ *
+ * Vertices keep their order and number. Positions are in the scene's space: world matrices are applied in double precision and
+ * rounded once, and the winding of mirrored meshes is reversed. Skinned meshes are placed by their skeleton, in the bind pose;
+ * morph targets are not applied. An instanced mesh is taken once, where its first instance is. Each mesh, or each of its material
+ * groups, is a group.
+ * @param argument  The name of the argument, for messages.
+ * @throws {CagecastError} that names the part and the element.
+ */
+export function extract(object: Object3D | BufferGeometry, argument = 'target'): Extracted {
+  const parts = listParts(object, argument);
+  const [vertices, triangles] = endOf(parts);
+  const positions = new Float32Array(3 * vertices);
+  const indices = new Uint32Array(3 * triangles);
+  const groups = new Uint32Array(vertices);
+  let group = 0;
+  for (const part of parts) {
+    placePositions(part, positions);
+    placeIndices(part, indices, argument);
+    group = placeGroups(part, groups, group);
+  }
+  const uvs = readUvs(parts, vertices, argument);
+  return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts };
+}
+
+/** Where the next part begins: how many vertices and triangles there are before it. */
+function endOf(parts: readonly Part[]): [vertices: number, triangles: number] {
+  const last = parts.at(-1);
+  return last ? [last.firstVertex + last.vertexCount, last.firstTriangle + last.triangleCount] : [0, 0];
+}
+
+type Attribute = BufferAttribute | InterleavedBufferAttribute;
+
+function listParts(object: Object3D | BufferGeometry, argument: string): Part[] {
+  if (!isGeometry(object) && !isObject(object)) {
+    throw wrong(
+      `${argument} is ${show(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
+      undefined,
+      undefined,
+      { argument },
+    );
+  }
+  const parts: Part[] = [];
+  const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
+    if ((mesh && 'isBatchedMesh' in mesh) || 'isInstancedBufferGeometry' in geometry)
+      throw wrongPart(argument, name, 'is a batch or an instanced geometry; make each instance a mesh of its own');
+    const position = geometry.getAttribute('position') as Attribute | undefined;
+    const vertexCount = position?.count ?? 0;
+    const corners = geometry.index?.count ?? vertexCount;
+    if (!vertexCount || !corners) return;
+    if (position!.itemSize !== 3)
+      throw wrongPart(argument, name, `has positions of ${position!.itemSize} numbers, not 3`);
+    if (corners % 3 !== 0) throw wrongPart(argument, name, `has ${corners} corners, not 3 per triangle`);
+    const morphs = Object.entries(geometry.morphAttributes).flatMap(([of, attributes]) =>
+      attributes!.map((attribute): [string, { count: number }] => [`deltas of ${of}`, attribute]),
+    );
+    const attributes = Object.entries(geometry.attributes).filter(([, attribute]) => !isOfInstances(attribute));
+    for (const [of, { count }] of [...attributes, ...morphs]) {
+      if (count < vertexCount) throw wrongPart(argument, name, `has ${count} ${of} for ${vertexCount} vertices`);
+    }
+    const [firstVertex, firstTriangle] = endOf(parts);
+    parts.push({
+      name,
+      mesh,
+      geometry,
+      matrix,
+      firstVertex,
+      vertexCount,
+      firstTriangle,
+      triangleCount: corners / 3,
+    });
+  };
+  if (isGeometry(object)) {
+    add(object.name || 'geometry', undefined, object, identity);
+    return parts;
+  }
+  object.updateWorldMatrix(true, true);
+  const meshes: ThreeMesh[] = [];
+  object.traverse((child) => {
+    // Its bones may be elsewhere in the scene.
+    for (const bone of (child as SkinnedMesh).skeleton?.bones ?? []) bone.updateWorldMatrix(true, false);
+    if (!isMesh(child) || [child, child.geometry, child.material].flat().some(isMarked)) return;
+    if (!isInstanced(child) || child.count > 0) meshes.push(child);
+  });
+  placesOf(meshes).forEach((matrix, m) => {
+    const mesh = meshes[m]!;
+    add(mesh.name || mesh.parent?.name || `mesh ${parts.length}`, mesh, mesh.geometry, matrix);
+  });
+  return parts;
+}
+
+/**
+ * Returns the matrices from meshes to the scene: their world matrices; for skinned meshes, those by which their skeletons place them
+ * in the bind pose; for instanced meshes, those of the first instance. World matrices must be up to date. Whether a skeleton has
+ * moved follows from all meshes that it holds, so give them together. Cost: linear in the vertices of skinned meshes.
+ */
+export function placesOf(meshes: readonly ThreeMesh[]): Matrix4[] {
+  const held = skinMatrices(meshes.filter(isAttached).map(skinOf));
+  return meshes.map((mesh) => {
+    const place = new Matrix4();
+    if (isAttached(mesh)) return place.fromArray(held.shift()!);
+    if (isInstanced(mesh)) mesh.getMatrixAt(0, place);
+    return place.premultiply(mesh.matrixWorld);
+  });
+}
+
+/** Whether a mesh is where its skeleton is. A detached one is where it is itself. */
+const isAttached = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).bindMode === 'attached';
+
+function skinOf(mesh: SkinnedMesh): Skinned<ArrayLike<number>> {
+  const { skeleton, bindMatrix, geometry } = mesh;
+  const values = (name: string) => {
+    const attribute = geometry.getAttribute(name) as Attribute | undefined;
+    return attribute ? valuesOf(attribute) : new Float32Array();
+  };
+  const bones = skeleton?.bones ?? [];
+  // Three applies the bind matrix to the vertices first.
+  const placedBy = (matrix: Matrix4) => matrix.clone().multiply(bindMatrix).elements;
+  // The model may have been moved since the mesh was bound, with all that is in it.
+  const moved: number[][] = [];
+  for (let above: Object3D | null | undefined = bones[0]; above; above = above.parent)
+    if (!('isBone' in above)) moved.push(placedBy(above.matrixWorld));
+  return {
+    matrices: bones.map((bone, b) => placedBy(bone.matrixWorld.clone().multiply(skeleton!.boneInverses[b]!))),
+    stored: [bindMatrix.elements, ...moved],
+    held: values('skinIndex'),
+    weights: values('skinWeight'),
+    positions: values('position'),
+    isFloat: geometry.getAttribute('position')?.array instanceof Float32Array,
+  };
+}
+
+/** The numbers of an attribute, decoded, to be read only: its own array if that has nothing else. */
+export function valuesOf(attribute: Attribute): Float32Array {
+  const { count, itemSize, array } = attribute;
+  if (array instanceof Float32Array && !('isInterleavedBufferAttribute' in attribute)) return array;
+  const values = new Float32Array(count * itemSize);
+  // Half floats are decoded by these, not by `getComponent`.
+  const get = (['getX', 'getY', 'getZ', 'getW'] as const).slice(0, itemSize);
+  for (let k = 0; k < get.length; ++k) for (let i = 0; i < count; ++i) values[i * itemSize + k] = attribute[get[k]!](i);
+  return values;
+}
+
+/**
+ * Whether something is an overlay, by the mark in its `userData`. GLTFLoader sets the same mark on geometries and materials of
+ * overlays from a file, from their `extras` (gltf/overlay.ts). Lists of materials may have gaps.
+ */
+export const isMarked = (one?: Pick<Object3D, 'userData'>): boolean => one?.userData['cagecastOverlay'];
+
+// Tested by three's own flags, not by class, because a page may have a second copy of three.
+const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry =>
+  (object as BufferGeometry | undefined)?.isBufferGeometry === true;
+const isObject = (object: Object3D): boolean => object?.isObject3D === true;
+export const isSkinned = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).isSkinnedMesh === true;
+export const isInstanced = (mesh: ThreeMesh): mesh is InstancedMesh => (mesh as InstancedMesh).isInstancedMesh === true;
+/** Whether an attribute has a value for each instance, not for each vertex. */
+export const isOfInstances = (attribute: object): boolean =>
+  (attribute as InstancedBufferAttribute).isInstancedBufferAttribute === true ||
+  ((attribute as InterleavedBufferAttribute).data as { isInstancedInterleavedBuffer?: true } | undefined)
+    ?.isInstancedInterleavedBuffer === true;
+export const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
+
+const wrongPart = (argument: string, name: string, text: string, at?: number): CagecastError =>
+  wrong(`${argument}: ${show(name)} ${text}`, undefined, undefined, { argument, at });
+
+/** Whether a matrix mirrors, so that the winding of triangles must be reversed. */
+export const isMirrored = (matrix: Matrix4): boolean => matrix.determinant() < 0;
+
+/** Writes the positions of a part in the scene's space. */
+export function placePositions(
+  { geometry, matrix, firstVertex, vertexCount }: Pick<Part, 'geometry' | 'matrix' | 'firstVertex' | 'vertexCount'>,
+  out: Float32Array,
+): void {
+  // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
+  const values = valuesOf(geometry.getAttribute('position') as Attribute).subarray(0, 3 * vertexCount);
+  if (matrix.equals(identity)) out.set(values, 3 * firstVertex);
+  else movePoints(matrix.elements, values, out, 3 * firstVertex);
+}
+
+function placeIndices(
+  { name, geometry, matrix, firstVertex, vertexCount, firstTriangle, triangleCount }: Part,
+  out: Uint32Array,
+  argument: string,
+): void {
+  const { index } = geometry;
+  const mirrored = isMirrored(matrix);
+  for (let i = 0; i < 3 * triangleCount; ++i) {
+    // Checked part by part: in the joined arrays an index too large would point into the next part.
+    const vertex = index?.getX(i) ?? i;
+    if (vertex >= vertexCount)
+      throw wrongPart(
+        argument,
+        name,
+        `has indices[${i}] = ${vertex}, which is out of range (${vertexCount} vertices)`,
+        i,
+      );
+    const corner = i % 3;
+    out[3 * firstTriangle + i - corner + (mirrored && corner > 0 ? 3 - corner : corner)] = firstVertex + vertex;
+  }
+}
+
+/** Numbers the part's material groups, from `first` on. @returns the next number. */
+function placeGroups(
+  { mesh, geometry, firstVertex, vertexCount, triangleCount }: Part,
+  out: Uint32Array,
+  first: number,
+): number {
+  out.fill(first, firstVertex, firstVertex + vertexCount);
+  if (!Array.isArray(mesh?.material)) return first + 1;
+  let next = first;
+  const numbers = new Map<number, number>();
+  const taken = new Uint8Array(vertexCount);
+  for (const { start, count, materialIndex = 0 } of geometry.groups) {
+    if (!numbers.has(materialIndex)) numbers.set(materialIndex, next++);
+    const group = numbers.get(materialIndex)!;
+    for (let i = start; i < Math.min(start + count, 3 * triangleCount); ++i) {
+      const vertex = geometry.index?.getX(i) ?? i;
+      if (vertex >= vertexCount || taken[vertex] === 1) continue; // a vertex of two materials belongs to the first
+      taken[vertex] = 1;
+      out[firstVertex + vertex] = group;
+    }
+  }
+  return Math.max(next, first + 1);
+}
+
+/** The base colour texture of a part; of several, the first. */
+function mapOf({ mesh }: Part): Texture | undefined {
+  const materials = [mesh?.material].flat() as ({ map?: Texture | null } | undefined)[];
+  return materials.find((one) => one?.map)?.map ?? undefined;
+}
+
+/** The UVs by which the base colour texture of a part lies on it; the first if it has none. */
+const uvsOf = (part: Part): Attribute | undefined => part.geometry.getAttribute(`uv${mapOf(part)?.channel || ''}`);
+
+/** Where UVs are in a texture, as in a glTF: `Texture.matrix` would scale last. */
+function inTexture(uvs: Float32Array, map: Texture | undefined): Float32Array {
+  if (!map) return uvs;
+  const { offset, rotation, repeat } = map;
+  if (rotation === 0 && offset.lengthSq() === 0 && repeat.x === 1 && repeat.y === 1) return uvs;
+  return transformUvs(uvs, { offset: [offset.x, offset.y], rotation, scale: [repeat.x, repeat.y] });
+}
+
+function readUvs(parts: readonly Part[], vertices: number, argument: string): Float32Array | undefined {
+  if (!parts.every(uvsOf)) return undefined;
+  const uvs = new Float32Array(2 * vertices);
+  for (const part of parts) {
+    const { name, firstVertex, vertexCount } = part;
+    const uv = uvsOf(part)!;
+    if (uv.count !== vertexCount || uv.itemSize !== 2)
+      throw wrongPart(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers, not ${vertexCount} of 2`);
+    uvs.set(inTexture(valuesOf(uv), mapOf(part)), 2 * firstVertex);
+  }
+  return uvs;
+}

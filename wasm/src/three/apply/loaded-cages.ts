@@ -1,0 +1,167 @@
+import { BufferAttribute, BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
+import * as cages from '../../cages/index.js';
+import type { Mesh } from '../../index.js';
+import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../../parts/joints.js';
+import { readExtras } from '../../parts/template-extras.js';
+import { wrong } from '../errors.js';
+import { extract, isMesh, isSkinned, type Part } from './extract-scene.js';
+
+/**
+ * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones; else
+ * bones are known by the names of objects.
+ */
+export type Loaded = Object3D | BufferGeometry | LoadedGltf;
+
+/** What GLTFLoader loads, as far as it is used here. */
+export interface LoadedGltf {
+  scene: Object3D;
+  userData?: Record<string, unknown>;
+  parser?: { associations?: Map<object, { nodes?: number } | undefined>; json?: { extensions?: VrmExtensions } };
+}
+
+const isLoadedGltf = (model: Loaded): model is LoadedGltf =>
+  (model as LoadedGltf | undefined)?.scene?.isObject3D === true;
+const objectOf = (model: Loaded): Object3D | BufferGeometry => (isLoadedGltf(model) ? model.scene : model);
+
+/**
+ * What `cagecast/cages` needs of a model: its triangles, a part for each mesh or material group, and the joints of its skeletons,
+ * in the bind pose.
+ * @throws {CagecastError} `badArgument` that names the mesh.
+ */
+export function cageModel(model: Loaded): cages.CageModel {
+  const object = objectOf(model);
+  const { mesh, parts } = extract(object, 'model');
+  const { positions, indices, groups } = mesh;
+  const bones = isLoadedGltf(model) ? bonesOf(model) : new Map<Object3D, string>();
+  return {
+    positions,
+    indices,
+    groups,
+    parts: namesOf(parts, object),
+    joints: jointsOf(parts, bones),
+  };
+}
+
+/**
+ * A loaded cage as a template: its mesh, and the landmarks in its `userData`, where GLTFLoader puts the `extras` of a node or mesh.
+ * @throws {CagecastError} `badArgument`, `missingUvs`
+ */
+export function cageTemplate(model: Loaded): cages.Template {
+  const { mesh, parts } = extract(objectOf(model), 'template');
+  if (mesh.uvs === undefined)
+    throw wrong('template has a mesh without the attribute uv', 'cageTemplate', 'missingUvs', { argument: 'template' });
+  const sources = parts.flatMap(({ name, mesh: of, geometry, matrix, firstVertex, vertexCount }) =>
+    // The parent of the meshes of one glTF mesh has the extras of its node.
+    [
+      { extras: geometry.userData, matrix },
+      { extras: of?.parent?.userData, matrix: of?.parent?.matrixWorld ?? matrix },
+      { extras: of?.userData, matrix },
+    ].map(({ extras, matrix: { elements } }) => ({
+      extras,
+      place: `"${name}"`,
+      matrix: elements,
+      firstVertex,
+      vertexCount,
+    })),
+  );
+  const extras = readExtras(sources, (text) => wrong(text, 'cageTemplate'));
+  return { positions: mesh.positions, indices: mesh.indices, uvs: mesh.uvs, ...extras };
+}
+
+/** As `makeCage` of `cagecast/cages`, for a loaded model. @throws {CagecastError} */
+export async function makeCage(
+  model: Loaded,
+  options: cages.MakeOptions & cages.CageCallOptions = {},
+): Promise<cages.Cage> {
+  return cages.makeCage(cageModel(model), options);
+}
+
+/** As `fitCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */
+export async function fitCage(
+  template: Loaded | cages.Template,
+  model: Loaded,
+  landmarks?: cages.Landmarks,
+  options: cages.FitOptions & cages.CageCallOptions = {},
+): Promise<cages.Fit> {
+  return cages.fitCage(isTemplate(template) ? template : cageTemplate(template), cageModel(model), landmarks, options);
+}
+
+/** As `findLandmarks` of `cagecast/cages`, for a loaded model. @throws {CagecastError} */
+export async function findLandmarks(model: Loaded, options: cages.CageCallOptions = {}): Promise<cages.FoundLandmarks> {
+  return cages.findLandmarks(cageModel(model), options);
+}
+
+/** As `refineCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */
+export async function refineCage(
+  cage: Loaded | Mesh | cages.Cage | cages.Template,
+  model: Loaded,
+  options: cages.RefineOptions & cages.CageCallOptions = {},
+): Promise<cages.Cage> {
+  return cages.refineCage(isTemplate(cage) ? cage : cageTemplate(cage), cageModel(model), options);
+}
+
+/**
+ * The geometry of a cage, to be shown, or for `applyTransfer`. Landmarks, holes and kind are in its `userData`, which GLTFExporter
+ * does not write: `cageGlb` of `cagecast/cages` writes a file with them.
+ */
+export function cageGeometry(
+  cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
+): BufferGeometry {
+  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(positions, 3));
+  geometry.setAttribute('uv', new BufferAttribute(uvs, 2));
+  geometry.setIndex(new BufferAttribute(indices, 1));
+  geometry.computeVertexNormals();
+  geometry.userData = { landmarks, holes, kind };
+  return geometry;
+}
+
+const isTemplate = <T extends Mesh>(cage: Loaded | T): cage is T => (cage as Mesh | undefined)?.positions !== undefined;
+
+/** The names of each group: of its mesh, of the object that holds the meshes of one glTF mesh, and of its material. */
+function namesOf(parts: readonly Part[], root: object): string[][] {
+  return parts.flatMap(({ name, mesh, geometry }) => {
+    const holder = mesh?.parent;
+    const isWhole = holder && holder !== root && holder.children.length > 1 && holder.children.every(isMesh);
+    const own = [...new Set([name, geometry.name, isWhole ? holder.name : ''].filter((text) => text !== ''))];
+    const materials = [mesh?.material ?? []].flat();
+    // As `extract` numbers groups: by the first of each material's groups.
+    const order = Array.isArray(mesh?.material)
+      ? [...new Set(geometry.groups.map(({ materialIndex = 0 }) => materialIndex))]
+      : [0];
+    return (order.length > 0 ? order : [0]).map((index) => {
+      const material = materials[index]?.name ?? '';
+      return material === '' || own.includes(material) ? own : [...own, material];
+    });
+  });
+}
+
+function bonesOf({ userData, parser }: LoadedGltf): Map<Object3D, string> {
+  // GLTFLoader keeps extensions that it does not know here.
+  const kept = userData?.['gltfExtensions'] as VrmExtensions | undefined;
+  const bones = vrmBones(kept?.VRM || kept?.VRMC_vrm ? kept : parser?.json?.extensions);
+  const found = new Map<Object3D, string>();
+  for (const [object, place] of parser?.associations ?? []) {
+    const bone = place?.nodes === undefined ? undefined : bones.get(place.nodes);
+    if (bone !== undefined && (object as Object3D).isObject3D) found.set(object as Object3D, bone);
+  }
+  return found;
+}
+
+function jointsOf(parts: readonly Part[], bones: Map<Object3D, string>) {
+  const nameOf = (bone: Object3D) => bones.get(bone) ?? bone.name;
+  const joints = parts.flatMap(({ mesh, matrix }) => {
+    if (!mesh || !isSkinned(mesh)) return [];
+    const { skeleton, bindMatrix } = mesh as typeof mesh & { skeleton?: Skeleton };
+    return (skeleton?.bones ?? []).map((bone, b) => {
+      const inverse = new Matrix4().multiplyMatrices(skeleton!.boneInverses[b]!, bindMatrix);
+      const position = jointPlace(matrix.elements, inverse.elements);
+      return position ? { node: bone, name: nameOf(bone), position } : atObject(bone);
+    });
+  });
+  function atObject(node: Object3D): ReadJoint<Object3D> {
+    return { node, name: nameOf(node), position: new Vector3().setFromMatrixPosition(node.matrixWorld).toArray() };
+  }
+  return listJoints([...joints, ...[...bones.keys()].map(atObject)], (bone) => bone.parent);
+}

@@ -1,0 +1,181 @@
+import {
+  BufferAttribute,
+  type BufferGeometry,
+  DataUtils,
+  type InterleavedBufferAttribute,
+  type TypedArray,
+} from 'three';
+import {
+  type AttributeArray,
+  type Blends,
+  blendInto,
+  blendSkin,
+  noBlends,
+  type Rule,
+  ruleOf,
+} from '../../parts/blend.js';
+import type { PreparedPart } from '../../parts/prepare.js';
+import { isOfInstances } from './extract-scene.js';
+import { disposeOwn, own } from './own-attributes.js';
+
+type Attribute = BufferAttribute | InterleavedBufferAttribute;
+
+/** glTF's names of attributes that are not blended by a simple mean. */
+const semantics: Record<string, string> = {
+  normal: 'NORMAL',
+  tangent: 'TANGENT',
+  skinIndex: 'JOINTS_0',
+  skinWeight: 'WEIGHTS_0',
+};
+
+/** A geometry's vertices and triangles as they will be. */
+export interface Remade {
+  attributes: Map<string, BufferAttribute>;
+  morphs: Map<string, BufferAttribute[]>;
+  indices: Uint32Array<ArrayBuffer>;
+  groups: BufferGeometry['groups'];
+  drawRange: BufferGeometry['drawRange'];
+}
+
+/**
+ * Adds the new vertices of a part, blends and copies after the existing ones, to all attributes and morph targets. The geometry is
+ * not changed yet. Yields after each attribute, for callers that share the thread.
+ * @returns what `replace` takes; `undefined` if there is nothing to do.
+ */
+export function* remake(
+  geometry: BufferGeometry,
+  { pieces, split }: PreparedPart,
+  firstTriangle: number,
+): Generator<void, Remade | undefined> {
+  const blends = pieces?.blends ?? noBlends;
+  const isCut = blends.sources.length > 0;
+  if (!isCut && split.copies === 0) return undefined;
+  const skin = isCut ? skinOf(geometry, blends) : new Map<string, AttributeArray>();
+  const made = new Map<Attribute, BufferAttribute>();
+  const extend = (attribute: Attribute, name: string, isMorph: boolean): BufferAttribute => {
+    const given = isMorph ? undefined : skin.get(semantics[name] ?? name);
+    // The delta of a direction is not a direction itself.
+    const isDelta = isMorph && geometry.morphTargetsRelative;
+    const rule = (values: AttributeArray): Rule =>
+      isDelta ? 'mean' : ruleOf(semantics[name] ?? name, values, attribute.normalized);
+    const extended = made.get(attribute) ?? extendAttribute(attribute, { split, blends, rule, given });
+    if (!given) made.set(attribute, extended);
+    return extended;
+  };
+  const attributes = new Map<string, BufferAttribute>();
+  for (const [name, attribute] of Object.entries(geometry.attributes)) {
+    const extended = isOfInstances(attribute) ? attribute : extend(attribute as Attribute, name, false);
+    attributes.set(name, extended as BufferAttribute);
+    yield;
+  }
+  const morphs = new Map<string, BufferAttribute[]>();
+  for (const [name, list] of Object.entries(geometry.morphAttributes)) {
+    const all: BufferAttribute[] = [];
+    for (const attribute of list!) {
+      all.push(extend(attribute, name, true));
+      yield;
+    }
+    morphs.set(name, all);
+  }
+  // A copy, because three-mesh-bvh reorders the index of a geometry, while what is kept is in the order of the verdicts.
+  const indices = split.indices.slice();
+  return { attributes, morphs, indices, ...movedRanges(geometry, pieces?.origins, firstTriangle) };
+}
+
+/** Replaces what a geometry has, and has its GPU buffers made again. */
+export function replace(geometry: BufferGeometry, { attributes, morphs, indices, groups, drawRange }: Remade): void {
+  disposeOwn(geometry);
+  for (const [name, attribute] of attributes)
+    if (!isOfInstances(attribute)) geometry.setAttribute(name, own(attribute));
+  for (const [name, list] of morphs) geometry.morphAttributes[name as keyof BufferGeometry['morphAttributes']] = list;
+  geometry.setIndex(own(new BufferAttribute(indices, 1)));
+  geometry.groups = groups;
+  Object.assign(geometry.drawRange, drawRange);
+}
+
+/** Runs a generator to its end, on the spot. */
+export function atOnce<T>(steps: Generator<unknown, T>): T {
+  for (let step = steps.next(); ; step = steps.next()) if (step.done) return step.value;
+}
+
+const nameOf = (semantic: string): string => Object.keys(semantics).find((name) => semantics[name] === semantic) ?? '';
+
+const skinOf = (geometry: BufferGeometry, blends: Blends): Map<string, AttributeArray> =>
+  blendSkin((semantic) => {
+    const attribute = geometry.getAttribute(nameOf(semantic)) as Attribute | undefined;
+    return attribute && (valuesOf(attribute) as AttributeArray);
+  }, blends);
+
+interface Extension extends Pick<PreparedPart, 'split'> {
+  blends: Blends;
+  rule: (values: AttributeArray) => Rule;
+  /** The values of all vertices but the copies, if they are known. */
+  given: AttributeArray | undefined;
+}
+
+function extendAttribute(attribute: Attribute, { split, blends, rule, given }: Extension): BufferAttribute {
+  const { sources, copies } = split;
+  const { itemSize } = attribute;
+  const values = given ?? (valuesOf(attribute) as AttributeArray);
+  const whole = sources.length - copies;
+  const own = whole - blends.sources.length / 3;
+  const out = new (values.constructor as new (length: number) => AttributeArray)(itemSize * sources.length);
+  out.set(values.subarray(0, itemSize * (given ? whole : own)));
+  if (!given && whole > own) {
+    if ('isFloat16BufferAttribute' in attribute) blendHalves(out as Uint16Array, itemSize, own, blends);
+    else blendInto(out, own, itemSize, blends, rule(values));
+  }
+  for (let v = whole; v < sources.length; ++v)
+    for (let k = 0; k < itemSize; ++k) out[itemSize * v + k] = out[itemSize * sources[v]! + k]!;
+  return likeAttribute(attribute, out);
+}
+
+function blendHalves(values: Uint16Array, size: number, first: number, blends: Blends): void {
+  const floats = Float32Array.from(values, DataUtils.fromHalfFloat);
+  blendInto(floats, first, size, blends);
+  for (let i = size * first; i < values.length; ++i) values[i] = DataUtils.toHalfFloat(floats[i]!);
+}
+
+/** The groups and the draw range of a geometry whose triangles were cut into pieces. */
+function movedRanges(
+  geometry: BufferGeometry,
+  origins: Uint32Array | undefined,
+  firstTriangle: number,
+): Pick<Remade, 'groups' | 'drawRange'> {
+  const { groups, drawRange } = geometry;
+  if (!origins) return { groups, drawRange };
+  const cornerAt = (corner: number) => {
+    const piece = origins.findIndex((t) => t - firstTriangle >= corner / 3);
+    return 3 * (piece < 0 ? origins.length : piece);
+  };
+  const moved = ({ start, count }: { start: number; count: number }) => ({
+    start: cornerAt(start),
+    count: cornerAt(start + count) - cornerAt(start),
+  });
+  return {
+    groups: groups.map((group) => ({ ...group, ...moved(group) })),
+    drawRange: Number.isFinite(drawRange.count) || drawRange.start > 0 ? moved(drawRange) : drawRange,
+  };
+}
+
+/** The values of an attribute as they are stored, one element after the other. */
+function valuesOf(attribute: Attribute): TypedArray {
+  if (!('isInterleavedBufferAttribute' in attribute)) return attribute.array;
+  const { array, stride } = attribute.data;
+  const { itemSize, offset, count } = attribute;
+  const own = array.slice(0, itemSize * count);
+  for (let v = 0; v < count; ++v)
+    for (let k = 0; k < itemSize; ++k) own[itemSize * v + k] = array[stride * v + offset + k]!;
+  return own;
+}
+
+/** An attribute of the same kind with other values. */
+function likeAttribute(attribute: Attribute, values: TypedArray): BufferAttribute {
+  const { itemSize, normalized, name } = attribute;
+  if ('isInterleavedBufferAttribute' in attribute)
+    return Object.assign(new BufferAttribute(values, itemSize, normalized), { name });
+  const { usage, gpuType } = attribute;
+  // Some classes of three define how values are encoded, such as half floats, so the class must be kept.
+  const Class = attribute.constructor as typeof BufferAttribute;
+  return Object.assign(new Class(values, itemSize, normalized), { name, usage, gpuType });
+}

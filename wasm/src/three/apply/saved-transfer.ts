@@ -1,0 +1,62 @@
+import type { Mesh, TransferOptions } from '../../index.js';
+import { hash, pack, unpack } from '../../parts/pack.js';
+import type { Prepared } from '../../parts/prepare.js';
+import { notA, wrong } from '../errors.js';
+import type { Applied, Saved } from './apply-options.js';
+import type { Extracted } from './extract-scene.js';
+
+const made = new WeakMap<Applied, () => Saved>();
+
+/**
+ * Turns what was applied into bytes, to be stored. `deserialize` reads them; then the same model needs no transfer and no cage.
+ * They hold the result and how the geometries are split, about 100 bytes per vertex, more with cut borders, and no texture.
+ * @throws {CagecastError} `badArgument` if it is nothing that `applyTransfer` returned.
+ */
+export function serialize(applied: Applied): Uint8Array<ArrayBuffer> {
+  const saved = made.get(applied);
+  if (!saved) throw wrong('applied is not what applyTransfer returned', 'serialize');
+  return pack(saved());
+}
+
+/**
+ * Reads what `serialize` wrote, for the option `saved`.
+ * @throws {CagecastError} `badArgument` if the bytes are something else, damaged or of another version.
+ */
+export function deserialize(bytes: Uint8Array): Saved {
+  if (!(bytes instanceof Uint8Array)) throw notA('a Uint8Array', 'bytes', bytes, 'deserialize');
+  return unpack(bytes) as Saved;
+}
+
+/** Remembers what was applied, for `serialize`. */
+export function remember(applied: Applied, saved: () => Saved): Applied {
+  made.set(applied, saved);
+  return applied;
+}
+
+export const keyOf = (target: Extracted, cage: Mesh | undefined, options: TransferOptions, cuts: boolean): string =>
+  [targetKey(target), hashOfMesh(cage), textHash(JSON.stringify([options, cuts]))].join('-');
+
+/** The part of a key that depends on the target. */
+const targetKey = ({ mesh, parts }: Extracted): string =>
+  `${hashOfMesh(mesh)}${textHash(parts.map(({ vertexCount, triangleCount }) => `${vertexCount} ${triangleCount}`).join())}`;
+
+/** @throws {CagecastError} `badArgument` if what was saved is of another target. */
+export function checkSaved({ key, prepared }: Saved, target: Extracted): Prepared {
+  if (!key.startsWith(`${targetKey(target)}-`))
+    throw wrong('options.saved is of another target or state of it; load and place it as it was');
+  return prepared;
+}
+
+/** Two hashes of arrays, one after the other, as hexadecimal digits. */
+const digits = (arrays: readonly (ArrayBufferView | undefined)[]): string =>
+  [1, 2]
+    .map((seed) => {
+      for (const array of arrays)
+        if (array) seed = hash(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), seed);
+      return seed.toString(16).padStart(8, '0');
+    })
+    .join('');
+
+const hashOfMesh = (mesh: Mesh | undefined): string =>
+  digits([mesh?.positions, mesh?.indices, mesh?.groups, mesh?.uvs]);
+const textHash = (text: string): string => digits([new TextEncoder().encode(text)]);

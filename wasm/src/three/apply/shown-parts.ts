@@ -1,0 +1,179 @@
+import { BufferAttribute, type BufferGeometry, type Material, type Mesh } from 'three';
+import { show } from '../../core/error.js';
+import type { Mesh as Arrays, Classification } from '../../index.js';
+import { borderDistances } from '../../parts/border-distance.js';
+import { decideAgain } from '../../parts/cut-part.js';
+import type { PreparedPart } from '../../parts/prepare.js';
+import { paintedVertices, separatePaint, withCopies } from '../../parts/separate-paint.js';
+import { wrong } from '../errors.js';
+import { makeOverlay, overlayMaterial, showTriangles } from '../materials/overlay-mesh.js';
+import { paintAttribute } from '../materials/paint-shader.js';
+import { canBePainted, originals, type Painting, paintOn } from '../materials/painted-materials.js';
+import { type Part, placePositions } from './extract-scene.js';
+import { own } from './own-attributes.js';
+import { atOnce, remake, replace } from './remake.js';
+
+/** The attribute with the `Zone` of each vertex. GLTFLoader gives `_NCZ` the same name. */
+export const zoneAttribute = '_ncz';
+
+/** A part of the target, and what is shown on it. */
+export interface ShownPart extends PreparedPart {
+  part: Part;
+  /** 1 per triangle: whether it may be painted now. */
+  cosmetic: Uint8Array;
+  overlay?: Mesh | undefined;
+}
+
+/** The geometry of a part as it is now: three-vrm, for example, replaces those whose morph targets it combines. */
+function geometryOf({ part, split }: ShownPart): BufferGeometry {
+  const geometry = part.mesh?.geometry ?? part.geometry;
+  const [found, count] = [geometry.getAttribute('position').count, split.sources.length];
+  if (found !== count)
+    throw wrong(`the geometry of ${show(part.name)} has ${found} vertices, it had ${count}; transfer again`);
+  return geometry;
+}
+
+/** Writes the zones of a classification, and decides which triangles may be painted. */
+export function writeZones(
+  shown: ShownPart,
+  now: Pick<Classification, 'zones' | 'cosmeticTriangles'>,
+  isOther: Uint8Array,
+  indices: Arrays['indices'],
+): void {
+  const { part, pieces, split } = shown;
+  const { firstVertex, vertexCount, firstTriangle, triangleCount } = part;
+  const { zones, cosmeticTriangles } = pieces
+    ? decideAgain(pieces, part, indices, isOther, now)
+    : {
+        zones: now.zones.subarray(firstVertex, firstVertex + vertexCount),
+        cosmeticTriangles: now.cosmeticTriangles.slice(firstTriangle, firstTriangle + triangleCount),
+      };
+  const attribute = geometryOf(shown).getAttribute(zoneAttribute) as BufferAttribute;
+  split.sources.forEach((source, v) => (attribute.array[v] = zones[source]!));
+  attribute.needsUpdate = true;
+  shown.cosmetic = cosmeticTriangles;
+}
+
+/** Writes what the paint's shader reads. @param reach  The width of the soft border, as a share of `diagonal`. */
+export function writePaint(parts: readonly ShownPart[], reach: number, diagonal: number): void {
+  for (const shown of parts) splitAtPaint(shown);
+  const distances = reach > 0 ? distancesOf(parts, reach * diagonal) : undefined;
+  parts.forEach((shown, p) => {
+    const { split, cosmetic } = shown;
+    const geometry = geometryOf(shown);
+    const count = split.sources.length;
+    const isPainted = paintedVertices(split.indices, cosmetic, count);
+    const known = geometry.getAttribute(paintAttribute) as BufferAttribute | undefined;
+    // One that came with the model's file may be laid out in another way.
+    const isOwn = known?.isBufferAttribute && known.array.length === 4 * count && known.array instanceof Float32Array;
+    const attribute = isOwn ? known : own(new BufferAttribute(new Float32Array(4 * count), 4));
+    const values = attribute.array;
+    for (let v = 0; v < count; ++v) {
+      values[4 * v] = split.uvs[2 * v]!;
+      values[4 * v + 1] = split.uvs[2 * v + 1]!;
+      values[4 * v + 2] = 1 - isPainted[v]!;
+      values[4 * v + 3] = 2 + (distances ? distances[p]![v]! / diagonal : 0);
+    }
+    attribute.needsUpdate = true;
+    if (attribute !== known) geometry.setAttribute(paintAttribute, attribute);
+  });
+}
+
+/** Splits vertices of a part where another classification needs it. */
+function splitAtPaint(shown: ShownPart): void {
+  const { split, cosmetic } = shown;
+  const count = split.sources.length;
+  const copies = separatePaint(split.indices, cosmetic, count);
+  if (!copies) return;
+  const geometry = geometryOf(shown);
+  const known = { ...split, sources: Uint32Array.from({ length: count }, (_, v) => v), copies: 0 };
+  const remade = atOnce(remake(geometry, { pieces: undefined, split: withCopies(known, copies) }, 0));
+  if (remade) replace(geometry, remade);
+  shown.split = withCopies(split, copies);
+}
+
+function distancesOf(parts: readonly ShownPart[], reach: number): Float32Array[] {
+  const firsts: number[] = [];
+  let vertices = 0;
+  let corners = 0;
+  for (const { split } of parts) {
+    firsts.push(vertices);
+    vertices += split.sources.length;
+    corners += split.indices.length;
+  }
+  const positions = new Float32Array(3 * vertices);
+  const indices = new Uint32Array(corners);
+  const cosmetic = new Uint8Array(corners / 3);
+  let corner = 0;
+  parts.forEach((shown, p) => {
+    const { part, split } = shown;
+    const range = { firstVertex: firsts[p]!, vertexCount: split.sources.length };
+    placePositions({ geometry: geometryOf(shown), matrix: part.matrix, ...range }, positions);
+    cosmetic.set(shown.cosmetic, corner / 3);
+    for (const vertex of split.indices) indices[corner++] = firsts[p]! + vertex;
+  });
+  const all = borderDistances(positions, indices, cosmetic, reach);
+  return parts.map(({ split }, p) => all.subarray(firsts[p]!, firsts[p]! + split.sources.length));
+}
+
+/** Shows the given material on the painted triangles of a part. */
+export function showMaterial(shown: ShownPart, material: Material): void {
+  const { mesh } = shown.part;
+  if (!mesh) return;
+  shown.overlay ??= makeOverlay(shown.part, mesh, material);
+  showTriangles(shown.overlay, mesh, shown.split.indices, shown.cosmetic);
+}
+
+/**
+ * Paints the materials of a part, and lays an overlay over those that cannot be painted.
+ * @param copies  Copies that were made of materials, by the material; more may be added.
+ * @param paints  Whether materials are painted. Those that are without a texture show it as soon as there is one.
+ * @returns the materials that are painted, which are none if no triangle is.
+ */
+export function showPaint(
+  shown: ShownPart,
+  painting: Painting,
+  copies: Map<Material, Material>,
+  paints: boolean,
+): Material[] {
+  const { mesh } = shown.part;
+  if (!mesh) return [];
+  const hasPaint = paints && shown.cosmetic.includes(1);
+  // Three.js draws nothing where a list of materials has a gap.
+  const materials: (Material | undefined)[] = [mesh.material].flat();
+  const isBlind = materials.map((material) => material !== undefined && !canBePainted(material));
+  const needsOverlay = hasPaint && painting.texture && isBlind.includes(true);
+  if (needsOverlay) {
+    shown.overlay ??= makeOverlay(shown.part, mesh, overlayMaterial(materials[isBlind.indexOf(true)]!));
+    // Each time, for the texture may be another.
+    shown.overlay.material = paintOn(shown.overlay.material as Material, painting, true);
+  }
+  if (shown.overlay) {
+    const triangles = needsOverlay ? blindTriangles(shown, isBlind) : new Uint8Array(0);
+    showTriangles(shown.overlay, mesh, shown.split.indices, triangles);
+  }
+  if (!hasPaint) return [];
+  const painted = materials.map((material, m) => {
+    if (!material || isBlind[m]) return material;
+    const one = paintOn(copies.get(material) ?? material, painting);
+    const original = originals.get(one);
+    if (original) copies.set(original, one);
+    return one;
+  });
+  if (Array.isArray(mesh.material))
+    mesh.material = painted.every((one, m) => one === materials[m]) ? mesh.material : (painted as Material[]);
+  else mesh.material = painted[0]!;
+  return painted.filter((one, m): one is Material => one !== undefined && !isBlind[m]);
+}
+
+/** Which of the painted triangles have a material that cannot be painted. */
+function blindTriangles({ part: { mesh }, cosmetic }: ShownPart, isBlind: readonly boolean[]): Uint8Array {
+  if (!Array.isArray(mesh!.material)) return cosmetic;
+  const out = new Uint8Array(cosmetic.length);
+  for (const { start, count, materialIndex = 0 } of mesh!.geometry.groups) {
+    if (!isBlind[materialIndex]) continue;
+    const [from, to] = [start / 3, Math.min((start + count) / 3, cosmetic.length)];
+    for (let t = from; t < to; ++t) out[t] = cosmetic[t]!;
+  }
+  return out;
+}

@@ -1,0 +1,174 @@
+import { Material, type ShaderMaterial, type Mesh as ThreeMesh } from 'three';
+import {
+  addPaint,
+  type Paint,
+  type PaintUniforms,
+  paintUniforms,
+  refreshMatrix,
+  setUniforms,
+  takesPaint,
+} from './paint-shader.js';
+
+/** What is painted, and the meshes that show it. */
+export interface Painting extends Paint {
+  /** Greater than those of all paintings before it, which it replaces where it is shown. */
+  number: number;
+  meshes: ReadonlySet<ThreeMesh>;
+  /** What its materials call for each mesh. One function for all of them, which engines call faster than one for each. */
+  refresh: Material['onBeforeRender'];
+}
+
+let paintingCount = 0;
+
+/** In the keys of programs: those that another copy of this module had compiled refer to its uniforms. */
+const kCopy = `cagecast ${Math.random()}`;
+
+/** Makes a painting that is brought up to date once in each frame. */
+export function makePainting(paint: Omit<Painting, 'refresh' | 'number'>): Painting {
+  let [last, lastFrame]: [unknown, number] = [undefined, -1];
+  const painting: Painting = {
+    ...paint,
+    number: ++paintingCount,
+    refresh(renderer) {
+      const { frame } = renderer.info.render;
+      if (frame === lastFrame && renderer === last) return;
+      last = renderer;
+      lastFrame = frame;
+      refreshMatrix(painting);
+    },
+  };
+  return painting;
+}
+
+/**
+ * What was changed about a material. Its states:
+ *
+ * - Never painted: it has no record.
+ * - Painted: the record has a painting, and the material has the hooks that it was given.
+ * - Wrapped: others have replaced these hooks, and call them. To paint the material again, they are wrapped once more.
+ * - Unpainted: the record has no painting. The material has its own hooks again, or those of others that call the given ones, which
+ *   add nothing now. The record is kept for ever: programs that were compiled refer to its uniforms.
+ */
+interface Patch {
+  painting: Painting | undefined;
+  uniforms: PaintUniforms;
+  /** The hooks that the material has of its own. */
+  own: Partial<Hooks>;
+  /** Those that it was given. Others may have wrapped them since. */
+  given: Partial<Hooks>;
+  /** Whether neither the material nor its class does anything before it is rendered. */
+  isQuiet: boolean;
+}
+
+const kHooks = ['onBeforeCompile', 'customProgramCacheKey', 'onBeforeRender'] as const;
+type Hooks = Pick<Material, (typeof kHooks)[number]>;
+
+const patches = new WeakMap<Material, Patch>();
+
+const kBuiltIn = ['Basic', 'Lambert', 'Phong', 'Standard', 'Toon', 'Matcap'].map((kind) => `isMesh${kind}Material`);
+
+/**
+ * Whether paint can be mixed into a material's colour: the lit and unlit materials of three.js, and other `ShaderMaterial`s whose
+ * shader is written as theirs are, or asks for `CAGECAST_PAINT`.
+ */
+export function canBePainted(material: Material): boolean {
+  const kinds = material as Material & Record<string, unknown>;
+  if (kinds['isNodeMaterial'] === true || kinds['isRawShaderMaterial'] === true) return false;
+  if (kinds['isShaderMaterial'] === true) return takesPaint((material as ShaderMaterial).fragmentShader);
+  return kBuiltIn.some((kind) => kinds[kind] === true);
+}
+
+/** What a material was copied from, to show another painting. */
+export const originals: WeakMap<Material, Material> = new WeakMap();
+
+/** Whether a material shows a painting. */
+export const isPainted = (material: Material): boolean => patches.get(material)?.painting !== undefined;
+
+/**
+ * Makes a material show a painting. A material that shows another painting on other meshes is left to them.
+ * @returns the material, or a copy of it that shows the painting.
+ */
+export function paintOn(material: Material, painting: Painting, alone = false): Material {
+  const shown = patches.get(material)?.painting;
+  if (shown && shown !== painting && uses(shown.meshes, material).some((mesh) => !painting.meshes.has(mesh))) {
+    const copy = material.clone();
+    originals.set(copy, material);
+    const { own } = patches.get(material)!;
+    // A class that sets these has set them for the copy.
+    if (own.onBeforeCompile && !Object.hasOwn(copy, 'onBeforeCompile')) Object.assign(copy, own);
+    patch(copy, painting, alone);
+    return copy;
+  }
+  patch(material, painting, alone);
+  return material;
+}
+
+const uses = (meshes: ReadonlySet<ThreeMesh>, material: Material): ThreeMesh[] =>
+  [...meshes].filter((mesh) => [mesh.material].flat().includes(material));
+
+function patch(material: Material, painting: Painting, alone: boolean): void {
+  const known = patches.get(material);
+  const record: Patch = known ?? {
+    painting: undefined,
+    uniforms: paintUniforms(),
+    own: {},
+    given: {},
+    isQuiet: true,
+  };
+  patches.set(material, record);
+  // Somebody has replaced or wrapped the hook that was given, or none was given yet.
+  if (material.onBeforeCompile !== record.given.onBeforeCompile) unpaint(material, record.painting);
+  const isPatched = record.painting;
+  record.painting = painting;
+  setUniforms(record.uniforms, painting);
+  if (isPatched) {
+    if (record.isQuiet && material.onBeforeRender === record.given.onBeforeRender)
+      material.onBeforeRender = record.given.onBeforeRender = painting.refresh;
+    return;
+  }
+  // A program that was compiled when it was painted before has the same key, but its uniforms may be gone.
+  if (known) material.dispose();
+
+  const { onBeforeCompile, customProgramCacheKey, onBeforeRender } = material;
+  record.own = Object.fromEntries(
+    kHooks.flatMap((name) => (Object.hasOwn(material, name) ? [[name, material[name]]] : [])),
+  );
+  record.isQuiet = onBeforeRender === Material.prototype.onBeforeRender;
+  // Where others have wrapped them, these are called when the material is not painted any more, too.
+  record.given = {
+    customProgramCacheKey() {
+      const key = customProgramCacheKey.call(material);
+      // By default the key is the text of `onBeforeCompile`, which is not the material's own by now.
+      return record.painting ? `${key}|${onBeforeCompile}|${kCopy}${alone ? ' alone' : ''}` : key;
+    },
+    onBeforeCompile: (shader, renderer) => {
+      onBeforeCompile.call(material, shader, renderer);
+      if (!record.painting) return;
+      // The uniforms of a `ShaderMaterial` are its owner's, who may have given them to several.
+      if ('isShaderMaterial' in material) shader.uniforms = Object.create(shader.uniforms);
+      addPaint(shader, record.uniforms, alone);
+    },
+    onBeforeRender: record.isQuiet
+      ? painting.refresh
+      : (...args) => {
+          onBeforeRender.apply(material, args);
+          record.painting?.refresh.apply(material, args);
+        },
+  };
+  Object.assign(material, record.given);
+  material.needsUpdate = true;
+}
+
+/** Makes a material what it was, unless it shows another painting by now. Hooks that others have wrapped since stay theirs. */
+export function unpaint(material: Material, painting: Painting | undefined): void {
+  const record = patches.get(material);
+  if (!record || record.painting !== painting) return;
+  record.painting = undefined;
+  setUniforms(record.uniforms, undefined);
+  for (const name of kHooks) {
+    if (material[name] !== record.given[name]) continue;
+    if (record.own[name]) Object.assign(material, { [name]: record.own[name] });
+    else delete (material as Partial<Material>)[name];
+  }
+  material.needsUpdate = true;
+}
