@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include "linear/dense.hpp"
 
 namespace cagecast::cages {
 
@@ -69,13 +69,15 @@ Rim sampleRim(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, 
   }
   const auto count = static_cast<double>(rim.points.size());
   for (const Vec3& p : rim.points) rim.centre = rim.centre + 1 / count * p;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  SquareMatrix<3> spread{};
   for (const Vec3& p : rim.points) {
-    const Eigen::Vector3d d(p.x - rim.centre.x, p.y - rim.centre.y, p.z - rim.centre.z);
-    spread += d * d.transpose();
+    const Vec3 d = p - rim.centre;
+    const double apart[] = {d.x, d.y, d.z};
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) spread[j][k] += apart[j] * apart[k];
   }
-  const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
-  rim.normal = {normal.x(), normal.y(), normal.z()};
+  const auto [x, y, z] = eigenpairsOf(spread)[0].vector;
+  rim.normal = {x, y, z};
   if (dot(rim.normal, inward) < 0) rim.normal = -1.0 * rim.normal;
   double turn = 0;
   for (std::size_t i = 0; i < rim.points.size(); ++i)

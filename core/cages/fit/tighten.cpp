@@ -3,16 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/solver.hpp"
 #include "mesh/surface.hpp"
+#include "mesh/thin_plate.hpp"
 
 namespace cagecast::cages {
 
 namespace {
 
 constexpr int kTightenRounds = 9;
+/// Resistance to motion as such.
+constexpr double kMinHold = 1e-6;
 /// Cosine of the angle between cage and hull beyond which a closest point is not the right one: 60 degrees.
 constexpr double kMinAgreement = 0.5;
+
+/// The square of the mean of the neighbours minus the vertex.
+std::vector<SparseEntry> bendingOf(const Neighbours& neighbours) {
+  std::vector<SparseEntry> laplacian;
+  for (std::uint32_t v = 0; v < neighbours.size(); ++v) {
+    laplacian.push_back({v, v, -1.0});
+    const auto around = neighbours[v];
+    for (const std::uint32_t u : around) laplacian.push_back({v, u, 1.0 / static_cast<double>(around.size())});
+  }
+  return squared(collapsed(std::move(laplacian)), std::vector<double>(neighbours.size(), 1.0));
+}
 
 struct Sample {
   Triangle3 corners;
@@ -47,7 +60,7 @@ std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& res
   const Surface surface(hull);
   const std::vector<Vec3> hullNormals = vertexNormals(hull);
   const std::vector<Sample> samples = samplesOf(cage.mesh);
-  Solver solver(cage);
+  ThinPlate plate(cage.mesh, bendingOf(cage.neighbours));
   TriangleMesh current{rest, cage.mesh.triangles};
   std::vector<Vec3> points(samples.size());
   for (int round = 0; round < kTightenRounds; ++round) {
@@ -69,7 +82,8 @@ std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& res
       planes.push_back({samples[i].corners, samples[i].weights, closest[i].position, 1 / size * normal, 1});
     }
     const double bending = options.stiffest * std::pow(options.softest / options.stiffest, share);
-    current.positions = solver.solve(rest, planes, {bending, options.sliding});
+    current.positions = plate.solve(rest, planes, {bending, options.sliding, kMinHold});
+    if (current.positions.empty()) current.positions = rest;
   }
   return current.positions;
 }

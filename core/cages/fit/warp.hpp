@@ -21,7 +21,8 @@ struct Similarity {
   }
 };
 
-/// The similarity that carries `from` closest to `to` in the mean square (Umeyama 1991); never a mirror image.
+/// The similarity that carries `from` closest to `to` in the mean square by unit quaternions (Horn 1987);
+/// never a mirror image.
 /// @param weights  One per point, or none.
 Similarity fitSimilarity(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> weights = {});
 

@@ -1,11 +1,10 @@
 #include "landmarks/eyes.hpp"
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "linear/dense.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/surface.hpp"
 
@@ -46,17 +45,17 @@ Sphere ballOf(const Shape& shape) {
 
 /// The heading that horizontal positions spread along most.
 Vec3 mainHeading(const std::vector<Vec3>& points) {
-  Vec3 mean{0, 0, 0};
-  for (const Vec3& p : points) mean = mean + p;
-  mean = 1 / static_cast<double>(points.size()) * mean;
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  const Vec3 mean = meanOf(points);
+  SquareMatrix<2> spread{};
   for (const Vec3& p : points) {
-    const Eigen::Vector2d d(p.x - mean.x, p.z - mean.z);
-    spread += d * d.transpose();
+    const Vec3 d = p - mean;
+    spread[0][0] += d.x * d.x;
+    spread[0][1] += d.x * d.z;
+    spread[1][1] += d.z * d.z;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
-  const Eigen::Vector2d main = solver.eigenvectors().col(1);
-  return {main.x(), 0, main.y()};
+  spread[1][0] = spread[0][1];
+  const auto [x, z] = eigenpairsOf(spread)[1].vector;
+  return {x, 0, z};
 }
 
 constexpr Vec3 kUp{0, 1, 0};
@@ -150,20 +149,19 @@ Sphere fitSphere(const std::vector<Vec3>& points) {
   Sphere out;
   out.residual = std::numeric_limits<double>::infinity();
   if (points.size() < 6) return out;
-  Vec3 mean{0, 0, 0};
-  for (const Vec3& p : points) mean = mean + p;
-  mean = 1 / static_cast<double>(points.size()) * mean;
-  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  const Vec3 mean = meanOf(points);
+  std::vector<double> matrix(16), right(4);
   for (const Vec3& p : points) {
     const Vec3 d = p - mean;
-    const Eigen::Vector4d row(2 * d.x, 2 * d.y, 2 * d.z, 1);
-    normal += row * row.transpose();
-    right += dot(d, d) * row;
+    const double row[] = {2 * d.x, 2 * d.y, 2 * d.z, 1};
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t k = 0; k < 4; ++k) matrix[4 * i + k] += row[i] * row[k];
+      right[i] += dot(d, d) * row[i];
+    }
   }
-  const Eigen::Vector4d solution = normal.ldlt().solve(right);
-  const Vec3 centre{solution.x(), solution.y(), solution.z()};
-  const double squared = solution.w() + dot(centre, centre);
+  const std::vector<double> solution = solveDense(std::move(matrix), std::move(right), 4);
+  const Vec3 centre{solution[0], solution[1], solution[2]};
+  const double squared = solution[3] + dot(centre, centre);
   if (!(squared > 0)) return out;
   out.centre = mean + centre;
   out.radius = std::sqrt(squared);

@@ -1,7 +1,5 @@
 #include "landmarks/frame.hpp"
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -102,7 +102,19 @@ std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32
   return pieces;
 }
 
+double areaOf(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const Triangle3& t : mesh.triangles) area += areaOf(mesh, t);
+  return area;
+}
+
 double diagonalOf(const TriangleMesh& mesh) { return boundsOf(mesh).diagonal(); }
+
+Vec3 meanOf(std::span<const Vec3> points) {
+  Vec3 sum{0, 0, 0};
+  for (const Vec3& p : points) sum = sum + p;
+  return 1 / static_cast<double>(points.size()) * sum;
+}
 
 Vec3 middleOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& vertices) {
   Vec3 middle{0, 0, 0};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "cagecast/mesh.hpp"
@@ -57,10 +58,17 @@ inline Vec3 areaNormal(const TriangleMesh& mesh, const Triangle3& t) {
   return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
 }
 
+inline double areaOf(const TriangleMesh& mesh, const Triangle3& t) { return 0.5 * length(areaNormal(mesh, t)); }
+
+/// The area of all triangles.
+double areaOf(const TriangleMesh& mesh);
+
 inline Vec3 centroid(const TriangleMesh& mesh, const Triangle3& t) {
   return 1.0 / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]);
 }
 
+/// The mean of points.
+Vec3 meanOf(std::span<const Vec3> points);
 /// The mean of the positions of some vertices, such as those of a loop.
 Vec3 middleOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& vertices);
 
