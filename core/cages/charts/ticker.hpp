@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "cagecast/cages.hpp"
+#include "mesh/progress.hpp"
 
 namespace cagecast::cages {
 
@@ -21,7 +21,7 @@ class Ticker {
     work_ += triangles;
     if (work_ < kWorkPerReport || cancelled_) return !cancelled_;
     work_ = 0;
-    cancelled_ = progress_ && !progress_(static_cast<float>(share_), "unwrap");
+    cancelled_ = !report(progress_, share_, "unwrap");
     return !cancelled_;
   }
   [[nodiscard]] bool cancelled() const { return cancelled_; }

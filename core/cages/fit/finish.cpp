@@ -76,7 +76,7 @@ void undoFolds(const TemplateCage& cage, const std::vector<Vec3>& old, const std
     for (std::size_t t = 0; t < folded.size(); ++t)
       if (folded[t] && !foldedBefore[t])
         for (const std::uint32_t v : cage.mesh.triangles[t]) stays[v] = true;
-    if (ring > 0) grow(cage, stays);
+    if (ring > 0) grow(cage.neighbours, stays);
     bool any = false;
     for (std::size_t v = 0; v < positions.size(); ++v) {
       if (!stays[v] || !(length(positions[v] - old[v]) > 0)) continue;

@@ -125,9 +125,6 @@ class Fit {
   Outcome run(FittedCage& out);
 
  private:
-  [[nodiscard]] bool tell(double share, const char* stage) const {
-    return !progress_ || progress_(static_cast<float>(share), stage);
-  }
   [[nodiscard]] Outcome pair(const TemplateCage& cage, FittedCage& out);
   void align();
   void readTarget();
@@ -237,16 +234,16 @@ bool Fit::draw(const TemplateCage& cage, const TriangleMesh& hull, const FitSett
   for (int pass = 0; pass < settings.passes; ++pass) {
     if (pass > 0) relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
     positions = tighten(cage, positions, hull, settings.tighten, [&](double share) {
-      return tell(kTightenStart + (pass + share) / settings.passes * (kTightenEnd - kTightenStart), "fit");
+      return report(progress_, kTightenStart + (pass + share) / settings.passes * (kTightenEnd - kTightenStart), "fit");
     });
     if (positions.empty()) return false;
   }
   const std::vector<Vec3> tracks = fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
-  if (!tell(kTightenEnd, "fit")) return false;
+  if (!report(progress_, kTightenEnd, "fit")) return false;
   relax(cage, tracks, positions);
   return pushOut(
       cage, {skin_, hull}, tracks,
-      [&](double share) { return tell(kTightenEnd + share * (1 - kTightenEnd), "push out"); }, positions);
+      [&](double share) { return report(progress_, kTightenEnd + share * (1 - kTightenEnd), "push out"); }, positions);
 }
 
 /// Writes the cage in the target's space.
@@ -275,7 +272,7 @@ Outcome Fit::run(FittedCage& out) {
     return {Problem::badLandmarks, "landmarks: only " + std::to_string(pairs_.from.size()) +
                                        " joints are known, too few for a skeleton of " + std::to_string(kMinBones) +
                                        " bones; give more of them, or landmarks on the skin"};
-  if (!tell(kLandmarksEnd, "hull")) return cancelled();
+  if (!report(progress_, kLandmarksEnd, "hull")) return cancelled();
   TriangleMesh hull;
   const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels, middleOf(pairs_.to)};
   if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return cancelled();
@@ -286,7 +283,7 @@ Outcome Fit::run(FittedCage& out) {
     return {Problem::badModel,
             "model: the template does not fit it; if there are several figures in it, exclude all but one of them"};
   write(cage, positions, out);
-  return tell(1, "done") ? Outcome{} : cancelled();
+  return report(progress_, 1, "done") ? Outcome{} : cancelled();
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ void restoreShape(const TemplateCage& cage, const std::vector<bool>& moves, cons
                   std::vector<Vec3>& positions) {
   const std::vector<Vec3>& own = cage.mesh.positions;
   std::vector<bool> near = moves;
-  grow(cage, near);
+  grow(cage.neighbours, near);
   std::vector<Similarity> maps(positions.size());
   for (std::size_t v = 0; v < positions.size(); ++v) {
     if (!near[v]) continue;
@@ -79,9 +79,9 @@ class Surroundings {
       : mesh_{positions, {}}, vertex_(vertex) {
     std::vector<bool> ring(positions.size());
     ring[vertex] = true;
-    grow(cage, ring);
+    grow(cage.neighbours, ring);
     std::vector<bool> twoRings = ring;
-    grow(cage, twoRings);
+    grow(cage.neighbours, twoRings);
     const auto touches = [](const Triangle3& t, const std::vector<bool>& vertices) {
       return vertices[t[0]] || vertices[t[1]] || vertices[t[2]];
     };
@@ -134,13 +134,6 @@ void searchAround(const TemplateCage& cage, const std::vector<bool>& foldedBefor
 
 }  // namespace
 
-void grow(const TemplateCage& cage, std::vector<bool>& vertices) {
-  const std::vector<bool> old = vertices;
-  for (std::size_t v = 0; v < old.size(); ++v)
-    if (old[v])
-      for (const std::uint32_t u : cage.neighbours[v]) vertices[u] = true;
-}
-
 std::vector<bool> foldedTriangles(const TriangleMesh& mesh) {
   const std::size_t count = mesh.triangles.size();
   std::vector<Vec3> normals(count), around(mesh.positions.size(), Vec3{0, 0, 0});
@@ -185,7 +178,7 @@ void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vecto
     const int stage = round / kRoundsPerStage;
     if (!findCorners(stage == 0)) return;
     std::vector<bool> moves = corners;
-    for (int ring = 0; ring < kRings[stage]; ++ring) grow(cage, moves);
+    grow(cage.neighbours, moves, kRings[stage]);
     // Off the track only where nothing else has helped.
     std::vector<Vec3> current = tracks;
     for (std::size_t v = 0; v < tracks.size(); ++v)

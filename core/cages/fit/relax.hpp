@@ -14,7 +14,4 @@ void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vecto
 /// Whether each triangle faces away from those around it, or turns by more than 120 degrees at an edge.
 std::vector<bool> foldedTriangles(const TriangleMesh& mesh);
 
-/// Adds the neighbours of some vertices to them.
-void grow(const TemplateCage& cage, std::vector<bool>& vertices);
-
 }  // namespace cagecast::cages

@@ -175,11 +175,7 @@ std::optional<Eyes> findNamedEyes(const Figure& figure) {
   if (!figure.has(Role::eye)) return std::nullopt;
   const TriangleMesh all = figure.only(Role::eye);
   const Vec3 heading = mainHeading(all.positions);
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Vec3& p : all.positions) {
-    low = std::min(low, dot(heading, p));
-    high = std::max(high, dot(heading, p));
-  }
+  const auto [low, high] = rangeOf(all.positions, heading);
   // Whole components go to one side: a bulging iris may be a component of its own.
   std::uint32_t count = 0;
   const std::vector<std::uint32_t> component = connectedPieces(all, count);

@@ -55,7 +55,7 @@ std::vector<std::string> faceLandmarks() {
 Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmarks& out) {
   out = {};
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
-  const auto goOn = [&](float share) { return !progress || progress(share, "landmarks"); };
+  const auto goOn = [&](float share) { return report(progress, share, "landmarks"); };
   if (!goOn(0)) return cancelled();
   const Figure figure = readFigure(model);
   Rig rig = recogniseRig(model.joints);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "mesh/bounds.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -133,11 +134,7 @@ class Mirror {
 MirrorPlane planeOf(const TriangleMesh& mesh, double angle) {
   MirrorPlane plane;
   plane.left = {std::cos(angle), 0, std::sin(angle)};
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Vec3& p : mesh.positions) {
-    low = std::min(low, dot(plane.left, p));
-    high = std::max(high, dot(plane.left, p));
-  }
+  const auto [low, high] = rangeOf(mesh.positions, plane.left);
   plane.offset = 0.5 * (low + high);
   return plane;
 }

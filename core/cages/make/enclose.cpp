@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "make/open_border.hpp"
+#include "mesh/progress.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -22,7 +23,7 @@ bool enclose(const std::vector<OuterPoint>& points, double limit, const Progress
   std::vector<double> left(mesh.positions.size(), limit);
   const OpenBorder border(mesh);
   for (int round = 0; round < kEncloseRounds; ++round) {
-    if (progress && !progress(static_cast<float>(round) / kEncloseRounds, "enclose")) return false;
+    if (!report(progress, round / static_cast<double>(kEncloseRounds), "enclose")) return false;
     const std::vector<Vec3> normals = vertexNormals(mesh);
     std::vector<double> push(mesh.positions.size(), 0);
     const std::vector<SurfacePoint> closest = Surface(mesh).closest(positions);
@@ -47,7 +48,7 @@ bool enclose(const std::vector<OuterPoint>& points, double limit, const Progress
       mesh.positions[v] = mesh.positions[v] + by * normals[v];
     }
   }
-  return !progress || progress(1, "enclose");
+  return report(progress, 1, "enclose");
 }
 
 }  // namespace cagecast::cages

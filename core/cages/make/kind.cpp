@@ -20,13 +20,9 @@ bool hasParts(const Model& model, std::initializer_list<std::string_view> patter
 
 /// Whether a leg's joint is inside the box: the legs of a rig may belong to a body that is not there.
 bool hasLegs(const Model& model, const Bounds& box) {
-  const Vec3 margin = 0.05 * box.size();
-  const Vec3 low = box.low - margin, high = box.high + margin;
+  const Bounds around{box.low - 0.05 * box.size(), box.high + 0.05 * box.size()};
   return std::any_of(model.joints.begin(), model.joints.end(), [&](const Joint& joint) {
-    const Vec3 p = Vec3::from(joint.position.data());
-    const bool isInside =
-        p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
-    if (!isInside) return false;
+    if (around.distance(Vec3::from(joint.position.data())) > 0) return false;
     for (const std::string_view pattern : {"*leg*", "*thigh*", "*foot*", "*calf*", "*shin*"})
       if (matchesName(joint.name, pattern)) return true;
     return false;

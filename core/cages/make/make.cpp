@@ -112,9 +112,9 @@ bool hasMarks(const std::vector<bool>& isMarked) {
 bool markLooseEyes(const Model& model, const Progress& progress, std::vector<bool>& isMarked) {
   const Figure figure = readFigure(model);
   if (figure.componentCount < 3) return true;  // Two eyes, and what they are eyes of.
-  if (!progress(0, "landmarks")) return false;
+  if (!report(progress, 0, "landmarks")) return false;
   for (const MirrorPlane& plane : findMirrorPlanes(figure.mesh)) {
-    if (!progress(0, "landmarks")) return false;
+    if (!report(progress, 0, "landmarks")) return false;
     const std::optional<Eyes> eyes = findLooseEyes(figure, plane);
     if (!eyes || eyes->triangles.size() != isMarked.size()) continue;
     isMarked = eyes->triangles;
@@ -204,7 +204,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   float reached = 0;  // A repeated stage does not go back.
   const Progress rising = [&progress, &reached](float share, const char* stage) {
     reached = std::max(reached, share);
-    return !progress || progress(reached, stage);
+    return report(progress, reached, stage);
   };
   const auto part = [&rising](float from, float to) { return partOf(rising, from, to); };
   std::vector<std::uint32_t> triangleOf;

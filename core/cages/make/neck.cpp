@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "hull/hull.hpp"
+#include "mesh/bounds.hpp"
 
 namespace cagecast::cages {
 
@@ -26,7 +26,7 @@ Vec3 normalOf(const TriangleMesh& head, const std::vector<std::uint32_t>& loop) 
   const Vec3& first = head.positions[loop[0]];
   for (std::size_t i = 0; i < loop.size(); ++i)
     area = area + cross(head.positions[loop[(i + 1) % loop.size()]] - first, head.positions[loop[i]] - first);
-  return length(area) > 0 ? 1 / length(area) * area : Vec3{0, -1, 0};
+  return length(area) > 0 ? unit(area) : Vec3{0, -1, 0};
 }
 
 /// The plane of an opening.
@@ -68,12 +68,9 @@ class Pieces {
 /// Whether a head ends at an opening.
 bool isNeck(const TriangleMesh& head, const Pieces& pieces, const Opening& opening) {
   const auto extent = [&](const std::vector<std::uint32_t>& vertices, const Vec3& along) {
-    double low = INFINITY, high = -INFINITY;
-    for (const std::uint32_t v : vertices) {
-      low = std::min(low, dot(head.positions[v], along));
-      high = std::max(high, dot(head.positions[v], along));
-    }
-    return std::pair{low, high};
+    Range out;
+    for (const std::uint32_t v : vertices) out.add(dot(head.positions[v], along));
+    return out;
   };
   // A model may have thousands of sheets: their own vertices tell them, without a look at the whole head.
   const Vec3 normal = normalOf(head, opening.loop);
@@ -112,12 +109,10 @@ Neck extend(const Opening& opening, double by, TriangleMesh& head) {
 }  // namespace
 
 std::vector<Neck> extendNecks(double by, TriangleMesh& head) {
-  std::vector<Opening> openings;
-  closeOpenings(head, kMinWidth * diagonalOf(head), &openings);
   std::vector<Neck> necks;
   const TriangleMesh own = head;
   const Pieces pieces(own);
-  for (const Opening& opening : openings)
+  for (const Opening& opening : findOpenings(own, kMinWidth * diagonalOf(own)))
     if (isNeck(own, pieces, opening)) necks.push_back(extend(opening, by, head));
   return necks;
 }

@@ -11,6 +11,7 @@
 
 #include "mesh/bounds.hpp"
 #include "mesh/disjoint_sets.hpp"
+#include "mesh/progress.hpp"
 
 namespace cagecast::cages {
 
@@ -195,10 +196,10 @@ bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Pr
   for (const Triangle3& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
 
   // In steps, to be able to stop in between. The last one is left enough to choose from.
-  const auto all = static_cast<float>(indices.size());
+  const std::size_t all = indices.size();
   const std::size_t lastStep = std::max(kLastStepIndices, std::size_t{6} * triangles);
   while (indices.size() > lastStep) {
-    if (progress && !progress(1 - static_cast<float>(indices.size()) / all, "simplify")) return false;
+    if (!report(progress, all - indices.size(), all, "simplify")) return false;
     std::vector<unsigned> fewer = arrays.simplified(indices, std::max(indices.size() / 9 * 3, lastStep));
     const bool isStuck = fewer.size() == indices.size();
     indices.swap(fewer);
@@ -213,7 +214,7 @@ bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Pr
   out = subset(simple, std::vector<bool>(simple.triangles.size(), true));
   removeFins(out);
   separateJoinedEdges(out);
-  return !progress || progress(1, "simplify");
+  return report(progress, 1, "simplify");
 }
 
 }  // namespace cagecast::cages

@@ -28,6 +28,22 @@ struct Bounds {
   }
 };
 
+/// How far numbers reach; empty until one is added.
+struct Range {
+  double low = Bounds::kFar, high = -Bounds::kFar;
+  void add(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+};
+
+/// How far points reach along a direction.
+inline Range rangeOf(std::span<const Vec3> points, const Vec3& direction) {
+  Range out;
+  for (const Vec3& p : points) out.add(dot(p, direction));
+  return out;
+}
+
 /// The box of some of a mesh's vertices.
 inline Bounds boundsOf(const TriangleMesh& mesh, std::span<const std::uint32_t> vertices) {
   Bounds out;

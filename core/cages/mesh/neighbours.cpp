@@ -27,4 +27,20 @@ Neighbours::Neighbours(const TriangleMesh& mesh) : ends_(mesh.positions.size(), 
   list_.erase(kept, list_.end());
 }
 
+void grow(const Neighbours& neighbours, std::vector<bool>& marks, int edges) {
+  std::vector<std::uint32_t> front, next;
+  for (std::uint32_t v = 0; v < marks.size(); ++v)
+    if (marks[v]) front.push_back(v);
+  for (int i = 0; i < edges; ++i) {
+    for (const std::uint32_t v : front)
+      for (const std::uint32_t n : neighbours[v]) {
+        if (marks[n]) continue;
+        marks[n] = true;
+        next.push_back(n);
+      }
+    front.swap(next);
+    next.clear();
+  }
+}
+
 }  // namespace cagecast::cages

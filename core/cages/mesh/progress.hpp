@@ -1,11 +1,23 @@
 #pragma once
 
+#include <cstddef>
+
 #include "cagecast/cages.hpp"
 
 namespace cagecast::cages {
 
 /// How a call ends when `Progress` returned false.
 inline Outcome cancelled() { return {Problem::cancelled, "cancelled"}; }
+
+/// Reports how far a call is. @return false if that cancels it.
+inline bool report(const Progress& progress, double share, const char* stage) {
+  return !progress || progress(static_cast<float>(share), stage);
+}
+
+/// The same for work of a known amount.
+inline bool report(const Progress& progress, std::size_t done, std::size_t all, const char* stage) {
+  return report(progress, static_cast<double>(done) / static_cast<double>(all), stage);
+}
 
 /// Reports a part of the work as going from one share of the whole to another.
 /// @param progress  Must outlive the result; nothing is reported if it is empty.

@@ -117,9 +117,9 @@ Vec3 meanOf(std::span<const Vec3> points) {
 }
 
 Vec3 middleOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& vertices) {
-  Vec3 middle{0, 0, 0};
-  for (const std::uint32_t v : vertices) middle = middle + 1 / static_cast<double>(vertices.size()) * mesh.positions[v];
-  return middle;
+  Vec3 sum{0, 0, 0};
+  for (const std::uint32_t v : vertices) sum = sum + mesh.positions[v];
+  return 1 / static_cast<double>(vertices.size()) * sum;
 }
 
 std::vector<Vec3> vertexNormals(const TriangleMesh& mesh) {

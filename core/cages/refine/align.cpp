@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "linear/dense.hpp"
+#include "mesh/progress.hpp"
 
 namespace cagecast::cages {
 
@@ -97,7 +98,7 @@ bool alignCage(const Target& target, std::span<const CageSpot> spots, const Alig
   Alignment alignment(cage, gaps, placement.offset, limits.growth);
   RobustScale scale(limits.reach * target.diagonal, target.diagonal);
   for (int step = 0; step < kAlignSteps; ++step) {
-    if (progress && !progress(static_cast<float>(step) / kAlignSteps, "align")) return false;
+    if (!report(progress, step / static_cast<double>(kAlignSteps), "align")) return false;
     scale.tighten(placement.spread, kAlignTightening);
     const double moved = alignment.step(gaps, scale, cage);
     if (std::isinf(moved) || (moved < kAlignSettled * target.diagonal && scale.settled())) break;

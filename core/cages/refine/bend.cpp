@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "mesh/progress.hpp"
 #include "mesh/thin_plate.hpp"
 
 namespace cagecast::cages {
@@ -109,7 +110,7 @@ bool bendCage(const Target& target, std::span<const CageSpot> spots, double reac
   double least = INFINITY;
   std::vector<Vec3> best = cage.positions;
   for (int step = 0; step < kBendSteps; ++step) {
-    if (progress && !progress(static_cast<float>(step) / kBendSteps, "bend")) return false;
+    if (!report(progress, step / static_cast<double>(kBendSteps), "bend")) return false;
     const std::vector<Gap> gaps = measureGaps(target, cage, spots);
     const Placement placement = placementOf(target, gaps);
     scale.tighten(placement.spread, kBendTightening);

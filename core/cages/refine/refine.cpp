@@ -106,7 +106,7 @@ class Refinement {
                           kWorthwhile * best_.placement.spread < given_.placement.spread;
     stays_ = !isBetter || sinks(best_, given_) || moved() < kMinMove * target_.diagonal;
     if (stays_) best_ = given_;
-    return !progress_ || progress_(1, "bend");
+    return report(progress_, 1, "bend");
   }
 
   /// Whether what came out is a cage of this model at all.
@@ -200,7 +200,7 @@ Outcome refineCage(const MeshView& cage, const Model& model, const RefineOptions
   if (welded.empty()) return fault("cage has no triangle that is large enough beside the model");
   const double reach = static_cast<double>(options.reach);
   if (Outcome outcome = checkNearness(boundsOf(welded), boundsOf(target), reach); !outcome.ok()) return outcome;
-  if (progress && !progress(0, "align")) return cancelled();
+  if (!report(progress, 0, "align")) return cancelled();
   Refinement refinement(welded, target, reach, progress);
   if (!refinement.run()) return cancelled();
   if (Outcome outcome = refinement.judge(); !outcome.ok()) return outcome;
