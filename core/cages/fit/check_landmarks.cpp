@@ -34,15 +34,6 @@ std::string text(const char* format, double value) {
   return buffer;
 }
 
-bool isJoint(const std::string& name) { return name.rfind("joint_", 0) == 0; }
-
-std::string mirrorName(const std::string& name) {
-  for (const auto& [end, other] : {std::pair<std::string, std::string>{"_left", "_right"}, {"_right", "_left"}})
-    if (name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0)
-      return name.substr(0, name.size() - end.size()) + other;
-  return {};
-}
-
 Outcome otherSide(const std::string& name) {
   return {Problem::badLandmarks,
           "landmarks: " + name + " is on the other side: left and right are the figure's own, not the viewer's"};
@@ -114,9 +105,9 @@ std::string swappedSides(const SkinPairs& pairs, const std::vector<Landmark>& to
   std::string first;
   for (std::size_t k = 0; k < pairs.places.size(); ++k) {
     const std::string& name = to[pairs.places[k]].name;
-    const Landmark* other = findLandmark(to, mirrorName(name));
-    if (other != nullptr && first.empty()) first = name;
-    swapped.push_back(other != nullptr ? positionOf(*other) : pairs.to[k]);
+    const auto other = placeOf(to, mirrorName(name));
+    if (other && first.empty()) first = name;
+    swapped.push_back(other.value_or(pairs.to[k]));
   }
   const bool isSwapped = !first.empty() && asGiven > 0.02 * diagonal && residual(pairs.from, swapped) < 0.5 * asGiven;
   return isSwapped ? first : std::string();

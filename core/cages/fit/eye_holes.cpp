@@ -307,11 +307,10 @@ void drawTo(const TemplateCage& cage, std::vector<std::uint32_t> loop, const Eye
 }
 
 std::optional<Vec3> centreOf(const std::vector<Landmark>& landmarks, const std::string& side) {
-  if (const Landmark* centre = findLandmark(landmarks, "eye_centre_" + side)) return positionOf(*centre);
-  const Landmark* inner = findLandmark(landmarks, "eye_inner_" + side);
-  const Landmark* outer = findLandmark(landmarks, "eye_outer_" + side);
-  if (inner == nullptr || outer == nullptr) return std::nullopt;
-  return 0.5 * (positionOf(*inner) + positionOf(*outer));
+  if (const auto centre = placeOf(landmarks, "eye_centre_" + side)) return centre;
+  const auto inner = placeOf(landmarks, "eye_inner_" + side), outer = placeOf(landmarks, "eye_outer_" + side);
+  if (!inner || !outer) return std::nullopt;
+  return 0.5 * (*inner + *outer);
 }
 
 }  // namespace

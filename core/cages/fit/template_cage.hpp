@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cagecast/cages.hpp"
+#include "landmarks/landmark_list.hpp"
 #include "mesh/neighbours.hpp"
 
 namespace cagecast::cages {
@@ -32,10 +33,6 @@ TemplateCage prepareTemplate(const Template& from);
 
 /// Whether a landmark lies on the skin: joints and the centres of eyes do not.
 bool isOnSkin(const std::string& name);
-
-/// Where a landmark is in a list; nullptr if it is not there.
-const Landmark* findLandmark(const std::vector<Landmark>& landmarks, const std::string& name);
-inline Vec3 positionOf(const Landmark& landmark) { return Vec3::from(landmark.position.data()); }
 
 Axes axesOf(const std::vector<Landmark>& landmarks);
 

@@ -32,8 +32,8 @@ Similarity rotationOf(double w, const Vec3& v) {
   return {{1 - yy - zz, xy + wz, xz - wy}, {xy - wz, 1 - xx - zz, yz + wx}, {xz + wy, yz - wx, 1 - xx - yy}};
 }
 
-Vec3 meanOf(std::span<const Vec3> points, std::span<const double> weights) {
-  if (weights.empty()) return cages::meanOf(points);
+Vec3 weightedMean(std::span<const Vec3> points, std::span<const double> weights) {
+  if (weights.empty()) return meanOf(points);
   Vec3 sum{0, 0, 0};
   double total = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -46,7 +46,7 @@ Vec3 meanOf(std::span<const Vec3> points, std::span<const double> weights) {
 }  // namespace
 
 Similarity fitSimilarity(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> weights) {
-  const Vec3 fromMean = meanOf(from, weights), toMean = meanOf(to, weights);
+  const Vec3 fromMean = weightedMean(from, weights), toMean = weightedMean(to, weights);
   SquareMatrix<3> sums{};  // Of products of coordinates: before by after.
   double spread = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {

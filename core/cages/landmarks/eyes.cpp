@@ -119,21 +119,21 @@ std::vector<Candidate> eyeCandidates(const Figure& figure, double diagonal) {
   constexpr std::size_t kMinTriangles = 8;
   constexpr double kSmallest = 0.002, kLargest = 0.15;  // Radii, as shares of the diagonal: of a figure, of a head.
   constexpr std::size_t kMaxCandidates = 500;           // The largest: a coat of mail has thousands of rings.
-  std::vector<std::vector<Triangle3>> triangles(figure.componentCount);
-  for (std::size_t t = 0; t < figure.components.size(); ++t)
-    if (figure.roles[t] == Role::surface) triangles[figure.components[t]].push_back(figure.mesh.triangles[t]);
+  std::vector<std::uint32_t> components = figure.components;
+  for (std::size_t t = 0; t < components.size(); ++t)
+    if (figure.roles[t] != Role::surface) components[t] = kNone;
+  std::vector<TriangleMesh> parts = split(figure.mesh, components, figure.componentCount);
   std::vector<Candidate> candidates;
   for (std::uint32_t c = 0; c < figure.componentCount; ++c) {
-    const std::size_t size = triangles[c].size();
+    const std::size_t size = parts[c].triangles.size();
     if (size < kMinTriangles || 2 * size > figure.components.size()) continue;
-    const TriangleMesh part = compact(figure.mesh, triangles[c]);
-    Shape shape = shapeOf(part);
+    Shape shape = shapeOf(parts[c]);
     const Vec3 box = shape.bounds.size();
     const double wide = std::hypot(box.x, box.z);
     const bool round = box.y > 0.5 * wide && box.y < 2 * wide;
     if (!round || box.y < 2 * kSmallest * diagonal || box.y > 2 * kLargest * diagonal) continue;
     const Sphere ball = ballOf(shape);
-    candidates.push_back({std::move(shape), part, c, ball});
+    candidates.push_back({std::move(shape), std::move(parts[c]), c, ball});
   }
   if (candidates.size() > kMaxCandidates) {
     std::stable_sort(candidates.begin(), candidates.end(),

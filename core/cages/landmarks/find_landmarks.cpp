@@ -3,6 +3,7 @@
 #include <set>
 
 #include "landmarks/head.hpp"
+#include "landmarks/landmark_list.hpp"
 #include "landmarks/rig.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/progress.hpp"

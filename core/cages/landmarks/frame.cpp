@@ -235,20 +235,6 @@ std::vector<MirrorPlane> findMirrorPlanes(const TriangleMesh& fine) {
   return out;
 }
 
-TriangleMesh compact(const TriangleMesh& mesh, const std::vector<Triangle3>& triangles) {
-  std::unordered_map<std::uint32_t, std::uint32_t> newVertex;
-  TriangleMesh out;
-  for (Triangle3 t : triangles) {
-    for (std::uint32_t& v : t) {
-      const auto [found, isNew] = newVertex.try_emplace(v, static_cast<std::uint32_t>(out.positions.size()));
-      if (isNew) out.positions.push_back(mesh.positions[v]);
-      v = found->second;
-    }
-    out.triangles.push_back(t);
-  }
-  return out;
-}
-
 TriangleMesh within(const TriangleMesh& mesh, const Vec3& centre, double radius) {
   std::vector<bool> near(mesh.positions.size());
   for (std::size_t v = 0; v < near.size(); ++v) near[v] = length(mesh.positions[v] - centre) <= radius;

@@ -50,18 +50,16 @@ bool belongsToEye(const Eyes& eyes, std::size_t triangle) {
 std::vector<bool> insideMouth(const Figure& figure, const Eyes& eyes) {
   constexpr double kSmall = 0.1;  ///< Share of the figure's triangles.
   constexpr std::size_t kPartSamples = 24;
-  std::vector<std::vector<Triangle3>> parts(figure.componentCount);
-  for (std::size_t t = 0; t < figure.components.size(); ++t)
-    parts[figure.components[t]].push_back(figure.mesh.triangles[t]);
+  const std::vector<TriangleMesh> parts = split(figure.mesh, figure.components, figure.componentCount);
   const Surface surface(figure.mesh);
   const double clear = 1e-4 * diagonalOf(figure.mesh);
   const Vec3 up{0, 1, 0};
   std::vector<bool> out(figure.componentCount);
   for (std::size_t c = 0; c < parts.size(); ++c) {
-    const auto size = static_cast<double>(parts[c].size());
+    const auto size = static_cast<double>(parts[c].triangles.size());
     if (size > kSmall * static_cast<double>(figure.components.size())) continue;
     std::vector<SurfaceRay> rays;
-    for (const Vec3& p : samplePoints(compact(figure.mesh, parts[c]), kPartSamples))
+    for (const Vec3& p : samplePoints(parts[c], kPartSamples))
       for (const Vec3& direction : {eyes.left, -1 * eyes.left, up, -1 * eyes.front})
         rays.push_back({p + clear * direction, direction});
     const std::vector<RayHit> hits = surface.trace(rays);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "landmarks/landmark_list.hpp"
 #include "landmarks/rig.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/part_names.hpp"
@@ -74,20 +75,18 @@ KindFeatures featuresOf(const Model& model) {
 
 Stance stanceOf(const Model& model) {
   const Rig rig = recogniseRig(model.joints);
-  const auto at = [&](const char* name) -> const Landmark* { return rig.find(name); };
-  const Landmark *hips = at("joint_hips"), *head = at("joint_head"), *neck = at("joint_neck");
-  const Landmark *left = at("joint_ankle_left"), *right = at("joint_ankle_right");
-  if (head == nullptr) head = neck;
-  if (hips == nullptr || head == nullptr || left == nullptr || right == nullptr) return {};
-  const Vec3 trunk = unit(toVec3(head->position) - toVec3(hips->position));
-  const Vec3 feet = 0.5 * (toVec3(left->position) + toVec3(right->position));
-  const Vec3 legs = unit(toVec3(hips->position) - feet);
+  const auto at = [&](const char* name) { return placeOf(rig.joints, name); };
+  const auto hips = at("joint_hips"), head = at("joint_head"), neck = at("joint_neck");
+  const auto left = at("joint_ankle_left"), right = at("joint_ankle_right");
+  if (!hips || !(head || neck) || !left || !right) return {};
+  const Vec3 trunk = unit(head.value_or(neck.value_or(*hips)) - *hips);
+  const Vec3 legs = unit(*hips - 0.5 * (*left + *right));
   constexpr double kStraight = 0.8;  // The cosine of 37°: who sits or is on all fours does not stand.
   if (dot(trunk, legs) < kStraight) return {};
   Stance stance;
   stance.up = axisOf(trunk);
   if (stance.up.y != 0) return {};
-  const Vec3 apart = toVec3(left->position) - toVec3(right->position);
+  const Vec3 apart = *left - *right;
   const Vec3 side = axisOf(apart - dot(apart, stance.up) * stance.up);
   stance.front = cross(side, stance.up);
   return length(stance.front) > 0.5 ? stance : Stance{};

@@ -30,13 +30,6 @@ constexpr std::uint32_t kFinTriangles = 8;
 /// milliseconds.
 constexpr std::size_t kLastStepIndices = std::size_t{3} * 15000;
 
-double distanceToChord(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 chord = b - a;
-  const double square = dot(chord, chord);
-  const double share = square > 0 ? std::clamp(dot(p - a, chord) / square, 0.0, 1.0) : 0;
-  return length(p - (a + share * chord));
-}
-
 /// The place in a loop that is farthest from a point.
 std::size_t farthestFrom(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, const Vec3& point) {
   std::size_t farthest = 0;
@@ -65,7 +58,7 @@ void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, 
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       const std::size_t from = chosen[k], to = k + 1 < chosen.size() ? chosen[k + 1] : chosen[0] + loop.size();
       for (std::size_t i = from + 1; i < to; ++i) {
-        const double distance = distanceToChord(at(i), at(from), at(to));
+        const double distance = distanceToSegment(at(i), at(from), at(to));
         if (distance <= most) continue;
         most = distance;
         next = i % loop.size();

@@ -28,6 +28,17 @@ void dropUnused(TriangleMesh& mesh) {
     for (std::uint32_t& v : t) v = newVertex[v];
 }
 
+/// The number of a vertex in another mesh, which gets it if it does not have it yet.
+/// @param[in,out] newVertex  Per vertex of `from`; `kNone` for those that are not in `to`.
+std::uint32_t keepVertex(const TriangleMesh& from, std::uint32_t vertex, std::vector<std::uint32_t>& newVertex,
+                         TriangleMesh& to) {
+  if (newVertex[vertex] == kNone) {
+    newVertex[vertex] = static_cast<std::uint32_t>(to.positions.size());
+    to.positions.push_back(from.positions[vertex]);
+  }
+  return newVertex[vertex];
+}
+
 }  // namespace
 
 TriangleMesh weldExactly(const MeshView& mesh, std::vector<std::uint32_t>* vertexOf,
@@ -73,13 +84,7 @@ TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTrian
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!keepTriangle[t]) continue;
     Triangle3 triangle = mesh.triangles[t];
-    for (std::uint32_t& v : triangle) {
-      if (newVertex[v] == kNone) {
-        newVertex[v] = static_cast<std::uint32_t>(out.positions.size());
-        out.positions.push_back(mesh.positions[v]);
-      }
-      v = newVertex[v];
-    }
+    for (std::uint32_t& v : triangle) v = keepVertex(mesh, v, newVertex, out);
     out.triangles.push_back(triangle);
   }
   return out;
@@ -102,6 +107,20 @@ std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32
   return pieces;
 }
 
+std::vector<TriangleMesh> split(const TriangleMesh& mesh, const std::vector<std::uint32_t>& pieces,
+                                std::uint32_t count) {
+  std::vector<TriangleMesh> out(count);
+  std::vector<std::uint32_t> newVertex(mesh.positions.size(), kNone);  // A vertex is in one piece.
+  for (std::size_t t = 0; t < pieces.size(); ++t) {
+    if (pieces[t] == kNone) continue;
+    TriangleMesh& piece = out[pieces[t]];
+    Triangle3 triangle = mesh.triangles[t];
+    for (std::uint32_t& v : triangle) v = keepVertex(mesh, v, newVertex, piece);
+    piece.triangles.push_back(triangle);
+  }
+  return out;
+}
+
 double areaOf(const TriangleMesh& mesh) {
   double area = 0;
   for (const Triangle3& t : mesh.triangles) area += areaOf(mesh, t);
@@ -109,6 +128,13 @@ double areaOf(const TriangleMesh& mesh) {
 }
 
 double diagonalOf(const TriangleMesh& mesh) { return boundsOf(mesh).diagonal(); }
+
+double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 edge = b - a;
+  const double square = dot(edge, edge);
+  const double share = square > 0 ? std::clamp(dot(p - a, edge) / square, 0.0, 1.0) : 0;
+  return length(p - (a + share * edge));
+}
 
 Vec3 meanOf(std::span<const Vec3> points) {
   Vec3 sum{0, 0, 0};

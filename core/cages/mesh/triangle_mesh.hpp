@@ -49,6 +49,11 @@ TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTrian
 /// triangles.
 std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32_t& count);
 
+/// Connected pieces as meshes of their own.
+/// @param pieces  Per triangle, as of `connectedPieces`; `kNone` for those that are left out.
+std::vector<TriangleMesh> split(const TriangleMesh& mesh, const std::vector<std::uint32_t>& pieces,
+                                std::uint32_t count);
+
 /// The length of the diagonal of the bounding box of the triangles.
 double diagonalOf(const TriangleMesh& mesh);
 
@@ -66,6 +71,9 @@ double areaOf(const TriangleMesh& mesh);
 inline Vec3 centroid(const TriangleMesh& mesh, const Triangle3& t) {
   return 1.0 / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]);
 }
+
+/// How far a point is from the line segment between two others.
+double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b);
 
 /// The mean of points.
 Vec3 meanOf(std::span<const Vec3> points);
