@@ -63,8 +63,8 @@ bool mapToDisk(const TriangleMesh& mesh, std::vector<Uv>& uvs) {
   if (loops.size() != 1) return false;
   std::vector<bool> onRim(mesh.positions.size());
   uvs.assign(mesh.positions.size(), {0, 0});
-  double area = 0, done = 0;
-  for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t)) / 2;
+  const double area = areaOf(mesh);
+  double done = 0;
   const double whole = lengthOf(mesh, loops[0]), radius = std::sqrt(area / 3.14159265);
   if (!(whole > 0) || !(area > 0)) return false;
   const double least = 0.1 * whole / static_cast<double>(loops[0].size());

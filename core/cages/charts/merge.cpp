@@ -1,7 +1,6 @@
 #include "charts/merge.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -69,16 +68,9 @@ int facing(const Chart& chart, const Vec3& axis) {
 
 bool fits(const Chart& chart, const MergeOptions& options) {
   if (!chart.valid || chart.energy > options.mostEnergy) return false;
-  double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300}, area = 0;
-  for (const Uv& uv : chart.uvs)
-    for (std::size_t k = 0; k < 2; ++k) {
-      low[k] = std::min(low[k], uv[k]);
-      high[k] = std::max(high[k], uv[k]);
-    }
-  for (const Triangle3& t : chart.piece.mesh.triangles)
-    area += doubledArea(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]) / 2;
-  const double width = high[0] - low[0], height = high[1] - low[1];
-  return area >= options.leastFill * width * height && std::max(width, height) <= options.longest;
+  const UvBox box = chart.box();
+  return chart.area() >= options.leastFill * box.side(0) * box.side(1) &&
+         std::max(box.side(0), box.side(1)) <= options.longest;
 }
 
 }  // namespace

@@ -8,32 +8,6 @@
 
 namespace cagecast::cages {
 
-std::vector<std::uint32_t> halfEdgeTwins(const TriangleMesh& mesh) {
-  struct Edge {
-    std::uint32_t low, high, halfEdge;
-  };
-  std::vector<Edge> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (std::size_t h = 0; h < 3 * mesh.triangles.size(); ++h) {
-    const std::uint32_t a = originOf(mesh, h), b = endOf(mesh, h);
-    edges.push_back({std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(h)});
-  }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    if (a.low != b.low) return a.low < b.low;
-    return a.high != b.high ? a.high < b.high : a.halfEdge < b.halfEdge;
-  });
-  std::vector<std::uint32_t> twins(edges.size(), kNone);
-  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-    for (end = i + 1; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high;) ++end;
-    if (end != i + 2) continue;
-    const std::uint32_t one = edges[i].halfEdge, other = edges[i + 1].halfEdge;
-    if (originOf(mesh, one) == originOf(mesh, other) || one / 3 == other / 3) continue;
-    twins[one] = other;
-    twins[other] = one;
-  }
-  return twins;
-}
-
 Piece wholeOf(const TriangleMesh& mesh) {
   Piece piece;
   piece.mesh = mesh;

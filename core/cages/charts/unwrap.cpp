@@ -300,9 +300,7 @@ void standUpright(Chart& chart, const UnwrapOptions& options) {
 /// Joins sides of props that lie flat together. Of any model that still has too many charts, joins more, as far as the
 /// stretch can be borne.
 void joinCharts(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& ticker, std::vector<Chart>& charts) {
-  double area = 0;
-  for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t)) / 2;
-  const double longest = kLongestChart * std::sqrt(area);
+  const double longest = kLongestChart * std::sqrt(areaOf(mesh));
   const bool isProp = options.kind == Kind::prop || options.kind == Kind::automatic;
   const Vec3 side = cross(options.up, options.front);
   if (isProp) mergeCharts(mesh, {kJoinedEnergy, 1, kMinFill, longest, side}, ticker, charts);
@@ -312,11 +310,7 @@ void joinCharts(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& 
 
 /// Gives a chart the area that it has on the model.
 void scaleToArea(Chart& chart) {
-  double flat = 0, solid = 0;
-  for (const Triangle3& t : chart.piece.mesh.triangles) {
-    flat += doubledArea(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]);
-    solid += length(areaNormal(chart.piece.mesh, t));
-  }
+  const double flat = chart.area(), solid = areaOf(chart.piece.mesh);
   if (!(flat > 0) || !(solid > 0)) return;
   const double scale = std::sqrt(solid / flat);
   for (Uv& uv : chart.uvs) uv = {scale * uv[0], scale * uv[1]};

@@ -38,18 +38,4 @@ struct Layout {
 /// @return false if `progress` cancelled it; it gets shares from 0 to 1.
 bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progress& progress, Layout& out);
 
-/// What is wrong with a layout, and how much it stretches. Stretch is that of triangles with an area, weighted by it.
-struct LayoutFaults {
-  std::uint32_t charts = 0;             ///< Pieces connected by shared vertices with the same UV.
-  std::uint32_t overlaps = 0;           ///< Pairs of triangles whose insides meet; tested exactly.
-  std::uint32_t flips = 0;              ///< Triangles turned the other way round than most, or without an area.
-  std::uint32_t outside = 0;            ///< Vertices outside the unit square.
-  double coverage = 0;                  ///< Share of the unit square that triangles take.
-  double angleMedian = 1, angle95 = 1;  ///< Longest by shortest axis of the circle that becomes an ellipse: 1 is best.
-  double areaMedian = 1, area95 = 1;    ///< Texel density against the mean, or its inverse if that is larger.
-};
-
-LayoutFaults layoutFaults(const std::vector<Vec3>& positions, const std::vector<Uv>& uvs,
-                          const std::vector<Triangle3>& triangles);
-
 }  // namespace cagecast::cages

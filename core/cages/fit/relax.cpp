@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "fit/warp.hpp"
+#include "mesh/half_edges.hpp"
 
 namespace cagecast::cages {
 
@@ -137,24 +137,20 @@ void searchAround(const TemplateCage& cage, const std::vector<bool>& foldedBefor
 std::vector<bool> foldedTriangles(const TriangleMesh& mesh) {
   const std::size_t count = mesh.triangles.size();
   std::vector<Vec3> normals(count), around(mesh.positions.size(), Vec3{0, 0, 0});
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> triangleAt;
   for (std::size_t t = 0; t < count; ++t) {
     normals[t] = areaNormal(mesh, mesh.triangles[t]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      around[mesh.triangles[t][k]] = around[mesh.triangles[t][k]] + normals[t];
-      triangleAt[{mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}] = t;
-    }
+    for (const std::uint32_t v : mesh.triangles[t]) around[v] = around[v] + normals[t];
   }
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   std::vector<bool> folded(count);
   for (std::size_t t = 0; t < count; ++t) {
     Vec3 sum = -3.0 * normals[t];
     for (const std::uint32_t v : mesh.triangles[t]) sum = sum + around[v];
     if (dot(sum, normals[t]) < 0) folded[t] = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto other = triangleAt.find({mesh.triangles[t][(k + 1) % 3], mesh.triangles[t][k]});
-      if (other == triangleAt.end()) continue;
-      const Vec3& n = normals[other->second];
-      if (dot(n, normals[t]) < kSharpTurn * length(n) * length(normals[t])) folded[t] = folded[other->second] = true;
+    for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) {
+      if (twins[h] == kNone) continue;
+      const Vec3& n = normals[twins[h] / 3];
+      if (dot(n, normals[t]) < kSharpTurn * length(n) * length(normals[t])) folded[t] = folded[twins[h] / 3] = true;
     }
   }
   return folded;

@@ -91,20 +91,14 @@ TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTrian
 }
 
 std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32_t& count) {
-  DisjointSets sets(mesh.positions.size());
-  for (const Triangle3& t : mesh.triangles) {
-    sets.join(t[0], t[1]);
-    sets.join(t[0], t[2]);
-  }
-  std::vector<std::uint32_t> numbers(mesh.positions.size(), kNone), pieces;
-  pieces.reserve(mesh.triangles.size());
-  count = 0;
-  for (const Triangle3& t : mesh.triangles) {
-    std::uint32_t& number = numbers[sets.find(t[0])];
-    if (number == kNone) number = count++;
-    pieces.push_back(number);
-  }
-  return pieces;
+  DisjointSets sets(mesh.triangles.size());
+  std::vector<std::uint32_t> firstAt(mesh.positions.size(), kNone);  // The first triangle at each vertex.
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      if (firstAt[v] == kNone) firstAt[v] = t;
+      sets.join(t, firstAt[v]);
+    }
+  return sets.numbers(count);
 }
 
 std::vector<TriangleMesh> split(const TriangleMesh& mesh, const std::vector<std::uint32_t>& pieces,
