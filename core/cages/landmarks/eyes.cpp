@@ -6,6 +6,7 @@
 
 #include "linear/dense.hpp"
 #include "mesh/bounds.hpp"
+#include "mesh/samples.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -97,7 +98,7 @@ std::array<double, 2> seen(const Surface& surface, const TriangleMesh& part, con
   for (int side = 0; side < 2; ++side) {
     const Vec3 toward = side == 0 ? direction : -1 * direction;
     std::vector<SurfaceRay> rays;
-    for (const Vec3& p : samplePoints(part, 60)) rays.push_back({p + clear * toward, toward});
+    for (const Vec3& p : spreadPoints(part, 60)) rays.push_back({p + clear * toward, toward});
     double free = 0;
     for (const RayHit& hit : surface.trace(rays)) free += std::isinf(hit.distance) ? 1 : 0;
     out[static_cast<std::size_t>(side)] = free / static_cast<double>(rays.size());

@@ -43,9 +43,6 @@ struct HeadFrame {
   }
 };
 
-/// `count` points spread evenly over the area of a mesh; the same ones every time.
-std::vector<Vec3> samplePoints(const TriangleMesh& mesh, std::size_t count);
-
 /// The triangles with a corner within a distance of a point.
 TriangleMesh within(const TriangleMesh& mesh, const Vec3& centre, double radius);
 

@@ -1,4 +1,5 @@
 #include "landmarks/head.hpp"
+#include "mesh/samples.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +60,7 @@ std::vector<bool> insideMouth(const Figure& figure, const Eyes& eyes) {
     const auto size = static_cast<double>(parts[c].triangles.size());
     if (size > kSmall * static_cast<double>(figure.components.size())) continue;
     std::vector<SurfaceRay> rays;
-    for (const Vec3& p : samplePoints(parts[c], kPartSamples))
+    for (const Vec3& p : spreadPoints(parts[c], kPartSamples))
       for (const Vec3& direction : {eyes.left, -1 * eyes.left, up, -1 * eyes.front})
         rays.push_back({p + clear * direction, direction});
     const std::vector<RayHit> hits = surface.trace(rays);

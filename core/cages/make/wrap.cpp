@@ -1,7 +1,7 @@
 #include "make/wrap.hpp"
 
-#include "landmarks/frame.hpp"
 #include "mesh/progress.hpp"
+#include "mesh/samples.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -23,7 +23,7 @@ double lostShare(const TriangleMesh& mesh, const std::vector<bool>& isMarked, co
                  const TriangleMesh& hull) {
   std::vector<bool> isPainted = isMarked;
   isPainted.flip();
-  const std::vector<Vec3> points = samplePoints(subset(mesh, isPainted), kLookedFor);
+  const std::vector<Vec3> points = spreadPoints(subset(mesh, isPainted), kLookedFor);
   const double rounding = diagonalOf(mesh) / options.voxels;
   std::size_t lost = 0, kept = 0;
   for (const SurfacePoint& point : Surface(hull).closest(points)) {

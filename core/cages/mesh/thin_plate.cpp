@@ -52,9 +52,7 @@ std::vector<Vec3> ThinPlate::solve(const std::vector<Vec3>& rest, std::span<cons
   }
   for (const PlaneTerm& plane : planes) {
     const double n[3] = {plane.normal.x, plane.normal.y, plane.normal.z};
-    Vec3 at{0, 0, 0};
-    for (std::size_t i = 0; i < 3; ++i) at = at + plane.weights[i] * rest[plane.corners[i]];
-    const double height = dot(plane.normal, plane.point - at);
+    const double height = dot(plane.normal, plane.point - blend(rest, plane.corners, plane.weights));
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t row = 3 * plane.corners[i];
       const double share = plane.strength * plane.weights[i];

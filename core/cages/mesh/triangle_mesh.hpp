@@ -72,6 +72,11 @@ inline Vec3 centroid(const TriangleMesh& mesh, const Triangle3& t) {
   return 1.0 / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]);
 }
 
+/// The mean of what the corners of a triangle have, with barycentric weights.
+inline Vec3 blend(const std::vector<Vec3>& values, const Triangle3& t, const std::array<double, 3>& weights) {
+  return weights[0] * values[t[0]] + weights[1] * values[t[1]] + weights[2] * values[t[2]];
+}
+
 /// How far a point is from the line segment between two others.
 double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b);
 

@@ -91,7 +91,7 @@ class Alignment {
 
 }  // namespace
 
-bool alignCage(const Target& target, std::span<const CageSpot> spots, const AlignLimits& limits,
+bool alignCage(const Target& target, const std::vector<SurfaceSample>& spots, const AlignLimits& limits,
                const Progress& progress, TriangleMesh& cage) {
   std::vector<Gap> gaps = measureGaps(target, cage, spots);
   Placement placement = placementOf(target, gaps);

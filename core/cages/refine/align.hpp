@@ -15,7 +15,7 @@ struct AlignLimits {
 
 /// Moves, turns and, if it may, enlarges or shrinks a cage so that its gaps become as even as possible.
 /// @return false if `progress` cancelled it; it gets shares from 0 to 1.
-bool alignCage(const Target& target, std::span<const CageSpot> spots, const AlignLimits& limits,
+bool alignCage(const Target& target, const std::vector<SurfaceSample>& spots, const AlignLimits& limits,
                const Progress& progress, TriangleMesh& cage);
 
 }  // namespace cagecast::cages

@@ -52,7 +52,7 @@ std::vector<SparseEntry> bendingOf(const TriangleMesh& mesh) {
 
 class Bending {
  public:
-  Bending(const Target& target, std::span<const CageSpot> spots, const TriangleMesh& cage)
+  Bending(const Target& target, const std::vector<SurfaceSample>& spots, const TriangleMesh& cage)
       : spots_(spots), start_(cage.positions), plate_(cage, bendingOf(cage)) {
     const double area = areaOf(cage), perVertex = area / static_cast<double>(start_.size());
     const double wave = kWave * target.diagonal / (2 * std::numbers::pi);  // Where bending and gaps count alike.
@@ -94,7 +94,7 @@ class Bending {
   }
 
  private:
-  std::span<const CageSpot> spots_;
+  const std::vector<SurfaceSample>& spots_;
   std::vector<Vec3> start_;
   ThinPlate plate_;
   ThinPlate::Weights weights_;
@@ -103,7 +103,7 @@ class Bending {
 
 }  // namespace
 
-bool bendCage(const Target& target, std::span<const CageSpot> spots, double reach, const Progress& progress,
+bool bendCage(const Target& target, const std::vector<SurfaceSample>& spots, double reach, const Progress& progress,
               TriangleMesh& cage) {
   Bending bending(target, spots, cage);
   RobustScale scale(reach * target.diagonal, target.diagonal);

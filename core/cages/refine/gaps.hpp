@@ -5,20 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "mesh/samples.hpp"
 #include "mesh/surface.hpp"
 #include "mesh/triangle_mesh.hpp"
 
 namespace cagecast::cages {
-
-/// A spot that is fixed to a triangle of the cage.
-struct CageSpot {
-  std::uint32_t triangle = 0;
-  std::array<double, 3> weights{};  ///< Barycentric, of the triangle's corners.
-};
-
-/// Spots spread over a cage by area; neighbours are close together in the list. The same for every call.
-/// @param count  About so many.
-std::vector<CageSpot> spreadSpots(const TriangleMesh& cage, std::size_t count);
 
 /// What a cage is placed around.
 struct Target {
@@ -38,7 +29,7 @@ struct Gap {
 };
 
 /// @param cage  May have moved since the spots were spread.
-std::vector<Gap> measureGaps(const Target& target, const TriangleMesh& cage, std::span<const CageSpot> spots);
+std::vector<Gap> measureGaps(const Target& target, const TriangleMesh& cage, const std::vector<SurfaceSample>& spots);
 
 /// How a cage lies around its target. Lengths are in the space of the model.
 struct Placement {

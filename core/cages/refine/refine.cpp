@@ -85,7 +85,7 @@ struct Candidate {
 class Refinement {
  public:
   Refinement(const TriangleMesh& cage, const TriangleMesh& model, double reach, const Progress& progress)
-      : target_(model), spots_(spreadSpots(cage, kSpots)), reach_(reach), progress_(progress) {
+      : target_(model), spots_(spreadSamples(cage, kSpots)), reach_(reach), progress_(progress) {
     given_ = {cage, placementOf(target_, measureGaps(target_, cage, spots_))};
   }
 
@@ -179,7 +179,7 @@ class Refinement {
   }
 
   Target target_;
-  std::vector<CageSpot> spots_;
+  std::vector<SurfaceSample> spots_;
   double reach_;
   const Progress& progress_;
   Candidate given_, best_;
