@@ -11,13 +11,6 @@ namespace {
 /// Length of a rim around, at least, in diagonals: necks have 1 to 2, eyes at most 0.4.
 constexpr double kMinRim = 0.7;
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 bool isOnSkin(const std::string& name) { return !isJoint(name) && !name.starts_with("eye_centre"); }
@@ -73,7 +66,7 @@ TemplateCage prepareTemplate(const Template& from) {
     if (isOnSkin(landmark.name)) onSkin.push_back(positionOf(landmark));
   std::vector<double> distances;
   for (const SurfacePoint& point : Surface(out.mesh).closest(onSkin)) distances.push_back(point.distance);
-  out.offset = median(distances);
+  out.offset = medianOf(distances);
   out.neighbours = Neighbours(out.mesh);
   return out;
 }

@@ -135,12 +135,15 @@ bool lookForEyes(const Model& model, const MakeOptions& options, const Progress&
 }
 
 /// Points below the hull, but in front of the model, which the cage must not fall behind.
-std::vector<OuterPoint> pointsToEnclose(const TriangleMesh& hull, const std::vector<double>& field, double depth) {
+OuterPoints pointsToEnclose(const TriangleMesh& hull, const std::vector<double>& field, double depth) {
   const std::vector<Vec3> normals = vertexNormals(hull);
   const std::size_t step = std::max<std::size_t>(1, hull.positions.size() / kEnclosedPoints);
-  std::vector<OuterPoint> points;
-  for (std::size_t v = 0; v < hull.positions.size(); v += step)
-    if (field[v] < 0.5) points.push_back({hull.positions[v] - depth * normals[v], normals[v]});
+  OuterPoints points;
+  for (std::size_t v = 0; v < hull.positions.size(); v += step) {
+    if (field[v] >= 0.5) continue;
+    points.positions.push_back(hull.positions[v] - depth * normals[v]);
+    points.normals.push_back(normals[v]);
+  }
   return points;
 }
 

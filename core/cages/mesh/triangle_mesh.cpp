@@ -130,6 +130,13 @@ double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return length(p - (a + share * edge));
 }
 
+double medianOf(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 Vec3 meanOf(std::span<const Vec3> points) {
   Vec3 sum{0, 0, 0};
   for (const Vec3& p : points) sum = sum + p;

@@ -80,6 +80,9 @@ inline Vec3 blend(const std::vector<Vec3>& values, const Triangle3& t, const std
 /// How far a point is from the line segment between two others.
 double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b);
 
+/// The middle one of some numbers by size; 0 if there are none.
+double medianOf(std::vector<double> values);
+
 /// The mean of points.
 Vec3 meanOf(std::span<const Vec3> points);
 /// The mean of the positions of some vertices, such as those of a loop.

@@ -22,13 +22,6 @@ constexpr double kSpreads = 1.5;
 /// nor below this share of the diagonal, where the cage's own coarseness begins.
 constexpr double kFinestScale = 1e-3;
 
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 Target::Target(const TriangleMesh& mesh) : surface(mesh), diagonal(diagonalOf(mesh)) {
