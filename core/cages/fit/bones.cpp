@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fit/warp.hpp"
+#include "mesh/limits.hpp"
 
 namespace cagecast::cages {
 

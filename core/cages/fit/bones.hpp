@@ -8,9 +8,6 @@
 
 namespace cagecast::cages {
 
-/// With fewer, a figure is not bent.
-inline constexpr std::size_t kMinBones = 6;
-
 /// A piece of the body that moves as one: where it is in the template, and an affine map to the target.
 struct Bone {
   Vec3 from, to;                            ///< Its ends in the template.

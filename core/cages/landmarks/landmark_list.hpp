@@ -16,6 +16,12 @@ inline Position toPosition(const Vec3& p) {
 }
 inline Vec3 positionOf(const Landmark& landmark) { return toVec3(landmark.position); }
 
+inline std::vector<Vec3> positionsOf(const std::vector<Landmark>& landmarks) {
+  std::vector<Vec3> out;
+  for (const Landmark& landmark : landmarks) out.push_back(positionOf(landmark));
+  return out;
+}
+
 /// A landmark of a list by its name; null if it is not there.
 const Landmark* findLandmark(const std::vector<Landmark>& landmarks, std::string_view name);
 /// Where it is; nothing if it is not there.

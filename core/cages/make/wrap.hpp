@@ -15,8 +15,8 @@ struct WrapOptions {
 
 /// A hull, as by `makeHull`, around all that is to be painted.
 /// @param isMarked  Per triangle of the mesh: need not be in the hull.
-/// @return cancelled, or badModel if the mesh is in pieces that lie too far apart, or too thin.
-Outcome wrap(const TriangleMesh& mesh, const std::vector<bool>& isMarked, const WrapOptions& options,
-             const Progress& progress, TriangleMesh& out);
+/// @return aborted, noVolume, or inPieces if these lie too far apart.
+Status wrap(const TriangleMesh& mesh, const std::vector<bool>& isMarked, const WrapOptions& options,
+            const Progress& progress, TriangleMesh& out);
 
 }  // namespace cagecast::cages

@@ -1,13 +1,32 @@
 #pragma once
 
 #include <cstddef>
+#include <new>
+#include <stdexcept>
 
 #include "cagecast/cages.hpp"
 
 namespace cagecast::cages {
 
 /// How a call ends when `Progress` returned false.
-inline Outcome cancelled() { return {Problem::cancelled, "cancelled"}; }
+inline constexpr Status kAborted{Code::aborted};
+
+/// The status of a call, also if its memory runs out: inside, vectors throw `std::bad_alloc`, or `std::length_error`
+/// for what no memory could hold.
+template <typename Call>
+Status guarded(const Call& call) {
+#ifdef __cpp_exceptions
+  try {
+    return call();
+  } catch (const std::bad_alloc&) {
+    return {Code::outOfMemory};
+  } catch (const std::length_error&) {
+    return {Code::outOfMemory};
+  }
+#else
+  return call();
+#endif
+}
 
 /// Reports how far a call is. @return false if that cancels it.
 inline bool report(const Progress& progress, double share, const char* stage) {
