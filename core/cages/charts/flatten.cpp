@@ -1,4 +1,4 @@
-#include "charts/flatten.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
 #include <cmath>

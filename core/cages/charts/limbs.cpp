@@ -1,4 +1,4 @@
-#include "charts/limbs.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "charts/min_cut.hpp"
-#include "charts/seams.hpp"
 #include "mesh/disjoint_sets.hpp"
 
 namespace cagecast::cages {

@@ -1,11 +1,9 @@
-#include "charts/merge.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
-
-#include "charts/seams.hpp"
 
 namespace cagecast::cages {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "charts/flatten.hpp"
+#include "charts/steps.hpp"
 
 namespace cagecast::cages {
 

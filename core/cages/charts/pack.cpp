@@ -1,4 +1,4 @@
-#include "charts/pack.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
 #include <cmath>

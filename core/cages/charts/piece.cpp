@@ -1,4 +1,4 @@
-#include "charts/piece.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
 #include <numeric>

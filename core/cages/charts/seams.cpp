@@ -1,4 +1,4 @@
-#include "charts/seams.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
 #include <numeric>

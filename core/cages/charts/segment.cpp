@@ -1,4 +1,4 @@
-#include "charts/segment.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,13 +5,8 @@
 #include <functional>
 #include <utility>
 
-#include "charts/flatten.hpp"
-#include "charts/limbs.hpp"
-#include "charts/merge.hpp"
-#include "charts/pack.hpp"
-#include "charts/seams.hpp"
-#include "charts/segment.hpp"
 #include "charts/slim.hpp"
+#include "charts/steps.hpp"
 
 namespace cagecast::cages {
 

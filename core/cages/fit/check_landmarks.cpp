@@ -1,4 +1,4 @@
-#include "fit/check_landmarks.hpp"
+#include "fit/steps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fit/eye_holes.hpp"
+#include "fit/steps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
-#include "fit/finish.hpp"
+#include "fit/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fit/relax.hpp"
 #include "mesh/outer_points.hpp"
 
 namespace cagecast::cages {

@@ -2,14 +2,7 @@
 #include <tuple>
 
 #include "cagecast/cages.hpp"
-#include "fit/anchors.hpp"
-#include "fit/bones.hpp"
-#include "fit/check_landmarks.hpp"
-#include "fit/eye_holes.hpp"
-#include "fit/finish.hpp"
-#include "fit/relax.hpp"
-#include "fit/template_cage.hpp"
-#include "fit/tighten.hpp"
+#include "fit/steps.hpp"
 #include "fit/warp.hpp"
 #include "hull/hull.hpp"
 #include "landmarks/parts.hpp"

@@ -1,4 +1,4 @@
-#include "fit/relax.hpp"
+#include "fit/steps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fit/template_cage.hpp"
+#include "fit/steps.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "fit/tighten.hpp"
+#include "fit/steps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "hull/distance_band.hpp"
+#include "hull/steps.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hull/distance_band.hpp"
-#include "hull/grid.hpp"
-#include "hull/iso_surface.hpp"
+#include "hull/steps.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/progress.hpp"
 

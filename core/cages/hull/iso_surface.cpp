@@ -1,4 +1,4 @@
-#include "hull/iso_surface.hpp"
+#include "hull/steps.hpp"
 #include "mesh/progress.hpp"
 
 #include <algorithm>

@@ -22,10 +22,10 @@ HeadFrame guessFrame(const TriangleMesh& mesh, const MirrorPlane& plane, double 
   frame.unit = diagonalOf(mesh);
   double rear = 0;
   for (int round = 0; round < 4; ++round) {
-    constexpr double kHead = 0.45;
+    constexpr double kTopShare = 0.45;
     Range depth;
     for (const Vec3& p : mesh.positions)
-      if (p.y >= top - kHead * frame.unit) depth.add(dot(frame.front, p));
+      if (p.y >= top - kTopShare * frame.unit) depth.add(dot(frame.front, p));
     frame.unit = std::min(frame.unit, (depth.high - depth.low) / kHeadDepth);
     rear = depth.low;
   }

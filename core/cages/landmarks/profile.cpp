@@ -89,11 +89,11 @@ double firstFold(const Profile& profile, double top, double bottom) {
 /// The first sharp crease below the fold under the nose; the fold above the chin may be deeper, but is wider.
 std::optional<MouthLine> mouth(const Profile& profile, double subnasale) {
   constexpr double kNear = 0.01, kFar = 0.13;  ///< Below the fold.
-  constexpr double kCrease = 0.006;            ///< Half its width.
+  constexpr double kHalfCrease = 0.006;        ///< Half its width.
   constexpr double kMin = 0.0012;              ///< Its depth.
   constexpr double kOpen = 0.02;               ///< Deeper ones are gaps.
   const auto depth = [&](double y) {
-    const double value = profile.sharp.hollow(y, kCrease);
+    const double value = profile.sharp.hollow(y, kHalfCrease);
     return std::isnan(value) || value > kOpen ? kOpen : value;
   };
   double deepest = 0;

@@ -1,4 +1,4 @@
-#include "make/enclose.hpp"
+#include "make/steps.hpp"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/tolerances.hpp"
-#include "make/subdivide.hpp"
+#include "make/steps.hpp"
 #include "mesh/disjoint_sets.hpp"
 #include "mesh/neighbours.hpp"
 #include "mesh/progress.hpp"

@@ -1,4 +1,4 @@
-#include "make/neck.hpp"
+#include "make/steps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "make/simplify.hpp"
+#include "make/steps.hpp"
 
 #include <meshoptimizer.h>
 

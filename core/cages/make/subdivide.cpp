@@ -1,4 +1,4 @@
-#include "make/subdivide.hpp"
+#include "make/steps.hpp"
 
 #include <algorithm>
 #include <array>

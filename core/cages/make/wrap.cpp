@@ -1,4 +1,4 @@
-#include "make/wrap.hpp"
+#include "make/steps.hpp"
 
 #include "mesh/progress.hpp"
 #include "mesh/samples.hpp"

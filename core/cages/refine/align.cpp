@@ -1,6 +1,6 @@
 // Tried and left out: trimming at a fixed distance, which lets the long flanks of a car outvote its front and back;
 // growth in every case, which around a ball, or for a cage that is bent, trades the offset for size.
-#include "refine/align.hpp"
+#include "refine/steps.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "refine/bend.hpp"
+#include "refine/steps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,7 @@
 #include "mesh/bounds.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/progress.hpp"
-#include "refine/align.hpp"
-#include "refine/bend.hpp"
+#include "refine/steps.hpp"
 
 namespace cagecast::cages {
 

@@ -9,11 +9,9 @@
 #include <random>
 #include <set>
 
-#include "charts/flatten.hpp"
+#include "charts/steps.hpp"
 #include "charts/min_cut.hpp"
-#include "charts/segment.hpp"
 #include "charts/slim.hpp"
-#include "charts/ticker.hpp"
 #include "hull/hull.hpp"
 #include "seed.hpp"
 #include "shapes.hpp"
@@ -198,7 +196,7 @@ TEST_CASE("faults of a layout are found", "[cages][charts]") {
 
 TEST_CASE("shapes of any topology are laid out", "[cages][charts]") {
   Layout layout;
-  for (const Kind kind : {Kind::automatic, Kind::head, Kind::body, Kind::prop}) {
+  for (const Kind kind : {Kind::head, Kind::body, Kind::prop}) {
     CAPTURE(static_cast<int>(kind));
     CHECK(checked(box(), kind, layout).coverage > 0.25);
     checked(torus(16, 8), kind, layout);
@@ -264,13 +262,13 @@ TEST_CASE("bad meshes are laid out", "[cages][charts]") {
   std::uniform_real_distribution<double> share(-1, 1);
   Layout layout;
   checked({}, Kind::head, layout);
-  for (int round = 0; round < 12; ++round) {
+  for (int round = 0; round < 8; ++round) {
     const TriangleMesh whole = round % 2 == 0 ? torus(14, 10) : egg(false);
     TriangleMesh mesh = whole;
     mesh.triangles.clear();
     std::uniform_int_distribution<std::size_t> any(0, whole.triangles.size() - 1);
     for (const Triangle3& t : whole.triangles)
-      if (share(random) < -0.8 + 0.15 * round) mesh.triangles.push_back(t);
+      if (share(random) < -0.8 + 0.22 * round) mesh.triangles.push_back(t);
     // Fins, twice the same triangle, and turned ones: edges shared by more than two.
     for (int i = 0; i < round; ++i) {
       const Triangle3 t = whole.triangles[any(random)];

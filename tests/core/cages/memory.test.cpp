@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kForever = std::numeric_limits<std::size_t>::max();
 /// Calls that fail in each way: most of a call's thousands of allocations are made in the same loops.
-constexpr std::size_t kCalls = 4;
+constexpr std::size_t kCalls = 3;
 
 /// Lets `call` run out of memory at allocations spread evenly over it.
 /// @param start  What lets allocations fail after so many.
@@ -49,8 +49,8 @@ OwnedModel headWithEyes() {
 
 MakeOptions coarse() {
   MakeOptions options;
-  options.voxels = 24;
-  options.triangles = 100;
+  options.voxels = 20;
+  options.triangles = 60;
   return options;
 }
 

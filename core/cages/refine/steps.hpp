@@ -5,10 +5,12 @@
 #include <span>
 #include <vector>
 
+#include "cagecast/cages.hpp"
 #include "mesh/samples.hpp"
 #include "mesh/surface.hpp"
 #include "mesh/triangle_mesh.hpp"
 
+/// The steps of a refinement, each in a file of its own.
 namespace cagecast::cages {
 
 /// What a cage is placed around.
@@ -61,5 +63,24 @@ class RobustScale {
   double finest_;
   bool settled_ = false;
 };
+
+enum class Growth : std::uint8_t { free, none };
+
+/// How far a cage may be moved.
+struct AlignLimits {
+  Growth growth;  ///< Whether it may be enlarged or shrunk.
+  double reach;   ///< How far off it may be, as a share of the diagonal.
+};
+
+/// Moves, turns and, if it may, enlarges or shrinks a cage so that its gaps become as even as possible.
+/// @return false if `progress` cancelled it; it gets shares from 0 to 1.
+bool alignCage(const Target& target, const std::vector<SurfaceSample>& spots, const AlignLimits& limits,
+               const Progress& progress, TriangleMesh& cage);
+
+/// Bends a cage that lies about where it belongs so that its gaps become even: by a smooth motion of its vertices.
+/// @param reach  How far off the cage may be, as a share of the diagonal.
+/// @return false if `progress` cancelled it; it gets shares from 0 to 1.
+bool bendCage(const Target& target, const std::vector<SurfaceSample>& spots, double reach, const Progress& progress,
+              TriangleMesh& cage);
 
 }  // namespace cagecast::cages
