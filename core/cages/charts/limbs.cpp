@@ -1,7 +1,6 @@
 #include "charts/steps.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>

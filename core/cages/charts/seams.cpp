@@ -1,7 +1,6 @@
 #include "charts/steps.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "charts/shortest_ways.hpp"

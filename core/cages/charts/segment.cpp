@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <utility>
 
 #include "charts/min_cut.hpp"
 #include "charts/shortest_ways.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "charts/slim.hpp"
@@ -46,32 +45,6 @@ constexpr SeamStart kSeamStarts[] = {{1, 0, 1}, {1, -0.6, 1}, {1, 0.5, 1.15}, {-
 /// How far the work is when all pieces are flat, and when they are joined.
 constexpr double kFlatShare = 0.6, kJoinedShare = 0.9;
 
-/// What all steps share.
-class Unwrapper {
- public:
-  Unwrapper(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& ticker)
-      : options_(options), ticker_(ticker), whole_(static_cast<double>(mesh.triangles.size())) {}
-
-  /// @return false if cancelled.
-  bool layOut(Piece piece);
-  bool layOutHead(Piece piece);
-  bool layOutBody(const Piece& piece, std::size_t mostLimbs);
-  bool layOutProp(const Piece& piece);
-
-  std::vector<Chart>& charts() { return charts_; }
-
- private:
-  const UnwrapOptions& options_;
-  Ticker& ticker_;
-  double whole_, done_ = 0;
-  std::vector<Chart> charts_;
-
-  [[nodiscard]] SeamCost middleCost(const TriangleMesh& mesh, double frontCost) const;
-  [[nodiscard]] SeamCost insideCost(const TriangleMesh& body, const TriangleMesh& limb) const;
-  bool layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost);
-  void accept(Chart chart);
-};
-
 Vec3 centreOf(const TriangleMesh& mesh) {
   Vec3 sum{0, 0, 0};
   double whole = 0;
@@ -81,34 +54,6 @@ Vec3 centreOf(const TriangleMesh& mesh) {
     for (const std::uint32_t v : t) sum = sum + area / 3 * mesh.positions[v];
   }
   return whole > 0 ? 1 / whole * sum : Vec3{0, 0, 0};
-}
-
-void Unwrapper::accept(Chart chart) {
-  done_ += static_cast<double>(chart.piece.triangleOf.size());
-  ticker_.reach(kFlatShare * done_ / whole_);
-  charts_.push_back(std::move(chart));
-}
-
-/// Seams keep to the plane between left and right, and away from the front.
-SeamCost Unwrapper::middleCost(const TriangleMesh& mesh, double frontCost) const {
-  const Vec3 centre = centreOf(mesh), side = cross(options_.up, options_.front), front = options_.front;
-  const double size = diagonalOf(mesh);
-  return [=](const TriangleMesh& of, std::uint32_t from, std::uint32_t to) {
-    const Vec3 middle = 0.5 * (of.positions[from] + of.positions[to]) - centre;
-    const double aside = std::abs(dot(middle, side)) / size, ahead = std::max(0.0, dot(middle, front)) / size;
-    return 1 + 20 * aside + frontCost * ahead;
-  };
-}
-
-/// Seams on a limb keep to where it faces the body's middle, down and back.
-SeamCost Unwrapper::insideCost(const TriangleMesh& body, const TriangleMesh& limb) const {
-  const Vec3 side = cross(options_.up, options_.front);
-  const double aside = dot(centreOf(limb) - centreOf(body), side);
-  const Vec3 shown = (aside < 0 ? -1.0 : 1.0) * side + 0.5 * (options_.up + options_.front);
-  const Vec3 outward = 1 / length(shown) * shown;
-  return [outward, normals = vertexNormals(limb)](const TriangleMesh&, std::uint32_t from, std::uint32_t to) {
-    return 0.2 + std::max(0.0, 1 + 0.5 * dot(normals[from] + normals[to], outward));
-  };
 }
 
 /// The vertex around which a chart is stretched most.
@@ -144,22 +89,6 @@ Chart flattenWithSeams(Piece piece, Ticker& ticker) {
   return chart;
 }
 
-bool Unwrapper::layOut(Piece piece) {
-  std::vector<Piece> waiting;
-  waiting.push_back(std::move(piece));
-  while (!waiting.empty()) {
-    Chart chart = flattenWithSeams(std::move(waiting.back()), ticker_);
-    waiting.pop_back();
-    if (ticker_.cancelled()) return false;
-    if ((chart.valid && chart.energy < kMaxEnergy) || chart.piece.mesh.triangles.size() < 2) {
-      accept(std::move(chart));
-      continue;
-    }
-    for (Piece& half : splitBy(chart.piece, halvesOf(chart.piece.mesh))) waiting.push_back(std::move(half));
-  }
-  return true;
-}
-
 /// The border of the neck: of the long loops the lowest.
 std::vector<std::uint32_t> neckOf(const TriangleMesh& mesh, const Vec3& up) {
   const auto loops = loopsOf(mesh, halfEdgeTwins(mesh));
@@ -193,74 +122,133 @@ std::uint32_t furthest(const TriangleMesh& mesh, const Vec3& direction, const Ve
   return best;
 }
 
-bool Unwrapper::layOutHead(Piece piece) {
-  const Vec3 up = options_.up, side = cross(up, options_.front);
-  std::vector<std::uint32_t> neck = neckOf(piece.mesh, up);
-  if (neck.empty()) neck.push_back(furthest(piece.mesh, -1.0 * up, side));
-  Chart best;
-  double least = 0;
-  for (const SeamStart& start : kSeamStarts) {
-    const Vec3 direction = start.up * up + start.front * options_.front;
-    const std::uint32_t first = furthest(piece.mesh, direction, side);
-    // A seam at the throat keeps to the middle only.
-    const SeamCost cost = middleCost(piece.mesh, start.up > 0 ? kFrontCost : 0);
-    Chart chart = flatten(cutToDisk(cutBetween(piece, {&first, 1}, neck, cost), {}), ticker_);
-    if (ticker_.cancelled()) return false;
-    const double fault = start.reluctance * (chart.energy - 4);
-    if (!chart.valid || (best.valid && fault >= least)) continue;
-    best = std::move(chart);
-    least = fault;
-  }
-  if (best.valid && best.energy < kMaxEnergy) {
-    accept(std::move(best));
+/// What all steps share. Functions return false if cancelled.
+class Unwrapper {
+ public:
+  Unwrapper(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& ticker)
+      : options_(options), ticker_(ticker), whole_(static_cast<double>(mesh.triangles.size())) {}
+
+  std::vector<Chart>& charts() { return charts_; }
+
+  bool layOut(Piece piece) {
+    std::vector<Piece> waiting;
+    waiting.push_back(std::move(piece));
+    while (!waiting.empty()) {
+      Chart chart = flattenWithSeams(std::move(waiting.back()), ticker_);
+      waiting.pop_back();
+      if (ticker_.cancelled()) return false;
+      if ((chart.valid && chart.energy < kMaxEnergy) || chart.piece.mesh.triangles.size() < 2) {
+        accept(std::move(chart));
+        continue;
+      }
+      for (Piece& half : splitBy(chart.piece, halvesOf(chart.piece.mesh))) waiting.push_back(std::move(half));
+    }
     return true;
   }
-  return layOut(best.valid ? std::move(best.piece) : std::move(piece));
-}
 
-bool Unwrapper::layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost) {
-  const auto loops = loopsOf(piece.mesh, halfEdgeTwins(piece.mesh));
-  const auto start = std::find(piece.vertexOf.begin(), piece.vertexOf.end(), tip);
-  if (loops.empty() || start == piece.vertexOf.end()) return layOut(piece);
-  std::vector<std::uint32_t> rim;
-  for (const std::uint32_t h : loops[0]) rim.push_back(originOf(piece.mesh, h));
-  const auto first = static_cast<std::uint32_t>(start - piece.vertexOf.begin());
-  return layOut(cutBetween(piece, {&first, 1}, rim, cost));
-}
-
-bool Unwrapper::layOutBody(const Piece& body, std::size_t mostLimbs) {
-  const Limbs limbs = limbsOf(body.mesh, mostLimbs);
-  if (limbs.tips.size() < 2) return layOutProp(body);
-  const Vec3 centre = centreOf(body.mesh), side = cross(options_.up, options_.front);
-  std::uint32_t head = kNone;
-  double highest = 0;
-  for (std::uint32_t i = 0; i < limbs.tips.size(); ++i) {
-    const Vec3 tip = body.mesh.positions[limbs.tips[i]] - centre;
-    const double height = dot(tip, options_.up) - 2 * std::abs(dot(tip, side));
-    if (height > highest) highest = height, head = i + 1;
-  }
-  for (std::uint32_t label = 0; label <= limbs.tips.size(); ++label) {
-    for (Piece& piece : piecesOf(body, limbs.labels, label)) {
-      bool going = true;
-      if (label == 0) {
-        for (Piece& half : splitBy(piece, frontAndBackOf(piece.mesh, options_.front, ticker_)))
-          going = going && layOut(std::move(half));
-      } else if (label == head) {
-        going = layOutHead(std::move(piece));
-      } else {
-        going = layOutLimb(piece, body.vertexOf[limbs.tips[label - 1]], insideCost(body.mesh, piece.mesh));
-      }
-      if (!going) return false;
+  bool layOutHead(Piece piece) {
+    const Vec3 up = options_.up, side = cross(up, options_.front);
+    std::vector<std::uint32_t> neck = neckOf(piece.mesh, up);
+    if (neck.empty()) neck.push_back(furthest(piece.mesh, -1.0 * up, side));
+    Chart best;
+    double least = 0;
+    for (const SeamStart& start : kSeamStarts) {
+      const Vec3 direction = start.up * up + start.front * options_.front;
+      const std::uint32_t first = furthest(piece.mesh, direction, side);
+      // A seam at the throat keeps to the middle only.
+      const SeamCost cost = middleCost(piece.mesh, start.up > 0 ? kFrontCost : 0);
+      Chart chart = flatten(cutToDisk(cutBetween(piece, {&first, 1}, neck, cost), {}), ticker_);
+      if (ticker_.cancelled()) return false;
+      const double fault = start.reluctance * (chart.energy - 4);
+      if (!chart.valid || (best.valid && fault >= least)) continue;
+      best = std::move(chart);
+      least = fault;
     }
+    if (best.valid && best.energy < kMaxEnergy) {
+      accept(std::move(best));
+      return true;
+    }
+    return layOut(best.valid ? std::move(best.piece) : std::move(piece));
   }
-  return true;
-}
 
-bool Unwrapper::layOutProp(const Piece& piece) {
-  for (Piece& side : splitBy(piece, sidesOf(piece, options_, ticker_)))
-    if (!layOut(std::move(side))) return false;
-  return true;
-}
+  bool layOutBody(const Piece& body, std::size_t mostLimbs) {
+    const Limbs limbs = limbsOf(body.mesh, mostLimbs);
+    if (limbs.tips.size() < 2) return layOutProp(body);
+    const Vec3 centre = centreOf(body.mesh), side = cross(options_.up, options_.front);
+    std::uint32_t head = kNone;
+    double highest = 0;
+    for (std::uint32_t i = 0; i < limbs.tips.size(); ++i) {
+      const Vec3 tip = body.mesh.positions[limbs.tips[i]] - centre;
+      const double height = dot(tip, options_.up) - 2 * std::abs(dot(tip, side));
+      if (height > highest) highest = height, head = i + 1;
+    }
+    for (std::uint32_t label = 0; label <= limbs.tips.size(); ++label) {
+      for (Piece& piece : piecesOf(body, limbs.labels, label)) {
+        bool going = true;
+        if (label == 0) {
+          for (Piece& half : splitBy(piece, frontAndBackOf(piece.mesh, options_.front, ticker_)))
+            going = going && layOut(std::move(half));
+        } else if (label == head) {
+          going = layOutHead(std::move(piece));
+        } else {
+          going = layOutLimb(piece, body.vertexOf[limbs.tips[label - 1]], insideCost(body.mesh, piece.mesh));
+        }
+        if (!going) return false;
+      }
+    }
+    return true;
+  }
+
+  bool layOutProp(const Piece& piece) {
+    for (Piece& side : splitBy(piece, sidesOf(piece, options_, ticker_)))
+      if (!layOut(std::move(side))) return false;
+    return true;
+  }
+
+ private:
+  void accept(Chart chart) {
+    done_ += static_cast<double>(chart.piece.triangleOf.size());
+    ticker_.reach(kFlatShare * done_ / whole_);
+    charts_.push_back(std::move(chart));
+  }
+
+  /// Seams keep to the plane between left and right, and away from the front.
+  [[nodiscard]] SeamCost middleCost(const TriangleMesh& mesh, double frontCost) const {
+    const Vec3 centre = centreOf(mesh), side = cross(options_.up, options_.front), front = options_.front;
+    const double size = diagonalOf(mesh);
+    return [=](const TriangleMesh& of, std::uint32_t from, std::uint32_t to) {
+      const Vec3 middle = 0.5 * (of.positions[from] + of.positions[to]) - centre;
+      const double aside = std::abs(dot(middle, side)) / size, ahead = std::max(0.0, dot(middle, front)) / size;
+      return 1 + 20 * aside + frontCost * ahead;
+    };
+  }
+
+  /// Seams on a limb keep to where it faces the body's middle, down and back.
+  [[nodiscard]] SeamCost insideCost(const TriangleMesh& body, const TriangleMesh& limb) const {
+    const Vec3 side = cross(options_.up, options_.front);
+    const double aside = dot(centreOf(limb) - centreOf(body), side);
+    const Vec3 shown = (aside < 0 ? -1.0 : 1.0) * side + 0.5 * (options_.up + options_.front);
+    const Vec3 outward = 1 / length(shown) * shown;
+    return [outward, normals = vertexNormals(limb)](const TriangleMesh&, std::uint32_t from, std::uint32_t to) {
+      return 0.2 + std::max(0.0, 1 + 0.5 * dot(normals[from] + normals[to], outward));
+    };
+  }
+
+  bool layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost) {
+    const auto loops = loopsOf(piece.mesh, halfEdgeTwins(piece.mesh));
+    const auto start = std::find(piece.vertexOf.begin(), piece.vertexOf.end(), tip);
+    if (loops.empty() || start == piece.vertexOf.end()) return layOut(piece);
+    std::vector<std::uint32_t> rim;
+    for (const std::uint32_t h : loops[0]) rim.push_back(originOf(piece.mesh, h));
+    const auto first = static_cast<std::uint32_t>(start - piece.vertexOf.begin());
+    return layOut(cutBetween(piece, {&first, 1}, rim, cost));
+  }
+
+  const UnwrapOptions& options_;
+  Ticker& ticker_;
+  double whole_, done_ = 0;
+  std::vector<Chart> charts_;
+};
 
 /// Turns a chart so that up on the model is up, or for charts that lie flat front is up.
 void standUpright(Chart& chart, const UnwrapOptions& options) {

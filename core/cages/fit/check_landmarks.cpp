@@ -1,6 +1,5 @@
 #include "fit/steps.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "mesh/limits.hpp"

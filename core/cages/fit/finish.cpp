@@ -1,7 +1,6 @@
 #include "fit/steps.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "mesh/outer_points.hpp"
 

@@ -10,7 +10,6 @@
 #include "mesh/limits.hpp"
 #include "mesh/part_names.hpp"
 #include "mesh/progress.hpp"
-
 /// The fit: landmarks or bones say where everything belongs, a smooth map carries the cage there, and the hull of the
 /// target draws it onto its surface without letting it slide. All in the space of the template, so that how the target
 /// is turned and scaled makes no difference.
@@ -86,17 +85,141 @@ class Fit {
   Fit(const Template& from, const Model& model, const FitOptions& options, const Progress& progress)
       : from_(from), model_(model), options_(options), progress_(progress) {}
 
-  Status run(FittedCage& out);
+  Status run(FittedCage& out) {
+    TemplateCage cage = prepareTemplate(from_);
+    if (const Status status = pair(cage, out); !status.ok()) return status;
+    align();
+    const FitSettings& settings = bones_.empty() ? kHead : kBody;
+    cage.offset = std::max(cage.offset, kMinOffset * cage.diagonal);
+    readTarget();
+    if (skin_.empty()) return {Code::nothingToPaint, Argument::model};
+    const std::vector<Anchor> anchors = anchorsOf(cage);
+    if (anchors.empty())
+      return {Code::tooFewJoints, Argument::landmarks, static_cast<std::uint32_t>(pairs_.from.size())};
+    if (!report(progress_, kLandmarksEnd, "hull")) return kAborted;
+    TriangleMesh hull;
+    const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels,
+                             meanOf(positionsOf(pairs_.to))};
+    if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return kAborted;
+    if (hull.empty()) return {Code::noVolume, Argument::model};
+    std::vector<Vec3> positions = start(cage, anchors);
+    if (!draw(cage, hull, settings, positions)) return kAborted;
+    if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMaxBeyond * cage.diagonal))
+      return {Code::noFit, Argument::model};
+    write(cage, positions, out);
+    return report(progress_, 1, "done") ? Status{} : kAborted;
+  }
 
  private:
-  [[nodiscard]] Status pair(const TemplateCage& cage, FittedCage& out);
-  void align();
-  void readTarget();
-  [[nodiscard]] std::vector<Anchor> anchorsOf(const TemplateCage& cage) const;
-  [[nodiscard]] std::vector<Vec3> start(const TemplateCage& cage, const std::vector<Anchor>& anchors) const;
+  /// The pairs of points that the cage is moved by, once it is bent by the bones: no two of them at one spot.
+  [[nodiscard]] std::vector<Anchor> anchorsOf(const TemplateCage& cage) const {
+    const Axes axes = axesOf(from_.landmarks);
+    std::vector<Anchor> anchors = landmarkAnchors(pairs_.from, pairs_.to, !bones_.empty());
+    for (const Anchor& anchor : jawAnchors(from_.landmarks, pairs_.to)) anchors.push_back(anchor);
+    for (const Anchor& anchor : eyeAnchors(pairs_.from, pairs_.to, axes)) anchors.push_back(anchor);
+    if (bones_.empty())
+      for (const Anchor& anchor : rimAnchors(cage, skin_, axes)) anchors.push_back(anchor);
+    std::vector<Anchor> apart;
+    for (Anchor anchor : anchors) {
+      if (!bones_.empty()) anchor.from = bend(anchor.from, bones_);
+      const bool isTwice = std::any_of(apart.begin(), apart.end(), [&](const Anchor& other) {
+        return length(other.from - anchor.from) < kOneSpot * cage.diagonal;
+      });
+      if (!isTwice) apart.push_back(anchor);
+    }
+    return apart;
+  }
+
+  /// Where the cage belongs by landmarks and bones alone.
+  [[nodiscard]] std::vector<Vec3> start(const TemplateCage& cage, const std::vector<Anchor>& anchors) const {
+    std::vector<Vec3> positions = bones_.empty() ? cage.mesh.positions : bend(cage, bones_);
+    const Warp warp(anchors, cage.diagonal);
+    for (Vec3& p : positions) p = warp(p);
+    return positions;
+  }
+
+  /// Pairs the landmarks of the template with those that were given or are found.
+  [[nodiscard]] Status pair(const TemplateCage& cage, FittedCage& out) {
+    const std::vector<Landmark>& given = options_.landmarks;
+    FoundLandmarks found;
+    const bool allGiven = std::all_of(from_.landmarks.begin(), from_.landmarks.end(), [&](const Landmark& landmark) {
+      return findLandmark(given, landmark.name) != nullptr;
+    });
+    if (!allGiven) {
+      const Progress finding = partOf(progress_, 0, kLandmarksEnd);
+      if (const Status status = findLandmarks(model_, finding, found); !status.ok()) return status;
+    }
+    if (const Status status = pairLandmarks(from_, given, found.landmarks, pairs_, out); !status.ok()) return status;
+    Status status = checkJoints(pairs_.to, boundsOf(model_.mesh));
+    if (status.ok()) status = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);
+    if (!status.ok() && status.code != Code::smallSkeleton) status.at = pairs_.places[status.at];
+    return status;
+  }
+
+  /// Brings the target's landmarks into the template's space, and finds the bones.
+  void align() {
+    map_ = fitSimilarity(positionsOf(pairs_.from), positionsOf(pairs_.to));
+    for (Landmark& landmark : pairs_.to) landmark.position = toPosition(map_.inverse(positionOf(landmark)));
+    bones_ = bonesOf(pairs_.from, pairs_.to);
+  }
+
+  /// Draws the cage onto the hull, and pushes it out until the target is inside. @return false if cancelled.
   [[nodiscard]] bool draw(const TemplateCage& cage, const TriangleMesh& hull, const FitSettings& settings,
-                          std::vector<Vec3>& positions) const;
-  void write(const TemplateCage& cage, const std::vector<Vec3>& positions, FittedCage& out) const;
+                          std::vector<Vec3>& positions) const {
+    for (int pass = 0; pass < settings.passes; ++pass) {
+      if (pass > 0) relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
+      positions = tighten(cage, positions, hull, settings.tighten, [&](double share) {
+        return report(progress_, kTightenStart + (pass + share) / settings.passes * (kTightenEnd - kTightenStart),
+                      "fit");
+      });
+      if (positions.empty()) return false;
+    }
+    const std::vector<Vec3> tracks = fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
+    if (!report(progress_, kTightenEnd, "fit")) return false;
+    relax(cage, tracks, positions);
+    return pushOut(
+        cage, {skin_, hull}, tracks,
+        [&](double share) { return report(progress_, kTightenEnd + share * (1 - kTightenEnd), "push out"); },
+        positions);
+  }
+
+  /// Writes the cage in the target's space.
+  void write(const TemplateCage& cage, const std::vector<Vec3>& positions, FittedCage& out) const {
+    out.positions.clear();
+    for (const std::uint32_t v : cage.vertexOf) {
+      const Vec3 p = map_(positions[v]);
+      for (const double x : {p.x, p.y, p.z}) out.positions.push_back(static_cast<float>(x));
+    }
+    out.uvs.assign(from_.cage.uvs.begin(), from_.cage.uvs.end());
+    out.indices.assign(from_.cage.indices.begin(), from_.cage.indices.end());
+    out.kind = from_.kind;
+  }
+
+  /// Reads the target in the space of the template.
+  void readTarget() {
+    std::vector<std::uint32_t> triangleOf;
+    TriangleMesh mesh = weldExactly(model_.mesh, nullptr, &triangleOf);
+    for (Vec3& p : mesh.positions) p = map_.inverse(p);
+    const std::vector<bool> kept = keptTriangles(model_, options_.exclude);
+    const Figure parts = readFigure(model_);
+    std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size()), isCover(mesh.triangles.size());
+    figure_ = {};
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const bool isEye = parts.roles[t] == Role::eye;
+      isSkin[t] = kept[triangleOf[t]];
+      isFigure[t] = isSkin[t] || isEye;
+      isCover[t] = !isFigure[t];
+      if (isCover[t]) {
+        figure_.coverComponents.push_back(parts.components[t]);
+        continue;
+      }
+      figure_.isEye.push_back(isEye);
+      figure_.components.push_back(parts.components[t]);
+    }
+    skin_ = subset(mesh, isSkin);
+    figure_.mesh = subset(mesh, isFigure);
+    figure_.covers = subset(mesh, isCover);
+  }
 
   const Template& from_;
   const Model& model_;
@@ -108,137 +231,6 @@ class Fit {
   TriangleMesh skin_;        ///< The target without excluded parts, in the template's space.
   EyedFigure figure_;        ///< Eyes fill their sockets.
 };
-
-void Fit::readTarget() {
-  std::vector<std::uint32_t> triangleOf;
-  TriangleMesh mesh = weldExactly(model_.mesh, nullptr, &triangleOf);
-  for (Vec3& p : mesh.positions) p = map_.inverse(p);
-  const std::vector<bool> kept = keptTriangles(model_, options_.exclude);
-  const Figure parts = readFigure(model_);
-  std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size()), isCover(mesh.triangles.size());
-  figure_ = {};
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const bool isEye = parts.roles[t] == Role::eye;
-    isSkin[t] = kept[triangleOf[t]];
-    isFigure[t] = isSkin[t] || isEye;
-    isCover[t] = !isFigure[t];
-    if (isCover[t]) {
-      figure_.coverComponents.push_back(parts.components[t]);
-      continue;
-    }
-    figure_.isEye.push_back(isEye);
-    figure_.components.push_back(parts.components[t]);
-  }
-  skin_ = subset(mesh, isSkin);
-  figure_.mesh = subset(mesh, isFigure);
-  figure_.covers = subset(mesh, isCover);
-}
-
-/// The pairs of points that the cage is moved by, once it is bent by the bones: no two of them at one spot.
-std::vector<Anchor> Fit::anchorsOf(const TemplateCage& cage) const {
-  const Axes axes = axesOf(from_.landmarks);
-  std::vector<Anchor> anchors = landmarkAnchors(pairs_.from, pairs_.to, !bones_.empty());
-  for (const Anchor& anchor : jawAnchors(from_.landmarks, pairs_.to)) anchors.push_back(anchor);
-  for (const Anchor& anchor : eyeAnchors(pairs_.from, pairs_.to, axes)) anchors.push_back(anchor);
-  if (bones_.empty())
-    for (const Anchor& anchor : rimAnchors(cage, skin_, axes)) anchors.push_back(anchor);
-  std::vector<Anchor> apart;
-  for (Anchor anchor : anchors) {
-    if (!bones_.empty()) anchor.from = bend(anchor.from, bones_);
-    const bool isTwice = std::any_of(apart.begin(), apart.end(), [&](const Anchor& other) {
-      return length(other.from - anchor.from) < kOneSpot * cage.diagonal;
-    });
-    if (!isTwice) apart.push_back(anchor);
-  }
-  return apart;
-}
-
-/// Where the cage belongs by landmarks and bones alone.
-std::vector<Vec3> Fit::start(const TemplateCage& cage, const std::vector<Anchor>& anchors) const {
-  std::vector<Vec3> positions = bones_.empty() ? cage.mesh.positions : bend(cage, bones_);
-  const Warp warp(anchors, cage.diagonal);
-  for (Vec3& p : positions) p = warp(p);
-  return positions;
-}
-
-/// Pairs the landmarks of the template with those that were given or are found.
-Status Fit::pair(const TemplateCage& cage, FittedCage& out) {
-  const std::vector<Landmark>& given = options_.landmarks;
-  FoundLandmarks found;
-  const bool allGiven = std::all_of(from_.landmarks.begin(), from_.landmarks.end(), [&](const Landmark& landmark) {
-    return findLandmark(given, landmark.name) != nullptr;
-  });
-  if (!allGiven) {
-    const Progress finding = partOf(progress_, 0, kLandmarksEnd);
-    if (const Status status = findLandmarks(model_, finding, found); !status.ok()) return status;
-  }
-  if (const Status status = pairLandmarks(from_, given, found.landmarks, pairs_, out); !status.ok()) return status;
-  Status status = checkJoints(pairs_.to, boundsOf(model_.mesh));
-  if (status.ok()) status = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);
-  if (!status.ok() && status.code != Code::smallSkeleton) status.at = pairs_.places[status.at];
-  return status;
-}
-
-/// Brings the target's landmarks into the template's space, and finds the bones.
-void Fit::align() {
-  map_ = fitSimilarity(positionsOf(pairs_.from), positionsOf(pairs_.to));
-  for (Landmark& landmark : pairs_.to) landmark.position = toPosition(map_.inverse(positionOf(landmark)));
-  bones_ = bonesOf(pairs_.from, pairs_.to);
-}
-
-/// Draws the cage onto the hull, and pushes it out until the target is inside. @return false if cancelled.
-bool Fit::draw(const TemplateCage& cage, const TriangleMesh& hull, const FitSettings& settings,
-               std::vector<Vec3>& positions) const {
-  for (int pass = 0; pass < settings.passes; ++pass) {
-    if (pass > 0) relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
-    positions = tighten(cage, positions, hull, settings.tighten, [&](double share) {
-      return report(progress_, kTightenStart + (pass + share) / settings.passes * (kTightenEnd - kTightenStart), "fit");
-    });
-    if (positions.empty()) return false;
-  }
-  const std::vector<Vec3> tracks = fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
-  if (!report(progress_, kTightenEnd, "fit")) return false;
-  relax(cage, tracks, positions);
-  return pushOut(
-      cage, {skin_, hull}, tracks,
-      [&](double share) { return report(progress_, kTightenEnd + share * (1 - kTightenEnd), "push out"); }, positions);
-}
-
-/// Writes the cage in the target's space.
-void Fit::write(const TemplateCage& cage, const std::vector<Vec3>& positions, FittedCage& out) const {
-  out.positions.clear();
-  for (const std::uint32_t v : cage.vertexOf) {
-    const Vec3 p = map_(positions[v]);
-    for (const double x : {p.x, p.y, p.z}) out.positions.push_back(static_cast<float>(x));
-  }
-  out.uvs.assign(from_.cage.uvs.begin(), from_.cage.uvs.end());
-  out.indices.assign(from_.cage.indices.begin(), from_.cage.indices.end());
-  out.kind = from_.kind;
-}
-
-Status Fit::run(FittedCage& out) {
-  TemplateCage cage = prepareTemplate(from_);
-  if (const Status status = pair(cage, out); !status.ok()) return status;
-  align();
-  const FitSettings& settings = bones_.empty() ? kHead : kBody;
-  cage.offset = std::max(cage.offset, kMinOffset * cage.diagonal);
-  readTarget();
-  if (skin_.empty()) return {Code::nothingToPaint, Argument::model};
-  const std::vector<Anchor> anchors = anchorsOf(cage);
-  if (anchors.empty()) return {Code::tooFewJoints, Argument::landmarks, static_cast<std::uint32_t>(pairs_.from.size())};
-  if (!report(progress_, kLandmarksEnd, "hull")) return kAborted;
-  TriangleMesh hull;
-  const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels,
-                           meanOf(positionsOf(pairs_.to))};
-  if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return kAborted;
-  if (hull.empty()) return {Code::noVolume, Argument::model};
-  std::vector<Vec3> positions = start(cage, anchors);
-  if (!draw(cage, hull, settings, positions)) return kAborted;
-  if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMaxBeyond * cage.diagonal))
-    return {Code::noFit, Argument::model};
-  write(cage, positions, out);
-  return report(progress_, 1, "done") ? Status{} : kAborted;
-}
 
 }  // namespace
 

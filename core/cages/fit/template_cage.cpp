@@ -1,7 +1,5 @@
 #include "fit/steps.hpp"
 
-#include <algorithm>
-
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {

@@ -1,6 +1,5 @@
 #include "fit/warp.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "linear/dense.hpp"

@@ -3,7 +3,6 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <map>
 #include <tuple>
@@ -30,26 +29,19 @@ constexpr std::uint32_t kFinTriangles = 8;
 /// milliseconds.
 constexpr std::size_t kLastStepIndices = std::size_t{3} * 15000;
 
-/// The place in a loop that is farthest from a point.
-std::size_t farthestFrom(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, const Vec3& point) {
-  std::size_t farthest = 0;
-  double most = -1;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const double distance = length(mesh.positions[loop[i]] - point);
-    if (distance <= most) continue;
-    most = distance;
-    farthest = i;
-  }
-  return farthest;
-}
-
 /// Locks the vertices of a loop that keep its shape best: the one farthest from the polygon so far, again and again
 /// (Ramer 1972; Douglas, Peucker 1973).
 void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, double tolerance,
               std::vector<unsigned char>& locks) {
   const auto at = [&](std::size_t i) -> const Vec3& { return mesh.positions[loop[i % loop.size()]]; };
-  std::vector<std::size_t> chosen = {farthestFrom(mesh, loop, middleOf(mesh, loop))};
-  chosen.push_back(farthestFrom(mesh, loop, at(chosen[0])));
+  const auto farthestFrom = [&](const Vec3& point) {
+    const auto isNearer = [&](std::uint32_t a, std::uint32_t b) {
+      return length(mesh.positions[a] - point) < length(mesh.positions[b] - point);
+    };
+    return static_cast<std::size_t>(std::max_element(loop.begin(), loop.end(), isNearer) - loop.begin());
+  };
+  std::vector<std::size_t> chosen = {farthestFrom(middleOf(mesh, loop))};
+  chosen.push_back(farthestFrom(at(chosen[0])));
   const double size = length(at(chosen[0]) - at(chosen[1]));
   while (chosen.size() < std::min(kMaxLocks, loop.size())) {
     std::sort(chosen.begin(), chosen.end());
@@ -70,32 +62,23 @@ void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, 
   for (const std::size_t i : chosen) locks[loop[i]] = 1;
 }
 
-/// Removes pairs of triangles with the same corners, which collapses leave behind as flaps on an edge.
+/// Removes triangles with the same corners, which collapses leave behind as flaps on an edge.
 void removeFlaps(std::vector<Triangle3>& triangles) {
-  std::vector<std::pair<Triangle3, std::size_t>> sorted;
-  sorted.reserve(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    Triangle3 corners = triangles[t];
+  std::map<Triangle3, int> counts;
+  const auto count = [&](Triangle3 corners) -> int& {
     std::sort(corners.begin(), corners.end());
-    sorted.emplace_back(corners, t);
-  }
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<bool> isFlap(triangles.size(), false);
-  for (std::size_t i = 1; i < sorted.size(); ++i)
-    if (sorted[i].first == sorted[i - 1].first) isFlap[sorted[i].second] = isFlap[sorted[i - 1].second] = true;
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    if (!isFlap[t]) triangles[kept++] = triangles[t];
-  triangles.resize(kept);
+    return counts[corners];
+  };
+  for (const Triangle3& t : triangles) ++count(t);
+  std::erase_if(triangles, [&](const Triangle3& t) { return count(t) > 1; });
 }
 
 /// Removes fins: double sheets, flattened spikes, which collapses leave behind on an edge that four triangles share.
 void removeFins(TriangleMesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> trianglesAt;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+  std::map<std::uint64_t, std::vector<std::uint32_t>> trianglesAt;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i)
-      trianglesAt[std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])].push_back(t);
-  }
+      trianglesAt[edgeKey(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])].push_back(t);
   std::vector<std::uint32_t> sizes(mesh.triangles.size(), 0);
   DisjointSets pieces(mesh.triangles.size());
   for (const auto& [edge, triangles] : trianglesAt)

@@ -1,6 +1,5 @@
 #include "make/steps.hpp"
 
-#include <algorithm>
 #include <array>
 #include <unordered_map>
 
