@@ -24,13 +24,9 @@ void fillHoles(TriangleMesh& mesh) {
   const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   const auto loops = loopsOf(mesh, twins);
   for (std::size_t i = 1; i < loops.size(); ++i) {
-    Vec3 middle{0, 0, 0};
-    for (const std::uint32_t h : loops[i]) middle = middle + mesh.positions[originOf(mesh, h)];
     const auto hub = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.push_back(1 / static_cast<double>(loops[i].size()) * middle);
-    std::vector<Triangle3> fan;
-    for (const std::uint32_t h : loops[i]) fan.push_back({endOf(mesh, h), originOf(mesh, h), hub});
-    mesh.triangles.insert(mesh.triangles.end(), fan.begin(), fan.end());
+    mesh.positions.push_back(middleOf(mesh, originsOf(mesh, loops[i])));
+    for (const std::uint32_t h : loops[i]) mesh.triangles.push_back({endOf(mesh, h), originOf(mesh, h), hub});
   }
 }
 

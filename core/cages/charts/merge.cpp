@@ -40,17 +40,11 @@ Seams seamsOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& twins,
 
 /// Two charts as one piece, without the seam between them.
 std::vector<Piece> joined(const TriangleMesh& mesh, const Seams& seams, std::uint32_t a, std::uint32_t b) {
-  Piece part;
-  part.mesh.positions = mesh.positions;
-  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) part.vertexOf.push_back(v);
+  const auto isIn = [&](std::size_t t) { return seams.chartOf[t] == a || seams.chartOf[t] == b; };
   std::vector<bool> cut;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (seams.chartOf[t] != a && seams.chartOf[t] != b) continue;
-    part.mesh.triangles.push_back(mesh.triangles[t]);
-    part.triangleOf.push_back(t);
-    for (std::size_t i = 0; i < 3; ++i) cut.push_back(seams.inside[3 * t + i]);
-  }
-  return componentsOf(cutOpen(part, cut));
+  for (std::uint32_t h = 0; h < seams.inside.size(); ++h)
+    if (isIn(h / 3)) cut.push_back(seams.inside[h]);
+  return componentsOf(cutOpen(partOf(wholeOf(mesh), isIn), cut));
 }
 
 /// -1 or 1 if a chart faces mainly along an axis, 0 if it does not.

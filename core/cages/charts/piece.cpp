@@ -15,7 +15,7 @@ Piece wholeOf(const TriangleMesh& mesh) {
   std::iota(piece.vertexOf.begin(), piece.vertexOf.end(), 0u);
   piece.triangleOf.resize(mesh.triangles.size());
   std::iota(piece.triangleOf.begin(), piece.triangleOf.end(), 0u);
-  return cutOpen(piece, std::vector<bool>(3 * mesh.triangles.size()));
+  return piece;
 }
 
 Piece cutOpen(const Piece& piece, const std::vector<bool>& cut) {
@@ -76,15 +76,7 @@ std::vector<Piece> componentsOf(const Piece& piece) {
 }
 
 std::vector<Piece> piecesOf(const Piece& piece, std::span<const std::uint32_t> regions, std::uint32_t region) {
-  // Vertices that are not used are left out in the end.
-  Piece part;
-  part.mesh.positions = piece.mesh.positions;
-  part.vertexOf = piece.vertexOf;
-  for (std::size_t t = 0; t < regions.size(); ++t) {
-    if (regions[t] != region) continue;
-    part.mesh.triangles.push_back(piece.mesh.triangles[t]);
-    part.triangleOf.push_back(piece.triangleOf[t]);
-  }
+  const Piece part = partOf(piece, [&](std::size_t t) { return regions[t] == region; });
   return componentsOf(cutOpen(part, std::vector<bool>(3 * part.mesh.triangles.size())));
 }
 
@@ -95,6 +87,12 @@ std::vector<Piece> splitBy(const Piece& piece, std::span<const std::uint32_t> re
   for (std::uint32_t region = 0; region < count; ++region)
     for (Piece& component : piecesOf(piece, regions, region)) pieces.push_back(std::move(component));
   return pieces;
+}
+
+std::vector<std::uint32_t> originsOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk) {
+  std::vector<std::uint32_t> vertices;
+  for (const std::uint32_t h : walk) vertices.push_back(originOf(mesh, h));
+  return vertices;
 }
 
 double lengthOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk) {

@@ -13,12 +13,6 @@ namespace {
 /// Holes longer than this share of the longest boundary loop are joined with it by a seam.
 constexpr double kLargestHole = 0.45;
 
-std::vector<std::uint32_t> originsOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk) {
-  std::vector<std::uint32_t> vertices;
-  for (const std::uint32_t h : walk) vertices.push_back(originOf(mesh, h));
-  return vertices;
-}
-
 std::uint32_t furthest(const EdgeDistances& from) {
   std::uint32_t best = 0;
   double most = -1;

@@ -50,8 +50,20 @@ struct Piece {
   std::vector<std::uint32_t> triangleOf;  ///< The triangle of the whole mesh for each triangle.
 };
 
-/// The whole of a mesh as one piece.
+/// The whole of a mesh, whose vertices may still have several fans: `cutOpen` gives each its own.
 Piece wholeOf(const TriangleMesh& mesh);
+
+/// Some triangles of a piece; vertices stay, also those that none of them uses.
+template <typename Condition>
+Piece partOf(const Piece& piece, const Condition& isIn) {
+  Piece part{{piece.mesh.positions, {}}, piece.vertexOf, {}};
+  for (std::size_t t = 0; t < piece.mesh.triangles.size(); ++t) {
+    if (!isIn(t)) continue;
+    part.mesh.triangles.push_back(piece.mesh.triangles[t]);
+    part.triangleOf.push_back(piece.triangleOf[t]);
+  }
+  return part;
+}
 
 /// Cuts a piece open along edges: vertices are doubled where the surface does not go on round them any more.
 /// @param cut  Per half-edge; an edge is cut if one of its two is marked.
@@ -70,6 +82,8 @@ std::vector<Piece> componentsOf(const Piece& piece);
 /// The boundary of a piece as closed walks of half-edges, the longest first.
 std::vector<std::vector<std::uint32_t>> loopsOf(const TriangleMesh& mesh, std::span<const std::uint32_t> twins);
 
+/// The vertices of a walk of half-edges.
+std::vector<std::uint32_t> originsOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk);
 /// The length of a walk of half-edges.
 double lengthOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk);
 

@@ -96,12 +96,8 @@ std::vector<std::uint32_t> neckOf(const TriangleMesh& mesh, const Vec3& up) {
   double lowest = 0;
   for (const auto& loop : loops) {
     if (lengthOf(mesh, loop) < kMinNeck * lengthOf(mesh, loops[0])) break;
-    std::vector<std::uint32_t> vertices;
-    double height = 0;
-    for (const std::uint32_t h : loop) {
-      vertices.push_back(originOf(mesh, h));
-      height += dot(mesh.positions[vertices.back()], up) / static_cast<double>(loop.size());
-    }
+    std::vector<std::uint32_t> vertices = originsOf(mesh, loop);
+    const double height = dot(middleOf(mesh, vertices), up);
     if (!neck.empty() && height >= lowest) continue;
     lowest = height;
     neck = std::move(vertices);
@@ -238,10 +234,8 @@ class Unwrapper {
     const auto loops = loopsOf(piece.mesh, halfEdgeTwins(piece.mesh));
     const auto start = std::find(piece.vertexOf.begin(), piece.vertexOf.end(), tip);
     if (loops.empty() || start == piece.vertexOf.end()) return layOut(piece);
-    std::vector<std::uint32_t> rim;
-    for (const std::uint32_t h : loops[0]) rim.push_back(originOf(piece.mesh, h));
     const auto first = static_cast<std::uint32_t>(start - piece.vertexOf.begin());
-    return layOut(cutBetween(piece, {&first, 1}, rim, cost));
+    return layOut(cutBetween(piece, {&first, 1}, originsOf(piece.mesh, loops[0]), cost));
   }
 
   const UnwrapOptions& options_;
@@ -304,7 +298,7 @@ void scaleToArea(Chart& chart) {
 std::vector<Chart> chartsOf(const TriangleMesh& mesh, const UnwrapOptions& options, std::size_t mostLimbs,
                             Ticker& ticker) {
   Unwrapper unwrapper(mesh, options, ticker);
-  for (Piece& piece : componentsOf(wholeOf(mesh))) {
+  for (Piece& piece : componentsOf(cutOpen(wholeOf(mesh), std::vector<bool>(3 * mesh.triangles.size())))) {
     const bool going = options.kind == Kind::head ? unwrapper.layOutHead(std::move(piece))
                        : mostLimbs > 0            ? unwrapper.layOutBody(piece, mostLimbs)
                                                   : unwrapper.layOutProp(piece);

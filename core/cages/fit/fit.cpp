@@ -186,10 +186,7 @@ class Fit {
   /// Writes the cage in the target's space.
   void write(const TemplateCage& cage, const std::vector<Vec3>& positions, FittedCage& out) const {
     out.positions.clear();
-    for (const std::uint32_t v : cage.vertexOf) {
-      const Vec3 p = map_(positions[v]);
-      for (const double x : {p.x, p.y, p.z}) out.positions.push_back(static_cast<float>(x));
-    }
+    for (const std::uint32_t v : cage.vertexOf) append(out.positions, map_(positions[v]));
     out.uvs.assign(from_.cage.uvs.begin(), from_.cage.uvs.end());
     out.indices.assign(from_.cage.indices.begin(), from_.cage.indices.end());
     out.kind = from_.kind;

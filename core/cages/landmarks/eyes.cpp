@@ -13,35 +13,18 @@ namespace cagecast::cages {
 
 namespace {
 
-/// What a component, or the eye parts of one side, looks like.
-struct Shape {
-  std::vector<Vec3> points;  ///< Its vertices, each once.
-  Bounds bounds;
-  double area = 0;
-  std::size_t triangles = 0;
-};
-
-Shape shapeOf(const TriangleMesh& mesh) {
-  Shape out;
-  out.points = mesh.positions;
-  out.triangles = mesh.triangles.size();
-  if (mesh.empty()) return out;
-  out.bounds = boundsOf(mesh);
-  for (const Triangle3& t : mesh.triangles) out.area += 0.5 * length(areaNormal(mesh, t));
-  return out;
-}
-
 /// A shape is an eyeball, or the front of one, if it fits a sphere this well; else the middle of its box serves.
 constexpr double kBall = 0.12;
 
 /// The ball of an eye: a sphere if it is one (a front half's box has its middle too far to the front), else about the
 /// middle of the box if it is flat or bulges. The residual is a sphere's in any case.
-Sphere ballOf(const Shape& shape) {
-  const Vec3 size = shape.bounds.size();
+Sphere ballOf(const TriangleMesh& shape) {
+  const Bounds bounds = boundsOf(shape);
+  const Vec3 size = bounds.size();
   const double radius = 0.5 * std::max(size.y, std::min(size.x, size.z));
-  const Sphere sphere = fitSphere(shape.points);
+  const Sphere sphere = fitSphere(shape.positions);
   const bool round = sphere.residual < kBall && sphere.radius < 1.3 * radius && sphere.radius > 0.8 * radius;
-  return round ? sphere : Sphere{shape.bounds.middle(), radius, sphere.residual};
+  return round ? sphere : Sphere{bounds.middle(), radius, sphere.residual};
 }
 
 /// The heading that horizontal positions spread along most.
@@ -108,8 +91,8 @@ std::array<double, 2> seen(const Surface& surface, const TriangleMesh& part, con
 
 /// A component that may be an eye.
 struct Candidate {
-  Shape shape;
   TriangleMesh mesh;
+  Bounds bounds;
   std::uint32_t component = 0;
   Sphere ball;
   std::optional<std::array<double, 2>> seen = {};  ///< What `seen` gives, once it is needed.
@@ -128,17 +111,17 @@ std::vector<Candidate> eyeCandidates(const Figure& figure, double diagonal) {
   for (std::uint32_t c = 0; c < figure.componentCount; ++c) {
     const std::size_t size = parts[c].triangles.size();
     if (size < kMinTriangles || 2 * size > figure.components.size()) continue;
-    Shape shape = shapeOf(parts[c]);
-    const Vec3 box = shape.bounds.size();
+    const Bounds bounds = boundsOf(parts[c]);
+    const Vec3 box = bounds.size();
     const double wide = std::hypot(box.x, box.z);
     const bool round = box.y > 0.5 * wide && box.y < 2 * wide;
     if (!round || box.y < 2 * kSmallest * diagonal || box.y > 2 * kLargest * diagonal) continue;
-    const Sphere ball = ballOf(shape);
-    candidates.push_back({std::move(shape), std::move(parts[c]), c, ball});
+    const Sphere ball = ballOf(parts[c]);
+    candidates.push_back({std::move(parts[c]), bounds, c, ball});
   }
   if (candidates.size() > kMaxCandidates) {
     std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.shape.area > b.shape.area; });
+                     [](const Candidate& a, const Candidate& b) { return areaOf(a.mesh) > areaOf(b.mesh); });
     candidates.resize(kMaxCandidates);
   }
   return candidates;
@@ -192,8 +175,8 @@ std::optional<Eyes> findNamedEyes(const Figure& figure) {
     isFirst[t] = sums[component[t]] >= 0;
     isSecond[t] = !isFirst[t];
   }
-  const Shape first = shapeOf(subset(all, isFirst)), second = shapeOf(subset(all, isSecond));
-  if (first.triangles == 0 || second.triangles == 0) return std::nullopt;
+  const TriangleMesh first = subset(all, isFirst), second = subset(all, isSecond);
+  if (first.empty() || second.empty()) return std::nullopt;
   Eyes eyes;
   const Sphere one = ballOf(first), other = ballOf(second);
   eyes.centres = {one.centre, other.centre};
@@ -225,11 +208,11 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
   double most = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     for (std::size_t k = i + 1; k < candidates.size(); ++k) {
-      const Shape &a = candidates[i].shape, &b = candidates[k].shape;
-      const double size = a.bounds.size().y;
-      const double off = length(plane.mirrored(a.bounds.middle()) - b.bounds.middle());
-      if (off > 0.3 * size || std::abs(b.bounds.size().y - size) > kAlike * size) continue;
-      if (std::abs(dot(plane.left, a.bounds.middle()) - plane.offset) < 0.5 * size) continue;
+      const Bounds &a = candidates[i].bounds, &b = candidates[k].bounds;
+      const double size = a.size().y;
+      const double off = length(plane.mirrored(a.middle()) - b.middle());
+      if (off > 0.3 * size || std::abs(b.size().y - size) > kAlike * size) continue;
+      if (std::abs(dot(plane.left, a.middle()) - plane.offset) < 0.5 * size) continue;
       const Sphere &first = candidates[i].ball, &second = candidates[k].ball;
       const double residual = std::max(first.residual, second.residual);
       if (residual > 2 * kBall) continue;
@@ -237,7 +220,7 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
       const double front = std::min(std::max(one[0], one[1]), std::max(other[0], other[1]));
       const double back = std::max(std::min(one[0], one[1]), std::min(other[0], other[1]));
       if (front < 0.03 || back > 0.5 * front) continue;
-      const double score = a.area * (1 - residual / (2 * kBall)) * std::min(front, 0.3);
+      const double score = areaOf(candidates[i].mesh) * (1 - residual / (2 * kBall)) * std::min(front, 0.3);
       if (score <= most) continue;
       most = score;
       best.emplace();

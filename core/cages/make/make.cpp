@@ -172,8 +172,7 @@ Status shape(const MarkedHull& hull, const MakeSettings& settings, const Progres
 void store(const Layout& layout, Kind kind, Cage& out) {
   out = {};
   out.kind = kind;
-  for (const Vec3& p : layout.positions)
-    for (const double x : {p.x, p.y, p.z}) out.positions.push_back(static_cast<float>(x));
+  for (const Vec3& p : layout.positions) append(out.positions, p);
   for (const Uv& uv : layout.uvs)
     for (const double x : uv) out.uvs.push_back(static_cast<float>(x));
   for (const Triangle3& t : layout.triangles) out.indices.insert(out.indices.end(), t.begin(), t.end());

@@ -164,9 +164,7 @@ bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Pr
   for (const auto& loop : boundaryLoops(mesh)) lockLoop(mesh, loop, tolerance, arrays.locks);
   arrays.positions.reserve(3 * mesh.positions.size());
   const Vec3 origin = originFor(mesh);
-  for (const Vec3& p : mesh.positions)
-    for (const double x : {p.x - origin.x, p.y - origin.y, p.z - origin.z})
-      arrays.positions.push_back(static_cast<float>(x));
+  for (const Vec3& p : mesh.positions) append(arrays.positions, p - origin);
   std::vector<unsigned> indices;
   indices.reserve(3 * mesh.triangles.size());
   for (const Triangle3& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());

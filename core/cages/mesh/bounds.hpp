@@ -21,11 +21,14 @@ struct Bounds {
   [[nodiscard]] Vec3 size() const { return empty() ? Vec3{0, 0, 0} : high - low; }
   [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
   [[nodiscard]] double diagonal() const { return length(size()); }
-  /// How far a point is from the box; 0 inside.
-  [[nodiscard]] double distance(const Vec3& p) const {
-    const auto outside = [](double x, double from, double to) { return std::max({from - x, x - to, 0.0}); };
-    return length(Vec3{outside(p.x, low.x, high.x), outside(p.y, low.y, high.y), outside(p.z, low.z, high.z)});
+  /// How far another box is from this one; 0 if they meet.
+  [[nodiscard]] double distance(const Bounds& other) const {
+    const Vec3 below = low - other.high, above = other.low - high;
+    return length(
+        Vec3{std::max({below.x, above.x, 0.0}), std::max({below.y, above.y, 0.0}), std::max({below.z, above.z, 0.0})});
   }
+  /// How far a point is from the box; 0 inside.
+  [[nodiscard]] double distance(const Vec3& p) const { return distance(Bounds{p, p}); }
 };
 
 /// How far numbers reach; empty until one is added.

@@ -27,6 +27,11 @@ inline Vec3 unit(const Vec3& v) {
   return size > 0 ? 1 / size * v : Vec3{0, 0, 0};
 }
 
+/// Adds a position to an array of floats.
+inline void append(std::vector<float>& floats, const Vec3& p) {
+  for (const double x : {p.x, p.y, p.z}) floats.push_back(static_cast<float>(x));
+}
+
 /// A mesh that is being worked on, in double precision and in the space of the model.
 struct TriangleMesh {
   std::vector<Vec3> positions;

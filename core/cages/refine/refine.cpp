@@ -40,13 +40,7 @@ Status fault(Code code, double value = 0) { return {code, Argument::cage, 0, Opt
 
 /// Whether a cage is anywhere near its model, so that closest points mean something.
 Status checkNearness(const Bounds& cage, const Bounds& model, double reach) {
-  const auto apart = [](double lowA, double highA, double lowB, double highB) {
-    return std::max({0.0, lowA - highB, lowB - highA});
-  };
-  const double gap = length(Vec3{apart(cage.low.x, cage.high.x, model.low.x, model.high.x),
-                                 apart(cage.low.y, cage.high.y, model.low.y, model.high.y),
-                                 apart(cage.low.z, cage.high.z, model.low.z, model.high.z)}) /
-                     model.diagonal();
+  const double gap = model.distance(cage) / model.diagonal();
   if (gap > reach) return fault(Code::cageApart, gap);
   constexpr double kLargest = 2;
   const double size = cage.diagonal() / model.diagonal();
@@ -181,15 +175,12 @@ Status refine(const MeshView& cage, const Model& model, const RefineOptions& opt
   if (!refinement.run()) return kAborted;
   if (const Status status = refinement.judge(); !status.ok()) return status;
   Cage refined;  // `out` may own the cage.
-  refined.positions.assign(cage.positions.begin(), cage.positions.end());
   refined.uvs.assign(cage.uvs.begin(), cage.uvs.end());
   refined.indices.assign(cage.indices.begin(), cage.indices.end());
-  for (std::size_t v = 0; v < vertexOf.size() && !refinement.stays(); ++v) {
-    const Vec3 p =
-        Vec3::from(&cage.positions[3 * v]) + refinement.cage().positions[vertexOf[v]] - welded.positions[vertexOf[v]];
-    const double moved[] = {p.x, p.y, p.z};
-    for (std::size_t k = 0; k < 3; ++k) refined.positions[3 * v + k] = static_cast<float>(moved[k]);
-  }
+  if (refinement.stays()) refined.positions.assign(cage.positions.begin(), cage.positions.end());
+  for (std::size_t v = 0; v < vertexOf.size() && !refinement.stays(); ++v)
+    append(refined.positions, Vec3::from(&cage.positions[3 * v]) + refinement.cage().positions[vertexOf[v]] -
+                                  welded.positions[vertexOf[v]]);
   out = std::move(refined);
   return {};
 }
