@@ -24,7 +24,7 @@ Piece cutOpen(const Piece& piece, const std::vector<bool>& cut) {
   DisjointSets corners(3 * mesh.triangles.size());
   for (std::size_t h = 0; h < twins.size(); ++h) {
     const std::uint32_t twin = twins[h];
-    if (twin == kNone || twin < h || cut[h] || cut[twin]) continue;
+    if (twin == kNone || twin < h || (!cut.empty() && (cut[h] || cut[twin]))) continue;
     corners.join(static_cast<std::uint32_t>(h), static_cast<std::uint32_t>(nextInTriangle(twin)));
     corners.join(static_cast<std::uint32_t>(nextInTriangle(h)), twin);
   }
@@ -76,8 +76,7 @@ std::vector<Piece> componentsOf(const Piece& piece) {
 }
 
 std::vector<Piece> piecesOf(const Piece& piece, std::span<const std::uint32_t> regions, std::uint32_t region) {
-  const Piece part = partOf(piece, [&](std::size_t t) { return regions[t] == region; });
-  return componentsOf(cutOpen(part, std::vector<bool>(3 * part.mesh.triangles.size())));
+  return componentsOf(cutOpen(partOf(piece, [&](std::size_t t) { return regions[t] == region; })));
 }
 
 std::vector<Piece> splitBy(const Piece& piece, std::span<const std::uint32_t> regions) {

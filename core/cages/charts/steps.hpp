@@ -66,8 +66,8 @@ Piece partOf(const Piece& piece, const Condition& isIn) {
 }
 
 /// Cuts a piece open along edges: vertices are doubled where the surface does not go on round them any more.
-/// @param cut  Per half-edge; an edge is cut if one of its two is marked.
-Piece cutOpen(const Piece& piece, const std::vector<bool>& cut);
+/// @param cut  Per half-edge; an edge is cut if one of its two is marked. Empty: none is.
+Piece cutOpen(const Piece& piece, const std::vector<bool>& cut = {});
 
 /// The connected pieces of each region of a piece, region by region.
 /// @param regions  Per triangle, from 0.

@@ -298,7 +298,7 @@ void scaleToArea(Chart& chart) {
 std::vector<Chart> chartsOf(const TriangleMesh& mesh, const UnwrapOptions& options, std::size_t mostLimbs,
                             Ticker& ticker) {
   Unwrapper unwrapper(mesh, options, ticker);
-  for (Piece& piece : componentsOf(cutOpen(wholeOf(mesh), std::vector<bool>(3 * mesh.triangles.size())))) {
+  for (Piece& piece : componentsOf(cutOpen(wholeOf(mesh)))) {
     const bool going = options.kind == Kind::head ? unwrapper.layOutHead(std::move(piece))
                        : mostLimbs > 0            ? unwrapper.layOutBody(piece, mostLimbs)
                                                   : unwrapper.layOutProp(piece);
@@ -326,23 +326,15 @@ bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progre
     standUpright(chart, options);
   }
   if (!packCharts(options.gutter, ticker, charts)) return false;
-  out.triangles.resize(mesh.triangles.size());
-  out.chartOf.resize(mesh.triangles.size());
-  out.charts = static_cast<std::uint32_t>(charts.size());
-  for (std::uint32_t c = 0; c < charts.size(); ++c) {
-    const Piece& piece = charts[c].piece;
-    const auto first = static_cast<std::uint32_t>(out.positions.size());
-    for (std::size_t v = 0; v < piece.mesh.positions.size(); ++v) {
-      out.positions.push_back(piece.mesh.positions[v]);
-      out.vertexOf.push_back(piece.vertexOf[v]);
-      const Uv& uv = charts[c].uvs[v];
-      out.uvs.push_back(
-          {static_cast<double>(static_cast<float>(uv[0])), static_cast<double>(static_cast<float>(1 - uv[1]))});
-    }
-    for (std::size_t t = 0; t < piece.triangleOf.size(); ++t) {
-      const Triangle3& from = piece.mesh.triangles[t];
-      out.triangles[piece.triangleOf[t]] = {first + from[0], first + from[1], first + from[2]};
-      out.chartOf[piece.triangleOf[t]] = c;
+  out.mesh.triangles.resize(mesh.triangles.size());
+  for (const Chart& chart : charts) {
+    const auto first = static_cast<std::uint32_t>(out.mesh.positions.size());
+    for (const Vec3& p : chart.piece.mesh.positions) out.mesh.positions.push_back(p);
+    for (const auto& [u, v] : chart.uvs)
+      out.uvs.push_back({static_cast<double>(static_cast<float>(u)), static_cast<double>(static_cast<float>(1 - v))});
+    for (std::size_t t = 0; t < chart.piece.triangleOf.size(); ++t) {
+      const Triangle3& from = chart.piece.mesh.triangles[t];
+      out.mesh.triangles[chart.piece.triangleOf[t]] = {first + from[0], first + from[1], first + from[2]};
     }
   }
   return true;

@@ -20,12 +20,8 @@ struct UnwrapOptions {
 
 /// A mesh with UVs: a vertex of the input has a copy for each chart, and for each side of a seam, that it is in.
 struct Layout {
-  std::vector<Vec3> positions;
-  std::vector<Uv> uvs;                  ///< Per vertex, 0..1, v downwards as in glTF; exact as 32-bit floats.
-  std::vector<Triangle3> triangles;     ///< In the order of the input.
-  std::vector<std::uint32_t> vertexOf;  ///< The vertex of the input for each vertex.
-  std::vector<std::uint32_t> chartOf;   ///< The chart of each triangle.
-  std::uint32_t charts = 0;
+  TriangleMesh mesh;    ///< Triangles are in the order of the input.
+  std::vector<Uv> uvs;  ///< Per vertex, 0..1, v downwards as in glTF; exact as 32-bit floats.
 };
 
 /// Lays out a mesh in the unit square, in few charts that do not overlap, all at about the same texel density.

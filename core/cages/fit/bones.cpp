@@ -38,19 +38,16 @@ Bone boneBetween(const Vec3& a, const Vec3& b, const Vec3& toA, const Vec3& toB)
   const auto image = [&](const Vec3& axis) {
     return turn.turned(axis + (stretch - 1) * dot(axis, direction) * direction);
   };
-  Bone bone{a, b, image({1, 0, 0}), image({0, 1, 0}), image({0, 0, 1}), {0, 0, 0}};
-  bone.translation = toA - bone(a);
+  Bone bone{a, b, {image({1, 0, 0}), image({0, 1, 0}), image({0, 0, 1})}};
+  bone.map.translation = toA - bone.map(a);
   return bone;
 }
 
 /// Goes on beyond the end of a bone, turned like it but not stretched.
 Bone boneBeyond(const Bone& before, double share, const Vec3& to) {
-  const double size = length(before.to - before.from);
-  const Vec3 direction = 1 / size * (before.to - before.from);
-  const Vec3 image = direction.x * before.x + direction.y * before.y + direction.z * before.z;
-  const Similarity turn = shortestRotation(direction, 1 / length(image) * image);
-  Bone bone{before.to, before.to + share * (before.to - before.from), turn.x, turn.y, turn.z, {0, 0, 0}};
-  bone.translation = to - bone(before.to);
+  const Vec3 along = before.to - before.from;
+  Bone bone{before.to, before.to + share * along, shortestRotation(unit(along), unit(before.map.turned(along)))};
+  bone.map.translation = to - bone.map(before.to);
   return bone;
 }
 
@@ -69,8 +66,7 @@ std::optional<Bone> headBone(const std::vector<Landmark>& from, const std::vecto
   }
   const auto joint = jointAt(from, "head"), toJoint = jointAt(to, "head");
   if (a.size() < 4 || !joint || !toJoint) return std::nullopt;
-  const Similarity map = fitSimilarity(a, b);
-  return Bone{*joint, meanOf(a), map.x, map.y, map.z, map.translation};
+  return Bone{*joint, meanOf(a), fitSimilarity(a, b)};
 }
 
 std::vector<double> weightsAt(const Vec3& p, const std::vector<Bone>& bones, double thickness) {
@@ -87,7 +83,7 @@ std::vector<double> weightsAt(const Vec3& p, const std::vector<Bone>& bones, dou
 
 Vec3 blend(const Vec3& p, const std::vector<Bone>& bones, const std::vector<double>& weights) {
   Vec3 out{0, 0, 0};
-  for (std::size_t i = 0; i < bones.size(); ++i) out = out + weights[i] * bones[i](p);
+  for (std::size_t i = 0; i < bones.size(); ++i) out = out + weights[i] * bones[i].map(p);
   return out;
 }
 
@@ -130,8 +126,8 @@ std::vector<Bone> bonesOf(const std::vector<Landmark>& from, const std::vector<L
     const auto ankle = jointAt(from, "ankle" + side), toAnkle = jointAt(to, "ankle" + side);
     const auto toe = placeOf(from, "toe_big" + side);
     if (ankle && toAnkle && toe) {
-      Bone foot{*ankle, *toe};
-      foot.translation = *toAnkle - *ankle;
+      Bone foot{*ankle, *toe, {}};
+      foot.map.translation = *toAnkle - *ankle;
       bones.push_back(foot);
     }
   }

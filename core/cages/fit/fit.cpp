@@ -201,6 +201,7 @@ class Fit {
     const Figure parts = readFigure(model_);
     std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size()), isCover(mesh.triangles.size());
     figure_ = {};
+    figure_.componentCount = parts.componentCount;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const bool isEye = parts.roles[t] == Role::eye;
       isSkin[t] = kept[triangleOf[t]];

@@ -62,11 +62,8 @@ Status checkAgreement(const std::vector<Landmark>& from, const std::vector<Landm
 
 /// A piece of the body that moves as one: where it is in the template, and an affine map to the target.
 struct Bone {
-  Vec3 from, to;                            ///< Its ends in the template.
-  Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< Images of the axes.
-  Vec3 translation{0, 0, 0};
-
-  [[nodiscard]] Vec3 operator()(const Vec3& p) const { return p.x * x + p.y * y + p.z * z + translation; }
+  Vec3 from, to;  ///< Its ends in the template.
+  Affine map;
 };
 
 /// The bones between joints that both have: each turned by the smallest angle and stretched along its length; the head
@@ -121,6 +118,7 @@ struct EyedFigure {
   std::vector<std::uint32_t> components;  ///< Per triangle.
   TriangleMesh covers;                    ///< What is excluded and no eye: lashes, brows, hair.
   std::vector<std::uint32_t> coverComponents;
+  std::uint32_t componentCount = 0;
 };
 
 /// Draws the borders of eye holes to the contours of what is visible of the eyes, seen along the direction in which

@@ -28,7 +28,7 @@ Similarity rotationOf(double w, const Vec3& v) {
   const double xx = s * v.x * v.x, yy = s * v.y * v.y, zz = s * v.z * v.z;
   const double xy = s * v.x * v.y, xz = s * v.x * v.z, yz = s * v.y * v.z;
   const double wx = s * w * v.x, wy = s * w * v.y, wz = s * w * v.z;
-  return {{1 - yy - zz, xy + wz, xz - wy}, {xy - wz, 1 - xx - zz, yz + wx}, {xz + wy, yz - wx, 1 - xx - yy}};
+  return {{{1 - yy - zz, xy + wz, xz - wy}, {xy - wz, 1 - xx - zz, yz + wx}, {xz + wy, yz - wx, 1 - xx - yy}}};
 }
 
 Vec3 weightedMean(std::span<const Vec3> points, std::span<const double> weights) {

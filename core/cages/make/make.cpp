@@ -172,10 +172,10 @@ Status shape(const MarkedHull& hull, const MakeSettings& settings, const Progres
 void store(const Layout& layout, Kind kind, Cage& out) {
   out = {};
   out.kind = kind;
-  for (const Vec3& p : layout.positions) append(out.positions, p);
+  for (const Vec3& p : layout.mesh.positions) append(out.positions, p);
   for (const Uv& uv : layout.uvs)
     for (const double x : uv) out.uvs.push_back(static_cast<float>(x));
-  for (const Triangle3& t : layout.triangles) out.indices.insert(out.indices.end(), t.begin(), t.end());
+  for (const Triangle3& t : layout.mesh.triangles) out.indices.insert(out.indices.end(), t.begin(), t.end());
 }
 
 Status make(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out) {

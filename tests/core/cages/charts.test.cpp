@@ -9,9 +9,9 @@
 #include <random>
 #include <set>
 
-#include "charts/steps.hpp"
 #include "charts/min_cut.hpp"
 #include "charts/slim.hpp"
+#include "charts/steps.hpp"
 #include "hull/hull.hpp"
 #include "seed.hpp"
 #include "shapes.hpp"
@@ -137,14 +137,16 @@ LayoutFaults layoutFaults(const TriangleMesh& mesh, const std::vector<cages::Uv>
 /// The least distance between two charts, by brute force.
 double leastGap(const Layout& layout) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t s = 0; s < layout.triangles.size(); ++s)
-    for (std::size_t t = 0; t < layout.triangles.size(); ++t) {
-      if (layout.chartOf[s] == layout.chartOf[t]) continue;
-      const auto at = [&](std::uint32_t v) { return Vec3{layout.uvs[v][0], layout.uvs[v][1], 0}; };
-      for (const std::uint32_t v : layout.triangles[s])
-        for (std::size_t i = 0; i < 3; ++i)
-          least = std::min(least,
-                           distanceToSegment(at(v), at(layout.triangles[t][i]), at(layout.triangles[t][(i + 1) % 3])));
+  const auto at = [&](std::uint32_t v) { return Vec3{layout.uvs[v][0], layout.uvs[v][1], 0}; };
+  std::uint32_t count = 0;
+  const std::vector<std::uint32_t> chartOf = connectedPieces(layout.mesh, count);
+  for (std::size_t s = 0; s < chartOf.size(); ++s)
+    for (std::size_t t = 0; t < chartOf.size(); ++t) {
+      if (chartOf[s] == chartOf[t]) continue;
+      const auto [a, b, c] = layout.mesh.triangles[t];
+      for (const std::uint32_t v : layout.mesh.triangles[s])
+        for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}})
+          least = std::min(least, distanceToSegment(at(v), at(from), at(to)));
     }
   return least;
 }
@@ -154,18 +156,16 @@ LayoutFaults checked(const TriangleMesh& mesh, Kind kind, Layout& layout) {
   UnwrapOptions options;
   options.kind = kind;
   REQUIRE(unwrap(mesh, options, {}, layout));
-  REQUIRE(layout.triangles.size() == mesh.triangles.size());
-  REQUIRE(layout.chartOf.size() == mesh.triangles.size());
-  REQUIRE(layout.uvs.size() == layout.positions.size());
+  REQUIRE(layout.mesh.triangles.size() == mesh.triangles.size());
+  REQUIRE(layout.uvs.size() == layout.mesh.positions.size());
   bool same = true;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3 p = layout.positions[layout.triangles[t][i]], q = mesh.positions[mesh.triangles[t][i]];
-      same = same && layout.vertexOf[layout.triangles[t][i]] == mesh.triangles[t][i] && length(p - q) == 0;
+      const Vec3 p = layout.mesh.positions[layout.mesh.triangles[t][i]], q = mesh.positions[mesh.triangles[t][i]];
+      same = same && length(p - q) == 0;
     }
   CHECK(same);
-  LayoutFaults faults = layoutFaults({layout.positions, layout.triangles}, layout.uvs);
-  CHECK(faults.charts == layout.charts);
+  const LayoutFaults faults = layoutFaults(layout.mesh, layout.uvs);
   CHECK(faults.overlaps == 0);
   CHECK(faults.flips == 0);
   CHECK(faults.outside == 0);
@@ -214,11 +214,11 @@ TEST_CASE("a head is one chart, upright and not mirrored", "[cages][charts]") {
   CHECK(faults.angle95 < 2);
   CHECK(faults.area95 < 2);
   // The corners of triangles in front: further up is further up in the picture, further left is further left.
-  for (std::size_t t = 0; t < layout.triangles.size(); ++t)
+  for (std::size_t t = 0; t < layout.mesh.triangles.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t a = layout.triangles[t][i], b = layout.triangles[t][(i + 1) % 3];
-      const Vec3 d = layout.positions[b] - layout.positions[a];
-      if (layout.positions[a].z < 0.9 || layout.positions[b].z < 0.9) continue;
+      const std::uint32_t a = layout.mesh.triangles[t][i], b = layout.mesh.triangles[t][(i + 1) % 3];
+      const Vec3 d = layout.mesh.positions[b] - layout.mesh.positions[a];
+      if (layout.mesh.positions[a].z < 0.9 || layout.mesh.positions[b].z < 0.9) continue;
       if (d.y > 2 * std::abs(d.x)) CHECK(layout.uvs[b][1] < layout.uvs[a][1]);
       if (d.x > 2 * std::abs(d.y)) CHECK(layout.uvs[b][0] > layout.uvs[a][0]);
     }
@@ -231,14 +231,16 @@ TEST_CASE("a body has a chart for each limb", "[cages][charts]") {
   CHECK(faults.charts <= 8);
   CHECK(faults.angle95 < 2);
   // Hands, feet, and the top of the head are on five charts; each has its surroundings on the same.
+  std::uint32_t count = 0;
+  const std::vector<std::uint32_t> chartOf = connectedPieces(layout.mesh, count);
   std::vector<std::uint32_t> charts;
   for (const Vec3& tip : {Vec3{-0.76, 1.32, 0}, {0.76, 1.32, 0}, {-0.15, 0, 0}, {0.15, 0, 0}, {0, 1.72, 0}}) {
     std::uint32_t chart = 0xffffffffu;
     bool same = true;
-    for (std::size_t t = 0; t < layout.triangles.size(); ++t) {
-      if (length(layout.positions[layout.triangles[t][0]] - tip) > 0.12) continue;
-      same = same && (chart == 0xffffffffu || chart == layout.chartOf[t]);
-      chart = layout.chartOf[t];
+    for (std::size_t t = 0; t < layout.mesh.triangles.size(); ++t) {
+      if (length(layout.mesh.positions[layout.mesh.triangles[t][0]] - tip) > 0.12) continue;
+      same = same && (chart == 0xffffffffu || chart == chartOf[t]);
+      chart = chartOf[t];
     }
     CHECK(same);
     charts.push_back(chart);
@@ -286,7 +288,7 @@ TEST_CASE("an unwrap can be cancelled, and is the same each time", "[cages][char
   checked(mesh, Kind::head, first);
   checked(mesh, Kind::head, second);
   CHECK(first.uvs == second.uvs);
-  CHECK(first.triangles == second.triangles);
+  CHECK(first.mesh.triangles == second.mesh.triangles);
   CHECK_FALSE(unwrap(
       mesh, {}, [](float, const char*) { return false; }, first));
 }

@@ -13,10 +13,6 @@ namespace cagecast::cages {
 
 constexpr double kPi = std::numbers::pi;
 
-inline void append(std::vector<float>& floats, const Vec3& p) {
-  for (const double x : {p.x, p.y, p.z}) floats.push_back(static_cast<float>(x));
-}
-
 /// A sphere of rings from pole to pole; `from` > 0 leaves out the rings about the upper pole.
 inline TriangleMesh sphere(Vec3 centre, double radius, std::uint32_t rings = 24, std::uint32_t from = 0) {
   std::vector<float> positions;
