@@ -221,8 +221,8 @@ describe('makeCage', () => {
       [() => untyped(model, { triangles: 0.5 }), 'badOption', 'options.triangles is 0.5, not a whole number'],
       [() => untyped(model, { onProgress: 1 }), 'badOption', 'options.onProgress is 1, not a function'],
       [() => untyped(model, { signal: 1 }), 'badOption', 'options.signal is 1, not an AbortSignal'],
-      [() => makeCage(bad({ indices: new Uint32Array(0) })), 'badModel', 'model has no triangles'],
-      [() => makeCage(bad({ positions: nan })), 'badModel', 'model.positions[4] is not a finite number'],
+      [() => makeCage(bad({ indices: new Uint32Array(0) })), 'badModel', 'model has no triangles; at least one is needed'],
+      [() => makeCage(bad({ positions: nan })), 'badModel', 'model.positions[4] = NaN is not a finite number'],
       [
         () => makeCage(bad({ parts: ['skin'] })),
         'badModel',

@@ -97,7 +97,7 @@ void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, Ticker& 
         Chart chart = flatten(cutToDisk(std::move(pieces[0]), {}), ticker);
         if (fits(chart, options)) {
           charts[a] = std::move(chart);
-          charts.erase(charts.begin() + b);
+          charts.erase(charts.begin() + static_cast<std::ptrdiff_t>(b));
           merged = true;
           break;
         }

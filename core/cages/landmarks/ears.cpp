@@ -115,8 +115,8 @@ void findEars(Head& head) {
   const double bottom = chin != nullptr ? std::max(-0.3, chin->position.y) : -0.25;
   const auto left = findEar(head, 1, bottom), right = findEar(head, -1, bottom);
   if (!left || !right) return;
-  constexpr double kMinArea = 0.001, kMaxArea = 0.04;
-  if (std::min(left->area, right->area) < kMinArea || std::max(left->area, right->area) > kMaxArea) return;
+  constexpr double kMinEar = 0.001, kMaxEar = 0.04;
+  if (std::min(left->area, right->area) < kMinEar || std::max(left->area, right->area) > kMaxEar) return;
   const auto add = [&](const char* name, const Vec3& l, const Vec3& r) {
     const double off = length(Vec3{-l.x, l.y, l.z} - r);
     const double trust = off < 0.015 ? 0.75 : off < 0.03 ? 0.55 : 0.3;

@@ -17,7 +17,7 @@ constexpr double kNearest = 0.55, kFarthest = 1.7;
 /// suggests: that bounds the measuring around an eye, whose steps are shares of that length.
 constexpr double kFarthestNamed = 4;
 /// Wheels mirror each other, too, but are not in the upper half of a model.
-constexpr double kLowest = 0.38;
+constexpr double kLowestEyes = 0.38;
 /// How much of a figure around the eyes belongs to the head, in the head's lengths.
 constexpr double kHeadReach = 1.1;
 
@@ -95,7 +95,7 @@ std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes) {
   frame.origin = frame.origin + (plane.offset - dot(plane.left, frame.origin)) * plane.left;
   frame.unit = headLength(skin, eyeDistance, frame);
   const double share = eyeDistance / (kEyeDistance * frame.unit);
-  if (!figure.has(Role::eye) && (share < kNearest || share > kFarthest || heightShare(figure, eyes) < kLowest))
+  if (!figure.has(Role::eye) && (share < kNearest || share > kFarthest || heightShare(figure, eyes) < kLowestEyes))
     return std::nullopt;
 
   TriangleMesh local = frame.toLocal(within(skin, frame.origin, kHeadReach * frame.unit));
