@@ -46,7 +46,7 @@ function expand({ names, body }, values) {
 }
 
 const text = readFileSync(process.argv[2], 'utf8').replace(
-  /((?:^#define CAGECAST_(?:OPTION|STEP|CODE)\(.*\n)+)#include "(.*\.def)"$/gm,
+  /((?:^#define CAGECAST_(?:OPTION|STEP|CODE|CAGES_CODE)\(.*\n)+)#include "(.*\.def)"$/gm,
   (_, defines, list) => {
     const macros = Object.fromEntries(
       [...defines.matchAll(/^#define (CAGECAST_\w+)\((.*?)\) (.*)$/gm)].map(([, name, names, body]) => [

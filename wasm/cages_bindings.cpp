@@ -12,6 +12,7 @@
 
 namespace {
 
+using namespace cagecast;
 using namespace cagecast::bindings;
 using namespace cagecast::cages;
 
@@ -36,14 +37,19 @@ std::vector<T> listOf(const val& source) {
 }
 
 /// How a call ended, for JavaScript.
-val ending(const Outcome& outcome) {
-  val out = val::object();
-  out.set("problem", outcome.problem);
-  out.set("message", outcome.message);
+/// @param given  What it was given, for `describe`.
+template <typename... Given>
+val ending(const Status& status, const Given&... given) {
+  val fields = val::object(), out = val::object();
+  fields.set("code", std::string(codeName(status.code)));
+  fields.set("message", describe(status, given...));
+  fields.set("argument", std::string(argumentName(status.argument)));
+  fields.set("at", status.at);
+  out.set("status", fields);
   return out;
 }
 
-const Outcome kOutOfMemory{Problem::outOfMemory, "not enough memory"};
+const Status kOutOfMemory{Code::outOfMemory};
 
 /// A model, copied from JavaScript.
 struct ModelArrays {
@@ -72,24 +78,24 @@ void setCage(val& out, const Cage& cage) {
 
 val makeCageCall(const val& target, const MakeOptions& options, const val& report) {
   ModelArrays arrays;
-  if (!arrays.copy(target)) return ending(kOutOfMemory);
+  if (!arrays.copy(target)) return ending(kOutOfMemory, arrays.model);
   Cage cage;
-  const Outcome outcome = makeCage(arrays.model, options, progressTo(report), cage);
-  val out = ending(outcome);
-  if (outcome.ok()) setCage(out, cage);
+  const Status status = makeCage(arrays.model, options, progressTo(report), cage);
+  val out = ending(status, arrays.model);
+  if (status.ok()) setCage(out, cage);
   return out;
 }
 
 val fitCageCall(const val& from, const val& target, const val& landmarks, FitOptions options, const val& report) {
   ModelArrays arrays;
   Mesh mesh;
-  if (!arrays.copy(target) || !mesh.copy(from["mesh"])) return ending(kOutOfMemory);
+  if (!arrays.copy(target) || !mesh.copy(from["mesh"])) return ending(kOutOfMemory, arrays.model);
   const Template source{mesh.view(), listOf<Landmark>(from["landmarks"]), from["kind"].as<Kind>()};
   options.landmarks = listOf<Landmark>(landmarks);
   FittedCage cage;
-  const Outcome outcome = fitCage(source, arrays.model, options, progressTo(report), cage);
-  val out = ending(outcome);
-  if (!outcome.ok()) return out;
+  const Status status = fitCage(source, arrays.model, options, progressTo(report), cage);
+  val out = ending(status, source, arrays.model, options, cage.missing);
+  if (!status.ok()) return out;
   setCage(out, cage);
   out.set("missing", listed(cage.missing));
   return out;
@@ -97,11 +103,11 @@ val fitCageCall(const val& from, const val& target, const val& landmarks, FitOpt
 
 val findLandmarksCall(const val& target, const val& report) {
   ModelArrays arrays;
-  if (!arrays.copy(target)) return ending(kOutOfMemory);
+  if (!arrays.copy(target)) return ending(kOutOfMemory, arrays.model);
   FoundLandmarks found;
-  const Outcome outcome = findLandmarks(arrays.model, progressTo(report), found);
-  val out = ending(outcome);
-  if (!outcome.ok()) return out;
+  const Status status = findLandmarks(arrays.model, progressTo(report), found);
+  val out = ending(status, arrays.model);
+  if (!status.ok()) return out;
   out.set("landmarks", listed(found.landmarks));
   out.set("missing", listed(found.missing));
   out.set("rig", found.rig);
@@ -112,11 +118,11 @@ val findLandmarksCall(const val& target, const val& report) {
 val refineCageCall(const val& cage, const val& target, const RefineOptions& options, const val& report) {
   ModelArrays arrays;
   Mesh mesh;
-  if (!arrays.copy(target) || !mesh.copy(cage)) return ending(kOutOfMemory);
+  if (!arrays.copy(target) || !mesh.copy(cage)) return ending(kOutOfMemory, arrays.model);
   Cage refined;
-  const Outcome outcome = refineCage(mesh.view(), arrays.model, options, progressTo(report), refined);
-  val out = ending(outcome);
-  if (outcome.ok()) setCage(out, refined);
+  const Status status = refineCage(mesh.view(), arrays.model, options, progressTo(report), refined);
+  val out = ending(status, mesh.view(), arrays.model, options);
+  if (status.ok()) setCage(out, refined);
   return out;
 }
 
@@ -150,16 +156,6 @@ EMSCRIPTEN_BINDINGS(cagecast_cages) {
       .value("head", Kind::head)
       .value("body", Kind::body)
       .value("prop", Kind::prop);
-  // Named as the codes of errors in JavaScript.
-  enum_<Problem>("Problem")
-      .value("none", Problem::none)
-      .value("badModel", Problem::badModel)
-      .value("badTemplate", Problem::badTemplate)
-      .value("badLandmarks", Problem::badLandmarks)
-      .value("badOption", Problem::badOptions)
-      .value("aborted", Problem::cancelled)
-      .value("outOfMemory", Problem::outOfMemory);
-
   value_array<Position>("Position")
       .element(emscripten::index<0>())
       .element(emscripten::index<1>())

@@ -195,8 +195,8 @@ describe('makeCage', () => {
       [call({}, { triangles: 0.5 }), 'badOption', 'options.triangles is 0.5, not a whole number'],
       [call({}, { onProgress: 1 }), 'badOption', 'options.onProgress is 1, not a function'],
       [call({}, { signal: 1 }), 'badOption', 'options.signal is 1, not an AbortSignal'],
-      [call({ indices: new Uint32Array(0) }), 'badModel', 'model has no triangles'],
-      [call({ positions: nan }), 'badModel', 'model.positions[4] is not a finite number'],
+      [call({ indices: new Uint32Array(0) }), 'badModel', 'model has no triangles; at least one is needed'],
+      [call({ positions: nan }), 'badModel', 'model.positions[4] = NaN is not a finite number'],
       [call({ parts: ['skin'] }), 'badModel', /^model\.groups\[\d+\] = 1, but there are 1 parts$/],
     ]);
     await assertFailures('matchingParts', [

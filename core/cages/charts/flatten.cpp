@@ -1,11 +1,11 @@
-#include "charts/flatten.hpp"
+#include "charts/steps.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "charts/slim.hpp"
+#include "linear/sparse_system.hpp"
 
 namespace cagecast::cages {
 
@@ -24,13 +24,9 @@ void fillHoles(TriangleMesh& mesh) {
   const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   const auto loops = loopsOf(mesh, twins);
   for (std::size_t i = 1; i < loops.size(); ++i) {
-    Vec3 middle{0, 0, 0};
-    for (const std::uint32_t h : loops[i]) middle = middle + mesh.positions[originOf(mesh, h)];
     const auto hub = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.push_back(1 / static_cast<double>(loops[i].size()) * middle);
-    std::vector<Triangle3> fan;
-    for (const std::uint32_t h : loops[i]) fan.push_back({endOf(mesh, h), originOf(mesh, h), hub});
-    mesh.triangles.insert(mesh.triangles.end(), fan.begin(), fan.end());
+    mesh.positions.push_back(middleOf(mesh, originsOf(mesh, loops[i])));
+    for (const std::uint32_t h : loops[i]) mesh.triangles.push_back({endOf(mesh, h), originOf(mesh, h), hub});
   }
 }
 
@@ -63,8 +59,8 @@ bool mapToDisk(const TriangleMesh& mesh, std::vector<Uv>& uvs) {
   if (loops.size() != 1) return false;
   std::vector<bool> onRim(mesh.positions.size());
   uvs.assign(mesh.positions.size(), {0, 0});
-  double area = 0, done = 0;
-  for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t)) / 2;
+  const double area = areaOf(mesh);
+  double done = 0;
   const double whole = lengthOf(mesh, loops[0]), radius = std::sqrt(area / 3.14159265);
   if (!(whole > 0) || !(area > 0)) return false;
   const double least = 0.1 * whole / static_cast<double>(loops[0].size());
@@ -77,14 +73,13 @@ bool mapToDisk(const TriangleMesh& mesh, std::vector<Uv>& uvs) {
     uvs[originOf(mesh, h)] = {radius * place[0], radius * place[1]};
     done += std::max(least, lengthOf(mesh, {&h, 1}));
   }
-  std::vector<int> row(mesh.positions.size(), -1);
-  int rows = 0;
+  std::vector<std::uint32_t> row(mesh.positions.size(), kNone);
+  std::uint32_t rows = 0;
   for (std::size_t v = 0; v < row.size(); ++v)
     if (!onRim[v]) row[v] = rows++;
   if (rows == 0) return true;
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::VectorXd rightU = Eigen::VectorXd::Zero(rows), rightV = Eigen::VectorXd::Zero(rows);
-  std::vector<double> total(static_cast<std::size_t>(rows));
+  std::vector<SparseEntry> entries;
+  std::vector<double> rightU(rows), rightV(rows), total(rows);
   // Symmetric weights, for the symmetric solver: those of both ends added.
   for (std::size_t h = 0; h < twins.size(); ++h) {
     const std::uint32_t from = originOf(mesh, h), to = endOf(mesh, h);
@@ -96,24 +91,23 @@ bool mapToDisk(const TriangleMesh& mesh, std::vector<Uv>& uvs) {
          halfTangent(mesh.positions[from] - mesh.positions[to], mesh.positions[apex] - mesh.positions[to])) /
         size;
     for (const auto& [one, other] : {std::pair{from, to}, std::pair{to, from}}) {
-      if (row[one] < 0) continue;
-      total[static_cast<std::size_t>(row[one])] += weight;
-      if (row[other] >= 0) {
-        entries.emplace_back(row[one], row[other], -weight);
+      if (row[one] == kNone) continue;
+      total[row[one]] += weight;
+      if (row[other] != kNone) {
+        entries.push_back({row[one], row[other], -weight});
       } else {
         rightU[row[one]] += weight * uvs[other][0];
         rightV[row[one]] += weight * uvs[other][1];
       }
     }
   }
-  for (int i = 0; i < rows; ++i) entries.emplace_back(i, i, total[static_cast<std::size_t>(i)]);
-  Eigen::SparseMatrix<double> matrix(rows, rows);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(matrix);
-  if (factors.info() != Eigen::Success) return false;
-  const Eigen::VectorXd u = factors.solve(rightU), v = factors.solve(rightV);
+  SparseSystem system(rows, entries);
+  for (const SparseEntry& entry : entries) system.add(entry.row, entry.column, entry.value);
+  for (std::uint32_t i = 0; i < rows; ++i) system.add(i, i, total[i]);
+  if (!system.factorize()) return false;
+  const std::vector<double> u = system.solve(rightU), v = system.solve(rightV);
   for (std::size_t i = 0; i < row.size(); ++i)
-    if (row[i] >= 0) uvs[i] = {u[row[i]], v[row[i]]};
+    if (row[i] != kNone) uvs[i] = {u[row[i]], v[row[i]]};
   return true;
 }
 

@@ -1,13 +1,11 @@
-#include "charts/limbs.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "charts/min_cut.hpp"
-#include "charts/seams.hpp"
 #include "mesh/disjoint_sets.hpp"
 
 namespace cagecast::cages {

@@ -1,12 +1,9 @@
-#include "charts/merge.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
-
-#include "charts/seams.hpp"
 
 namespace cagecast::cages {
 
@@ -43,17 +40,11 @@ Seams seamsOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& twins,
 
 /// Two charts as one piece, without the seam between them.
 std::vector<Piece> joined(const TriangleMesh& mesh, const Seams& seams, std::uint32_t a, std::uint32_t b) {
-  Piece part;
-  part.mesh.positions = mesh.positions;
-  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) part.vertexOf.push_back(v);
+  const auto isIn = [&](std::size_t t) { return seams.chartOf[t] == a || seams.chartOf[t] == b; };
   std::vector<bool> cut;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (seams.chartOf[t] != a && seams.chartOf[t] != b) continue;
-    part.mesh.triangles.push_back(mesh.triangles[t]);
-    part.triangleOf.push_back(t);
-    for (std::size_t i = 0; i < 3; ++i) cut.push_back(seams.inside[3 * t + i]);
-  }
-  return componentsOf(cutOpen(part, cut));
+  for (std::uint32_t h = 0; h < seams.inside.size(); ++h)
+    if (isIn(h / 3)) cut.push_back(seams.inside[h]);
+  return componentsOf(cutOpen(partOf(wholeOf(mesh), isIn), cut));
 }
 
 /// -1 or 1 if a chart faces mainly along an axis, 0 if it does not.
@@ -69,16 +60,9 @@ int facing(const Chart& chart, const Vec3& axis) {
 
 bool fits(const Chart& chart, const MergeOptions& options) {
   if (!chart.valid || chart.energy > options.mostEnergy) return false;
-  double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300}, area = 0;
-  for (const Uv& uv : chart.uvs)
-    for (std::size_t k = 0; k < 2; ++k) {
-      low[k] = std::min(low[k], uv[k]);
-      high[k] = std::max(high[k], uv[k]);
-    }
-  for (const Triangle3& t : chart.piece.mesh.triangles)
-    area += doubledArea(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]) / 2;
-  const double width = high[0] - low[0], height = high[1] - low[1];
-  return area >= options.leastFill * width * height && std::max(width, height) <= options.longest;
+  const UvBox box = chart.box();
+  return chart.area() >= options.leastFill * box.side(0) * box.side(1) &&
+         std::max(box.side(0), box.side(1)) <= options.longest;
 }
 
 }  // namespace
@@ -113,7 +97,7 @@ void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, Ticker& 
         Chart chart = flatten(cutToDisk(std::move(pieces[0]), {}), ticker);
         if (fits(chart, options)) {
           charts[a] = std::move(chart);
-          charts.erase(charts.begin() + b);
+          charts.erase(charts.begin() + static_cast<std::ptrdiff_t>(b));
           merged = true;
           break;
         }

@@ -1,4 +1,4 @@
-#include "charts/pack.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,21 +34,6 @@ struct Mask {
   void set(std::size_t x, std::size_t y) { bits[y * words + x / kWord] |= std::uint64_t{1} << (x % kWord); }
 };
 
-struct Frame {
-  double low[2], high[2];
-};
-
-Frame frameOf(const std::vector<Uv>& uvs) {
-  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-  Frame frame{{kUnbounded, kUnbounded}, {-kUnbounded, -kUnbounded}};
-  for (const Uv& uv : uvs)
-    for (std::size_t k = 0; k < 2; ++k) {
-      frame.low[k] = std::min(frame.low[k], uv[k]);
-      frame.high[k] = std::max(frame.high[k], uv[k]);
-    }
-  return frame;
-}
-
 /// Marks, row by row, the cells between the leftmost and the rightmost point of a triangle within the row.
 void addTriangle(Mask& mask, const std::array<Uv, 3>& corners) {
   const auto [lowest, highest] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
@@ -73,15 +58,13 @@ void addTriangle(Mask& mask, const std::array<Uv, 3>& corners) {
   }
 }
 
-Mask maskOf(const Chart& chart, const Frame& frame, double scale) {
-  const auto extent = [&](std::size_t k) {
-    return static_cast<std::size_t>(scale * (frame.high[k] - frame.low[k])) + 1;
-  };
+Mask maskOf(const Chart& chart, const UvBox& box, double scale) {
+  const auto extent = [&](std::size_t k) { return static_cast<std::size_t>(scale * box.side(k)) + 1; };
   Mask mask(extent(0), extent(1));
   for (const Triangle3& t : chart.piece.mesh.triangles) {
     std::array<Uv, 3> corners{};
     for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t k = 0; k < 2; ++k) corners[i][k] = scale * (chart.uvs[t[i]][k] - frame.low[k]);
+      for (std::size_t k = 0; k < 2; ++k) corners[i][k] = scale * (chart.uvs[t[i]][k] - box.low[k]);
     addTriangle(mask, corners);
   }
   return mask;
@@ -146,13 +129,13 @@ class Square {
 
 using Places = std::vector<Uv>;  ///< Of the lower left corners, in cells.
 
-std::optional<Places> placeMasks(const std::vector<Chart>& charts, const std::vector<Frame>& frames,
+std::optional<Places> placeMasks(const std::vector<Chart>& charts, const std::vector<UvBox>& boxes,
                                  const std::vector<std::size_t>& order, std::pair<double, std::size_t> scaleAndCells) {
   const auto [scale, cells] = scaleAndCells;
   Square square(cells);
   Places places(charts.size());
   for (const std::size_t i : order) {
-    const Mask mask = maskOf(charts[i], frames[i], scale);
+    const Mask mask = maskOf(charts[i], boxes[i], scale);
     const auto place = square.place(mask);
     if (!place) return std::nullopt;
     square.take(mask, place->first, place->second);
@@ -162,13 +145,12 @@ std::optional<Places> placeMasks(const std::vector<Chart>& charts, const std::ve
 }
 
 /// Rows of boxes, the highest first.
-std::optional<Places> placeBoxes(const std::vector<Frame>& frames, const std::vector<std::size_t>& order, double scale,
+std::optional<Places> placeBoxes(const std::vector<UvBox>& boxes, const std::vector<std::size_t>& order, double scale,
                                  double cells) {
-  Places places(frames.size());
+  Places places(boxes.size());
   double x = 0, y = 0, rowHeight = 0;
   for (const std::size_t i : order) {
-    const double width = scale * (frames[i].high[0] - frames[i].low[0]),
-                 height = scale * (frames[i].high[1] - frames[i].low[1]);
+    const double width = scale * boxes[i].side(0), height = scale * boxes[i].side(1);
     if (x > 0 && x + width > cells) {
       y += rowHeight + 1;
       x = rowHeight = 0;
@@ -185,20 +167,19 @@ std::optional<Places> placeBoxes(const std::vector<Frame>& frames, const std::ve
 
 bool packCharts(double gutter, Ticker& ticker, std::vector<Chart>& charts) {
   if (charts.empty()) return true;
-  std::vector<Frame> frames;
+  std::vector<UvBox> boxes;
   double area = 0;
   for (const Chart& chart : charts) {
-    frames.push_back(frameOf(chart.uvs));
-    for (const Triangle3& t : chart.piece.mesh.triangles)
-      area += doubledArea(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]) / 2;
+    boxes.push_back(chart.box());
+    area += chart.area();
   }
-  const auto extent = [&](std::size_t i, std::size_t k) { return frames[i].high[k] - frames[i].low[k]; };
   // Large charts first, by what makes them large: height (which rows of boxes need), area of the box, longest side.
   std::vector<std::vector<std::size_t>> orders;
   for (const auto& size : std::initializer_list<std::function<double(std::size_t)>>{
-           [&](std::size_t i) { return extent(i, 1); }, [&](std::size_t i) { return extent(i, 0) * extent(i, 1); },
-           [&](std::size_t i) { return std::max(extent(i, 0), extent(i, 1)); },
-           [&](std::size_t i) { return extent(i, 0); }}) {
+           [&](std::size_t i) { return boxes[i].side(1); },
+           [&](std::size_t i) { return boxes[i].side(0) * boxes[i].side(1); },
+           [&](std::size_t i) { return std::max(boxes[i].side(0), boxes[i].side(1)); },
+           [&](std::size_t i) { return boxes[i].side(0); }}) {
     std::vector<std::size_t> order(charts.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return size(x) > size(y); });
@@ -209,15 +190,14 @@ bool packCharts(double gutter, Ticker& ticker, std::vector<Chart>& charts) {
   const auto cells = std::max(std::size_t{1}, static_cast<std::size_t>(1 / gutter) - 1);
   const auto side = static_cast<double>(cells);
   double scale = side * std::sqrt(kFirstCoverage / std::max(area, 1e-300));
-  for (const Frame& frame : frames)
-    for (std::size_t k = 0; k < 2; ++k)
-      scale = std::min(scale, 0.999 * side / std::max(frame.high[k] - frame.low[k], 1e-300));
+  for (const UvBox& box : boxes)
+    for (std::size_t k = 0; k < 2; ++k) scale = std::min(scale, 0.999 * side / std::max(box.side(k), 1e-300));
   std::optional<Places> places;
   const auto fits = [&](double size) {
     for (const std::vector<std::size_t>& order : orders) {
       if (!ticker.work(kWorkPerTry)) return false;
-      auto found = charts.size() > kMaxMasks ? placeBoxes(frames, order, size, side)
-                                             : placeMasks(charts, frames, order, {size, cells});
+      auto found = charts.size() > kMaxMasks ? placeBoxes(boxes, order, size, side)
+                                             : placeMasks(charts, boxes, order, {size, cells});
       if (!found) continue;
       places = std::move(found);
       scale = size;
@@ -238,7 +218,7 @@ bool packCharts(double gutter, Ticker& ticker, std::vector<Chart>& charts) {
   const double cell = 1 / (side + 1);
   for (std::size_t i = 0; i < charts.size(); ++i)
     for (Uv& uv : charts[i].uvs)
-      for (std::size_t k = 0; k < 2; ++k) uv[k] = cell * (0.5 + (*places)[i][k] + scale * (uv[k] - frames[i].low[k]));
+      for (std::size_t k = 0; k < 2; ++k) uv[k] = cell * (0.5 + (*places)[i][k] + scale * (uv[k] - boxes[i].low[k]));
   return true;
 }
 

@@ -1,4 +1,4 @@
-#include "charts/piece.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -8,32 +8,6 @@
 
 namespace cagecast::cages {
 
-std::vector<std::uint32_t> halfEdgeTwins(const TriangleMesh& mesh) {
-  struct Edge {
-    std::uint32_t low, high, halfEdge;
-  };
-  std::vector<Edge> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (std::size_t h = 0; h < 3 * mesh.triangles.size(); ++h) {
-    const std::uint32_t a = originOf(mesh, h), b = endOf(mesh, h);
-    edges.push_back({std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(h)});
-  }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    if (a.low != b.low) return a.low < b.low;
-    return a.high != b.high ? a.high < b.high : a.halfEdge < b.halfEdge;
-  });
-  std::vector<std::uint32_t> twins(edges.size(), kNone);
-  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-    for (end = i + 1; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high;) ++end;
-    if (end != i + 2) continue;
-    const std::uint32_t one = edges[i].halfEdge, other = edges[i + 1].halfEdge;
-    if (originOf(mesh, one) == originOf(mesh, other) || one / 3 == other / 3) continue;
-    twins[one] = other;
-    twins[other] = one;
-  }
-  return twins;
-}
-
 Piece wholeOf(const TriangleMesh& mesh) {
   Piece piece;
   piece.mesh = mesh;
@@ -41,7 +15,7 @@ Piece wholeOf(const TriangleMesh& mesh) {
   std::iota(piece.vertexOf.begin(), piece.vertexOf.end(), 0u);
   piece.triangleOf.resize(mesh.triangles.size());
   std::iota(piece.triangleOf.begin(), piece.triangleOf.end(), 0u);
-  return cutOpen(piece, std::vector<bool>(3 * mesh.triangles.size()));
+  return piece;
 }
 
 Piece cutOpen(const Piece& piece, const std::vector<bool>& cut) {
@@ -50,7 +24,7 @@ Piece cutOpen(const Piece& piece, const std::vector<bool>& cut) {
   DisjointSets corners(3 * mesh.triangles.size());
   for (std::size_t h = 0; h < twins.size(); ++h) {
     const std::uint32_t twin = twins[h];
-    if (twin == kNone || twin < h || cut[h] || cut[twin]) continue;
+    if (twin == kNone || twin < h || (!cut.empty() && (cut[h] || cut[twin]))) continue;
     corners.join(static_cast<std::uint32_t>(h), static_cast<std::uint32_t>(nextInTriangle(twin)));
     corners.join(static_cast<std::uint32_t>(nextInTriangle(h)), twin);
   }
@@ -102,16 +76,7 @@ std::vector<Piece> componentsOf(const Piece& piece) {
 }
 
 std::vector<Piece> piecesOf(const Piece& piece, std::span<const std::uint32_t> regions, std::uint32_t region) {
-  // Vertices that are not used are left out in the end.
-  Piece part;
-  part.mesh.positions = piece.mesh.positions;
-  part.vertexOf = piece.vertexOf;
-  for (std::size_t t = 0; t < regions.size(); ++t) {
-    if (regions[t] != region) continue;
-    part.mesh.triangles.push_back(piece.mesh.triangles[t]);
-    part.triangleOf.push_back(piece.triangleOf[t]);
-  }
-  return componentsOf(cutOpen(part, std::vector<bool>(3 * part.mesh.triangles.size())));
+  return componentsOf(cutOpen(partOf(piece, [&](std::size_t t) { return regions[t] == region; })));
 }
 
 std::vector<Piece> splitBy(const Piece& piece, std::span<const std::uint32_t> regions) {
@@ -121,6 +86,12 @@ std::vector<Piece> splitBy(const Piece& piece, std::span<const std::uint32_t> re
   for (std::uint32_t region = 0; region < count; ++region)
     for (Piece& component : piecesOf(piece, regions, region)) pieces.push_back(std::move(component));
   return pieces;
+}
+
+std::vector<std::uint32_t> originsOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk) {
+  std::vector<std::uint32_t> vertices;
+  for (const std::uint32_t h : walk) vertices.push_back(originOf(mesh, h));
+  return vertices;
 }
 
 double lengthOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk) {

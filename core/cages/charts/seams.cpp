@@ -1,27 +1,17 @@
-#include "charts/seams.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <limits>
-#include <numeric>
-#include <queue>
 #include <utility>
 
+#include "charts/shortest_ways.hpp"
 #include "mesh/disjoint_sets.hpp"
 
 namespace cagecast::cages {
 
 namespace {
 
-constexpr double kUnreached = std::numeric_limits<double>::infinity();
 /// Holes longer than this share of the longest boundary loop are joined with it by a seam.
 constexpr double kLargestHole = 0.45;
-
-std::vector<std::uint32_t> originsOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk) {
-  std::vector<std::uint32_t> vertices;
-  for (const std::uint32_t h : walk) vertices.push_back(originOf(mesh, h));
-  return vertices;
-}
 
 std::uint32_t furthest(const EdgeDistances& from) {
   std::uint32_t best = 0;
@@ -99,25 +89,13 @@ EdgeDistances edgeDistances(const TriangleMesh& mesh, std::span<const std::uint3
   EdgeDistances out;
   out.distance.assign(mesh.positions.size(), kUnreached);
   out.cameBy.assign(mesh.positions.size(), kNone);
-  using Entry = std::pair<double, std::uint32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (const std::uint32_t v : starts) {
-    out.distance[v] = 0;
-    queue.emplace(0.0, v);
-  }
-  while (!queue.empty()) {
-    const auto [distance, v] = queue.top();
-    queue.pop();
-    if (distance > out.distance[v]) continue;
+  for (const std::uint32_t v : starts) out.distance[v] = 0;
+  findShortestWays(starts, out.distance, [&](std::uint32_t v, const auto& offer) {
     for (const auto& [to, h] : leaving[v]) {
       const double size = length(mesh.positions[to] - mesh.positions[v]);
-      const double after = distance + size * (cost ? cost(mesh, v, to) : 1);
-      if (after >= out.distance[to]) continue;
-      out.distance[to] = after;
-      out.cameBy[to] = h;
-      queue.emplace(after, to);
+      if (offer(to, size * (cost ? cost(mesh, v, to) : 1))) out.cameBy[to] = h;
     }
-  }
+  });
   return out;
 }
 

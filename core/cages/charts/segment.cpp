@@ -1,14 +1,10 @@
-#include "charts/segment.hpp"
+#include "charts/steps.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <queue>
-#include <utility>
 
 #include "charts/min_cut.hpp"
+#include "charts/shortest_ways.hpp"
 #include "mesh/disjoint_sets.hpp"
 
 namespace cagecast::cages {
@@ -31,21 +27,13 @@ double edgeLength(const TriangleMesh& mesh, std::size_t h) {
 /// The triangle that is furthest from a triangle, by ways from centre to centre.
 std::vector<double> distancesFrom(const TriangleMesh& mesh, const std::vector<std::uint32_t>& twins,
                                   std::uint32_t start) {
-  std::vector<double> distance(mesh.triangles.size(), std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, std::uint32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  queue.emplace(distance[start] = 0, start);
-  while (!queue.empty()) {
-    const auto [soFar, t] = queue.top();
-    queue.pop();
-    if (soFar > distance[t]) continue;
-    for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) {
-      if (twins[h] == kNone) continue;
-      const std::uint32_t other = twins[h] / 3;
-      const double after = soFar + length(centroid(mesh, mesh.triangles[t]) - centroid(mesh, mesh.triangles[other]));
-      if (after < distance[other]) queue.emplace(distance[other] = after, other);
-    }
-  }
+  std::vector<double> distance(mesh.triangles.size(), kUnreached);
+  distance[start] = 0;
+  findShortestWays({&start, 1}, distance, [&](std::uint32_t t, const auto& offer) {
+    for (std::size_t h = 3 * t; h < 3 * t + 3; ++h)
+      if (twins[h] != kNone)
+        offer(twins[h] / 3, length(centroid(mesh, mesh.triangles[t]) - centroid(mesh, mesh.triangles[twins[h] / 3])));
+  });
   return distance;
 }
 
@@ -94,14 +82,8 @@ std::vector<std::uint32_t> regionsOf(const TriangleMesh& mesh, const std::vector
   for (std::size_t h = 0; h < twins.size(); ++h)
     if (twins[h] != kNone && labels[h / 3] == labels[twins[h] / 3])
       sets.join(static_cast<std::uint32_t>(h / 3), twins[h] / 3);
-  std::vector<std::uint32_t> number(mesh.triangles.size(), kNone), regions(mesh.triangles.size());
   std::uint32_t count = 0;
-  for (std::uint32_t t = 0; t < regions.size(); ++t) {
-    std::uint32_t& mine = number[sets.find(t)];
-    if (mine == kNone) mine = count++;
-    regions[t] = mine;
-  }
-  return regions;
+  return sets.numbers(count);
 }
 
 void joinSmallRegions(const TriangleMesh& mesh, double least, std::size_t most, Ticker& ticker,

@@ -1,6 +1,5 @@
 #include "charts/slim.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,6 +18,17 @@ constexpr double kProximity = 1e-4;
 /// Share of the way to the first flip that a step may go.
 constexpr double kStepToFlip = 0.8;
 constexpr int kHalvings = 12;
+
+/// The coordinates that a triangle couples: all of its corners, two each.
+std::vector<SparseEntry> couplingOf(const TriangleMesh& mesh) {
+  std::vector<SparseEntry> entries;
+  entries.reserve(36 * mesh.triangles.size());
+  for (const Triangle3& t : mesh.triangles)
+    for (const std::uint32_t row : t)
+      for (const std::uint32_t column : t)
+        for (std::uint32_t i = 0; i < 4; ++i) entries.push_back({2 * row + i / 2, 2 * column + i % 2});
+  return entries;
+}
 
 }  // namespace
 
@@ -68,53 +78,10 @@ Jacobian jacobianOf(const RestShapes::Gradients& g, const Triangle3& t, const st
   return j;
 }
 
-struct Slim::Solver {
-  using Matrix = Eigen::SparseMatrix<double>;
-  Matrix matrix;
-  Eigen::VectorXd right;
-  Eigen::SimplicialLDLT<Matrix> factors;
-  /// Where in the matrix's values each triangle's nine 2 x 2 blocks start: the two columns.
-  std::vector<std::array<std::array<int, 2>, 9>> blocks;
-
-  explicit Solver(const TriangleMesh& mesh);
-};
-
-Slim::Solver::Solver(const TriangleMesh& mesh) {
-  const auto size = static_cast<Eigen::Index>(2 * mesh.positions.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(size) + 36 * mesh.triangles.size());
-  for (int i = 0; i < static_cast<int>(size); ++i) entries.emplace_back(i, i, 0.0);
-  for (const Triangle3& t : mesh.triangles)
-    for (const std::uint32_t row : t)
-      for (const std::uint32_t column : t)
-        for (int i = 0; i < 4; ++i)
-          entries.emplace_back(static_cast<int>(2 * row) + i / 2, static_cast<int>(2 * column) + i % 2, 1.0);
-  matrix.resize(size, size);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  matrix.makeCompressed();
-  right.resize(size);
-  factors.analyzePattern(matrix);
-  const int* const starts = matrix.outerIndexPtr();
-  const int* const rows = matrix.innerIndexPtr();
-  for (const Triangle3& t : mesh.triangles) {
-    std::array<std::array<int, 2>, 9> places{};
-    for (std::size_t i = 0; i < 9; ++i)
-      for (std::size_t k = 0; k < 2; ++k) {
-        const std::size_t column = 2 * t[i % 3] + k;
-        const int* const found =
-            std::lower_bound(rows + starts[column], rows + starts[column + 1], static_cast<int>(2 * t[i / 3]));
-        places[i][k] = static_cast<int>(found - rows);
-      }
-    blocks.push_back(places);
-  }
-}
-
 Slim::Slim(const TriangleMesh& mesh, RestShapes rest)
-    : mesh_(mesh), rest_(std::move(rest)), solver_(std::make_unique<Solver>(mesh)) {
+    : mesh_(mesh), rest_(std::move(rest)), system_(2 * mesh.positions.size(), couplingOf(mesh)) {
   for (const double weight : rest_.weights) weight_ += weight;
 }
-
-Slim::~Slim() = default;
 
 double Slim::energy(const std::vector<Uv>& uvs) const {
   double sum = 0;
@@ -144,9 +111,8 @@ double Slim::longestStep(const std::vector<Uv>& uvs, const std::vector<Uv>& dire
 }
 
 double Slim::assemble(const std::vector<Uv>& uvs) {
-  Eigen::Map<Eigen::VectorXd> values(solver_->matrix.valuePtr(), solver_->matrix.nonZeros());
-  values.setZero();
-  solver_->right.setZero();
+  system_.clear();
+  right_.assign(2 * uvs.size(), 0);
   double sum = 0;
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const Triangle3& triangle = mesh_.triangles[t];
@@ -167,37 +133,34 @@ double Slim::assemble(const std::vector<Uv>& uvs) {
     const double r0 = size > 0 ? cosine / size : 1, r1 = size > 0 ? sine / size : 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const double x = r0 * g[i][0] - r1 * g[i][1], y = r1 * g[i][0] + r0 * g[i][1];
-      solver_->right[2 * triangle[i]] += m00 * x + m01 * y;
-      solver_->right[2 * triangle[i] + 1] += m01 * x + m11 * y;
+      const std::uint32_t row = 2 * triangle[i];
+      right_[row] += m00 * x + m01 * y;
+      right_[row + 1] += m01 * x + m11 * y;
       for (std::size_t k = 0; k < 3; ++k) {
         const double product = g[i][0] * g[k][0] + g[i][1] * g[k][1];
-        const auto& [left, right] = solver_->blocks[t][3 * i + k];
-        values[left] += product * m00;
-        values[left + 1] += product * m01;
-        values[right] += product * m01;
-        values[right + 1] += product * m11;
+        const std::uint32_t column = 2 * triangle[k];
+        system_.add(row, column, product * m00);
+        system_.add(row + 1, column, product * m01);
+        system_.add(row, column + 1, product * m01);
+        system_.add(row + 1, column + 1, product * m11);
       }
     }
   }
   const double proximity = kProximity / weight_;
-  for (std::size_t v = 0; v < uvs.size(); ++v)
-    for (std::size_t k = 0; k < 2; ++k) {
-      const auto row = static_cast<Eigen::Index>(2 * v + k);
-      solver_->matrix.coeffRef(row, row) += proximity;
-      solver_->right[row] += proximity * uvs[v][k];
-    }
+  for (std::uint32_t row = 0; row < right_.size(); ++row) {
+    system_.add(row, row, proximity);
+    right_[row] += proximity * uvs[row / 2][row % 2];
+  }
   return sum;
 }
 
 double Slim::step(std::vector<Uv>& uvs) {
   const double before = assemble(uvs);
-  solver_->factors.factorize(solver_->matrix);
-  if (solver_->factors.info() != Eigen::Success) return 0;
-  const Eigen::VectorXd solution = solver_->factors.solve(solver_->right);
+  if (!system_.factorize()) return 0;
+  const std::vector<double> solution = system_.solve(right_);
   std::vector<Uv> direction(uvs.size());
   for (std::size_t v = 0; v < uvs.size(); ++v) {
-    direction[v] = {solution[static_cast<Eigen::Index>(2 * v)] - uvs[v][0],
-                    solution[static_cast<Eigen::Index>(2 * v + 1)] - uvs[v][1]};
+    direction[v] = {solution[2 * v] - uvs[v][0], solution[2 * v + 1] - uvs[v][1]};
     if (!std::isfinite(direction[v][0]) || !std::isfinite(direction[v][1])) return 0;
   }
   double size = longestStep(uvs, direction);

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "charts/unwrap.hpp"
+#include "linear/sparse_system.hpp"
 
 namespace cagecast::cages {
 
@@ -38,9 +37,6 @@ class Slim {
  public:
   /// @param mesh  Connected; kept by reference.
   Slim(const TriangleMesh& mesh, RestShapes rest);
-  ~Slim();
-  Slim(const Slim&) = delete;
-  Slim& operator=(const Slim&) = delete;
 
   /// One step from `uvs`, without a flipped triangle, to better ones.
   /// @return the share by which the energy fell; 0 if no step was found.
@@ -49,13 +45,13 @@ class Slim {
   [[nodiscard]] double energy(const std::vector<Uv>& uvs) const;
 
  private:
-  struct Solver;
   const TriangleMesh& mesh_;
   RestShapes rest_;
   double weight_ = 0;
-  std::unique_ptr<Solver> solver_;
+  SparseSystem system_;  ///< Of a step: a quadratic proxy of the energy.
+  std::vector<double> right_;
 
-  /// Sets up the system of a step: a quadratic proxy of the energy.
+  /// Sets up the system of a step.
   /// @return the energy.
   double assemble(const std::vector<Uv>& uvs);
   [[nodiscard]] double longestStep(const std::vector<Uv>& uvs, const std::vector<Uv>& direction) const;

@@ -2,16 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
-#include "charts/flatten.hpp"
-#include "charts/limbs.hpp"
-#include "charts/merge.hpp"
-#include "charts/pack.hpp"
-#include "charts/seams.hpp"
-#include "charts/segment.hpp"
 #include "charts/slim.hpp"
+#include "charts/steps.hpp"
 
 namespace cagecast::cages {
 
@@ -51,32 +45,6 @@ constexpr SeamStart kSeamStarts[] = {{1, 0, 1}, {1, -0.6, 1}, {1, 0.5, 1.15}, {-
 /// How far the work is when all pieces are flat, and when they are joined.
 constexpr double kFlatShare = 0.6, kJoinedShare = 0.9;
 
-/// What all steps share.
-class Unwrapper {
- public:
-  Unwrapper(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& ticker)
-      : options_(options), ticker_(ticker), whole_(static_cast<double>(mesh.triangles.size())) {}
-
-  /// @return false if cancelled.
-  bool layOut(Piece piece);
-  bool layOutHead(Piece piece);
-  bool layOutBody(const Piece& piece, std::size_t mostLimbs);
-  bool layOutProp(const Piece& piece);
-
-  std::vector<Chart>& charts() { return charts_; }
-
- private:
-  const UnwrapOptions& options_;
-  Ticker& ticker_;
-  double whole_, done_ = 0;
-  std::vector<Chart> charts_;
-
-  [[nodiscard]] SeamCost middleCost(const TriangleMesh& mesh, double frontCost) const;
-  [[nodiscard]] SeamCost insideCost(const TriangleMesh& body, const TriangleMesh& limb) const;
-  bool layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost);
-  void accept(Chart chart);
-};
-
 Vec3 centreOf(const TriangleMesh& mesh) {
   Vec3 sum{0, 0, 0};
   double whole = 0;
@@ -86,34 +54,6 @@ Vec3 centreOf(const TriangleMesh& mesh) {
     for (const std::uint32_t v : t) sum = sum + area / 3 * mesh.positions[v];
   }
   return whole > 0 ? 1 / whole * sum : Vec3{0, 0, 0};
-}
-
-void Unwrapper::accept(Chart chart) {
-  done_ += static_cast<double>(chart.piece.triangleOf.size());
-  ticker_.reach(kFlatShare * done_ / whole_);
-  charts_.push_back(std::move(chart));
-}
-
-/// Seams keep to the plane between left and right, and away from the front.
-SeamCost Unwrapper::middleCost(const TriangleMesh& mesh, double frontCost) const {
-  const Vec3 centre = centreOf(mesh), side = cross(options_.up, options_.front), front = options_.front;
-  const double size = diagonalOf(mesh);
-  return [=](const TriangleMesh& of, std::uint32_t from, std::uint32_t to) {
-    const Vec3 middle = 0.5 * (of.positions[from] + of.positions[to]) - centre;
-    const double aside = std::abs(dot(middle, side)) / size, ahead = std::max(0.0, dot(middle, front)) / size;
-    return 1 + 20 * aside + frontCost * ahead;
-  };
-}
-
-/// Seams on a limb keep to where it faces the body's middle, down and back.
-SeamCost Unwrapper::insideCost(const TriangleMesh& body, const TriangleMesh& limb) const {
-  const Vec3 side = cross(options_.up, options_.front);
-  const double aside = dot(centreOf(limb) - centreOf(body), side);
-  const Vec3 shown = (aside < 0 ? -1.0 : 1.0) * side + 0.5 * (options_.up + options_.front);
-  const Vec3 outward = 1 / length(shown) * shown;
-  return [outward, normals = vertexNormals(limb)](const TriangleMesh&, std::uint32_t from, std::uint32_t to) {
-    return 0.2 + std::max(0.0, 1 + 0.5 * dot(normals[from] + normals[to], outward));
-  };
 }
 
 /// The vertex around which a chart is stretched most.
@@ -149,22 +89,6 @@ Chart flattenWithSeams(Piece piece, Ticker& ticker) {
   return chart;
 }
 
-bool Unwrapper::layOut(Piece piece) {
-  std::vector<Piece> waiting;
-  waiting.push_back(std::move(piece));
-  while (!waiting.empty()) {
-    Chart chart = flattenWithSeams(std::move(waiting.back()), ticker_);
-    waiting.pop_back();
-    if (ticker_.cancelled()) return false;
-    if ((chart.valid && chart.energy < kMaxEnergy) || chart.piece.mesh.triangles.size() < 2) {
-      accept(std::move(chart));
-      continue;
-    }
-    for (Piece& half : splitBy(chart.piece, halvesOf(chart.piece.mesh))) waiting.push_back(std::move(half));
-  }
-  return true;
-}
-
 /// The border of the neck: of the long loops the lowest.
 std::vector<std::uint32_t> neckOf(const TriangleMesh& mesh, const Vec3& up) {
   const auto loops = loopsOf(mesh, halfEdgeTwins(mesh));
@@ -172,12 +96,8 @@ std::vector<std::uint32_t> neckOf(const TriangleMesh& mesh, const Vec3& up) {
   double lowest = 0;
   for (const auto& loop : loops) {
     if (lengthOf(mesh, loop) < kMinNeck * lengthOf(mesh, loops[0])) break;
-    std::vector<std::uint32_t> vertices;
-    double height = 0;
-    for (const std::uint32_t h : loop) {
-      vertices.push_back(originOf(mesh, h));
-      height += dot(mesh.positions[vertices.back()], up) / static_cast<double>(loop.size());
-    }
+    std::vector<std::uint32_t> vertices = originsOf(mesh, loop);
+    const double height = dot(middleOf(mesh, vertices), up);
     if (!neck.empty() && height >= lowest) continue;
     lowest = height;
     neck = std::move(vertices);
@@ -198,74 +118,131 @@ std::uint32_t furthest(const TriangleMesh& mesh, const Vec3& direction, const Ve
   return best;
 }
 
-bool Unwrapper::layOutHead(Piece piece) {
-  const Vec3 up = options_.up, side = cross(up, options_.front);
-  std::vector<std::uint32_t> neck = neckOf(piece.mesh, up);
-  if (neck.empty()) neck.push_back(furthest(piece.mesh, -1.0 * up, side));
-  Chart best;
-  double least = 0;
-  for (const SeamStart& start : kSeamStarts) {
-    const Vec3 direction = start.up * up + start.front * options_.front;
-    const std::uint32_t first = furthest(piece.mesh, direction, side);
-    // A seam at the throat keeps to the middle only.
-    const SeamCost cost = middleCost(piece.mesh, start.up > 0 ? kFrontCost : 0);
-    Chart chart = flatten(cutToDisk(cutBetween(piece, {&first, 1}, neck, cost), {}), ticker_);
-    if (ticker_.cancelled()) return false;
-    const double fault = start.reluctance * (chart.energy - 4);
-    if (!chart.valid || (best.valid && fault >= least)) continue;
-    best = std::move(chart);
-    least = fault;
-  }
-  if (best.valid && best.energy < kMaxEnergy) {
-    accept(std::move(best));
+/// What all steps share. Functions return false if cancelled.
+class Unwrapper {
+ public:
+  Unwrapper(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& ticker)
+      : options_(options), ticker_(ticker), whole_(static_cast<double>(mesh.triangles.size())) {}
+
+  std::vector<Chart>& charts() { return charts_; }
+
+  bool layOut(Piece piece) {
+    std::vector<Piece> waiting;
+    waiting.push_back(std::move(piece));
+    while (!waiting.empty()) {
+      Chart chart = flattenWithSeams(std::move(waiting.back()), ticker_);
+      waiting.pop_back();
+      if (ticker_.cancelled()) return false;
+      if ((chart.valid && chart.energy < kMaxEnergy) || chart.piece.mesh.triangles.size() < 2) {
+        accept(std::move(chart));
+        continue;
+      }
+      for (Piece& half : splitBy(chart.piece, halvesOf(chart.piece.mesh))) waiting.push_back(std::move(half));
+    }
     return true;
   }
-  return layOut(best.valid ? std::move(best.piece) : std::move(piece));
-}
 
-bool Unwrapper::layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost) {
-  const auto loops = loopsOf(piece.mesh, halfEdgeTwins(piece.mesh));
-  const auto start = std::find(piece.vertexOf.begin(), piece.vertexOf.end(), tip);
-  if (loops.empty() || start == piece.vertexOf.end()) return layOut(piece);
-  std::vector<std::uint32_t> rim;
-  for (const std::uint32_t h : loops[0]) rim.push_back(originOf(piece.mesh, h));
-  const auto first = static_cast<std::uint32_t>(start - piece.vertexOf.begin());
-  return layOut(cutBetween(piece, {&first, 1}, rim, cost));
-}
-
-bool Unwrapper::layOutBody(const Piece& body, std::size_t mostLimbs) {
-  const Limbs limbs = limbsOf(body.mesh, mostLimbs);
-  if (limbs.tips.size() < 2) return layOutProp(body);
-  const Vec3 centre = centreOf(body.mesh), side = cross(options_.up, options_.front);
-  std::uint32_t head = kNone;
-  double highest = 0;
-  for (std::uint32_t i = 0; i < limbs.tips.size(); ++i) {
-    const Vec3 tip = body.mesh.positions[limbs.tips[i]] - centre;
-    const double height = dot(tip, options_.up) - 2 * std::abs(dot(tip, side));
-    if (height > highest) highest = height, head = i + 1;
-  }
-  for (std::uint32_t label = 0; label <= limbs.tips.size(); ++label) {
-    for (Piece& piece : piecesOf(body, limbs.labels, label)) {
-      bool going = true;
-      if (label == 0) {
-        for (Piece& half : splitBy(piece, frontAndBackOf(piece.mesh, options_.front, ticker_)))
-          going = going && layOut(std::move(half));
-      } else if (label == head) {
-        going = layOutHead(std::move(piece));
-      } else {
-        going = layOutLimb(piece, body.vertexOf[limbs.tips[label - 1]], insideCost(body.mesh, piece.mesh));
-      }
-      if (!going) return false;
+  bool layOutHead(Piece piece) {
+    const Vec3 up = options_.up, side = cross(up, options_.front);
+    std::vector<std::uint32_t> neck = neckOf(piece.mesh, up);
+    if (neck.empty()) neck.push_back(furthest(piece.mesh, -1.0 * up, side));
+    Chart best;
+    double least = 0;
+    for (const SeamStart& start : kSeamStarts) {
+      const Vec3 direction = start.up * up + start.front * options_.front;
+      const std::uint32_t first = furthest(piece.mesh, direction, side);
+      // A seam at the throat keeps to the middle only.
+      const SeamCost cost = middleCost(piece.mesh, start.up > 0 ? kFrontCost : 0);
+      Chart chart = flatten(cutToDisk(cutBetween(piece, {&first, 1}, neck, cost), {}), ticker_);
+      if (ticker_.cancelled()) return false;
+      const double fault = start.reluctance * (chart.energy - 4);
+      if (!chart.valid || (best.valid && fault >= least)) continue;
+      best = std::move(chart);
+      least = fault;
     }
+    if (best.valid && best.energy < kMaxEnergy) {
+      accept(std::move(best));
+      return true;
+    }
+    return layOut(best.valid ? std::move(best.piece) : std::move(piece));
   }
-  return true;
-}
 
-bool Unwrapper::layOutProp(const Piece& piece) {
-  for (Piece& side : splitBy(piece, sidesOf(piece, options_, ticker_)))
-    if (!layOut(std::move(side))) return false;
-  return true;
-}
+  bool layOutBody(const Piece& body, std::size_t mostLimbs) {
+    const Limbs limbs = limbsOf(body.mesh, mostLimbs);
+    if (limbs.tips.size() < 2) return layOutProp(body);
+    const Vec3 centre = centreOf(body.mesh), side = cross(options_.up, options_.front);
+    std::uint32_t head = kNone;
+    double highest = 0;
+    for (std::uint32_t i = 0; i < limbs.tips.size(); ++i) {
+      const Vec3 tip = body.mesh.positions[limbs.tips[i]] - centre;
+      const double height = dot(tip, options_.up) - 2 * std::abs(dot(tip, side));
+      if (height > highest) highest = height, head = i + 1;
+    }
+    for (std::uint32_t label = 0; label <= limbs.tips.size(); ++label) {
+      for (Piece& piece : piecesOf(body, limbs.labels, label)) {
+        bool going = true;
+        if (label == 0) {
+          for (Piece& half : splitBy(piece, frontAndBackOf(piece.mesh, options_.front, ticker_)))
+            going = going && layOut(std::move(half));
+        } else if (label == head) {
+          going = layOutHead(std::move(piece));
+        } else {
+          going = layOutLimb(piece, body.vertexOf[limbs.tips[label - 1]], insideCost(body.mesh, piece.mesh));
+        }
+        if (!going) return false;
+      }
+    }
+    return true;
+  }
+
+  bool layOutProp(const Piece& piece) {
+    for (Piece& side : splitBy(piece, sidesOf(piece, options_, ticker_)))
+      if (!layOut(std::move(side))) return false;
+    return true;
+  }
+
+ private:
+  void accept(Chart chart) {
+    done_ += static_cast<double>(chart.piece.triangleOf.size());
+    ticker_.reach(kFlatShare * done_ / whole_);
+    charts_.push_back(std::move(chart));
+  }
+
+  /// Seams keep to the plane between left and right, and away from the front.
+  [[nodiscard]] SeamCost middleCost(const TriangleMesh& mesh, double frontCost) const {
+    const Vec3 centre = centreOf(mesh), side = cross(options_.up, options_.front), front = options_.front;
+    const double size = diagonalOf(mesh);
+    return [=](const TriangleMesh& of, std::uint32_t from, std::uint32_t to) {
+      const Vec3 middle = 0.5 * (of.positions[from] + of.positions[to]) - centre;
+      const double aside = std::abs(dot(middle, side)) / size, ahead = std::max(0.0, dot(middle, front)) / size;
+      return 1 + 20 * aside + frontCost * ahead;
+    };
+  }
+
+  /// Seams on a limb keep to where it faces the body's middle, down and back.
+  [[nodiscard]] SeamCost insideCost(const TriangleMesh& body, const TriangleMesh& limb) const {
+    const Vec3 side = cross(options_.up, options_.front);
+    const double aside = dot(centreOf(limb) - centreOf(body), side);
+    const Vec3 shown = (aside < 0 ? -1.0 : 1.0) * side + 0.5 * (options_.up + options_.front);
+    const Vec3 outward = 1 / length(shown) * shown;
+    return [outward, normals = vertexNormals(limb)](const TriangleMesh&, std::uint32_t from, std::uint32_t to) {
+      return 0.2 + std::max(0.0, 1 + 0.5 * dot(normals[from] + normals[to], outward));
+    };
+  }
+
+  bool layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost) {
+    const auto loops = loopsOf(piece.mesh, halfEdgeTwins(piece.mesh));
+    const auto start = std::find(piece.vertexOf.begin(), piece.vertexOf.end(), tip);
+    if (loops.empty() || start == piece.vertexOf.end()) return layOut(piece);
+    const auto first = static_cast<std::uint32_t>(start - piece.vertexOf.begin());
+    return layOut(cutBetween(piece, {&first, 1}, originsOf(piece.mesh, loops[0]), cost));
+  }
+
+  const UnwrapOptions& options_;
+  Ticker& ticker_;
+  double whole_, done_ = 0;
+  std::vector<Chart> charts_;
+};
 
 /// Turns a chart so that up on the model is up, or for charts that lie flat front is up.
 void standUpright(Chart& chart, const UnwrapOptions& options) {
@@ -300,9 +277,7 @@ void standUpright(Chart& chart, const UnwrapOptions& options) {
 /// Joins sides of props that lie flat together. Of any model that still has too many charts, joins more, as far as the
 /// stretch can be borne.
 void joinCharts(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& ticker, std::vector<Chart>& charts) {
-  double area = 0;
-  for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t)) / 2;
-  const double longest = kLongestChart * std::sqrt(area);
+  const double longest = kLongestChart * std::sqrt(areaOf(mesh));
   const bool isProp = options.kind == Kind::prop || options.kind == Kind::automatic;
   const Vec3 side = cross(options.up, options.front);
   if (isProp) mergeCharts(mesh, {kJoinedEnergy, 1, kMinFill, longest, side}, ticker, charts);
@@ -312,11 +287,7 @@ void joinCharts(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& 
 
 /// Gives a chart the area that it has on the model.
 void scaleToArea(Chart& chart) {
-  double flat = 0, solid = 0;
-  for (const Triangle3& t : chart.piece.mesh.triangles) {
-    flat += doubledArea(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]);
-    solid += length(areaNormal(chart.piece.mesh, t));
-  }
+  const double flat = chart.area(), solid = areaOf(chart.piece.mesh);
   if (!(flat > 0) || !(solid > 0)) return;
   const double scale = std::sqrt(solid / flat);
   for (Uv& uv : chart.uvs) uv = {scale * uv[0], scale * uv[1]};
@@ -327,7 +298,7 @@ void scaleToArea(Chart& chart) {
 std::vector<Chart> chartsOf(const TriangleMesh& mesh, const UnwrapOptions& options, std::size_t mostLimbs,
                             Ticker& ticker) {
   Unwrapper unwrapper(mesh, options, ticker);
-  for (Piece& piece : componentsOf(wholeOf(mesh))) {
+  for (Piece& piece : componentsOf(cutOpen(wholeOf(mesh)))) {
     const bool going = options.kind == Kind::head ? unwrapper.layOutHead(std::move(piece))
                        : mostLimbs > 0            ? unwrapper.layOutBody(piece, mostLimbs)
                                                   : unwrapper.layOutProp(piece);
@@ -355,23 +326,15 @@ bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progre
     standUpright(chart, options);
   }
   if (!packCharts(options.gutter, ticker, charts)) return false;
-  out.triangles.resize(mesh.triangles.size());
-  out.chartOf.resize(mesh.triangles.size());
-  out.charts = static_cast<std::uint32_t>(charts.size());
-  for (std::uint32_t c = 0; c < charts.size(); ++c) {
-    const Piece& piece = charts[c].piece;
-    const auto first = static_cast<std::uint32_t>(out.positions.size());
-    for (std::size_t v = 0; v < piece.mesh.positions.size(); ++v) {
-      out.positions.push_back(piece.mesh.positions[v]);
-      out.vertexOf.push_back(piece.vertexOf[v]);
-      const Uv& uv = charts[c].uvs[v];
-      out.uvs.push_back(
-          {static_cast<double>(static_cast<float>(uv[0])), static_cast<double>(static_cast<float>(1 - uv[1]))});
-    }
-    for (std::size_t t = 0; t < piece.triangleOf.size(); ++t) {
-      const Triangle3& from = piece.mesh.triangles[t];
-      out.triangles[piece.triangleOf[t]] = {first + from[0], first + from[1], first + from[2]};
-      out.chartOf[piece.triangleOf[t]] = c;
+  out.mesh.triangles.resize(mesh.triangles.size());
+  for (const Chart& chart : charts) {
+    const auto first = static_cast<std::uint32_t>(out.mesh.positions.size());
+    for (const Vec3& p : chart.piece.mesh.positions) out.mesh.positions.push_back(p);
+    for (const auto& [u, v] : chart.uvs)
+      out.uvs.push_back({static_cast<double>(static_cast<float>(u)), static_cast<double>(static_cast<float>(1 - v))});
+    for (std::size_t t = 0; t < chart.piece.triangleOf.size(); ++t) {
+      const Triangle3& from = chart.piece.mesh.triangles[t];
+      out.mesh.triangles[chart.piece.triangleOf[t]] = {first + from[0], first + from[1], first + from[2]};
     }
   }
   return true;

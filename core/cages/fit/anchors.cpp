@@ -1,9 +1,9 @@
-#include "fit/anchors.hpp"
+#include "fit/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include "linear/dense.hpp"
 
 namespace cagecast::cages {
 
@@ -69,13 +69,15 @@ Rim sampleRim(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, 
   }
   const auto count = static_cast<double>(rim.points.size());
   for (const Vec3& p : rim.points) rim.centre = rim.centre + 1 / count * p;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  SquareMatrix<3> spread{};
   for (const Vec3& p : rim.points) {
-    const Eigen::Vector3d d(p.x - rim.centre.x, p.y - rim.centre.y, p.z - rim.centre.z);
-    spread += d * d.transpose();
+    const Vec3 d = p - rim.centre;
+    const double apart[] = {d.x, d.y, d.z};
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) spread[j][k] += apart[j] * apart[k];
   }
-  const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
-  rim.normal = {normal.x(), normal.y(), normal.z()};
+  const auto [x, y, z] = eigenpairsOf(spread)[0].vector;
+  rim.normal = {x, y, z};
   if (dot(rim.normal, inward) < 0) rim.normal = -1.0 * rim.normal;
   double turn = 0;
   for (std::size_t i = 0; i < rim.points.size(); ++i)
@@ -139,10 +141,10 @@ std::vector<Anchor> landmarkAnchors(const std::vector<Landmark>& from, const std
   std::vector<Anchor> anchors;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const std::string& name = from[i].name;
-    if (!withJoints && name.rfind("joint_", 0) == 0) continue;
-    if (name.rfind(kCentre, 0) == 0) {
+    if (isJoint(name) && !withJoints) continue;
+    if (name.starts_with(kCentre)) {
       const std::string side = name.substr(kCentre.size());
-      if (findLandmark(to, "eye_inner" + side) != nullptr && findLandmark(to, "eye_outer" + side) != nullptr) continue;
+      if (placeOf(to, "eye_inner" + side) && placeOf(to, "eye_outer" + side)) continue;
     }
     anchors.push_back({positionOf(from[i]), positionOf(to[i]), kSlack * (1 - static_cast<double>(to[i].confidence))});
   }
@@ -168,41 +170,31 @@ std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& tar
 
 std::vector<Anchor> jawAnchors(const std::vector<Landmark>& own, const std::vector<Landmark>& to) {
   std::vector<Anchor> anchors;
-  const Landmark *chin = findLandmark(own, "chin"), *toChin = findLandmark(to, "chin");
-  const Landmark* menton = findLandmark(own, "menton");
-  if (chin == nullptr || toChin == nullptr || menton == nullptr || findLandmark(to, "menton") != nullptr)
-    return anchors;
-  const Vec3 below = positionOf(*menton), move = positionOf(*toChin) - positionOf(*chin);
-  anchors.push_back({below, below + move});
+  const auto chin = placeOf(own, "chin"), toChin = placeOf(to, "chin"), below = placeOf(own, "menton");
+  if (!chin || !toChin || !below || placeOf(to, "menton")) return anchors;
+  const Vec3 move = *toChin - *chin;
+  anchors.push_back({*below, *below + move});
   for (const char* side : {"ear_lobe_left", "ear_lobe_right"}) {
-    const Landmark *lobe = findLandmark(own, side), *toLobe = findLandmark(to, side);
-    if (lobe == nullptr || toLobe == nullptr) continue;
-    const Vec3 at = positionOf(*lobe);
-    const Vec3 edge = below + kJawShare * (at - below);
-    anchors.push_back({edge, edge + (1 - kJawShare) * move + kJawShare * (positionOf(*toLobe) - at)});
+    const auto lobe = placeOf(own, side), toLobe = placeOf(to, side);
+    if (!lobe || !toLobe) continue;
+    const Vec3 edge = *below + kJawShare * (*lobe - *below);
+    anchors.push_back({edge, edge + (1 - kJawShare) * move + kJawShare * (*toLobe - *lobe)});
   }
   return anchors;
 }
 
 std::vector<Anchor> eyeAnchors(const std::vector<Landmark>& from, const std::vector<Landmark>& to, const Axes& axes) {
   std::vector<Anchor> anchors;
-  for (const char* side : {"left", "right"}) {
-    const Landmark* corners[4];
-    int found = 0;
-    for (const auto* list : {&from, &to})
-      for (const char* name : {"eye_inner_", "eye_outer_"})
-        if ((corners[found] = findLandmark(*list, std::string(name) + side)) != nullptr) ++found;
-    if (found < 4 || !axes.known) continue;
-    const Vec3 inner = positionOf(*corners[0]), outer = positionOf(*corners[1]);
-    const Vec3 toInner = positionOf(*corners[2]), toOuter = positionOf(*corners[3]);
-    const auto upright = [&](const Vec3& along) {
-      const Vec3 up = axes.up - dot(axes.up, along) / dot(along, along) * along;
-      return 1 / length(up) * up;
+  for (const std::string side : {"left", "right"}) {
+    const auto inner = placeOf(from, "eye_inner_" + side), outer = placeOf(from, "eye_outer_" + side);
+    const auto toInner = placeOf(to, "eye_inner_" + side), toOuter = placeOf(to, "eye_outer_" + side);
+    if (!inner || !outer || !toInner || !toOuter || !axes.known) continue;
+    const auto spot = [&](const Vec3& a, const Vec3& b, double sign) {
+      const Vec3 along = b - a, up = axes.up - dot(axes.up, along) / dot(along, along) * along;
+      return 0.5 * (a + b) + sign * 0.5 * length(along) / length(up) * up;
     };
-    const double height = 0.5 * length(outer - inner), toHeight = 0.5 * length(toOuter - toInner);
     for (const double sign : {-1.0, 1.0})
-      anchors.push_back({0.5 * (inner + outer) + sign * height * upright(outer - inner),
-                         0.5 * (toInner + toOuter) + sign * toHeight * upright(toOuter - toInner)});
+      anchors.push_back({spot(*inner, *outer, sign), spot(*toInner, *toOuter, sign)});
   }
   return anchors;
 }

@@ -1,9 +1,10 @@
-#include "fit/bones.hpp"
+#include "fit/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "fit/warp.hpp"
+#include "mesh/limits.hpp"
 
 namespace cagecast::cages {
 
@@ -25,9 +26,7 @@ constexpr Link kLimbs[] = {
     {"clavicle", "shoulder"}, {"shoulder", "elbow"}, {"elbow", "wrist"}, {"hip", "knee"}, {"knee", "ankle"}};
 
 std::optional<Vec3> jointAt(const std::vector<Landmark>& landmarks, const std::string& name) {
-  const Landmark* found = findLandmark(landmarks, "joint_" + name);
-  if (found == nullptr) return std::nullopt;
-  return positionOf(*found);
+  return placeOf(landmarks, "joint_" + name);
 }
 
 /// Turned by the smallest angle and stretched along its length.
@@ -39,19 +38,16 @@ Bone boneBetween(const Vec3& a, const Vec3& b, const Vec3& toA, const Vec3& toB)
   const auto image = [&](const Vec3& axis) {
     return turn.turned(axis + (stretch - 1) * dot(axis, direction) * direction);
   };
-  Bone bone{a, b, image({1, 0, 0}), image({0, 1, 0}), image({0, 0, 1}), {0, 0, 0}};
-  bone.translation = toA - bone(a);
+  Bone bone{a, b, {image({1, 0, 0}), image({0, 1, 0}), image({0, 0, 1})}};
+  bone.map.translation = toA - bone.map(a);
   return bone;
 }
 
 /// Goes on beyond the end of a bone, turned like it but not stretched.
 Bone boneBeyond(const Bone& before, double share, const Vec3& to) {
-  const double size = length(before.to - before.from);
-  const Vec3 direction = 1 / size * (before.to - before.from);
-  const Vec3 image = direction.x * before.x + direction.y * before.y + direction.z * before.z;
-  const Similarity turn = shortestRotation(direction, 1 / length(image) * image);
-  Bone bone{before.to, before.to + share * (before.to - before.from), turn.x, turn.y, turn.z, {0, 0, 0}};
-  bone.translation = to - bone(before.to);
+  const Vec3 along = before.to - before.from;
+  Bone bone{before.to, before.to + share * along, shortestRotation(unit(along), unit(before.map.turned(along)))};
+  bone.map.translation = to - bone.map(before.to);
   return bone;
 }
 
@@ -62,31 +58,22 @@ std::optional<Bone> headBone(const std::vector<Landmark>& from, const std::vecto
   std::vector<Vec3> a, b;
   for (const Landmark& landmark : from) {
     const bool onHead = std::any_of(std::begin(kFace), std::end(kFace),
-                                    [&](const char* begin) { return landmark.name.rfind(begin, 0) == 0; });
-    const Landmark* there = onHead ? findLandmark(to, landmark.name) : nullptr;
-    if (there == nullptr) continue;
+                                    [&](const char* begin) { return landmark.name.starts_with(begin); });
+    const auto there = placeOf(to, landmark.name);
+    if (!onHead || !there) continue;
     a.push_back(positionOf(landmark));
-    b.push_back(positionOf(*there));
+    b.push_back(*there);
   }
   const auto joint = jointAt(from, "head"), toJoint = jointAt(to, "head");
   if (a.size() < 4 || !joint || !toJoint) return std::nullopt;
-  const Similarity map = fitSimilarity(a, b);
-  Vec3 middle{0, 0, 0};
-  for (const Vec3& p : a) middle = middle + 1 / static_cast<double>(a.size()) * p;
-  return Bone{*joint, middle, map.x, map.y, map.z, map.translation};
-}
-
-double distanceTo(const Bone& bone, const Vec3& p) {
-  const Vec3 along = bone.to - bone.from;
-  const double share = std::clamp(dot(p - bone.from, along) / dot(along, along), 0.0, 1.0);
-  return length(p - (bone.from + share * along));
+  return Bone{*joint, meanOf(a), fitSimilarity(a, b)};
 }
 
 std::vector<double> weightsAt(const Vec3& p, const std::vector<Bone>& bones, double thickness) {
   std::vector<double> weights;
   double total = 0;
   for (const Bone& bone : bones) {
-    const double distance = std::max(distanceTo(bone, p), thickness);
+    const double distance = std::max(distanceToSegment(p, bone.from, bone.to), thickness);
     weights.push_back(std::pow(distance, -6.0));
     total += weights.back();
   }
@@ -96,7 +83,7 @@ std::vector<double> weightsAt(const Vec3& p, const std::vector<Bone>& bones, dou
 
 Vec3 blend(const Vec3& p, const std::vector<Bone>& bones, const std::vector<double>& weights) {
   Vec3 out{0, 0, 0};
-  for (std::size_t i = 0; i < bones.size(); ++i) out = out + weights[i] * bones[i](p);
+  for (std::size_t i = 0; i < bones.size(); ++i) out = out + weights[i] * bones[i].map(p);
   return out;
 }
 
@@ -137,10 +124,10 @@ std::vector<Bone> bonesOf(const std::vector<Landmark>& from, const std::vector<L
     add("hips", "hip" + side);
     // Feet keep their direction: joints do not tell how they are turned.
     const auto ankle = jointAt(from, "ankle" + side), toAnkle = jointAt(to, "ankle" + side);
-    const Landmark* toe = findLandmark(from, "toe_big" + side);
-    if (ankle && toAnkle && toe != nullptr) {
-      Bone foot{*ankle, positionOf(*toe)};
-      foot.translation = *toAnkle - *ankle;
+    const auto toe = placeOf(from, "toe_big" + side);
+    if (ankle && toAnkle && toe) {
+      Bone foot{*ankle, *toe, {}};
+      foot.map.translation = *toAnkle - *ankle;
       bones.push_back(foot);
     }
   }

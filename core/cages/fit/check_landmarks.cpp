@@ -1,10 +1,8 @@
-#include "fit/check_landmarks.hpp"
+#include "fit/steps.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
 
-#include "fit/bones.hpp"
+#include "mesh/limits.hpp"
 
 namespace cagecast::cages {
 
@@ -12,14 +10,6 @@ namespace {
 
 /// A landmark of a model is at most this far outside its box, in diagonals.
 constexpr double kMaxOutside = 0.2;
-/// Joints of its skeleton may be farther: a figure that ends at the hips may have the joints of legs.
-constexpr double kMaxOutsideJoint = 0.5;
-/// A skeleton of several bones reaches over at least this share of the diagonal of its mesh.
-constexpr double kMinReach = 0.05;
-/// Each landmark is compared with where all others put it: the time grows with the cube of their number.
-constexpr std::size_t kMaxLandmarks = 300;
-/// A landmark that is off by more than this share of the diagonal, after the others are aligned, may be a mistake.
-constexpr double kMaxOff = 0.15;
 /// The farthest is a mistake if the residual without it is at most this share of that of all. Several are if it is at
 /// most this share without them: shapes may differ, such as an animal's head from a person's.
 constexpr double kRestOfOne = 0.5, kRestOfSeveral = 0.25;
@@ -28,41 +18,25 @@ constexpr double kMaxApart = 0.2;
 /// Two that are off by more than this share of the diagonal together may have been exchanged.
 constexpr double kClearlyOff = 0.05;
 
-std::string text(const char* format, double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
+Status fault(Code code, Argument argument, std::size_t at, double value = 0) {
+  return {code, argument, static_cast<std::uint32_t>(at), Option::none, static_cast<float>(value)};
 }
 
-bool isJoint(const std::string& name) { return name.rfind("joint_", 0) == 0; }
-
-std::string mirrorName(const std::string& name) {
-  for (const auto& [end, other] : {std::pair<std::string, std::string>{"_left", "_right"}, {"_right", "_left"}})
-    if (name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0)
-      return name.substr(0, name.size() - end.size()) + other;
-  return {};
-}
-
-Outcome otherSide(const std::string& name) {
-  return {Problem::badLandmarks,
-          "landmarks: " + name + " is on the other side: left and right are the figure's own, not the viewer's"};
-}
-
-/// The first given landmark that has changed places with its mirror image, seen from the others; empty if there is
+/// The first given landmark that has changed places with its mirror image, seen from the others; `kNone` if there is
 /// none. Without other pairs nothing says which side is which, and a figure with joints may have crossed its arms.
-std::string exchangedPair(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
+std::size_t exchangedPair(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
                           const std::vector<bool>& given, double diagonal) {
   std::vector<std::size_t> mirror(from.size());
   std::size_t sides = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    if (isJoint(from[i].name)) return {};
+    if (isJoint(from[i].name)) return kNone;
     const std::string name = mirrorName(from[i].name);
     mirror[i] = i;
     for (std::size_t j = 0; j < from.size(); ++j)
       if (from[j].name == name) mirror[i] = j;
     if (mirror[i] != i) ++sides;
   }
-  if (sides < 4) return {};
+  if (sides < 4) return kNone;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const std::size_t j = mirror[i];
     if (j == i || !given[i]) continue;
@@ -77,9 +51,9 @@ std::string exchangedPair(const std::vector<Landmark>& from, const std::vector<L
     const Vec3 one = map.inverse(positionOf(to[i])), other = map.inverse(positionOf(to[j]));
     const double straight = length(one - positionOf(from[i])) + length(other - positionOf(from[j]));
     const double crossed = length(one - positionOf(from[j])) + length(other - positionOf(from[i]));
-    if (straight > kClearlyOff * diagonal && crossed < 0.5 * straight) return from[i].name;
+    if (straight > kClearlyOff * diagonal && crossed < 0.5 * straight) return i;
   }
-  return {};
+  return kNone;
 }
 
 /// How far points are from where others are mapped to, on average.
@@ -108,18 +82,16 @@ SkinPairs skinPairs(const std::vector<Landmark>& from, const std::vector<Landmar
 }
 
 /// The first landmark that has a mirror image if left and right seem to be swapped in all of them, because the other
-/// names would fit much better; empty otherwise.
-std::string swappedSides(const SkinPairs& pairs, const std::vector<Landmark>& to, double asGiven, double diagonal) {
+/// names would fit much better; `kNone` otherwise.
+std::size_t swappedSides(const SkinPairs& pairs, const std::vector<Landmark>& to, double asGiven, double diagonal) {
   std::vector<Vec3> swapped;
-  std::string first;
+  std::size_t first = kNone;
   for (std::size_t k = 0; k < pairs.places.size(); ++k) {
-    const std::string& name = to[pairs.places[k]].name;
-    const Landmark* other = findLandmark(to, mirrorName(name));
-    if (other != nullptr && first.empty()) first = name;
-    swapped.push_back(other != nullptr ? positionOf(*other) : pairs.to[k]);
+    const auto other = placeOf(to, mirrorName(to[pairs.places[k]].name));
+    if (other && first == kNone) first = pairs.places[k];
+    swapped.push_back(other.value_or(pairs.to[k]));
   }
-  const bool isSwapped = !first.empty() && asGiven > 0.02 * diagonal && residual(pairs.from, swapped) < 0.5 * asGiven;
-  return isSwapped ? first : std::string();
+  return first != kNone && asGiven > 0.02 * diagonal && residual(pairs.from, swapped) < 0.5 * asGiven ? first : kNone;
 }
 
 /// A point that is not where the others put it.
@@ -160,72 +132,55 @@ std::vector<Suspect> leaveOut(std::vector<Vec3> from, std::vector<Vec3> to, doub
 
 }  // namespace
 
-Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* name, const Bounds& box,
-                          Problem problem) {
-  if (landmarks.size() > kMaxLandmarks)
-    return {problem, std::string(name) + ": " + std::to_string(landmarks.size()) + " are given, at most " +
-                         std::to_string(kMaxLandmarks) + " are allowed"};
+Status checkLandmarkList(const std::vector<Landmark>& landmarks, Argument argument, const Bounds& box) {
+  if (landmarks.size() > kMaxLandmarks) return fault(Code::tooManyLandmarks, argument, landmarks.size());
   const double size = box.diagonal();
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     const Landmark& a = landmarks[i];
-    for (const float x : a.position)
-      if (!std::isfinite(x)) return {problem, std::string(name) + ": " + a.name + " is not a finite position"};
     const double outside = box.distance(positionOf(a)) / size;
-    if (outside > kMaxOutside)
-      return {problem, std::string(name) + ": " + a.name + " is " + text("%.3g", outside) +
-                           " diagonals outside the box of its model; it has to be in its unit and axes"};
+    if (!std::isfinite(outside)) return fault(Code::nonFiniteLandmark, argument, i);
+    if (outside > kMaxOutside) return fault(Code::landmarkOutside, argument, i, outside);
     for (std::size_t j = 0; j < i; ++j) {
       const Landmark& b = landmarks[j];
-      if (a.name == b.name) return {problem, std::string(name) + ": " + a.name + " is there twice"};
+      if (a.name == b.name) return fault(Code::landmarkTwice, argument, i);
       // Joints of a rig may coincide.
       if (!isJoint(a.name) && !isJoint(b.name) && length(positionOf(a) - positionOf(b)) < kOneSpot * size)
-        return {problem, std::string(name) + ": " + b.name + " and " + a.name + " are on one spot; each needs its own"};
+        return fault(Code::landmarksOnOneSpot, argument, i);
     }
   }
   return {};
 }
 
-Outcome checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box) {
+Status checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box) {
   std::size_t count = 0;
   Bounds joints;
-  for (const Landmark& landmark : landmarks) {
-    if (!isJoint(landmark.name)) continue;
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    if (!isJoint(landmarks[i].name)) continue;
     ++count;
-    joints.add(positionOf(landmark));
-    const double outside = box.distance(positionOf(landmark)) / box.diagonal();
-    if (outside > kMaxOutsideJoint)
-      return {Problem::badModel, "model.joints: " + landmark.name + " is " + text("%.3g", outside) +
-                                     " diagonals outside the box of the mesh, at most " +
-                                     text("%.3g", kMaxOutsideJoint) +
-                                     " are expected; joints have to be in its unit and axes"};
+    joints.add(positionOf(landmarks[i]));
+    const double outside = box.distance(positionOf(landmarks[i])) / box.diagonal();
+    if (outside > kMaxJointOutside) return fault(Code::jointOutside, Argument::model, i, outside);
   }
   const double reach = joints.diagonal() / box.diagonal();
-  if (count > kMinBones && reach < kMinReach)
-    return {Problem::badModel, "model.joints: the box of " + std::to_string(count) + " joints is " +
-                                   text("%.3g", reach) + " as large as that of the mesh, at least " +
-                                   text("%.3g", kMinReach) + " is expected; joints have to be in its unit"};
-  return {};
+  return count > kMinBones && reach < kMinSkeleton ? fault(Code::smallSkeleton, Argument::model, count, reach)
+                                                   : Status{};
 }
 
-Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
-                       const std::vector<bool>& given, double diagonal) {
+Status checkAgreement(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
+                      const std::vector<bool>& given, double diagonal) {
   const SkinPairs pairs = skinPairs(from, to);
   if (pairs.places.size() < 3) return {};
   const double asGiven = residual(pairs.from, pairs.to);
-  if (const std::string name = swappedSides(pairs, to, asGiven, diagonal); !name.empty()) return otherSide(name);
-  if (const std::string name = exchangedPair(from, to, given, diagonal); !name.empty()) return otherSide(name);
-  std::vector<Suspect> suspects = leaveOut(pairs.from, pairs.to, kMaxOff * diagonal);
+  for (const std::size_t i : {swappedSides(pairs, to, asGiven, diagonal), exchangedPair(from, to, given, diagonal)})
+    if (i != kNone) return fault(Code::wrongSide, Argument::landmarks, i);
+  std::vector<Suspect> suspects = leaveOut(pairs.from, pairs.to, kMaxLandmarkOff * diagonal);
   if (suspects.empty()) return {};
   const bool areSeveral = suspects.back().rest < kRestOfSeveral * asGiven || asGiven > kMaxApart * diagonal;
   if (!areSeveral) suspects.resize(1);
   if (!areSeveral && !(suspects.front().rest < kRestOfOne * asGiven)) return {};
   for (const Suspect& suspect : suspects) {
     const std::size_t i = pairs.places[suspect.index];
-    if (given[i])
-      return {Problem::badLandmarks, "landmarks: " + from[i].name + " is " +
-                                         text("%.0f", 100 * suspect.off / diagonal) +
-                                         " % of the diagonal away from where the others put it; at most " +
-                                         text("%.0f", 100 * kMaxOff) + " % is expected"};
+    if (given[i]) return fault(Code::landmarkAway, Argument::landmarks, i, suspect.off / diagonal);
   }
   return {};
 }

@@ -1,8 +1,7 @@
-#include "fit/eye_holes.hpp"
+#include "fit/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -41,16 +40,6 @@ struct EyeOpening {
   [[nodiscard]] Vec3 place(const Flat& p) const { return middle + p.x * across + p.y * up; }
 };
 
-/// Boxes of the components of a mesh.
-std::vector<Bounds> boxesOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& components) {
-  std::uint32_t count = 0;
-  for (const std::uint32_t c : components) count = std::max(count, c + 1);
-  std::vector<Bounds> boxes(count);
-  for (std::size_t t = 0; t < components.size(); ++t)
-    for (const std::uint32_t v : mesh.triangles[t]) boxes[components[t]].add(mesh.positions[v]);
-  return boxes;
-}
-
 double thickness(const Bounds& box) { return std::min({box.size().x, box.size().y, box.size().z}); }
 
 /// The component that is the eyeball around a landmark, if no name says so: the thickest one. -1 if there is none.
@@ -67,7 +56,9 @@ int eyeballAt(const std::vector<Bounds>& boxes, const std::vector<bool>& isNear,
 /// The triangles of the eye at a landmark: named parts on its side, else the eyeball around it, and what is inside.
 std::vector<bool> eyeAt(const EyedFigure& figure, const Vec3& centre, const Vec3& other, double diagonal) {
   const std::size_t count = figure.mesh.triangles.size();
-  const std::vector<Bounds> boxes = boxesOf(figure.mesh, figure.components);
+  std::vector<Bounds> boxes(figure.componentCount);
+  for (std::size_t t = 0; t < count; ++t)
+    for (const std::uint32_t v : figure.mesh.triangles[t]) boxes[figure.components[t]].add(figure.mesh.positions[v]);
   std::vector<bool> named(boxes.size()), isNear(boxes.size()), isEye(boxes.size());
   for (std::size_t t = 0; t < count; ++t)
     if (figure.isEye[t]) named[figure.components[t]] = true;
@@ -220,12 +211,10 @@ Flat spreadOf(const std::vector<Flat>& points, Flat& middle) {
 
 /// Adds the pieces of a mesh around an eye that are neither the eye nor skin.
 /// @param isEye  Per triangle; may be empty.
-void addCovers(const TriangleMesh& mesh, const std::vector<std::uint32_t>& components, const std::vector<bool>& isEye,
-               EyeOpening& opening) {
+void addCovers(const TriangleMesh& mesh, const std::vector<std::uint32_t>& components, std::uint32_t count,
+               const std::vector<bool>& isEye, EyeOpening& opening) {
   std::vector<HoleContent::Cover>& covers = opening.covers;
   const double radius = *std::max_element(opening.contour.begin(), opening.contour.end());
-  std::uint32_t count = 0;
-  for (const std::uint32_t c : components) count = std::max(count, c + 1);
   std::vector<bool> isCover(count, true);
   for (std::size_t t = 0; t < components.size(); ++t) {
     if (!isEye.empty() && isEye[t]) isCover[components[t]] = false;
@@ -307,11 +296,10 @@ void drawTo(const TemplateCage& cage, std::vector<std::uint32_t> loop, const Eye
 }
 
 std::optional<Vec3> centreOf(const std::vector<Landmark>& landmarks, const std::string& side) {
-  if (const Landmark* centre = findLandmark(landmarks, "eye_centre_" + side)) return positionOf(*centre);
-  const Landmark* inner = findLandmark(landmarks, "eye_inner_" + side);
-  const Landmark* outer = findLandmark(landmarks, "eye_outer_" + side);
-  if (inner == nullptr || outer == nullptr) return std::nullopt;
-  return 0.5 * (positionOf(*inner) + positionOf(*outer));
+  if (const auto centre = placeOf(landmarks, "eye_centre_" + side)) return centre;
+  const auto inner = placeOf(landmarks, "eye_inner_" + side), outer = placeOf(landmarks, "eye_outer_" + side);
+  if (!inner || !outer) return std::nullopt;
+  return 0.5 * (*inner + *outer);
 }
 
 }  // namespace
@@ -332,8 +320,8 @@ std::vector<Vec3> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure
     if (!(length(axis) > 0)) continue;
     std::optional<EyeOpening> opening = EyeView(figure.mesh, surface, isEye, axis).opening();
     if (!opening) continue;
-    addCovers(figure.mesh, figure.components, isEye, *opening);
-    addCovers(figure.covers, figure.coverComponents, {}, *opening);
+    addCovers(figure.mesh, figure.components, figure.componentCount, isEye, *opening);
+    addCovers(figure.covers, figure.coverComponents, figure.componentCount, {}, *opening);
     drawTo(cage, cage.loops[static_cast<std::size_t>(hole)], *opening, surface, positions);
     for (const std::uint32_t v : cage.loops[static_cast<std::size_t>(hole)]) tracks[v] = opening->axis;
   }

@@ -1,23 +1,15 @@
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <tuple>
 
 #include "cagecast/cages.hpp"
-#include "fit/anchors.hpp"
-#include "fit/bones.hpp"
-#include "fit/check_landmarks.hpp"
-#include "fit/eye_holes.hpp"
-#include "fit/finish.hpp"
-#include "fit/relax.hpp"
-#include "fit/template_cage.hpp"
-#include "fit/tighten.hpp"
+#include "fit/steps.hpp"
 #include "fit/warp.hpp"
 #include "hull/hull.hpp"
 #include "landmarks/parts.hpp"
 #include "mesh/check_model.hpp"
+#include "mesh/limits.hpp"
 #include "mesh/part_names.hpp"
 #include "mesh/progress.hpp"
-
 /// The fit: landmarks or bones say where everything belongs, a smooth map carries the cage there, and the hull of the
 /// target draws it onto its surface without letting it slide. All in the space of the template, so that how the target
 /// is turned and scaled makes no difference.
@@ -36,46 +28,24 @@ constexpr FitSettings kHead{0.022, 80, 1, {.reach = 0.06, .sliding = 0.5, .stiff
 constexpr FitSettings kBody{0.010, 200, 2, {.reach = 0.02, .sliding = 0.05, .stiffest = 30, .softest = 1}};
 /// The hull is at least this far off, in diagonals: templates whose landmarks lie on the cage.
 constexpr double kMinOffset = 0.003;
-constexpr std::size_t kMinLandmarks = 4;
 /// A fitted cage that is farther than this from the figure's box, in diagonals, is no cage of it.
 constexpr double kMaxBeyond = 1;
-/// Of a face, these do to begin with.
-constexpr std::array kFirstFive{"eye_centre_left", "eye_centre_right", "nose_tip", "lip_lower", "chin"};
-/// How many landmarks a message lists at most.
-constexpr std::size_t kMaxNames = 12;
-
 /// Shares of the work, for progress.
 constexpr float kLandmarksEnd = 0.3f, kTightenStart = 0.6f, kTightenEnd = 0.85f;
 
 /// What is known of both models.
 struct Pairs {
-  std::vector<Landmark> from, to;  ///< In the same order; `to` in the target's space, then in the template's.
-  std::vector<bool> given;         ///< Whether a person gave it.
+  std::vector<Landmark> from, to;     ///< In the same order; `to` in the target's space, then in the template's.
+  std::vector<bool> given;            ///< Whether a person gave it.
+  std::vector<std::uint32_t> places;  ///< In the template's list.
 };
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMaxNames); ++i) text += (i > 0 ? ", " : "") + names[i];
-  return names.size() > kMaxNames ? text + " and " + std::to_string(names.size() - kMaxNames) + " more" : text;
-}
-
-/// Which landmarks to give first.
-std::vector<std::string> firstOf(const std::vector<std::string>& missing) {
-  std::vector<std::string> first;
-  for (const char* name : kFirstFive)
-    if (std::find(missing.begin(), missing.end(), name) != missing.end()) first.emplace_back(name);
-  return first.empty() ? missing : first;
-}
-
-Outcome pairLandmarks(const Template& from, const std::vector<Landmark>& given, const std::vector<Landmark>& found,
-                      Pairs& out, FittedCage& cage) {
-  for (const Landmark& landmark : given) {
-    if (findLandmark(from.landmarks, landmark.name) != nullptr) continue;
-    std::vector<std::string> names;
-    for (const Landmark& known : from.landmarks) names.push_back(known.name);
-    return {Problem::badLandmarks, "landmarks: the template has no " + landmark.name + "; it has " + listed(names)};
-  }
-  for (const Landmark& landmark : from.landmarks) {
+Status pairLandmarks(const Template& from, const std::vector<Landmark>& given, const std::vector<Landmark>& found,
+                     Pairs& out, FittedCage& cage) {
+  for (std::uint32_t i = 0; i < given.size(); ++i)
+    if (findLandmark(from.landmarks, given[i].name) == nullptr) return {Code::unknownLandmark, Argument::landmarks, i};
+  for (std::uint32_t i = 0; i < from.landmarks.size(); ++i) {
+    const Landmark& landmark = from.landmarks[i];
     const Landmark* there = findLandmark(given, landmark.name);
     const bool isGiven = there != nullptr;
     if (!isGiven) there = findLandmark(found, landmark.name);
@@ -86,18 +56,11 @@ Outcome pairLandmarks(const Template& from, const std::vector<Landmark>& given, 
     out.from.push_back(landmark);
     out.to.push_back(*there);
     out.given.push_back(isGiven);
+    out.places.push_back(i);
     cage.landmarks.push_back(*there);
   }
-  if (out.from.size() >= kMinLandmarks) return {};
-  return {Problem::badLandmarks, "landmarks: " + std::to_string(out.from.size()) + " are known, at least " +
-                                     std::to_string(kMinLandmarks) + " are needed; please give some of " +
-                                     listed(firstOf(cage.missing))};
-}
-
-Vec3 middleOf(const std::vector<Landmark>& landmarks) {
-  Vec3 sum{0, 0, 0};
-  for (const Landmark& landmark : landmarks) sum = sum + positionOf(landmark);
-  return 1 / static_cast<double>(landmarks.size()) * sum;
+  const auto count = static_cast<std::uint32_t>(out.from.size());
+  return count < kMinLandmarks ? Status{Code::tooFewLandmarks, Argument::landmarks, count} : Status{};
 }
 
 /// Whether the triangles of a cage are within a distance of the box around a hull and landmarks.
@@ -122,20 +85,139 @@ class Fit {
   Fit(const Template& from, const Model& model, const FitOptions& options, const Progress& progress)
       : from_(from), model_(model), options_(options), progress_(progress) {}
 
-  Outcome run(FittedCage& out);
+  Status run(FittedCage& out) {
+    TemplateCage cage = prepareTemplate(from_);
+    if (const Status status = pair(cage, out); !status.ok()) return status;
+    align();
+    const FitSettings& settings = bones_.empty() ? kHead : kBody;
+    cage.offset = std::max(cage.offset, kMinOffset * cage.diagonal);
+    readTarget();
+    if (skin_.empty()) return {Code::nothingToPaint, Argument::model};
+    const std::vector<Anchor> anchors = anchorsOf(cage);
+    if (anchors.empty())
+      return {Code::tooFewJoints, Argument::landmarks, static_cast<std::uint32_t>(pairs_.from.size())};
+    if (!report(progress_, kLandmarksEnd, "hull")) return kAborted;
+    TriangleMesh hull;
+    const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels,
+                             meanOf(positionsOf(pairs_.to))};
+    if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return kAborted;
+    if (hull.empty()) return {Code::noVolume, Argument::model};
+    std::vector<Vec3> positions = start(cage, anchors);
+    if (!draw(cage, hull, settings, positions)) return kAborted;
+    if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMaxBeyond * cage.diagonal))
+      return {Code::noFit, Argument::model};
+    write(cage, positions, out);
+    return report(progress_, 1, "done") ? Status{} : kAborted;
+  }
 
  private:
-  [[nodiscard]] bool tell(double share, const char* stage) const {
-    return !progress_ || progress_(static_cast<float>(share), stage);
+  /// The pairs of points that the cage is moved by, once it is bent by the bones: no two of them at one spot.
+  [[nodiscard]] std::vector<Anchor> anchorsOf(const TemplateCage& cage) const {
+    const Axes axes = axesOf(from_.landmarks);
+    std::vector<Anchor> anchors = landmarkAnchors(pairs_.from, pairs_.to, !bones_.empty());
+    for (const Anchor& anchor : jawAnchors(from_.landmarks, pairs_.to)) anchors.push_back(anchor);
+    for (const Anchor& anchor : eyeAnchors(pairs_.from, pairs_.to, axes)) anchors.push_back(anchor);
+    if (bones_.empty())
+      for (const Anchor& anchor : rimAnchors(cage, skin_, axes)) anchors.push_back(anchor);
+    std::vector<Anchor> apart;
+    for (Anchor anchor : anchors) {
+      if (!bones_.empty()) anchor.from = bend(anchor.from, bones_);
+      const bool isTwice = std::any_of(apart.begin(), apart.end(), [&](const Anchor& other) {
+        return length(other.from - anchor.from) < kOneSpot * cage.diagonal;
+      });
+      if (!isTwice) apart.push_back(anchor);
+    }
+    return apart;
   }
-  [[nodiscard]] Outcome pair(const TemplateCage& cage, FittedCage& out);
-  void align();
-  void readTarget();
-  [[nodiscard]] std::vector<Anchor> anchorsOf(const TemplateCage& cage) const;
-  [[nodiscard]] std::vector<Vec3> start(const TemplateCage& cage, const std::vector<Anchor>& anchors) const;
+
+  /// Where the cage belongs by landmarks and bones alone.
+  [[nodiscard]] std::vector<Vec3> start(const TemplateCage& cage, const std::vector<Anchor>& anchors) const {
+    std::vector<Vec3> positions = bones_.empty() ? cage.mesh.positions : bend(cage, bones_);
+    const Warp warp(anchors, cage.diagonal);
+    for (Vec3& p : positions) p = warp(p);
+    return positions;
+  }
+
+  /// Pairs the landmarks of the template with those that were given or are found.
+  [[nodiscard]] Status pair(const TemplateCage& cage, FittedCage& out) {
+    const std::vector<Landmark>& given = options_.landmarks;
+    FoundLandmarks found;
+    const bool allGiven = std::all_of(from_.landmarks.begin(), from_.landmarks.end(), [&](const Landmark& landmark) {
+      return findLandmark(given, landmark.name) != nullptr;
+    });
+    if (!allGiven) {
+      const Progress finding = partOf(progress_, 0, kLandmarksEnd);
+      if (const Status status = findLandmarks(model_, finding, found); !status.ok()) return status;
+    }
+    if (const Status status = pairLandmarks(from_, given, found.landmarks, pairs_, out); !status.ok()) return status;
+    Status status = checkJoints(pairs_.to, boundsOf(model_.mesh));
+    if (status.ok()) status = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);
+    if (!status.ok() && status.code != Code::smallSkeleton) status.at = pairs_.places[status.at];
+    return status;
+  }
+
+  /// Brings the target's landmarks into the template's space, and finds the bones.
+  void align() {
+    map_ = fitSimilarity(positionsOf(pairs_.from), positionsOf(pairs_.to));
+    for (Landmark& landmark : pairs_.to) landmark.position = toPosition(map_.inverse(positionOf(landmark)));
+    bones_ = bonesOf(pairs_.from, pairs_.to);
+  }
+
+  /// Draws the cage onto the hull, and pushes it out until the target is inside. @return false if cancelled.
   [[nodiscard]] bool draw(const TemplateCage& cage, const TriangleMesh& hull, const FitSettings& settings,
-                          std::vector<Vec3>& positions) const;
-  void write(const TemplateCage& cage, const std::vector<Vec3>& positions, FittedCage& out) const;
+                          std::vector<Vec3>& positions) const {
+    for (int pass = 0; pass < settings.passes; ++pass) {
+      if (pass > 0) relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
+      positions = tighten(cage, positions, hull, settings.tighten, [&](double share) {
+        return report(progress_, kTightenStart + (pass + share) / settings.passes * (kTightenEnd - kTightenStart),
+                      "fit");
+      });
+      if (positions.empty()) return false;
+    }
+    const std::vector<Vec3> tracks = fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
+    if (!report(progress_, kTightenEnd, "fit")) return false;
+    relax(cage, tracks, positions);
+    return pushOut(
+        cage, {skin_, hull}, tracks,
+        [&](double share) { return report(progress_, kTightenEnd + share * (1 - kTightenEnd), "push out"); },
+        positions);
+  }
+
+  /// Writes the cage in the target's space.
+  void write(const TemplateCage& cage, const std::vector<Vec3>& positions, FittedCage& out) const {
+    out.positions.clear();
+    for (const std::uint32_t v : cage.vertexOf) append(out.positions, map_(positions[v]));
+    out.uvs.assign(from_.cage.uvs.begin(), from_.cage.uvs.end());
+    out.indices.assign(from_.cage.indices.begin(), from_.cage.indices.end());
+    out.kind = from_.kind;
+  }
+
+  /// Reads the target in the space of the template.
+  void readTarget() {
+    std::vector<std::uint32_t> triangleOf;
+    TriangleMesh mesh = weldExactly(model_.mesh, nullptr, &triangleOf);
+    for (Vec3& p : mesh.positions) p = map_.inverse(p);
+    const std::vector<bool> kept = keptTriangles(model_, options_.exclude);
+    const Figure parts = readFigure(model_);
+    std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size()), isCover(mesh.triangles.size());
+    figure_ = {};
+    figure_.componentCount = parts.componentCount;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const bool isEye = parts.roles[t] == Role::eye;
+      isSkin[t] = kept[triangleOf[t]];
+      isFigure[t] = isSkin[t] || isEye;
+      isCover[t] = !isFigure[t];
+      if (isCover[t]) {
+        figure_.coverComponents.push_back(parts.components[t]);
+        continue;
+      }
+      figure_.isEye.push_back(isEye);
+      figure_.components.push_back(parts.components[t]);
+    }
+    skin_ = subset(mesh, isSkin);
+    figure_.mesh = subset(mesh, isFigure);
+    figure_.covers = subset(mesh, isCover);
+  }
 
   const Template& from_;
   const Model& model_;
@@ -148,169 +230,25 @@ class Fit {
   EyedFigure figure_;        ///< Eyes fill their sockets.
 };
 
-void Fit::readTarget() {
-  std::vector<std::uint32_t> triangleOf;
-  TriangleMesh mesh = weldExactly(model_.mesh, nullptr, &triangleOf);
-  for (Vec3& p : mesh.positions) p = map_.inverse(p);
-  const std::vector<bool> kept = keptTriangles(model_, options_.exclude);
-  const Figure parts = readFigure(model_);
-  std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size()), isCover(mesh.triangles.size());
-  figure_ = {};
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const bool isEye = parts.roles[t] == Role::eye;
-    isSkin[t] = kept[triangleOf[t]];
-    isFigure[t] = isSkin[t] || isEye;
-    isCover[t] = !isFigure[t];
-    if (isCover[t]) {
-      figure_.coverComponents.push_back(parts.components[t]);
-      continue;
-    }
-    figure_.isEye.push_back(isEye);
-    figure_.components.push_back(parts.components[t]);
-  }
-  skin_ = subset(mesh, isSkin);
-  figure_.mesh = subset(mesh, isFigure);
-  figure_.covers = subset(mesh, isCover);
-}
-
-/// The pairs of points that the cage is moved by, once it is bent by the bones: no two of them at one spot.
-std::vector<Anchor> Fit::anchorsOf(const TemplateCage& cage) const {
-  const Axes axes = axesOf(from_.landmarks);
-  std::vector<Anchor> anchors = landmarkAnchors(pairs_.from, pairs_.to, !bones_.empty());
-  for (const Anchor& anchor : jawAnchors(from_.landmarks, pairs_.to)) anchors.push_back(anchor);
-  for (const Anchor& anchor : eyeAnchors(pairs_.from, pairs_.to, axes)) anchors.push_back(anchor);
-  if (bones_.empty())
-    for (const Anchor& anchor : rimAnchors(cage, skin_, axes)) anchors.push_back(anchor);
-  std::vector<Anchor> apart;
-  for (Anchor anchor : anchors) {
-    if (!bones_.empty()) anchor.from = bend(anchor.from, bones_);
-    const bool isTwice = std::any_of(apart.begin(), apart.end(), [&](const Anchor& other) {
-      return length(other.from - anchor.from) < kOneSpot * cage.diagonal;
-    });
-    if (!isTwice) apart.push_back(anchor);
-  }
-  return apart;
-}
-
-/// Where the cage belongs by landmarks and bones alone.
-std::vector<Vec3> Fit::start(const TemplateCage& cage, const std::vector<Anchor>& anchors) const {
-  std::vector<Vec3> positions = bones_.empty() ? cage.mesh.positions : bend(cage, bones_);
-  const Warp warp(anchors, cage.diagonal);
-  for (Vec3& p : positions) p = warp(p);
-  return positions;
-}
-
-/// Pairs the landmarks of the template with those that were given or are found.
-Outcome Fit::pair(const TemplateCage& cage, FittedCage& out) {
-  const std::vector<Landmark>& given = options_.landmarks;
-  FoundLandmarks found;
-  const bool allGiven = std::all_of(from_.landmarks.begin(), from_.landmarks.end(), [&](const Landmark& landmark) {
-    return findLandmark(given, landmark.name) != nullptr;
-  });
-  if (!allGiven) {
-    const Progress finding = partOf(progress_, 0, kLandmarksEnd);
-    if (Outcome outcome = findLandmarks(model_, finding, found); !outcome.ok()) return outcome;
-  }
-  if (Outcome outcome = pairLandmarks(from_, given, found.landmarks, pairs_, out); !outcome.ok()) return outcome;
-  if (Outcome outcome = checkJoints(pairs_.to, boundsOf(model_.mesh)); !outcome.ok()) return outcome;
-  return checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);
-}
-
-/// Brings the target's landmarks into the template's space, and finds the bones.
-void Fit::align() {
-  std::vector<Vec3> from, to;
-  for (std::size_t i = 0; i < pairs_.from.size(); ++i) {
-    from.push_back(positionOf(pairs_.from[i]));
-    to.push_back(positionOf(pairs_.to[i]));
-  }
-  map_ = fitSimilarity(from, to);
-  for (std::size_t i = 0; i < to.size(); ++i) {
-    const Vec3 p = map_.inverse(to[i]);
-    pairs_.to[i].position = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-  }
-  bones_ = bonesOf(pairs_.from, pairs_.to);
-}
-
-/// Draws the cage onto the hull, and pushes it out until the target is inside. @return false if cancelled.
-bool Fit::draw(const TemplateCage& cage, const TriangleMesh& hull, const FitSettings& settings,
-               std::vector<Vec3>& positions) const {
-  for (int pass = 0; pass < settings.passes; ++pass) {
-    if (pass > 0) relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
-    positions = tighten(cage, positions, hull, settings.tighten, [&](double share) {
-      return tell(kTightenStart + (pass + share) / settings.passes * (kTightenEnd - kTightenStart), "fit");
-    });
-    if (positions.empty()) return false;
-  }
-  const std::vector<Vec3> tracks = fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
-  if (!tell(kTightenEnd, "fit")) return false;
-  relax(cage, tracks, positions);
-  return pushOut(
-      cage, {skin_, hull}, tracks,
-      [&](double share) { return tell(kTightenEnd + share * (1 - kTightenEnd), "push out"); }, positions);
-}
-
-/// Writes the cage in the target's space.
-void Fit::write(const TemplateCage& cage, const std::vector<Vec3>& positions, FittedCage& out) const {
-  out.positions.clear();
-  for (const std::uint32_t v : cage.vertexOf) {
-    const Vec3 p = map_(positions[v]);
-    for (const double x : {p.x, p.y, p.z}) out.positions.push_back(static_cast<float>(x));
-  }
-  out.uvs.assign(from_.cage.uvs.begin(), from_.cage.uvs.end());
-  out.indices.assign(from_.cage.indices.begin(), from_.cage.indices.end());
-  out.kind = from_.kind;
-}
-
-Outcome Fit::run(FittedCage& out) {
-  TemplateCage cage = prepareTemplate(from_);
-  if (Outcome outcome = pair(cage, out); !outcome.ok()) return outcome;
-  align();
-  const FitSettings& settings = bones_.empty() ? kHead : kBody;
-  cage.offset = std::max(cage.offset, kMinOffset * cage.diagonal);
-  readTarget();
-  if (skin_.empty())
-    return {Problem::badModel, "model: all of its parts are excluded by name; at least one must be painted"};
-  const std::vector<Anchor> anchors = anchorsOf(cage);
-  if (anchors.empty())
-    return {Problem::badLandmarks, "landmarks: only " + std::to_string(pairs_.from.size()) +
-                                       " joints are known, too few for a skeleton of " + std::to_string(kMinBones) +
-                                       " bones; give more of them, or landmarks on the skin"};
-  if (!tell(kLandmarksEnd, "hull")) return cancelled();
-  TriangleMesh hull;
-  const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels, middleOf(pairs_.to)};
-  if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return cancelled();
-  if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
-  std::vector<Vec3> positions = start(cage, anchors);
-  if (!draw(cage, hull, settings, positions)) return cancelled();
-  if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMaxBeyond * cage.diagonal))
-    return {Problem::badModel,
-            "model: the template does not fit it; if there are several figures in it, exclude all but one of them"};
-  write(cage, positions, out);
-  return tell(1, "done") ? Outcome{} : cancelled();
-}
-
 }  // namespace
 
-Outcome fitCage(const Template& from, const Model& model, const FitOptions& options, const Progress& progress,
-                FittedCage& out) {
-  if (Outcome outcome = checkMesh(from.cage, "template.cage", Problem::badTemplate); !outcome.ok()) return outcome;
-  if (from.cage.uvs.size() / 2 != from.cage.positions.size() / 3)
-    return {Problem::badTemplate, "template.cage: it has no UVs; a cage needs 2 numbers per vertex"};
-  if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
-  if (from.landmarks.size() < kMinLandmarks)
-    return {Problem::badTemplate, "template: it has " + std::to_string(from.landmarks.size()) +
-                                      " landmarks; at least " + std::to_string(kMinLandmarks) + " are needed"};
-  if (Outcome outcome =
-          checkLandmarkList(from.landmarks, "template.landmarks", boundsOf(from.cage), Problem::badTemplate);
-      !outcome.ok())
-    return outcome;
-  if (Outcome outcome = checkLandmarkList(options.landmarks, "landmarks", boundsOf(model.mesh), Problem::badLandmarks);
-      !outcome.ok())
-    return outcome;
-  FittedCage fitted;  // `out` may own the template.
-  Outcome outcome = Fit(from, model, options, progress).run(fitted);
-  out = std::move(fitted);
-  return outcome;
+Status fitCage(const Template& from, const Model& model, const FitOptions& options, const Progress& progress,
+               FittedCage& out) {
+  return guarded([&] {
+    if (const Status status = checkMesh(from.cage, Argument::from); !status.ok()) return status;
+    if (from.cage.uvs.empty()) return Status{Code::missingUvs, Argument::from};
+    if (const Status status = checkModel(model); !status.ok()) return status;
+    const auto count = static_cast<std::uint32_t>(from.landmarks.size());
+    if (count < kMinLandmarks) return Status{Code::tooFewLandmarks, Argument::from, count};
+    for (const auto& [argument, list, box] :
+         {std::tuple{Argument::from, &from.landmarks, boundsOf(from.cage)},
+          std::tuple{Argument::landmarks, &options.landmarks, boundsOf(model.mesh)}})
+      if (const Status status = checkLandmarkList(*list, argument, box); !status.ok()) return status;
+    FittedCage fitted;  // `out` may own the template.
+    const Status status = Fit(from, model, options, progress).run(fitted);
+    out = std::move(fitted);
+    return status;
+  });
 }
 
 }  // namespace cagecast::cages

@@ -1,11 +1,11 @@
-#include "fit/relax.hpp"
+#include "fit/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "fit/warp.hpp"
+#include "mesh/half_edges.hpp"
 
 namespace cagecast::cages {
 
@@ -46,7 +46,7 @@ void restoreShape(const TemplateCage& cage, const std::vector<bool>& moves, cons
                   std::vector<Vec3>& positions) {
   const std::vector<Vec3>& own = cage.mesh.positions;
   std::vector<bool> near = moves;
-  grow(cage, near);
+  grow(cage.neighbours, near);
   std::vector<Similarity> maps(positions.size());
   for (std::size_t v = 0; v < positions.size(); ++v) {
     if (!near[v]) continue;
@@ -79,9 +79,9 @@ class Surroundings {
       : mesh_{positions, {}}, vertex_(vertex) {
     std::vector<bool> ring(positions.size());
     ring[vertex] = true;
-    grow(cage, ring);
+    grow(cage.neighbours, ring);
     std::vector<bool> twoRings = ring;
-    grow(cage, twoRings);
+    grow(cage.neighbours, twoRings);
     const auto touches = [](const Triangle3& t, const std::vector<bool>& vertices) {
       return vertices[t[0]] || vertices[t[1]] || vertices[t[2]];
     };
@@ -134,34 +134,23 @@ void searchAround(const TemplateCage& cage, const std::vector<bool>& foldedBefor
 
 }  // namespace
 
-void grow(const TemplateCage& cage, std::vector<bool>& vertices) {
-  const std::vector<bool> old = vertices;
-  for (std::size_t v = 0; v < old.size(); ++v)
-    if (old[v])
-      for (const std::uint32_t u : cage.neighbours[v]) vertices[u] = true;
-}
-
 std::vector<bool> foldedTriangles(const TriangleMesh& mesh) {
   const std::size_t count = mesh.triangles.size();
   std::vector<Vec3> normals(count), around(mesh.positions.size(), Vec3{0, 0, 0});
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> triangleAt;
   for (std::size_t t = 0; t < count; ++t) {
     normals[t] = areaNormal(mesh, mesh.triangles[t]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      around[mesh.triangles[t][k]] = around[mesh.triangles[t][k]] + normals[t];
-      triangleAt[{mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}] = t;
-    }
+    for (const std::uint32_t v : mesh.triangles[t]) around[v] = around[v] + normals[t];
   }
+  const std::vector<std::uint32_t> twins = halfEdgeTwins(mesh);
   std::vector<bool> folded(count);
   for (std::size_t t = 0; t < count; ++t) {
     Vec3 sum = -3.0 * normals[t];
     for (const std::uint32_t v : mesh.triangles[t]) sum = sum + around[v];
     if (dot(sum, normals[t]) < 0) folded[t] = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto other = triangleAt.find({mesh.triangles[t][(k + 1) % 3], mesh.triangles[t][k]});
-      if (other == triangleAt.end()) continue;
-      const Vec3& n = normals[other->second];
-      if (dot(n, normals[t]) < kSharpTurn * length(n) * length(normals[t])) folded[t] = folded[other->second] = true;
+    for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) {
+      if (twins[h] == kNone) continue;
+      const Vec3& n = normals[twins[h] / 3];
+      if (dot(n, normals[t]) < kSharpTurn * length(n) * length(normals[t])) folded[t] = folded[twins[h] / 3] = true;
     }
   }
   return folded;
@@ -185,7 +174,7 @@ void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vecto
     const int stage = round / kRoundsPerStage;
     if (!findCorners(stage == 0)) return;
     std::vector<bool> moves = corners;
-    for (int ring = 0; ring < kRings[stage]; ++ring) grow(cage, moves);
+    grow(cage.neighbours, moves, kRings[stage]);
     // Off the track only where nothing else has helped.
     std::vector<Vec3> current = tracks;
     for (std::size_t v = 0; v < tracks.size(); ++v)

@@ -1,6 +1,4 @@
-#include "fit/template_cage.hpp"
-
-#include <algorithm>
+#include "fit/steps.hpp"
 
 #include "mesh/surface.hpp"
 
@@ -11,27 +9,9 @@ namespace {
 /// Length of a rim around, at least, in diagonals: necks have 1 to 2, eyes at most 0.4.
 constexpr double kMinRim = 0.7;
 
-bool endsWith(const std::string& text, const char* end) {
-  const std::string tail = end;
-  return text.size() >= tail.size() && text.compare(text.size() - tail.size(), tail.size(), tail) == 0;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
-bool isOnSkin(const std::string& name) { return name.rfind("joint_", 0) != 0 && name.rfind("eye_centre", 0) != 0; }
-
-const Landmark* findLandmark(const std::vector<Landmark>& landmarks, const std::string& name) {
-  for (const Landmark& landmark : landmarks)
-    if (landmark.name == name) return &landmark;
-  return nullptr;
-}
+bool isOnSkin(const std::string& name) { return !isJoint(name) && !name.starts_with("eye_centre"); }
 
 int rimOf(const TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& loops, double diagonal) {
   int best = -1;
@@ -52,24 +32,20 @@ Axes axesOf(const std::vector<Landmark>& landmarks) {
   Vec3 left{0, 0, 0}, middle{0, 0, 0};
   double pairs = 0;
   for (const Landmark& landmark : landmarks) {
-    if (!endsWith(landmark.name, "_left")) continue;
-    const Landmark* other = findLandmark(landmarks, landmark.name.substr(0, landmark.name.size() - 5) + "_right");
-    if (other == nullptr) continue;
-    left = left + (positionOf(landmark) - positionOf(*other));
-    middle = middle + 0.5 * (positionOf(landmark) + positionOf(*other));
+    const auto other = placeOf(landmarks, mirrorName(landmark.name));
+    if (!landmark.name.ends_with("_left") || !other) continue;
+    left = left + (positionOf(landmark) - *other);
+    middle = middle + 0.5 * (positionOf(landmark) + *other);
     ++pairs;
   }
-  const Landmark* nose = findLandmark(landmarks, "nose_tip");
-  const Landmark* eyeLeft = findLandmark(landmarks, "eye_centre_left");
-  const Landmark* eyeRight = findLandmark(landmarks, "eye_centre_right");
-  const Landmark* low = findLandmark(landmarks, "chin");
-  if (low == nullptr) low = findLandmark(landmarks, "lip_lower");
-  if (low == nullptr) low = findLandmark(landmarks, "mouth");
-  if (pairs == 0 || !(length(left) > 0) || nose == nullptr || eyeLeft == nullptr || eyeRight == nullptr) return axes;
+  const auto at = [&](const char* name) { return placeOf(landmarks, name); };
+  const auto eyeLeft = at("eye_centre_left"), eyeRight = at("eye_centre_right");
+  if (pairs == 0 || !(length(left) > 0) || !at("nose_tip") || !eyeLeft || !eyeRight) return axes;
   axes.left = unit(left);
   axes.middle = 1 / pairs * middle;
-  const Vec3 eyes = 0.5 * (positionOf(*eyeLeft) + positionOf(*eyeRight));
-  const Vec3 upright = low != nullptr ? eyes - positionOf(*low) : Vec3{0, 1, 0};
+  Vec3 upright{0, 1, 0};
+  for (const char* low : {"mouth", "lip_lower", "chin"})
+    if (at(low)) upright = 0.5 * (*eyeLeft + *eyeRight) - *at(low);
   // The chin is below the eyes and about as far back as they are; the nose is further to the front.
   axes.up = unit(upright - dot(upright, axes.left) * axes.left);
   axes.front = cross(axes.left, axes.up);
@@ -88,7 +64,7 @@ TemplateCage prepareTemplate(const Template& from) {
     if (isOnSkin(landmark.name)) onSkin.push_back(positionOf(landmark));
   std::vector<double> distances;
   for (const SurfacePoint& point : Surface(out.mesh).closest(onSkin)) distances.push_back(point.distance);
-  out.offset = median(distances);
+  out.offset = medianOf(distances);
   out.neighbours = Neighbours(out.mesh);
   return out;
 }

@@ -7,21 +7,27 @@
 
 namespace cagecast::cages {
 
-/// A rotation, a scale and a translation.
-struct Similarity {
-  Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< Images of the axes, of length `scale`.
+struct Affine {
+  Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< Images of the axes.
   Vec3 translation{0, 0, 0};
-  double scale = 1;
 
+  /// The image of a direction.
   [[nodiscard]] Vec3 turned(const Vec3& v) const { return v.x * x + v.y * y + v.z * z; }
   [[nodiscard]] Vec3 operator()(const Vec3& p) const { return turned(p) + translation; }
+};
+
+/// A rotation, a scale and a translation.
+struct Similarity : Affine {
+  double scale = 1;  ///< The length of the images of the axes.
+
   [[nodiscard]] Vec3 inverse(const Vec3& p) const {
     const Vec3 d = 1 / (scale * scale) * (p - translation);
     return {dot(d, x), dot(d, y), dot(d, z)};
   }
 };
 
-/// The similarity that carries `from` closest to `to` in the mean square (Umeyama 1991); never a mirror image.
+/// The similarity that carries `from` closest to `to` in the mean square by unit quaternions (Horn 1987);
+/// never a mirror image.
 /// @param weights  One per point, or none.
 Similarity fitSimilarity(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> weights = {});
 

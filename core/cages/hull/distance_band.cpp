@@ -1,8 +1,10 @@
-#include "hull/distance_band.hpp"
+#include "hull/steps.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "mesh/progress.hpp"
 
 namespace cagecast::cages {
 
@@ -99,8 +101,8 @@ class Propagation {
         if (n.y + 1 < grid_.ny) offer(n.x, n.y + 1, n.z, feature);
         if (n.z > 0) offer(n.x, n.y, n.z - 1, feature);
         if (n.z + 1 < grid_.nz) offer(n.x, n.y, n.z + 1, feature);
-        if (++visited % kPerReport != 0 || !progress) continue;
-        if (!progress(static_cast<float>(from + (1 - from) * std::min(1.0, round / rounds)), "hull")) return false;
+        if (++visited % kPerReport != 0) continue;
+        if (!report(progress, from + (1 - from) * std::min(1.0, round / rounds), "hull")) return false;
       }
     }
     return true;
@@ -179,9 +181,8 @@ bool distanceToMesh(const TriangleMesh& mesh, const VoxelGrid& grid, double reac
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle3& v = mesh.triangles[t];
     splatter.splat({mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]}, static_cast<std::uint32_t>(t));
-    if (t % kPerReport != 0 || !progress) continue;
     const double done = static_cast<double>(t) / static_cast<double>(mesh.triangles.size());
-    if (!progress(static_cast<float>(kSplatShare * done), "hull")) return false;
+    if (t % kPerReport == 0 && !report(progress, kSplatShare * done, "hull")) return false;
   }
   return nodes.run(progress, kSplatShare);
 }

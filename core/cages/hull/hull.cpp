@@ -5,9 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hull/distance_band.hpp"
-#include "hull/grid.hpp"
-#include "hull/iso_surface.hpp"
+#include "hull/steps.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/progress.hpp"
 
@@ -95,7 +93,7 @@ std::size_t flood(Marks& marks, std::size_t start, std::uint8_t mark, const Open
     if (z + 1 < grid.nz) visit(begin + layer);
     if (reached - reported < kNodesPerReport) continue;
     reported = reached;
-    if (progress && !progress(static_cast<float>(reached) / static_cast<float>(grid.size()), "hull")) return 0;
+    if (!report(progress, reached, grid.size(), "hull")) return 0;
   }
   return reached;
 }
@@ -178,33 +176,31 @@ bool keepOne(const VoxelGrid& grid, const std::optional<Vec3>& near, const Progr
 
 }  // namespace
 
-TriangleMesh closeOpenings(const TriangleMesh& mesh, double width, std::vector<Opening>* openings) {
+std::vector<Opening> findOpenings(const TriangleMesh& mesh, double width) {
   std::vector<Opening> wide;
   for (std::vector<std::uint32_t>& loop : boundaryLoops(mesh)) {
-    if (loop.size() < 3) continue;
     const double across = boundsOf(mesh, loop).diagonal();
-    if (across > width) wide.push_back({std::move(loop), across, 0, 0});
+    if (loop.size() >= 3 && across > width) wide.push_back({std::move(loop), across});
   }
   std::stable_sort(wide.begin(), wide.end(), [](const Opening& a, const Opening& b) { return a.width > b.width; });
+  return wide;
+}
+
+TriangleMesh closeOpenings(const TriangleMesh& mesh, double width) {
   TriangleMesh out = mesh;
-  for (Opening& opening : wide) {
-    Vec3 middle{0, 0, 0};
-    for (const std::uint32_t v : opening.loop) middle = middle + mesh.positions[v];
+  for (const auto& [loop, across] : findOpenings(mesh, width)) {
     const auto centre = static_cast<std::uint32_t>(out.positions.size());
-    const std::size_t n = opening.loop.size();
-    out.positions.push_back(1 / static_cast<double>(n) * middle);
-    opening.firstTriangle = static_cast<std::uint32_t>(out.triangles.size());
-    opening.triangleCount = static_cast<std::uint32_t>(n);
-    for (std::size_t i = 0; i < n; ++i) out.triangles.push_back({centre, opening.loop[(i + 1) % n], opening.loop[i]});
+    out.positions.push_back(middleOf(mesh, loop));
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      out.triangles.push_back({centre, loop[(i + 1) % loop.size()], loop[i]});
   }
-  if (openings != nullptr) *openings = std::move(wide);
   return out;
 }
 
 bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progress& progress, TriangleMesh& out,
               double* share) {
   // Dilated by `outwards`, what remains is then eroded by `inwards`. The difference is the offset.
-  if (progress && !progress(0, "hull")) return false;
+  if (!report(progress, 0, "hull")) return false;
   const TriangleMesh closed = closeOpenings(mesh, 2 * options.closing);
   const double outwards = std::max({options.closing, options.offset, leastDilation(closed, options.voxels)});
   const double inwards = outwards - options.offset;
@@ -217,7 +213,7 @@ bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progre
   const auto level = static_cast<float>(outwards);
   const auto isBeyond = [&](std::size_t i) { return band.distance[i] > level; };
   if (flood(outside, 0, 1, isBeyond, partOf(progress, 0.6f, 0.65f)) == 0) return false;
-  if (progress && !progress(0.65f, "hull")) return false;
+  if (!report(progress, 0.65, "hull")) return false;
   const std::vector<GridPoint> border = outerBorder(band, outside, outwards);
   if (!distanceToPoints(border, grid, inwards + beyond, partOf(progress, 0.65f, 0.9f), band)) return false;
   const auto depth = static_cast<float>(inwards);
@@ -227,7 +223,7 @@ bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progre
   if (!keepOne(grid, options.near, partOf(progress, 0.9f, 0.95f), band.distance, kept)) return false;
   if (share != nullptr) *share = kept;
   if (!isoSurface(grid, band.distance, partOf(progress, 0.95f, 1), out)) return false;
-  return !progress || progress(1, "hull");
+  return report(progress, 1, "hull");
 }
 
 }  // namespace cagecast::cages

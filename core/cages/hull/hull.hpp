@@ -21,15 +21,14 @@ struct HullOptions {
 struct Opening {
   std::vector<std::uint32_t> loop;  ///< Vertices of the border, with the mesh on its left.
   double width = 0;                 ///< The diagonal of the loop's bounding box.
-  std::uint32_t firstTriangle = 0;  ///< The first of the triangles that close it.
-  std::uint32_t triangleCount = 0;
 };
 
-/// A copy of a mesh whose open borders are closed, if they are wider than `width`: each by a fan of triangles about a
-/// new vertex in its middle, which come after the mesh's own. Without them a hull would line the inside of the mesh,
-/// too.
-/// @param[out] openings  If not null: what was closed, the widest first.
-TriangleMesh closeOpenings(const TriangleMesh& mesh, double width, std::vector<Opening>* openings = nullptr);
+/// The openings of a mesh that are wider than `width`, the widest first.
+std::vector<Opening> findOpenings(const TriangleMesh& mesh, double width);
+
+/// A copy of a mesh without openings that are wider than `width`: each is closed by a fan of triangles about a new
+/// vertex in its middle, which come after the mesh's own. Without them a hull would line the inside of the mesh, too.
+TriangleMesh closeOpenings(const TriangleMesh& mesh, double width);
 
 /// A closed surface around a mesh, at a distance, that bridges gaps and mouths: one component, a manifold
 /// with its normals outwards and no triangle without an area. Openings wider than twice `closing` are closed, as by

@@ -1,4 +1,5 @@
-#include "hull/iso_surface.hpp"
+#include "hull/steps.hpp"
+#include "mesh/progress.hpp"
 
 #include <algorithm>
 #include <array>
@@ -94,7 +95,7 @@ class Marcher {
 
   bool run(const Progress& progress, TriangleMesh& out) {
     for (std::uint32_t z = 0; z + 1 < grid_.nz; ++z) {
-      if (progress && !progress(static_cast<float>(z) / static_cast<float>(grid_.nz), "hull")) return false;
+      if (!report(progress, z, grid_.nz, "hull")) return false;
       for (std::uint32_t y = 0; y + 1 < grid_.ny; ++y)
         for (std::uint32_t x = 0; x + 1 < grid_.nx; ++x) cell(x, y, z);
       vertices_[0].swap(vertices_[1]);

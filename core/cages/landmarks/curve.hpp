@@ -18,9 +18,6 @@ class Curve {
   static Curve along(const HeightMap& map);
 
   [[nodiscard]] int count() const { return static_cast<int>(heights_.size()); }
-  [[nodiscard]] double from() const { return from_; }
-  [[nodiscard]] double to() const { return from_ + step_ * (count() - 1); }
-  [[nodiscard]] double step() const { return step_; }
   /// Interpolated; `HeightMap::kNone` where there is nothing.
   [[nodiscard]] double at(double place) const;
   /// The change of the height by that of the place, over +-reach.

@@ -18,57 +18,32 @@ constexpr double kHigh = 0.17, kMaxEnds = 0.5;
 
 /// How far each place stands out from the head, seen from a side: the height over what a line segment of the width
 /// `kWidest` can reach from inside (a morphological top-hat, along each row).
-std::vector<double> standingOut(const HeightMap& map) {
-  const int half = static_cast<int>(std::lround(0.5 * kWidest / kEarStep));
-  std::vector<double> out(map.heights.size());
-  for (int row = 0; row < map.grid.rows; ++row) {
-    std::vector<double> least(static_cast<std::size_t>(map.grid.columns));
-    for (int column = 0; column < map.grid.columns; ++column) {
-      double value = map.at(column, row);
-      for (int d = -half; d <= half; ++d)
-        if (map.grid.has(column + d, row)) value = std::min(value, map.at(column + d, row));
-      least[static_cast<std::size_t>(column)] = value;
-    }
-    for (int column = 0; column < map.grid.columns; ++column) {
-      double value = HeightMap::kNone;
-      for (int other = column - half; other <= column + half; ++other)
-        if (map.grid.has(other, row)) value = std::max(value, least[static_cast<std::size_t>(other)]);
-      const double here = map.at(column, row);
-      out[map.index(column, row)] = std::isinf(here) ? 0 : std::isinf(value) ? 0 : here - value;
-    }
+HeightMap standingOut(const HeightMap& map) {
+  const Place half{static_cast<int>(std::lround(0.5 * kWidest / kEarStep)), 0};
+  HeightMap out = extremes(extremes(map, half, false), half, true);
+  for (std::size_t i = 0; i < out.heights.size(); ++i) {
+    const double over = map.heights[i] - out.heights[i];
+    out.heights[i] = std::isfinite(over) ? over : 0;
   }
   return out;
 }
 
-using Place = std::pair<int, int>;  ///< Column, row.
-
 /// Ears are within these limits, seen from the side: behind the eyes, and about as high as the nose.
 bool inRegion(const Grid& grid, const Place& place) {
-  const double z = grid.a(place.first), y = grid.b(place.second);
+  const double z = grid.a(place.column), y = grid.b(place.row);
   return z > -0.45 && z < -0.03 && std::abs(y) < 0.2;
 }
 
 /// The largest connected area that stands out by more than a limit.
-std::vector<Place> largestArea(const HeightMap& map, const std::vector<double>& out, double limit) {
-  const Grid& grid = map.grid;
-  std::vector<bool> seen(out.size());
+std::vector<Place> largestArea(const HeightMap& out, double limit) {
+  std::vector<bool> seen(out.heights.size());
   std::vector<Place> best;
-  const auto isNew = [&](const Place& place) {
-    return grid.has(place.first, place.second) && inRegion(grid, place) &&
-           !seen[map.index(place.first, place.second)] && out[map.index(place.first, place.second)] > limit;
-  };
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column) {
-      if (!isNew({column, row})) continue;
-      std::vector<Place> area = {{column, row}};
-      seen[map.index(column, row)] = true;
-      for (std::size_t i = 0; i < area.size(); ++i)
-        for (int d = 0; d < 4; ++d) {
-          const Place next{area[i].first + (d == 0) - (d == 1), area[i].second + (d == 2) - (d == 3)};
-          if (!isNew(next)) continue;
-          seen[map.index(next.first, next.second)] = true;
-          area.push_back(next);
-        }
+  const auto isIn = [&](const Place& place) { return inRegion(out.grid, place) && out.at(place) > limit; };
+  for (int row = 0; row < out.grid.rows; ++row)
+    for (int column = 0; column < out.grid.columns; ++column) {
+      if (seen[out.index(column, row)] || !isIn({column, row})) continue;
+      std::vector<Place> area = areaAround(out, {column, row}, isIn);
+      for (const Place& place : area) seen[out.index(place.column, place.row)] = true;
       if (area.size() > best.size()) best = std::move(area);
     }
   return best;
@@ -76,20 +51,20 @@ std::vector<Place> largestArea(const HeightMap& map, const std::vector<double>& 
 
 /// What is an ear in a side view.
 std::vector<Place> earArea(const HeightMap& map) {
-  const std::vector<double> out = standingOut(map);
+  const HeightMap out = standingOut(map);
   double most = 0;
   for (int row = 0; row < map.grid.rows; ++row)
     for (int column = 0; column < map.grid.columns; ++column)
-      if (inRegion(map.grid, {column, row})) most = std::max(most, out[map.index(column, row)]);
+      if (inRegion(map.grid, {column, row})) most = std::max(most, out.at(column, row));
   double limit = std::max(kStandsOut, std::min(kCurves, kEnds * most));
-  std::vector<Place> area = largestArea(map, out, limit);
+  std::vector<Place> area = largestArea(out, limit);
   constexpr double kRaise = 1.1;
   while (!area.empty() && limit * kRaise < kMaxEnds * most) {
-    const auto [low, high] = std::minmax_element(area.begin(), area.end(),
-                                                 [](const Place& a, const Place& b) { return a.second < b.second; });
-    if (map.grid.step * (high->second - low->second) < kHigh) break;
+    const auto [low, high] =
+        std::minmax_element(area.begin(), area.end(), [](const Place& a, const Place& b) { return a.row < b.row; });
+    if (map.grid.step * (high->row - low->row) < kHigh) break;
     limit *= kRaise;
-    area = largestArea(map, out, limit);
+    area = largestArea(out, limit);
   }
   return area;
 }
@@ -109,7 +84,7 @@ std::optional<Ear> findEar(const Head& head, double side, double bottom) {
   Ear ear;
   ear.area = kEarStep * kEarStep * static_cast<double>(places.size());
   const auto point = [&](const Place& place) {
-    return view.point(grid.a(place.first), grid.b(place.second), map.at(place.first, place.second));
+    return view.point(grid.a(place.column), grid.b(place.row), map.at(place));
   };
   double low = grid.b(grid.rows);
   ear.outer = ear.top = point(places.front());
@@ -140,8 +115,8 @@ void findEars(Head& head) {
   const double bottom = chin != nullptr ? std::max(-0.3, chin->position.y) : -0.25;
   const auto left = findEar(head, 1, bottom), right = findEar(head, -1, bottom);
   if (!left || !right) return;
-  constexpr double kMinArea = 0.001, kMaxArea = 0.04;
-  if (std::min(left->area, right->area) < kMinArea || std::max(left->area, right->area) > kMaxArea) return;
+  constexpr double kMinEar = 0.001, kMaxEar = 0.04;
+  if (std::min(left->area, right->area) < kMinEar || std::max(left->area, right->area) > kMaxEar) return;
   const auto add = [&](const char* name, const Vec3& l, const Vec3& r) {
     const double off = length(Vec3{-l.x, l.y, l.z} - r);
     const double trust = off < 0.015 ? 0.75 : off < 0.03 ? 0.55 : 0.3;

@@ -1,62 +1,45 @@
 #include "landmarks/eyes.hpp"
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "linear/dense.hpp"
 #include "mesh/bounds.hpp"
+#include "mesh/samples.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
 
 namespace {
 
-/// What a component, or the eye parts of one side, looks like.
-struct Shape {
-  std::vector<Vec3> points;  ///< Its vertices, each once.
-  Bounds bounds;
-  double area = 0;
-  std::size_t triangles = 0;
-};
-
-Shape shapeOf(const TriangleMesh& mesh) {
-  Shape out;
-  out.points = mesh.positions;
-  out.triangles = mesh.triangles.size();
-  if (mesh.empty()) return out;
-  out.bounds = boundsOf(mesh);
-  for (const Triangle3& t : mesh.triangles) out.area += 0.5 * length(areaNormal(mesh, t));
-  return out;
-}
-
 /// A shape is an eyeball, or the front of one, if it fits a sphere this well; else the middle of its box serves.
 constexpr double kBall = 0.12;
 
 /// The ball of an eye: a sphere if it is one (a front half's box has its middle too far to the front), else about the
 /// middle of the box if it is flat or bulges. The residual is a sphere's in any case.
-Sphere ballOf(const Shape& shape) {
-  const Vec3 size = shape.bounds.size();
+Sphere ballOf(const TriangleMesh& shape) {
+  const Bounds bounds = boundsOf(shape);
+  const Vec3 size = bounds.size();
   const double radius = 0.5 * std::max(size.y, std::min(size.x, size.z));
-  const Sphere sphere = fitSphere(shape.points);
+  const Sphere sphere = fitSphere(shape.positions);
   const bool round = sphere.residual < kBall && sphere.radius < 1.3 * radius && sphere.radius > 0.8 * radius;
-  return round ? sphere : Sphere{shape.bounds.middle(), radius, sphere.residual};
+  return round ? sphere : Sphere{bounds.middle(), radius, sphere.residual};
 }
 
 /// The heading that horizontal positions spread along most.
 Vec3 mainHeading(const std::vector<Vec3>& points) {
-  Vec3 mean{0, 0, 0};
-  for (const Vec3& p : points) mean = mean + p;
-  mean = 1 / static_cast<double>(points.size()) * mean;
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  const Vec3 mean = meanOf(points);
+  SquareMatrix<2> spread{};
   for (const Vec3& p : points) {
-    const Eigen::Vector2d d(p.x - mean.x, p.z - mean.z);
-    spread += d * d.transpose();
+    const Vec3 d = p - mean;
+    spread[0][0] += d.x * d.x;
+    spread[0][1] += d.x * d.z;
+    spread[1][1] += d.z * d.z;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
-  const Eigen::Vector2d main = solver.eigenvectors().col(1);
-  return {main.x(), 0, main.y()};
+  spread[1][0] = spread[0][1];
+  const auto [x, z] = eigenpairsOf(spread)[1].vector;
+  return {x, 0, z};
 }
 
 constexpr Vec3 kUp{0, 1, 0};
@@ -98,7 +81,7 @@ std::array<double, 2> seen(const Surface& surface, const TriangleMesh& part, con
   for (int side = 0; side < 2; ++side) {
     const Vec3 toward = side == 0 ? direction : -1 * direction;
     std::vector<SurfaceRay> rays;
-    for (const Vec3& p : samplePoints(part, 60)) rays.push_back({p + clear * toward, toward});
+    for (const Vec3& p : spreadPoints(part, 60)) rays.push_back({p + clear * toward, toward});
     double free = 0;
     for (const RayHit& hit : surface.trace(rays)) free += std::isinf(hit.distance) ? 1 : 0;
     out[static_cast<std::size_t>(side)] = free / static_cast<double>(rays.size());
@@ -108,8 +91,8 @@ std::array<double, 2> seen(const Surface& surface, const TriangleMesh& part, con
 
 /// A component that may be an eye.
 struct Candidate {
-  Shape shape;
   TriangleMesh mesh;
+  Bounds bounds;
   std::uint32_t component = 0;
   Sphere ball;
   std::optional<std::array<double, 2>> seen = {};  ///< What `seen` gives, once it is needed.
@@ -120,25 +103,25 @@ std::vector<Candidate> eyeCandidates(const Figure& figure, double diagonal) {
   constexpr std::size_t kMinTriangles = 8;
   constexpr double kSmallest = 0.002, kLargest = 0.15;  // Radii, as shares of the diagonal: of a figure, of a head.
   constexpr std::size_t kMaxCandidates = 500;           // The largest: a coat of mail has thousands of rings.
-  std::vector<std::vector<Triangle3>> triangles(figure.componentCount);
-  for (std::size_t t = 0; t < figure.components.size(); ++t)
-    if (figure.roles[t] == Role::surface) triangles[figure.components[t]].push_back(figure.mesh.triangles[t]);
+  std::vector<std::uint32_t> components = figure.components;
+  for (std::size_t t = 0; t < components.size(); ++t)
+    if (figure.roles[t] != Role::surface) components[t] = kNone;
+  std::vector<TriangleMesh> parts = split(figure.mesh, components, figure.componentCount);
   std::vector<Candidate> candidates;
   for (std::uint32_t c = 0; c < figure.componentCount; ++c) {
-    const std::size_t size = triangles[c].size();
+    const std::size_t size = parts[c].triangles.size();
     if (size < kMinTriangles || 2 * size > figure.components.size()) continue;
-    const TriangleMesh part = compact(figure.mesh, triangles[c]);
-    Shape shape = shapeOf(part);
-    const Vec3 box = shape.bounds.size();
+    const Bounds bounds = boundsOf(parts[c]);
+    const Vec3 box = bounds.size();
     const double wide = std::hypot(box.x, box.z);
     const bool round = box.y > 0.5 * wide && box.y < 2 * wide;
     if (!round || box.y < 2 * kSmallest * diagonal || box.y > 2 * kLargest * diagonal) continue;
-    const Sphere ball = ballOf(shape);
-    candidates.push_back({std::move(shape), part, c, ball});
+    const Sphere ball = ballOf(parts[c]);
+    candidates.push_back({std::move(parts[c]), bounds, c, ball});
   }
   if (candidates.size() > kMaxCandidates) {
     std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.shape.area > b.shape.area; });
+                     [](const Candidate& a, const Candidate& b) { return areaOf(a.mesh) > areaOf(b.mesh); });
     candidates.resize(kMaxCandidates);
   }
   return candidates;
@@ -150,20 +133,19 @@ Sphere fitSphere(const std::vector<Vec3>& points) {
   Sphere out;
   out.residual = std::numeric_limits<double>::infinity();
   if (points.size() < 6) return out;
-  Vec3 mean{0, 0, 0};
-  for (const Vec3& p : points) mean = mean + p;
-  mean = 1 / static_cast<double>(points.size()) * mean;
-  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  const Vec3 mean = meanOf(points);
+  std::vector<double> matrix(16), right(4);
   for (const Vec3& p : points) {
     const Vec3 d = p - mean;
-    const Eigen::Vector4d row(2 * d.x, 2 * d.y, 2 * d.z, 1);
-    normal += row * row.transpose();
-    right += dot(d, d) * row;
+    const double row[] = {2 * d.x, 2 * d.y, 2 * d.z, 1};
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t k = 0; k < 4; ++k) matrix[4 * i + k] += row[i] * row[k];
+      right[i] += dot(d, d) * row[i];
+    }
   }
-  const Eigen::Vector4d solution = normal.ldlt().solve(right);
-  const Vec3 centre{solution.x(), solution.y(), solution.z()};
-  const double squared = solution.w() + dot(centre, centre);
+  const std::vector<double> solution = solveDense(std::move(matrix), std::move(right), 4);
+  const Vec3 centre{solution[0], solution[1], solution[2]};
+  const double squared = solution[3] + dot(centre, centre);
   if (!(squared > 0)) return out;
   out.centre = mean + centre;
   out.radius = std::sqrt(squared);
@@ -177,11 +159,7 @@ std::optional<Eyes> findNamedEyes(const Figure& figure) {
   if (!figure.has(Role::eye)) return std::nullopt;
   const TriangleMesh all = figure.only(Role::eye);
   const Vec3 heading = mainHeading(all.positions);
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Vec3& p : all.positions) {
-    low = std::min(low, dot(heading, p));
-    high = std::max(high, dot(heading, p));
-  }
+  const auto [low, high] = rangeOf(all.positions, heading);
   // Whole components go to one side: a bulging iris may be a component of its own.
   std::uint32_t count = 0;
   const std::vector<std::uint32_t> component = connectedPieces(all, count);
@@ -197,8 +175,8 @@ std::optional<Eyes> findNamedEyes(const Figure& figure) {
     isFirst[t] = sums[component[t]] >= 0;
     isSecond[t] = !isFirst[t];
   }
-  const Shape first = shapeOf(subset(all, isFirst)), second = shapeOf(subset(all, isSecond));
-  if (first.triangles == 0 || second.triangles == 0) return std::nullopt;
+  const TriangleMesh first = subset(all, isFirst), second = subset(all, isSecond);
+  if (first.empty() || second.empty()) return std::nullopt;
   Eyes eyes;
   const Sphere one = ballOf(first), other = ballOf(second);
   eyes.centres = {one.centre, other.centre};
@@ -230,11 +208,11 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
   double most = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     for (std::size_t k = i + 1; k < candidates.size(); ++k) {
-      const Shape &a = candidates[i].shape, &b = candidates[k].shape;
-      const double size = a.bounds.size().y;
-      const double off = length(plane.mirrored(a.bounds.middle()) - b.bounds.middle());
-      if (off > 0.3 * size || std::abs(b.bounds.size().y - size) > kAlike * size) continue;
-      if (std::abs(dot(plane.left, a.bounds.middle()) - plane.offset) < 0.5 * size) continue;
+      const Bounds &a = candidates[i].bounds, &b = candidates[k].bounds;
+      const double size = a.size().y;
+      const double off = length(plane.mirrored(a.middle()) - b.middle());
+      if (off > 0.3 * size || std::abs(b.size().y - size) > kAlike * size) continue;
+      if (std::abs(dot(plane.left, a.middle()) - plane.offset) < 0.5 * size) continue;
       const Sphere &first = candidates[i].ball, &second = candidates[k].ball;
       const double residual = std::max(first.residual, second.residual);
       if (residual > 2 * kBall) continue;
@@ -242,7 +220,7 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
       const double front = std::min(std::max(one[0], one[1]), std::max(other[0], other[1]));
       const double back = std::max(std::min(one[0], one[1]), std::min(other[0], other[1]));
       if (front < 0.03 || back > 0.5 * front) continue;
-      const double score = a.area * (1 - residual / (2 * kBall)) * std::min(front, 0.3);
+      const double score = areaOf(candidates[i].mesh) * (1 - residual / (2 * kBall)) * std::min(front, 0.3);
       if (score <= most) continue;
       most = score;
       best.emplace();

@@ -1,8 +1,7 @@
-#include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "landmarks/head.hpp"
+#include "landmarks/landmark_list.hpp"
 #include "landmarks/rig.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/progress.hpp"
@@ -50,13 +49,11 @@ std::vector<std::string> faceLandmarks() {
   return out;
 }
 
-}  // namespace
-
-Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmarks& out) {
+Status find(const Model& model, const Progress& progress, FoundLandmarks& out) {
   out = {};
-  if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
-  const auto goOn = [&](float share) { return !progress || progress(share, "landmarks"); };
-  if (!goOn(0)) return cancelled();
+  if (const Status status = checkModel(model); !status.ok()) return status;
+  const auto goOn = [&](float share) { return report(progress, share, "landmarks"); };
+  if (!goOn(0)) return kAborted;
   const Figure figure = readFigure(model);
   Rig rig = recogniseRig(model.joints);
   out.rig = rig.name;
@@ -64,7 +61,7 @@ Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmar
   if (!findHead(
           figure, [&](float share) { return goOn(0.9f * share); }, head) ||
       !goOn(0.9f))
-    return cancelled();
+    return kAborted;
   if (head)
     for (const Spot& spot : head->spots)
       if (spot.confidence >= kSure)
@@ -82,7 +79,13 @@ Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmar
   if (out.kind == Kind::body)
     for (const std::string& name : jointLandmarks())
       if (have.find(name) == have.end()) out.missing.push_back(name);
-  return goOn(1) ? Outcome{} : cancelled();
+  return goOn(1) ? Status{} : kAborted;
+}
+
+}  // namespace
+
+Status findLandmarks(const Model& model, const Progress& progress, FoundLandmarks& out) {
+  return guarded([&] { return find(model, progress, out); });
 }
 
 }  // namespace cagecast::cages

@@ -1,13 +1,13 @@
 #include "landmarks/frame.hpp"
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <unordered_map>
 
+#include "mesh/bounds.hpp"
+#include "mesh/samples.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -28,26 +28,6 @@ constexpr double kNoProgress = 0.998;  ///< Iterations end when the residual is 
 constexpr double kTrusted = 0.8;
 /// A heading off the file's own axes must be this much better: a round head has a mirror plane anywhere.
 constexpr double kAxisPreference = 0.7;
-
-/// Sorts points so that neighbours are close together (a Morton curve): searches for them in turn are quicker then.
-void sortByPlace(std::vector<Vec3>& points, double size) {
-  Vec3 low = points[0];
-  for (const Vec3& p : points) low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-  constexpr int kBits = 5;
-  std::vector<std::pair<std::uint32_t, std::size_t>> order;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 d = (1 << kBits) / size * (points[i] - low);
-    std::uint32_t code = 0;
-    for (int bit = kBits - 1; bit >= 0; --bit)
-      for (const double x : {d.x, d.y, d.z}) code = 2 * code + ((static_cast<std::uint32_t>(x) >> bit) & 1u);
-    order.emplace_back(code, i);
-  }
-  std::sort(order.begin(), order.end());
-  std::vector<Vec3> sorted;
-  sorted.reserve(points.size());
-  for (const auto& [code, i] : order) sorted.push_back(points[i]);
-  points = std::move(sorted);
-}
 
 /// A mesh with few triangles close to another one: vertices of one cell of a grid are one. Trees are built and searched
 /// in a fraction of the time.
@@ -87,10 +67,10 @@ TriangleMesh coarse(const TriangleMesh& mesh) {
 class Mirror {
  public:
   Mirror(const TriangleMesh& mesh, const Surface& surface)
-      : surface_(surface), points_(samplePoints(mesh, kSymmetrySamples)), diagonal_(diagonalOf(mesh)) {
-    sortByPlace(points_, diagonal_);
-    for (const Vec3& p : points_) middle_ = middle_ + 1 / static_cast<double>(points_.size()) * p;
-  }
+      : surface_(surface),
+        points_(spreadPoints(mesh, kSymmetrySamples)),
+        diagonal_(diagonalOf(mesh)),
+        middle_(meanOf(points_)) {}
 
   [[nodiscard]] const Vec3& middle() const { return middle_; }
 
@@ -128,18 +108,14 @@ class Mirror {
   const Surface& surface_;
   std::vector<Vec3> points_;
   double diagonal_;
-  Vec3 middle_{0, 0, 0};
+  Vec3 middle_;
 };
 
 /// The plane of a heading through the middle of the box, as seen along it.
 MirrorPlane planeOf(const TriangleMesh& mesh, double angle) {
   MirrorPlane plane;
   plane.left = {std::cos(angle), 0, std::sin(angle)};
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Vec3& p : mesh.positions) {
-    low = std::min(low, dot(plane.left, p));
-    high = std::max(high, dot(plane.left, p));
-  }
+  const auto [low, high] = rangeOf(mesh.positions, plane.left);
   plane.offset = 0.5 * (low + high);
   return plane;
 }
@@ -176,29 +152,6 @@ MirrorPlane refined(const Mirror& mirror, MirrorPlane plane) {
 }
 
 }  // namespace
-
-std::vector<Vec3> samplePoints(const TriangleMesh& mesh, std::size_t count) {
-  double area = 0;
-  for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t));
-  std::vector<Vec3> out;
-  double passed = 0;
-  std::size_t next = 0;
-  for (const Triangle3& t : mesh.triangles) {
-    passed += length(areaNormal(mesh, t));
-    for (; next < count && (static_cast<double>(next) + 0.5) * area < passed * static_cast<double>(count); ++next) {
-      // Two low-discrepancy sequences, folded into the triangle.
-      double v = std::fmod(static_cast<double>(next) * 0.754877666, 1.0);
-      double w = std::fmod(static_cast<double>(next) * 0.569840296, 1.0);
-      if (v + w > 1) {
-        v = 1 - v;
-        w = 1 - w;
-      }
-      const Vec3& a = mesh.positions[t[0]];
-      out.push_back(a + v * (mesh.positions[t[1]] - a) + w * (mesh.positions[t[2]] - a));
-    }
-  }
-  return out;
-}
 
 MirrorPlane refineMirrorPlane(const TriangleMesh& fine, const MirrorPlane& guess) {
   const TriangleMesh mesh = coarse(fine);
@@ -237,20 +190,6 @@ std::vector<MirrorPlane> findMirrorPlanes(const TriangleMesh& fine) {
     return plane.residual * (std::abs(plane.left.x) > kSameHeading ? kAxisPreference : 1);
   };
   std::sort(out.begin(), out.end(), [&](const MirrorPlane& a, const MirrorPlane& b) { return rank(a) < rank(b); });
-  return out;
-}
-
-TriangleMesh compact(const TriangleMesh& mesh, const std::vector<Triangle3>& triangles) {
-  std::unordered_map<std::uint32_t, std::uint32_t> newVertex;
-  TriangleMesh out;
-  for (Triangle3 t : triangles) {
-    for (std::uint32_t& v : t) {
-      const auto [found, isNew] = newVertex.try_emplace(v, static_cast<std::uint32_t>(out.positions.size()));
-      if (isNew) out.positions.push_back(mesh.positions[v]);
-      v = found->second;
-    }
-    out.triangles.push_back(t);
-  }
   return out;
 }
 

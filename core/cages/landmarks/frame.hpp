@@ -43,12 +43,6 @@ struct HeadFrame {
   }
 };
 
-/// `count` points spread evenly over the area of a mesh; the same ones every time.
-std::vector<Vec3> samplePoints(const TriangleMesh& mesh, std::size_t count);
-
-/// Some triangles of a mesh, with the vertices that they use: its cost depends on their number only.
-TriangleMesh compact(const TriangleMesh& mesh, const std::vector<Triangle3>& triangles);
-
 /// The triangles with a corner within a distance of a point.
 TriangleMesh within(const TriangleMesh& mesh, const Vec3& centre, double radius);
 

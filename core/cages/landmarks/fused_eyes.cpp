@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "landmarks/head.hpp"
+#include "mesh/bounds.hpp"
 
 namespace cagecast::cages {
 
@@ -18,20 +18,16 @@ HeadFrame guessFrame(const TriangleMesh& mesh, const MirrorPlane& plane, double 
   HeadFrame frame;
   frame.left = side * plane.left;
   frame.front = cross(frame.left, frame.up);
-  double top = -std::numeric_limits<double>::infinity();
-  for (const Vec3& p : mesh.positions) top = std::max(top, p.y);
+  const double top = rangeOf(mesh.positions, frame.up).high;
   frame.unit = diagonalOf(mesh);
   double rear = 0;
   for (int round = 0; round < 4; ++round) {
-    constexpr double kHead = 0.45;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Vec3& p : mesh.positions) {
-      if (p.y < top - kHead * frame.unit) continue;
-      low = std::min(low, dot(frame.front, p));
-      high = std::max(high, dot(frame.front, p));
-    }
-    frame.unit = std::min(frame.unit, (high - low) / kHeadDepth);
-    rear = low;
+    constexpr double kTopShare = 0.45;
+    Range depth;
+    for (const Vec3& p : mesh.positions)
+      if (p.y >= top - kTopShare * frame.unit) depth.add(dot(frame.front, p));
+    frame.unit = std::min(frame.unit, (depth.high - depth.low) / kHeadDepth);
+    rear = depth.low;
   }
   const Vec3 middle = side * plane.offset * frame.left;
   frame.origin = {middle.x, top - kEyesToCrown * frame.unit, middle.z};

@@ -1,4 +1,5 @@
 #include "landmarks/head.hpp"
+#include "mesh/samples.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,7 @@ constexpr double kNearest = 0.55, kFarthest = 1.7;
 /// suggests: that bounds the measuring around an eye, whose steps are shares of that length.
 constexpr double kFarthestNamed = 4;
 /// Wheels mirror each other, too, but are not in the upper half of a model.
-constexpr double kLowest = 0.38;
+constexpr double kLowestEyes = 0.38;
 /// How much of a figure around the eyes belongs to the head, in the head's lengths.
 constexpr double kHeadReach = 1.1;
 
@@ -50,18 +51,16 @@ bool belongsToEye(const Eyes& eyes, std::size_t triangle) {
 std::vector<bool> insideMouth(const Figure& figure, const Eyes& eyes) {
   constexpr double kSmall = 0.1;  ///< Share of the figure's triangles.
   constexpr std::size_t kPartSamples = 24;
-  std::vector<std::vector<Triangle3>> parts(figure.componentCount);
-  for (std::size_t t = 0; t < figure.components.size(); ++t)
-    parts[figure.components[t]].push_back(figure.mesh.triangles[t]);
+  const std::vector<TriangleMesh> parts = split(figure.mesh, figure.components, figure.componentCount);
   const Surface surface(figure.mesh);
   const double clear = 1e-4 * diagonalOf(figure.mesh);
   const Vec3 up{0, 1, 0};
   std::vector<bool> out(figure.componentCount);
   for (std::size_t c = 0; c < parts.size(); ++c) {
-    const auto size = static_cast<double>(parts[c].size());
+    const auto size = static_cast<double>(parts[c].triangles.size());
     if (size > kSmall * static_cast<double>(figure.components.size())) continue;
     std::vector<SurfaceRay> rays;
-    for (const Vec3& p : samplePoints(compact(figure.mesh, parts[c]), kPartSamples))
+    for (const Vec3& p : spreadPoints(parts[c], kPartSamples))
       for (const Vec3& direction : {eyes.left, -1 * eyes.left, up, -1 * eyes.front})
         rays.push_back({p + clear * direction, direction});
     const std::vector<RayHit> hits = surface.trace(rays);
@@ -96,7 +95,7 @@ std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes) {
   frame.origin = frame.origin + (plane.offset - dot(plane.left, frame.origin)) * plane.left;
   frame.unit = headLength(skin, eyeDistance, frame);
   const double share = eyeDistance / (kEyeDistance * frame.unit);
-  if (!figure.has(Role::eye) && (share < kNearest || share > kFarthest || heightShare(figure, eyes) < kLowest))
+  if (!figure.has(Role::eye) && (share < kNearest || share > kFarthest || heightShare(figure, eyes) < kLowestEyes))
     return std::nullopt;
 
   TriangleMesh local = frame.toLocal(within(skin, frame.origin, kHeadReach * frame.unit));

@@ -57,27 +57,28 @@ HeightMap blurred(const HeightMap& map, double sigma) {
   return out;
 }
 
+HeightMap extremes(const HeightMap& map, const Place& half, bool greatest) {
+  HeightMap out = map;
+  // Those of a rectangle are those of its rows, then of its columns.
+  for (const Place& along : {Place{1, 0}, Place{0, 1}}) {
+    const HeightMap from = out;
+    const int reach = along.column * half.column + along.row * half.row;
+    for (int row = 0; row < map.grid.rows; ++row)
+      for (int column = 0; column < map.grid.columns; ++column) {
+        double& value = out.heights[map.index(column, row)];
+        for (int d = -reach; d <= reach; ++d) {
+          const Place other{column + d * along.column, row + d * along.row};
+          if (!map.grid.has(other.column, other.row)) continue;
+          value = greatest ? std::max(value, from.at(other)) : std::min(value, from.at(other));
+        }
+      }
+  }
+  return out;
+}
+
 HeightMap closed(const HeightMap& map, double reach) {
   const int half = static_cast<int>(std::lround(reach / map.grid.step));
-  // The greatest, or least, of each square is that of its rows, then of its columns.
-  const auto extreme = [&](const HeightMap& in, bool greatest) {
-    HeightMap out = in;
-    for (const bool rows : {true, false}) {
-      const HeightMap from = out;
-      for (int row = 0; row < in.grid.rows; ++row)
-        for (int column = 0; column < in.grid.columns; ++column) {
-          double value = from.at(column, row);
-          for (int d = -half; d <= half; ++d) {
-            const int c = rows ? column + d : column, r = rows ? row : row + d;
-            if (!in.grid.has(c, r)) continue;
-            value = greatest ? std::max(value, from.at(c, r)) : std::min(value, from.at(c, r));
-          }
-          out.heights[in.index(column, row)] = value;
-        }
-    }
-    return out;
-  };
-  return extreme(extreme(map, true), false);
+  return closed(map, Place{half, half});
 }
 
 }  // namespace cagecast::cages

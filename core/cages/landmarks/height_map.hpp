@@ -21,6 +21,11 @@ inline constexpr View kBackView{{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
 inline constexpr View kTopView{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}};
 inline constexpr View kBottomView{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
 
+/// A point of a grid; or how far it is to another one.
+struct Place {
+  int column = 0, row = 0;
+};
+
 /// A rectangle of a view: `columns` by `rows` points, `step` apart.
 struct Grid {
   double a0 = 0, b0 = 0, step = 1;
@@ -55,6 +60,7 @@ struct HeightMap {
   [[nodiscard]] double at(int column, int row) const {
     return grid.has(column, row) ? heights[index(column, row)] : kNone;
   }
+  [[nodiscard]] double at(const Place& place) const { return at(place.column, place.row); }
   [[nodiscard]] double near(double a, double b) const { return at(grid.columnOf(a), grid.rowOf(b)); }
 };
 
@@ -64,7 +70,31 @@ HeightMap heightMapOf(const Surface& surface, const View& view, const Grid& grid
 /// A Gaussian blur that leaves out points without a height. @param sigma  In the unit of the grid's step.
 HeightMap blurred(const HeightMap& map, double sigma);
 
-/// Fills what is narrower than twice `reach`, along both directions (a morphological closing): slits and creases.
+/// The greatest, or the least, height of a rectangle about each place.
+/// @param half  From its middle to its sides.
+HeightMap extremes(const HeightMap& map, const Place& half, bool greatest);
+
+/// Fills what is narrower than twice `half` (a morphological closing): slits and creases.
+inline HeightMap closed(const HeightMap& map, const Place& half) {
+  return extremes(extremes(map, half, true), half, false);
+}
+/// The same in any direction. @param reach  In the unit of the grid's step.
 HeightMap closed(const HeightMap& map, double reach);
+
+/// The connected places around one, which counts in any case, at which a condition holds.
+template <typename Condition>
+std::vector<Place> areaAround(const HeightMap& map, const Place& start, const Condition& isIn) {
+  std::vector<bool> seen(map.heights.size());
+  seen[map.index(start.column, start.row)] = true;
+  std::vector<Place> area = {start};
+  for (std::size_t i = 0; i < area.size(); ++i)
+    for (const Place& step : {Place{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const Place next{area[i].column + step.column, area[i].row + step.row};
+      if (!map.grid.has(next.column, next.row) || seen[map.index(next.column, next.row)] || !isIn(next)) continue;
+      seen[map.index(next.column, next.row)] = true;
+      area.push_back(next);
+    }
+  return area;
+}
 
 }  // namespace cagecast::cages

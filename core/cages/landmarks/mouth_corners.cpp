@@ -54,36 +54,13 @@ std::array<std::optional<Vec3>, 2> gapEnds(const HeightMap& map, double top, dou
   const Grid& grid = map.grid;
   // A morphological closing along the columns, by a segment that is longer than the gap.
   const int half = static_cast<int>(std::ceil(0.5 * (1.15 * (top - bottom) + 0.01) / kMouthStep));
-  const auto extreme = [&](const std::vector<double>& heights, bool greatest) {
-    std::vector<double> out(heights.size());
-    for (int column = 0; column < grid.columns; ++column)
-      for (int row = 0; row < grid.rows; ++row) {
-        double value = heights[map.index(column, row)];
-        for (int d = -half; d <= half; ++d) {
-          if (!grid.has(column, row + d)) continue;
-          const double other = heights[map.index(column, row + d)];
-          value = greatest ? std::max(value, other) : std::min(value, other);
-        }
-        out[map.index(column, row)] = value;
-      }
-    return out;
-  };
-  const std::vector<double> bridged = extreme(extreme(map.heights, true), false);
-  const auto isGap = [&](int column, int row) {
-    return grid.has(column, row) && bridged[map.index(column, row)] - map.at(column, row) > kBehind;
-  };
-  std::vector<bool> seen(map.heights.size());
-  std::vector<std::pair<int, int>> gap = {{grid.columnOf(0), grid.rowOf(middle)}};
-  seen[map.index(gap[0].first, gap[0].second)] = true;
-  for (std::size_t i = 0; i < gap.size(); ++i)
-    for (int d = 0; d < 4; ++d) {
-      const int c = gap[i].first + (d == 0) - (d == 1), r = gap[i].second + (d == 2) - (d == 3);
-      if (!isGap(c, r) || seen[map.index(c, r)]) continue;
-      seen[map.index(c, r)] = true;
-      gap.emplace_back(c, r);
-    }
-  const auto [first, last] = std::minmax_element(gap.begin(), gap.end());
-  const int columns[] = {last->first, first->first};
+  const HeightMap bridged = closed(map, Place{0, half});
+  const std::vector<Place> gap = areaAround(map, {grid.columnOf(0), grid.rowOf(middle)}, [&](const Place& place) {
+    return bridged.at(place) - map.at(place) > kBehind;
+  });
+  const auto [first, last] =
+      std::minmax_element(gap.begin(), gap.end(), [](const Place& a, const Place& b) { return a.column < b.column; });
+  const int columns[] = {last->column, first->column};
   std::array<std::optional<Vec3>, 2> out;
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
     double rows = 0, count = 0;

@@ -24,6 +24,10 @@ struct Profile {
     return std::atan(-curve.slope(y, reach)) - tilt;
   }
   [[nodiscard]] Vec3 point(double y) const { return {0, y, fine.at(y)}; }
+  /// How far a place stands out in the face's own direction.
+  [[nodiscard]] double height(const Curve& curve, double y) const {
+    return std::cos(tilt) * curve.at(y) + std::sin(tilt) * y;
+  }
 };
 
 /// From the eyes' height down to where the profile falls back: the front extreme is the tip of the nose.
@@ -31,9 +35,7 @@ std::optional<double> noseTip(const Profile& profile) {
   constexpr double kTop = -0.02, kBottom = -0.25;
   constexpr double kFall = 0.012;  ///< By so much the profile falls back under a nose.
   double best = kTop;
-  const auto height = [&](double y) {
-    return std::cos(profile.tilt) * profile.medium.at(y) + std::sin(profile.tilt) * y;
-  };
+  const auto height = [&](double y) { return profile.height(profile.medium, y); };
   for (double y = kTop; y > kBottom; y -= kProfileStep) {
     if (!std::isfinite(height(y))) break;
     if (height(y) > height(best)) best = y;
@@ -63,9 +65,7 @@ double nasion(const Profile& profile, double nose, double& confidence) {
 /// The foremost place between the eyebrows, above the nasion.
 std::optional<double> glabella(const Profile& profile, double nasionY, double& confidence) {
   constexpr double kReach = 0.12;
-  const auto height = [&](double y) {
-    return std::cos(profile.tilt) * profile.medium.at(y) + std::sin(profile.tilt) * y;
-  };
+  const auto height = [&](double y) { return profile.height(profile.medium, y); };
   double best = nasionY;
   for (double y = nasionY; y < nasionY + kReach; y += kProfileStep) {
     if (height(y) > height(best)) best = y;
@@ -89,11 +89,11 @@ double firstFold(const Profile& profile, double top, double bottom) {
 /// The first sharp crease below the fold under the nose; the fold above the chin may be deeper, but is wider.
 std::optional<MouthLine> mouth(const Profile& profile, double subnasale) {
   constexpr double kNear = 0.01, kFar = 0.13;  ///< Below the fold.
-  constexpr double kCrease = 0.006;            ///< Half its width.
+  constexpr double kHalfCrease = 0.006;        ///< Half its width.
   constexpr double kMin = 0.0012;              ///< Its depth.
   constexpr double kOpen = 0.02;               ///< Deeper ones are gaps.
   const auto depth = [&](double y) {
-    const double value = profile.sharp.hollow(y, kCrease);
+    const double value = profile.sharp.hollow(y, kHalfCrease);
     return std::isnan(value) || value > kOpen ? kOpen : value;
   };
   double deepest = 0;
@@ -107,8 +107,7 @@ std::optional<MouthLine> mouth(const Profile& profile, double subnasale) {
   if (out.depth < enough) return std::nullopt;
   // The gap ends where the profile comes out to the level of the lips again, as seen along the face's own front.
   const auto height = [&](double y) {
-    const double z = profile.sharp.at(y);
-    return std::isfinite(z) ? std::cos(profile.tilt) * z + std::sin(profile.tilt) * y : -1.0;
+    return std::isfinite(profile.sharp.at(y)) ? profile.height(profile.sharp, y) : -1.0;
   };
   const double reach = out.depth < kOpen ? 0.03 : 0.09;
   double above = -1, below = -1;

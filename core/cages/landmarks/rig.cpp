@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <string_view>
 
 namespace cagecast::cages {
 
@@ -73,12 +74,6 @@ void forEachJoint(Visit visit) {
 }
 
 }  // namespace
-
-const Landmark* Rig::find(std::string_view landmark) const {
-  for (const Landmark& joint : joints)
-    if (joint.name == landmark) return &joint;
-  return nullptr;
-}
 
 std::vector<std::string> jointLandmarks() {
   std::vector<std::string> out;

@@ -1,4 +1,4 @@
-#include "make/cut_holes.hpp"
+#include "make/steps.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,6 +5,9 @@
 #include <limits>
 
 #include "base/tolerances.hpp"
+#include "make/steps.hpp"
+#include "mesh/disjoint_sets.hpp"
+#include "mesh/neighbours.hpp"
 #include "mesh/progress.hpp"
 
 namespace cagecast::cages {
@@ -90,40 +93,39 @@ void sampleMarked(const MarkedMesh& model, double spacing, std::vector<Vec3>& sa
   const Spacings spacings(model, spacing);
   for (std::uint32_t t = 0; t < model.isMarked.size(); ++t) {
     if (!model.isMarked[t]) continue;
-    const Triangle3& triangle = model.mesh->triangles[t];
-    if (const OnLongestEdge needle(*model.mesh, triangle); needle.isNeedle(spacing)) {
-      const double steps = needle.steps(spacings.needles);
+    const OnLongestEdge triangle(*model.mesh, model.mesh->triangles[t]);
+    const auto add = [&](double along, double toThird) {
+      samples.push_back(triangle.start + along * triangle.along + toThird * triangle.toThird);
+      triangles.push_back(t);
+    };
+    if (triangle.isNeedle(spacing)) {
+      const double steps = triangle.steps(spacings.needles);
       // Needles side by side have their samples in different places.
       double shift = kGoldenRatio * t;
       shift -= std::floor(shift);
-      for (double i = 0; i < steps; ++i) {
-        samples.push_back(needle.start + 1.0 / 3 * needle.toThird + 2.0 / 3 * (i + shift) / steps * needle.along);
-        triangles.push_back(t);
-      }
+      for (double i = 0; i < steps; ++i) add(2.0 / 3 * (i + shift) / steps, 1.0 / 3);
       continue;
     }
-    const Vec3 a = model.mesh->positions[triangle[0]];
-    const Vec3 ab = model.mesh->positions[triangle[1]] - a, ac = model.mesh->positions[triangle[2]] - a;
-    const double longest = std::max({length(ab), length(ac), length(ac - ab)});
-    const double steps = std::clamp(std::ceil(longest / spacings.triangles), 1.0, kMaxSamplesPerEdge);
+    const double steps = triangle.steps(spacings.triangles);
     for (double i = 0; i < steps; ++i)
-      for (double j = 0; i + j < steps; ++j) {
-        samples.push_back(a + (i + 1.0 / 3) / steps * ab + (j + 1.0 / 3) / steps * ac);
-        triangles.push_back(t);
-      }
+      for (double j = 0; i + j < steps; ++j) add((i + 1.0 / 3) / steps, (j + 1.0 / 3) / steps);
   }
+}
+
+/// The vertices with a neighbour that has another mark.
+std::vector<bool> borderOf(const Neighbours& neighbours, const std::vector<bool>& marks) {
+  std::vector<bool> border(marks.size());
+  for (std::size_t v = 0; v < marks.size(); ++v)
+    for (const std::uint32_t n : neighbours[v]) border[v] = border[v] || marks[n] != marks[v];
+  return border;
 }
 
 /// Marks what lies between marks that are close together: widens all of them, and takes the margin away again.
 void closeGaps(const Neighbours& neighbours, std::vector<bool>& marks) {
-  for (const bool value : {true, false}) {
-    std::vector<std::uint32_t> front;
-    for (std::uint32_t v = 0; v < marks.size(); ++v)
-      if (marks[v] == value) front.push_back(v);
-    const std::vector<bool> reached = within(neighbours, std::move(front), kGapEdges);
-    for (std::size_t v = 0; v < marks.size(); ++v)
-      if (reached[v]) marks[v] = value;
-  }
+  grow(neighbours, marks, kGapEdges);
+  marks.flip();
+  grow(neighbours, marks, kGapEdges);
+  marks.flip();
 }
 
 void smooth(const Neighbours& neighbours, std::vector<double>& field) {
@@ -138,24 +140,18 @@ void smooth(const Neighbours& neighbours, std::vector<double>& field) {
 
 /// Sets the field to 1 again on connected marks that smoothing has removed.
 void restoreVanished(const Neighbours& neighbours, const std::vector<bool>& marks, std::vector<double>& field) {
-  std::vector<bool> seen(marks.size(), false);
-  std::vector<std::uint32_t> mark;
-  for (std::uint32_t start = 0; start < marks.size(); ++start) {
-    if (seen[start] || !marks[start]) continue;
-    mark.assign(1, start);
-    seen[start] = true;
-    bool remains = false;
-    for (std::size_t i = 0; i < mark.size(); ++i) {
-      remains = remains || field[mark[i]] >= 0.5;
-      for (const std::uint32_t n : neighbours[mark[i]]) {
-        if (seen[n] || !marks[n]) continue;
-        seen[n] = true;
-        mark.push_back(n);
-      }
-    }
-    if (remains || mark.size() < kMinMark) continue;
-    for (const std::uint32_t v : mark) field[v] = 1;
+  DisjointSets sets(marks.size());
+  for (std::uint32_t v = 0; v < marks.size(); ++v)
+    for (const std::uint32_t n : neighbours[v])
+      if (marks[v] && marks[n]) sets.join(v, n);
+  std::vector<std::size_t> sizes(marks.size(), 0);
+  std::vector<bool> remains(marks.size());
+  for (std::uint32_t v = 0; v < marks.size(); ++v) {
+    ++sizes[sets.find(v)];
+    if (field[v] >= 0.5) remains[sets.find(v)] = true;
   }
+  for (std::uint32_t v = 0; v < marks.size(); ++v)
+    if (marks[v] && !remains[sets.find(v)] && sizes[sets.find(v)] >= kMinMark) field[v] = 1;
 }
 
 }  // namespace
@@ -176,7 +172,7 @@ bool HoleMarker::findSamples(const Progress& progress) {
   const Surface surface(hull_);
   for (std::size_t first = 0; first < positions.size(); first += kBatch) {
     const std::size_t count = std::min(kBatch, positions.size() - first);
-    if (progress && !progress(static_cast<float>(first) / static_cast<float>(positions.size()), "holes")) return false;
+    if (!report(progress, first, positions.size(), "holes")) return false;
     const std::vector<SurfacePoint> above = surface.closest({positions.data() + first, count});
     std::vector<SurfaceRay> rays;
     std::vector<Sample> candidates;
@@ -200,8 +196,7 @@ bool HoleMarker::markBelow(std::size_t begin, const Progress& progress) {
   const std::size_t end = hull_.positions.size();
   for (std::size_t first = begin; first < end; first += kBatch) {
     const std::size_t count = std::min(kBatch, end - first);
-    const double share = static_cast<double>(first - begin) / static_cast<double>(end - begin);
-    if (progress && !progress(static_cast<float>(share), "holes")) return false;
+    if (!report(progress, first - begin, end - begin, "holes")) return false;
     std::vector<SurfaceRay> rays(count);
     for (std::size_t i = 0; i < count; ++i) rays[i] = {hull_.positions[first + i], -1 * normals[first + i]};
     const std::vector<RayHit> hits = model_.surface->trace(rays);
@@ -215,21 +210,14 @@ bool HoleMarker::markBelow(std::size_t begin, const Progress& progress) {
 }
 
 std::vector<std::uint32_t> HoleMarker::verticesAbove() const {
-  // List the parts of each triangle of the original hull, by a counting sort.
-  std::uint32_t originals = 0;
-  for (const std::uint32_t parent : parents_) originals = std::max(originals, parent + 1);
-  std::vector<std::uint32_t> first(originals + 1, 0), parts(parents_.size());
-  for (const std::uint32_t parent : parents_) ++first[parent + 1];
-  for (std::size_t i = 0; i < originals; ++i) first[i + 1] += first[i];
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::uint32_t t = 0; t < parents_.size(); ++t) parts[next[parents_[t]]++] = t;
   std::vector<std::uint32_t> vertices;
   vertices.reserve(samples_.size());
   for (const Sample& sample : samples_) {
     double least = std::numeric_limits<double>::infinity();
     std::uint32_t nearest = 0;
-    for (std::uint32_t i = first[sample.triangle]; i < first[sample.triangle + 1]; ++i)
-      for (const std::uint32_t v : hull_.triangles[parts[i]]) {
+    const auto parts = std::equal_range(parents_.begin(), parents_.end(), sample.triangle);
+    for (auto t = parts.first; t != parts.second; ++t)
+      for (const std::uint32_t v : hull_.triangles[static_cast<std::size_t>(t - parents_.begin())]) {
         const double distance = length(hull_.positions[v] - sample.onHull);
         if (distance >= least) continue;
         least = distance;
@@ -257,11 +245,13 @@ bool HoleMarker::mark(int refinements, const Progress& progress) {
   for (int level = 0; level < refinements; ++level) {
     const Neighbours neighbours(hull_);
     const std::size_t before = hull_.positions.size();
-    refine(within(neighbours, borderOf(neighbours, marks()), kRefinedEdges), hull_, parents_);
+    std::vector<bool> isNear = borderOf(neighbours, marks());
+    grow(neighbours, isNear, kRefinedEdges);
+    subdivide(isNear, hull_, parents_);
     if (!markBelow(before, partOf(progress, 0.8f, 0.8f))) return false;
     markSamples();
   }
-  return !progress || progress(1, "holes");
+  return report(progress, 1, "holes");
 }
 
 std::vector<double> HoleMarker::field() const {
@@ -281,8 +271,7 @@ bool HoleMarker::widen(const TriangleMesh& cage, const Progress& progress, doubl
   std::vector<bool> isCovered(samples_.size(), false);
   for (std::size_t first = 0; first < samples_.size(); first += kBatch) {
     const std::size_t count = std::min(kBatch, samples_.size() - first);
-    const float share = static_cast<float>(first) / static_cast<float>(samples_.size());
-    if (progress && !progress(share, "holes")) return false;
+    if (!report(progress, first, samples_.size(), "holes")) return false;
     std::vector<Vec3> positions(count);
     for (std::size_t i = 0; i < count; ++i) positions[i] = samples_[first + i].position;
     const std::vector<SurfacePoint> closest = surface.closest(positions);
@@ -301,14 +290,18 @@ bool HoleMarker::widen(const TriangleMesh& cage, const Progress& progress, doubl
       covered[piece] += isCovered[first + i] ? 1 : 0;
     }
   }
-  std::vector<std::uint32_t> front;
+  std::vector<bool> isTooCovered(hull_.positions.size());
   const std::vector<std::uint32_t> vertices = verticesAbove();
-  for (std::size_t i = 0; i < samples_.size(); ++i)
-    if (isCovered[i] && covered[samples_[i].piece] > kMaxCovered * all[samples_[i].piece]) front.push_back(vertices[i]);
-  coveredShare = samples_.empty() ? 0 : static_cast<double>(front.size()) / static_cast<double>(samples_.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (!isCovered[i] || !(covered[samples_[i].piece] > kMaxCovered * all[samples_[i].piece])) continue;
+    isTooCovered[vertices[i]] = true;
+    ++count;
+  }
+  coveredShare = samples_.empty() ? 0 : static_cast<double>(count) / static_cast<double>(samples_.size());
   widened_ += kWidening;
-  const std::vector<bool> reached = within(Neighbours(hull_), std::move(front), widened_);
-  for (std::size_t v = 0; v < reached.size(); ++v) below_[v] = below_[v] || reached[v];
+  grow(Neighbours(hull_), isTooCovered, widened_);
+  for (std::size_t v = 0; v < below_.size(); ++v) below_[v] = below_[v] || isTooCovered[v];
   return true;
 }
 

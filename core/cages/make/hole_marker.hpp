@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "cagecast/cages.hpp"
-#include "make/hull_graph.hpp"
 #include "mesh/surface.hpp"
 #include "mesh/triangle_mesh.hpp"
 
@@ -64,7 +63,7 @@ class HoleMarker {
   const MarkedMesh& model_;
   double depth_;
   TriangleMesh& hull_;
-  std::vector<std::uint32_t> parents_;  ///< The triangle of the hull as it was, for each.
+  std::vector<std::uint32_t> parents_;  ///< The triangle of the hull as it was, for each; rising.
   std::vector<Sample> samples_;
   std::uint32_t pieces_ = 0;
   std::vector<bool> below_;    ///< Per vertex: what is below or nearest is marked, or `widen` has marked it.

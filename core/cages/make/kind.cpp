@@ -1,8 +1,9 @@
-#include "make/kind.hpp"
+#include "make/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "landmarks/landmark_list.hpp"
 #include "landmarks/rig.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/part_names.hpp"
@@ -20,13 +21,9 @@ bool hasParts(const Model& model, std::initializer_list<std::string_view> patter
 
 /// Whether a leg's joint is inside the box: the legs of a rig may belong to a body that is not there.
 bool hasLegs(const Model& model, const Bounds& box) {
-  const Vec3 margin = 0.05 * box.size();
-  const Vec3 low = box.low - margin, high = box.high + margin;
+  const Bounds around{box.low - 0.05 * box.size(), box.high + 0.05 * box.size()};
   return std::any_of(model.joints.begin(), model.joints.end(), [&](const Joint& joint) {
-    const Vec3 p = Vec3::from(joint.position.data());
-    const bool isInside =
-        p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
-    if (!isInside) return false;
+    if (around.distance(Vec3::from(joint.position.data())) > 0) return false;
     for (const std::string_view pattern : {"*leg*", "*thigh*", "*foot*", "*calf*", "*shin*"})
       if (matchesName(joint.name, pattern)) return true;
     return false;
@@ -78,20 +75,18 @@ KindFeatures featuresOf(const Model& model) {
 
 Stance stanceOf(const Model& model) {
   const Rig rig = recogniseRig(model.joints);
-  const auto at = [&](const char* name) -> const Landmark* { return rig.find(name); };
-  const Landmark *hips = at("joint_hips"), *head = at("joint_head"), *neck = at("joint_neck");
-  const Landmark *left = at("joint_ankle_left"), *right = at("joint_ankle_right");
-  if (head == nullptr) head = neck;
-  if (hips == nullptr || head == nullptr || left == nullptr || right == nullptr) return {};
-  const Vec3 trunk = unit(toVec3(head->position) - toVec3(hips->position));
-  const Vec3 feet = 0.5 * (toVec3(left->position) + toVec3(right->position));
-  const Vec3 legs = unit(toVec3(hips->position) - feet);
+  const auto at = [&](const char* name) { return placeOf(rig.joints, name); };
+  const auto hips = at("joint_hips"), head = at("joint_head"), neck = at("joint_neck");
+  const auto left = at("joint_ankle_left"), right = at("joint_ankle_right");
+  if (!hips || !(head || neck) || !left || !right) return {};
+  const Vec3 trunk = unit(head.value_or(neck.value_or(*hips)) - *hips);
+  const Vec3 legs = unit(*hips - 0.5 * (*left + *right));
   constexpr double kStraight = 0.8;  // The cosine of 37°: who sits or is on all fours does not stand.
   if (dot(trunk, legs) < kStraight) return {};
   Stance stance;
   stance.up = axisOf(trunk);
   if (stance.up.y != 0) return {};
-  const Vec3 apart = toVec3(left->position) - toVec3(right->position);
+  const Vec3 apart = *left - *right;
   const Vec3 side = axisOf(apart - dot(apart, stance.up) * stance.up);
   stance.front = cross(side, stance.up);
   return length(stance.front) > 0.5 ? stance : Stance{};

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -10,13 +9,8 @@
 #include "landmarks/eyes.hpp"
 #include "landmarks/frame.hpp"
 #include "landmarks/parts.hpp"
-#include "make/cut_holes.hpp"
-#include "make/enclose.hpp"
 #include "make/hole_marker.hpp"
-#include "make/kind.hpp"
-#include "make/neck.hpp"
-#include "make/simplify.hpp"
-#include "make/wrap.hpp"
+#include "make/steps.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/part_names.hpp"
 #include "mesh/progress.hpp"
@@ -47,11 +41,6 @@ constexpr double kMaxWidened = 0.1;
 /// The cage is moved past about this many points of the hull.
 constexpr std::size_t kEnclosedPoints = 20000;
 
-/// Limits of options, unless they are 0. Lengths are shares of the diagonal.
-constexpr auto kMinLength = static_cast<double>(0.0005f), kMaxLength = static_cast<double>(0.2f);
-constexpr double kMinGivenVoxels = 16, kMaxGivenVoxels = 400;
-constexpr double kMinCageTriangles = 50, kMaxCageTriangles = 20000;
-
 /// The options of a call with all values filled in. Lengths are in the space of the model.
 struct MakeSettings {
   Kind kind = Kind::prop;
@@ -59,20 +48,15 @@ struct MakeSettings {
   std::uint32_t triangles = 0;
 };
 
-Outcome checkOptions(const MakeOptions& options) {
+Status checkOptions(const MakeOptions& options) {
   if (options.kind > Kind::prop)
-    return {Problem::badOptions, "options.kind = " + std::to_string(static_cast<int>(options.kind)) + " is not a kind"};
-  struct Range {
-    const char* name;
-    double value, least, most;
-  };
-  for (const auto& [name, value, least, most] :
-       {Range{"closing", static_cast<double>(options.closing), kMinLength, kMaxLength},
-        Range{"offset", static_cast<double>(options.offset), kMinLength, kMaxLength},
-        Range{"voxels", static_cast<double>(options.voxels), kMinGivenVoxels, kMaxGivenVoxels},
-        Range{"triangles", static_cast<double>(options.triangles), kMinCageTriangles, kMaxCageTriangles}}) {
+    return {Code::badOption, Argument::options, 0, Option::kind, static_cast<float>(options.kind)};
+  for (const auto& [option, value] : {std::pair{Option::closing, options.closing},
+                                      {Option::offset, options.offset},
+                                      {Option::voxels, static_cast<float>(options.voxels)},
+                                      {Option::triangles, static_cast<float>(options.triangles)}}) {
     if (value == 0) continue;  // By kind.
-    if (Outcome outcome = checkOption(name, value, least, most); !outcome.ok()) return outcome;
+    if (const Status status = checkOption(option, value); !status.ok()) return status;
   }
   return {};
 }
@@ -112,9 +96,9 @@ bool hasMarks(const std::vector<bool>& isMarked) {
 bool markLooseEyes(const Model& model, const Progress& progress, std::vector<bool>& isMarked) {
   const Figure figure = readFigure(model);
   if (figure.componentCount < 3) return true;  // Two eyes, and what they are eyes of.
-  if (!progress(0, "landmarks")) return false;
+  if (!report(progress, 0, "landmarks")) return false;
   for (const MirrorPlane& plane : findMirrorPlanes(figure.mesh)) {
-    if (!progress(0, "landmarks")) return false;
+    if (!report(progress, 0, "landmarks")) return false;
     const std::optional<Eyes> eyes = findLooseEyes(figure, plane);
     if (!eyes || eyes->triangles.size() != isMarked.size()) continue;
     isMarked = eyes->triangles;
@@ -135,12 +119,15 @@ bool lookForEyes(const Model& model, const MakeOptions& options, const Progress&
 }
 
 /// Points below the hull, but in front of the model, which the cage must not fall behind.
-std::vector<OuterPoint> pointsToEnclose(const TriangleMesh& hull, const std::vector<double>& field, double depth) {
+OuterPoints pointsToEnclose(const TriangleMesh& hull, const std::vector<double>& field, double depth) {
   const std::vector<Vec3> normals = vertexNormals(hull);
   const std::size_t step = std::max<std::size_t>(1, hull.positions.size() / kEnclosedPoints);
-  std::vector<OuterPoint> points;
-  for (std::size_t v = 0; v < hull.positions.size(); v += step)
-    if (field[v] < 0.5) points.push_back({hull.positions[v] - depth * normals[v], normals[v]});
+  OuterPoints points;
+  for (std::size_t v = 0; v < hull.positions.size(); v += step) {
+    if (field[v] >= 0.5) continue;
+    points.positions.push_back(hull.positions[v] - depth * normals[v]);
+    points.normals.push_back(normals[v]);
+  }
   return points;
 }
 
@@ -151,13 +138,11 @@ struct MarkedHull {
   HoleMarker& marker;
 };
 
-Outcome nothingToPaint() {
-  return {Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
-}
+constexpr Status kNothingToPaint{Code::nothingToPaint, Argument::model};
 
 /// Cuts holes into a hull, simplifies it, and moves it past the model; again with wider holes where it then covers too
 /// much of what must not be painted. A later cage may be worse, as it is simplified differently: the best is kept.
-Outcome shape(const MarkedHull& hull, const MakeSettings& settings, const Progress& progress, TriangleMesh& out) {
+Status shape(const MarkedHull& hull, const MakeSettings& settings, const Progress& progress, TriangleMesh& out) {
   const double offset = settings.hull.offset, depth = (1 - kDepthMargin) * offset;
   double covered = 1, leastCovered = std::numeric_limits<double>::infinity(), leastClosed = 0;
   for (int attempt = 0; attempt < kAttempts && covered > 0; ++attempt) {
@@ -167,18 +152,16 @@ Outcome shape(const MarkedHull& hull, const MakeSettings& settings, const Progre
     if (attempt == 0) leastClosed = (1 - kMaxWidened) * static_cast<double>(closed);
     if (static_cast<double>(closed) < leastClosed) break;
     const TriangleMesh shell = cutHoles(hull.mesh, field);
-    if (shell.empty() && out.empty()) return nothingToPaint();
+    if (shell.empty() && out.empty()) return kNothingToPaint;
     TriangleMesh cage;
     if (!simplify(shell, {settings.triangles, offset}, partOf(progress, kHolesEnd, kSimplifyEnd), cage))
-      return cancelled();
-    if (cage.empty() && out.empty())
-      return {Problem::badModel,
-              "model is too thin for a cage of so few triangles: nothing is left of its hull; allow more triangles"};
+      return kAborted;
+    if (cage.empty() && out.empty()) return {Code::tooFewTriangles, Argument::model};
     if (cage.empty()) break;
     if (!enclose(pointsToEnclose(hull.mesh, field, depth), kFarthestPush * offset,
                  partOf(progress, kSimplifyEnd, kEncloseEnd), cage))
-      return cancelled();
-    if (!hull.marker.widen(cage, partOf(progress, kEncloseEnd, kEncloseEnd), covered)) return cancelled();
+      return kAborted;
+    if (!hull.marker.widen(cage, partOf(progress, kEncloseEnd, kEncloseEnd), covered)) return kAborted;
     if (covered >= leastCovered) continue;
     leastCovered = covered;
     out = std::move(cage);
@@ -189,22 +172,19 @@ Outcome shape(const MarkedHull& hull, const MakeSettings& settings, const Progre
 void store(const Layout& layout, Kind kind, Cage& out) {
   out = {};
   out.kind = kind;
-  for (const Vec3& p : layout.positions)
-    for (const double x : {p.x, p.y, p.z}) out.positions.push_back(static_cast<float>(x));
+  for (const Vec3& p : layout.mesh.positions) append(out.positions, p);
   for (const Uv& uv : layout.uvs)
     for (const double x : uv) out.uvs.push_back(static_cast<float>(x));
-  for (const Triangle3& t : layout.triangles) out.indices.insert(out.indices.end(), t.begin(), t.end());
+  for (const Triangle3& t : layout.mesh.triangles) out.indices.insert(out.indices.end(), t.begin(), t.end());
 }
 
-}  // namespace
-
-Outcome makeCage(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out) {
-  if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
-  if (Outcome outcome = checkOptions(options); !outcome.ok()) return outcome;
+Status make(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out) {
+  if (const Status status = checkModel(model); !status.ok()) return status;
+  if (const Status status = checkOptions(options); !status.ok()) return status;
   float reached = 0;  // A repeated stage does not go back.
   const Progress rising = [&progress, &reached](float share, const char* stage) {
     reached = std::max(reached, share);
-    return !progress || progress(reached, stage);
+    return report(progress, reached, stage);
   };
   const auto part = [&rising](float from, float to) { return partOf(rising, from, to); };
   std::vector<std::uint32_t> triangleOf;
@@ -212,31 +192,37 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   MakeSettings settings = settingsFor(model, options, diagonalOf(mesh));
   const double offset = settings.hull.offset;
   std::vector<bool> isMarked = marksOf(model, options, triangleOf);
-  if (!lookForEyes(model, options, rising, settings.kind, isMarked)) return cancelled();
+  if (!lookForEyes(model, options, rising, settings.kind, isMarked)) return kAborted;
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
-  if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return nothingToPaint();
+  if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return kNothingToPaint;
   isMarked.resize(mesh.triangles.size(), false);  // `extendNecks` has added triangles; they may be painted.
   TriangleMesh hull;
   const WrapOptions wrapping{settings.hull, options.closing == 0};
-  if (Outcome outcome = wrap(mesh, isMarked, wrapping, part(0, kHullEnd), hull); !outcome.ok()) return outcome;
+  if (const Status status = wrap(mesh, isMarked, wrapping, part(0, kHullEnd), hull); !status.ok()) return status;
 
   const Surface surface(mesh);
   const MarkedMesh marked{&mesh, &surface, std::move(isMarked)};
   HoleMarker marker(marked, kVisibleDepth * offset, hull);
-  if (!marker.mark(settings.kind == Kind::body ? 2 : 1, part(kHullEnd, kHolesEnd))) return cancelled();
+  if (!marker.mark(settings.kind == Kind::body ? 2 : 1, part(kHullEnd, kHolesEnd))) return kAborted;
   TriangleMesh cage;
-  if (Outcome outcome = shape({hull, necks, marker}, settings, rising, cage); !outcome.ok()) return outcome;
+  if (const Status status = shape({hull, necks, marker}, settings, rising, cage); !status.ok()) return status;
   Layout layout;
   UnwrapOptions unwrapOptions;
   const Stance stance = stanceOf(model);
   unwrapOptions.kind = settings.kind;
   unwrapOptions.up = stance.up;
   unwrapOptions.front = stance.front;
-  if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return cancelled();
-  if (!rising(1, "unwrap")) return cancelled();
+  if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return kAborted;
+  if (!rising(1, "unwrap")) return kAborted;
   store(layout, settings.kind, out);
   return {};
+}
+
+}  // namespace
+
+Status makeCage(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out) {
+  return guarded([&] { return make(model, options, progress, out); });
 }
 
 }  // namespace cagecast::cages

@@ -1,10 +1,10 @@
-#include "make/neck.hpp"
+#include "make/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "hull/hull.hpp"
+#include "mesh/bounds.hpp"
 
 namespace cagecast::cages {
 
@@ -26,7 +26,7 @@ Vec3 normalOf(const TriangleMesh& head, const std::vector<std::uint32_t>& loop) 
   const Vec3& first = head.positions[loop[0]];
   for (std::size_t i = 0; i < loop.size(); ++i)
     area = area + cross(head.positions[loop[(i + 1) % loop.size()]] - first, head.positions[loop[i]] - first);
-  return length(area) > 0 ? 1 / length(area) * area : Vec3{0, -1, 0};
+  return length(area) > 0 ? unit(area) : Vec3{0, -1, 0};
 }
 
 /// The plane of an opening.
@@ -44,45 +44,32 @@ Neck planeOf(const TriangleMesh& head, const Opening& opening) {
   return neck;
 }
 
-/// The vertices of each connected piece of a mesh.
-class Pieces {
- public:
-  explicit Pieces(const TriangleMesh& mesh) : of_(mesh.positions.size(), kNone) {
+/// The connected pieces of a mesh, and the piece of each vertex.
+struct Pieces {
+  std::vector<TriangleMesh> meshes;
+  std::vector<std::uint32_t> of;
+
+  explicit Pieces(const TriangleMesh& mesh) : of(mesh.positions.size(), 0) {
     std::uint32_t count = 0;
     const std::vector<std::uint32_t> pieces = connectedPieces(mesh, count);
-    vertices_.resize(count);
+    meshes = split(mesh, pieces, count);
     for (std::size_t t = 0; t < pieces.size(); ++t)
-      for (const std::uint32_t v : mesh.triangles[t]) {
-        if (of_[v] == kNone) vertices_[pieces[t]].push_back(v);
-        of_[v] = pieces[t];
-      }
+      for (const std::uint32_t v : mesh.triangles[t]) of[v] = pieces[t];
   }
-  /// The vertices of the piece that a vertex belongs to.
-  [[nodiscard]] const std::vector<std::uint32_t>& with(std::uint32_t vertex) const { return vertices_[of_[vertex]]; }
-
- private:
-  std::vector<std::uint32_t> of_;
-  std::vector<std::vector<std::uint32_t>> vertices_;
 };
 
 /// Whether a head ends at an opening.
 bool isNeck(const TriangleMesh& head, const Pieces& pieces, const Opening& opening) {
-  const auto extent = [&](const std::vector<std::uint32_t>& vertices, const Vec3& along) {
-    double low = INFINITY, high = -INFINITY;
-    for (const std::uint32_t v : vertices) {
-      low = std::min(low, dot(head.positions[v], along));
-      high = std::max(high, dot(head.positions[v], along));
-    }
-    return std::pair{low, high};
-  };
   // A model may have thousands of sheets: their own vertices tell them, without a look at the whole head.
   const Vec3 normal = normalOf(head, opening.loop);
-  const auto [loopLow, loopHigh] = extent(opening.loop, normal);
-  const auto [low, high] = extent(pieces.with(opening.loop[0]), normal);
+  Range border;
+  for (const std::uint32_t v : opening.loop) border.add(dot(head.positions[v], normal));
+  const Range own = rangeOf(pieces.meshes[pieces.of[opening.loop[0]]].positions, normal);
+  const double below = border.low - own.low, above = own.high - border.high;
   const double leastDepth = kMinDepth * opening.width;
-  if (loopLow - low < leastDepth && high - loopHigh < leastDepth) return false;
+  if (below < leastDepth && above < leastDepth) return false;
   const Neck neck = planeOf(head, opening);
-  const double depth = dot(neck.normal, normal) > 0 ? loopLow - low : high - loopHigh;
+  const double depth = dot(neck.normal, normal) > 0 ? below : above;
   const auto behind = std::count_if(head.positions.begin(), head.positions.end(),
                                     [&](const Vec3& p) { return dot(p, neck.normal) <= neck.height; });
   return depth >= leastDepth && static_cast<double>(behind) >= kBehind * static_cast<double>(head.positions.size());
@@ -112,12 +99,10 @@ Neck extend(const Opening& opening, double by, TriangleMesh& head) {
 }  // namespace
 
 std::vector<Neck> extendNecks(double by, TriangleMesh& head) {
-  std::vector<Opening> openings;
-  closeOpenings(head, kMinWidth * diagonalOf(head), &openings);
   std::vector<Neck> necks;
   const TriangleMesh own = head;
   const Pieces pieces(own);
-  for (const Opening& opening : openings)
+  for (const Opening& opening : findOpenings(own, kMinWidth * diagonalOf(own)))
     if (isNeck(own, pieces, opening)) necks.push_back(extend(opening, by, head));
   return necks;
 }

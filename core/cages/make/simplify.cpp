@@ -1,9 +1,8 @@
-#include "make/simplify.hpp"
+#include "make/steps.hpp"
 
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <map>
 #include <tuple>
@@ -11,6 +10,7 @@
 
 #include "mesh/bounds.hpp"
 #include "mesh/disjoint_sets.hpp"
+#include "mesh/progress.hpp"
 
 namespace cagecast::cages {
 
@@ -29,33 +29,19 @@ constexpr std::uint32_t kFinTriangles = 8;
 /// milliseconds.
 constexpr std::size_t kLastStepIndices = std::size_t{3} * 15000;
 
-double distanceToChord(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 chord = b - a;
-  const double square = dot(chord, chord);
-  const double share = square > 0 ? std::clamp(dot(p - a, chord) / square, 0.0, 1.0) : 0;
-  return length(p - (a + share * chord));
-}
-
-/// The place in a loop that is farthest from a point.
-std::size_t farthestFrom(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, const Vec3& point) {
-  std::size_t farthest = 0;
-  double most = -1;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const double distance = length(mesh.positions[loop[i]] - point);
-    if (distance <= most) continue;
-    most = distance;
-    farthest = i;
-  }
-  return farthest;
-}
-
 /// Locks the vertices of a loop that keep its shape best: the one farthest from the polygon so far, again and again
 /// (Ramer 1972; Douglas, Peucker 1973).
 void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, double tolerance,
               std::vector<unsigned char>& locks) {
   const auto at = [&](std::size_t i) -> const Vec3& { return mesh.positions[loop[i % loop.size()]]; };
-  std::vector<std::size_t> chosen = {farthestFrom(mesh, loop, middleOf(mesh, loop))};
-  chosen.push_back(farthestFrom(mesh, loop, at(chosen[0])));
+  const auto farthestFrom = [&](const Vec3& point) {
+    const auto isNearer = [&](std::uint32_t a, std::uint32_t b) {
+      return length(mesh.positions[a] - point) < length(mesh.positions[b] - point);
+    };
+    return static_cast<std::size_t>(std::max_element(loop.begin(), loop.end(), isNearer) - loop.begin());
+  };
+  std::vector<std::size_t> chosen = {farthestFrom(middleOf(mesh, loop))};
+  chosen.push_back(farthestFrom(at(chosen[0])));
   const double size = length(at(chosen[0]) - at(chosen[1]));
   while (chosen.size() < std::min(kMaxLocks, loop.size())) {
     std::sort(chosen.begin(), chosen.end());
@@ -64,7 +50,7 @@ void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, 
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       const std::size_t from = chosen[k], to = k + 1 < chosen.size() ? chosen[k + 1] : chosen[0] + loop.size();
       for (std::size_t i = from + 1; i < to; ++i) {
-        const double distance = distanceToChord(at(i), at(from), at(to));
+        const double distance = distanceToSegment(at(i), at(from), at(to));
         if (distance <= most) continue;
         most = distance;
         next = i % loop.size();
@@ -76,32 +62,23 @@ void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, 
   for (const std::size_t i : chosen) locks[loop[i]] = 1;
 }
 
-/// Removes pairs of triangles with the same corners, which collapses leave behind as flaps on an edge.
+/// Removes triangles with the same corners, which collapses leave behind as flaps on an edge.
 void removeFlaps(std::vector<Triangle3>& triangles) {
-  std::vector<std::pair<Triangle3, std::size_t>> sorted;
-  sorted.reserve(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    Triangle3 corners = triangles[t];
+  std::map<Triangle3, int> counts;
+  const auto count = [&](Triangle3 corners) -> int& {
     std::sort(corners.begin(), corners.end());
-    sorted.emplace_back(corners, t);
-  }
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<bool> isFlap(triangles.size(), false);
-  for (std::size_t i = 1; i < sorted.size(); ++i)
-    if (sorted[i].first == sorted[i - 1].first) isFlap[sorted[i].second] = isFlap[sorted[i - 1].second] = true;
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    if (!isFlap[t]) triangles[kept++] = triangles[t];
-  triangles.resize(kept);
+    return counts[corners];
+  };
+  for (const Triangle3& t : triangles) ++count(t);
+  std::erase_if(triangles, [&](const Triangle3& t) { return count(t) > 1; });
 }
 
 /// Removes fins: double sheets, flattened spikes, which collapses leave behind on an edge that four triangles share.
 void removeFins(TriangleMesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> trianglesAt;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+  std::map<std::uint64_t, std::vector<std::uint32_t>> trianglesAt;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i)
-      trianglesAt[std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])].push_back(t);
-  }
+      trianglesAt[edgeKey(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])].push_back(t);
   std::vector<std::uint32_t> sizes(mesh.triangles.size(), 0);
   DisjointSets pieces(mesh.triangles.size());
   for (const auto& [edge, triangles] : trianglesAt)
@@ -187,18 +164,16 @@ bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Pr
   for (const auto& loop : boundaryLoops(mesh)) lockLoop(mesh, loop, tolerance, arrays.locks);
   arrays.positions.reserve(3 * mesh.positions.size());
   const Vec3 origin = originFor(mesh);
-  for (const Vec3& p : mesh.positions)
-    for (const double x : {p.x - origin.x, p.y - origin.y, p.z - origin.z})
-      arrays.positions.push_back(static_cast<float>(x));
+  for (const Vec3& p : mesh.positions) append(arrays.positions, p - origin);
   std::vector<unsigned> indices;
   indices.reserve(3 * mesh.triangles.size());
   for (const Triangle3& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
 
   // In steps, to be able to stop in between. The last one is left enough to choose from.
-  const auto all = static_cast<float>(indices.size());
+  const std::size_t all = indices.size();
   const std::size_t lastStep = std::max(kLastStepIndices, std::size_t{6} * triangles);
   while (indices.size() > lastStep) {
-    if (progress && !progress(1 - static_cast<float>(indices.size()) / all, "simplify")) return false;
+    if (!report(progress, all - indices.size(), all, "simplify")) return false;
     std::vector<unsigned> fewer = arrays.simplified(indices, std::max(indices.size() / 9 * 3, lastStep));
     const bool isStuck = fewer.size() == indices.size();
     indices.swap(fewer);
@@ -213,7 +188,7 @@ bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Pr
   out = subset(simple, std::vector<bool>(simple.triangles.size(), true));
   removeFins(out);
   separateJoinedEdges(out);
-  return !progress || progress(1, "simplify");
+  return report(progress, 1, "simplify");
 }
 
 }  // namespace cagecast::cages

@@ -1,7 +1,7 @@
-#include "make/wrap.hpp"
+#include "make/steps.hpp"
 
-#include "landmarks/frame.hpp"
 #include "mesh/progress.hpp"
+#include "mesh/samples.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -23,7 +23,7 @@ double lostShare(const TriangleMesh& mesh, const std::vector<bool>& isMarked, co
                  const TriangleMesh& hull) {
   std::vector<bool> isPainted = isMarked;
   isPainted.flip();
-  const std::vector<Vec3> points = samplePoints(subset(mesh, isPainted), kLookedFor);
+  const std::vector<Vec3> points = spreadPoints(subset(mesh, isPainted), kLookedFor);
   const double rounding = diagonalOf(mesh) / options.voxels;
   std::size_t lost = 0, kept = 0;
   for (const SurfacePoint& point : Surface(hull).closest(points)) {
@@ -37,27 +37,24 @@ double lostShare(const TriangleMesh& mesh, const std::vector<bool>& isMarked, co
 
 }  // namespace
 
-Outcome wrap(const TriangleMesh& mesh, const std::vector<bool>& isMarked, const WrapOptions& options,
-             const Progress& progress, TriangleMesh& out) {
+Status wrap(const TriangleMesh& mesh, const std::vector<bool>& isMarked, const WrapOptions& options,
+            const Progress& progress, TriangleMesh& out) {
   double share = 1;  // Of the volume: less than 1 if there are pieces.
-  if (!makeHull(mesh, options.hull, progress, out, &share)) return cancelled();
-  if (out.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
+  if (!makeHull(mesh, options.hull, progress, out, &share)) return kAborted;
+  if (out.empty()) return {Code::noVolume, Argument::model};
   if (share == 1) return {};
   const double lost = lostShare(mesh, isMarked, options.hull, out);
   if (lost > kLostAtBest && options.mayWiden) {
     HullOptions wider = options.hull;
     wider.closing *= kWider;
     TriangleMesh hull;
-    if (!makeHull(mesh, wider, progress, hull)) return cancelled();
+    if (!makeHull(mesh, wider, progress, hull)) return kAborted;
     if (!hull.empty() && lostShare(mesh, isMarked, wider, hull) <= kLostAtBest) {
       out = std::move(hull);
       return {};
     }
   }
-  if (lost <= kLostAtMost) return {};
-  return {Problem::badModel,
-          "model is in pieces that lie too far apart for one cage: make one for each, leave out some, or bridge wider "
-          "gaps"};
+  return lost <= kLostAtMost ? Status{} : Status{Code::inPieces, Argument::model};
 }
 
 }  // namespace cagecast::cages

@@ -21,12 +21,31 @@ struct Bounds {
   [[nodiscard]] Vec3 size() const { return empty() ? Vec3{0, 0, 0} : high - low; }
   [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
   [[nodiscard]] double diagonal() const { return length(size()); }
+  /// How far another box is from this one; 0 if they meet.
+  [[nodiscard]] double distance(const Bounds& other) const {
+    const Vec3 below = low - other.high, above = other.low - high;
+    return length(
+        Vec3{std::max({below.x, above.x, 0.0}), std::max({below.y, above.y, 0.0}), std::max({below.z, above.z, 0.0})});
+  }
   /// How far a point is from the box; 0 inside.
-  [[nodiscard]] double distance(const Vec3& p) const {
-    const auto outside = [](double x, double from, double to) { return std::max({from - x, x - to, 0.0}); };
-    return length(Vec3{outside(p.x, low.x, high.x), outside(p.y, low.y, high.y), outside(p.z, low.z, high.z)});
+  [[nodiscard]] double distance(const Vec3& p) const { return distance(Bounds{p, p}); }
+};
+
+/// How far numbers reach; empty until one is added.
+struct Range {
+  double low = Bounds::kFar, high = -Bounds::kFar;
+  void add(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
   }
 };
+
+/// How far points reach along a direction.
+inline Range rangeOf(std::span<const Vec3> points, const Vec3& direction) {
+  Range out;
+  for (const Vec3& p : points) out.add(dot(p, direction));
+  return out;
+}
 
 /// The box of some of a mesh's vertices.
 inline Bounds boundsOf(const TriangleMesh& mesh, std::span<const std::uint32_t> vertices) {

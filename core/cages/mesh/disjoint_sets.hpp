@@ -19,6 +19,14 @@ class DisjointSets {
   [[nodiscard]] std::uint32_t find(std::uint32_t i) { return sets_.find(i); }
   void join(std::uint32_t a, std::uint32_t b) { sets_.join(a, b); }
 
+  /// The number of each member's set; sets are numbered in the order of their first members.
+  std::vector<std::uint32_t> numbers(std::uint32_t& count) {
+    std::vector<std::uint32_t> out(parents_.size());
+    count = 0;
+    for (std::uint32_t i = 0; i < out.size(); ++i) out[i] = find(i) == i ? count++ : out[find(i)];
+    return out;
+  }
+
  private:
   std::vector<std::uint32_t> parents_;
   UnionFind sets_;

@@ -24,4 +24,7 @@ class Neighbours {
   std::vector<std::uint32_t> ends_;  ///< 1 per vertex: where its neighbours end in the list.
 };
 
+/// Marks all vertices that are at most so many edges away from a marked one.
+void grow(const Neighbours& neighbours, std::vector<bool>& marks, int edges = 1);
+
 }  // namespace cagecast::cages

@@ -76,10 +76,7 @@ Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
   trees.units.sceneSize = static_cast<float>(8 * trees.units.diagonal);
   std::vector<float> positions;
   positions.reserve(3 * mesh.positions.size());
-  for (const Vec3& p : mesh.positions) {
-    const Vec3 q = trees.scaled(p);
-    for (const double x : {q.x, q.y, q.z}) positions.push_back(static_cast<float>(x));
-  }
+  for (const Vec3& p : mesh.positions) append(positions, trees.scaled(p));
   std::vector<std::uint32_t> indices;
   indices.reserve(3 * mesh.triangles.size());
   const std::vector<bool> isNeedle = needlesIn(mesh, diagonal);
@@ -87,9 +84,7 @@ Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
     // A needle becomes a point, which is left out: its neighbours are as near.
     for (const std::uint32_t v : mesh.triangles[i]) indices.push_back(isNeedle[i] ? mesh.triangles[i][0] : v);
   }
-  double doubledArea = 0;
-  for (const Triangle3& t : mesh.triangles) doubledArea += length(areaNormal(mesh, t));
-  const double perTriangle = doubledArea / static_cast<double>(mesh.triangles.size());
+  const double perTriangle = 2 * areaOf(mesh) / static_cast<double>(mesh.triangles.size());
   trees.edge = static_cast<double>(trees.units.scale) * std::sqrt(perTriangle);
   const std::vector<float> uvs(2 * mesh.positions.size(), 0.0f);
   Units identity = trees.units;

@@ -28,6 +28,17 @@ void dropUnused(TriangleMesh& mesh) {
     for (std::uint32_t& v : t) v = newVertex[v];
 }
 
+/// The number of a vertex in another mesh, which gets it if it does not have it yet.
+/// @param[in,out] newVertex  Per vertex of `from`; `kNone` for those that are not in `to`.
+std::uint32_t keepVertex(const TriangleMesh& from, std::uint32_t vertex, std::vector<std::uint32_t>& newVertex,
+                         TriangleMesh& to) {
+  if (newVertex[vertex] == kNone) {
+    newVertex[vertex] = static_cast<std::uint32_t>(to.positions.size());
+    to.positions.push_back(from.positions[vertex]);
+  }
+  return newVertex[vertex];
+}
+
 }  // namespace
 
 TriangleMesh weldExactly(const MeshView& mesh, std::vector<std::uint32_t>* vertexOf,
@@ -73,41 +84,69 @@ TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTrian
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!keepTriangle[t]) continue;
     Triangle3 triangle = mesh.triangles[t];
-    for (std::uint32_t& v : triangle) {
-      if (newVertex[v] == kNone) {
-        newVertex[v] = static_cast<std::uint32_t>(out.positions.size());
-        out.positions.push_back(mesh.positions[v]);
-      }
-      v = newVertex[v];
-    }
+    for (std::uint32_t& v : triangle) v = keepVertex(mesh, v, newVertex, out);
     out.triangles.push_back(triangle);
   }
   return out;
 }
 
 std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32_t& count) {
-  DisjointSets sets(mesh.positions.size());
-  for (const Triangle3& t : mesh.triangles) {
-    sets.join(t[0], t[1]);
-    sets.join(t[0], t[2]);
+  DisjointSets sets(mesh.triangles.size());
+  std::vector<std::uint32_t> firstAt(mesh.positions.size(), kNone);  // The first triangle at each vertex.
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      if (firstAt[v] == kNone) firstAt[v] = t;
+      sets.join(t, firstAt[v]);
+    }
+  return sets.numbers(count);
+}
+
+std::vector<TriangleMesh> split(const TriangleMesh& mesh, const std::vector<std::uint32_t>& pieces,
+                                std::uint32_t count) {
+  std::vector<TriangleMesh> out(count);
+  std::vector<std::uint32_t> newVertex(mesh.positions.size(), kNone);  // A vertex is in one piece.
+  for (std::size_t t = 0; t < pieces.size(); ++t) {
+    if (pieces[t] == kNone) continue;
+    TriangleMesh& piece = out[pieces[t]];
+    Triangle3 triangle = mesh.triangles[t];
+    for (std::uint32_t& v : triangle) v = keepVertex(mesh, v, newVertex, piece);
+    piece.triangles.push_back(triangle);
   }
-  std::vector<std::uint32_t> numbers(mesh.positions.size(), kNone), pieces;
-  pieces.reserve(mesh.triangles.size());
-  count = 0;
-  for (const Triangle3& t : mesh.triangles) {
-    std::uint32_t& number = numbers[sets.find(t[0])];
-    if (number == kNone) number = count++;
-    pieces.push_back(number);
-  }
-  return pieces;
+  return out;
+}
+
+double areaOf(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const Triangle3& t : mesh.triangles) area += areaOf(mesh, t);
+  return area;
 }
 
 double diagonalOf(const TriangleMesh& mesh) { return boundsOf(mesh).diagonal(); }
 
+double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 edge = b - a;
+  const double square = dot(edge, edge);
+  const double share = square > 0 ? std::clamp(dot(p - a, edge) / square, 0.0, 1.0) : 0;
+  return length(p - (a + share * edge));
+}
+
+double medianOf(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Vec3 meanOf(std::span<const Vec3> points) {
+  Vec3 sum{0, 0, 0};
+  for (const Vec3& p : points) sum = sum + p;
+  return 1 / static_cast<double>(points.size()) * sum;
+}
+
 Vec3 middleOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& vertices) {
-  Vec3 middle{0, 0, 0};
-  for (const std::uint32_t v : vertices) middle = middle + 1 / static_cast<double>(vertices.size()) * mesh.positions[v];
-  return middle;
+  Vec3 sum{0, 0, 0};
+  for (const std::uint32_t v : vertices) sum = sum + mesh.positions[v];
+  return 1 / static_cast<double>(vertices.size()) * sum;
 }
 
 std::vector<Vec3> vertexNormals(const TriangleMesh& mesh) {

@@ -1,16 +1,16 @@
-#include "refine/bend.hpp"
+#include "refine/steps.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "mesh/progress.hpp"
+#include "mesh/thin_plate.hpp"
 
 namespace cagecast::cages {
 
 namespace {
-
-using SparseMatrix = Eigen::SparseMatrix<double>;
-using Triplet = Eigen::Triplet<double>;
 
 constexpr int kBendSteps = 12;
 /// Factor by which a step shrinks the robust scale: faster, as the cage lies about right already.
@@ -28,107 +28,52 @@ constexpr double kMaxCotangent = 5;
 /// Cells around vertices count as at least this share of the mean one, for the same reason.
 constexpr double kMinCell = 0.1;
 
-/// The first of a vertex's three rows. Eigen's sparse matrices count by int.
-int row(std::uint32_t vertex) { return 3 * static_cast<int>(vertex); }
-
-double areaOf(const TriangleMesh& mesh) {
-  double area = 0;
-  for (const Triangle3& t : mesh.triangles) area += 0.5 * length(areaNormal(mesh, t));
-  return area;
-}
-
 /// Bending energy per coordinate: the square of the Laplacian by cotangents, integrated over the mesh.
-SparseMatrix bendingOf(const TriangleMesh& mesh) {
-  const auto count = static_cast<Eigen::Index>(mesh.positions.size());
-  std::vector<Triplet> entries;
-  Eigen::VectorXd cells = Eigen::VectorXd::Zero(count);
+std::vector<SparseEntry> bendingOf(const TriangleMesh& mesh) {
+  std::vector<SparseEntry> laplacian;
+  std::vector<double> cells(mesh.positions.size(), 0);
+  double whole = 0;
   for (const Triangle3& t : mesh.triangles) {
     const double twiceArea = length(areaNormal(mesh, t));
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t apex = t[i], from = t[(i + 1) % 3], to = t[(i + 2) % 3];
+      const std::uint32_t apex = t[i], a = t[(i + 1) % 3], b = t[(i + 2) % 3];
       const double cotangent =
-          dot(mesh.positions[from] - mesh.positions[apex], mesh.positions[to] - mesh.positions[apex]) / twiceArea;
+          dot(mesh.positions[a] - mesh.positions[apex], mesh.positions[b] - mesh.positions[apex]) / twiceArea;
       const double weight = 0.5 * std::clamp(cotangent, -kMaxCotangent, kMaxCotangent);
-      const auto a = static_cast<int>(from), b = static_cast<int>(to);
-      entries.insert(entries.end(), {{a, b, -weight}, {b, a, -weight}, {a, a, weight}, {b, b, weight}});
-      cells(static_cast<Eigen::Index>(apex)) += twiceArea / 6;
+      laplacian.insert(laplacian.end(), {{a, b, -weight}, {b, a, -weight}, {a, a, weight}, {b, b, weight}});
+      cells[apex] += twiceArea / 6;
     }
+    whole += twiceArea / 2;
   }
-  SparseMatrix laplacian(count, count);
-  laplacian.setFromTriplets(entries.begin(), entries.end());
-  const double least = kMinCell * cells.sum() / static_cast<double>(count);
-  const Eigen::VectorXd inverse = cells.cwiseMax(least).cwiseInverse();
-  return laplacian.transpose() * inverse.asDiagonal() * laplacian;
-}
-
-/// What holds against the gaps: three rows per vertex.
-SparseMatrix stiffnessOf(const TriangleMesh& cage, double diagonal) {
-  const auto count = static_cast<Eigen::Index>(cage.positions.size());
-  const SparseMatrix bending = bendingOf(cage);
-  const double length = kWave * diagonal / (2 * std::numbers::pi);  // For waves of this length, both sides are equal.
-  const double stiffness = std::pow(length, 4);
-  const double hold = kHold * areaOf(cage) / static_cast<double>(count);
-  std::vector<Triplet> entries;
-  for (int column = 0; column < count; ++column) {
-    for (int k = 0; k < 3; ++k) entries.emplace_back(3 * column + k, 3 * column + k, hold);
-    for (SparseMatrix::InnerIterator it(bending, column); it; ++it)
-      for (int k = 0; k < 3; ++k)
-        entries.emplace_back(3 * static_cast<int>(it.row()) + k, 3 * column + k, stiffness * it.value());
-  }
-  SparseMatrix matrix(3 * count, 3 * count);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
+  const double least = kMinCell * whole / static_cast<double>(cells.size());
+  for (double& cell : cells) cell = 1 / std::max(cell, least);
+  return squared(collapsed(std::move(laplacian)), cells);
 }
 
 class Bending {
  public:
-  Bending(const Target& target, std::span<const CageSpot> spots, const TriangleMesh& cage)
-      : spots_(spots),
-        start_(cage.positions),
-        stiffness_(stiffnessOf(cage, target.diagonal)),
-        area_(areaOf(cage)),
-        share_(area_ / static_cast<double>(spots.size())),
-        moved_(Eigen::VectorXd::Zero(stiffness_.rows())) {}
+  Bending(const Target& target, const std::vector<SurfaceSample>& spots, const TriangleMesh& cage)
+      : spots_(spots), start_(cage.positions), plate_(cage, bendingOf(cage)) {
+    const double area = areaOf(cage), perVertex = area / static_cast<double>(start_.size());
+    const double wave = kWave * target.diagonal / (2 * std::numbers::pi);  // Where bending and gaps count alike.
+    weights_ = {.bending = std::pow(wave, 4), .hold = kHold * perVertex, .damping = kDamping * perVertex};
+    share_ = area / static_cast<double>(spots.size());
+  }
 
-  /// @return The most that a coordinate moved; 0 if there is no solution.
+  /// @return The most that a vertex moved; 0 if there is no solution.
   double step(std::span<const Gap> gaps, const RobustScale& scale, double offset, TriangleMesh& cage) {
-    std::vector<Triplet> entries;
-    entries.reserve(81 * gaps.size());
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(stiffness_.rows());
+    std::vector<PlaneTerm> planes;
     for (std::size_t i = 0; i < gaps.size(); ++i) {
-      const double weight = gaps[i].facing ? share_ * scale.weight(gaps[i].size - offset) : 0;
-      const Vec3& direction = gaps[i].direction;
-      const double along[3] = {direction.x, direction.y, direction.z};
-      double factors[9];
-      int rows[9];
-      double wanted = offset - gaps[i].size;
-      for (std::size_t j = 0; j < 9; ++j) {
-        factors[j] = spots_[i].weights[j / 3] * along[j % 3];
-        rows[j] = row(cage.triangles[spots_[i].triangle][j / 3]) + static_cast<int>(j % 3);
-        wanted += factors[j] * moved_(rows[j]);
-      }
-      for (std::size_t j = 0; j < 9; ++j) {
-        right(rows[j]) += weight * factors[j] * wanted;
-        for (std::size_t k = 0; k < 9; ++k) entries.emplace_back(rows[j], rows[k], weight * factors[j] * factors[k]);
-      }
+      if (!gaps[i].facing) continue;
+      const double wanted = offset - gaps[i].size;
+      planes.push_back({cage.triangles[spots_[i].triangle], spots_[i].weights,
+                        gaps[i].spot + wanted * gaps[i].direction, gaps[i].direction, share_ * scale.weight(wanted)});
     }
-    SparseMatrix matrix(stiffness_.rows(), stiffness_.cols());
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    matrix += stiffness_;
-    const double damping = kDamping * area_ / static_cast<double>(start_.size());
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i) matrix.coeffRef(i, i) += damping;
-    right += damping * moved_;
-    if (!analysed_) solver_.analyzePattern(matrix);  // It stays: gaps without weight are entered, too.
-    analysed_ = true;
-    solver_.factorize(matrix);
-    if (solver_.info() != Eigen::Success) return 0;
-    const Eigen::VectorXd moved = solver_.solve(right);
-    if (!moved.allFinite()) return 0;
-    const double change = (moved - moved_).cwiseAbs().maxCoeff();
-    moved_ = moved;
-    for (std::uint32_t v = 0; v < start_.size(); ++v)
-      cage.positions[v] = start_[v] + Vec3{moved(row(v)), moved(row(v) + 1), moved(row(v) + 2)};
-    return change;
+    std::vector<Vec3> positions = plate_.solve(start_, planes, weights_, cage.positions);
+    double most = 0;
+    for (std::size_t v = 0; v < positions.size(); ++v) most = std::max(most, length(positions[v] - cage.positions[v]));
+    if (!positions.empty()) cage.positions = std::move(positions);
+    return most;
   }
 
   /// Moves the corners of triangles that were turned over, which are slivers, all the same way.
@@ -149,26 +94,23 @@ class Bending {
   }
 
  private:
-  std::span<const CageSpot> spots_;
+  const std::vector<SurfaceSample>& spots_;
   std::vector<Vec3> start_;
-  SparseMatrix stiffness_;
-  double area_;
-  double share_;  ///< Of the cage's area that a spot stands for.
-  Eigen::VectorXd moved_;
-  Eigen::SimplicialLDLT<SparseMatrix> solver_;
-  bool analysed_ = false;
+  ThinPlate plate_;
+  ThinPlate::Weights weights_;
+  double share_ = 0;  ///< Of the cage's area that a spot stands for.
 };
 
 }  // namespace
 
-bool bendCage(const Target& target, std::span<const CageSpot> spots, double reach, const Progress& progress,
+bool bendCage(const Target& target, const std::vector<SurfaceSample>& spots, double reach, const Progress& progress,
               TriangleMesh& cage) {
   Bending bending(target, spots, cage);
   RobustScale scale(reach * target.diagonal, target.diagonal);
   double least = INFINITY;
   std::vector<Vec3> best = cage.positions;
   for (int step = 0; step < kBendSteps; ++step) {
-    if (progress && !progress(static_cast<float>(step) / kBendSteps, "bend")) return false;
+    if (!report(progress, step / static_cast<double>(kBendSteps), "bend")) return false;
     const std::vector<Gap> gaps = measureGaps(target, cage, spots);
     const Placement placement = placementOf(target, gaps);
     scale.tighten(placement.spread, kBendTightening);

@@ -1,11 +1,7 @@
-#include "refine/gaps.hpp"
+#include "refine/steps.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-
-#include "geometry/hilbert.hpp"
-#include "mesh/bounds.hpp"
 
 namespace cagecast::cages {
 
@@ -26,70 +22,15 @@ constexpr double kSpreads = 1.5;
 /// nor below this share of the diagonal, where the cage's own coarseness begins.
 constexpr double kFinestScale = 1e-3;
 
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Triangles in the order of a Hilbert curve through their centres.
-std::vector<std::uint32_t> orderOf(const TriangleMesh& mesh) {
-  const Bounds bounds = boundsOf(mesh);
-  constexpr int kLevels = 8;
-  const double size = std::max({bounds.size().x, bounds.size().y, bounds.size().z});
-  const double cells = size > 0 ? ((1 << kLevels) - 1) / size : 0;
-  const HilbertCurve curve(kLevels);
-  std::vector<std::uint32_t> keys;
-  for (const Triangle3& t : mesh.triangles) {
-    const Vec3 p = centroid(mesh, t) - bounds.low;
-    const auto cell = [&](double x) { return static_cast<std::uint32_t>(cells * x); };
-    keys.push_back(curve.key(cell(p.x), cell(p.y), cell(p.z)));
-  }
-  std::vector<std::uint32_t> order(keys.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
-  return order;
-}
-
 }  // namespace
-
-std::vector<CageSpot> spreadSpots(const TriangleMesh& cage, std::size_t count) {
-  double total = 0;
-  for (const Triangle3& t : cage.triangles) total += length(areaNormal(cage, t));
-  // Fractions of the plastic number: successive points of a square that never crowd (Roberts, 2018).
-  constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;
-  std::vector<CageSpot> spots;
-  double due = 0, u = 0.5, v = 0.5;
-  for (const std::uint32_t t : orderOf(cage)) {
-    due += static_cast<double>(count) * length(areaNormal(cage, cage.triangles[t])) / total;
-    for (; due >= 0.5; due -= 1) {
-      u = std::fmod(u + kStepU, 1.0);
-      v = std::fmod(v + kStepV, 1.0);
-      const bool upper = u + v > 1;  // The other half of the square is folded onto the triangle.
-      const double b = upper ? 1 - u : u, c = upper ? 1 - v : v;
-      spots.push_back({t, {1 - b - c, b, c}});
-    }
-  }
-  return spots;
-}
 
 Target::Target(const TriangleMesh& mesh) : surface(mesh), diagonal(diagonalOf(mesh)) {
   normals.reserve(mesh.triangles.size());
-  for (const Triangle3& t : mesh.triangles) {
-    const Vec3 normal = areaNormal(mesh, t);
-    normals.push_back(1 / length(normal) * normal);
-  }
+  for (const Triangle3& t : mesh.triangles) normals.push_back(unit(areaNormal(mesh, t)));
 }
 
-std::vector<Gap> measureGaps(const Target& target, const TriangleMesh& cage, std::span<const CageSpot> spots) {
-  std::vector<Vec3> points;
-  points.reserve(spots.size());
-  for (const CageSpot& spot : spots) {
-    const Triangle3& t = cage.triangles[spot.triangle];
-    points.push_back(spot.weights[0] * cage.positions[t[0]] + spot.weights[1] * cage.positions[t[1]] +
-                     spot.weights[2] * cage.positions[t[2]]);
-  }
+std::vector<Gap> measureGaps(const Target& target, const TriangleMesh& cage, const std::vector<SurfaceSample>& spots) {
+  const std::vector<Vec3> points = positionsOf(cage, spots);
   const std::vector<SurfacePoint> nearest = target.surface.closest(points);
   std::vector<Gap> gaps(spots.size());
   for (std::size_t i = 0; i < spots.size(); ++i) {

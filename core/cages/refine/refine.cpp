@@ -2,14 +2,12 @@
 // model lie outside, and how well the holes fit say less: a cage that is a little too large hides any of them.
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "cagecast/cages.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/progress.hpp"
-#include "refine/align.hpp"
-#include "refine/bend.hpp"
+#include "refine/steps.hpp"
 
 namespace cagecast::cages {
 
@@ -38,33 +36,15 @@ constexpr double kMaxUneven = 0.02;
 constexpr double kBendFrom = 0.005;
 /// Vertices of the cage this close together, as a share of the diagonal, move as one: seams, and poles of balls.
 constexpr double kWeld = 1e-6;
-/// Limits of `reach`: below, no cage would move; beyond, cage and model hardly touch.
-constexpr auto kMinReach = static_cast<double>(0.001f), kMaxReach = static_cast<double>(0.2f);
-
-std::string percent(double share) {
-  const long tenths = std::lround(1000 * share);
-  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " %";
-}
-
-Outcome fault(std::string message) { return {Problem::badTemplate, std::move(message)}; }
+Status fault(Code code, double value = 0) { return {code, Argument::cage, 0, Option::none, static_cast<float>(value)}; }
 
 /// Whether a cage is anywhere near its model, so that closest points mean something.
-Outcome checkNearness(const Bounds& cage, const Bounds& model, double reach) {
-  const auto apart = [](double lowA, double highA, double lowB, double highB) {
-    return std::max({0.0, lowA - highB, lowB - highA});
-  };
-  const double gap = length(Vec3{apart(cage.low.x, cage.high.x, model.low.x, model.high.x),
-                                 apart(cage.low.y, cage.high.y, model.low.y, model.high.y),
-                                 apart(cage.low.z, cage.high.z, model.low.z, model.high.z)}) /
-                     model.diagonal();
-  if (gap > reach)
-    return fault("cage is not around the model: the distance between them is " + percent(gap) +
-                 " of the model's diagonal, more than options.reach, " + percent(reach));
+Status checkNearness(const Bounds& cage, const Bounds& model, double reach) {
+  const double gap = model.distance(cage) / model.diagonal();
+  if (gap > reach) return fault(Code::cageApart, gap);
   constexpr double kLargest = 2;
-  if (const double size = cage.diagonal() / model.diagonal(); size > kLargest)
-    return fault("cage is " + std::to_string(std::lround(size)) +
-                 " times as large as the model; give both in the same unit");
-  return {};
+  const double size = cage.diagonal() / model.diagonal();
+  return size > kLargest ? fault(Code::cageTooLarge, size) : Status{};
 }
 
 /// A copy of a mesh in which positions that are equal once rounded are one vertex.
@@ -85,7 +65,7 @@ struct Candidate {
 class Refinement {
  public:
   Refinement(const TriangleMesh& cage, const TriangleMesh& model, double reach, const Progress& progress)
-      : target_(model), spots_(spreadSpots(cage, kSpots)), reach_(reach), progress_(progress) {
+      : target_(model), spots_(spreadSamples(cage, kSpots)), reach_(reach), progress_(progress) {
     given_ = {cage, placementOf(target_, measureGaps(target_, cage, spots_))};
   }
 
@@ -106,24 +86,17 @@ class Refinement {
                           kWorthwhile * best_.placement.spread < given_.placement.spread;
     stays_ = !isBetter || sinks(best_, given_) || moved() < kMinMove * target_.diagonal;
     if (stays_) best_ = given_;
-    return !progress_ || progress_(1, "bend");
+    return report(progress_, 1, "bend");
   }
 
   /// Whether what came out is a cage of this model at all.
-  [[nodiscard]] Outcome judge() const {
+  [[nodiscard]] Status judge() const {
     const Placement& placement = best_.placement;
-    if (placement.facing < kMinFacing)
-      return fault("cage does not belong to the model: only " + percent(placement.facing) +
-                   " of it faces the same way as the model beneath it");
-    if (placement.unevenness > kMaxUneven * target_.diagonal)
-      return fault("cage does not belong to the model: its distances from it differ by " +
-                   percent(placement.unevenness / target_.diagonal) + " of the diagonal on the mean");
-    if (placement.sunk > kMaxSunk)
-      return fault("cage cannot be brought into place: " + percent(placement.sunk) +
-                   " of it would still be inside the model");
-    if (const double far = moved() / target_.diagonal; far > reach_)
-      return fault("cage is off by " + percent(far) + " of the model's diagonal, more than options.reach, " +
-                   percent(reach_) + "; move it closer, or raise that");
+    if (placement.facing < kMinFacing) return fault(Code::cageFacesAway, placement.facing);
+    const double uneven = placement.unevenness / target_.diagonal, far = moved() / target_.diagonal;
+    if (uneven > kMaxUneven) return fault(Code::cageUneven, uneven);
+    if (placement.sunk > kMaxSunk) return fault(Code::cageInside, placement.sunk);
+    if (far > reach_) return fault(Code::cageOff, far);
     return {};
   }
 
@@ -179,44 +152,44 @@ class Refinement {
   }
 
   Target target_;
-  std::vector<CageSpot> spots_;
+  std::vector<SurfaceSample> spots_;
   double reach_;
   const Progress& progress_;
   Candidate given_, best_;
   bool stays_ = true;
 };
 
-}  // namespace
-
-Outcome refineCage(const MeshView& cage, const Model& model, const RefineOptions& options, const Progress& progress,
-                   Cage& out) {
-  if (Outcome outcome = checkMesh(cage, "cage", Problem::badTemplate); !outcome.ok()) return outcome;
-  if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
-  if (Outcome outcome = checkOption("reach", static_cast<double>(options.reach), kMinReach, kMaxReach); !outcome.ok())
-    return outcome;
+Status refine(const MeshView& cage, const Model& model, const RefineOptions& options, const Progress& progress,
+              Cage& out) {
+  if (const Status status = checkMesh(cage, Argument::cage); !status.ok()) return status;
+  if (const Status status = checkModel(model); !status.ok()) return status;
+  if (const Status status = checkOption(Option::reach, options.reach); !status.ok()) return status;
   const TriangleMesh target = weldExactly(model.mesh);
   std::vector<std::uint32_t> vertexOf;
   const TriangleMesh welded = weldNearly(cage, kWeld * diagonalOf(target), vertexOf);
-  if (welded.empty()) return fault("cage has no triangle that is large enough beside the model");
+  if (welded.empty()) return fault(Code::vanishingCage);
   const double reach = static_cast<double>(options.reach);
-  if (Outcome outcome = checkNearness(boundsOf(welded), boundsOf(target), reach); !outcome.ok()) return outcome;
-  if (progress && !progress(0, "align")) return cancelled();
+  if (const Status status = checkNearness(boundsOf(welded), boundsOf(target), reach); !status.ok()) return status;
+  if (!report(progress, 0, "align")) return kAborted;
   Refinement refinement(welded, target, reach, progress);
-  if (!refinement.run()) return cancelled();
-  if (Outcome outcome = refinement.judge(); !outcome.ok()) return outcome;
+  if (!refinement.run()) return kAborted;
+  if (const Status status = refinement.judge(); !status.ok()) return status;
   Cage refined;  // `out` may own the cage.
-  refined.positions.assign(cage.positions.begin(), cage.positions.end());
   refined.uvs.assign(cage.uvs.begin(), cage.uvs.end());
   refined.indices.assign(cage.indices.begin(), cage.indices.end());
-  for (std::size_t v = 0; v < vertexOf.size() && !refinement.stays(); ++v) {
-    const Vec3 p =
-        Vec3::from(&cage.positions[3 * v]) + refinement.cage().positions[vertexOf[v]] - welded.positions[vertexOf[v]];
-    refined.positions[3 * v] = static_cast<float>(p.x);
-    refined.positions[3 * v + 1] = static_cast<float>(p.y);
-    refined.positions[3 * v + 2] = static_cast<float>(p.z);
-  }
+  if (refinement.stays()) refined.positions.assign(cage.positions.begin(), cage.positions.end());
+  for (std::size_t v = 0; v < vertexOf.size() && !refinement.stays(); ++v)
+    append(refined.positions, Vec3::from(&cage.positions[3 * v]) + refinement.cage().positions[vertexOf[v]] -
+                                  welded.positions[vertexOf[v]]);
   out = std::move(refined);
   return {};
+}
+
+}  // namespace
+
+Status refineCage(const MeshView& cage, const Model& model, const RefineOptions& options, const Progress& progress,
+                  Cage& out) {
+  return guarded([&] { return refine(cage, model, options, progress, out); });
 }
 
 }  // namespace cagecast::cages

@@ -8,11 +8,16 @@
 #include <vector>
 
 #include "cagecast/mesh.hpp"
+#include "cagecast/status.hpp"
 
 /// Cages for models that have none: made afresh for one model, fitted from a template, or moved into place.
 ///
 /// A library of its own (`cagecast::cages`), and a WebAssembly module of its own, because it needs Eigen and
 /// meshoptimizer and takes seconds instead of milliseconds. Single-threaded and deterministic.
+///
+/// Functions return a `Status`, as those of the core do. Unless it is ok, nothing in their output is valid. Names and
+/// lists of names need strings and vectors, so these are used throughout, and not `Array`; where memory runs out, the
+/// status is `outOfMemory`, if the library is compiled with exceptions, which it catches itself.
 namespace cagecast::cages {
 
 using Position = std::array<float, 3>;  ///< x, y, z in the space of the model.
@@ -82,25 +87,8 @@ struct RefineOptions {
 
 /// Reports how far a call is, as a share 0..1, and what it does ("hull", "unwrap"). Called many times a
 /// second; on a model of a million triangles or on the finest grid, seconds may pass between two calls. Return false to
-/// cancel.
+/// cancel: the status is `aborted` then. What it throws, the call throws.
 using Progress = std::function<bool(float share, const char* stage)>;
-
-enum class Problem : std::uint8_t {
-  none,
-  badModel,      ///< Empty, not finite, out of range, too large, no closed surface, several figures.
-  badTemplate,   ///< The template cage or the model that it belongs to.
-  badLandmarks,  ///< Contradicting, unknown, too few, or not on the model.
-  badOptions,
-  cancelled,
-  outOfMemory,  ///< Of the bindings alone: copies of the arguments do not fit. The library throws `std::bad_alloc`.
-};
-
-/// How a call ended. Unless `ok()`, nothing in its output is valid.
-struct [[nodiscard]] Outcome {
-  Problem problem = Problem::none;
-  std::string message;  ///< One sentence that names the argument, the element, its value and the limit.
-  [[nodiscard]] bool ok() const noexcept { return problem == Problem::none; }
-};
 
 /// What was found on a model.
 struct FoundLandmarks {
@@ -111,10 +99,10 @@ struct FoundLandmarks {
 };
 
 /// Finds the landmarks of a head or a figure by part names, joint names and shape.
-Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmarks& out);
+Status findLandmarks(const Model& model, const Progress& progress, FoundLandmarks& out);
 
 /// Makes a cage for a model: a hull around it, with holes over the parts that are not painted, unwrapped.
-Outcome makeCage(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out);
+Status makeCage(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out);
 
 /// A cage that was made for one model and is to be fitted to others.
 struct Template {
@@ -125,20 +113,31 @@ struct Template {
 
 /// A fitted cage; its landmarks are those that the fit used.
 struct FittedCage : Cage {
-  std::vector<std::string> missing;  ///< Landmarks of the template that are not known on the model: ask for these.
+  /// Landmarks of the template that are not known on the model: ask for these. Valid with `tooFewLandmarks`, too.
+  std::vector<std::string> missing;
 };
 
 /// Moves a template cage onto another model; triangles, UVs and holes stay.
-Outcome fitCage(const Template& from, const Model& model, const FitOptions& options, const Progress& progress,
-                FittedCage& out);
+Status fitCage(const Template& from, const Model& model, const FitOptions& options, const Progress& progress,
+               FittedCage& out);
 
 /// Moves, turns and scales a cage that is slightly off its model into place, and bends it where it is inside the model.
 /// In place means that its distance from the model is as even as it can be; holes and part names are not looked at.
 /// A cage in place stays as it is, to the bit. UVs, triangles and their order stay in any case, and so do landmarks,
 /// which belong to the model: `out.landmarks` is empty.
-/// @return badTemplate if the cage is farther off than `reach`, cannot be brought into place, or is of another model.
+/// @return An error if the cage is farther off than `reach`, cannot be brought into place, or is of another model.
 /// Cost: 0.1 to 0.5 s for cages of 600 to 1500 triangles.
-Outcome refineCage(const MeshView& cage, const Model& model, const RefineOptions& options, const Progress& progress,
-                   Cage& out);
+Status refineCage(const MeshView& cage, const Model& model, const RefineOptions& options, const Progress& progress,
+                  Cage& out);
+
+/// One sentence for people about a status of `makeCage` or `findLandmarks`: it names the argument, the element, its
+/// value and the limit. All but the status is what the call was given.
+std::string describe(const Status& status, const Model& model);
+/// The same of `fitCage`.
+/// @param missing  What it left in `out`.
+std::string describe(const Status& status, const Template& from, const Model& model, const FitOptions& options,
+                     const std::vector<std::string>& missing);
+/// The same of `refineCage`.
+std::string describe(const Status& status, const MeshView& cage, const Model& model, const RefineOptions& options);
 
 }  // namespace cagecast::cages

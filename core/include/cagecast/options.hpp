@@ -88,6 +88,13 @@ enum class Option : std::uint8_t {
 #include "cagecast/options.def"
   segmentLocks,
   groupLocks,
+  // Of cages.hpp:
+  kind,
+  triangles,
+  closing,
+  offset,
+  voxels,
+  reach,
 };
 
 }  // namespace cagecast

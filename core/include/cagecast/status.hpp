@@ -11,11 +11,20 @@ namespace cagecast {
 /// What went wrong; `ok` if nothing did. codes.def says what each code means.
 enum class Code : std::uint8_t {
 #define CAGECAST_CODE(name, text, sentence) name,
+#define CAGECAST_CAGES_CODE(name, text, sentence) name,
 #include "cagecast/codes.def"
 };
 
 /// Which argument of a call is at fault.
-enum class Argument : std::uint8_t { none, cage, target, options };
+enum class Argument : std::uint8_t {
+  none,
+  cage,
+  target,
+  options,
+  model,  ///< This and the others: of cages.hpp.
+  from,   ///< A template.
+  landmarks,
+};
 
 /// How a call ended: an error as a value. Unless `ok()`, nothing in the output of the call is valid.
 struct [[nodiscard]] Status {
@@ -24,13 +33,14 @@ struct [[nodiscard]] Status {
   std::uint32_t at = 0;                ///< The element at fault, or a count: codes.def says which; else 0.
   Option option = Option::none;        ///< With an argument `options`: the option at fault.
   float value = 0;                     ///< The value that was given for it; for a choice, its number.
+                                       ///< With another argument: codes.def says what, if anything.
   [[nodiscard]] constexpr bool ok() const noexcept { return code == Code::ok; }
 };
 
 /// The name of a code as it is spelled in codes.def ("indexOutOfRange"): stable, for programs.
 const char* codeName(Code code) noexcept;
 
-/// The name of an argument: "cage", "target", "options"; empty if there is none.
+/// The name of an argument: "cage", "target", "options", "model", "template", "landmarks"; empty if there is none.
 const char* argumentName(Argument argument) noexcept;
 
 /// The name of an option as users write it after `options.`: "threshold", "steps.floor", "locks.groups".

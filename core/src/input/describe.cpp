@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "cagecast/status.hpp"
+#include "input/fill_in.hpp"
 #include "input/option_list.hpp"
 
 namespace cagecast {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr const char* kCodeNames[] = {
 #define CAGECAST_CODE(name, text, sentence) #name,
+#define CAGECAST_CAGES_CODE(name, text, sentence) #name,
 #include "cagecast/codes.def"
 };
 
@@ -83,7 +85,7 @@ std::string equals(std::span<const Number> values, std::size_t at) {
 /// What a name in braces stands for in a sentence.
 std::string valueOf(std::string_view name, const Status& status, const MeshView& mesh) {
   const auto vertices = mesh.positions.size() / 3;
-  if (name == "mesh") return status.argument == Argument::cage ? "cage" : "target";
+  if (name == "mesh") return argumentName(status.argument);
   if (name == "value") return spelled(status.value);
   if (name == "at") return std::to_string(status.at);
   if (name == "missing") return mesh.positions.empty() ? "vertices" : "triangles";
@@ -123,6 +125,9 @@ const char* argumentName(Argument argument) noexcept {
     case Argument::cage: return "cage";
     case Argument::target: return "target";
     case Argument::options: return "options";
+    case Argument::model: return "model";
+    case Argument::from: return "template";
+    case Argument::landmarks: return "landmarks";
     default: return "";
   }
 }
@@ -130,16 +135,7 @@ const char* argumentName(Argument argument) noexcept {
 std::string describe(const Status& status, const MeshView& cage, const MeshView& target) {
   if (status.code == Code::badOption) return describeOption(status);
   const MeshView& mesh = status.argument == Argument::cage ? cage : target;
-  std::string out;
-  std::string_view rest = sentenceOf(status, mesh);
-  for (auto open = rest.find('{'); open != std::string_view::npos; open = rest.find('{')) {
-    const auto close = rest.find('}');
-    out.append(rest.substr(0, open));
-    out.append(valueOf(rest.substr(open + 1, close - open - 1), status, mesh));
-    rest.remove_prefix(close + 1);
-  }
-  out.append(rest);
-  return out;
+  return fillIn(sentenceOf(status, mesh), [&](std::string_view name) { return valueOf(name, status, mesh); });
 }
 
 }  // namespace cagecast

@@ -134,6 +134,11 @@ std::size_t firstTooLarge(std::span<const float> positions, double limit) {
 
 }  // namespace
 
+Status checkArrays(const MeshView& mesh, Argument argument) noexcept {
+  Box box;
+  return checkMesh(mesh, argument, box);
+}
+
 Status checkProjection(const ProjectionView& projection, std::span<const std::uint32_t> indices) noexcept {
   const auto fault = [](Code code, std::size_t at) {
     return Status{code, Argument::target, static_cast<std::uint32_t>(at)};

@@ -11,6 +11,10 @@
 
 namespace cagecast {
 
+/// Checks a mesh by itself: its sizes, that numbers are finite, and indices.
+/// @param argument  What to blame. A cage must have UVs.
+Status checkArrays(const MeshView& mesh, Argument argument) noexcept;
+
 /// Checks the meshes of a call. (What is found only later: a cage without any area, a `weldTolerance` that is too large
 /// for the target.)
 /// @param[out] units  Valid if the status is ok.

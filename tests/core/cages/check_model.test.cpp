@@ -3,98 +3,103 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+
+#include "mesh/limits.hpp"
+#include "shapes.hpp"
 
 using namespace cagecast;
 using namespace cagecast::cages;
 
 namespace {
 
-struct Arrays {
-  std::vector<float> positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  std::vector<std::uint32_t> indices = {0, 1, 2};
-  std::vector<std::uint32_t> groups = {};
-  std::vector<float> uvs = {};
-
-  [[nodiscard]] Model model() const {
-    Model out;
-    out.mesh = {positions, indices, uvs, groups};
-    return out;
-  }
-  [[nodiscard]] std::string fault() const {
-    const Outcome outcome = checkModel(model());
-    CHECK((outcome.problem == Problem::badModel) != outcome.ok());
-    return outcome.message;
-  }
-};
+OwnedModel triangle() {
+  OwnedModel out;
+  out.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  out.indices = {0, 1, 2};
+  return out;
+}
 
 }  // namespace
 
+// What any mesh has to be is tested with the core (errors.test.cpp): one of each kind will do.
 TEST_CASE("whatever is wrong with a model is said in a sentence", "[cages][check]") {
-  Arrays arrays;
-  CHECK(arrays.fault().empty());
-  const Arrays good = arrays;
-  arrays.positions.clear();
-  CHECK(arrays.fault() == "model has no vertices");
-  arrays = good;
-  arrays.indices.clear();
-  CHECK(arrays.fault() == "model has no triangles");
-  arrays = good;
-  arrays.positions.pop_back();
-  CHECK(arrays.fault() == "model.positions has 8 numbers, not three per vertex");
-  arrays = good;
-  arrays.indices.push_back(0);
-  CHECK(arrays.fault() == "model.indices has 4 numbers, not three per triangle");
-  arrays = good;
-  arrays.indices[1] = 3;
-  CHECK(arrays.fault() == "model.indices[1] = 3, but there are 3 vertices");
-  for (const float x : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    arrays = good;
-    arrays.positions[4] = x;
-    CHECK(arrays.fault() == "model.positions[4] is not a finite number");
+  struct Fault {
+    std::string says;
+    Code code;
+    std::function<void(OwnedModel&)> make;
+  };
+  const auto scaled = [](float scale) {
+    return [=](OwnedModel& m) {
+      for (float& x : m.positions) x *= scale;
+    };
+  };
+  const std::string far =
+      " is too far from the origin: farther than a million times the size of the mesh, or than 4.2e37";
+  const Fault faults[] = {
+      {"model has no vertices; at least one is needed", Code::emptyMesh, [](auto& m) { m.positions.clear(); }},
+      {"model.positions has 8 numbers, not 3 per vertex", Code::positionsNotTriples,
+       [](auto& m) { m.positions.pop_back(); }},
+      {"model.indices[1] = 3 is out of range (3 vertices)", Code::indexOutOfRange, [](auto& m) { m.indices[1] = 3; }},
+      {"model.positions[4] = NaN is not a finite number", Code::nonFinitePosition,
+       [](auto& m) { m.positions[4] = NAN; }},
+      {"model.uvs[2] = Infinity is not a finite number", Code::nonFiniteUv,
+       [](auto& m) { m.uvs = {0, 0, INFINITY, 0, 0, 0}; }},
+      {"model.groups has 2 entries, not 1 for each of 3 vertices", Code::groupCountMismatch,
+       [](auto& m) {
+         m.groups = {0, 0};
+       }},
+      {"model has no triangle with an area", Code::flatMesh, [](auto& m) { m.positions[7] = 0; }},
+      {"model.positions[2]" + far, Code::tooFar,
+       [](auto& m) { m.positions[2] = m.positions[5] = m.positions[8] = 1e7f; }},
+      {"model.positions[3]" + far, Code::tooFar, scaled(6e37f)},
+      {"model is smaller than 1e-37 across", Code::tooSmall, scaled(1e-38f)},
+      {"model has 2000001 triangles and 3 vertices, at most 2000000 and 6000000 are allowed; simplify it first",
+       Code::tooDetailed, [](auto& m) { m.indices.resize(3 * (kMaxModelTriangles + 1), 0); }},
+      {"model has 1 triangles and 6000001 vertices, at most 2000000 and 6000000 are allowed; simplify it first",
+       Code::tooDetailed, [](auto& m) { m.positions.resize(3 * (kMaxModelVertices + 1), 0); }},
+      {"model.groups[1] = 1, but there are 1 parts", Code::partOutOfRange,
+       [](auto& m) {
+         m.groups = {0, 1, 1};
+         m.parts = {"skin"};
+       }},
+      {"model.marks has 2 entries, not 1 for each of 1 triangles", Code::markCountMismatch,
+       [](auto& m) {
+         m.marks = {1, 0};
+       }},
+  };
+  CHECK(checkModel(triangle().model()).ok());
+  for (const auto& [says, code, make] : faults) {
+    OwnedModel owned = triangle();
+    make(owned);
+    const Model model = owned.model();
+    const Status status = checkModel(model);
+    CHECK(status.argument == Argument::model);
+    CHECK(status.code == code);
+    CHECK(describe(status, model) == says);
   }
-  arrays = good;
-  arrays.uvs = {0, 0, NAN, 0, 0, 0};
-  CHECK(arrays.fault() == "model.uvs[2] is not a finite number");
-  arrays.uvs.resize(4);
-  CHECK(arrays.fault() == "model.uvs has 4 numbers for 3 vertices");
-  arrays = good;
-  arrays.groups = {0, 0};
-  CHECK(arrays.fault() == "model.groups has 2 numbers for 3 vertices");
-  arrays = good;
-  arrays.positions[7] = 0;
-  CHECK(arrays.fault() == "model has no triangle with an area");
-  arrays = good;
-  for (std::size_t v = 0; v < 3; ++v) arrays.positions[3 * v + 2] = 1e7f;
-  CHECK(arrays.fault() == "model is more than a million times its size away from the origin");
-  for (const auto& [scale, fault] : {std::pair{1e-38f, "model is smaller than 1e-37 across"},
-                                     std::pair{6e37f, "model reaches farther than 4.2e37 from the origin"}}) {
-    arrays = good;
-    for (float& x : arrays.positions) x *= scale;
-    CHECK(arrays.fault() == fault);
-  }
-  arrays = good;
-  arrays.indices.resize(3 * (kMaxModelTriangles + 1), 0);
-  CHECK(arrays.fault() == "model has 2000001 triangles, more than 2000000; simplify it first");
-  arrays = good;
-  arrays.positions.resize(3 * (kMaxModelVertices + 1), 0);
-  CHECK(arrays.fault() == "model has 6000001 vertices, more than 6000000; simplify it first");
+  const OwnedModel owned = triangle();
+  Model model = owned.model();
+  model.joints = {{"hips", {0, NAN, 0}, -1}};
+  CHECK(describe(checkModel(model), model) == "model.joints[0].position is not finite");
+  model.joints = {{"hips", {0, 0, 0}, 1}};
+  CHECK(describe(checkModel(model), model) == "model.joints[0].parent = 1, but there are 1 joints");
 }
 
-TEST_CASE("parts, marks and joints have to fit the model", "[cages][check]") {
-  Arrays arrays;
-  arrays.groups = {0, 1, 1};
-  Model model = arrays.model();
-  CHECK(checkModel(model).ok());
-  model.parts = {"skin"};
-  CHECK(checkModel(model).message == "model.groups[1] = 1, but there are 1 parts");
-  model = arrays.model();
-  const std::uint8_t marks[] = {1, 0};
-  model.marks = marks;
-  CHECK(checkModel(model).message == "model.marks has 2 numbers for 1 triangles");
-  model = arrays.model();
-  model.joints = {{"hips", {0, NAN, 0}, -1}};
-  CHECK(checkModel(model).message == "model.joints[0].position is not finite");
-  model.joints = {{"hips", {0, 0, 0}, 1}};
-  CHECK(checkModel(model).message == "model.joints[0].parent = 1, but there are 1 joints");
+TEST_CASE("every code has a sentence", "[cages][check]") {
+  const OwnedModel owned = triangle();
+  const Model model = owned.model();
+  const Template from{model.mesh, {{"chin", {0, 0, 0}}, {"crown", {0, 1, 0}}}};
+  FitOptions options;
+  options.landmarks = from.landmarks;
+  for (int code = 0; code <= static_cast<int>(Code::cageOff); ++code)
+    for (const Argument argument : {Argument::cage, Argument::model, Argument::from, Argument::landmarks}) {
+      const Status status{static_cast<Code>(code), argument};
+      CAPTURE(code, codeName(status.code));
+      const std::string fault = describe(status, from, model, options, {"nape"});
+      CHECK(fault.size() > 1);
+      CHECK(fault.find_first_of("{}") == std::string::npos);
+      CHECK(std::string(codeName(status.code)) != "unknown");
+    }
 }

@@ -15,26 +15,34 @@ constexpr double kPi = std::numbers::pi;
 
 /// A sphere of rings from pole to pole; `from` > 0 leaves out the rings about the upper pole.
 inline TriangleMesh sphere(Vec3 centre, double radius, std::uint32_t rings = 24, std::uint32_t from = 0) {
-  TriangleMesh mesh;
+  std::vector<float> positions;
+  std::vector<std::uint32_t> indices;
   const std::uint32_t around = 2 * rings;
   for (std::uint32_t i = from; i <= rings; ++i)
     for (std::uint32_t j = 0; j < around; ++j) {
       const double theta = kPi * i / rings, phi = 2 * kPi * j / around;
       const double r = i == 0 || i == rings ? 0 : std::sin(theta);
-      mesh.positions.push_back(centre + radius * Vec3{r * std::cos(phi), std::cos(theta), r * std::sin(phi)});
+      append(positions, centre + radius * Vec3{r * std::cos(phi), std::cos(theta), r * std::sin(phi)});
     }
   for (std::uint32_t i = 0; i < rings - from; ++i)
     for (std::uint32_t j = 0; j < around; ++j) {
       const std::uint32_t a = i * around + j, b = i * around + (j + 1) % around;
-      if (i + from > 0) mesh.triangles.push_back({a, b, b + around});
-      if (i + from + 1 < rings) mesh.triangles.push_back({a, b + around, a + around});
+      if (i + from > 0) indices.insert(indices.end(), {a, b, b + around});
+      if (i + from + 1 < rings) indices.insert(indices.end(), {a, b + around, a + around});
     }
-  std::vector<float> positions;
-  std::vector<std::uint32_t> indices;
-  for (const Vec3& p : mesh.positions)
-    for (const double x : {p.x, p.y, p.z}) positions.push_back(static_cast<float>(x));
-  for (const Triangle3& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
   return weldExactly({positions, indices});
+}
+
+template <typename Map>
+TriangleMesh mapped(TriangleMesh mesh, const Map& map) {
+  for (Vec3& p : mesh.positions) p = map(p);
+  return mesh;
+}
+
+inline TriangleMesh ellipsoid(const Vec3& centre, const Vec3& radii, std::uint32_t rings = 24) {
+  return mapped(sphere({0, 0, 0}, 1, rings), [&](const Vec3& p) {
+    return centre + Vec3{radii.x * p.x, radii.y * p.y, radii.z * p.z};
+  });
 }
 
 inline TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
@@ -44,38 +52,64 @@ inline TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
   return a;
 }
 
-/// Makes a mesh non-manifold: fins on some edges, each a third triangle there, and some triangles a second time.
-inline void addFins(std::vector<float>& positions, std::vector<std::uint32_t>& indices) {
-  const std::size_t count = indices.size();
-  constexpr std::size_t kStep = 300;  // A fin for every hundredth triangle.
-  for (std::size_t i = 0; i + 2 < count; i += kStep) {
-    const std::uint32_t a = indices[i], b = indices[i + 1], c = indices[i + 2];
-    const auto top = static_cast<std::uint32_t>(positions.size() / 3);
-    for (std::size_t k = 0; k < 3; ++k) positions.push_back(1.01f * positions[std::size_t{3} * c + k]);
-    indices.insert(indices.end(), {a, b, top, a, b, c});
-  }
-}
-
 /// A model with the arrays that it refers to.
 struct OwnedModel {
-  std::vector<float> positions;
+  std::vector<float> positions, uvs;
   std::vector<std::uint32_t> indices, groups;
   std::vector<std::uint8_t> marks;
   std::vector<std::string> parts;
 
   void add(const std::string& name, const TriangleMesh& mesh) {
     const auto first = static_cast<std::uint32_t>(positions.size() / 3);
-    for (const Vec3& p : mesh.positions)
-      for (const double x : {p.x, p.y, p.z}) positions.push_back(static_cast<float>(x));
+    for (const Vec3& p : mesh.positions) append(positions, p);
     for (const Triangle3& t : mesh.triangles)
       for (const std::uint32_t v : t) indices.push_back(first + v);
     groups.resize(positions.size() / 3, static_cast<std::uint32_t>(parts.size()));
     parts.push_back(name);
   }
+  /// Adds a part that is rolled from the unit square, with UVs and a seam.
+  /// @param place  The position for u and v.
+  /// @param keep  Whether the triangles about a u and v are there.
+  template <typename Place, typename Keep>
+  void roll(std::uint32_t columns, std::uint32_t rows, const Place& place, const Keep& keep) {
+    const auto first = static_cast<std::uint32_t>(positions.size() / 3);
+    for (std::uint32_t r = 0; r <= rows; ++r)
+      for (std::uint32_t c = 0; c <= columns; ++c) {
+        const double u = static_cast<double>(c) / columns, v = static_cast<double>(r) / rows;
+        append(positions, place(c == columns ? 0 : u, v));  // Both sides of the seam are in the same place.
+        uvs.insert(uvs.end(), {static_cast<float>(u), static_cast<float>(v)});
+        groups.push_back(static_cast<std::uint32_t>(parts.size()));
+      }
+    for (std::uint32_t r = 0; r < rows; ++r)
+      for (std::uint32_t c = 0; c < columns; ++c) {
+        if (!keep((c + 0.5) / columns, (r + 0.5) / rows)) continue;
+        const std::uint32_t a = first + r * (columns + 1) + c, b = a + columns + 1;
+        indices.insert(indices.end(), {a, a + 1, b + 1, a, b + 1, b});
+      }
+    parts.push_back("rolled");
+  }
+  /// Makes it non-manifold: fins on some edges, each a third triangle there, and some triangles a second time.
+  void addFins() {
+    const std::size_t count = indices.size();
+    for (std::size_t i = 0; i + 2 < count; i += 300) {  // A fin for every hundredth triangle.
+      const std::uint32_t a = indices[i], b = indices[i + 1], c = indices[i + 2];
+      const auto top = static_cast<std::uint32_t>(positions.size() / 3);
+      for (std::size_t k = 0; k < 3; ++k) positions.push_back(1.01f * positions[std::size_t{3} * c + k]);
+      indices.insert(indices.end(), {a, b, top, a, b, c});
+    }
+    groups.resize(positions.size() / 3, 0);
+    uvs.clear();
+  }
+  template <typename Map>
+  [[nodiscard]] OwnedModel mapped(const Map& map) const {
+    OwnedModel out = *this;
+    out.positions.clear();
+    for (std::size_t i = 0; i < positions.size(); i += 3) append(out.positions, map(Vec3::from(&positions[i])));
+    return out;
+  }
+  [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups}; }
   [[nodiscard]] Model model() const {
-    Model out;
-    out.mesh = {positions, indices, {}, groups};
-    out.parts = parts;
+    Model out{view(), parts};
     out.marks = marks;
     return out;
   }

@@ -1,4 +1,4 @@
-// Makes, fits and refines cages for any model: an outcome with a sentence, or a cage that is consistent.
+// Makes, fits and refines cages for any model: a status with a sentence, or a cage that is consistent.
 
 #include "cagecast/cages.hpp"
 
@@ -11,8 +11,10 @@ using fuzz::require;
 
 namespace {
 
-void check(const cages::Outcome& outcome, const cages::Cage& cage) {
-  if (!outcome.ok()) return require(!outcome.message.empty());
+/// @param given  What the call was given.
+template <typename... Given>
+void check(const Status& status, const cages::Cage& cage, const Given&... given) {
+  if (!status.ok()) return require(!describe(status, given...).empty());
   const std::size_t vertices = cage.positions.size() / 3;
   require(cage.uvs.size() == 2 * vertices && cage.indices.size() % 3 == 0);
   for (const float x : cage.positions) require(std::isfinite(x));
@@ -38,18 +40,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       options.voxels = 32;
       options.triangles = 50 + input.below(200);
       cages::Cage cage;
-      check(makeCage(model, options, progress, cage), cage);
+      check(makeCage(model, options, progress, cage), cage, model);
       break;
     }
     case 1: {
       cages::Template from{other.view(), {{"nose_tip", anywhere}, {"chin", {0, 0, 0}}, {"crown", {0, 1, 0}}}};
       cages::FittedCage cage;
-      check(fitCage(from, model, {}, progress, cage), cage);
+      const Status status = fitCage(from, model, {}, progress, cage);
+      check(status, cage, from, model, cages::FitOptions(), cage.missing);
       break;
     }
     default: {
       cages::Cage cage;
-      check(refineCage(other.view(), model, {}, progress, cage), cage);
+      check(refineCage(other.view(), model, {}, progress, cage), cage, other.view(), model, cages::RefineOptions());
     }
   }
   return 0;

@@ -1,16 +1,11 @@
-import type { CheckedMesh, Enum, EnumValue } from '../core/module.js';
+import type { Answer, CheckedMesh, Enum, EnumValue } from '../core/module.js';
 
-/** How a call ended. The other fields of an answer are there if `problem` is `none`. */
-export interface CagesAnswer {
-  problem: EnumValue;
-  message: string;
-}
 export interface CoreLandmark {
   name: string;
   position: [number, number, number];
   confidence: number;
 }
-export interface CageAnswer extends CagesAnswer {
+export interface CageAnswer extends Answer {
   positions: Float32Array<ArrayBuffer>;
   uvs: Float32Array<ArrayBuffer>;
   indices: Uint32Array<ArrayBuffer>;
@@ -20,7 +15,7 @@ export interface CageAnswer extends CagesAnswer {
 export interface FitAnswer extends CageAnswer {
   missing: string[];
 }
-export interface FoundAnswer extends CagesAnswer {
+export interface FoundAnswer extends Answer {
   landmarks: CoreLandmark[];
   missing: string[];
   rig: string;
@@ -49,7 +44,6 @@ type Report = (share: number, stage: string) => boolean;
 /** What wasm/cages_bindings.cpp binds. */
 export interface CagesModule {
   Kind: Enum;
-  Problem: Enum;
   /** All options with their defaults. */
   makeOptions(): CoreOptions;
   fitOptions(): CoreOptions;

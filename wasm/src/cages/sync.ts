@@ -9,9 +9,9 @@ import createModule from '#cages-glue';
 import type { Mesh } from '../api/mesh.js';
 import { CagecastError, type Code, isRecord, show } from '../core/error.js';
 import { failureOf, instantiate, notInitialised, unsupported } from '../core/instantiate.js';
-import { nameOf } from '../core/module.js';
+import { type Answer, nameOf } from '../core/module.js';
 import { compileFile } from '../core/read-file.js';
-import type { CageAnswer, CagesAnswer, CagesModule, CoreLandmark, CoreOptions, CoreTemplate } from './cages-module.js';
+import type { CageAnswer, CagesModule, CoreLandmark, CoreOptions, CoreTemplate } from './cages-module.js';
 import {
   checkHoles,
   checkLandmarks,
@@ -41,7 +41,7 @@ export { CagecastError };
 /** An option of every call. */
 export interface SyncOptions {
   /**
-   * Told many times a second how far the call is: a share 0..1 that never falls, and what it does. On a model of a million triangles
+   * Gets many times a second how far the call is: a share 0..1 that never falls, and what it does. On a model of a million triangles
    * or on the finest grid, seconds may pass between two calls. If it returns `false`, the call is cancelled: it throws `aborted`.
    */
   onProgress?: ((share: number, stage: string) => unknown) | undefined;
@@ -129,7 +129,6 @@ export function refineCage(
   return call(options, {
     fn: 'refineCage',
     defaults: 'refineOptions',
-    template: 'cage',
     run: (module, core, report) => {
       given = checkTemplate('refineCage', 'cage', module, cage);
       return module.refineCage(given.mesh, checkModel('refineCage', model), core, report);
@@ -168,28 +167,35 @@ function freshModule(fn: string): CagesModule {
   return instantiate<CagesModule>(createModule, compiled, 'makeCage');
 }
 
-interface Call<Answer extends CagesAnswer, Result> {
+interface Call<Of extends Answer, Result> {
   fn: string;
   /** The function that returns the options of this one. */
   defaults?: 'makeOptions' | 'fitOptions' | 'refineOptions';
-  /** What this one calls the template of C++. Default: `template` */
-  template?: 'cage';
-  run(module: CagesModule, options: CoreOptions, report: Report): Answer;
-  result(answer: Answer, module: CagesModule): Result;
+  run(module: CagesModule, options: CoreOptions, report: Report): Of;
+  result(answer: Of, module: CagesModule): Result;
 }
+
+/** The code of an error that is about an argument. */
+const kCodes: Record<string, Code> = {
+  model: 'badModel',
+  template: 'badTemplate',
+  cage: 'badTemplate',
+  landmarks: 'badLandmarks',
+  options: 'badOption',
+};
 
 /**
  * Calls a function in an instance of the module that is not used again: its memory may grow by hundreds of megabytes, and never
  * shrinks.
  */
-function call<Answer extends CagesAnswer, Result>(given: SyncOptions, of: Call<Answer, Result>): Result {
+function call<Of extends Answer, Result>(given: SyncOptions, of: Call<Of, Result>): Result {
   const { fn } = of;
   if (!isRecord(given)) throw new CagecastError('badOption', fn, `options is ${show(given)}, not an object`);
   const { onProgress, ...rest } = given;
   const module = freshModule(fn);
   const options = checkOptions(fn, module, of.defaults ? module[of.defaults]() : {}, rest);
   const reporter = new Reporter(onProgress);
-  let answer: Answer;
+  let answer: Of;
   try {
     answer = of.run(module, options, reporter.report);
   } catch (cause) {
@@ -197,12 +203,14 @@ function call<Answer extends CagesAnswer, Result>(given: SyncOptions, of: Call<A
     throw failureOf(fn, cause);
   }
   if (reporter.failure !== undefined) throw reporter.failure;
-  const code = nameOf({ module: module as never }, 'Problem', answer.problem);
-  if (code !== 'none') {
-    const reason = code === 'aborted' ? 'cancelled by onProgress' : answer.message;
-    const blamed = { badModel: 'model', badTemplate: of.template ?? 'template', badLandmarks: 'landmarks' };
-    throw new CagecastError(code as Code, fn, reason, { argument: blamed[code as keyof typeof blamed] });
-  }
+  const { code, message, argument, at } = answer.status;
+  if (code !== 'ok')
+    throw new CagecastError(
+      kCodes[argument] ?? (code as Code),
+      fn,
+      code === 'aborted' ? 'cancelled by onProgress' : message,
+      { argument, at },
+    );
   reporter.end();
   return of.result(answer, module);
 }

@@ -1,24 +1,16 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "cagecast/cages.hpp"
+#include "mesh/samples.hpp"
 #include "mesh/surface.hpp"
 #include "mesh/triangle_mesh.hpp"
 
+/// The steps of a refinement, each in a file of its own.
 namespace cagecast::cages {
-
-/// A spot that is fixed to a triangle of the cage.
-struct CageSpot {
-  std::uint32_t triangle = 0;
-  std::array<double, 3> weights{};  ///< Barycentric, of the triangle's corners.
-};
-
-/// Spots spread over a cage by area; neighbours are close together in the list. The same for every call.
-/// @param count  About so many.
-std::vector<CageSpot> spreadSpots(const TriangleMesh& cage, std::size_t count);
 
 /// What a cage is placed around.
 struct Target {
@@ -38,7 +30,7 @@ struct Gap {
 };
 
 /// @param cage  May have moved since the spots were spread.
-std::vector<Gap> measureGaps(const Target& target, const TriangleMesh& cage, std::span<const CageSpot> spots);
+std::vector<Gap> measureGaps(const Target& target, const TriangleMesh& cage, const std::vector<SurfaceSample>& spots);
 
 /// How a cage lies around its target. Lengths are in the space of the model.
 struct Placement {
@@ -70,5 +62,24 @@ class RobustScale {
   double finest_;
   bool settled_ = false;
 };
+
+enum class Growth : std::uint8_t { free, none };
+
+/// How far a cage may be moved.
+struct AlignLimits {
+  Growth growth;  ///< Whether it may be enlarged or shrunk.
+  double reach;   ///< How far off it may be, as a share of the diagonal.
+};
+
+/// Moves, turns and, if it may, enlarges or shrinks a cage so that its gaps become as even as possible.
+/// @return false if `progress` cancelled it; it gets shares from 0 to 1.
+bool alignCage(const Target& target, const std::vector<SurfaceSample>& spots, const AlignLimits& limits,
+               const Progress& progress, TriangleMesh& cage);
+
+/// Bends a cage that lies about where it belongs so that its gaps become even: by a smooth motion of its vertices.
+/// @param reach  How far off the cage may be, as a share of the diagonal.
+/// @return false if `progress` cancelled it; it gets shares from 0 to 1.
+bool bendCage(const Target& target, const std::vector<SurfaceSample>& spots, double reach, const Progress& progress,
+              TriangleMesh& cage);
 
 }  // namespace cagecast::cages

@@ -1,38 +1,11 @@
-#include "make/hull_graph.hpp"
+#include "make/steps.hpp"
 
-#include <algorithm>
 #include <array>
 #include <unordered_map>
 
 namespace cagecast::cages {
 
-std::vector<std::uint32_t> borderOf(const Neighbours& neighbours, const std::vector<bool>& marks) {
-  std::vector<std::uint32_t> border;
-  for (std::uint32_t v = 0; v < marks.size(); ++v) {
-    const auto around = neighbours[v];
-    if (std::any_of(around.begin(), around.end(), [&](std::uint32_t n) { return marks[n] != marks[v]; }))
-      border.push_back(v);
-  }
-  return border;
-}
-
-std::vector<bool> within(const Neighbours& neighbours, std::vector<std::uint32_t> front, int edges) {
-  std::vector<bool> reached(neighbours.size(), false);
-  for (const std::uint32_t v : front) reached[v] = true;
-  for (int i = 0; i < edges; ++i) {
-    std::vector<std::uint32_t> next;
-    for (const std::uint32_t v : front)
-      for (const std::uint32_t n : neighbours[v]) {
-        if (reached[n]) continue;
-        reached[n] = true;
-        next.push_back(n);
-      }
-    front.swap(next);
-  }
-  return reached;
-}
-
-void refine(const std::vector<bool>& isChosen, TriangleMesh& mesh, std::vector<std::uint32_t>& parents) {
+void subdivide(const std::vector<bool>& isChosen, TriangleMesh& mesh, std::vector<std::uint32_t>& parents) {
   std::unordered_map<std::uint64_t, std::uint32_t> middles;
   for (const Triangle3& t : mesh.triangles) {
     if (!isChosen[t[0]] && !isChosen[t[1]] && !isChosen[t[2]]) continue;
@@ -56,7 +29,7 @@ void refine(const std::vector<bool>& isChosen, TriangleMesh& mesh, std::vector<s
     unsigned cuts = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto found = middles.find(edgeKey(t[i], t[(i + 1) % 3]));
-      middle[i] = found == middles.end() ? UINT32_MAX : found->second;
+      middle[i] = found == middles.end() ? kNone : found->second;
       cuts += found == middles.end() ? 0 : 1;
     }
     if (cuts == 0) {
@@ -67,7 +40,7 @@ void refine(const std::vector<bool>& isChosen, TriangleMesh& mesh, std::vector<s
     } else {
       // Turned so that the first edge is cut, and the last one is not.
       std::size_t i = 0;
-      while (middle[i] == UINT32_MAX || middle[(i + 2) % 3] != UINT32_MAX) ++i;
+      while (middle[i] == kNone || middle[(i + 2) % 3] != kNone) ++i;
       const std::uint32_t a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3], m = middle[i], n = middle[(i + 1) % 3];
       add(a, m, c);
       if (cuts == 1) {

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cagecast/cages.hpp"
+#include "fit/warp.hpp"
+#include "landmarks/landmark_list.hpp"
+#include "mesh/bounds.hpp"
+#include "mesh/neighbours.hpp"
+
+/// The steps of a fit, each in a file of its own. Lengths are in the space of the template.
+namespace cagecast::cages {
+
+/// The mirror plane and the directions of a head or figure, by its landmarks.
+struct Axes {
+  Vec3 left{1, 0, 0}, up{0, 1, 0}, front{0, 0, 1};
+  Vec3 middle{};       ///< A point of the mirror plane.
+  bool known = false;  ///< Whether there were landmarks on both sides and in front.
+};
+
+/// A cage to be fitted, welded, with what the fit needs to know of it. All in its own space.
+struct TemplateCage {
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> vertexOf;            ///< Vertex of `mesh` for each vertex of the given cage.
+  std::vector<std::vector<std::uint32_t>> loops;  ///< Open borders: holes, and the rim where the figure ends.
+  int rim = -1;  ///< The loop where the figure ends, as at a neck; -1 if there is none.
+  double diagonal = 0;
+  double offset = 0;  ///< How far the cage is off the model that it was made for, by the landmarks on its skin.
+  Neighbours neighbours;
+};
+
+TemplateCage prepareTemplate(const Template& from);
+
+/// Whether a landmark lies on the skin: joints and the centres of eyes do not.
+bool isOnSkin(const std::string& name);
+
+Axes axesOf(const std::vector<Landmark>& landmarks);
+
+/// The boundary loop that is a rim: the longest one, if it is longer than `kMinRim` diagonals; -1 if there is none.
+int rimOf(const TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& loops, double diagonal);
+
+/// Checks a list of landmarks by itself: not too many, finite, named, near its model, no name twice, no two on one
+/// spot.
+/// @param argument  What to blame.
+/// @param box  Of the model.
+Status checkLandmarkList(const std::vector<Landmark>& landmarks, Argument argument, const Bounds& box);
+
+/// Checks that joints among the landmarks of a model, which its skeleton may have told, are in the unit of its mesh.
+/// @param box  Of the mesh.
+/// @return `at` is a place in the list.
+Status checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box);
+
+/// Checks that landmarks of a model are where those of a template can be after turning and scaling.
+/// @param from,to  In the same order.
+/// @param given  Whether a person gave it.
+/// @return `at` is a place in these lists.
+Status checkAgreement(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
+                      const std::vector<bool>& given, double diagonal);
+
+/// A piece of the body that moves as one: where it is in the template, and an affine map to the target.
+struct Bone {
+  Vec3 from, to;  ///< Its ends in the template.
+  Affine map;
+};
+
+/// The bones between joints that both have: each turned by the smallest angle and stretched along its length; the head
+/// by a similarity of its landmarks. Empty if fewer than `kMinBones` are known.
+/// @param from,to  Landmarks with joints ("joint_knee_left"), both in the template's space.
+std::vector<Bone> bonesOf(const std::vector<Landmark>& from, const std::vector<Landmark>& to);
+
+/// Bends a cage by bones (linear blend skinning): weights 1 / distance^6, smoothed over neighbours.
+std::vector<Vec3> bend(const TemplateCage& cage, const std::vector<Bone>& bones);
+
+/// The same for any points, without smoothing.
+Vec3 bend(const Vec3& point, const std::vector<Bone>& bones);
+
+/// A pair for each landmark; those that are not certain may stay off a little. The centre of an eye is deep inside, and
+/// is left out where both corners say more.
+/// @param from,to  In the same order.
+/// @param withJoints  Joints count only where there is a skeleton.
+std::vector<Anchor> landmarkAnchors(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
+                                    bool withJoints);
+
+/// Pairs of points around the rims where both end, such as necks: front on front, back on back, the sides by length.
+/// Empty if one of the two has no rim.
+/// @param target  The target's skin, in the template's space.
+std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& target, const Axes& axes);
+
+/// Pairs along the lower edge of a jaw of which only the chin is known, as where a mouth is open or the chin double:
+/// all of it moves with the chin, less and less towards the lobes of the ears. Empty if menton is known.
+/// @param own  All landmarks of the template.
+std::vector<Anchor> jawAnchors(const std::vector<Landmark>& own, const std::vector<Landmark>& to);
+
+/// Pairs above and below each eye: an eye that is wider is higher, too, by as much.
+std::vector<Anchor> eyeAnchors(const std::vector<Landmark>& from, const std::vector<Landmark>& to, const Axes& axes);
+
+struct TightenOptions {
+  double reach = 0.1;   ///< Planes farther away than this share of the diagonal do not count; shrinks to a third.
+  double sliding = 0;   ///< Resistance to sliding along the surface.
+  double stiffest = 0;  ///< Resistance to bending, at first and at last.
+  double softest = 0;
+};
+
+/// Draws a cage onto the hull of the target, smoothly and with little sliding.
+/// @param rest  Positions of the cage to start from; what they are is kept as far as the hull lets them.
+/// @param step  Called before each of the iterations, with its share; false cancels.
+/// @return The positions; empty if cancelled.
+std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& rest, const TriangleMesh& hull,
+                          const TightenOptions& options, const std::function<bool(double)>& step);
+
+/// The target in the template's space.
+struct EyedFigure {
+  TriangleMesh mesh;                      ///< Without excluded parts other than eyes.
+  std::vector<bool> isEye;                ///< Per triangle: by the name of its part.
+  std::vector<std::uint32_t> components;  ///< Per triangle.
+  TriangleMesh covers;                    ///< What is excluded and no eye: lashes, brows, hair.
+  std::vector<std::uint32_t> coverComponents;
+  std::uint32_t componentCount = 0;
+};
+
+/// Draws the borders of eye holes to the contours of what is visible of the eyes, seen along the direction in which
+/// they look, with lashes as far as there is room. Where a model has no eyes of their own, holes stay where they are.
+/// @param from,to  Landmarks of the template and of the target, both in the template's space.
+/// @return Per vertex of the cage: the direction in which its eye looks if it is on the border of a hole that was
+///   drawn, else zero.
+std::vector<Vec3> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
+                              const std::vector<Landmark>& to, std::vector<Vec3>& positions);
+
+/// Restores the template's shape at triangles that are folded over or thin, but are not so in the template.
+/// @param tracks  Per vertex: the only direction in which it moves, unless a triangle at it cannot be unfolded
+///   otherwise; zero if it is free.
+void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vector<Vec3>& positions);
+
+/// Whether each triangle faces away from those around it, or turns by more than 120 degrees at an edge.
+std::vector<bool> foldedTriangles(const TriangleMesh& mesh);
+
+/// What a cage is pushed out of, in the template's space.
+struct Enclosed {
+  const TriangleMesh& skin;
+  const TriangleMesh& hull;  ///< Skin that is farther inside than the offset, such as a mouth's, does not count.
+};
+
+/// Moves a cage outward where skin sticks out of it, by at most four times the offset and only where both face the same
+/// way and no triangle folds over.
+/// @param tracks  Per vertex: the only direction in which it moves; zero if it is free.
+/// @param step  Called before each of the iterations, with its share; false cancels.
+bool pushOut(const TemplateCage& cage, const Enclosed& inside, const std::vector<Vec3>& tracks,
+             const std::function<bool(double)>& step, std::vector<Vec3>& positions);
+
+}  // namespace cagecast::cages

@@ -1,0 +1,26 @@
+#include "landmarks/landmark_list.hpp"
+
+namespace cagecast::cages {
+
+const Landmark* findLandmark(const std::vector<Landmark>& landmarks, std::string_view name) {
+  for (const Landmark& landmark : landmarks)
+    if (landmark.name == name) return &landmark;
+  return nullptr;
+}
+
+std::optional<Vec3> placeOf(const std::vector<Landmark>& landmarks, std::string_view name) {
+  const Landmark* found = findLandmark(landmarks, name);
+  if (found == nullptr) return std::nullopt;
+  return positionOf(*found);
+}
+
+std::string mirrorName(std::string_view name) {
+  constexpr std::string_view kLeft = "_left", kRight = "_right";
+  const auto with = [&](std::string_view end, std::string_view other) {
+    return std::string(name.substr(0, name.size() - end.size())).append(other);
+  };
+  if (name.ends_with(kLeft)) return with(kLeft, kRight);
+  return name.ends_with(kRight) ? with(kRight, kLeft) : std::string();
+}
+
+}  // namespace cagecast::cages
