@@ -27,15 +27,23 @@ struct Meshes {
   }
 };
 
-/// Locks, copied from JavaScript.
-struct LockLists {
-  Array<LockEntry> segments;
-  Array<LockEntry> groups;
+/// Options with the caller's locks and masks, copied from JavaScript.
+struct Overrides {
+  Array<LockEntry> segmentLocks, groupLocks;
+  Array<Mask> vertexMasks, triangleMasks;
 
-  bool copy(const val& locks) {
-    return copyRecords(locks["segments"], segments) && copyRecords(locks["groups"], groups);
+  /// @param source  Its `locks` and its `masks`, and what is in these, may be missing.
+  bool copy(const val& source) {
+    const val locks = source["locks"];
+    const val masks = source["masks"];
+    return copyRecords(locks["segments"], segmentLocks) && copyRecords(locks["groups"], groupLocks) &&
+           copyArray(masks["vertices"], vertexMasks) && copyArray(masks["triangles"], triangleMasks);
   }
-  [[nodiscard]] Locks view() const { return {segments, groups}; }
+  [[nodiscard]] TransferOptions over(TransferOptions options) const {
+    options.locks = {segmentLocks, groupLocks};
+    options.masks = {vertexMasks, triangleMasks};
+    return options;
+  }
 };
 
 enum class Preset : std::uint8_t { standard, paper };
@@ -71,7 +79,7 @@ class Calls {
     if (!status.ok()) return ending(status, meshes);
     indices_ = std::move(meshes.target.indices);
     val out = projected();
-    out.set("zones", view(projection.zones));
+    out.set("visibility", view(projection.visibility));
     out.set("segmentStats", records(projection.segmentStats));
     out.set("recovery", view(projection.recovery));
     out.set("holeShares", records(projection.holeShares));
@@ -79,12 +87,12 @@ class Calls {
     return out;
   }
 
-  val transfer(const val& cage, const val& target, TransferOptions options, const val& locks) {
+  val transfer(const val& cage, const val& target, const TransferOptions& options, const val& given) {
     Meshes meshes;
-    LockLists lists;
-    if (!meshes.copy(cage, target) || !lists.copy(locks)) return ending(kOutOfMemory);
-    options.locks = lists.view();
-    const Status status = cagecast::transfer(meshes.cage.view(), meshes.target.view(), options, workspace_, result_);
+    Overrides overrides;
+    if (!meshes.copy(cage, target) || !overrides.copy(given)) return ending(kOutOfMemory);
+    const Status status =
+        cagecast::transfer(meshes.cage.view(), meshes.target.view(), overrides.over(options), workspace_, result_);
     if (!status.ok()) return ending(status, meshes);
     val out = projected();
     out.set("segmentStats", records(result_.projection.segmentStats));
@@ -92,17 +100,16 @@ class Calls {
     return out;
   }
 
-  val classify(const val& source, TransferOptions options, const val& locks) {
+  val classify(const val& source, const TransferOptions& options, const val& given) {
     Projection& projection = result_.projection;
-    LockLists lists;
-    if (!lists.copy(locks) || !copyArray(source["zones"], projection.zones) ||
+    Overrides overrides;
+    if (!overrides.copy(given) || !copyArray(source["visibility"], projection.visibility) ||
         !copyArray(source["segments"], projection.segments) || !copyArray(source["recovery"], projection.recovery) ||
         !copyArray(source["indices"], indices_) || !copyRecords(source["segmentStats"], projection.segmentStats) ||
         !copyRecords(source["holeShares"], projection.holeShares)) {
       return ending(kOutOfMemory);
     }
-    options.locks = lists.view();
-    const Status status = cagecast::classify(projection.view(), indices_, options, result_.zones);
+    const Status status = cagecast::classify(projection.view(), indices_, overrides.over(options), result_.zones);
     if (!status.ok()) return ending(status);
     result_.setVerdicts();
     val out = ending(status);
@@ -126,17 +133,19 @@ class Calls {
   }
 
   /// @param decision  Of a transfer: its `zones`, its `segments`, and `culledBy` of each segment.
-  val cutBorders(const val& cage, const val& target, const val& decision, const TransferOptions& options) {
+  val cutBorders(const val& cage, const val& target, const val& decision, const TransferOptions& options,
+                 const val& given) {
     Meshes meshes;
+    Overrides overrides;
     Array<Zone> zones;
     Array<std::uint32_t> segments;
     Array<CulledBy> culledBy;
-    if (!meshes.copy(cage, target) || !copyArray(decision["zones"], zones) ||
+    if (!meshes.copy(cage, target) || !overrides.copy(given) || !copyArray(decision["zones"], zones) ||
         !copyArray(decision["segments"], segments) || !copyRecords(decision["culledBy"], culledBy)) {
       return ending(kOutOfMemory);
     }
     const Status status = cagecast::cutBorders(meshes.cage.view(), {meshes.target.view(), zones, segments, culledBy},
-                                               options, workspace_, cut_);
+                                               overrides.over(options), workspace_, cut_);
     if (!status.ok()) return ending(status, meshes);
     val out = ending(status);
     out.set("sources", view(cut_.sources));
@@ -189,6 +198,7 @@ class Calls {
 
 // Fields that follow from others are for reading only.
 double coverageOf(const SegmentStats& stats) { return stats.coverage(); }
+double scoreOf(const SegmentStats& stats) { return stats.score(); }
 bool isCulled(const SegmentStats& stats) { return stats.culled(); }
 template <typename T>
 void ignore(SegmentStats& /*stats*/, T /*value*/) {}
@@ -203,7 +213,6 @@ EMSCRIPTEN_BINDINGS(cagecast) {
       .value("nearestPoint", ProjectionMode::nearestPoint)
       .value("nearestVertex", ProjectionMode::nearestVertex);
   enum_<Seams>("Seams").value("vertex", Seams::vertex).value("corner", Seams::corner);
-  enum_<Floor>("Floor").value("none", Floor::none).value("area", Floor::area).value("depth", Floor::depth);
   enum_<Lock>("Lock").value("auto", Lock::automatic).value("keep", Lock::keep).value("exclude", Lock::exclude);
   enum_<CulledBy>("CulledBy")
       .value("none", CulledBy::none)
@@ -227,16 +236,21 @@ EMSCRIPTEN_BINDINGS(cagecast) {
       .field("message", &Ending::message)
       .field("argument", &Ending::argument)
       .field("at", &Ending::at);
+  value_object<Ratios>("Ratios")
+      .field("threshold", &Ratios::threshold)
+      .field("floor", &Ratios::floor)
+      .field("depth", &Ratios::depth)
+      .field("hole", &Ratios::hole);
   value_object<SegmentStats>("SegmentStats")
       .field("points", &SegmentStats::points)
       .field("area", &SegmentStats::area)
       .field("exposedArea", &SegmentStats::exposedArea)
       .field("coveredArea", &SegmentStats::coveredArea)
       .field("coverage", &coverageOf, &ignore<double>)
-      .field("depthWeightedArea", &SegmentStats::depthWeightedArea)
+      .field("depth", &SegmentStats::depth)
       .field("group", &SegmentStats::group)
-      .field("twinOf", &SegmentStats::twinOf)
-      .field("score", &SegmentStats::score)
+      .field("ratios", &SegmentStats::ratios)
+      .field("score", &scoreOf, &ignore<double>)
       .field("culled", &isCulled, &ignore<bool>)
       .field("culledBy", &SegmentStats::culledBy);
   value_object<HoleShare>("HoleShare")

@@ -73,12 +73,13 @@ export function measure(model: Model): Quality {
  * cage does not cover either (`step 3`), and by the two presets.
  */
 function decide({ cage, target }: Model['scene']): Record<MethodName, Decision> {
-  const { zones } = project(cage, target, { preset: 'paper' });
+  const { visibility } = project(cage, target, { preset: 'paper' });
   // As the poster has it: a triangle is painted if its three corners are.
   const only = (...ncz: number[]): Decision => {
-    const isPainted = (t: number): boolean => [0, 1, 2].every((k) => !ncz.includes(zones[target.indices[3 * t + k]!]!));
+    const isPainted = (t: number): boolean =>
+      [0, 1, 2].every((k) => !ncz.includes(visibility[target.indices[3 * t + k]!]!));
     return {
-      zones: zones.map((zone) => (ncz.includes(zone) ? zone : Zone.Cosmetic)),
+      zones: visibility.map((found) => (ncz.includes(found) ? found : Zone.Cosmetic)),
       cosmeticTriangles: Uint8Array.from({ length: target.indices.length / 3 }, (_, t) => +isPainted(t)),
     };
   };

@@ -6,22 +6,21 @@
 #include "base/timer.hpp"
 #include "input/validate.hpp"
 #include "seams/corner_uvs.hpp"
-#include "steps/depth.hpp"
 #include "steps/holes.hpp"
 #include "steps/interior_samples.hpp"
+#include "steps/masks.hpp"
 #include "steps/occluded.hpp"
 #include "steps/point_data.hpp"
 #include "steps/project.hpp"
 #include "steps/recheck/recheck_occluded.hpp"
 #include "steps/scene.hpp"
 #include "steps/segments.hpp"
-#include "steps/twins.hpp"
 #include "steps/uncovered.hpp"
 
 namespace cagecast {
 namespace {
 
-/// Steps 1 to 3: where points lie on the cage, and their zones.
+/// Steps 1 to 3: where points lie on the cage, and whether it covers them.
 void projectAndMark(const Scene& scene, PointData& data, Timings& times) {
   timed(times.project, [&] { projectPoints(scene, data); });
   timed(times.covered, [&] { findCageDistances(scene, data); });
@@ -29,7 +28,7 @@ void projectAndMark(const Scene& scene, PointData& data, Timings& times) {
   timed(times.covered, [&] { markUncovered(scene, data); });
 }
 
-/// Steps 4, 5′ and 5″: the segments, their areas and twins.
+/// Steps 4 and 7: the segments and their areas.
 void measureSegments(const Scene& scene, PointData& data, Array<SegmentStats>& stats) {
   const Steps& steps = scene.options.steps;
   const bool isFiltered = steps.projection == ProjectionMode::nearestPoint;
@@ -39,12 +38,9 @@ void measureSegments(const Scene& scene, PointData& data, Array<SegmentStats>& s
   Timings ofSamples;  // Counted as a part of step 4.
   if (samples.triangleCount > 0) projectAndMark(scene, samples.data, ofSamples);
   sumAreas(scene, samples, data, stats);
-  if (!isFiltered || !steps.depthWeighting) return;
-  weightByDepth(scene, data, samples, stats);
-  findTwins(scene, data, stats);
 }
 
-/// Steps 6 and 7: which points are recovered if their segment is not culled.
+/// Steps 9 and 10: which points are recovered if their segment is not culled.
 void findRecovery(const Scene& scene, PointData& data, Projection& out) {
   const Steps& steps = scene.options.steps;
   if (steps.projection != ProjectionMode::nearestPoint || !(steps.recheck || steps.holes)) return;
@@ -58,7 +54,7 @@ void findRecovery(const Scene& scene, PointData& data, Projection& out) {
 /// Hands the results of the points to their vertices, in the caller's units and numbering.
 void writeProjection(const Scene& scene, const PointData& data, Projection& out) {
   const std::size_t vertexCount = scene.targetMesh.positions.size() / 3;
-  if (scene.arena.failed() || !out.uvs.reset(2 * vertexCount) || !out.zones.reset(vertexCount) ||
+  if (scene.arena.failed() || !out.uvs.reset(2 * vertexCount) || !out.visibility.reset(vertexCount) ||
       !out.triangles.reset(vertexCount) || !out.distances.reset(vertexCount) || !out.segments.reset(vertexCount) ||
       !out.recovery.reset(data.recovery == nullptr ? 0 : vertexCount)) {
     return scene.arena.fail();
@@ -68,14 +64,14 @@ void writeProjection(const Scene& scene, const PointData& data, Projection& out)
   const PointData from = data;
   const CageTriangle* const cage = scene.cage.triangles;
   float* const uvs = out.uvs.data();
-  Zone* const zones = out.zones.data();
+  Visibility* const visibility = out.visibility.data();
   std::uint32_t* const triangles = out.triangles.data();
   float* const distances = out.distances.data();
   std::uint32_t* const segments = out.segments.data();
   for (std::size_t v = 0; v < vertexCount; ++v) {
     const std::size_t i = from.points.ofVertex[v];
     std::memcpy(uvs + 2 * v, from.uvs + 2 * i, 2 * sizeof(float));
-    zones[v] = from.zones[i];
+    visibility[v] = from.visibility[i];
     triangles[v] = cage[from.cageTriangles[i]].index;
     distances[v] = from.distances[i] * toInput;
     segments[v] = from.segments[i];
@@ -117,14 +113,17 @@ Status project(const MeshView& cage, const MeshView& target, const TransferOptio
     arena->fail();
   }
 
-  out.peakBytes = arena->peak() + bytesOf(out.uvs, out.cornerUvs, out.zones, out.triangles, out.distances, out.segments,
-                                          out.segmentStats, out.recovery, out.holeShares);
+  out.peakBytes = arena->peak() + bytesOf(out.uvs, out.cornerUvs, out.visibility, out.triangles, out.distances,
+                                          out.segments, out.segmentStats, out.recovery, out.holeShares);
   return arena->failed() ? Status{Code::outOfMemory} : Status{};
 }
 
 Status transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
                 TransferResult& out) noexcept {
   if (const Status status = checkOptions(options); !status.ok()) return status;
+  if (const Status status = checkMasks(options.masks, target.positions.size() / 3, target.indices.size() / 3);
+      !status.ok())
+    return status;
   Projection& projection = out.projection;
   Zones& zones = out.zones;
   if (const Status status = project(cage, target, options, workspace, projection); !status.ok()) return status;
@@ -135,7 +134,7 @@ Status transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   out.setVerdicts();
   times.total += times.classify;
   projection.peakBytes +=
-      bytesOf(zones.zones, zones.cosmeticTriangles, zones.culledBy, zones.scores, zones.explainedHoles);
+      bytesOf(zones.zones, zones.cosmeticTriangles, zones.culledBy, zones.ratios, zones.explainedHoles);
   return {};
 }
 

@@ -162,7 +162,7 @@ TEST_CASE("the loops of any few triangles are the reference's", "[borders]") {
       const std::uint32_t a = random.below(kVertices), b = random.below(kVertices), c = random.below(kVertices);
       if (a != b && b != c && c != a) mesh.addTriangle(a, b, c);
     }
-    const reference::Scene expected = reference::makeScene(mesh.view(), mesh.view(), reference::Options::paper());
+    const reference::Scene expected = reference::makeScene(mesh.view(), mesh.view());
     const LoopedCage cage(mesh.view());
     const BoundaryLoops& loops = cage.loops;
     REQUIRE(cage.cage.count == expected.loops.loopOfEdge.size());

@@ -15,7 +15,7 @@ namespace {
 std::vector<std::pair<scenes::Scene, TransferOptions>> scenesOf(std::uint64_t seed) {
   TransferOptions all = cutting(seed % 2 == 0 ? Seams::vertex : Seams::corner);
   TransferOptions loose = all;
-  loose.steps.floor = Floor::none;
+  loose.steps.floor = false;
   loose.threshold = 0;
   return {{scenes::patchwork(seed), all}, {scenes::strewn(seed, 40), loose}, {scenes::gridded(seed, 40), loose}};
 }
@@ -93,7 +93,7 @@ scenes::Mesh oneTriangle() {
 TransferOptions cuttingAll() {
   TransferOptions options = cutting();
   options.threshold = 0;
-  options.steps.floor = Floor::none;
+  options.steps.floor = false;
   return options;
 }
 

@@ -7,34 +7,20 @@
 
 #include "cagecast/clip.hpp"
 #include "cagecast/transfer.hpp"
+#include "scenes/scenes.hpp"
 
 namespace cagecast {
 
 /// FNV-1a, 64 bits, over the bytes of arrays: equal hashes mean the same answer, bit by bit.
 class Hash {
  public:
-  template <typename T>
-  void add(const Array<T>& values) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-    for (std::size_t i = 0; i < values.size() * sizeof(T); ++i) hash_ = (hash_ ^ bytes[i]) * 0x100000001b3u;
+  template <typename... T>
+  void add(const Array<T>&... arrays) {
+    (addOne(arrays), ...);
   }
   /// UVs, zones, triangles and segments: what has to be the same everywhere.
   void add(const TransferResult& result) {
-    add(result.projection.uvs);
-    add(result.zones.zones);
-    add(result.projection.triangles);
-    add(result.projection.segments);
-  }
-  /// The whole of a cut target.
-  void add(const CutTarget& cut) {
-    add(cut.sources);
-    add(cut.weights);
-    add(cut.indices);
-    add(cut.origins);
-    add(cut.uvs);
-    add(cut.cornerUvs);
-    add(cut.zones);
-    add(cut.cosmeticTriangles);
+    add(result.projection.uvs, result.zones.zones, result.projection.triangles, result.projection.segments);
   }
   [[nodiscard]] std::string text() const {
     std::ostringstream out;
@@ -43,7 +29,58 @@ class Hash {
   }
 
  private:
+  template <typename T>
+  void addOne(const Array<T>& values) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+    for (std::size_t i = 0; i < values.size() * sizeof(T); ++i) hash_ = (hash_ ^ bytes[i]) * 0x100000001b3u;
+  }
+
   std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+/// The golden hashes of this build, which the files in tests/core/golden have: of the preset `paper`, of the preset
+/// `default`, and of cut borders. Instead of a hash, what went wrong.
+struct GoldenHashes {
+  std::string paper, standard, borders;
+
+  static GoldenHashes compute() {
+    return {ofTransfers(TransferOptions::paper(), scenes::golden()),
+            ofTransfers(TransferOptions{}, scenes::goldenDefault()), ofCuts()};
+  }
+
+ private:
+  static std::string ofTransfers(const TransferOptions& options, const std::vector<scenes::Scene>& all) {
+    Hash hash;
+    Workspace workspace;
+    for (const scenes::Scene& scene : all) {
+      TransferResult result;
+      const Status status = transfer(scene.cage.view(), scene.target.view(), options, workspace, result);
+      if (!status.ok()) return describe(status, {}, {});
+      hash.add(result);
+      if (options.seams == Seams::corner) hash.add(result.zones.cosmeticTriangles, result.projection.cornerUvs);
+    }
+    return hash.text();
+  }
+  static std::string ofCuts() {
+    Hash hash;
+    Workspace workspace;
+    for (const Seams seams : {Seams::vertex, Seams::corner}) {
+      TransferOptions options;
+      options.seams = seams;
+      for (const scenes::Scene& scene : scenes::goldenBorders()) {
+        TransferResult result;
+        CutTarget cut;
+        const MeshView cage = scene.cage.view(), target = scene.target.view();
+        Status status = transfer(cage, target, options, workspace, result);
+        const DecidedTarget decided{target, result.zones.zones, result.projection.segments, result.zones.culledBy};
+        if (status.ok()) status = cutBorders(cage, decided, options, workspace, cut);
+        if (!status.ok()) return describe(status, {}, {});
+        hash.add(cut.sources, cut.weights, cut.indices, cut.origins, cut.uvs, cut.cornerUvs, cut.zones,
+                 cut.cosmeticTriangles);
+      }
+    }
+    return hash.text();
+  }
 };
 
 }  // namespace cagecast

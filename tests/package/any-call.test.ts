@@ -60,11 +60,9 @@ const validOptions = fc.record(
     steps: fc.record(
       {
         interiorSamples: fc.boolean(),
-        depthWeighting: fc.boolean(),
         recheck: fc.boolean(),
         holes: fc.boolean(),
-        twins: fc.boolean(),
-        floor: fc.constantFrom('none' as const, 'area' as const, 'depth' as const),
+        floor: fc.boolean(),
       },
       { requiredKeys: [] },
     ),

@@ -18,6 +18,7 @@ import {
   splitVertices,
   type TransferResult,
   transfer,
+  Visibility,
   Zone,
 } from 'cagecast';
 import { head, smallest, smallHole, soup } from './scenes.js';
@@ -132,19 +133,17 @@ describe('transfer', () => {
       assert.equal(result.segmentStats.length, 1 + Math.max(...result.segments));
       for (const [
         s,
-        { points, area, exposedArea, coveredArea, coverage, depthWeightedArea, group, twinOf, culled, culledBy },
+        { points, area, exposedArea, coveredArea, coverage, depth, group, ratios, score, culled, culledBy },
       ] of result.segmentStats.entries()) {
         assert.ok(
-          points > 0 &&
-            area > 0 &&
-            exposedArea <= area * (1 + 1e-9) &&
-            coveredArea <= exposedArea * (1 + 1e-9) &&
-            depthWeightedArea <= coveredArea * (1 + 1e-9),
+          points > 0 && area > 0 && exposedArea <= area * (1 + 1e-9) && coveredArea <= exposedArea * (1 + 1e-9),
         );
+        assert.ok(coveredArea > 0 ? depth > 0 && depth < 1 : depth === 0);
         assert.equal(coverage, exposedArea > 0 ? coveredArea / exposedArea : 0);
         if (preset === 'paper') assert.equal(culled, coveredArea < 0.5 * exposedArea);
         assert.equal(group, target.groups![result.segments.indexOf(s)]);
-        assert.ok(twinOf <= s);
+        assert.equal(score, Math.min(ratios.threshold, ratios.floor, ratios.depth, ratios.hole));
+        assert.equal(culled, score < 1);
         assert.equal(culled, culledBy !== 'none');
       }
       assert.deepEqual(Object.keys(result.timings), [
@@ -294,7 +293,7 @@ describe('project and classify', () => {
     test(`together give the result of transfer, for any threshold: ${preset}`, () => {
       for (const { name, cage, target } of [head(8), soup(9)]) {
         const projection = project(cage, target, { preset });
-        assert.ok(projection.zones.every((zone) => zone !== Zone.Culled));
+        assert.ok(projection.visibility.every((found) => found <= Visibility.Uncovered));
         assert.ok(projection.segmentStats.every(({ culled }) => !culled));
         assert.deepEqual(projection.indices, new Uint32Array(target.indices));
         for (const threshold of [0, 0.1, 0.37, 0.5, 0.9, 1]) {
@@ -313,10 +312,10 @@ describe('project and classify', () => {
     const { cage, target } = head(8);
     const projection = project(cage, target);
     assert.deepEqual(classify(projection), classify(projection, { preset: 'default' }));
-    const { floor, twins, holeContents, partialTriangles } = presetOptions('paper').steps;
+    const { floor, partialTriangles } = presetOptions('paper').steps;
     assert.deepEqual(
       classify(projection, { preset: 'paper' }),
-      classify(projection, { steps: { floor, twins, holeContents, partialTriangles } }),
+      classify(projection, { steps: { floor, partialTriangles } }),
     );
     assert.notDeepEqual(
       classify(projection, { preset: 'paper' }).cosmeticTriangles,
@@ -349,12 +348,8 @@ describe('options', () => {
     assert.equal(presetOptions().seams, 'corner');
     assert.deepEqual(presetOptions(), presetOptions('default'));
     const paper = presetOptions('paper');
-    const { projection, floor, minOfAll, maxUncovered, ...toggles } = paper.steps;
-    assert.deepEqual(
-      [paper.seams, paper.occlusionReach, projection, floor],
-      ['vertex', Infinity, 'nearestPoint', 'none'],
-    );
-    assert.deepEqual([minOfAll, maxUncovered], [0.005, 0.25]);
+    const { projection, ...toggles } = paper.steps;
+    assert.deepEqual([paper.seams, paper.occlusionReach, projection], ['vertex', Infinity, 'nearestPoint']);
     assert.deepEqual(new Set(Object.values(toggles)), new Set([false]));
     for (const { cage, target } of [head(1), soup(3)]) {
       for (const preset of presets) {
@@ -383,14 +378,10 @@ describe('options', () => {
     const culledBy = (options: object) =>
       transfer(smallHole().cage, smallHole().target, options).segmentStats.map((stats) => stats.culledBy);
     assert.deepEqual(culledBy({}), ['none', 'hole']);
-    assert.deepEqual(culledBy({ steps: { holeContents: false } }), ['none', 'none']);
+    assert.deepEqual(culledBy({ steps: { holes: false } }), ['none', 'none']);
     assert.deepEqual(culledBy({ locks: { segments: { 1: 'exclude' } } }), ['none', 'lock']);
-    assert.deepEqual(culledBy({ threshold: 1, steps: { floor: 'none', holeContents: false } }), ['none', 'coverage']);
-    assert.ok(painted({ minCovered: 1, steps: { floor: 'area' } }) < painted({}));
-    assert.ok(
-      painted({ threshold: 0, minCovered: 1, steps: { floor: 'depth', depthWeighting: true, minOfAll: 1 } }) <
-        painted({}),
-    );
+    assert.deepEqual(culledBy({ threshold: 1, steps: { floor: false, holes: false } }), ['none', 'coverage']);
+    assert.ok(painted({ threshold: 0, minCovered: 1, steps: { floor: true } }) < painted({ threshold: 0 }));
     assert.ok(
       transfer(cage, target, { preset: 'paper', occlusionReach: 0 }).zones.filter((zone) => zone === Zone.Occluded)
         .length <= plain.zones.filter((zone) => zone === Zone.Occluded).length,

@@ -34,7 +34,7 @@ describe('errors', () => {
     const script = `
       import { transfer, project, classify } from 'cagecast';
       const mesh = { positions: new Float32Array(9), indices: new Uint32Array(3), uvs: new Float32Array(6) };
-      const projection = { zones: new Uint8Array(1), segments: new Uint32Array(1), indices: new Uint32Array(0), preset: 'paper', recovery: new Uint32Array(0), holeShares: [], segmentStats: [{ points: 1, area: 0, exposedArea: 0, coveredArea: 0, depthWeightedArea: 0, group: 0, twinOf: 0 }] };
+      const projection = { visibility: new Uint8Array(1), segments: new Uint32Array(1), indices: new Uint32Array(0), preset: 'paper', recovery: new Uint32Array(0), holeShares: [], segmentStats: [{ points: 1, area: 0, exposedArea: 0, coveredArea: 0, depth: 0, group: 0 }] };
       for (const call of [() => transfer(mesh, mesh), () => project(mesh, mesh), () => classify(projection)]) {
         try { call(); } catch (error) { console.log(error.code, error.message); }
       }`;
@@ -223,14 +223,14 @@ describe('errors', () => {
       'transfer: options.seams = "none" is unknown; there are: "vertex", "corner"',
     );
     fails(
-      untyped(cage, target, { steps: { floor: 1 } }),
+      untyped(cage, target, { seams: 1 }),
       'badOption',
-      'transfer: options.steps.floor = 1 is unknown; there are: "none", "area", "depth"',
+      'transfer: options.seams = 1 is unknown; there are: "vertex", "corner"',
     );
     fails(
-      untyped(cage, target, { steps: { twins: 1 } }),
+      untyped(cage, target, { steps: { recheck: 1 } }),
       'badOption',
-      'transfer: options.steps.twins = 1 is not true or false',
+      'transfer: options.steps.recheck = 1 is not true or false',
     );
     fails(
       untyped(cage, target, { steps: { votes: true } }),
@@ -258,16 +258,6 @@ describe('errors', () => {
       'badOption',
       'transfer: options.minCovered = NaN is not within 0..1',
     );
-    fails(
-      () => transfer(cage, target, { steps: { minOfAll: -1 } }),
-      'badOption',
-      'transfer: options.steps.minOfAll = -1 is not within 0..1',
-    );
-    fails(
-      () => transfer(cage, target, { steps: { maxUncovered: 2 } }),
-      'badOption',
-      'transfer: options.steps.maxUncovered = 2 is not within 0..1',
-    );
     assert.throws(
       () => (project as (...args: unknown[]) => unknown)(cage, target, { threshold: 0.5 }),
       /project: options\.threshold is not an option/,
@@ -284,15 +274,15 @@ describe('errors', () => {
       'badArgument',
       /^classify: projection is undefined/,
     );
-    fails(call({ zones: [0, 0, 0] }), 'badArgument', /projection\.zones is of type Array/);
+    fails(call({ visibility: [0, 0, 0] }), 'badArgument', /projection\.visibility is of type Array/);
     fails(
       call({ segments: new Uint32Array([0, 0, 7]) }),
       'badArgument',
       /projection\.segments\[2\] = 7 is out of range \(1 segments\)/,
       2,
     );
-    fails(call({ segments: new Uint32Array(2) }), 'badArgument', /has 3 zones but 2 segments/);
-    fails(call({ zones: new Uint8Array([0, 9, 0]) }), 'badArgument', /projection\.zones\[1\] = 9/, 1);
+    fails(call({ segments: new Uint32Array(2) }), 'badArgument', /has 3 entries of visibility but 2 of segments/);
+    fails(call({ visibility: new Uint8Array([0, 9, 0]) }), 'badArgument', /projection\.visibility\[1\] = 9/, 1);
     fails(
       call({ indices: new Uint32Array([0, 1, 3]) }),
       'badArgument',
@@ -305,7 +295,7 @@ describe('errors', () => {
       /projection\.recovery\[1\] = 5 is out of range \(\d+ holes\)/,
       1,
     );
-    fails(call({ recovery: new Uint32Array(2) }), 'badArgument', /has 3 zones but 2 entries of recovery/);
+    fails(call({ recovery: new Uint32Array(2) }), 'badArgument', /has 3 entries of visibility but 2 of recovery/);
     fails(
       call({ holeShares: [{ hole: 0, segment: 4, exposedArea: 0, uncoveredArea: 0, hiddenArea: 0 }] }),
       'badArgument',
@@ -318,7 +308,7 @@ describe('errors', () => {
     );
     fails(call({ preset: 'none' }), 'badOption', /options\.preset = "none" is unknown/);
     fails(
-      call({ segmentStats: [{ ...projection.segmentStats[0], twinOf: 9 }] }),
+      call({ segmentStats: [{ ...projection.segmentStats[0], depth: NaN }] }),
       'badArgument',
       /projection\.segmentStats\[0\]/,
     );

@@ -29,11 +29,11 @@ describe('the answer of the package on fixed scenes has the golden hash', () => 
   let builds: Awaited<ReturnType<typeof packages>>;
   const golden = (name: string) => readFileSync(`tests/core/golden/${name}.txt`, 'utf8').trim();
   /** The scenes that a hash is of, in its order. */
-  const scenes = (prefix: string): Scene[] => {
-    const count = readdirSync(folder).filter((name) => new RegExp(`^${prefix}\\d+\\.scene$`).test(name)).length;
+  const scenes = (kind: 'paper' | 'default' | 'borders'): Scene[] => {
+    const count = readdirSync(folder).filter((name) => name.startsWith(`${kind}-`)).length;
     assert.ok(count > 0);
     return Array.from({ length: count }, (_, i) =>
-      readScene(Uint8Array.from(readFileSync(join(folder, `${prefix}${i}.scene`))).buffer),
+      readScene(Uint8Array.from(readFileSync(join(folder, `${kind}-${i}.scene`))).buffer),
     );
   };
 
@@ -44,21 +44,29 @@ describe('the answer of the package on fixed scenes has the golden hash', () => 
   after(() => rmSync(folder, { recursive: true, force: true }));
 
   for (const build of ['inline', 'slim'] as const) {
-    // Of `default` the same is said in reference.test.ts, scene by scene.
     test(`paper, ${build}`, () => {
       const hash = new Hash();
-      for (const { cage, target } of scenes('')) {
+      for (const { cage, target } of scenes('paper')) {
         const { uvs, zones, triangles, segments } = builds[build].transfer(cage, target, { preset: 'paper' });
         hash.add(uvs, zones, triangles, segments);
       }
       assert.equal(hash.text, golden('hash'));
     });
 
+    test(`default, ${build}`, () => {
+      const hash = new Hash();
+      for (const { cage, target } of scenes('default')) {
+        const { uvs, zones, triangles, segments, cosmeticTriangles, cornerUvs } = builds[build].transfer(cage, target);
+        hash.add(uvs, zones, triangles, segments, cosmeticTriangles, cornerUvs);
+      }
+      assert.equal(hash.text, golden('hash-default'));
+    });
+
     test(`cut borders, ${build}`, () => {
       const { transfer, cutBorders } = builds[build];
       const hash = new Hash();
       for (const seams of ['vertex', 'corner'] as const) {
-        for (const { cage, target } of scenes('borders-')) {
+        for (const { cage, target } of scenes('borders')) {
           const { sources, weights, indices, triangles, uvs, cornerUvs, zones, cosmeticTriangles } = cutBorders(
             cage,
             target,

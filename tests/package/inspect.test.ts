@@ -204,7 +204,7 @@ describe('a cage for a part of the target', () => {
       find(inspect(cap, target, { parts, threshold: 0.05 }), 'nothingToPaint').sentence,
       /and it has 0\.\d+ times the required covered area/,
     );
-    assert.notEqual(inspect(cap, target, { parts, threshold: 0.05, steps: { floor: 'none' } }).verdict, 'unfit');
+    assert.notEqual(inspect(cap, target, { parts, threshold: 0.05, steps: { floor: false } }).verdict, 'unfit');
     const { locks } = find(inspection, 'nothingToPaint');
     assert.notEqual(inspect(cap, target, { parts, locks }).verdict, 'unfit', 'as the advice says');
   });
@@ -371,13 +371,18 @@ describe('holes and segments', () => {
     const { segments } = look({});
     const eye = segments.find(({ part }) => part === 'eye')!;
     const threshold = Math.min(1, eye.coverage + 0.02);
-    const inspection = inspect(cage, target, { parts, threshold, steps: { floor: 'none' } });
+    const inspection = inspect(cage, target, { parts, threshold, steps: { floor: false, holes: false } });
     const { sentence, locks } = find(inspection, 'segmentInDoubt');
     assert.match(sentence, /"eye" is not painted, but only just: its coverage is 0\.\d\d, less than the threshold/);
     const kept = locks!.segments!;
     const excluded = Object.fromEntries(Object.keys(kept).map((segment) => [segment, 'exclude' as const]));
     for (const segments of [kept, excluded]) {
-      const decided = inspect(cage, target, { parts, threshold, steps: { floor: 'none' }, locks: { segments } });
+      const decided = inspect(cage, target, {
+        parts,
+        threshold,
+        steps: { floor: false, holes: false },
+        locks: { segments },
+      });
       assert.ok(!decided.findings.some(({ code }) => code === 'segmentInDoubt'), 'a lock settles it');
     }
   });

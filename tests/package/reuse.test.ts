@@ -161,14 +161,14 @@ describe('reuse', () => {
     const projection = project(one.cage, one.target);
     const again = project(one.cage, { ...one.target, indices: projection.indices }, { reuse: projection });
     assert.deepEqual(lasting(again), lasting(project(one.cage, one.target)));
-    // The zones of a projection, written over by what is decided of it.
+    // The visibility of a projection, written over by what is decided of it.
     const decided = classify(projection, { threshold: 0.9 });
     const over = classify(projection, {
       threshold: 0.9,
-      reuse: { ...structuredClone(decided), zones: projection.zones },
+      reuse: { ...structuredClone(decided), zones: projection.visibility },
     });
     assert.deepEqual(over, decided);
-    assert.equal(over.zones, projection.zones);
+    assert.equal(over.zones, projection.visibility);
   });
 
   test('arrays that were moved away are replaced', () => {
@@ -254,18 +254,17 @@ describe('reuse', () => {
           answers[wrong],
           /options\.reuse\.\w+ is (undefined, not a \w+Array|of type \w+Array, which this function does not return);/,
         );
+      const name = fn === 'project' ? 'visibility' : 'zones';
+      const bytes = fn === 'project' ? answers.project.visibility : answers[fn].zones;
       from(
-        { ...answers[fn], zones: Array.from(answers[fn].zones) },
-        /options\.reuse\.zones is of type Array, not a Uint8Array;/,
+        { ...answers[fn], [name]: Array.from(bytes) },
+        new RegExp(`options\\.reuse\\.${name} is of type Array, not a Uint8Array;`),
       );
-      from(
-        { ...answers[fn], cosmeticTriangles: answers[fn].zones, recovery: answers[fn].zones },
-        /options\.reuse\.\w+ (is|shares) /,
-      );
+      from({ ...answers[fn], cosmeticTriangles: bytes, recovery: bytes }, /options\.reuse\.\w+ (is|shares) /);
       from(Object.freeze({ ...answers[fn] }), /options\.reuse cannot be written to \(TypeError: /);
       from(
-        Object.defineProperty({ ...answers[fn] }, 'zones', { writable: false }),
-        /options\.reuse cannot be written to \(TypeError: .*zones/,
+        Object.defineProperty({ ...answers[fn] }, 'segmentStats', { writable: false }),
+        /options\.reuse cannot be written to \(TypeError: .*segmentStats/,
       );
     }
     const { triangles } = answers.transfer;

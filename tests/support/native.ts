@@ -6,14 +6,14 @@ import * as simd from 'cagecast';
 const built = 'build/release/tests/core/cagecast_reference';
 
 /**
- * The brute-force reference and the native library behind one command, built if it is not of this code; CAGECAST_REFERENCE names
- * another. tests/core/reference/main.cpp tells what it does.
+ * The command that writes the scenes of the core's tests (tests/core/reference/main.cpp), built if it is not of this code;
+ * CAGECAST_REFERENCE names another.
  */
 export function nativeCommand(): string {
   const given = process.env['CAGECAST_REFERENCE'];
   const native = given ?? built;
   if (given === undefined) {
-    // A reference of yesterday's library would prove nothing.
+    // Scenes of yesterday would prove nothing.
     if (!existsSync('build/release/build.ninja'))
       execFileSync('cmake', ['--preset', 'release'], { stdio: ['ignore', 'ignore', 'inherit'] });
     execFileSync('cmake', ['--build', '--preset', 'release', '--target', 'cagecast_reference'], {

@@ -5,12 +5,12 @@
 
 export { classify } from './api/classify.js';
 export { type CutTarget, cutBorders } from './api/cut-borders.js';
-export type { Masks } from './api/masks.js';
 export type { Mesh } from './api/mesh.js';
 export {
   type ClassifyOptions,
   type Lock,
   type Locks,
+  type Masks,
   type Preset,
   type PresetOptions,
   type ProjectOptions,
@@ -23,5 +23,5 @@ export { type SplitVertices, splitVertices } from './api/split-vertices.js';
 export { project, transfer } from './api/transfer.js';
 export { init } from './core/engine.js';
 export { CagecastError, type Code, type ErrorDetails } from './core/error.js';
-export type { HoleShare, SegmentStats, Timings } from './core/records.js';
-export { Zone } from './generated/zone.js';
+export type { HoleShare, Ratios, SegmentStats, Timings } from './core/records.js';
+export { Visibility, Zone } from './generated/enums.js';

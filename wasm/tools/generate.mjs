@@ -10,7 +10,7 @@ import { tmpdir } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { parseArgs } from 'node:util';
-import { readCodes, readOptions, readZones } from './options-list.mjs';
+import { readCodes, readEnum, readOptions } from './options-list.mjs';
 
 const { values } = parseArgs({ options: { check: { type: 'boolean' }, root: { type: 'string' } } });
 const root = resolve(values.root ?? fileURLToPath(new URL('../..', import.meta.url)));
@@ -85,15 +85,19 @@ ${codes.map(({ name, text }) => `${comment(text)}  | '${name}'`).join('\n')};
 `;
 }
 
-function makeZones(zones) {
-  return `${kHead('result.hpp')}
-/** Why a vertex may, or may not, be painted. All but \`Cosmetic\` are Non-Cosmetic Zones. */
-export const Zone = {
-${zones.map(({ name, value, text }) => `  /** ${text.replace('`CulledBy`', '`culledBy`')} */\n  ${name}: ${value},\n`).join('')}} as const;
+function makeEnums(types) {
+  const js = (text) => text.replaceAll('`cosmetic`', '`Cosmetic`').replaceAll('`CulledBy`', '`culledBy`');
+  const one = (type) => {
+    const { text, values } = readEnum(root, type);
+    return `
+${comment(js(text), '')}export const ${type} = {
+${values.map(({ name, value, text }) => `  /** ${js(text)} */\n  ${name}: ${value},\n`).join('')}} as const;
 
-/** A value of {@link Zone}. */
-export type Zone = (typeof Zone)[keyof typeof Zone];
+/** A value of {@link ${type}}. */
+export type ${type} = (typeof ${type})[keyof typeof ${type}];
 `;
+  };
+  return kHead('result.hpp') + types.map(one).join('');
 }
 
 function makePage(options) {
@@ -117,9 +121,9 @@ given: of the options of \`project\` it reads all (\`weldTolerance\` only decide
 
 ${head}${rows(false)}
 JavaScript also has \`preset\`, \`locks\`, \`masks\` and \`reuse\` (an earlier result whose arrays are overwritten). C++ also has
-\`locks\`, and \`TransferOptions::paper()\` in place of \`preset\`. For example, in JavaScript,
+\`locks\` and \`masks\`, and \`TransferOptions::paper()\` in place of \`preset\`. For example, in JavaScript,
 \`locks: { segments: { 7: 'keep' }, groups: { 3: 'exclude' } }\` never culls segment 7 and always culls the other segments
-of group 3: the lock of a segment overrides that of its group. \`keep\` only prevents culling: occluded and uncovered points of a kept segment stay unpainted unless step 6 or 7
+of group 3: the lock of a segment overrides that of its group. \`keep\` only prevents culling: occluded and uncovered points of a kept segment stay unpainted unless step 9 or 10
 recovers them. The command has ${flags.join(', ')}, \`--preset\`, \`--keep\` and \`--exclude\`.
 
 ## Masks
@@ -129,7 +133,7 @@ Locks are for whole segments and parts. Masks are for what no name tells apart, 
 
 | Source | \`cagecast\`, \`cagecast/worker\` | \`cagecast/gltf\` | \`cagecast/three\` | Command |
 |---|---|---|---|---|
-| an array, as a painting tool makes | \`masks: { vertices, triangles }\`, \`Int8Array\`s | \`masks\` | \`masks\` | |
+| an array, as a painting tool makes | \`masks: { vertices, triangles }\`, \`Int8Array\`s; in C++ \`masks\`, spans of \`Mask\` | \`masks\` | \`masks\` | |
 | an image in the model's own UVs: white is masked | \`maskTriangles\` of \`cagecast/bake\` | \`maskImages: { never, always }\` | \`modelMasks(model, { never, always })\` | \`--never-mask\`, \`--always-mask\` |
 | vertex colours: red never, green always | \`maskVertices\` of \`cagecast/bake\` | \`maskColors: 'COLOR_0'\` | \`modelMasks(model, { attribute: 'color' })\` | \`--mask-colors COLOR_0\` |
 
@@ -193,7 +197,7 @@ const options = readOptions(root);
 const files = {
   'wasm/src/generated/options.ts': makeOptions(options),
   'wasm/src/generated/codes.ts': makeCodes(readCodes(root)),
-  'wasm/src/generated/zone.ts': makeZones(readZones(root)),
+  'wasm/src/generated/enums.ts': makeEnums(['Visibility', 'Zone']),
   'docs/options.md': makePage(options),
   // Made last, as it depends on the first of these. A test's tree has no command.
   ...(existsSync(join(root, 'wasm/src/cli')) && { 'docs/cli.md': makeCommandPage }),

@@ -52,15 +52,25 @@ export function readCodes(root) {
     .filter(({ name }) => name !== 'ok');
 }
 
-/** @return {{name: string, value: number, text: string}[]}  The zones of a vertex. */
-export function readZones(root) {
+/**
+ * An enumeration of result.hpp.
+ * @return {{text: string, values: {name: string, value: number, text: string}[]}}
+ */
+export function readEnum(root, type) {
   const source = readFileSync(join(root, 'core/include/cagecast/result.hpp'), 'utf8');
-  const body = /enum class Zone[^{]*\{([^}]*)\}/.exec(source)[1];
-  return [...body.matchAll(/^\s*(\w+) = (\d+),\s*\/\/\/< (.*)$/gm)].map(([, name, value, text]) => ({
+  const [, lines, body] = new RegExp(`((?:^///.*\\n)+)enum class ${type} [^{]*\\{([^}]*)\\}`, 'm').exec(source);
+  const values = [...body.matchAll(/^\s*(\w+) = (\d+),\s*\/\/\/< (.*)$/gm)].map(([, name, value, text]) => ({
     name: name[0].toUpperCase() + name.slice(1),
     value: Number(value),
     text,
   }));
+  return {
+    text: lines
+      .replace(/^\/\/\/ /gm, '')
+      .trim()
+      .replaceAll('\n', ' '),
+    values,
+  };
 }
 
 function entriesOf(root, path, pattern) {

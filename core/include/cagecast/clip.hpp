@@ -9,7 +9,7 @@
 
 namespace cagecast {
 
-/// A target whose triangles are cut along the projected boundary loops and seams of the cage: step 10. Every triangle
+/// A target whose triangles are cut along the projected boundary loops and seams of the cage. Every triangle
 /// lies on one side. The vertices of the target keep their numbers and new ones follow. All triangles at an edge are
 /// cut at the same places, even if they do not share vertices, so the surface stays as watertight as it was.
 struct CutTarget {
@@ -34,8 +34,8 @@ struct DecidedTarget {
 };
 
 /// Cuts a target along the projected boundary loops of its cage and, with `Seams::corner`, along the seams of the
-/// texture, and transfers to the cut target: step 10. Which segments are culled does not change. With
-/// `ProjectionMode::nearestVertex` nothing is cut.
+/// texture, and transfers to the cut target. Which segments are culled does not change. Pieces of a triangle that a
+/// mask decides are decided as the whole triangle was. With `ProjectionMode::nearestVertex` nothing is cut.
 /// @param target   The result of a transfer with the same cage and options.
 /// @return As `transfer`; resultMismatch if the zones or segments do not belong to the mesh; bordersTooComplex if that
 /// takes more comparisons with triangles of the cage than 4,000,000, 20,000 for each triangle of the target and 100,000

@@ -19,14 +19,6 @@ enum class Seams : std::uint8_t {
   corner,  ///< Also per triangle corner, in `Projection::cornerUvs`: no triangle stretches.
 };
 
-/// What a segment needs besides the threshold, so that a hidden part with a small exposed area is not painted: step 5.
-/// A, C and D are the whole, the covered and the depth-weighted area of the segment; F is its coverage.
-enum class Floor : std::uint8_t {
-  none,   ///< Nothing.
-  area,   ///< C > 0, and C ≥ `minCovered` · A.
-  depth,  ///< C > 0, and D · F ≥ `minCovered` · A, or `minOfAll` and `maxUncovered` let it pass.
-};
-
 /// An override by the user: whether a segment is culled.
 enum class Lock : std::uint8_t {
   automatic,  ///< No override: its score decides.
@@ -45,6 +37,26 @@ struct LockEntry {
 struct Locks {
   std::span<const LockEntry> segments = {};  ///< By segment number, as in `Projection::segments`.
   std::span<const LockEntry> groups = {};    ///< By `SegmentStats::group`: the group of the segment's first vertex.
+};
+
+/// An override by the user for a vertex or a triangle.
+enum class Mask : std::int8_t {
+  never = -1,     ///< Never painted. It overrides `always`.
+  automatic = 0,  ///< No override: the method decides.
+  always = 1,     ///< Painted, whatever the method says.
+};
+
+/// Overrides for what no lock can name, such as the eyes of a scan in one piece. Segments, their ratios and holes are
+/// not affected.
+///
+/// A vertex of `never` gets `Zone::culled`, and no triangle at it is painted. A vertex of `always` gets
+/// `Zone::cosmetic`, and a triangle is painted if its vertices say so then. Triangles are decided after vertices: the
+/// vertices of a painted triangle of `always` become cosmetic, and those all of whose triangles are `never` become
+/// culled. Where the cage has no place for what is painted, as over a hole, it shows the nearest of the cage,
+/// stretched.
+struct Masks {
+  std::span<const Mask> vertices = {};   ///< 1 per target vertex, or none. Vertices at the same place may differ.
+  std::span<const Mask> triangles = {};  ///< 1 per target triangle, or none.
 };
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -69,6 +81,7 @@ struct TransferOptions {
 #include "cagecast/options.def"
   Steps steps;
   Locks locks;  ///< Read by `classify` and `transfer`.
+  Masks masks;  ///< Read by `classify`, `transfer` and `cutBorders`.
 
   /// The preset `paper`: the method as published.
   static constexpr TransferOptions paper() noexcept {
@@ -95,6 +108,8 @@ enum class Option : std::uint8_t {
   offset,
   voxels,
   reach,
+  vertexMasks,
+  triangleMasks,
 };
 
 }  // namespace cagecast

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -9,6 +10,13 @@
 
 /// What the functions of transfer.hpp return.
 namespace cagecast {
+
+/// What steps 1 to 3 find of a vertex. Its zone also depends on its segment.
+enum class Visibility : std::uint8_t {
+  covered = 0,    ///< The cage covers it.
+  occluded = 1,   ///< Another surface of the target lies over it.
+  uncovered = 2,  ///< The cage has a hole over it, or it lies outside the cage.
+};
 
 /// Why a vertex may, or may not, be painted. All but `cosmetic` are Non-Cosmetic Zones (NCZ).
 enum class Zone : std::uint8_t {
@@ -21,8 +29,8 @@ enum class Zone : std::uint8_t {
 /// Why a segment is culled, that is, why none of it may be painted.
 enum class CulledBy : std::uint8_t {
   none,      ///< It is not culled.
-  coverage,  ///< Its score is below 1: because of the threshold, the floor or its twins.
-  hole,      ///< A hole of the cage is meant for it.
+  coverage,  ///< The cage covers too little of it, or it lies too deep: one of `Ratios` but `hole` is below 1.
+  hole,      ///< A hole of the cage is meant for it: only `Ratios::hole` is below 1.
   lock,      ///< `Lock::exclude`.
 };
 
@@ -32,36 +40,48 @@ struct Timings {
   double build = 0;     ///< Building the search trees, and the boundary loops of the cage.
   double project = 0;   ///< Step 1: the nearest point of the cage for every point of the target.
   double occluded = 0;  ///< Step 2: rays against the target.
-  double covered = 0;   ///< Steps 2′ and 3: where rays meet the cage.
-  double segments = 0;  ///< Steps 4, 5′ and 5″: connected components, their areas and twins; with steps 1 to 3 of
-                        ///< interior samples, and writing the results of all steps per vertex.
-  double recheck = 0;   ///< Step 6: more rays from occluded points.
-  double holes = 0;     ///< Step 7: uncovered points and the holes over them.
-  double seams = 0;     ///< Step 9: UVs per triangle corner.
-  double classify = 0;  ///< Steps 5 and 8: which segments are culled; zones of vertices and triangles.
+  double covered = 0;   ///< Steps 3 and 6: where rays meet the cage.
+  double segments = 0;  ///< Steps 4 and 7: connected components and their areas; with steps 1 to 3 of interior samples,
+                        ///< and writing the results of all steps per vertex.
+  double recheck = 0;   ///< Step 9: more rays from occluded points.
+  double holes = 0;     ///< Step 10: uncovered points and the holes over them.
+  double seams = 0;     ///< Step 12: UVs per triangle corner.
+  double classify = 0;  ///< Steps 5, 8, 10 and 11: which segments are culled; zones of vertices and triangles.
   double total = 0;     ///< The whole call.
+};
+
+/// What the rules on segments have against one: of each rule, the ratio of what the segment has to what it needs. It
+/// meets a rule from 1 on; infinity if the rule asks for nothing, and until `classify` has decided. A, E, C and K are
+/// as in docs/method.md.
+struct Ratios {
+  double threshold = std::numeric_limits<double>::infinity();  ///< Step 5: coverage / `threshold`.
+  double floor = std::numeric_limits<double>::infinity();      ///< Step 8: covered area / needed area.
+  double depth = std::numeric_limits<double>::infinity();      ///< Step 8: greatest depth allowed / depth.
+  double hole = std::numeric_limits<double>::infinity();  ///< Step 10: area allowed in a hole / area there; the least.
+
+  /// The score: the segment is kept if it is at least 1, unless a lock decides.
+  [[nodiscard]] double least() const noexcept { return std::min({threshold, floor, depth, hole}); }
 };
 
 /// The properties of one segment: a connected component of the welded target. Areas are in squared units of the input,
 /// and exact to diagonal² · triangles² · 2^-58 of the target, because that of each triangle is rounded to a whole
 /// number of tiny units: what is left of slivers that are 1e12 times longer than wide is rounding.
 struct SegmentStats {
-  std::uint32_t points = 0;  ///< Number of welded points.
-  std::uint32_t group = 0;   ///< The group of its first vertex; 0 if the target has no groups.
-  std::uint32_t twinOf = 0;  ///< The first segment of the same shape, or itself; itself without `depthWeighting`.
+  std::uint32_t points = 0;            ///< Number of welded points.
+  std::uint32_t group = 0;             ///< The group of its first vertex; 0 if the target has no groups.
   CulledBy culledBy = CulledBy::none;  ///< Set by `transfer`; `project` leaves `none`.
+  Ratios ratios;                       ///< Set by `transfer`.
   double area = 0;                     ///< A: its whole area.
   double exposedArea = 0;              ///< E: the area that is not occluded.
   double coveredArea = 0;              ///< C: the part of E that the cage covers.
-  double depthWeightedArea = 0;        ///< D: C, weighted less where it is unusually deep under the cage; equal to
-                                       ///< C without `depthWeighting`.
-  /// How well it meets the rules of step 5, as the ratio of actual to required area: a segment with a score of at least
-  /// 1 is kept, unless a lock decides. Infinity if no area is required, and until `transfer` sets it.
-  double score = std::numeric_limits<double>::infinity();
+  /// The mean distance of its covered area from the cage, as a share of the target's diagonal; a distance of more than
+  /// one diagonal counts as one. 0 if nothing is covered, and with `ProjectionMode::nearestVertex`.
+  double depth = 0;
 
   [[nodiscard]] bool culled() const noexcept { return culledBy != CulledBy::none; }
   /// F = C / E, the share of the exposed area that the cage covers; 0 if nothing is exposed.
   [[nodiscard]] double coverage() const noexcept { return exposedArea > 0 ? coveredArea / exposedArea : 0; }
+  [[nodiscard]] double score() const noexcept { return ratios.least(); }
 };
 
 /// Whether an occluded or uncovered vertex becomes cosmetic if its segment is not culled: `never`, `always`, or, for
@@ -87,7 +107,7 @@ struct HoleShare {
 
 /// A non-owning view of what `classify` needs of a projection.
 struct ProjectionView {
-  std::span<const Zone> zones;  ///< All fields are as in `Projection`.
+  std::span<const Visibility> visibility;  ///< All fields are as in `Projection`.
   std::span<const std::uint32_t> segments;
   std::span<const SegmentStats> segmentStats;
   std::span<const std::uint32_t> recovery = {};
@@ -100,7 +120,7 @@ struct Projection {
   /// 2 per target index with `Seams::corner` and `ProjectionMode::nearestPoint`, else empty. They differ from `uvs`
   /// only where a seam of the cage's texture runs through a triangle.
   Array<float> cornerUvs;
-  Array<Zone> zones;                 ///< 1 per vertex: cosmetic (here: covered), occluded or uncovered.
+  Array<Visibility> visibility;      ///< 1 per vertex.
   Array<std::uint32_t> triangles;    ///< 1 per vertex: the nearest cage triangle, or with
                                      ///< `ProjectionMode::nearestVertex` the first at the nearest vertex.
   Array<float> distances;            ///< 1 per vertex: the distance to it, or to that vertex, in units of the input.
@@ -115,29 +135,31 @@ struct Projection {
   /// earlier calls with the workspace. Without the caller's inputs, and what the call takes besides (`Workspace`).
   std::uint64_t peakBytes = 0;
 
-  [[nodiscard]] ProjectionView view() const noexcept { return {zones, segments, segmentStats, recovery, holeShares}; }
+  [[nodiscard]] ProjectionView view() const noexcept {
+    return {visibility, segments, segmentStats, recovery, holeShares};
+  }
 };
 
-/// The result of `classify`: steps 5 and 8.
+/// The result of `classify`: steps 5, 8 and 11, and what step 10 says of segments and holes.
 struct Zones {
   Array<Zone> zones;                      ///< 1 per target vertex.
   Array<std::uint8_t> cosmeticTriangles;  ///< 1 per target triangle: 1 if it may be painted; see `partialTriangles`.
   Array<CulledBy> culledBy;               ///< 1 per segment.
-  Array<double> scores;                   ///< 1 per segment; see `SegmentStats::score`.
+  Array<Ratios> ratios;                   ///< 1 per segment.
   /// 1 per hole, up to the last one in `holeShares`: 1 if a culled segment lies behind it and explains it.
   Array<std::uint8_t> explainedHoles;
 };
 
 /// The result of `transfer`.
 struct TransferResult {
-  Projection projection;  ///< With `culledBy` and `score` of each segment set.
+  Projection projection;  ///< With `culledBy` and `ratios` of each segment set.
   Zones zones;
 
-  /// Sets `culledBy` and `score` of each segment in `projection` as `classify` found them.
+  /// Sets `culledBy` and `ratios` of each segment in `projection` as `classify` found them.
   void setVerdicts() noexcept {
     for (std::size_t s = 0; s < projection.segmentStats.size(); ++s) {
       projection.segmentStats[s].culledBy = zones.culledBy[s];
-      projection.segmentStats[s].score = zones.scores[s];
+      projection.segmentStats[s].ratios = zones.ratios[s];
     }
   }
 };

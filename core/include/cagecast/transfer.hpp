@@ -45,8 +45,8 @@ class Workspace {
   std::size_t limit_;
 };
 
-/// Finds, for every vertex of the target, its UV and whether it is occluded or uncovered: steps 1 to 4, 5′, 6, 7 and 9,
-/// and the twins of 5″. The result does not depend on threshold, floor or locks.
+/// Finds, for every vertex of the target, its UV and whether it is occluded or uncovered: steps 1 to 4, 6, 7, 9, 10 and
+/// 12. The result does not depend on threshold, floor or locks.
 /// @return badOption, or any code about the meshes, or weldToleranceTooLarge, or outOfMemory.
 /// Cost: O((V + N + M) log(N + M)) for V vertices and N triangles of the target and M triangles of the cage. Up to
 /// their product for a target of very many small segments under a cage with very many holes, or where many cage
@@ -54,8 +54,8 @@ class Workspace {
 Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
                Projection& out) noexcept;
 
-/// Decides which segments are culled, and so the zone of every vertex: steps 5, 5″, 5‴ and 8, and which holes of
-/// step 7 are explained.
+/// Decides which segments are culled, and so the zone of every vertex: steps 5, 8 and 11, and which segments and holes
+/// step 10 finds meant for each other.
 /// Takes microseconds for small targets; call it again for another threshold or other locks.
 /// @param projection  `Projection::view()` of a projection with any options.
 /// @param indices     The indices of the target, 3 per triangle.

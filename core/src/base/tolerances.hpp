@@ -11,11 +11,11 @@ inline constexpr double kTieDistance = 1e-6;
 /// The heights of one point above two planes through the same edge differ by rounding alone.
 inline constexpr double kTiePlane = 1e-7;
 
-/// Steps 2, 3 and 6: a ray meets the target only from this far on, in diag, so that it does not hit the surface that it
+/// Steps 2, 3 and 9: a ray meets the target only from this far on, in diag, so that it does not hit the surface that it
 /// starts from; it meets the cage from as far behind its start, so that a point on the cage is covered.
 inline constexpr double kRayStart = 1e-5;
 
-/// Step 9: a target edge is smeared if its UV length exceeds the UV length that the cage explains by this factor,
+/// Step 12: a target edge is smeared if its UV length exceeds the UV length that the cage explains by this factor,
 inline constexpr double kSmear = 4;
 /// plus this UV length: edges that are shorter than it in the texture are never smeared.
 inline constexpr double kSmearSlack = 0.005;

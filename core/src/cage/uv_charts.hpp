@@ -11,7 +11,7 @@
 
 namespace cagecast {
 
-/// What step 9 compares of the closest points of two target vertices.
+/// What step 12 compares of the closest points of two target vertices.
 struct UvSample {
   std::uint32_t cageTriangle;
   double distance;  ///< From the vertex to the cage, scaled.

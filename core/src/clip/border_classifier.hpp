@@ -10,7 +10,7 @@
 #include "clip/boundary_lines.hpp"
 #include "search/closest_point_search.hpp"
 
-/// docs/method.md, step 10: which region of the target a point is in. Borders run between regions.
+/// docs/borders.md: which region of the target a point is in. Borders run between regions.
 namespace cagecast {
 
 /// The cage, as the clip step needs it.

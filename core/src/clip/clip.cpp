@@ -1,11 +1,13 @@
 #include "cagecast/clip.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "clip/clip_target.hpp"
 #include "input/validate.hpp"
 #include "steps/classify.hpp"
+#include "steps/masks.hpp"
 #include "steps/scene.hpp"
 
 namespace cagecast {
@@ -55,7 +57,7 @@ Status clip(const MeshView& cage, const DecidedTarget& decided, const TransferOp
 }
 
 /// Sets the zones along the cuts, where rounding would decide otherwise: what lies beyond a boundary loop is uncovered,
-/// whatever step 7 says, and what lies on the border is not.
+/// whatever step 10 says, and what lies on the border is not.
 void applyCuts(const ClippedMesh& cut, const TransferOptions& options, Zones& zones) {
   for (std::size_t v = 0; v < cut.loopSides.size(); ++v) {
     Zone& zone = zones.zones[v];
@@ -64,6 +66,40 @@ void applyCuts(const ClippedMesh& cut, const TransferOptions& options, Zones& zo
   }
   markCosmetic(zones.zones, cut.indices, options, zones.cosmeticTriangles);
   for (std::size_t t = 0; t < cut.areBeyond.size(); ++t) zones.cosmeticTriangles[t] &= cut.areBeyond[t] == 0;
+}
+
+/// The source of a new vertex with the greatest weight.
+std::uint32_t heaviestSource(const ClippedMesh& cut, std::size_t newVertex) {
+  const float* const weights = &cut.weights[3 * newVertex];
+  return cut.sources[3 * newVertex + static_cast<std::size_t>(std::max_element(weights, weights + 3) - weights)];
+}
+
+/// Decides the pieces of masked triangles, and their vertices, as the whole triangles were.
+/// @return false if memory ran out.
+bool applyMasks(const DecidedTarget& decided, const TransferOptions& options, const ClippedMesh& cut, Zones& zones) {
+  const Masks& masks = options.masks;
+  if (masks.vertices.empty() && masks.triangles.empty()) return true;
+  const std::span<const std::uint32_t> indices = decided.mesh.indices;
+  const std::size_t vertexCount = decided.zones.size();
+  Array<std::uint8_t> isDecided;  // 1 per vertex of the target: whether its zone is that of the whole.
+  if (!isDecided.reset(vertexCount)) return false;
+  for (std::size_t v = 0; v < vertexCount; ++v)
+    isDecided[v] = !masks.vertices.empty() && masks.vertices[v] != Mask::automatic;
+  for (std::size_t v = vertexCount; v < zones.zones.size(); ++v) {
+    const std::uint32_t source = heaviestSource(cut, v - vertexCount);
+    if (isDecided[source] != 0) zones.zones[v] = decided.zones[source];
+  }
+  for (std::size_t i = 0; i < indices.size() && !masks.triangles.empty(); ++i) {
+    if (masks.triangles[i / 3] != Mask::automatic) isDecided[indices[i]] = 1;
+  }
+  for (std::size_t v = 0; v < vertexCount; ++v) {
+    if (isDecided[v] != 0) zones.zones[v] = decided.zones[v];
+  }
+  for (std::size_t piece = 0; piece < cut.origins.size(); ++piece) {
+    const std::optional<bool> verdict = maskedVerdict(options, indices, decided.zones, cut.origins[piece]);
+    if (verdict) zones.cosmeticTriangles[piece] = *verdict;
+  }
+  return true;
 }
 
 }  // namespace
@@ -79,6 +115,8 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
     return {Code::resultMismatch, Argument::target, static_cast<std::uint32_t>(decided.zones.size())};
   }
   if (const Status status = checkOptions(options); !status.ok()) return status;
+  if (const Status status = checkMasks(options.masks, targetVertexCount, target.indices.size() / 3); !status.ok())
+    return status;
   Arena* const arena = workspace.restart();
   if (arena == nullptr) return kOutOfMemory;
   ClippedMesh cut;
@@ -102,18 +140,19 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
     locks[s] = {s, decided.culledBy[s] != CulledBy::none ? Lock::exclude : Lock::keep};
 
   TransferOptions locked = options;
-  locked.steps.twins = false;
   // New vertices are as close as 1e-7 to each other, also across a border: those are not one.
   locked.weldTolerance = 0;
+  locked.masks = {};
   Projection again;
   if (const Status status = project(cage, {cut.positions, cut.indices, {}, groups}, locked, workspace, again);
       !status.ok())
     return status;
   locked.locks = {locks, {}};
   Zones zones;
-  const ProjectionView view{again.zones, segments, stats, again.recovery, {}};
+  const ProjectionView view{again.visibility, segments, stats, again.recovery, {}};
   if (const Status status = classify(view, cut.indices, locked, zones); !status.ok()) return status;
   applyCuts(cut, options, zones);
+  if (!applyMasks(decided, options, cut, zones)) return kOutOfMemory;
   out = {
       std::move(cut.sources), std::move(cut.weights),     std::move(cut.indices), std::move(cut.origins),
       std::move(again.uvs),   std::move(again.cornerUvs), std::move(zones.zones), std::move(zones.cosmeticTriangles)};

@@ -21,7 +21,7 @@ struct ClippedMesh {
   Array<std::uint8_t> areBeyond;  ///< 1 per triangle: 1 if it lies beyond a boundary loop.
 };
 
-/// Step 10: cuts a target along the boundary loops of the cage, and then, if the cage has charts, what is not beyond
+/// Cuts a target along the boundary loops of the cage, and then, if the cage has charts, what is not beyond
 /// the loops along the seams.
 /// @param[in,out] takesPart  1 per vertex of the target: an edge is cut if both its ends have 1 here. Vertices with
 /// equal positions get the same value, 1 if any has it.

@@ -33,7 +33,7 @@ struct ClippedTriangles {
   }
 };
 
-/// docs/method.md, step 10: lengths, as shares of the diagonal.
+/// docs/borders.md: lengths, as shares of the diagonal.
 struct ClipTolerances {
   double feature = 5e-4;     ///< What is smaller may be missed.
   double straight = 2.5e-4;  ///< How far a border may be from the cut that follows it.

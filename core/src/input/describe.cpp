@@ -60,8 +60,17 @@ std::string number(double value) {
 std::string spelled(float value) { return number(static_cast<double>(value)); }
 std::string spelled(std::uint32_t value) { return std::to_string(value); }
 
-std::string describeOption(const Status& status) {
+std::string describeOption(const Status& status, const MeshView& target) {
   const std::string name = std::string("options.") + optionName(status.option);
+  if (status.option == Option::vertexMasks || status.option == Option::triangleMasks) {
+    const std::string at = std::to_string(status.at);
+    if (status.value != 0)
+      return name + "[" + at + "] = " + spelled(status.value) + " is not -1 (never), 0 or 1 (always)";
+    const bool isOfVertices = status.option == Option::vertexMasks;
+    const auto count = (isOfVertices ? target.positions.size() : target.indices.size()) / 3;
+    return name + " has " + at + " entries, not 1 for each of " + std::to_string(count) +
+           (isOfVertices ? " vertices" : " triangles") + " of target";
+  }
   if (status.option == Option::segmentLocks || status.option == Option::groupLocks) {
     const std::string at = std::to_string(status.at);
     if (status.value != 0) return name + "[" + at + "] = " + spelled(status.value) + " is not one of " + kLockNames;
@@ -133,7 +142,7 @@ const char* argumentName(Argument argument) noexcept {
 }
 
 std::string describe(const Status& status, const MeshView& cage, const MeshView& target) {
-  if (status.code == Code::badOption) return describeOption(status);
+  if (status.code == Code::badOption) return describeOption(status, target);
   const MeshView& mesh = status.argument == Argument::cage ? cage : target;
   return fillIn(sentenceOf(status, mesh), [&](std::string_view name) { return valueOf(name, status, mesh); });
 }

@@ -66,6 +66,8 @@ const OptionEntry* findOption(Option option) noexcept {
 const char* optionName(Option option) noexcept {
   if (option == Option::segmentLocks) return "locks.segments";
   if (option == Option::groupLocks) return "locks.groups";
+  if (option == Option::vertexMasks) return "masks.vertices";
+  if (option == Option::triangleMasks) return "masks.triangles";
   const OptionEntry* entry = findOption(option);
   return entry == nullptr ? "none" : entry->name;
 }

@@ -143,21 +143,20 @@ Status checkProjection(const ProjectionView& projection, std::span<const std::ui
   const auto fault = [](Code code, std::size_t at) {
     return Status{code, Argument::target, static_cast<std::uint32_t>(at)};
   };
-  const auto& [zones, segments, stats, recovery, shares] = projection;
-  const Status mismatch = fault(Code::resultMismatch, zones.size());
+  const auto& [visibility, segments, stats, recovery, shares] = projection;
+  const Status mismatch = fault(Code::resultMismatch, visibility.size());
   if (indices.size() % 3 != 0) return fault(Code::indicesNotTriples, indices.size());
-  if (segments.size() != zones.size()) return mismatch;
-  const std::size_t stray = firstStray(indices, zones.size());
+  if (segments.size() != visibility.size()) return mismatch;
+  const std::size_t stray = firstStray(indices, visibility.size());
   if (stray < indices.size()) return fault(Code::indexOutOfRange, stray);
   const std::size_t segmentCount = stats.size();
-  const auto isTwin = [=](const SegmentStats& of) { return of.twinOf < segmentCount; };
   // A cage has fewer holes than triangles.
   const auto isShare = [=](const HoleShare& of) { return of.segment < segmentCount && of.hole < kMaxTriangles; };
-  const bool isWhole =
-      firstStray(segments, segmentCount) == segments.size() && (recovery.empty() || recovery.size() == zones.size()) &&
-      std::all_of(stats.begin(), stats.end(), isTwin) && std::all_of(shares.begin(), shares.end(), isShare) &&
-      std::is_sorted(shares.begin(), shares.end(),
-                     [](const HoleShare& a, const HoleShare& b) { return a.hole < b.hole; });
+  const bool isWhole = firstStray(segments, segmentCount) == segments.size() &&
+                       (recovery.empty() || recovery.size() == visibility.size()) &&
+                       std::all_of(shares.begin(), shares.end(), isShare) &&
+                       std::is_sorted(shares.begin(), shares.end(),
+                                      [](const HoleShare& a, const HoleShare& b) { return a.hole < b.hole; });
   return isWhole ? Status{} : mismatch;
 }
 

@@ -28,7 +28,7 @@ struct PatchCandidate {
   std::uint32_t points;  ///< Bit i: point i of the group.
 };
 
-/// docs/method.md, step 9: the cage triangles that a flood over edges shared in UV reaches from a corner's closest
+/// docs/method.md, step 12: the cage triangles that a flood over edges shared in UV reaches from a corner's closest
 /// point, up to a distance.
 struct ChartPatch {
   /// Points whose distances to a cage triangle are found at once: the closest point around which the patch lies, and

@@ -7,11 +7,11 @@
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 9: the reach of a patch, as a multiple of the triangle's longest edge plus a share of the
+/// docs/method.md, step 12: the reach of a patch, as a multiple of the triangle's longest edge plus a share of the
 /// diagonal.
 constexpr double kPatchEdges = 1.5;
 constexpr double kPatchSlack = 0.01;
-/// docs/method.md, step 9: sums of distances whose difference is within this share of the diagonal are equal.
+/// docs/method.md, step 12: sums of distances whose difference is within this share of the diagonal are equal.
 constexpr double kTieSum = 1e-7;
 
 /// The sum of the corners' distances to the patch around corner k, in float precision; infinity if there is no patch.

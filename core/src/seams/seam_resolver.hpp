@@ -7,7 +7,7 @@
 
 namespace cagecast {
 
-/// Gives target triangles that lie across a seam UVs of their own: step 9. Works on a batch of triangles at a time.
+/// Gives target triangles that lie across a seam UVs of their own: step 12. Works on a batch of triangles at a time.
 class SeamResolver {
  public:
   /// Allocates its working memory; check `scene.arena.failed()` afterwards.

@@ -10,7 +10,7 @@
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 7: an uncovered point becomes cosmetic if its overhang is at most the lesser of these two: a
+/// docs/method.md, step 10: an uncovered point becomes cosmetic if its overhang is at most the lesser of these two: a
 /// share of the target's diagonal, and a share of the diagonal of the loop's box.
 constexpr double kOverhang = 0.005;
 constexpr double kOverhangOfHole = 0.05;
@@ -28,7 +28,7 @@ struct Share {
 /// Whether a point takes part in the areas at holes. Exposed points take part. Occluded ones only if their ray misses
 /// the cage and their segment has C > 0.
 bool takesPart(const PointData& data, const Array<SegmentStats>& stats, std::uint32_t point) {
-  if (data.zones[point] != Zone::occluded) return true;
+  if (data.visibility[point] != Visibility::occluded) return true;
   const bool isUnderCage =
       data.cageDistances == nullptr || data.cageDistances[point] < std::numeric_limits<double>::infinity();
   return !isUnderCage && stats[data.segments[point]].coveredArea > 0;
@@ -45,7 +45,7 @@ std::uint32_t loopOfPoint(const Scene& scene, const PointData& data, std::uint32
   const Vec3 p = data.points.exactly(point);
   const Vec3 q = positionOf(triangle, closestPointOnTriangle(triangle, p));
   const std::uint32_t loop = loops.at(triangle, t, q, scene.units.diagonal);
-  if (loop == kNone || data.zones[point] != Zone::uncovered) return loop;
+  if (loop == kNone || data.visibility[point] != Visibility::uncovered) return loop;
   const Vec3 offset = p - q;
   const Vec3 normal = triangle.normal.exact;
   const double overhang = length(offset - dot(offset, normal) * normal);
@@ -78,8 +78,8 @@ std::uint32_t sumShares(const Scene& scene, const PointData& data, std::span<con
         found[count++] = {loop, s, 0, 0, 0};
       }
       Share& share = found[shareOf[s]];
-      (data.zones[p] == Zone::occluded ? share.hidden : share.exposed) += data.areas[p];
-      if (data.zones[p] == Zone::uncovered) share.uncovered += data.areas[p];
+      (data.visibility[p] == Visibility::occluded ? share.hidden : share.exposed) += data.areas[p];
+      if (data.visibility[p] == Visibility::uncovered) share.uncovered += data.areas[p];
     }
   }
   return count;
@@ -101,7 +101,7 @@ void assignHoles(const Scene& scene, PointData& data, const Array<SegmentStats>&
 
   std::fill(ends, ends + loopCount, 0u);
   for (std::uint32_t i = 0; i < pointCount; ++i) {
-    if (data.zones[i] == Zone::uncovered) data.recovery[i] = Recovery::always;
+    if (data.visibility[i] == Visibility::uncovered) data.recovery[i] = Recovery::always;
     loopOf[i] = takesPart(data, stats, i) ? loopOfPoint(scene, data, i, data.recovery[i]) : kNone;
     if (loopOf[i] != kNone) ++ends[loopOf[i]];
   }

@@ -6,7 +6,7 @@
 
 namespace cagecast {
 
-/// Step 7: finds for every uncovered point whether it is recovered, and which hole that depends on (`data.recovery`).
+/// Step 10: finds for every uncovered point whether it is recovered, and which hole that depends on (`data.recovery`).
 /// Also adds up, for each hole, the areas of the segments there.
 /// @param[out] shares  Ordered by hole.
 void assignHoles(const Scene& scene, PointData& data, const Array<SegmentStats>& stats,

@@ -8,7 +8,7 @@ namespace {
 
 using Box = BoundaryLoops::Box;
 
-/// docs/method.md, step 4′: a small segment has fewer points than this.
+/// docs/method.md, step 7: a small segment has fewer points than this.
 constexpr std::uint32_t kFewPoints = 32;
 /// A segment is near a hole if it is no farther from it than this share of the diagonal.
 constexpr double kNearHole = 0.01;
@@ -48,8 +48,8 @@ bool findSampledSegments(const Scene& scene, const PointData& data, const Array<
   for (std::uint32_t i = 0; i < data.points.count; ++i) {
     const std::uint32_t s = data.segments[i];
     if (!isSmall(stats[s])) continue;
-    // With `farLoops` the box takes in all that is as near to the point as the cage is: so also the cage above it.
-    const double around = scene.options.steps.farLoops ? static_cast<double>(data.distances[i]) : 0;
+    // The box takes in all that is as near to the point as the cage is: so also the cage above it.
+    const auto around = static_cast<double>(data.distances[i]);
     for (const double side : {-around, around}) {
       boxes[s].grow(Vec3::from(data.points.at(i)) + Vec3{side, side, side});
     }

@@ -28,7 +28,7 @@ void markOccluded(const Scene& scene, PointData& data) noexcept {
     }
     search.search(rays, count, hit);
     for (std::uint32_t i = 0; i < count; ++i) {
-      if (hit[i]) of.zones[begin + i] = Zone::occluded;
+      if (hit[i]) of.visibility[begin + i] = Visibility::occluded;
     }
   }
 }

@@ -5,7 +5,7 @@
 
 namespace cagecast {
 
-/// Step 2: marks the points over which the target itself lies. Step 2′: only up to `occlusionReach` beyond the cage.
+/// Step 2: marks the points over which the target itself lies. Step 6: only up to `occlusionReach` beyond the cage.
 void markOccluded(const Scene& scene, PointData& data) noexcept;
 
 }  // namespace cagecast

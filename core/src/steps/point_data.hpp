@@ -11,7 +11,7 @@
 namespace cagecast {
 
 /// Points on the target, and what the steps find out about them. They are the welded vertices, or the interior samples
-/// of step 4′. Every array has one entry per point; lengths are scaled.
+/// of step 7. Every array has one entry per point; lengths are scaled.
 struct PointData {
   PointData() noexcept = default;
   /// Allocates what steps 1 to 4 write.
@@ -20,7 +20,7 @@ struct PointData {
         uvs(arena.allocate<float>(std::size_t{2} * at.count)),
         distances(arena.allocate<float>(at.count)),
         cageTriangles(arena.allocate<std::uint32_t>(at.count)),
-        zones(arena.allocate<Zone>(at.count)),
+        visibility(arena.allocate<Visibility>(at.count)),
         meetsCage(arena.allocate<bool>(at.count)),
         segments(arena.allocate<std::uint32_t>(at.count)) {
     if (std::isfinite(options.occlusionReach)) cageDistances = arena.allocate<double>(at.count);
@@ -32,16 +32,16 @@ struct PointData {
   float* uvs = nullptr;                    ///< 2 per point.
   float* distances = nullptr;              ///< To the closest point of the cage.
   std::uint32_t* cageTriangles = nullptr;  ///< The triangle of that point, in `Cage::triangles`.
-  Zone* zones = nullptr;
+  Visibility* visibility = nullptr;
   bool* meetsCage = nullptr;        ///< Whether the ray of step 3 hits the cage; false if step 1 left that open.
-  double* cageDistances = nullptr;  ///< How far along its ray the cage is; infinity: nowhere. With step 2′, else null.
+  double* cageDistances = nullptr;  ///< How far along its ray the cage is; infinity: nowhere. With step 6, else null.
 
-  // Of steps 4 and 5:
+  // Of steps 4 and 7:
   std::uint32_t* segments = nullptr;
   std::int64_t* areas = nullptr;           ///< A third of each triangle at the point, in an `AreaUnit`.
   std::int64_t* unsampledAreas = nullptr;  ///< The same without the triangles that have interior samples.
 
-  /// Of steps 6 and 7: values of `Recovery`. Null if there is neither.
+  /// Of steps 9 and 10: values of `Recovery`. Null if there is neither.
   std::uint32_t* recovery = nullptr;
 };
 

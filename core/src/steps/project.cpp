@@ -49,7 +49,7 @@ void projectPoints(const Scene& scene, PointData& data) noexcept {
     out.meetsCage[i] = q.inside && -q.height > -start;
     if (out.cageDistances != nullptr) out.cageDistances[i] = std::max(0.0, -q.height);
   }
-  std::fill(out.zones, out.zones + points.count, Zone::cosmetic);
+  std::fill(out.visibility, out.visibility + points.count, Visibility::covered);
 }
 
 }  // namespace cagecast

@@ -5,7 +5,7 @@
 
 namespace cagecast {
 
-/// Step 1: finds the closest point of the cage to every point, and blends its UVs. All points become cosmetic.
+/// Step 1: finds the closest point of the cage to every point, and blends its UVs. All points become covered.
 void projectPoints(const Scene& scene, PointData& data) noexcept;
 
 /// Instead of step 1, for comparison: takes the UVs of the nearest cage vertex.

@@ -45,7 +45,7 @@ void projectToVertices(const Scene& scene, PointData& data) noexcept {
     }
     data.distances[i] = static_cast<float>(length(offset));
     data.cageTriangles[i] = triangleOfVertex[vertex];
-    data.zones[i] = Zone::cosmetic;
+    data.visibility[i] = Visibility::covered;
   }
 }
 

@@ -18,7 +18,7 @@ Status Scene::load() noexcept {
 void Scene::buildTrees() noexcept {
   const Steps& steps = options.steps;
   const bool needsLoops = options.pokeThrough > 0 || steps.interiorSamples || steps.holes;
-  const bool needsHalfEdges = needsLoops || steps.depthWeighting || options.seams == Seams::corner;
+  const bool needsHalfEdges = needsLoops || options.seams == Seams::corner;
   const bool isDone = buildCageTree(cage, units, arena, cageTree) &&
                       buildTargetTree(points, units, arena, targetTree) &&
                       (!needsHalfEdges || findHalfEdges(cageMesh, cage, arena, halfEdges)) &&

@@ -32,7 +32,6 @@ void findSegments(const Scene& scene, PointData& data, Array<SegmentStats>& stat
   if (!stats.reset(count)) return arena.fail();
   for (std::uint32_t s = 0; s < count; ++s) {
     stats[s] = {};
-    stats[s].twinOf = s;
     if (!groups.empty()) stats[s].group = groups[firstVertex[s]];
   }
   for (std::uint32_t i = 0; i < points.count; ++i) {

@@ -11,7 +11,7 @@ namespace cagecast {
 /// points and groups.
 void findSegments(const Scene& scene, PointData& data, Array<SegmentStats>& stats) noexcept;
 
-/// Steps 4 and 4′: adds up the areas of the points and of the segments.
+/// Steps 4 and 7: adds up the areas of the points and of the segments.
 void sumAreas(const Scene& scene, const InteriorSamples& samples, PointData& data, Array<SegmentStats>& stats) noexcept;
 
 }  // namespace cagecast

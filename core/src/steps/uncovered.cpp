@@ -12,10 +12,10 @@ namespace cagecast {
 namespace {
 
 /// Sends the rays of some points to the cage.
-/// @param isWanted  Takes a point.
+/// @param isChosen  Takes a point.
 /// @param take      Takes a point, its ray after the search, and whether the ray hit the cage.
-template <typename IsWanted, typename Take>
-void sendToCage(const Scene& scene, const PointData& data, RaySearch::Find find, IsWanted isWanted, Take take) {
+template <typename IsChosen, typename Take>
+void sendToCage(const Scene& scene, const PointData& data, RaySearch::Find find, IsChosen isChosen, Take take) {
   Arena& arena = scene.arena;
   const Arena::Scope scope(arena);
   auto* rays = arena.allocate<Ray>(RaySearch::kMaxRays);
@@ -30,7 +30,7 @@ void sendToCage(const Scene& scene, const PointData& data, RaySearch::Find find,
     count = 0;
   };
   for (std::uint32_t i = 0; i < data.points.count; ++i) {
-    if (!isWanted(i)) continue;
+    if (!isChosen(i)) continue;
     pointOfRay[count] = i;
     setNormalRay(rays[count++], data, scene.cage, i);
     if (count == RaySearch::kMaxRays) send();
@@ -38,7 +38,7 @@ void sendToCage(const Scene& scene, const PointData& data, RaySearch::Find find,
   send();
 }
 
-/// Step 3′: whether a point is a little outside the cage, and not at a boundary loop.
+/// Step 6: whether a point is a little outside the cage, and not at a boundary loop.
 bool pokesThrough(const Scene& scene, const PointData& data, std::uint32_t point) {
   const std::uint32_t t = data.cageTriangles[point];
   const CageTriangle& triangle = scene.cage.triangles[t];
@@ -63,17 +63,17 @@ void markUncovered(const Scene& scene, PointData& data) noexcept {
   if (scene.arena.failed()) return;
   const bool canPoke = scene.options.pokeThrough > 0;
   const auto mark = [&](std::uint32_t i, bool hit) {
-    if (!hit && !(canPoke && pokesThrough(scene, data, i))) data.zones[i] = Zone::uncovered;
+    if (!hit && !(canPoke && pokesThrough(scene, data, i))) data.visibility[i] = Visibility::uncovered;
   };
   if (data.cageDistances != nullptr) {  // `findCageDistances` has sent the rays.
     for (std::uint32_t i = 0; i < data.points.count; ++i) {
-      if (data.zones[i] == Zone::cosmetic) mark(i, data.meetsCage[i]);
+      if (data.visibility[i] == Visibility::covered) mark(i, data.meetsCage[i]);
     }
     return;
   }
   sendToCage(
       scene, data, RaySearch::Find::any,
-      [&](std::uint32_t i) { return data.zones[i] == Zone::cosmetic && !data.meetsCage[i]; },
+      [&](std::uint32_t i) { return data.visibility[i] == Visibility::covered && !data.meetsCage[i]; },
       [&](std::uint32_t i, const Ray&, bool hit) { mark(i, hit); });
 }
 

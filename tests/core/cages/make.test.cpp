@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "cagecast/cages.hpp"
-#include "make/steps.hpp"
 #include "make/hole_marker.hpp"
+#include "make/steps.hpp"
 #include "mesh/surface.hpp"
 #include "shapes.hpp"
 

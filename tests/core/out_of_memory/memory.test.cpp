@@ -91,7 +91,7 @@ TEST_CASE("wherever memory runs out when segments are judged or vertices split, 
   CHECK(failEverywhere([&](Workspace&, Hash& hash) {
           Zones zones;
           const Status status = classify(result.projection.view(), target.indices, TransferOptions{}, zones);
-          if (status.ok()) hash.add(zones.scores);
+          if (status.ok()) hash.add(zones.ratios);
           return status;
         }) > 3);
   const auto vertexCount = static_cast<std::uint32_t>(target.positions.size() / 3);
@@ -119,7 +119,7 @@ TEST_CASE("what memory held before changes no result", "[memory]") {
       REQUIRE(status.ok());
       Hash hash;
       hash.add(result);
-      hash.add(result.zones.scores);
+      hash.add(result.zones.ratios);
       hash.add(result.projection.recovery);
       hash.add(result.projection.cornerUvs);
       for (const HoleShare& share : result.projection.holeShares)

@@ -96,14 +96,8 @@ Differences compare(const Result& reference, const TransferResult& product, cons
            static_cast<double>(projection.cornerUvs[i]), static_cast<double>(reference.cornerUvs[i]));
     i += 5 - i % 6;  // The next triangle.
   }
-  // Which of the twins stands for all depends on the last bits of their areas.
-  const auto firstTwin = [](const auto& stats, std::size_t s) {
-    return std::find_if(stats.begin(), stats.end(),
-                        [&](const SegmentStats& t) { return t.twinOf == stats[s].twinOf; }) -
-           stats.begin();
-  };
-  // A sample's weight depends on what other segments have at the same cage triangles.
-  const bool areWeightsFirm = std::find(firm.begin(), firm.end(), 0) == firm.end();
+  // Which segments are small, and which depth is typical, depends on all of them.
+  const bool areAllFirm = std::find(firm.begin(), firm.end(), 0) == firm.end();
   for (std::size_t s = 0; s < reference.segmentStats.size(); ++s) {
     const SegmentStats& expected = reference.segmentStats[s];
     const SegmentStats& got = projection.segmentStats[s];
@@ -114,7 +108,8 @@ Differences compare(const Result& reference, const TransferResult& product, cons
     // the areas themselves are next to nothing.
     const double ratioTolerance = std::max(kScoreTolerance, slack / std::max(expected.exposedArea, slack));
     const auto differsAsRatio = [&](double a, double b) {
-      return a != b && !(std::abs(a - b) <= ratioTolerance * std::max({1.0, std::abs(a), std::abs(b)}));
+      const bool areFinite = std::isfinite(a) && std::isfinite(b);
+      return a != b && !(areFinite && std::abs(a - b) <= ratioTolerance * std::max({1.0, std::abs(a), std::abs(b)}));
     };
     std::string differing;
     const auto check = [&](const char* name, bool isOther, double gotValue, double expectedValue) {
@@ -131,16 +126,14 @@ Differences compare(const Result& reference, const TransferResult& product, cons
             static_cast<double>(expected.culledBy));
       checkArea("exposed area", got.exposedArea, expected.exposedArea);
       checkArea("covered area", got.coveredArea, expected.coveredArea);
-      if (areWeightsFirm)
-        check("depth-weighted area", differsAsRatio(got.depthWeightedArea, expected.depthWeightedArea),
-              got.depthWeightedArea, expected.depthWeightedArea);
-      check("twin", firstTwin(projection.segmentStats, s) != firstTwin(reference.segmentStats, s), got.twinOf,
-            expected.twinOf);
-      // The hole over a segment may lower its score; the reference has other rules to the same verdict there.
-      const bool isAtHole = std::any_of(projection.holeShares.begin(), projection.holeShares.end(),
-                                        [&](const HoleShare& share) { return share.segment == s; });
-      if (areWeightsFirm && !(isAtHole && got.score < expected.score))
-        check("score", differsAsRatio(got.score, expected.score), got.score, expected.score);
+      check("depth", differsAsRatio(got.depth, expected.depth), got.depth, expected.depth);
+      const auto checkRatio = [&](const char* name, double a, double b) { check(name, differsAsRatio(a, b), a, b); };
+      checkRatio("threshold ratio", got.ratios.threshold, expected.ratios.threshold);
+      if (areAllFirm) {
+        checkRatio("floor ratio", got.ratios.floor, expected.ratios.floor);
+        checkRatio("depth ratio", got.ratios.depth, expected.ratios.depth);
+        checkRatio("hole ratio", got.ratios.hole, expected.ratios.hole);
+      }
     }
     if (differing.empty()) continue;
     ++found.stats;

@@ -38,14 +38,13 @@ struct Verdict {
   bool is = false, might = false, must = false;
 };
 
-// ------------------------------------------------------------------------------------------- 2, 3 Ray tests, 2', 3'
-// too
+// -------------------- 2, 3, 6 Rays
 
 /// A point's ray, with the triangles worth testing it against.
 struct Sight {
   Ray ray;
   std::vector<const Triangle*> target, cage;
-  bool pokesThrough = false;  // Step 3': it may do without a cage hit.
+  bool pokesThrough = false;  // Step 6: it may do without a cage hit.
 };
 
 /// @param own  Whether a triangle (by its number among the usable ones) is the point's own, which its ray leaves.
@@ -57,7 +56,8 @@ Sight look(const Scene& scene, const Options& options, Vec p, const ClosestPoint
   for (const Triangle* t : scene.target.along(sight.ray, behind))
     if (!own(static_cast<std::size_t>(t - scene.target.triangles().data()))) sight.target.push_back(t);
   sight.cage = scene.cage.along(sight.ray, behind);
-  sight.pokesThrough = options.pokes && place.nearest.distance <= options.pokeThrough * scene.diag &&
+  sight.pokesThrough = options.pokeThrough > 0 &&
+                       place.nearest.distance <= static_cast<double>(options.pokeThrough) * scene.diag &&
                        dot(p - place.position(), place.triangle->normal) > 0 && loopAt(scene, place) < 0;
   return sight;
 }
@@ -79,19 +79,20 @@ double cageDistance(const Scene& scene, const Sight& sight, const Ray& ray, cons
 /// What one ray tells.
 struct Outcome {
   Zone zone;
-  bool isHidden = false;  // The target occludes the point, and the cage is not over it either; with step 2'.
+  bool isHidden = false;  // The target occludes the point, and the cage is not over it either; with step 6.
 };
 
 /// Steps 2 and 3 for one ray.
 Outcome outcomeOf(const Scene& scene, const Options& options, const Sight& sight, const Ray& ray,
                   const ClosestPoint& place) {
   const double cage = cageDistance(scene, sight, ray, place);
-  const double end = options.endOfSelfRay ? cage + options.occlusionReach * scene.diag : kInfinity;
+  const auto reach = static_cast<double>(options.occlusionReach);
+  const double end = std::isfinite(reach) ? cage + reach * scene.diag : kInfinity;
   const bool occluded = std::any_of(sight.target.begin(), sight.target.end(), [&](const Triangle* triangle) {
     const double t = hit(ray, *triangle);
     return t > kSelfHitStart * scene.diag && t <= end;
   });
-  if (occluded) return {Zone::occluded, options.endOfSelfRay && cage == kInfinity};
+  if (occluded) return {Zone::occluded, std::isfinite(reach) && cage == kInfinity};
   return {cage < kInfinity || sight.pokesThrough ? Zone::cosmetic : Zone::uncovered};
 }
 
@@ -129,7 +130,7 @@ Finding judge(const Scene& scene, const Options& options, const Sight& sight, co
   finding.zone = is.zone;
   finding.nearby = bit(is.zone);
   finding.hidden = {is.isHidden, is.isHidden, is.isHidden};
-  if (options.stability)
+  if (options.findsStability)
     for (const Ray& ray : nudged(scene, sight.ray)) {
       const Outcome beside = outcomeOf(scene, options, sight, ray, place);
       finding.nearby |= bit(beside.zone);
@@ -139,7 +140,7 @@ Finding judge(const Scene& scene, const Options& options, const Sight& sight, co
   return finding;
 }
 
-// ---------------------------------------------------------------------------------------------------------- 4 Segments
+// -------------------- 4 Segments
 
 /// The segment of each point, numbered by the first point. Points and vertices come in the same order.
 std::vector<std::uint32_t> findSegments(const Scene& scene, std::uint32_t& count) {
@@ -169,8 +170,7 @@ struct State {
   std::vector<Verdict> covered;  // Per segment: whether any of it is.
 };
 
-// ------------------------------------------------------------------------------------------------------ 4', 5
-// Threshold
+// -------------------- 7 Interior samples
 
 /// A share of a segment's area, and what is found there.
 struct Sample {
@@ -180,15 +180,15 @@ struct Sample {
   ClosestPoint place;
 };
 
-/// Step 4': whether the triangles of each segment have interior samples: if it is small, and near a hole.
-std::vector<bool> haveInteriorSamples(const Scene& scene, const Options& options, const State& state) {
+/// Step 7: whether the triangles of each segment have interior samples: if it is small, and near a hole.
+std::vector<bool> haveInteriorSamples(const Scene& scene, const State& state) {
   constexpr std::uint32_t kFewPoints = 32;
   constexpr double kNear = 0.01;
   std::vector<Box> boxes(state.segmentCount);
   std::vector<std::uint32_t> points(state.segmentCount, 0);
   for (std::size_t p = 0; p < state.segments.size(); ++p) {
     // Holes may be as far off as the cage is.
-    const double around = options.farLoops ? state.places[p].nearest.distance : 0;
+    const double around = state.places[p].nearest.distance;
     for (const double side : {-around, around})
       boxes[state.segments[p]].add(scene.points.positions[p] + Vec{side, side, side});
     ++points[state.segments[p]];
@@ -201,7 +201,7 @@ std::vector<bool> haveInteriorSamples(const Scene& scene, const Options& options
   return result;
 }
 
-/// The samples that areas are summed over: the points, for a third of each of their triangles; with step 4' the big
+/// The samples that areas are summed over: the points, for a third of each of their triangles; with step 7 the big
 /// triangles of some segments count by the centroids of their four quarters instead.
 std::vector<Sample> findInteriorSamples(const Scene& scene, const Options& options, const State& state) {
   constexpr double kBigTriangle = 0.06;
@@ -209,7 +209,7 @@ std::vector<Sample> findInteriorSamples(const Scene& scene, const Options& optio
   for (std::size_t p = 0; p < state.segments.size(); ++p)
     samples.push_back({state.segments[p], 0, state.findings[p], state.places[p]});
   std::vector<bool> within(state.segmentCount, false);
-  if (options.interiorSamples) within = haveInteriorSamples(scene, options, state);
+  if (options.steps.interiorSamples) within = haveInteriorSamples(scene, state);
   for (std::size_t t = 0; t < scene.corners.size(); ++t) {
     const Triangle& triangle = scene.target.triangles()[t];
     const auto& [a, b, c] = triangle.corners;
@@ -234,195 +234,148 @@ struct Range {
   double is = 0, least = 0, most = 0;
 };
 
-/// For each sample the share of its area that counts when it is covered: less than all of it where it lies deeper than
-/// what else the cage covers there. Teeth and tongues are seen past the lips, from below; what is to be painted lies
-/// about as deep as its neighbours, or above them.
-std::vector<Range> depthWeights(const Scene& scene, const std::vector<Sample>& samples) {
-  constexpr double kNotDeep = 0.01;  // No depth below this share of the diagonal counts as deep.
-  // What is usual about each vertex of the cage: of what is covered in the triangles around it.
-  struct Sum {
-    double area = 0, depth = 0;
-  };
-  std::vector<Sum> sums(scene.cageVertices);
-  std::vector<std::vector<const Sample*>> unsure(scene.cageVertices);
-  const auto corners = [&](const Sample& sample) {
-    return scene.cageCorners[static_cast<std::size_t>(sample.place.triangle - scene.cage.triangles().data())];
-  };
-  for (const Sample& sample : samples) {
-    const bool isCovered = sample.finding.zone == Zone::cosmetic;
-    for (const std::uint32_t v : corners(sample)) {
-      if (isCovered) sums[v].area += sample.area, sums[v].depth += sample.area * sample.place.nearest.distance;
-      if (!single(sample.finding.nearby)) unsure[v].push_back(&sample);
-    }
-  }
-  const auto weight = [&](const Sample& sample, Sum sum) {
-    const double usual = std::max(sum.area > 0 ? sum.depth / sum.area : 0, kNotDeep * scene.diag);
-    const double share = usual / std::max(sample.place.nearest.distance, usual);
-    return share * share;
-  };
-  std::vector<Range> weights;
-  for (const Sample& sample : samples) {
-    Sum is;
-    for (const std::uint32_t v : corners(sample)) is.area += sums[v].area, is.depth += sums[v].depth;
-    // Every unsure neighbour that would pull what is usual down, or up, does so.
-    Sum low = is, high = is;
-    for (const std::uint32_t v : corners(sample))
-      for (const Sample* other : unsure[v]) {
-        const bool isCovered = other->finding.zone == Zone::cosmetic;
-        const bool deeper = other->place.nearest.distance * is.area > is.depth;
-        Sum& changed = deeper == isCovered ? low : high;
-        const double sign = isCovered ? -1 : 1;
-        changed.area = std::max(0.0, changed.area + sign * other->area);
-        changed.depth = std::max(0.0, changed.depth + sign * other->area * other->place.nearest.distance);
-      }
-    const double now = weight(sample, is);
-    weights.push_back({now, std::min(now, weight(sample, low)), std::max(now, weight(sample, high))});
-  }
-  return weights;
-}
+// -------------------- 5, 8, 10 Rules on segments
 
-/// The first of the segments that each is a copy of: as many points, nearly the same area, nearly the same extent.
-/// Taken by points, area and number, a segment belongs to the latest of the last few kinds whose first it is like; else
-/// it begins one.
-std::vector<std::uint32_t> findTwins(const Scene& scene, const State& state, const std::vector<SegmentStats>& stats) {
-  constexpr double kSameArea = 0.01, kSameExtent = 0.02;
-  constexpr std::size_t kKinds = 8;  // Parts of equal area and another shape may lie between twins; not many do.
-  std::vector<Vec> centres(state.segmentCount);
-  std::vector<double> extents(state.segmentCount, 0.0);  // Sum of squared distances of the points from their mean.
-  for (std::size_t p = 0; p < state.segments.size(); ++p)
-    centres[state.segments[p]] = centres[state.segments[p]] + scene.points.positions[p];
-  for (std::uint32_t s = 0; s < state.segmentCount; ++s) centres[s] = centres[s] * (1.0 / stats[s].points);
-  for (std::size_t p = 0; p < state.segments.size(); ++p) {
-    const Vec offset = scene.points.positions[p] - centres[state.segments[p]];
-    extents[state.segments[p]] += dot(offset, offset);
-  }
-  std::vector<std::uint32_t> order(state.segmentCount), twins(state.segmentCount);
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t s, std::uint32_t t) {
-    return std::tie(stats[s].points, stats[s].area, s) < std::tie(stats[t].points, stats[t].area, t);
-  });
-  std::vector<std::uint32_t> kinds;  // By their first.
-  for (const std::uint32_t s : order) {
-    const auto isLike = [&](std::uint32_t first) {
-      return stats[s].points == stats[first].points && stats[s].area <= (1 + kSameArea) * stats[first].area &&
-             std::abs(extents[s] - extents[first]) <= kSameExtent * extents[first];
-    };
-    const auto oldest = kinds.rbegin() + static_cast<std::ptrdiff_t>(std::min(kKinds, kinds.size()));
-    const auto kind = std::find_if(kinds.rbegin(), oldest, isLike);
-    twins[s] = kind == oldest ? s : *kind;
-    if (kind == oldest) kinds.push_back(s);
-  }
-  return twins;
-}
-
-/// The sums that step 5 compares.
+/// The sums over a segment's samples that its rules compare, with every sample at what it is, or at its worst, or at
+/// its best.
 struct Tally {
-  double area = 0, exposed = 0, covered = 0, depthWeighted = 0;
-  double segments = 0;  // Of which these are the sums.
-  void add(const Tally& other) {
-    area += other.area, exposed += other.exposed, covered += other.covered, depthWeighted += other.depthWeighted;
-    segments += other.segments;
-  }
+  double exposed = 0, covered = 0;
 };
 
-/// The score of a segment, the ratio of actual to required area: it is kept from 1 on.
-/// @param allCovered  The covered area of all segments.
-double scoreOf(const Options& options, const Tally& tally, double allCovered) {
-  const auto times = [](double has, double needs) { return needs > 0 ? has / needs : kInfinity; };
-  const double coverage = times(tally.covered, options.threshold * tally.exposed);
-  if (options.floor == Floor::none) return coverage;
-  if (!(tally.covered > 0)) return 0;
-  if (options.floor == Floor::area) return std::min(coverage, times(tally.covered, options.minCovered * tally.area));
-  // What is meant to be painted is covered almost wherever it is exposed; an eye or a light in its hole is not.
-  const double counted = tally.depthWeighted * (tally.covered / tally.exposed);
-  // A part that is mostly hidden passes for what it is of the whole, if where it is exposed it is covered beyond doubt.
-  const double ofAll = std::min(times(counted, options.minOfAll * allCovered * tally.segments),
-                                times(options.maxUncovered * tally.exposed, tally.exposed - tally.covered));
-  const double floor = std::max(times(counted, options.minCovered * tally.area), ofAll);
-  return std::min(coverage, floor);
+/// Everything that the rules on a segment compare.
+struct Sums {
+  double area = 0;
+  Tally is, worst, best;
+  Range covered, depth;  // Of covered samples: area, and area times depth in diagonals.
+  Range hole;            // The greatest ratio of what lies in a hole to what may.
+};
+
+/// What lies in a hole of each segment, as a share of what may: U + H against a quarter of E + H.
+void judgeContents(const State& state, std::vector<Sums>& sums) {
+  constexpr double kMaxInHole = 0.25;
+  // What of each segment is uncovered at each hole, and what is hidden.
+  struct Share {
+    Range bare, hidden;
+  };
+  std::map<std::pair<std::int32_t, std::uint32_t>, Share> shares;
+  for (std::size_t p = 0; p < state.loops.size(); ++p) {
+    if (state.loops[p] < 0) continue;
+    auto& [bare, hidden] = shares[{state.loops[p], state.segments[p]}];
+    const Finding& finding = state.findings[p];
+    if (finding.zone == Zone::uncovered) bare.is += state.areas[p];
+    if (finding.nearby == bit(Zone::uncovered)) bare.least += state.areas[p];
+    if ((finding.nearby & bit(Zone::uncovered)) != 0) bare.most += state.areas[p];
+    if (finding.hidden.is) hidden.is += state.areas[p];
+    if (finding.hidden.must) hidden.least += state.areas[p];
+    if (finding.hidden.might) hidden.most += state.areas[p];
+  }
+  for (const auto& [where, share] : shares) {
+    Sums& sum = sums[where.second];
+    const auto judge = [&](double& most, double bare, double hidden, double exposed, double covered) {
+      const double counted = covered > 0 ? hidden : 0;  // Where nothing is covered, nothing counts as hidden.
+      const double allowed = kMaxInHole * (exposed + counted);
+      if (bare + counted > 0) most = std::max(most, (bare + counted) / allowed);
+    };
+    judge(sum.hole.is, share.bare.is, share.hidden.is, sum.is.exposed, sum.covered.is);
+    judge(sum.hole.least, share.bare.least, share.hidden.least, std::max(sum.worst.exposed, sum.best.exposed),
+          sum.covered.least);
+    judge(sum.hole.most, share.bare.most, share.hidden.most, std::min(sum.worst.exposed, sum.best.exposed),
+          sum.covered.most);
+  }
 }
 
-/// Step 5: whether each segment passes, and could have passed, given what its samples might have found.
+/// A segment is small if its covered area is less than this share of that of all segments.
+constexpr double kSmall = 0.01;
+
+/// The ratios of what a segment has to what its rules ask of it.
+/// @param depth         Its mean depth; 0 if nothing of it is covered.
+/// @param allowedDepth  What a small segment may have.
+/// @param hole          What lies in a hole, against what may.
+Ratios ratiosOf(const Options& options, const Tally& tally, double area, bool isSmall, double depth,
+                double allowedDepth, double hole) {
+  constexpr double kMaxUncovered = 0.25;
+  const auto times = [](double has, double needs) { return needs > 0 ? has / needs : kInfinity; };
+  Ratios ratios;
+  ratios.threshold = times(tally.covered, static_cast<double>(options.threshold) * tally.exposed);
+  if (isSmall) ratios.hole = times(1, hole);
+  if (!options.steps.floor) return ratios;
+  ratios.floor = 0;
+  if (!(tally.covered > 0)) return ratios;
+  ratios.floor = times(tally.covered * (tally.covered / tally.exposed), static_cast<double>(options.minCovered) * area);
+  if (isSmall) {
+    ratios.depth = times(allowedDepth, depth);
+  } else {
+    ratios.floor = std::max(ratios.floor, times(kMaxUncovered * tally.exposed, tally.exposed - tally.covered));
+  }
+  return ratios;
+}
+
+/// Steps 5 and 8, and what step 10 says of segments: whether each passes, and could have passed, given what its samples
+/// might have found.
 void decide(const Scene& scene, const Options& options, const std::vector<Sample>& samples, State& state,
-            std::vector<SegmentStats>& stats) {
-  // Three times: as it is, and with every sample at its worst and at its best.
-  std::vector<Tally> is(state.segmentCount), worst(state.segmentCount), best(state.segmentCount);
-  const std::vector<Range> weights =
-      options.depthWeighting ? depthWeights(scene, samples) : std::vector<Range>(samples.size(), {1, 1, 1});
-  Range all;  // The covered area of all segments.
-  for (std::uint32_t s = 0; s < state.segmentCount; ++s) is[s] = worst[s] = best[s] = {stats[s].area, 0, 0, 0, 1};
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Sample& sample = samples[i];
-    const auto count = [&](Tally& tally, Zone zone, double weight) {
+            Result& result) {
+  constexpr double kMaxDeeper = 0.015;
+  constexpr double kDepthNoise = 1e-6;  // Distances of the library are floats.
+  std::vector<Sums> sums(state.segmentCount);
+  Range covered, depth;  // Of all segments.
+  for (std::uint32_t s = 0; s < state.segmentCount; ++s) sums[s].area = result.segmentStats[s].area;
+  for (const Sample& sample : samples) {
+    Sums& sum = sums[sample.segment];
+    const auto count = [&](Tally& tally, Zone zone) {
       if (zone != Zone::occluded) tally.exposed += sample.area;
-      if (zone == Zone::cosmetic) tally.covered += sample.area, tally.depthWeighted += sample.area * weight;
+      if (zone == Zone::cosmetic) tally.covered += sample.area;
     };
     const auto might = [&](Zone zone) { return (sample.finding.nearby & bit(zone)) != 0; };
-    count(is[sample.segment], sample.finding.zone, weights[i].is);
-    if (sample.finding.zone == Zone::cosmetic) all.is += sample.area;
-    if (sample.finding.nearby == bit(Zone::cosmetic)) all.least += sample.area;
-    if (might(Zone::cosmetic)) all.most += sample.area;
+    if (!single(sample.finding.nearby)) result.firmAreas[sample.segment] = 0;
+    count(sum.is, sample.finding.zone);
     const Zone hidden = might(Zone::occluded) ? Zone::occluded : Zone::cosmetic;
-    count(worst[sample.segment], might(Zone::uncovered) ? Zone::uncovered : hidden, weights[i].least);
+    count(sum.worst, might(Zone::uncovered) ? Zone::uncovered : hidden);
     const Zone bare = might(Zone::occluded) ? Zone::occluded : Zone::uncovered;
-    count(best[sample.segment], might(Zone::cosmetic) ? Zone::cosmetic : bare, weights[i].most);
+    count(sum.best, might(Zone::cosmetic) ? Zone::cosmetic : bare);
+    const double deep = sample.area * std::min(1.0, sample.place.nearest.distance / scene.diag);
+    const auto cover = [&](double Range::*which) {
+      for (Range* range : {&sum.covered, &covered}) range->*which += sample.area;
+      for (Range* range : {&sum.depth, &depth}) range->*which += deep;
+    };
+    if (sample.finding.zone == Zone::cosmetic) cover(&Range::is);
+    if (sample.finding.nearby == bit(Zone::cosmetic)) cover(&Range::least);
+    if (might(Zone::cosmetic)) cover(&Range::most);
   }
-  for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-    stats[s].exposedArea = is[s].exposed;
-    stats[s].coveredArea = is[s].covered;
-    stats[s].depthWeightedArea = is[s].depthWeighted;
-    stats[s].twinOf = s;
-    stats[s].score = scoreOf(options, is[s], all.is);
-    state.covered.push_back({is[s].covered > 0, best[s].covered > 0, worst[s].covered > 0});
-  }
+  if (options.steps.holes) judgeContents(state, sums);
 
-  // Copies that are in doubt are judged together, so that twins do not fall on either side by accident.
-  constexpr double kDoubt = 2;
-  std::vector<bool> unsureDoubt(state.segmentCount, false);
-  std::vector<std::uint32_t> twins;
-  if (options.depthWeighting) {
-    twins = findTwins(scene, state, stats);
-    for (std::uint32_t s = 0; s < state.segmentCount; ++s) stats[s].twinOf = twins[s];
-  }
-  if (options.twins && options.depthWeighting && options.floor != Floor::none) {
-    const auto inDoubt = [](double score) { return score >= 1 / kDoubt && score < kDoubt; };
-    std::vector<Tally> sums(state.segmentCount), worstSums(state.segmentCount), bestSums(state.segmentCount);
-    std::vector<bool> doubted(state.segmentCount), unsureSum(state.segmentCount, false);
-    for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-      const double least = scoreOf(options, worst[s], all.most), most = scoreOf(options, best[s], all.least);
-      doubted[s] = inDoubt(stats[s].score);
-      if (inDoubt(least) != doubted[s] || inDoubt(most) != doubted[s]) unsureSum[twins[s]] = unsureDoubt[s] = true;
-      if (!doubted[s]) continue;
-      sums[twins[s]].add(is[s]);
-      worstSums[twins[s]].add(worst[s]);
-      bestSums[twins[s]].add(best[s]);
-    }
-    for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-      if (unsureSum[twins[s]] && twins[s] != s) unsureDoubt[s] = unsureDoubt[s] || doubted[s];
-      if (!doubted[s]) continue;
-      is[s] = sums[twins[s]];
-      worst[s] = worstSums[twins[s]];
-      best[s] = bestSums[twins[s]];
-      unsureDoubt[s] = unsureDoubt[s] || unsureSum[twins[s]];
-    }
-  }
-
+  const auto over = [](double a, double b) { return b > 0 ? a / b : a > 0 ? kInfinity : 0; };
   // With a threshold of 0 or 1 a tie is a sum compared with nothing or with itself: exact, whatever the order.
-  const bool exact = options.floor == Floor::none && (options.threshold == 0 || options.threshold == 1);
-  state.passes.resize(state.segmentCount);
+  const bool exact = !options.steps.floor && (options.threshold == 0 || options.threshold == 1);
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-    stats[s].score = scoreOf(options, is[s], all.is);
-    const double least = scoreOf(options, worst[s], all.most), most = scoreOf(options, best[s], all.least);
-    const double noise = exact || is[s].exposed == 0 ? 0 : kSumNoise;
-    Verdict& pass = state.passes[s];
-    pass.is = stats[s].score >= 1;
-    pass.might = pass.is || most >= 1 - noise || unsureDoubt[s];
-    pass.must = pass.is && least >= 1 + noise && !unsureDoubt[s];
-    stats[s].culledBy = pass.is ? CulledBy::none : CulledBy::coverage;
+    const Sums& sum = sums[s];
+    const double noise = exact || sum.is.exposed == 0 ? 0 : kSumNoise;
+    const bool isSmall = sum.covered.is < kSmall * covered.is;
+    const bool mightBeSmall = sum.covered.least < kSmall * covered.most * (1 + noise);
+    const bool mustBeSmall = sum.covered.most < kSmall * covered.least * (1 - noise);
+    SegmentStats& stats = result.segmentStats[s];
+    stats.exposedArea = sum.is.exposed;
+    stats.coveredArea = sum.is.covered;
+    stats.depth = over(sum.depth.is, sum.covered.is);
+    stats.ratios =
+        ratiosOf(options, sum.is, sum.area, isSmall, stats.depth, over(depth.is, covered.is) + kMaxDeeper, sum.hole.is);
+    const double worst = ratiosOf(options, sum.worst, sum.area, mightBeSmall,
+                                  over(sum.depth.most, sum.covered.least) * (1 + kDepthNoise),
+                                  over(depth.least, covered.most) + kMaxDeeper, sum.hole.most)
+                             .least();
+    const double best =
+        ratiosOf(options, sum.best, sum.area, mustBeSmall, over(sum.depth.least, sum.covered.most) * (1 - kDepthNoise),
+                 over(depth.most, covered.least) + kMaxDeeper, sum.hole.least)
+            .least();
+    const bool passes = stats.ratios.least() >= 1;
+    state.passes.push_back({passes, passes || best >= 1 - noise, passes && worst >= 1 + noise});
+    state.covered.push_back({sum.is.covered > 0, sum.best.covered > 0, sum.worst.covered > 0});
+    const double others = std::min({stats.ratios.threshold, stats.ratios.floor, stats.ratios.depth});
+    stats.culledBy = passes ? CulledBy::none : others < 1 ? CulledBy::coverage : CulledBy::hole;
+    if (mightBeSmall != mustBeSmall) result.firmAreas[s] = 0;
   }
 }
 
-// ------------------------------------------------------------------------------------------------------- 6 Second look
+// -------------------- 9 Recheck
 
 /// Which way a point looks.
 struct Outlook {
@@ -435,7 +388,7 @@ struct Outlook {
 /// Where they cancel out, because every triangle has a copy in reverse winding, the point looks to both sides: along
 /// the sum of the normals, each turned to the side of the largest triangle (the first of equals), and against it.
 /// @param firm  Receives for each segment whether that turn is certain.
-std::vector<Outlook> outlooks(const Scene& scene, const Options& options, const State& state, std::vector<bool>& firm) {
+std::vector<Outlook> outlooks(const Scene& scene, const State& state, std::vector<bool>& firm) {
   constexpr double kCancelled = 1e-6;  // Of the areas summed up: less than this is nothing.
   const std::vector<Triangle>& triangles = scene.target.triangles();
   std::vector<Vec> sums(scene.points.count()), turned(scene.points.count());
@@ -459,20 +412,19 @@ std::vector<Outlook> outlooks(const Scene& scene, const Options& options, const 
     if (length(sums[p]) > kCancelled * weights[p]) result[p].normal = unit(sums[p]);
     const bool cancelled = dot(result[p].normal, result[p].normal) == 0;
     const unsigned occluded = bit(Zone::occluded), nearby = state.findings[p].nearby;
-    if (cancelled || (options.exposedSide && nearby == occluded)) continue;
+    if (cancelled || nearby == occluded) continue;
     const std::uint32_t s = state.segments[p];
     const double agrees = state.areas[p] * dot(result[p].normal, state.places[p].triangle->normal);
     most[s] += state.areas[p];
-    if (!options.exposedSide || state.findings[p].zone != Zone::occluded) agreement[s] += agrees;
-    if (options.exposedSide && (nearby & occluded) != 0) unsure[s] += std::abs(agrees);
+    if (state.findings[p].zone != Zone::occluded) agreement[s] += agrees;
+    if ((nearby & occluded) != 0) unsure[s] += std::abs(agrees);
   }
   for (std::uint32_t s = 0; s < state.segmentCount; ++s)
     firm.push_back(most[s] == 0 || std::abs(agreement[s]) > unsure[s] + kSumNoise * most[s]);
   for (std::size_t p = 0; p < result.size(); ++p) {
     const bool cancelled = dot(result[p].normal, result[p].normal) == 0;
     if (!cancelled && agreement[state.segments[p]] < 0) result[p].normal = result[p].normal * -1;
-    if (cancelled && options.bothSides && length(turned[p]) > kCancelled * weights[p])
-      result[p] = {unit(turned[p]), true};
+    if (cancelled && length(turned[p]) > kCancelled * weights[p]) result[p] = {unit(turned[p]), true};
   }
   return result;
 }
@@ -501,14 +453,14 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, Vec normal) {
     };
     const bool is = isGood(ray);
     bool any = is, all = is;
-    if (options.stability)
+    if (options.findsStability)
       for (const Ray& turned : nudged(scene, ray)) {
         const bool other = isGood(turned);
         any = any || other;
         all = all && other;
       }
     good += is, might += any, must += all;
-    if (!options.stability && good >= kEnough) break;
+    if (!options.findsStability && good >= kEnough) break;
   }
   return {good >= kEnough, might >= kEnough, must >= kEnough};
 }
@@ -520,12 +472,12 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, const Outlook&
   return {seen.is || behind.is, seen.might || behind.might, seen.must || behind.must};
 }
 
-/// Step 6: the occluded points of passing, covered segments that are seen from elsewhere. Begins at the loop of what is
+/// Step 9: the occluded points of passing, covered segments that are seen from elsewhere. Begins at the loop of what is
 /// occluded; a recovered point brings its neighbours in, a rejected one does not.
 std::vector<Verdict> recheck(const Scene& scene, const Options& options, const State& state) {
   const std::size_t count = scene.points.count();
   std::vector<bool> firm;
-  const std::vector<Outlook> outlook = outlooks(scene, options, state, firm);
+  const std::vector<Outlook> outlook = outlooks(scene, state, firm);
   std::vector<std::vector<std::uint32_t>> neighbours(count);
   for (const auto& corners : scene.corners)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -567,7 +519,7 @@ std::vector<Verdict> recheck(const Scene& scene, const Options& options, const S
   return result;
 }
 
-// ------------------------------------------------------------------------------------------------------------- 7 Holes
+// -------------------- 10 Holes
 
 /// What is known of a hole of the cage, an open loop.
 struct Hole {
@@ -603,72 +555,7 @@ std::vector<Hole> judgeHoles(const Scene& scene, const State& state) {
   return holes;
 }
 
-/// Step 5": a hole may be meant for small parts: they do not pass if nothing else explains the hole, and it bares much
-/// of them, or if much of them lies hidden under it.
-void cullHoleContents(const Scene& scene, const std::vector<Sample>& samples, State& state, Result& result) {
-  constexpr double kBare = 0.15, kMuchOfHole = 0.25, kHidden = 0.25, kSmall = 0.02;
-  std::vector<Range> exposed(state.segmentCount), covered(state.segmentCount);
-  Range all;  // The covered area of all segments.
-  for (const Sample& sample : samples) {
-    const auto add = [&](Range& sum, unsigned zones) {
-      if ((bit(sample.finding.zone) & zones) != 0) sum.is += sample.area;
-      if ((sample.finding.nearby & ~zones) == 0) sum.least += sample.area;
-      if ((sample.finding.nearby & zones) != 0) sum.most += sample.area;
-    };
-    add(exposed[sample.segment], bit(Zone::cosmetic) | bit(Zone::uncovered));
-    add(covered[sample.segment], bit(Zone::cosmetic));
-    add(all, bit(Zone::cosmetic));
-  }
-  // What of each segment is uncovered at each hole, and what is hidden.
-  struct Share {
-    Range bare, hidden;
-  };
-  std::map<std::pair<std::size_t, std::uint32_t>, Share> shares;
-  for (std::size_t p = 0; p < state.loops.size(); ++p) {
-    if (state.loops[p] < 0) continue;
-    auto& [bare, hidden] = shares[{static_cast<std::size_t>(state.loops[p]), state.segments[p]}];
-    const Finding& finding = state.findings[p];
-    if (finding.zone == Zone::uncovered) bare.is += state.areas[p];
-    if (finding.nearby == bit(Zone::uncovered)) bare.least += state.areas[p];
-    if ((finding.nearby & bit(Zone::uncovered)) != 0) bare.most += state.areas[p];
-    if (finding.hidden.is) hidden.is += state.areas[p];
-    if (finding.hidden.must) hidden.least += state.areas[p];
-    if (finding.hidden.might) hidden.most += state.areas[p];
-  }
-  const std::vector<Hole> holes = judgeHoles(scene, state);
-  std::vector<Verdict> fails(state.segmentCount);
-  const double more = 1 + kSumNoise, less = 1 - kSumNoise;
-  for (const auto& [where, share] : shares) {
-    const auto& [loop, s] = where;
-    const auto& [uncovered, explained] = holes[loop];
-    const auto isMeant = [](double bare, double hidden, double itsExposed, double itsCovered, bool isExplained,
-                            double allBare, double allCovered) {
-      return itsCovered < kSmall * allCovered &&
-             (hidden > kHidden * (itsExposed + hidden) ||
-              (!isExplained && bare > kBare * itsExposed && bare >= kMuchOfHole * allBare));
-    };
-    // Where nothing of it is covered, nothing of it counts as hidden.
-    const auto& [bare, found] = share;
-    const Range hidden{covered[s].is > 0 ? found.is : 0, covered[s].least > 0 ? found.least : 0,
-                       covered[s].most > 0 ? found.most : 0};
-    Verdict& fail = fails[s];
-    fail.is = fail.is || isMeant(bare.is, hidden.is, exposed[s].is, covered[s].is, explained.is, uncovered.is, all.is);
-    fail.might =
-        fail.might || isMeant(bare.most * more, hidden.most * more, exposed[s].least * less, covered[s].least * less,
-                              explained.must, uncovered.least * less, all.most * more);
-    fail.must = fail.must || isMeant(bare.least * less, hidden.least * less, exposed[s].most * more,
-                                     covered[s].most * more, explained.might, uncovered.most * more, all.least * less);
-  }
-  for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-    Verdict& pass = state.passes[s];
-    if (fails[s].might != fails[s].must && pass.might) result.firmAreas[s] = 0;
-    pass = {pass.is && !fails[s].is, pass.might && !fails[s].must, pass.must && !fails[s].might};
-    CulledBy& culledBy = result.segmentStats[s].culledBy;
-    if (culledBy == CulledBy::none && !pass.is) culledBy = CulledBy::hole;
-  }
-}
-
-/// Step 7: the uncovered points whose hole is not meant for them: those that lie under the cage, hardly beside it, or
+/// Step 10: the uncovered points whose hole is not meant for them: those that lie under the cage, hardly beside it, or
 /// beside a hole that something else explains.
 std::vector<Verdict> underHoles(const Scene& scene, const State& state) {
   constexpr double kOverhang = 0.005, kOverhangOfLoop = 0.05, kExplainedOverhang = 0.03;
@@ -707,8 +594,7 @@ unsigned outcomes(Zone found, const Verdict& passes, const Verdict& seen, const 
   return zones;
 }
 
-// --------------------------------------------------------------------------------------------------------- The
-// baseline
+// -------------------- The baseline
 
 /// The classical baseline: the nearest vertex of the cage, the lowest of equally near ones; nothing is filtered. A
 /// vertex of no triangle, or only of degenerate ones, is not part of the cage; of the triangles at a vertex the first
@@ -735,15 +621,15 @@ void nearestVertex(const MeshView& cage, const Scene& scene, Result& result) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------------------- Steps 1 to
-// 3
+// -------------------- Steps 1 to 3
 
 /// A scene with what steps 1 to 3 find in it. They take most of the time and depend on few of the options, so that
 /// tests of many options on one scene take them once.
 class LastScene {
  public:
   LastScene(const MeshView& cage, const MeshView& target, const Options& options)
-      : scene(makeScene(cage, target, options)), key_(keyOf(cage, target, options)) {}
+      : scene(makeScene(cage, target, static_cast<double>(options.weldTolerance))),
+        key_(keyOf(cage, target, options)) {}
   LastScene(const LastScene&) = delete;  // Places point into the scene.
   LastScene& operator=(const LastScene&) = delete;
 
@@ -767,8 +653,7 @@ class LastScene {
 
   /// Steps 2 and 3, for each point.
   const std::vector<Finding>& findings(const Options& options) {
-    std::vector<Finding>& found = findings_[{options.endOfSelfRay, options.occlusionReach, options.pokes,
-                                             options.pokeThrough, options.stability}];
+    std::vector<Finding>& found = findings_[{options.occlusionReach, options.pokeThrough, options.findsStability}];
     for (std::size_t p = found.size(); p < scene.points.count(); ++p) {
       const ClosestPoint& place = places()[p];
       const Sight sight = look(scene, options, scene.points.positions[p], place, [&](std::size_t t) {
@@ -784,21 +669,17 @@ class LastScene {
  private:
   /// Everything that `makeScene` reads.
   using Key = std::tuple<std::vector<float>, std::vector<std::uint32_t>, std::vector<float>, std::vector<std::uint32_t>,
-                         std::vector<std::uint32_t>, double, bool>;
+                         std::vector<std::uint32_t>, float>;
   static Key keyOf(const MeshView& cage, const MeshView& target, const Options& options) {
-    return {{cage.positions.begin(), cage.positions.end()},
-            {cage.indices.begin(), cage.indices.end()},
-            {target.positions.begin(), target.positions.end()},
-            {target.indices.begin(), target.indices.end()},
-            {target.groups.begin(), target.groups.end()},
-            options.weldTolerance,
-            options.groups};
+    return {{cage.positions.begin(), cage.positions.end()},     {cage.indices.begin(), cage.indices.end()},
+            {target.positions.begin(), target.positions.end()}, {target.indices.begin(), target.indices.end()},
+            {target.groups.begin(), target.groups.end()},       options.weldTolerance};
   }
 
   const Key key_;
   std::vector<ClosestPoint> places_;
   std::vector<std::int32_t> loops_;
-  std::map<std::tuple<bool, double, bool, double, bool>, std::vector<Finding>> findings_;
+  std::map<std::tuple<float, float, bool>, std::vector<Finding>> findings_;
 };
 
 LastScene& lastScene(const MeshView& cage, const MeshView& target, const Options& options) {
@@ -809,28 +690,8 @@ LastScene& lastScene(const MeshView& cage, const MeshView& target, const Options
 
 }  // namespace
 
-Options Options::paper() { return {}; }
-
-Options Options::standard() {
-  Options options;
-  options.endOfSelfRay = options.pokes = options.interiorSamples = options.farLoops = true;
-  options.floor = Floor::depth;
-  options.depthWeighting = options.twins = options.holeContents = true;
-  options.recheck = options.bothSides = options.exposedSide = true;
-  options.holes = options.partialTriangles = options.seams = true;
-  return options;
-}
-
-Options Options::earlier() {
-  Options options = standard();
-  options.floor = Floor::area;
-  options.depthWeighting = options.twins = options.holeContents = false;
-  options.bothSides = options.farLoops = options.exposedSide = false;
-  return options;
-}
-
 Result transfer(const MeshView& cage, const MeshView& target, const Options& options) {
-  const bool filtered = options.projection == ProjectionMode::nearestPoint;
+  const bool filtered = options.steps.projection == ProjectionMode::nearestPoint;
   LastScene& last = lastScene(cage, target, options);
   const Scene& scene = last.scene;
   const std::size_t pointCount = scene.points.count(), vertexCount = target.positions.size() / 3;
@@ -858,24 +719,21 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
   }
   if (filtered) {
     const std::vector<Sample> samples = findInteriorSamples(scene, options, state);
-    for (const Sample& sample : samples)
-      if (!single(sample.finding.nearby)) result.firmAreas[sample.segment] = 0;
-    decide(scene, options, samples, state, result.segmentStats);
-    if (options.holes && options.holeContents) cullHoleContents(scene, samples, state, result);
+    decide(scene, options, samples, state, result);
   } else {
-    state.passes.assign(state.segmentCount, {true, true, true});
     double all = 0;
     for (const SegmentStats& stats : result.segmentStats) all += stats.area;
-    for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-      SegmentStats& stats = result.segmentStats[s];
-      stats.exposedArea = stats.coveredArea = stats.depthWeightedArea = stats.area;
-      stats.twinOf = s;
-      stats.score = scoreOf(options, {stats.area, stats.area, stats.area, stats.area, 1}, all);
+    for (SegmentStats& stats : result.segmentStats) {
+      stats.exposedArea = stats.coveredArea = stats.area;
+      stats.ratios = ratiosOf(options, {stats.area, stats.area}, stats.area, stats.area < kSmall * all, 0, 0, 0);
+      const bool passes = stats.ratios.least() >= 1;
+      stats.culledBy = passes ? CulledBy::none : CulledBy::coverage;
+      state.passes.push_back({passes, passes, passes});
     }
   }
   std::vector<Verdict> seen(pointCount), underHole(pointCount);
-  if (filtered && options.recheck) seen = recheck(scene, options, state);
-  if (filtered && options.holes) underHole = underHoles(scene, state);
+  if (filtered && options.steps.recheck) seen = recheck(scene, options, state);
+  if (filtered && options.steps.holes) underHole = underHoles(scene, state);
 
   result.uvs.resize(vertexCount * 2);
   result.triangles.resize(vertexCount);
@@ -894,7 +752,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
       if ((finding.nearby & bit(found)) != 0) ends |= outcomes(found, state.passes[segment], seen[p], underHole[p]);
     result.zones.push_back(zone);
     result.segments.push_back(segment);
-    result.stable.push_back(!options.stability || ends == bit(zone) ? 1 : 0);
+    result.stable.push_back(!options.findsStability || ends == bit(zone) ? 1 : 0);
     if (!filtered) continue;
     result.triangles[v] = state.places[p].triangle->index;
     result.distances[v] = static_cast<float>(state.places[p].nearest.distance);
@@ -903,44 +761,17 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
   }
   if (!filtered) nearestVertex(cage, scene, result);
 
-  // Step 8: the depth buffer hides what is occluded of a triangle.
+  // Step 11: the depth buffer hides what is occluded of a triangle.
   for (std::size_t t = 0; t < target.indices.size(); t += 3) {
     std::array<int, 4> corners{};
     for (std::size_t c = 0; c < 3; ++c) ++corners[static_cast<std::size_t>(result.zones[target.indices[t + c]])];
     const auto [cosmetic, occluded, uncovered, culled] = corners;
-    const bool painted = options.partialTriangles ? cosmetic > 0 && uncovered == 0 && culled == 0 : cosmetic == 3;
+    const bool painted = options.steps.partialTriangles ? cosmetic > 0 && uncovered == 0 && culled == 0 : cosmetic == 3;
     result.cosmeticTriangles.push_back(painted ? 1 : 0);
   }
-  if (filtered && options.seams)
+  if (filtered && options.seams == Seams::corner)
     result.cornerUvs = cornerUvs(cage, target, scene, state.places, result.uvs, result.stableCorners);
   return result;
-}
-
-Result transfer(const MeshView& cage, const MeshView& target, const TransferOptions& library) {
-  Options options = Options::paper();
-  options.projection = library.steps.projection;
-  options.threshold = static_cast<double>(library.threshold);
-  options.weldTolerance = static_cast<double>(library.weldTolerance);
-  options.endOfSelfRay = std::isfinite(library.occlusionReach);
-  options.occlusionReach = static_cast<double>(library.occlusionReach);
-  options.pokes = library.pokeThrough > 0;
-  options.pokeThrough = static_cast<double>(library.pokeThrough);
-  options.interiorSamples = library.steps.interiorSamples;
-  options.farLoops = library.steps.farLoops;
-  options.floor = library.steps.floor;
-  options.minCovered = static_cast<double>(library.minCovered);
-  options.minOfAll = static_cast<double>(library.steps.minOfAll);
-  options.maxUncovered = static_cast<double>(library.steps.maxUncovered);
-  options.depthWeighting = library.steps.depthWeighting;
-  options.twins = library.steps.twins;
-  options.holeContents = library.steps.holeContents;
-  options.recheck = library.steps.recheck;
-  options.bothSides = library.steps.bothSides;
-  options.exposedSide = library.steps.exposedSide;
-  options.holes = library.steps.holes;
-  options.partialTriangles = library.steps.partialTriangles;
-  options.seams = library.seams == Seams::corner;
-  return transfer(cage, target, options);
 }
 
 }  // namespace cagecast::reference

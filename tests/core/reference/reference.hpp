@@ -10,36 +10,13 @@
 /// what the library is measured against, so it prefers being readable to being fast.
 namespace cagecast::reference {
 
-/// Which steps are taken, and their constants. Lengths are shares of the diagonal of the target's bounding box.
-struct Options {
-  ProjectionMode projection = ProjectionMode::nearestPoint;
-  double threshold = 0.5;
-  double weldTolerance = 0;
-  bool groups = true;         ///< Weld within a group only; else all vertices count as one group.
-  bool endOfSelfRay = false;  ///< Step 2': a self hit counts only up to `occlusionReach` beyond the cage.
-  double occlusionReach = 0.03;
-  bool pokes = false;  ///< Step 3': a point without a cage hit, up to `pokeThrough` outside, is covered.
-  double pokeThrough = 0.0025;
-  bool interiorSamples = false;  ///< Step 4': big triangles of small segments at a hole have samples inside.
-  bool farLoops = false;         ///< Step 4': a loop is near a segment up to where the cage is; else within 0.01.
-  Floor floor = Floor::none;     ///< Step 5: what a segment needs besides its coverage, and C > 0.
-  double minCovered = 0.2;
-  double minOfAll = 0.005;
-  double maxUncovered = 0.25;
-  bool depthWeighting = false;  ///< Step 5': covered area counts less where it lies deep; finds the twins, too.
-  bool twins = false;           ///< Step 5": copies of one part that are in doubt are judged together.
-  bool holeContents = false;    ///< Step 5‴: small parts that a hole bares which nothing explains fail; with `holes`.
-  bool recheck = false;         ///< Step 6: occluded points that are seen from elsewhere are recovered.
-  bool bothSides = false;       ///< Step 6: where normals cancel out, look to both sides; else such points stay.
-  bool exposedSide = false;     ///< Step 6: the side a segment looks to is that of its points that are not occluded.
-  bool holes = false;           ///< Step 7: uncovered points whose hole is not meant for them are recovered.
-  bool partialTriangles = false;  ///< Step 8: triangles with some corners occluded are painted.
-  bool seams = false;             ///< Step 9: UVs per corner, where a triangle lies across a seam.
-  bool stability = true;          ///< Find out where the answer is firm; without, everything is called stable.
+/// The options of the library, without locks and masks, and what to find out besides.
+struct Options : TransferOptions {
+  /// Whether to find out where the answer is firm; without, everything is called stable.
+  bool findsStability = true;
 
-  static Options paper();     ///< The literal method: none of the steps that can be switched.
-  static Options standard();  ///< The preset `default`: all of them.
-  static Options earlier();   ///< The same with step 4', the floor and the recheck as they were first written down.
+  Options(const TransferOptions& options, bool findsStability_ = true)  // NOLINT(google-explicit-constructor): the same
+      : TransferOptions(options), findsStability(findsStability_) {}
 };
 
 /// The answer of the reference, with the same fields and meanings as `Projection` and `Zones`.
@@ -68,11 +45,7 @@ struct Result {
 /// Carries the cage's UVs to the target and finds its zones; with `ProjectionMode::nearestVertex` the classical
 /// baseline.
 /// @pre The meshes are valid, and the cage has a triangle that is not degenerate.
-Result transfer(const MeshView& cage, const MeshView& target, const Options& options);
-
-/// The same for the options of the library, without its locks.
-Result transfer(const MeshView& cage, const MeshView& target,
-                const TransferOptions& options = TransferOptions::paper());
+Result transfer(const MeshView& cage, const MeshView& target, const Options& options = TransferOptions::paper());
 
 /// How an answer of the library differs from the reference, counted over the vertices where the reference is stable.
 struct Differences {

@@ -15,9 +15,9 @@ constexpr double kOnRim = 1e-6;       // A place this near an open edge is on it
 using Position = std::tuple<double, double, double>;
 Position key(Vec p) { return {p.x, p.y, p.z}; }  // As a key of a map, -0 equals 0.
 
-Points weld(const MeshView& target, double tolerance, bool groups) {
+Points weld(const MeshView& target, double tolerance) {
   const std::uint32_t count = static_cast<std::uint32_t>(target.positions.size() / 3);
-  const auto group = [&](std::uint32_t v) { return groups && !target.groups.empty() ? target.groups[v] : 0u; };
+  const auto group = [&](std::uint32_t v) { return !target.groups.empty() ? target.groups[v] : 0u; };
   Sets sets(count);
   std::map<std::pair<std::uint32_t, Position>, std::uint32_t> known;
   for (std::uint32_t v = 0; v < count; ++v)
@@ -57,7 +57,6 @@ std::vector<Vec> weldCage(Scene& scene) {
     }
     scene.cageCorners.push_back(corners);
   }
-  scene.cageVertices = static_cast<std::uint32_t>(positions.size());
   return positions;
 }
 
@@ -101,10 +100,10 @@ BoundaryLoops findBoundaryLoops(const std::vector<std::array<std::uint32_t, 3>>&
 
 }  // namespace
 
-Scene makeScene(const MeshView& cage, const MeshView& target, const Options& options) {
+Scene makeScene(const MeshView& cage, const MeshView& target, double weldTolerance) {
   Scene scene;
   scene.diag = boxOf(target).diagonal();
-  scene.points = weld(target, options.weldTolerance * scene.diag, options.groups);
+  scene.points = weld(target, weldTolerance * scene.diag);
   std::vector<Vec> positions;
   for (std::uint32_t v = 0; v < cage.positions.size() / 3; ++v) positions.push_back(vertex(cage, v));
   scene.cage = usableTriangles(cage, positions);

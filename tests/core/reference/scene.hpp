@@ -49,14 +49,13 @@ struct Scene {
   Surface cage, target;
   /// The vertices of each usable triangle of the cage, where equal positions are one vertex.
   std::vector<std::array<std::uint32_t, 3>> cageCorners;
-  std::uint32_t cageVertices = 0;
   Points points;
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< The points of each usable triangle of the target.
   BoundaryLoops loops;
   double diag = 0;  ///< Of the target's bounding box: all tolerances are shares of it.
 };
 
-Scene makeScene(const MeshView& cage, const MeshView& target, const Options& options);
+Scene makeScene(const MeshView& cage, const MeshView& target, double weldTolerance = 0);
 
 /// A point's place on the cage.
 struct ClosestPoint {
@@ -81,7 +80,7 @@ std::int32_t loopAt(const Scene& scene, const ClosestPoint& place);
 /// Where a place lies in the texture.
 std::array<double, 2> uvAt(const MeshView& cage, const ClosestPoint& place);
 
-/// Step 9: UVs per corner of the target's triangles, 6 per triangle.
+/// Step 12: UVs per corner of the target's triangles, 6 per triangle.
 /// @param places  1 per point.
 /// @param uvs     2 per vertex: what a corner has if its triangle lies across no seam.
 /// @param stable  Receives 1 per triangle: 0 where rounding decides which patch serves it.

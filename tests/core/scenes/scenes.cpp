@@ -95,6 +95,21 @@ Mesh ellipsoid(Point centre, Point radii, int cells) {
   });
 }
 
+Mesh sheet(Point corner, Point u, Point v, int cells) {
+  Mesh mesh;
+  const auto row = static_cast<std::uint32_t>(cells + 1);
+  for (std::uint32_t i = 0; i < row * row; ++i) {
+    const float s = static_cast<float>(i % row) / static_cast<float>(cells);
+    const float t = static_cast<float>(i / row) / static_cast<float>(cells);
+    const auto at = [&](std::size_t k) { return corner[k] + s * u[k] + t * v[k]; };
+    mesh.addVertex({at(0), at(1), at(2)}, s, t);
+    if (i % row + 1 == row || i / row + 1 == row) continue;
+    mesh.addTriangle(i, i + 1, i + row + 1);
+    mesh.addTriangle(i, i + row + 1, i + row);
+  }
+  return mesh;
+}
+
 void append(Mesh& mesh, const Mesh& other) {
   const auto first = static_cast<std::uint32_t>(mesh.vertexCount());
   const std::uint32_t group = mesh.groups.empty() ? 0 : mesh.groups.back() + 1;
@@ -261,6 +276,26 @@ Scene head(int cells) {
   return scene;
 }
 
+Scene crowdedHead(int cells, float shift) {
+  Scene scene = head(cells);
+  const auto pane = [&](Point centre, float half) {
+    const auto corner = [&](float x, float y) { return Point{centre[0] + half * x, centre[1] + half * y, centre[2]}; };
+    const std::uint32_t group = static_cast<std::uint32_t>(scene.target.vertexCount());
+    const std::uint32_t first = scene.target.addVertex(corner(-1, -1), 0, 0, group);
+    scene.target.addVertex(corner(1, -1), 0, 0, group);
+    scene.target.addVertex(corner(1, 1), 0, 0, group);
+    scene.target.addVertex(corner(-1, 1), 0, 0, group);
+    scene.target.addTriangle(first, first + 1, first + 2);
+    scene.target.addTriangle(first, first + 2, first + 3);
+  };
+  pane({0.35f, 0.25f, 0.9f}, 0.2f);
+  pane({-0.35f, 0.25f, 0.8f}, 0.25f);
+  pane({0, -0.4f, 0.9f}, 0.18f);
+  scene.cage = mapped(scene.cage, [&](Point p) { return Point{p[0] + shift, p[1], p[2] - shift / 2}; });
+  scene.name += " crowded";
+  return scene;
+}
+
 std::vector<Scene> golden() {
   std::vector<Scene> all{strewn(1, 200), strewn(2, 500), lattice(4), stairs(), head(12), head(25)};
   for (const std::array<int, 4> quaternion : {std::array{1, 1, 0, 0}, {3, 1, -2, 1}}) {
@@ -268,6 +303,12 @@ std::vector<Scene> golden() {
     scene.name += " rotated";
     all.push_back({scene.name, rotated(scene.cage, quaternion), rotated(scene.target, quaternion)});
   }
+  return all;
+}
+
+std::vector<Scene> goldenDefault() {
+  std::vector<Scene> all = golden();
+  for (const float shift : {0.0f, 0.06f, -0.1f}) all.push_back(crowdedHead(18, shift));
   return all;
 }
 

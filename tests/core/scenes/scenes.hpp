@@ -61,6 +61,9 @@ Mesh box(Point centre, Point halfSize, int cells);
 /// The same grid blown up to an ellipsoid.
 Mesh ellipsoid(Point centre, Point radii, int cells);
 
+/// A parallelogram of cells × cells quads, each two triangles, that faces to u × v; its UVs are 0 to 1 along u and v.
+Mesh sheet(Point corner, Point u, Point v, int cells = 1);
+
 /// Adds a mesh to another, as a group of its own.
 void append(Mesh& mesh, const Mesh& other);
 
@@ -115,8 +118,13 @@ Scene stairs();
 /// @param cells  Triangles of the head: 12·cells².
 Scene head(int cells);
 
-/// The scenes whose results are hashed. Never changed, only added to.
+/// The same in a cage that is moved aside, with panes of two triangles in front of its holes: every step has something
+/// to do.
+Scene crowdedHead(int cells, float shift);
+
+/// The scenes whose results are hashed: of the preset `paper`, which are never changed, and of the preset `default`.
 std::vector<Scene> golden();
+std::vector<Scene> goldenDefault();
 
 /// The scenes whose cut targets are hashed, with both kinds of seams.
 std::vector<Scene> goldenBorders();

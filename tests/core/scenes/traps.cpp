@@ -19,7 +19,7 @@ Mesh trimmed(const Mesh& mesh) {
   return result;
 }
 
-/// Adds a part of which each vertex is wanted as a function of its position says.
+/// Adds a part of which each vertex is labelled as a function of its position says.
 template <typename Wish>
 void addBy(Trap& trap, const Mesh& mesh, Wish wish) {
   const Mesh part = trimmed(mesh);
@@ -27,9 +27,9 @@ void addBy(Trap& trap, const Mesh& mesh, Wish wish) {
   for (std::size_t v = 0; v < part.vertexCount(); ++v) trap.truth.push_back(wish(part.vertex(v)));
 }
 
-/// Adds a part of which all is wanted alike.
-void add(Trap& trap, const Mesh& part, Wanted wanted) {
-  addBy(trap, part, [&](Point) { return wanted; });
+/// Adds a part of which all is labelled alike.
+void add(Trap& trap, const Mesh& part, Label label) {
+  addBy(trap, part, [&](Point) { return label; });
 }
 
 /// From 0 to 1 between two values, straight.
@@ -73,70 +73,14 @@ Trap clothed(bool hooded) {
   };
   // The clothes end between what is surely free and what is surely covered.
   addBy(trap, without(figure(1, 40), [](Point p) { return inOpening(p, 1); }),
-        [&](Point p) { return leftFree(p, 0.08f) ? Wanted::painted : Wanted::either; });
-  add(trap, without(figure(1.05f, 32), [&](Point p) { return leftFree(p, 0); }), Wanted::painted);
+        [&](Point p) { return leftFree(p, 0.08f) ? Label::painted : Label::either; });
+  add(trap, without(figure(1.05f, 32), [&](Point p) { return leftFree(p, 0); }), Label::painted);
   for (const Point& eye : kEyes)
-    add(trap, ellipsoid({eye[0], eye[1], eye[2] - 0.05f}, {0.07f, 0.07f, 0.07f}, 6), Wanted::bare);
-  add(trap, ellipsoid({0, 0.975f, 0.16f}, {0.09f, 0.03f, 0.13f}, 6), Wanted::bare);
+    add(trap, ellipsoid({eye[0], eye[1], eye[2] - 0.05f}, {0.07f, 0.07f, 0.07f}, 6), Label::bare);
+  add(trap, ellipsoid({0, 0.975f, 0.16f}, {0.09f, 0.03f, 0.13f}, 6), Label::bare);
   for (const float y : {-0.4f, -0.2f, 0.0f, 0.2f}) {
     const float x = y / 1.4f;
-    add(trap, ellipsoid({0, y, 0.8f * std::sqrt(1 - x * x) + 0.045f}, {0.02f, 0.02f, 0.012f}, 2), Wanted::either);
-  }
-  return trap;
-}
-
-Trap twins(std::uint64_t seed) {
-  Trap trap;
-  trap.scene.name = "twins " + std::to_string(seed);
-  Random random(seed);
-  const auto uneven = [&](const Mesh& mesh, float by) {
-    std::map<Point, Point> moved;  // What was one point stays one.
-    return mapped(mesh, [&](Point p) {
-      const auto [at, isNew] = moved.try_emplace(p, p);
-      for (std::size_t k = 0; isNew && k < 3; ++k) at->second[k] += random.between(-by, by);
-      return at->second;
-    });
-  };
-  const auto inWindow = [](Point p, float grow) {
-    return std::abs(p[0]) > 0.4f && p[1] > 0.18f - 0.02f * grow && p[1] < 0.38f + 0.02f * grow &&
-           std::abs(p[2]) < 0.6f + 0.02f * grow;
-  };
-  const auto shell = [&](float grow, int cells) {
-    return ellipsoid({}, {0.9f + grow, 0.55f + grow, 1.9f + grow}, cells);
-  };
-  trap.scene.cage = without(uneven(shell(0.08f, 20), 5e-3f), [&](Point p) { return inWindow(p, 0) || p[1] < -0.4f; });
-  addBy(trap, without(uneven(shell(0, 36), 5e-4f), [&](Point p) { return inWindow(p, 0) || p[1] < -0.25f; }),
-        [&](Point p) {
-          const bool behindSills = p[1] > -0.17f && p[1] < -0.03f && std::abs(p[0]) > 0.4f && std::abs(p[2]) < 1.3f;
-          const bool besideHole = inWindow(p, 4) || p[1] < -0.2f;  // The cage ends there.
-          return behindSills || besideHole ? Wanted::either : Wanted::painted;
-        });
-  const auto pair = [&](const Mesh& right, Wanted wanted) {
-    for (const float side : {1.0f, -1.0f}) {
-      Mesh part = uneven(mapped(right, [&](Point p) { return Point{side * p[0], p[1], p[2]}; }), 5e-4f);
-      // Mirrored triangles are turned round, so that they still face outward.
-      for (std::size_t i = 0; side < 0 && i < part.indices.size(); i += 3)
-        std::swap(part.indices[i + 1], part.indices[i + 2]);
-      add(trap, part, wanted);
-      trap.twins.push_back(trap.scene.target.groups.back());
-    }
-  };
-  // Sills: bars along the sides, of several lengths, each pair farther out than the one before.
-  float z = -1.05f, length = 0.1f;
-  for (const float out : {-0.02f, -0.0115f, -0.0105f, -0.0103f, -0.0101f, -0.0099f, 0.0f, 0.02f}) {
-    const float x = 0.9f * std::sqrt(1 - z * z / 3.61f - 0.01f / 0.3025f);
-    pair(box({x - 0.02f + out, -0.1f, z}, {0.03f, 0.04f, length}, 3), Wanted::either);
-    z += 0.3f;
-    length += 0.005f;
-  }
-  // Linings: the inside of the doors, up to the lower edge of the windows or a little above it.
-  for (const float top : {0.16f, 0.2f, 0.24f}) {
-    const Mesh inner = without(shell(-0.03f - 0.05f * top, 36), [&](Point p) {
-      return p[0] < 0.3f || p[1] < -0.15f || p[1] > top || p[2] < -0.6f || p[2] > 0.6f;
-    });
-    Mesh facing = inner;  // Towards the inside.
-    for (std::size_t i = 0; i < facing.indices.size(); i += 3) std::swap(facing.indices[i + 1], facing.indices[i + 2]);
-    pair(facing, Wanted::bare);
+    add(trap, ellipsoid({0, y, 0.8f * std::sqrt(1 - x * x) + 0.045f}, {0.02f, 0.02f, 0.012f}, 2), Label::either);
   }
   return trap;
 }
@@ -163,8 +107,8 @@ Trap doubled(bool own) {
     float besides = 1e9f;
     for (const Point hole : {Point{0.35f, 0.25f, 0.85f}, Point{-0.35f, 0.25f, 0.85f}, Point{0, -0.4f, 0.95f}})
       besides = std::min(besides, distance(target.vertex(v), hole));
-    const Wanted skin = depths[v] > 0.7f || besides < 0.32f ? Wanted::either : Wanted::painted;
-    trap.truth.push_back(target.groups[v] == target.groups[0] ? skin : Wanted::bare);
+    const Label skin = depths[v] > 0.7f || besides < 0.32f ? Label::either : Label::painted;
+    trap.truth.push_back(target.groups[v] == target.groups[0] ? skin : Label::bare);
   }
   const std::size_t triangles = target.triangleCount();
   std::uint32_t shift = 0;
@@ -191,9 +135,9 @@ Trap wrapped() {
   };
   trap.scene.cage = without(ellipsoid({}, kRadii, 12), [&](Point p) { return besideEye(p, 0.24f); });
   addBy(trap, without(ellipsoid({}, kRadii, 25), [&](Point p) { return besideEye(p, 0.2f); }),
-        [&](Point p) { return besideEye(p, 0.4f) ? Wanted::either : Wanted::painted; });
+        [&](Point p) { return besideEye(p, 0.4f) ? Label::either : Label::painted; });
   for (const Point& hole : kHoles)
-    add(trap, ellipsoid({hole[0], hole[1], hole[2] - 0.12f}, {0.16f, 0.16f, 0.16f}, 6), Wanted::bare);
+    add(trap, ellipsoid({hole[0], hole[1], hole[2] - 0.12f}, {0.16f, 0.16f, 0.16f}, 6), Label::bare);
   return trap;
 }
 
@@ -201,8 +145,8 @@ Trap domed() {
   Trap trap;
   trap.scene.name = "domed";
   trap.scene.cage = ellipsoid({}, {0.46f, 0.66f, 0.46f}, 8);
-  add(trap, ellipsoid({}, {0.4f, 0.6f, 0.4f}, 17), Wanted::painted);
-  add(trap, ellipsoid({}, {1.6f, 1.5f, 1.6f}, 9), Wanted::bare);
+  add(trap, ellipsoid({}, {0.4f, 0.6f, 0.4f}, 17), Label::painted);
+  add(trap, ellipsoid({}, {1.6f, 1.5f, 1.6f}, 9), Label::bare);
   return trap;
 }
 
@@ -223,7 +167,7 @@ Trap glazed() {
            std::abs(p[2]) < kFront - 0.05f;
   });
   addBy(trap, without(box({}, kBody, 24), [&](Point p) { return fromWindow(p) == 0; }),
-        [&](Point p) { return fromWindow(p) < 0.15f ? Wanted::either : Wanted::painted; });
+        [&](Point p) { return fromWindow(p) < 0.15f ? Label::either : Label::painted; });
   for (const float side : {-1.0f, 1.0f}) {
     for (const float end : {-1.0f, 1.0f}) {
       Mesh pane;
@@ -231,7 +175,7 @@ Trap glazed() {
         for (const float z : {kBack, kFront}) pane.addVertex({side * kBody[0], y, end * z});
       pane.addTriangle(0, 1, 3);
       pane.addTriangle(0, 3, 2);
-      add(trap, pane, Wanted::bare);
+      add(trap, pane, Label::bare);
     }
   }
   return trap;
@@ -252,11 +196,11 @@ Trap hatted() {
                  return Point{p[0], crown(r) + (p[1] < 0 ? -kThick : kThick) * round(r), p[2]};
                }),
         [&](Point p) {
-          return fromAxis(p) < kCrown + 0.1f && p[1] < crown(fromAxis(p)) ? Wanted::either : Wanted::painted;
+          return fromAxis(p) < kCrown + 0.1f && p[1] < crown(fromAxis(p)) ? Label::either : Label::painted;
         });
   // The head under it.
   addBy(trap, ellipsoid({0, -0.4f, 0}, {0.42f, 0.75f, 0.42f}, 20),
-        [](Point p) { return p[1] > -0.2f ? Wanted::either : Wanted::painted; });
+        [](Point p) { return p[1] > -0.2f ? Label::either : Label::painted; });
   // Too high by 1 % of the diagonal, so that its upper side is nearer to the brim's lower one too.
   constexpr float kUp = 0.033f;
   trap.scene.cage = mapped(ellipsoid({}, {1, 1, 1}, 24), [&](Point p) {
@@ -290,8 +234,8 @@ struct SmallEyed {
   }
   static void addTo(Trap& trap) {
     addBy(trap, without(body(0), [](Point p) { return fromEye(p) < 0.03f; }),
-          [](Point p) { return fromEye(p) < 0.09f ? Wanted::either : Wanted::painted; });
-    for (const Point& eye : kEyes) add(trap, ellipsoid(eye, {kEye, kEye, kEye}, 6), Wanted::bare);
+          [](Point p) { return fromEye(p) < 0.09f ? Label::either : Label::painted; });
+    for (const Point& eye : kEyes) add(trap, ellipsoid(eye, {kEye, kEye, kEye}, 6), Label::bare);
   }
 };
 
@@ -312,7 +256,7 @@ Trap bespectacled() {
   trap.scene.cage = SmallEyed::cage(0.06f, 0.03f);
   SmallEyed::addTo(trap);
   for (const Point& eye : SmallEyed::kEyes)
-    add(trap, ellipsoid({eye[0], eye[1], eye[2] + 0.045f}, {0.028f, 0.028f, 0.004f}, 4), Wanted::either);
+    add(trap, ellipsoid({eye[0], eye[1], eye[2] + 0.045f}, {0.028f, 0.028f, 0.004f}, 4), Label::either);
   return trap;
 }
 
@@ -320,8 +264,6 @@ std::vector<Trap> traps() {
   std::vector<Trap> all;
   all.push_back(clothed(false));
   all.push_back(clothed(true));
-  all.push_back(twins(1));
-  all.push_back(twins(2));
   all.push_back(doubled(false));
   all.push_back(doubled(true));
   all.push_back(wrapped());

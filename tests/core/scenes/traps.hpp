@@ -9,7 +9,7 @@
 namespace cagecast::scenes {
 
 /// What is to become of a vertex.
-enum class Wanted : std::uint8_t {
+enum class Label : std::uint8_t {
   painted = 0,
   bare = 1,
   either = 2,  ///< Hidden, or a matter of taste.
@@ -17,18 +17,13 @@ enum class Wanted : std::uint8_t {
 
 struct Trap {
   Scene scene;
-  std::vector<Wanted> truth;         ///< 1 per target vertex.
-  std::vector<std::uint32_t> twins;  ///< Groups in pairs, of which both are to be painted or neither; may be empty.
+  std::vector<Label> truth;  ///< 1 per target vertex.
 };
 
 /// A figure in clothes: its skin, of one piece, shows at the head alone; eyes, a tongue that pushes out between the
 /// lips as far as under the cage, and buttons on the shirt.
 /// @param hooded  The clothes leave nothing free but the face.
 Trap clothed(bool hooded);
-
-/// A car's shell with pairs of sills that show more and more of themselves below it, and of linings behind its window
-/// openings, left and right; all of it a little uneven, so that twins differ by what modelling leaves.
-Trap twins(std::uint64_t seed);
 
 /// A head with a deep fold under its brow, eyes, teeth and tongue, in which every triangle has a copy in reverse
 /// winding.

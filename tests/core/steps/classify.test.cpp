@@ -1,122 +1,210 @@
-// Verdicts on segments that are made by hand: the numbers of docs/method.md, each from both sides.
+// Verdicts on segments: the numbers of docs/method.md, each from both sides; thresholds and locks.
+
+#include <algorithm>
 
 #include "checks.hpp"
+#include "scenes/traps.hpp"
 
 using namespace cagecast;
 
 namespace {
 
-/// A projection of one vertex per segment.
-struct Segments {
-  std::vector<SegmentStats> stats;
-  std::vector<HoleShare> shares;
-  TransferOptions options;
-
-  Segments() {
-    options.threshold = 0.25f;
-    options.minCovered = 0;
-  }
-  /// @param covered  Of an exposed area of 1.
-  std::uint32_t add(double covered, double exposed = 1) {
-    const auto s = static_cast<std::uint32_t>(stats.size());
-    stats.push_back({1, 0, s, CulledBy::none, exposed, exposed, covered, covered});
-    return s;
-  }
-  std::vector<CulledBy> culledBy() const {
-    const std::vector<Zone> zones(stats.size(), Zone::cosmetic);
-    std::vector<std::uint32_t> segments(stats.size());
-    for (std::uint32_t s = 0; s < stats.size(); ++s) segments[s] = s;
-    Zones out;
-    REQUIRE(classify({zones, segments, stats, {}, shares}, {}, options, out).ok());
-    return copied(out.culledBy);
-  }
+/// A projection of two segments: a part, and a large one with depth `typical`.
+struct Part {
+  double covered = 0.5, exposed = 1, area = 1, depth = 0, uncovered = 0, hidden = 0;
+  double typical = 0;
+  float minCovered = 0;
 };
 
-constexpr auto kKept = CulledBy::none, kCulled = CulledBy::coverage;
-using Verdicts = std::vector<CulledBy>;
+CulledBy judged(const Part& of) {
+  const std::vector<Visibility> visibility(2, Visibility::covered);
+  const std::vector<std::uint32_t> segments{0, 1};
+  std::vector<SegmentStats> stats(2);
+  stats[0].area = stats[0].exposedArea = stats[0].coveredArea = 99;
+  stats[0].depth = of.typical;
+  stats[1].area = of.area, stats[1].exposedArea = of.exposed, stats[1].coveredArea = of.covered;
+  stats[1].depth = of.depth;
+  const std::vector<HoleShare> shares{{0, 0, 1, 90, 0}, {0, 1, 1, of.uncovered, of.hidden}, {1, 1, 1, 0.01, 0}};
+  TransferOptions options;
+  options.minCovered = of.minCovered;
+  Zones out;
+  REQUIRE(classify({visibility, segments, stats, {}, shares}, {}, options, out).ok());
+  CHECK(out.culledBy[0] == CulledBy::none);
+  CHECK((out.ratios[1].least() < 1) == (out.culledBy[1] != CulledBy::none));
+  return out.culledBy[1];
+}
+
+Zones classified(const TransferResult& result, const scenes::Scene& scene, const TransferOptions& options) {
+  Zones zones;
+  REQUIRE(classify(result.projection.view(), scene.target.indices, options, zones).ok());
+  return zones;
+}
 
 }  // namespace
 
-TEST_CASE("twins are judged together if the scores of both are from a half to less than 2", "[classify]") {
-  // With this threshold, a score is four times the covered area.
-  const auto judged = [](double first, double second, auto change) {
-    Segments call;
-    call.add(first / 4);
-    call.add(second / 4);
-    call.stats[1].twinOf = 0;
-    change(call.options);
-    return call.culledBy();
+TEST_CASE("a part is judged by the numbers of the method", "[classify]") {
+  using enum CulledBy;
+  const struct {
+    Part part;
+    CulledBy verdict;
+  } cases[] = {
+      {{.covered = 0.4999}, coverage},
+      {{.covered = 0}, coverage},
+      {{.covered = 0, .exposed = 0}, coverage},
+      // Of a small one, covered area times coverage is at least `minCovered` of its area.
+      {{.area = 1, .minCovered = 0.25f}, none},
+      {{.area = 1.01, .minCovered = 0.25f}, coverage},
+      // It may be .015 deeper than all together.
+      {{.depth = 0.0349, .typical = 0.02}, none},
+      {{.depth = 0.0352, .typical = 0.02}, coverage},
+      // A quarter of what is exposed or hidden of it may be uncovered or hidden in a hole.
+      {{.uncovered = 0.25}, none},
+      {{.uncovered = 0.2501}, hole},
+      {{.hidden = 0.333}, none},
+      {{.hidden = 0.334}, hole},
+      {{.uncovered = 0.09, .hidden = 0.2}, none},
+      {{.uncovered = 0.11, .hidden = 0.2}, hole},
+      {{.covered = 0.4999, .uncovered = 1}, coverage},
+      // From a hundredth of all covered area on it is large: of that, a quarter of what is exposed may be uncovered.
+      {{.covered = 0.99, .exposed = 1, .area = 100, .depth = 1, .uncovered = 1, .minCovered = 1}, coverage},
+      {{.covered = 1.01, .exposed = 1.34, .area = 100, .depth = 1, .uncovered = 1, .minCovered = 1}, none},
+      {{.covered = 1.01, .exposed = 1.35, .area = 100, .depth = 1, .uncovered = 1, .minCovered = 1}, coverage},
+      {{.covered = 1.01, .exposed = 2, .area = 2, .depth = 1, .uncovered = 1, .minCovered = 0.25f}, none},
   };
-  const auto asUsual = [](TransferOptions&) {};
-  CHECK(judged(0.9, 1.2, asUsual) == Verdicts{kKept, kKept});
-  CHECK(judged(0.5, 1.9, asUsual) == Verdicts{kKept, kKept});
-  CHECK(judged(0.9, 1, asUsual) == Verdicts{kCulled, kCulled});
-  CHECK(judged(0.49, 1.9, asUsual) == Verdicts{kCulled, kKept});
-  CHECK(judged(0.49, 1.2, asUsual) == Verdicts{kCulled, kKept});
-  CHECK(judged(2, 0.9, asUsual) == Verdicts{kKept, kCulled});
-  CHECK(judged(0.9, 1.2, [](TransferOptions& to) { to.steps.twins = false; }) == Verdicts{kCulled, kKept});
-  CHECK(judged(0.9, 1.2, [](TransferOptions& to) { to.steps.floor = Floor::none; }) == Verdicts{kCulled, kKept});
+  for (std::size_t i = 0; i < std::size(cases); ++i) {
+    INFO("case " << i);
+    CHECK(judged(cases[i].part) == cases[i].verdict);
+  }
 }
 
-TEST_CASE("a projection that is not whole, or not of this target, is an error", "[classify]") {
-  const std::vector<std::uint32_t> indices{0, 1, 2};
+TEST_CASE("a segment below the threshold is culled, one at it is not", "[classify]") {
+  // Of a square whose corners have 2/6, 1/6, 2/6, 1/6 of its area, one large corner is not covered.
+  const scenes::Mesh target = scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  const scenes::Mesh cage =
+      without(scenes::box({}, {2, 2, 2}, 4), [](scenes::Point p) { return p[2] < 2 || (p[0] > 0 && p[1] > 0); });
+  for (const auto& [threshold, isCulled] : {std::pair{0.0f, false}, {0.66f, false}, {0.67f, true}, {1.0f, true}}) {
+    TransferOptions options = TransferOptions::paper();
+    options.threshold = threshold;
+    const TransferResult result = transferred(cage.view(), target.view(), options);
+    const SegmentStats& segment = result.projection.segmentStats[0];
+    CHECK(segment.coverage() == Approx(2.0 / 3));
+    CHECK(segment.score() == Approx(2.0 / 3 / static_cast<double>(threshold)));
+    CHECK(segment.culled() == isCulled);
+    const Zone covered = isCulled ? Zone::culled : Zone::cosmetic;
+    CHECK(copied(result.zones.zones) == std::vector{covered, covered, covered, Zone::uncovered});
+  }
+}
+
+TEST_CASE("classify with another threshold equals transfer with it", "[classify]") {
+  for (const scenes::Scene& scene : {scenes::strewn(firstSeed(), 300), scenes::crowdedHead(16, 0.06f)}) {
+    for (TransferOptions options : {TransferOptions::paper(), TransferOptions{}}) {
+      const TransferResult first = transferred(scene.cage.view(), scene.target.view(), options);
+      for (const float threshold : {0.0f, 0.1f, 0.5f, 0.51f, 0.9f, 1.0f}) {
+        options.threshold = threshold;
+        const TransferResult whole = transferred(scene.cage.view(), scene.target.view(), options);
+        const Zones zones = classified(first, scene, options);
+        INFO(scene.name << ", threshold " << threshold << ", CAGECAST_SEED=" << firstSeed());
+        CHECK(copied(zones.zones) == copied(whole.zones.zones));
+        CHECK(copied(zones.cosmeticTriangles) == copied(whole.zones.cosmeticTriangles));
+        CHECK(copied(zones.culledBy) == copied(whole.zones.culledBy));
+        for (std::size_t s = 0; s < zones.culledBy.size(); ++s)
+          CHECK(zones.ratios[s].least() == whole.projection.segmentStats[s].score());
+      }
+    }
+  }
+}
+
+TEST_CASE("a lock overrides the verdict on its segment, not the score", "[classify][locks]") {
+  const scenes::Scene scene = scenes::crowdedHead(16, 0);
+  const TransferResult result = transferred(scene.cage.view(), scene.target.view(), {});
+  for (std::uint32_t s = 0; s < result.projection.segmentStats.size(); ++s) {
+    for (const Lock lock : {Lock::keep, Lock::exclude, Lock::automatic}) {
+      INFO("segment " << s);
+      const LockEntry locks[] = {{s, lock}};
+      TransferOptions options;
+      options.locks.segments = locks;
+      const Zones zones = classified(result, scene, options);
+      CHECK(zones.culledBy[s] == (lock == Lock::keep      ? CulledBy::none
+                                  : lock == Lock::exclude ? CulledBy::lock
+                                                          : result.zones.culledBy[s]));
+      CHECK(zones.ratios[s].least() == result.zones.ratios[s].least());
+      for (std::size_t v = 0; v < scene.target.vertexCount() && lock != Lock::automatic; ++v) {
+        if (result.projection.segments[v] != s) continue;
+        const Visibility found = result.projection.visibility[v];
+        if (found == Visibility::covered) {
+          CHECK(zones.zones[v] == (lock == Lock::keep ? Zone::cosmetic : Zone::culled));
+        } else if (lock == Lock::exclude) {
+          CHECK(zones.zones[v] == (found == Visibility::occluded ? Zone::occluded : Zone::uncovered));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a lock by segment overrides one by group, and of several the last one counts", "[classify][locks]") {
+  const scenes::Mesh cage = scenes::box({}, {2, 2, 2}, 1);
+  scenes::Mesh target = scenes::box({}, {1, 1, 1}, 1);
+  append(target, scenes::box({0.2f, 0, 0}, {1.1f, 1, 1}, 1));
+  std::fill(target.groups.begin() + 24, target.groups.end(), 7u);
+  using Locked = std::vector<LockEntry>;
+  constexpr auto kNone = CulledBy::none, kLock = CulledBy::lock;
+  const struct {
+    Locked segments, groups;
+    std::vector<CulledBy> verdicts;
+  } cases[] = {{{}, {}, {kNone, kNone}},
+               {{{0, Lock::exclude}}, {}, {kLock, kNone}},
+               {{}, {{7, Lock::exclude}}, {kNone, kLock}},
+               {{{1, Lock::keep}}, {{7, Lock::exclude}}, {kNone, kNone}},
+               {{{1, Lock::keep}, {1, Lock::automatic}}, {{7, Lock::exclude}}, {kNone, kNone}}};
+  for (const auto& [segments, groups, verdicts] : cases) {
+    TransferOptions options;
+    options.locks = {segments, groups};
+    CHECK(copied(transferred(cage.view(), target.view(), options).zones.culledBy) == verdicts);
+  }
+}
+
+TEST_CASE("a small part bare under a hole is culled, unless it is kept", "[classify]") {
+  const scenes::Trap trap = scenes::aside();
+  const TransferResult result = transferred(trap.scene.cage.view(), trap.scene.target.view(), {});
+  REQUIRE(result.projection.segmentStats.size() == 3);
+  using enum CulledBy;
+  CHECK(copied(result.zones.culledBy) == std::vector{none, hole, hole});
+  CHECK(result.projection.segmentStats[1].coverage() > 0.6);
+  CHECK(result.zones.explainedHoles[result.projection.holeShares[0].hole] == 1);
+  const LockEntry kept[] = {{1, Lock::keep}};
+  TransferOptions options;
+  options.locks.segments = kept;
+  CHECK(copied(classified(result, trap.scene, options).culledBy) == std::vector{none, none, hole});
+}
+
+TEST_CASE("a projection that is not whole, or not of this target, is an error", "[classify][errors]") {
   struct Parts {
-    std::vector<Zone> zones{3, Zone::cosmetic};
-    std::vector<std::uint32_t> segments{0, 0, 1}, recovery{0, 1, 2};
+    std::vector<Visibility> visibility{3, Visibility::covered};
+    std::vector<std::uint32_t> segments{0, 0, 1}, recovery{0, 1, 2}, indices{0, 1, 2};
     std::vector<SegmentStats> stats{2};
     std::vector<HoleShare> shares{{0, 1}, {2, 0}};
-    Status classify(std::span<const std::uint32_t> of) const {
-      Zones out;
-      return cagecast::classify({zones, segments, stats, recovery, shares}, of, {}, out);
-    }
   };
-  CHECK(Parts{}.classify(indices).ok());
-  CHECK(Parts{}.classify(std::vector<std::uint32_t>{0, 1, 2, 0}).code == Code::indicesNotTriples);
-  const Status stray = Parts{}.classify(std::vector<std::uint32_t>{0, 1, 3});
-  CHECK(stray.code == Code::indexOutOfRange);
-  CHECK(stray.at == 2);
-  const auto isMismatch = [&](auto change) {
-    Parts parts;
-    change(parts);
-    const Status status = parts.classify(indices);
-    return status.code == Code::resultMismatch && status.argument == Argument::target;
-  };
-  CHECK(isMismatch([](Parts& of) { of.segments.pop_back(); }));
-  CHECK(isMismatch([](Parts& of) { of.zones.pop_back(); }));
-  CHECK(isMismatch([](Parts& of) { of.segments[1] = 2; }));
-  CHECK(isMismatch([](Parts& of) { of.recovery.pop_back(); }));
-  CHECK(isMismatch([](Parts& of) { of.stats[0].twinOf = 2; }));
-  CHECK(isMismatch([](Parts& of) { of.shares[0].segment = 2; }));
-  CHECK(isMismatch([](Parts& of) { of.shares[0].hole = 3; }));
-  CHECK(isMismatch([](Parts& of) { of.shares[1].hole = UINT32_MAX; }));
-}
-
-TEST_CASE("a small part is culled where the hole is meant for it, by the numbers of the method", "[classify]") {
-  /// Whether a small part is culled.
-  const auto isCulled = [](double uncovered, double hidden, double uncoveredOfOthers, double covered = 0.5,
-                           double exposedOfCulled = 0) {
-    Segments call;
-    const std::uint32_t part = call.add(covered, 2 * covered), others = call.add(99.5, 100), culled = call.add(0);
-    call.shares = {{0, part, 1, uncovered, hidden}, {0, others, 1, uncoveredOfOthers, 0}};
-    if (exposedOfCulled > 0) call.shares.push_back({0, culled, exposedOfCulled, 0, 0});
-    const Verdicts verdicts = call.culledBy();
-    CHECK(verdicts[others] == kKept);
-    CHECK(verdicts[culled] == kCulled);
-    return verdicts[part] == CulledBy::hole;
-  };
-  // Uncovered in more than .15 of what is exposed of it,
-  CHECK(isCulled(0.16, 0, 0));
-  CHECK(!isCulled(0.14, 0, 0));
-  // with at least a quarter of what is uncovered at the hole,
-  CHECK(isCulled(0.5, 0, 1.49));
-  CHECK(!isCulled(0.5, 0, 1.51));
-  // which nothing explains that is at least a fiftieth of it,
-  CHECK(!isCulled(0.5, 0, 0.5, 0.5, 0.021));
-  CHECK(isCulled(0.5, 0, 0.5, 0.5, 0.019));
-  // or hidden in more than a quarter of what is exposed or hidden of it;
-  CHECK(isCulled(0, 0.34, 0));
-  CHECK(!isCulled(0, 0.33, 0));
-  // all if it has less than a fiftieth of what is covered. (2.03 of 101.53, and 2.05 of 101.55.)
-  CHECK(isCulled(0.7, 0, 0, 2.03));
-  CHECK(!isCulled(0.7, 0, 0, 2.05));
+  const struct {
+    void (*change)(Parts&);
+    Code code;
+  } cases[] = {{[](Parts&) {}, Code::ok},
+               {[](Parts& of) { of.indices.push_back(0); }, Code::indicesNotTriples},
+               {[](Parts& of) { of.indices[2] = 3; }, Code::indexOutOfRange},
+               {[](Parts& of) { of.segments.pop_back(); }, Code::resultMismatch},
+               {[](Parts& of) { of.visibility.pop_back(); }, Code::resultMismatch},
+               {[](Parts& of) { of.segments[1] = 2; }, Code::resultMismatch},
+               {[](Parts& of) { of.recovery.pop_back(); }, Code::resultMismatch},
+               {[](Parts& of) { of.shares[0].segment = 2; }, Code::resultMismatch},
+               {[](Parts& of) { of.shares[0].hole = 3; }, Code::resultMismatch},
+               {[](Parts& of) { of.shares[1].hole = UINT32_MAX; }, Code::resultMismatch}};
+  for (std::size_t i = 0; i < std::size(cases); ++i) {
+    Parts of;
+    cases[i].change(of);
+    Zones out;
+    const Status status = classify({of.visibility, of.segments, of.stats, of.recovery, of.shares}, of.indices, {}, out);
+    INFO("case " << i);
+    CHECK(status.code == cases[i].code);
+    CHECK(status.argument == (status.ok() ? Argument::none : Argument::target));
+    if (status.code == Code::indexOutOfRange) CHECK(status.at == 2);
+  }
 }

@@ -7,29 +7,29 @@ import { type Path, pathOf } from '../../../web/src/explain/path';
 import { diagonalOf } from '../../../web/src/scene/surface';
 import { modelFolders, readPlain } from '../../package/scenes';
 
-/** The zone that each outcome is. */
-const kZones: Record<Path['outcome'], number> = { covered: 0, pokesOut: 0, hidden: 1, lost: 2 };
+/** The visibility that each outcome is. */
+const kVisibility: Record<Path['outcome'], number> = { covered: 0, pokesOut: 0, hidden: 1, lost: 2 };
 const kAsked = 600; // vertices of each model
 
 before(() => init());
 
 for (const folder of modelFolders()) {
-  test(`${path.basename(folder)}: the path of a vertex leads to the zone of the transfer`, async () => {
+  test(`${path.basename(folder)}: the path of a vertex leads to what the transfer finds`, async () => {
     const [target, cage] = await Promise.all(
       ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),
     );
     const loops = new BoundaryLoops(cage!);
     const diagonal = diagonalOf(target!);
     for (const preset of ['default', 'paper'] as const) {
-      const { zones, triangles, distances } = project(cage!, target!, { preset });
-      const every = Math.max(1, Math.floor(zones.length / kAsked));
-      for (let vertex = 0; vertex < zones.length; vertex += every) {
+      const { visibility, triangles, distances } = project(cage!, target!, { preset });
+      const every = Math.max(1, Math.floor(visibility.length / kAsked));
+      for (let vertex = 0; vertex < visibility.length; vertex += every) {
         const path = pathOf(
           { target: target!, cage: cage!, loops },
           { vertex, triangle: triangles[vertex]!, diagonal },
           presetOptions(preset),
         );
-        assert.equal(kZones[path.outcome], zones[vertex], `${preset}: vertex ${vertex} is ${path.outcome}`);
+        assert.equal(kVisibility[path.outcome], visibility[vertex], `${preset}: vertex ${vertex} is ${path.outcome}`);
         assert.ok(
           Math.abs(path.start.distanceTo(path.closest) - distances[vertex]!) < 1e-6 * diagonal,
           `${preset}: vertex ${vertex} is as far away`,

@@ -1,7 +1,5 @@
 // Judges the segments of any projection that is consistent in itself, by any options and locks.
 
-#include <cmath>
-
 #include "fuzz/input.hpp"
 
 using namespace cagecast;
@@ -10,10 +8,10 @@ using fuzz::require;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Input input(data, size);
   const std::uint32_t vertices = input.below(60), segments = 1 + input.below(12), holes = input.below(6);
-  std::vector<Zone> zones;
+  std::vector<Visibility> visibility;
   std::vector<std::uint32_t> ofVertex, recovery, indices;
   for (std::uint32_t v = 0; v < vertices; ++v) {
-    zones.push_back(static_cast<Zone>(input.below(3)));
+    visibility.push_back(static_cast<Visibility>(input.below(3)));
     ofVertex.push_back(input.below(segments));
     recovery.push_back(input.below(Recovery::throughHole + holes));
   }
@@ -23,8 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     stats[s].area = static_cast<double>(input.share());
     stats[s].exposedArea = stats[s].area * static_cast<double>(input.share());
     stats[s].coveredArea = stats[s].exposedArea * static_cast<double>(input.share());
-    stats[s].depthWeightedArea = stats[s].coveredArea * static_cast<double>(input.share());
-    stats[s].twinOf = input.below(s + 1);
+    stats[s].depth = static_cast<double>(input.share());
     stats[s].group = input.below(4);
   }
   std::vector<HoleShare> shares;
@@ -37,13 +34,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     locks.push_back({input.below(16), static_cast<Lock>(input.below(3))});
   options.locks = {locks, {}};
 
-  const ProjectionView projection{zones, ofVertex, stats, recovery, shares};
+  const ProjectionView projection{visibility, ofVertex, stats, recovery, shares};
   Zones out;
   const Status status = classify(projection, indices, options, out);
   if (!status.ok()) return 0;
-  require(out.zones.size() == vertices && out.scores.size() == segments);
+  require(out.zones.size() == vertices && out.ratios.size() == segments);
   require(3 * out.cosmeticTriangles.size() == indices.size());
-  for (const double score : out.scores) require(!std::isnan(score));
+  for (const Ratios& of : out.ratios) {
+    for (const double ratio : {of.threshold, of.floor, of.depth, of.hole}) require(ratio >= 0);
+  }
   for (const Zone zone : out.zones) require(zone <= Zone::culled);
   return 0;
 }

@@ -58,13 +58,11 @@ class Input {
     out.seams = flag() ? Seams::corner : Seams::vertex;
     if (flag()) out.weldTolerance = share() / 100;
     if (flag()) out.minCovered = share();
-    if (flag()) out.steps.floor = static_cast<Floor>(below(3));
+    if (flag()) out.steps.floor = below(2) != 0;
     const std::uint8_t off = byte();
     if ((off & 1) != 0) out.steps.interiorSamples = false;
-    if ((off & 2) != 0) out.steps.depthWeighting = false;
     if ((off & 4) != 0) out.steps.recheck = false;
     if ((off & 8) != 0) out.steps.holes = false;
-    if ((off & 16) != 0) out.steps.twins = false;
     return out;
   }
 

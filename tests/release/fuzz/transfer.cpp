@@ -16,7 +16,7 @@ namespace {
 void check(const fuzz::Scene& scene, const TransferResult& result) {
   const Projection& projection = result.projection;
   const std::size_t vertices = scene.target.positions.size() / 3;
-  require(projection.zones.size() == vertices && result.zones.zones.size() == vertices);
+  require(projection.visibility.size() == vertices && result.zones.zones.size() == vertices);
   for (std::size_t v = 0; v < vertices; ++v) {
     require(std::isfinite(projection.distances[v]) && projection.distances[v] >= 0);
     require(std::isfinite(projection.uvs[2 * v]) && std::isfinite(projection.uvs[2 * v + 1]));
@@ -26,8 +26,7 @@ void check(const fuzz::Scene& scene, const TransferResult& result) {
   for (const SegmentStats& segment : projection.segmentStats) {
     require(segment.area >= 0 && segment.exposedArea >= 0 && segment.coveredArea >= 0);
     require(segment.coveredArea <= segment.exposedArea);
-    require(segment.twinOf < projection.segmentStats.size());
-    require(!std::isnan(segment.score));
+    require(segment.depth >= 0 && segment.depth <= 1 && segment.score() >= 0);
   }
 }
 
@@ -66,12 +65,9 @@ bool hasSize(const fuzz::Mesh& mesh) {
   return false;
 }
 
-/// Compares with the reference, which weighs depth, and finds twins, if and only if the floor needs that.
 void compareWithReference(const fuzz::Scene& scene, Workspace& workspace) {
   const MeshView cage = scene.cage.view(), target = scene.target.view();
   TransferOptions options = scene.options;
-  options.steps.depthWeighting = options.steps.floor == Floor::depth;
-  options.steps.twins = options.steps.twins && options.steps.depthWeighting;
   // At 0 without a floor the library does not look where nothing is covered.
   options.threshold = std::max(options.threshold, 0.01f);
   TransferResult result;

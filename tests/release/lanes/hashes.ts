@@ -50,17 +50,23 @@ function readScenes(bytes: ArrayBuffer): { cage: Mesh; target: Mesh }[] {
 /**
  * The hashes that tests/release/lanes/lane.cpp prints.
  * @param build  A build of the package, ready.
- * @param golden,borders  The scenes that lane.cpp wrote.
+ * @param load  Gets a file of scenes that lane.cpp wrote.
  */
-export function hashesOf(build: typeof import('cagecast'), golden: ArrayBuffer, borders: ArrayBuffer): string {
+export async function hashesOf(
+  build: typeof import('cagecast'),
+  load: (name: string) => ArrayBuffer | Promise<ArrayBuffer>,
+): Promise<string> {
   const { transfer, cutBorders } = build;
   const hashes = [new Hash(), new Hash(), new Hash()] as const;
-  for (const { cage, target } of readScenes(golden)) {
-    const paper = transfer(cage, target, { preset: 'paper' });
-    hashes[0].add(paper.uvs, paper.zones, paper.triangles, paper.segments);
-    const { uvs, zones, triangles, segments, cosmeticTriangles } = transfer(cage, target);
-    hashes[1].add(uvs, zones, triangles, segments, cosmeticTriangles);
+  for (const { cage, target } of readScenes(await load('paper.bin'))) {
+    const { uvs, zones, triangles, segments } = transfer(cage, target, { preset: 'paper' });
+    hashes[0].add(uvs, zones, triangles, segments);
   }
+  for (const { cage, target } of readScenes(await load('default.bin'))) {
+    const { uvs, zones, triangles, segments, cosmeticTriangles, cornerUvs } = transfer(cage, target);
+    hashes[1].add(uvs, zones, triangles, segments, cosmeticTriangles, cornerUvs);
+  }
+  const borders = await load('borders.bin');
   for (const seams of ['vertex', 'corner'] as const) {
     for (const { cage, target } of readScenes(borders)) {
       const cut = cutBorders(cage, target, transfer(cage, target, { seams }), { seams });

@@ -35,52 +35,15 @@ void writeScenes(const std::string& path, const std::vector<scenes::Scene>& all)
   }
 }
 
-void fail(const Status& status) {
-  std::fprintf(stderr, "%s\n", describe(status, {}, {}).c_str());
-  std::exit(1);
-}
-
-Hash hashOf(const TransferOptions& options, bool isPaper) {
-  Hash hash;
-  Workspace workspace;
-  for (const scenes::Scene& scene : scenes::golden()) {
-    TransferResult result;
-    const Status status = transfer(scene.cage.view(), scene.target.view(), options, workspace, result);
-    if (!status.ok()) fail(status);
-    hash.add(result);
-    if (!isPaper) hash.add(result.zones.cosmeticTriangles);
-  }
-  return hash;
-}
-
-Hash hashOfCuts() {
-  Hash hash;
-  Workspace workspace;
-  for (const Seams seams : {Seams::vertex, Seams::corner}) {
-    TransferOptions options;
-    options.seams = seams;
-    for (const scenes::Scene& scene : scenes::goldenBorders()) {
-      TransferResult result;
-      const MeshView target = scene.target.view();
-      if (const Status status = transfer(scene.cage.view(), target, options, workspace, result); !status.ok())
-        fail(status);
-      CutTarget cut;
-      const DecidedTarget decided{target, result.zones.zones, result.projection.segments, result.zones.culledBy};
-      if (const Status status = cutBorders(scene.cage.view(), decided, options, workspace, cut); !status.ok())
-        fail(status);
-      hash.add(cut);
-    }
-  }
-  return hash;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc > 1) {
-    writeScenes(argv[1] + std::string("/golden.bin"), scenes::golden());
-    writeScenes(argv[1] + std::string("/borders.bin"), scenes::goldenBorders());
+    const std::string folder = argv[1];
+    writeScenes(folder + "/paper.bin", scenes::golden());
+    writeScenes(folder + "/default.bin", scenes::goldenDefault());
+    writeScenes(folder + "/borders.bin", scenes::goldenBorders());
   }
-  std::printf("%s %s %s\n", hashOf(TransferOptions::paper(), true).text().c_str(),
-              hashOf(TransferOptions{}, false).text().c_str(), hashOfCuts().text().c_str());
+  const GoldenHashes hashes = GoldenHashes::compute();
+  std::printf("%s %s %s\n", hashes.paper.c_str(), hashes.standard.c_str(), hashes.borders.c_str());
 }

@@ -3,8 +3,7 @@ import { CagecastError, show } from '../core/error.js';
 import type { CoreProjection } from '../core/module.js';
 import type { HoleShare, SegmentStats } from '../core/records.js';
 import { type ArrayKind, plainArray, showArray } from '../core/typed-arrays.js';
-import { Zone } from '../generated/zone.js';
-import { applyMasks, checkMaskLengths } from './masks.js';
+import { Visibility } from '../generated/enums.js';
 import { count } from './mesh.js';
 import { type ClassifyOptions, checkOptions } from './options.js';
 import type { Classification, Projection } from './result.js';
@@ -20,14 +19,11 @@ import { checkReuse, handOver, type Reuse } from './reuse.js';
  */
 export function classify(projection: Projection, options?: ClassifyOptions & Reuse<Classification>): Classification {
   if (typeof projection !== 'object' || projection === null) throw wrong(` is ${show(projection)}`);
-  const { core, locks, masks } = checkOptions('classify', options, projection.preset);
+  const { core, overrides } = checkOptions('classify', options, projection.preset);
   const arrays = checkReuse('classify', options?.reuse);
   // Last: getters of the options may have written to it.
   const whole = checkProjection(projection);
-  const { zones, indices } = whole;
-  checkMaskLengths('classify', masks, zones.length, indices.length / 3);
-  const result = callCore('classify', ({ workspace }) => workspace.classify(whole, core, locks), arrays);
-  applyMasks(masks, indices, result, core.steps['partialTriangles'] === true);
+  const result = callCore('classify', ({ workspace }) => workspace.classify(whole, core, overrides), arrays);
   return handOver(result, options?.reuse);
 }
 
@@ -48,16 +44,18 @@ function checkProjection(projection: Projection): CoreProjection {
     if (!array) throw wrong(`.${name} is ${showArray(projection[name], kind)}, not a ${kind}`);
     return array;
   };
-  const zones = arrayOf('zones', 'Uint8Array');
+  const visibility = arrayOf('visibility', 'Uint8Array');
   const segments = arrayOf('segments', 'Uint32Array');
   const recovery = arrayOf('recovery', 'Uint32Array');
   const indices = arrayOf('indices', 'Uint32Array');
   const { segmentStats, holeShares } = projection;
   for (const [name, array] of Object.entries({ segmentStats, holeShares }))
     if (!Array.isArray(array)) throw wrong(`.${name} is ${show(array)}, not an array`);
-  if (zones.length !== segments.length) throw wrong(` has ${zones.length} zones but ${segments.length} segments`);
-  if (recovery.length !== 0 && recovery.length !== zones.length)
-    throw wrong(` has ${zones.length} zones but ${recovery.length} entries of recovery`);
+  const vertices = visibility.length;
+  if (segments.length !== vertices)
+    throw wrong(` has ${vertices} entries of visibility but ${segments.length} of segments`);
+  if (recovery.length !== 0 && recovery.length !== vertices)
+    throw wrong(` has ${vertices} entries of visibility but ${recovery.length} of recovery`);
   if (indices.length % 3 !== 0) throw wrong(`.indices has ${indices.length} entries, not 3 per triangle`);
   const { none, throughHole, maxTriangles } = useCore('classify', ({ module }) => ({
     none: module['CulledBy']!['none']!,
@@ -65,36 +63,33 @@ function checkProjection(projection: Projection): CoreProjection {
     maxTriangles: module.maxTriangles,
   }));
   const stats = Array.from(segmentStats, (segment, s) => ({
-    ...checkSegment(segment, s, segmentStats.length),
+    ...checkSegment(segment, s),
     culledBy: none,
   }));
   const { shares, holes } = checkShares(holeShares, segmentStats.length, maxTriangles);
 
-  const outOfRange = (name: string, array: Uint32Array, limit: number, what: string) => {
+  const outOfRange = (name: string, array: Uint32Array | Uint8Array, limit: number, what: string) => {
     for (let i = 0; i < array.length; ++i)
       if (array[i]! >= limit) throw wrong(`.${name}[${i}] = ${array[i]} is out of range (${what})`, i);
   };
   outOfRange('segments', segments, stats.length, `${stats.length} segments`);
   outOfRange('recovery', recovery, throughHole + holes, `${holes} holes`);
-  outOfRange('indices', indices, zones.length, count(zones.length, 'vertex'));
-  for (let v = 0; v < zones.length; ++v) {
-    if (zones[v]! > Zone.Uncovered)
-      throw wrong(`.zones[${v}] = ${zones[v]} is not a zone that project() gives (0..${Zone.Uncovered})`, v);
-  }
-  return { zones, segments, segmentStats: stats, recovery, holeShares: shares, indices };
+  outOfRange('indices', indices, vertices, count(vertices, 'vertex'));
+  outOfRange('visibility', visibility, Visibility.Uncovered + 1, `0..${Visibility.Uncovered}`);
+  return { visibility, segments, segmentStats: stats, recovery, holeShares: shares, indices };
 }
 
 const isBelow = (value: unknown, limit: number) =>
   Number.isInteger(value) && (value as number) >= 0 && (value as number) < limit;
 
-function checkSegment(segment: SegmentStats, s: number, segments: number): SegmentStats {
-  const { points, area, exposedArea, coveredArea, depthWeightedArea, group, twinOf } = segment ?? {};
-  const numbers = [points, area, exposedArea, coveredArea, depthWeightedArea, group];
-  if (!numbers.every(Number.isFinite) || !isBelow(twinOf, segments))
+function checkSegment(segment: SegmentStats, s: number): SegmentStats {
+  const { points, area, exposedArea, coveredArea, depth, group } = segment ?? {};
+  if (![points, area, exposedArea, coveredArea, depth, group].every(Number.isFinite))
     throw wrong(`.segmentStats[${s}] is not { points, area, exposedArea, coveredArea, … }`, s);
   // Fields that `classify` computes may be missing.
-  const computed = { coverage: 0, score: Number.POSITIVE_INFINITY, culled: false, culledBy: 'none' as const };
-  return { points, area, exposedArea, coveredArea, depthWeightedArea, group, twinOf, ...computed };
+  const ratios = { threshold: Infinity, floor: Infinity, depth: Infinity, hole: Infinity };
+  const computed = { ratios, coverage: 0, score: Infinity, culled: false, culledBy: 'none' as const };
+  return { points, area, exposedArea, coveredArea, depth, group, ...computed };
 }
 
 /**

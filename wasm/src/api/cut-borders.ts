@@ -2,8 +2,7 @@ import { callCore, useCore } from '../core/engine.js';
 import { CagecastError, show } from '../core/error.js';
 import type { CheckedMesh, CoreDecision } from '../core/module.js';
 import { plainArray, showArray } from '../core/typed-arrays.js';
-import { Zone } from '../generated/zone.js';
-import { applyMasksToCut, checkMaskLengths } from './masks.js';
+import { Zone } from '../generated/enums.js';
 import { checkMesh, count, type Mesh } from './mesh.js';
 import { checkOptions, type TransferOptions } from './options.js';
 import type { TransferResult } from './result.js';
@@ -46,7 +45,7 @@ export interface CutTarget {
  * @param options  The options of the transfer. `locks` are ignored: the result already contains their effect. Triangles that a mask
  * decides are decided as a whole.
  * @throws {CagecastError} `resultMismatch` if the result does not belong to this target; `bordersTooComplex` if the cut takes more
- * comparisons than its limit (docs/method.md, step 10): leave the triangles whole then; else as `transfer` does.
+ * comparisons than its limit (docs/borders.md): leave the triangles whole then; else as `transfer` does.
  *
  * @example
  * const result = transfer(cage, target);
@@ -58,16 +57,12 @@ export function cutBorders(
   result: Pick<TransferResult, 'zones' | 'segments' | 'segmentStats'>,
   options?: TransferOptions,
 ): CutTarget {
-  const checked = checkOptions('cutBorders', options);
+  const { core, overrides } = checkOptions('cutBorders', options);
   const [cageMesh, targetMesh] = [checkMesh('cutBorders', 'cage', cage), checkMesh('cutBorders', 'target', target)];
   const decision = checkResult(result, targetMesh);
-  const { positions, indices } = targetMesh;
-  checkMaskLengths('cutBorders', checked.masks, positions.length / 3, indices.length / 3);
-  const cut = callCore('cutBorders', ({ workspace }) =>
-    workspace.cutBorders(cageMesh, targetMesh, decision, checked.core),
+  return callCore('cutBorders', ({ workspace }) =>
+    workspace.cutBorders(cageMesh, targetMesh, decision, core, overrides),
   );
-  applyMasksToCut(checked.masks, indices, decision.zones, cut, checked.core.steps['partialTriangles'] === true);
-  return cut;
 }
 
 /** Checks that a result is complete and belongs to this target, and names the entry at fault, which the core cannot. */

@@ -1,6 +1,7 @@
 import { useCore } from '../core/engine.js';
 import { CagecastError, isRecord, show } from '../core/error.js';
-import { type CoreLocks, type CoreOptions, type CoreValue, nameOf, namesOf } from '../core/module.js';
+import { type CoreOptions, type CoreOverrides, type CoreValue, nameOf, namesOf } from '../core/module.js';
+import { plainArray, showArray } from '../core/typed-arrays.js';
 import {
   type ClassifyStage,
   type ClassifySteps,
@@ -8,7 +9,6 @@ import {
   type ProjectStage,
   type ProjectSteps,
 } from '../generated/options.js';
-import { checkMasks, type Masks } from './masks.js';
 
 /**
  * A named set of values for all options. `paper` is the method as published: *Cage-based Texture Transfer with Geometric
@@ -26,6 +26,23 @@ export interface Locks {
   segments?: Readonly<Record<number, Lock>> | undefined;
   /** By group number, as in `target.groups`, or 0 if the target has no groups. A segment has the group of its first vertex. */
   groups?: Readonly<Record<number, Lock>> | undefined;
+}
+
+/**
+ * Where the target is never painted (−1) or always (1), whatever the method says; 0 leaves it to the method. For what no lock can
+ * name, such as the eyes of a scan in one piece. −1 overrides 1. Segments, their ratios and holes are not affected.
+ *
+ * A vertex of −1 gets `Zone.Culled`, and no triangle at it is painted. A vertex of 1 gets `Zone.Cosmetic`, and a triangle is painted
+ * if its vertices say so then. Triangles are decided after vertices: the vertices of a painted triangle of 1 become cosmetic, and
+ * those all of whose triangles are −1 become culled.
+ *
+ * Where the cage has no place for what is painted, as over a hole, it shows the nearest of the cage, stretched.
+ */
+export interface Masks {
+  /** 1 per target vertex. Vertices that lie at the same place may differ. */
+  vertices?: Int8Array | undefined;
+  /** 1 per target triangle. */
+  triangles?: Int8Array | undefined;
 }
 
 /** Options of `project`. An option that is not given has the value of the preset. */
@@ -71,21 +88,20 @@ export interface PresetOptions extends AllOf<ProjectStage & ClassifyStage> {
 interface CheckedOptions {
   preset: Preset;
   core: CoreOptions;
-  locks: CoreLocks;
-  masks: Masks | undefined;
+  overrides: CoreOverrides;
 }
 
 /** For each function, the stages whose options it takes, and its other options. */
-const functions = {
+const kFunctions = {
   project: { stages: ['project'], others: ['reuse'] },
   classify: { stages: ['classify'], others: ['locks', 'masks', 'reuse'] },
   transfer: { stages: ['project', 'classify'], others: ['locks', 'masks', 'reuse'] },
   cutBorders: { stages: ['project', 'classify'], others: ['locks', 'masks'] },
 } as const;
-type Fn = keyof typeof functions;
+type Fn = keyof typeof kFunctions;
 
-const presets: readonly Preset[] = ['default', 'paper'];
-const lockNames: readonly Lock[] = ['auto', 'keep', 'exclude'];
+const kPresets: readonly Preset[] = ['default', 'paper'];
+const kLockNames: readonly Lock[] = ['auto', 'keep', 'exclude'];
 
 type OptionName = keyof typeof optionTable;
 
@@ -94,7 +110,7 @@ const optionsOf = (fn: Fn, isStep: boolean): OptionName[] =>
   (Object.keys(optionTable) as OptionName[]).filter(
     (name) =>
       optionTable[name].isStep === isStep &&
-      (functions[fn].stages as readonly string[]).includes(optionTable[name].stage),
+      (kFunctions[fn].stages as readonly string[]).includes(optionTable[name].stage),
   );
 
 /** The C++ enumeration of a choice. */
@@ -124,11 +140,11 @@ function readable(options: Record<string, CoreValue>): object {
 }
 
 function presetOf(fn: string, name: string, preset: unknown): CoreOptions {
-  if (!presets.includes(preset as Preset))
+  if (!kPresets.includes(preset as Preset))
     throw new CagecastError(
       'badOption',
       fn,
-      `${name} = ${show(preset)} is unknown; there are: ${presets.map(show).join(', ')}`,
+      `${name} = ${show(preset)} is unknown; there are: ${kPresets.map(show).join(', ')}`,
       { argument: name.split('.')[0] },
     );
   return useCore(fn, ({ module }) => module.presetOptions(module['Preset']![preset as Preset]!));
@@ -144,7 +160,7 @@ export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'de
     'preset',
     ...optionsOf(fn, false),
     'steps',
-    ...functions[fn].others,
+    ...kFunctions[fn].others,
   ]);
   const steps = checkNames(fn, 'options.steps', given['steps'], optionsOf(fn, true));
   const chosen = (given['preset'] ?? preset) as Preset;
@@ -153,7 +169,11 @@ export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'de
     if (given[name] !== undefined) core[name] = checkValue(fn, 'options', name, given[name]);
   for (const name of optionsOf(fn, true))
     if (steps[name] !== undefined) core.steps[name] = checkValue(fn, 'options.steps', name, steps[name]);
-  return { preset: chosen, core, locks: checkLocks(fn, given['locks']), masks: checkMasks(fn, given['masks']) };
+  return {
+    preset: chosen,
+    core,
+    overrides: { locks: checkLocks(fn, given['locks']), masks: checkMasks(fn, given['masks']) },
+  };
 }
 
 function checkNames(fn: string, where: string, given: unknown = {}, known: readonly string[]): Record<string, unknown> {
@@ -180,10 +200,10 @@ function checkValue(fn: string, where: string, name: OptionName, value: unknown)
   return value;
 }
 
-function checkLocks(fn: string, locks: unknown = {}): CoreLocks {
+function checkLocks(fn: string, locks: unknown = {}): CoreOverrides['locks'] {
   const wrong = (text: string) => new CagecastError('badOption', fn, `options.locks${text}`);
   if (!isRecord(locks)) throw wrong(` is ${show(locks)}, not an object`);
-  const out: CoreLocks = { segments: [], groups: [] };
+  const out: CoreOverrides['locks'] = { segments: [], groups: [] };
   for (const [field, entries] of Object.entries(locks)) {
     if (field !== 'segments' && field !== 'groups') throw wrong(`.${field} is unknown; there are: segments, groups`);
     if (entries === undefined) continue;
@@ -192,10 +212,26 @@ function checkLocks(fn: string, locks: unknown = {}): CoreLocks {
       // Segments and groups have 32-bit numbers.
       if (!/^(0|[1-9][0-9]*)$/.test(id) || Number(id) >= 2 ** 32)
         throw wrong(`.${field} has the key ${show(id)}, which is not the number of a ${field.slice(0, -1)}`);
-      if (!lockNames.includes(lock as Lock))
-        throw wrong(`.${field}[${id}] = ${show(lock)} is unknown; there are: ${lockNames.map(show).join(', ')}`);
+      if (!kLockNames.includes(lock as Lock))
+        throw wrong(`.${field}[${id}] = ${show(lock)} is unknown; there are: ${kLockNames.map(show).join(', ')}`);
       return { id: Number(id), lock: useCore(fn, ({ module }) => module['Lock']![lock as Lock]!) };
     });
+  }
+  return out;
+}
+
+/** Checks the types of masks; the core checks their lengths and values. */
+function checkMasks(fn: string, masks: unknown = {}): CoreOverrides['masks'] {
+  const wrong = (text: string) => new CagecastError('badOption', fn, `options.masks${text}`);
+  if (!isRecord(masks)) throw wrong(` is ${show(masks)}, not an object`);
+  const out: CoreOverrides['masks'] = {};
+  for (const [field, value] of Object.entries(masks)) {
+    if (field !== 'vertices' && field !== 'triangles')
+      throw wrong(`.${field} is unknown; there are: vertices, triangles`);
+    if (value === undefined) continue;
+    const array = plainArray(value, 'Int8Array');
+    if (!array) throw wrong(`.${field} is ${showArray(value, 'Int8Array')}, not an Int8Array`);
+    out[field] = array;
   }
   return out;
 }

@@ -11,8 +11,6 @@ export interface Projected {
    * makes a mesh from them.
    */
   cornerUvs: Float32Array<ArrayBuffer>;
-  /** 1 per vertex, a `Zone`. After `project` none is `Culled`, and `Cosmetic` means covered. */
-  zones: Uint8Array<ArrayBuffer>;
   /** 1 per vertex: the nearest triangle of the cage; with `steps.projection: 'nearestVertex'` the first at the nearest vertex. */
   triangles: Uint32Array<ArrayBuffer>;
   /** 1 per vertex: the distance to it, or to that vertex, in units of the input. */
@@ -31,6 +29,8 @@ export interface Projected {
 export interface Projection extends Projected {
   /** The preset of the projection, which is also the default preset for `classify`. */
   preset: Preset;
+  /** 1 per vertex, a `Visibility`. */
+  visibility: Uint8Array<ArrayBuffer>;
   /**
    * 1 per vertex, with `steps.recheck` or `steps.holes`; else, and with `nearestVertex`, empty. Whether an occluded or uncovered
    * vertex becomes cosmetic if its segment is kept: 0 never, 1 always, 2 and above if a culled segment lies behind hole number
@@ -49,7 +49,7 @@ export interface Classification {
   zones: Uint8Array<ArrayBuffer>;
   /** 1 per target triangle: 1 if it may be painted; see `steps.partialTriangles`. */
   cosmeticTriangles: Uint8Array<ArrayBuffer>;
-  /** 1 per segment, with `culled`, `culledBy` and `score`. */
+  /** 1 per segment, with its verdict: `ratios`, `score`, `culled` and `culledBy`. */
   segmentStats: SegmentStats[];
 }
 

@@ -13,9 +13,10 @@ export interface Reuse<Result> {
 }
 
 /** The arrays of all results. */
-const types = {
+const kTypes = {
   uvs: 'Float32Array',
   cornerUvs: 'Float32Array',
+  visibility: 'Uint8Array',
   zones: 'Uint8Array',
   triangles: 'Uint32Array',
   distances: 'Float32Array',
@@ -24,37 +25,37 @@ const types = {
   recovery: 'Uint32Array',
   indices: 'Uint32Array',
 } as const satisfies Record<string, ArrayKind>;
-const names = Object.keys(types) as (keyof typeof types)[];
+const kNames = Object.keys(kTypes) as (keyof typeof kTypes)[];
 
 /** Which of them a function returns. */
-const projected: readonly (keyof typeof types)[] = ['uvs', 'cornerUvs', 'zones', 'triangles', 'distances', 'segments'];
-const namesOf = {
-  transfer: [...projected, 'cosmeticTriangles'],
-  project: [...projected, 'recovery', 'indices'],
+const kProjected: readonly (keyof typeof kTypes)[] = ['uvs', 'cornerUvs', 'triangles', 'distances', 'segments'];
+const kNamesOf = {
+  transfer: [...kProjected, 'zones', 'cosmeticTriangles'],
+  project: [...kProjected, 'visibility', 'recovery', 'indices'],
   classify: ['zones', 'cosmeticTriangles'],
-} as const satisfies Record<string, readonly (keyof typeof types)[]>;
+} as const satisfies Record<string, readonly (keyof typeof kTypes)[]>;
 
 /**
  * Checks that `reuse` is a result of the function and can be overwritten.
  * @returns its arrays by name.
  * @throws {CagecastError} `badOption`
  */
-export function checkReuse(fn: keyof typeof namesOf, reuse: unknown): Reusable {
+export function checkReuse(fn: keyof typeof kNamesOf, reuse: unknown): Reusable {
   const arrays: Reusable = {};
   if (reuse === undefined) return arrays;
   const wrong = (text: string, cause?: unknown) =>
     new CagecastError('badOption', fn, `options.reuse${text}; pass an earlier result of ${fn}()`, { cause });
   if (typeof reuse !== 'object' || reuse === null) throw wrong(` is ${show(reuse)}`);
   const buffers: ArrayBufferLike[] = [];
-  const returned: readonly string[] = namesOf[fn];
-  for (const name of names) {
+  const returned: readonly string[] = kNamesOf[fn];
+  for (const name of kNames) {
     const array = (reuse as Record<string, unknown>)[name];
     if (!returned.includes(name)) {
       if (array !== undefined) throw wrong(`.${name} is ${show(array)}, which this function does not return`);
       continue;
     }
-    if (!plainArray(array, types[name]))
-      throw wrong(`.${name} is ${showArray(array, types[name])}, not a ${types[name]}`);
+    if (!plainArray(array, kTypes[name]))
+      throw wrong(`.${name} is ${showArray(array, kTypes[name])}, not a ${kTypes[name]}`);
     const own = array as Float32Array | Uint32Array | Uint8Array;
     if (buffers.includes(realBuffer(own))) throw wrong(`.${name} shares its memory with another of its arrays`);
     buffers.push(realBuffer(own));

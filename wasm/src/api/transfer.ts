@@ -1,5 +1,4 @@
 import { callCore } from '../core/engine.js';
-import { applyMasks, checkMaskLengths } from './masks.js';
 import { checkMesh, type Mesh } from './mesh.js';
 import { checkOptions, type ProjectOptions, type TransferOptions } from './options.js';
 import type { Projection, TransferResult } from './result.js';
@@ -20,21 +19,20 @@ import { checkReuse, handOver, type Reuse } from './reuse.js';
  * transfer(cage, target, { threshold: 0.5, reuse: result });
  */
 export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & Reuse<TransferResult>): TransferResult {
-  const { core, locks, masks } = checkOptions('transfer', options);
+  const { core, overrides } = checkOptions('transfer', options);
   const arrays = checkReuse('transfer', options?.reuse);
   const [cageMesh, targetMesh] = [checkMesh('transfer', 'cage', cage), checkMesh('transfer', 'target', target)];
-  const { positions, indices } = targetMesh;
-  checkMaskLengths('transfer', masks, positions.length / 3, indices.length / 3);
-  // An earlier result may share the array of indices, which masks need after it is overwritten.
-  const corners = masks && options?.reuse ? indices.slice() : indices;
-  const result = callCore('transfer', ({ workspace }) => workspace.transfer(cageMesh, targetMesh, core, locks), arrays);
-  applyMasks(masks, corners, result, core.steps['partialTriangles'] === true);
+  const result = callCore(
+    'transfer',
+    ({ workspace }) => workspace.transfer(cageMesh, targetMesh, core, overrides),
+    arrays,
+  );
   return handOver(result, options?.reuse);
 }
 
 /**
- * Does the costly part of `transfer`: steps 1 to 4, 5′, 6, 7 and 9 of the method, and the twins of 5″. The result does not depend on
- * threshold, floor or locks. Pass it to `classify`, once for each threshold that you want to try.
+ * Does the costly part of `transfer`: steps 1 to 4, 6, 7, 9, 10 and 12 of the method. The result does not depend on threshold,
+ * floor or locks. Pass it to `classify`, once for each threshold that you want to try.
  * @param options  With `reuse`, an earlier projection is overwritten and returned.
  * @throws {CagecastError} as `transfer` does.
  */

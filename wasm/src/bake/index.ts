@@ -6,5 +6,5 @@
 export { type BakeOptions, type BakePart, type BakeResult, type BakeTarget, bake, cageTexture } from './bake.js';
 export { type Image, mostTexels, resize } from './image.js';
 export { areaOf, type Baked, type FillOptions, fill, type Layout, layOver } from './layout.js';
-export { type MaskImages, maskTriangles, maskVertices } from './masks.js';
+export { type MaskImages, maskTriangles, maskVertices } from './mask-triangles.js';
 export type { Kind, Wrap } from './raster.js';

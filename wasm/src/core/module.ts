@@ -17,10 +17,10 @@ export interface CheckedMesh {
   groups: Uint32Array;
 }
 
-/** The locks of parts, as C++ takes them. */
-export interface CoreLocks {
-  segments: CoreLock[];
-  groups: CoreLock[];
+/** Locks and masks, as C++ takes them. */
+export interface CoreOverrides {
+  locks: { segments: CoreLock[]; groups: CoreLock[] };
+  masks: { vertices?: Int8Array; triangles?: Int8Array };
 }
 interface CoreLock {
   id: number;
@@ -50,7 +50,6 @@ type F32 = Float32Array<ArrayBuffer>;
 interface ProjectedAnswer extends Answer {
   uvs: F32;
   cornerUvs: F32;
-  zones: U8;
   triangles: U32;
   distances: F32;
   segments: U32;
@@ -59,6 +58,7 @@ interface ProjectedAnswer extends Answer {
   peakBytes: number;
 }
 interface ProjectAnswer extends ProjectedAnswer {
+  visibility: U8;
   recovery: U32;
   holeShares: HoleShare[];
   indices: U32;
@@ -87,7 +87,7 @@ interface CutAnswer extends Answer {
 
 /** What C++ needs of a projection to classify it. */
 export interface CoreProjection {
-  zones: Uint8Array;
+  visibility: Uint8Array;
   segments: Uint32Array;
   segmentStats: CoreSegment[];
   recovery: Uint32Array;
@@ -106,10 +106,16 @@ export interface CoreDecision {
 /** The working memory of calls, and what the last one left to be copied. */
 export interface Workspace {
   project(cage: CheckedMesh, target: CheckedMesh, options: CoreOptions): ProjectAnswer;
-  transfer(cage: CheckedMesh, target: CheckedMesh, options: CoreOptions, locks: CoreLocks): TransferAnswer;
-  classify(projection: CoreProjection, options: CoreOptions, locks: CoreLocks): ClassifyAnswer;
+  transfer(cage: CheckedMesh, target: CheckedMesh, options: CoreOptions, overrides: CoreOverrides): TransferAnswer;
+  classify(projection: CoreProjection, options: CoreOptions, overrides: CoreOverrides): ClassifyAnswer;
   splitVertices(target: CheckedMesh, cornerUvs: Float32Array): SplitAnswer;
-  cutBorders(cage: CheckedMesh, target: CheckedMesh, decision: CoreDecision, options: CoreOptions): CutAnswer;
+  cutBorders(
+    cage: CheckedMesh,
+    target: CheckedMesh,
+    decision: CoreDecision,
+    options: CoreOptions,
+    overrides: CoreOverrides,
+  ): CutAnswer;
   release(): void;
 }
 

@@ -8,23 +8,38 @@ export interface Timings {
   project: number;
   /** Step 2: rays against the target. */
   occluded: number;
-  /** Steps 2′ and 3: where rays meet the cage. */
+  /** Steps 3 and 6: where rays meet the cage. */
   covered: number;
   /**
-   * Steps 4, 5′ and 5″: connected components, their areas and twins; with steps 1 to 3 of interior samples, and writing the results
-   * of all steps per vertex.
+   * Steps 4 and 7: connected components and their areas; with steps 1 to 3 of interior samples, and writing the results of all steps
+   * per vertex.
    */
   segments: number;
-  /** Step 6: more rays from occluded points. */
+  /** Step 9: more rays from occluded points. */
   recheck: number;
-  /** Step 7: uncovered points and the holes over them. */
+  /** Step 10: uncovered points and the holes over them. */
   holes: number;
-  /** Step 9: UVs per triangle corner. */
+  /** Step 12: UVs per triangle corner. */
   seams: number;
-  /** Steps 5 and 8: which segments are culled, and the zones of vertices and triangles. 0 after `project`. */
+  /** Steps 5, 8, 10 and 11: which segments are culled, and the zones of vertices and triangles. 0 after `project`. */
   classify: number;
   /** The whole call. */
   total: number;
+}
+
+/**
+ * What the rules on segments have against one: of each rule, the ratio of what the segment has to what it needs. It meets a rule from
+ * 1 on; `Infinity` if the rule asks for nothing, and after `project`.
+ */
+export interface Ratios {
+  /** Step 5: coverage / `threshold`. */
+  threshold: number;
+  /** Step 8: covered area / needed area. */
+  floor: number;
+  /** Step 8: greatest depth allowed / depth. */
+  depth: number;
+  /** Step 10: area allowed in a hole / area there; the least. */
+  hole: number;
 }
 
 /** The properties of one segment, a connected component of the target. Areas are in squared units of the input. */
@@ -39,22 +54,21 @@ export interface SegmentStats {
   coveredArea: number;
   /** F = C / E, the share of the exposed area that the cage covers; 0 if nothing is exposed. */
   coverage: number;
-  /** D: C, weighted less where it is unusually deep under the cage; equal to C without `steps.depthWeighting`. */
-  depthWeightedArea: number;
+  /**
+   * The mean distance of its covered area from the cage, as a share of the target's diagonal; a distance of more than one diagonal
+   * counts as one. 0 if nothing is covered.
+   */
+  depth: number;
   /** The group of its first vertex, in `target.groups`; 0 if the target has none. */
   group: number;
-  /** The first segment of the same shape, or itself; itself without `steps.depthWeighting`. */
-  twinOf: number;
-  /**
-   * How well it meets the rules of step 5, as the ratio of actual to required area: a segment with a score of at least 1 is kept,
-   * unless a lock decides. Infinity if no area is required, and after `project`.
-   */
+  ratios: Ratios;
+  /** The least of `ratios`: a segment with a score of at least 1 is kept, unless a lock decides. */
   score: number;
   /** Whether none of it may be painted. `false` after `project`. */
   culled: boolean;
   /**
-   * Why it is culled. `coverage`: its score is below 1, because of the threshold, the floor or its twins. `hole`: a hole of the cage
-   * is meant for it. `lock`: a lock excludes it.
+   * Why it is culled. `coverage`: the cage covers too little of it, or it lies too deep: one of `ratios` but `hole` is below 1.
+   * `hole`: a hole of the cage is meant for it: only `ratios.hole` is below 1. `lock`: a lock excludes it.
    */
   culledBy: 'none' | 'coverage' | 'hole' | 'lock';
 }

@@ -31,7 +31,8 @@ export type CoreCode =
   | 'tooLarge'
   /**
    * The value of `option` is out of its range, or a lock (`at`) names a segment or a group that does not exist, or is
-   * none of the three.
+   * none of the three; or the masks are not as many as the vertices or triangles (`at` is their number), or one of them
+   * (`at`) is none of the three.
    */
   | 'badOption'
   /** The given zones, segments or holes do not belong together or to this target; `at` is the number of zones. */

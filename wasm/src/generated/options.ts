@@ -32,9 +32,8 @@ export interface ClassifyStage {
    */
   threshold?: number | undefined;
   /**
-   * A segment (a connected part of the model) is painted only if the cage covers at least this share of its whole area;
-   * what lies deep under the cage counts less. A large segment that is clearly covered where it is exposed is painted
-   * anyway. No effect with the preset paper. 0 to 1. Default: `0.2`.
+   * A segment is painted only if the cage covers at least this share of its whole area. A large segment that is clearly
+   * covered where it is exposed is painted anyway. No effect with the preset paper. 0 to 1. Default: `0.2`.
    */
   minCovered?: number | undefined;
 }
@@ -47,38 +46,18 @@ export interface ProjectSteps {
    */
   projection?: 'nearestPoint' | 'nearestVertex' | undefined;
   /**
-   * Step 4′: judges large triangles by samples inside them instead of by their corners, in segments of few points near
-   * a hole. True or false. Default: `true`; in the preset `paper`: `false`.
+   * Step 7: judges large triangles by samples inside them instead of by their corners, in segments of few points near a
+   * hole. True or false. Default: `true`; in the preset `paper`: `false`.
    */
   interiorSamples?: boolean | undefined;
   /**
-   * Step 4′: counts a hole as near a segment if it is no farther away than the cage is; if false, only within 0.01 of
-   * the diagonal. True or false. Default: `true`; in the preset `paper`: `false`.
-   */
-  farLoops?: boolean | undefined;
-  /**
-   * Step 5′: counts covered area less the deeper it lies under the cage. Also finds the twins of 5″: segments of the
-   * same shape. True or false. Default: `true`; in the preset `paper`: `false`.
-   */
-  depthWeighting?: boolean | undefined;
-  /**
-   * Step 6: casts more rays from occluded points, and recovers a point if rays in other directions reach the cage
+   * Step 9: casts more rays from occluded points, and recovers a point if rays in other directions reach the cage
    * freely. True or false. Default: `true`; in the preset `paper`: `false`.
    */
   recheck?: boolean | undefined;
   /**
-   * Step 6: casts these rays to both sides of the surface where every triangle has a copy with reverse winding. True or
-   * false. Default: `true`; in the preset `paper`: `false`.
-   */
-  bothSides?: boolean | undefined;
-  /**
-   * Step 6: finds the outer side of a segment from its exposed points only; if false, from all its points. True or
-   * false. Default: `true`; in the preset `paper`: `false`.
-   */
-  exposedSide?: boolean | undefined;
-  /**
-   * Step 7: recovers uncovered points, except those under a hole that is meant to leave them unpainted. True or false.
-   * Default: `true`; in the preset `paper`: `false`.
+   * Step 10: culls small segments that holes of the cage are meant for, and recovers uncovered points that no hole is
+   * meant for. True or false. Default: `true`; in the preset `paper`: `false`.
    */
   holes?: boolean | undefined;
 }
@@ -86,34 +65,13 @@ export interface ProjectSteps {
 /** Switches for single steps in `classify`, for measuring them. */
 export interface ClassifySteps {
   /**
-   * Step 5: what a segment needs besides the threshold: nothing, so that minCovered has no effect; enough covered area;
-   * or enough depth-weighted area, multiplied by the segment's coverage. `none`, `area`, or `depth`. Default: `depth`;
-   * in the preset `paper`: `none`.
+   * Step 8: besides the threshold, requires enough covered area of a segment, not deep under the cage. True or false.
+   * Default: `true`; in the preset `paper`: `false`.
    */
-  floor?: 'none' | 'area' | 'depth' | undefined;
+  floor?: boolean | undefined;
   /**
-   * Step 5: with floor depth, a segment may pass by having this share of the covered area of all segments instead of
-   * minCovered. 0 to 1. Default: `0.005`.
-   */
-  minOfAll?: number | undefined;
-  /**
-   * Step 5: a segment passes by minOfAll only if at most this share of its exposed area is uncovered. 0 to 1. Default:
-   * `0.25`.
-   */
-  maxUncovered?: number | undefined;
-  /**
-   * Step 5″: judges twins with scores near 1 together; needs depthWeighting, and a floor other than none. True or
-   * false. Default: `true`; in the preset `paper`: `false`.
-   */
-  twins?: boolean | undefined;
-  /**
-   * Step 5‴: culls a small segment if a hole of the cage is meant for it; needs holes. True or false. Default: `true`;
-   * in the preset `paper`: `false`.
-   */
-  holeContents?: boolean | undefined;
-  /**
-   * Step 8: paints a triangle if at least one corner is cosmetic and the others are cosmetic or occluded; if false, all
-   * three must be cosmetic. True or false. Default: `true`; in the preset `paper`: `false`.
+   * Step 11: paints a triangle if at least one corner is cosmetic and the others are cosmetic or occluded; if false,
+   * all three must be cosmetic. True or false. Default: `true`; in the preset `paper`: `false`.
    */
   partialTriangles?: boolean | undefined;
 }
@@ -128,17 +86,9 @@ export const optionTable = {
   minCovered: { stage: 'classify', isStep: false, kind: 'share' },
   projection: { stage: 'project', isStep: true, kind: 'choice', type: 'ProjectionMode' },
   interiorSamples: { stage: 'project', isStep: true, kind: 'toggle' },
-  farLoops: { stage: 'project', isStep: true, kind: 'toggle' },
-  depthWeighting: { stage: 'project', isStep: true, kind: 'toggle' },
+  floor: { stage: 'classify', isStep: true, kind: 'toggle' },
   recheck: { stage: 'project', isStep: true, kind: 'toggle' },
-  bothSides: { stage: 'project', isStep: true, kind: 'toggle' },
-  exposedSide: { stage: 'project', isStep: true, kind: 'toggle' },
   holes: { stage: 'project', isStep: true, kind: 'toggle' },
-  floor: { stage: 'classify', isStep: true, kind: 'choice', type: 'Floor' },
-  minOfAll: { stage: 'classify', isStep: true, kind: 'share' },
-  maxUncovered: { stage: 'classify', isStep: true, kind: 'share' },
-  twins: { stage: 'classify', isStep: true, kind: 'toggle' },
-  holeContents: { stage: 'classify', isStep: true, kind: 'toggle' },
   partialTriangles: { stage: 'classify', isStep: true, kind: 'toggle' },
 } as const;
 
@@ -196,6 +146,6 @@ export const optionFlags = [
     range: [0, 1],
     standard: 0.2,
     paper: 0.2,
-    text: 'A segment (a connected part of the model) is painted only if the cage covers at least this share of its whole area; what lies deep under the cage counts less. A large segment that is clearly covered where it is exposed is painted anyway. No effect with the preset paper.',
+    text: 'A segment is painted only if the cage covers at least this share of its whole area. A large segment that is clearly covered where it is exposed is painted anyway. No effect with the preset paper.',
   },
 ] as const;

@@ -6,12 +6,12 @@
 import type { Document, Transform } from '@gltf-transform/core';
 import type { Mesh, TransferOptions, TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
-import type { MaskSources } from './bake/masks.js';
+import type { MaskSources } from './bake/mask-sources.js';
 import { addTransfer } from './document/add-transfer.js';
 import { transferDocument, wrong } from './document/transfer-document.js';
 
 export { type BakeOptions, bake } from './bake/bake-document.js';
-export type { MaskSources } from './bake/masks.js';
+export type { MaskSources } from './bake/mask-sources.js';
 export type { BakeReport, ImageCodec, Paints } from './bake/plan.js';
 export { type CheckOptions, checkGltf } from './check-gltf.js';
 export {

@@ -53,7 +53,6 @@ export type FindingCode =
   | 'nothingToPaint'
   | 'holeUnexplained'
   | 'segmentInDoubt'
-  | 'twinsDiffer'
   | 'muchCulled';
 
 /** Whether a cage fits its target: well, with reservations, or not at all. */

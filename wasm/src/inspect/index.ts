@@ -84,7 +84,7 @@ export function inspect(cage: Mesh, target: Mesh, options?: InspectOptions): Ins
 
 /**
  * Finds what the user of a result should check, the most severe first: a cage inside the target or misplaced, parts with close
- * verdicts, twins with different verdicts, holes that no part explains, too little to paint. Each finding has a sentence, an
+ * verdicts, holes that no part explains, too little to paint. Each finding has a sentence, an
  * advice, the segments concerned, and the locks that reverse the verdicts on them.
  *
  * These are the findings of `inspect` except those about the surface and the UVs of the cage. Cost: up to that of `inspect`.

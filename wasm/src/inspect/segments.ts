@@ -51,12 +51,14 @@ export function segmentsOf({ parts, result }: Pick<Scene, 'parts' | 'result'>): 
   );
 }
 
-/** A segment and its number. */
-type Numbered = Segment & { s: number };
+/** A segment, its number, and what the rules have against it. */
+type Numbered = Segment & { s: number; ratios: SegmentStats['ratios'] };
 
-/** Reports if too little is painted and if twins differ; and of segments without a lock, if verdicts are close and if much is culled. */
+/** Reports if too little is painted; and of segments without a lock, if verdicts are close and if much is culled. */
 export function checkSegments(scene: Scene, segments: readonly Segment[], locks: Locks = {}): Finding[] {
-  const numbered = segments.map((segment, s) => ({ ...segment, s })).sort((a, b) => b.exposedArea - a.exposedArea);
+  const numbered = segments
+    .map((segment, s) => ({ ...segment, s, ratios: scene.result.segmentStats[s]!.ratios }))
+    .sort((a, b) => b.exposedArea - a.exposedArea);
   const exposed = numbered.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
   if (exposed === 0) return [];
   const left = checkLeft(scene, numbered);
@@ -65,7 +67,6 @@ export function checkSegments(scene: Scene, segments: readonly Segment[], locks:
   return [
     ...left,
     ...checkDoubt(scene, unnamed, exposed),
-    ...checkTwins(scene, numbered, exposed),
     ...(left.length > 0 ? [] : checkCulled(numbered.filter(isOpen), exposed)),
   ];
 
@@ -129,29 +130,6 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
   });
 }
 
-/** Segments of the same shape, of which only some are painted. */
-function checkTwins({ result }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
-  const seen = numbered.filter(({ exposedArea }) => exposedArea >= kMinArea * exposed);
-  return grouped(seen, ({ s }) => result.segmentStats[s]!.twinOf).flatMap((twins): Finding[] => {
-    const culled = twins.filter((twin) => twin.culled);
-    if (culled.length === 0 || culled.length === twins.length) return [];
-    const [largest] = twins;
-    const [painted, unpainted] = [twins.length - culled.length, culled.length];
-    return [
-      {
-        code: 'twinsDiffer',
-        weight: 0.2,
-        sentence: `Of ${twins.length} segments with the shape of "${largest.part}", ${painted} ${painted === 1 ? 'is' : 'are'} painted and ${unpainted} ${unpainted === 1 ? 'is' : 'are'} not`,
-        advice:
-          'If they should be treated alike, keep or exclude some of them, and check whether the cage covers them equally.',
-        numbers: { painted, bare: unpainted },
-        places: twins.map((twin) => placeOfSegment(twin.s, twin)),
-        locks: locksFor(culled),
-      },
-    ];
-  });
-}
-
 /** Much of the exposed area is not painted. */
 function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] {
   const all = numbered.filter(({ culled, exposedArea }) => culled && exposedArea > 0);
@@ -180,14 +158,16 @@ function shownCoverage({ coverage, culled }: Segment, threshold: number): string
 }
 
 /** Why a segment is culled or kept, as the end of a sentence about its coverage. */
-function reason({ coverage, culled, culledBy, score }: Segment, threshold: number): string {
+function reason({ ratios, culled, culledBy, score }: Numbered, threshold: number): string {
   if (culledBy === 'lock') return 'but it is excluded by choice';
   if (culledBy === 'hole') return 'but a hole of the cage seems to be meant for it';
-  const byThreshold = culled ? coverage < threshold : score !== null && Math.abs(score * threshold - coverage) <= 1e-6;
-  if (byThreshold) return culled ? `less than the threshold of ${threshold}` : `and the threshold is ${threshold}`;
-  return score === null
-    ? 'and no area is required'
-    : `and it has ${score.toPrecision(2)} times the required covered area`;
+  if (score === null) return 'and no area is required';
+  if (culled ? ratios.threshold < 1 : ratios.threshold === score)
+    return culled ? `less than the threshold of ${threshold}` : `and the threshold is ${threshold}`;
+  if (ratios.depth === score)
+    return `${culled ? 'but' : 'and'} it lies ${culled ? 'too' : 'nearly too'} deep under the cage`;
+  if (ratios.hole === score) return 'and much of it lies in a hole of the cage';
+  return `and it has ${score.toPrecision(2)} times the required covered area`;
 }
 
 /** Where a segment is. */

@@ -1,11 +1,16 @@
-import { heaviestOf } from '../api/masks.js';
-
 /** The vertices that cutting added to a part, in order, after the existing ones. */
 export interface Blends {
   /** 3 per new vertex: the vertices of the part that it blends. */
   sources: Uint32Array;
   /** 3 per new vertex: the weights of these vertices; they add up to 1. */
   weights: Float32Array;
+}
+
+/** The source of a new vertex with the greatest weight. */
+export function heaviestOf({ sources, weights }: Blends, n: number): number {
+  let best = 3 * n;
+  for (let i = best + 1; i < 3 * n + 3; ++i) if (weights[i]! > weights[best]!) best = i;
+  return sources[best]!;
 }
 
 export const noBlends: Blends = { sources: new Uint32Array(0), weights: new Float32Array(0) };

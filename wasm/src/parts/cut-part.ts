@@ -1,7 +1,6 @@
 import type { CutTarget } from '../api/cut-borders.js';
-import { heaviestOf } from '../api/masks.js';
 import type { Classification } from '../api/result.js';
-import type { Blends } from './blend.js';
+import { type Blends, heaviestOf } from './blend.js';
 import { gather, type PartGeometry, turnOver } from './split-part.js';
 
 /** A cut part, numbered as if it were the only one, and the result for it. */

@@ -37,7 +37,7 @@ export {
   makeCage,
   refineCage,
 } from './apply/loaded-cages.js';
-export { type ModelMasks, modelMasks } from './masks.js';
+export { type ModelMasks, modelMasks } from './model-masks.js';
 export {
   type Applied,
   type ApplyOptions,

@@ -1,4 +1,4 @@
-import { type Classification, type PresetOptions, presetOptions, Zone } from 'cagecast';
+import { type Classification, presetOptions, Visibility, Zone } from 'cagecast';
 import type { Locks, Rules, Shown } from '../scene/session';
 import { diagonalOf } from '../scene/surface';
 import type { BoundaryLoops } from './boundary-loops';
@@ -75,7 +75,7 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
     { title: 'Closest', sentence: closestStep(path, cageTriangle, diagonal) },
     { title: 'Ray', sentence: rayStep(facts, path, diagonal) },
     ...recoveryStep(facts, vertex),
-    { title: 'Part', sentence: partStep(facts, part, options) },
+    { title: 'Part', sentence: partStep(facts, part) },
   ];
   return {
     zone,
@@ -158,11 +158,11 @@ function rayStep({ shown }: Facts, { outcome, cage, model, outside }: Path, diag
 
 /** The outcome of the recheck of an occluded vertex, or of the rule for holes of an uncovered one; none if they do not apply. */
 function recoveryStep({ shown: { projection }, classification }: Facts, vertex: number): Explanation['steps'] {
-  const first = projection.zones[vertex]!;
+  const first = projection.visibility[vertex]!;
   const recovery = projection.recovery[vertex] ?? 0;
-  if (first === Zone.Cosmetic || recovery === 0) return [];
+  if (first === Visibility.Covered || recovery === 0) return [];
   const isCulled = classification.segmentStats[projection.segments[vertex]!]!.culled;
-  const isHidden = first === Zone.Occluded;
+  const isHidden = first === Visibility.Occluded;
   const sentence = isCulled
     ? 'It would be recovered, but its part is culled.'
     : isHidden
@@ -175,10 +175,9 @@ function recoveryStep({ shown: { projection }, classification }: Facts, vertex: 
   return [{ title: isHidden ? 'Recheck' : 'Hole', sentence }];
 }
 
-function partStep({ classification, locks }: Facts, part: SegmentFacts, options: PresetOptions): string {
+function partStep({ classification, locks }: Facts, part: SegmentFacts): string {
   const { name, segment, coverage, threshold, passes } = part;
-  const { area, exposedArea, coveredArea, depthWeightedArea, culledBy } = classification.segmentStats[segment]!;
-  const { floor, minOfAll, maxUncovered } = options.steps;
+  const { area, exposedArea, coveredArea, depth, ratios } = classification.segmentStats[segment]!;
   const lock = locks[segment] ?? 'auto';
   const whole = `It belongs to ${name}.`;
   if (lock === 'always') return `${whole} You chose to paint all of it anyway.`;
@@ -186,36 +185,16 @@ function partStep({ classification, locks }: Facts, part: SegmentFacts, options:
     return `${whole} You chose to ${lock} it, regardless of its areas: it ${passes ? 'passes' : 'is culled'}.`;
   if (exposedArea === 0) return `${whole} Nothing of it is exposed${passes ? '.' : ', so it is culled as a whole.'}`;
   const share = `${whole} The cage covers ${percent(coverage)} of its exposed area`;
-  const isEnough = coverage >= threshold;
-  const compared = isEnough ? 'which is enough' : `less than the threshold of ${percent(threshold)}`;
-  if (culledBy === 'hole')
-    return `${share}${isEnough ? ', which is enough' : ''}. But it is small, and much of it is hidden or lies under a hole of the cage, which therefore seems to be meant for it. It is culled as a whole.`;
-  if (!isEnough && !passes) return `${share}, ${compared}: it is culled as a whole.`;
-
-  // The alternatives of the floor in step 5, for this segment without its twins.
-  const counted = floor === 'depth' ? depthWeightedArea * coverage : coveredArea;
-  const allCovered = classification.segmentStats.reduce((sum, other) => sum + other.coveredArea, 0);
-  const isMostlyCovered = 1 - coverage <= maxUncovered;
-  const reachesFloor =
-    floor === 'none' ||
-    counted >= options.minCovered * area ||
-    (floor === 'depth' && isMostlyCovered && counted >= minOfAll * allCovered);
-  if (isEnough && passes && reachesFloor)
-    return `${share}, at least the threshold of ${percent(threshold)}: it passes.`;
-  if (passes || reachesFloor)
-    return `${share}, ${compared}${isEnough && !reachesFloor ? ', though its covered area is small' : ''}; but it is judged together with its twins, which have the same shape, and they ${passes ? '' : 'do not '}pass.`;
-  const deep =
-    floor === 'depth' && depthWeightedArea < coveredArea / 2
-      ? ' and lies deeper under the cage than its surroundings'
-      : '';
-  const required = `it counts as ${percent(counted / area)} of the whole area, and at least ${percent(options.minCovered)} is required`;
-  const alternative =
-    floor !== 'depth'
-      ? ''
-      : isMostlyCovered
-        ? `, or ${percent(minOfAll)} of the covered area of all parts, of which it has ${percent(counted / allCovered)}`
-        : `, because more than ${percent(maxUncovered)} of its exposed area is uncovered`;
-  return `${share}, which is enough. But the covered area is small${deep}: ${required}${alternative}. It is culled as a whole.`;
+  if (passes) return `${share}, at least the threshold of ${percent(threshold)}: it passes.`;
+  if (ratios.threshold < 1)
+    return `${share}, less than the threshold of ${percent(threshold)}: it is culled as a whole.`;
+  const why =
+    ratios.floor < 1
+      ? `the covered area is small, ${percent(coveredArea / area)} of the whole area. It is ${percent(ratios.floor)} of what is required`
+      : ratios.depth < 1
+        ? `it is small and lies ${percent(depth)} of the model’s diagonal beneath the cage. At most ${percent(depth * ratios.depth)} is allowed here`
+        : 'it is small, and much of it is hidden or lies under a hole of the cage, which therefore seems to be meant for it';
+  return `${share}, which is enough. But ${why}. It is culled as a whole.`;
 }
 
 function brief(
@@ -228,9 +207,9 @@ function brief(
   switch (zone) {
     case Zone.Cosmetic:
       if (locks[part.segment] === 'always') return `you chose to paint ${part.name} anyway`;
-      if (shown.projection.zones[vertex] === Zone.Occluded)
+      if (shown.projection.visibility[vertex] === Visibility.Occluded)
         return 'it seemed hidden, but rays in other directions reach the cage';
-      if (shown.projection.zones[vertex] === Zone.Uncovered)
+      if (shown.projection.visibility[vertex] === Visibility.Uncovered)
         return 'it seemed uncovered, but the rule for holes recovers it';
       return outcome === 'pokesOut'
         ? 'it pokes out of the cage a little, which counts as covered'

@@ -28,7 +28,7 @@ export class ThresholdMarks {
     this.#basis = basis;
     clearTimeout(this.#waiting);
     this.#write(new Map());
-    if (shown!.projection.zones.length <= kMaxPoints)
+    if (shown!.projection.visibility.length <= kMaxPoints)
       this.#waiting = setTimeout(() => void this.#seek(basis), kSeekDelay);
   }
 

@@ -50,10 +50,10 @@ class NormalSums {
   Vec3* sums_;
 };
 
-/// The triangles of the segments that are wanted.
-struct WantedTriangles {
+/// The triangles of the chosen segments.
+struct ChosenTriangles {
   const PointData& data;
-  std::span<const bool> isWanted;
+  std::span<const bool> isChosen;
 
   /// @param call  Takes a triangle and its corners.
   template <typename Call>
@@ -61,7 +61,7 @@ struct WantedTriangles {
     const Points& points = data.points;
     for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
       const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
-      if (isWanted[data.segments[corner[0]]]) call(t, corner);
+      if (isChosen[data.segments[corner[0]]]) call(t, corner);
     }
   }
 };
@@ -71,7 +71,7 @@ Vec3 normalOf(const Points& points, const std::uint32_t* corner) {
 }
 
 /// Finds the normals of two-sided points, whose sums are zero before.
-void sumTwoSided(const Scene& scene, const WantedTriangles& triangles, const bool* isTwoSided, NormalSums& sums) {
+void sumTwoSided(const Scene& scene, const ChosenTriangles& triangles, const bool* isTwoSided, NormalSums& sums) {
   const Points& points = triangles.data.points;
   const Arena::Scope scope(scene.arena);
   constexpr std::uint32_t kNone = UINT32_MAX;
@@ -100,11 +100,11 @@ void sumTwoSided(const Scene& scene, const WantedTriangles& triangles, const boo
 
 }  // namespace
 
-void findFacing(const Scene& scene, const PointData& data, std::span<const bool> isWanted, const bool* isOccluded,
+void findFacing(const Scene& scene, const PointData& data, std::span<const bool> isChosen, const bool* isOccluded,
                 Facing& out) noexcept {
   Arena& arena = scene.arena;
   const Points& points = data.points;
-  const std::size_t segmentCount = isWanted.size();
+  const std::size_t segmentCount = isChosen.size();
   out.normals = arena.allocate<Vec3>(points.count);
   out.isTwoSided = arena.allocate<bool>(points.count);
   out.isTurned = arena.allocate<bool>(segmentCount);
@@ -116,28 +116,26 @@ void findFacing(const Scene& scene, const PointData& data, std::span<const bool>
   std::fill(out.normals, out.normals + points.count, Vec3{0, 0, 0});
   std::fill(out.isTwoSided, out.isTwoSided + points.count, false);
   std::fill(agreement, agreement + segmentCount, 0);
-  const WantedTriangles triangles{data, isWanted};
+  const ChosenTriangles triangles{data, isChosen};
   triangles.each([&](std::uint32_t, const std::uint32_t* corner) {
     const Vec3 normal = normalOf(points, corner);
     for (int i = 0; i < 3; ++i) sums.add(corner[i], normal);
   });
   // The outside and the inside of a closed part would cancel out, so only exposed points count: its inside is occluded.
-  const bool isExposedOnly = scene.options.steps.exposedSide;
   bool isAnyCancelled = false;
   for (std::uint32_t p = 0; p < points.count; ++p) {
     const std::uint32_t s = data.segments[p];
-    if (!isWanted[s]) continue;
+    if (!isChosen[s]) continue;
     sums.normalize(p);
     isAnyCancelled = isAnyCancelled | (isOccluded[p] & isZero(out.normals[p]));
     const double agrees = dot(out.normals[p], scene.cage.triangles[data.cageTriangles[p]].normal.exact);
-    const bool counts = !(isExposedOnly & isOccluded[p]);
-    agreement[s] += static_cast<std::int64_t>(static_cast<double>(data.areas[p]) * agrees) * counts;
+    agreement[s] += static_cast<std::int64_t>(static_cast<double>(data.areas[p]) * agrees) * !isOccluded[p];
   }
   for (std::size_t s = 0; s < segmentCount; ++s) out.isTurned[s] = agreement[s] < 0;
 
-  if (!isAnyCancelled || !scene.options.steps.bothSides) return;
+  if (!isAnyCancelled) return;
   for (std::uint32_t p = 0; p < points.count; ++p) {
-    out.isTwoSided[p] = isWanted[data.segments[p]] && isOccluded[p] && isZero(out.normals[p]);
+    out.isTwoSided[p] = isChosen[data.segments[p]] && isOccluded[p] && isZero(out.normals[p]);
   }
   sumTwoSided(scene, triangles, out.isTwoSided, sums);
 }

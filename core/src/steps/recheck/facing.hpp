@@ -17,13 +17,13 @@ struct Facing {
                                ///< reversed winding: by area, its normals disagree with those of the cage.
 };
 
-/// Finds the facing of the points of some segments. A normal is the sum of the area normals at the point. With
-/// `bothSides`, where all triangles have copies in reverse winding and so cancel out, an occluded point is two-sided:
-/// its normal is the sum of the normals turned to the side of its largest triangle.
-/// @param isWanted    1 per segment.
-/// @param isOccluded  1 per point: with `exposedSide` these have no say in `isTurned`.
+/// Finds the facing of the points of some segments. A normal is the sum of the area normals at the point. Where all
+/// triangles have copies in reverse winding and so cancel out, an occluded point is two-sided: its normal is the sum of
+/// the normals turned to the side of its largest triangle.
+/// @param isChosen    1 per segment.
+/// @param isOccluded  1 per point: these have no say in `isTurned`.
 /// @param[out] out    Allocated from the scene's arena.
-void findFacing(const Scene& scene, const PointData& data, std::span<const bool> isWanted, const bool* isOccluded,
+void findFacing(const Scene& scene, const PointData& data, std::span<const bool> isChosen, const bool* isOccluded,
                 Facing& out) noexcept;
 
 }  // namespace cagecast

@@ -15,7 +15,7 @@ OccludedPoints::OccludedPoints(const Scene& scene, const PointData& data, const 
       ends_(scene.arena.allocate<std::uint32_t>(points_.count)) {
   if (scene.arena.failed()) return;
   for (std::uint32_t p = 0; p < points_.count; ++p) {
-    isOccluded_[p] = (data.zones[p] == Zone::occluded) & (stats[data.segments[p]].coveredArea > 0);
+    isOccluded_[p] = (data.visibility[p] == Visibility::occluded) & (stats[data.segments[p]].coveredArea > 0);
   }
   listTriangles(scene.arena);
 }

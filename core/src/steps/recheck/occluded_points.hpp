@@ -8,8 +8,8 @@
 
 namespace cagecast {
 
-/// The occluded points that step 6 tests, and the edges between them. A point is tested if it has a neighbour that is
-/// not occluded, or that step 6 recovers: what is seen grows from what is already visible.
+/// The occluded points that step 9 tests, and the edges between them. A point is tested if it has a neighbour that is
+/// not occluded, or that step 9 recovers: what is seen grows from what is already visible.
 class OccludedPoints {
  public:
   /// Allocates from the scene's arena.

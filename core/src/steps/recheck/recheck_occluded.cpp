@@ -12,15 +12,15 @@ void recheckOccluded(const Scene& scene, PointData& data, const Array<SegmentSta
   Arena& arena = scene.arena;
   const Arena::Scope scope(arena);
   auto* queue = arena.allocate<std::uint32_t>(data.points.count);
-  auto* isWanted = arena.allocate<bool>(stats.size());  // Segments with a queued point.
+  auto* isChosen = arena.allocate<bool>(stats.size());  // Segments with a queued point.
   OccludedPoints occluded(scene, data, stats);
   if (arena.failed()) return;
   std::uint32_t end = occluded.queueBorder(queue);
   if (end == 0) return;
-  std::fill(isWanted, isWanted + stats.size(), false);
-  for (std::uint32_t i = 0; i < end; ++i) isWanted[data.segments[queue[i]]] = true;
+  std::fill(isChosen, isChosen + stats.size(), false);
+  for (std::uint32_t i = 0; i < end; ++i) isChosen[data.segments[queue[i]]] = true;
   Facing facing;
-  findFacing(scene, data, {isWanted, stats.size()}, occluded.flags(), facing);
+  findFacing(scene, data, {isChosen, stats.size()}, occluded.flags(), facing);
   VisibilityTest test(scene, facing);
   if (arena.failed()) return;
 

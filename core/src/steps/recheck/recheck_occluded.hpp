@@ -6,7 +6,7 @@
 
 namespace cagecast {
 
-/// Step 6: finds the occluded points that can be seen from the cage in other directions than along their rays, and sets
+/// Step 9: finds the occluded points that can be seen from the cage in other directions than along their rays, and sets
 /// their `data.recovery` to `Recovery::always`. Segments with no covered area are left out: they are
 /// culled unless locked to keep, or the threshold is 0 and there is no floor.
 void recheckOccluded(const Scene& scene, PointData& data, const Array<SegmentStats>& stats) noexcept;

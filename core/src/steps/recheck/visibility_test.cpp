@@ -11,10 +11,10 @@
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 6: how far above its point a ray begins, as a share of the diagonal.
+/// docs/method.md, step 9: how far above its point a ray begins, as a share of the diagonal.
 constexpr double kLift = 1e-4;
 
-/// docs/method.md, step 6: the directions, spread evenly over the hemisphere about z by the golden angle:
+/// docs/method.md, step 9: the directions, spread evenly over the hemisphere about z by the golden angle:
 /// z = 1 − (k + 0.5) / 12, azimuth k · 2.399963229728653. Those that are clear most often come first (k = 4, 5, 8, 9,
 /// 10), so that many points need no others.
 constexpr double kDirections[][3] = {

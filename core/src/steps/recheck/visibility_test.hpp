@@ -42,7 +42,7 @@ class VisibilityTest {
 
  private:
   static constexpr unsigned kDirectionCount = 12;
-  /// docs/method.md, step 6: so many clear rays are enough.
+  /// docs/method.md, step 9: so many clear rays are enough.
   static constexpr unsigned kEnough = 2;
   /// A point sends this many rays first, then, while it is undecided, up to the next of these. Fewer at a time would
   /// need fewer rays, but many rays that begin close together are faster than few.

@@ -33,7 +33,7 @@ export interface Report {
    */
   cut: { vertices: number; counts: PerZone; triangles: Triangles } | null;
   /** Every connected component of the target, in the order of their first vertices. */
-  segments: (Segment & Pick<SegmentStats, 'depthWeightedArea'> & { vertices: number })[];
+  segments: (Segment & Pick<SegmentStats, 'depth'> & { vertices: number })[];
   /**
    * Every primitive of every node, in scene order. `uvSet` is the added attribute, `splitVertices` the number of vertices that were
    * added because corners at the same vertex have different UVs, and `cutTriangles` the number of triangles that were added by
@@ -129,7 +129,7 @@ function segmentReports(parts: readonly Part[], result: TransferResult): Report[
   return segmentsOf({ parts, result }).map((segment, s) => ({
     ...segment,
     vertices: vertices[s]!,
-    depthWeightedArea: result.segmentStats[s]!.depthWeightedArea,
+    depth: result.segmentStats[s]!.depth,
   }));
 }
 

@@ -1,5 +1,5 @@
 import { FileModel } from '../../gltf/bake/bake-file.js';
-import { masksOf } from '../../gltf/bake/masks.js';
+import { masksOf } from '../../gltf/bake/mask-sources.js';
 import type { ReadOptions } from '../../gltf/files.js';
 import { withName } from '../../gltf/input-error.js';
 import {

@@ -5,7 +5,7 @@ import { type Borders, isCut } from '../../parts/borders-option.js';
 import { addTransfer } from '../document/add-transfer.js';
 import { removeOverlays } from '../document/earlier-in-document.js';
 import { ofArgument, transferDocument, wrong } from '../document/transfer-document.js';
-import type { MaskSources } from './masks.js';
+import type { MaskSources } from './mask-sources.js';
 import { type BakeReport, bakeModel, type ImageCodec, type Paints, type Slot, slots } from './plan.js';
 
 /** Options of `bake`: those of `transfer`, and what to bake. */

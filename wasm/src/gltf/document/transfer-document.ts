@@ -10,7 +10,7 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
-import { type MaskSources, masksOf } from '../bake/masks.js';
+import { type MaskSources, masksOf } from '../bake/mask-sources.js';
 import { InputError } from '../input-error.js';
 import { type Paint, paintOf } from '../overlay.js';
 import { DocumentModel } from './document-model.js';
