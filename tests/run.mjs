@@ -16,6 +16,8 @@ import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 
 const root = fileURLToPath(new URL('..', import.meta.url));
+// Files of tests are TypeScript; the processes that run them get the options of this one.
+if (!process.execArgv.includes('tsx')) process.execArgv.push('--import', 'tsx');
 /** Milliseconds until a file of tests counts as one that hangs. */
 const kMaxPerFile = 20 * 60_000;
 

@@ -1,7 +1,8 @@
 // Writes what follows from the lists of options, error codes and zones of the core: wasm/src/generated/*.ts and docs/options.md;
 // and from the list of the command's flags: docs/cli.md.
 //
-//   node wasm/tools/generate.mjs [--check] [--root FOLDER]
+//   npm run generate
+//   node wasm/tools/generate.mjs [--check] [--root FOLDER]     where the npm packages are there
 //     --check   writes nothing; fails if a file is not as it would be written
 //     --root    another tree than this repository, such as a test's
 
@@ -159,7 +160,10 @@ ${head}${rows(true)}`;
  * the C++ build makes, which are not there yet.
  */
 async function makeCommandPage() {
-  const { build } = await import('esbuild');
+  const { build } = await import('esbuild').catch(() => {
+    console.error('docs/cli.md needs the npm packages: `npm run generate` installs them');
+    process.exit(1);
+  });
   const folder = mkdtempSync(join(tmpdir(), 'cagecast-cli-'));
   const outfile = join(folder, 'program.mjs');
   const withoutModules = {
