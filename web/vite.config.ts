@@ -133,7 +133,7 @@ export default defineConfig({
             { name: 'cagecast', test: /dist\/slim\.js$|vite\/preload-helper\.js$/ },
             {
               name: 'shared',
-              test: /web\/src\/(platform\/page|scene\/surface|brush\/ring|explain\/ray|scene\/same-uvs|cage\/(landmark-dots|arrow-keys))\.ts$/,
+              test: /web\/src\/(platform\/page|state\/(surface|same-uvs)|tools\/(paint\/ring|cage\/(landmark-dots|arrow-keys))|view\/ray)\.ts$/,
             },
           ],
         },

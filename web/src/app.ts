@@ -1,39 +1,45 @@
 import { init } from 'cagecast';
 import { Edits, History, LayerStack } from 'cagecast/three/paint';
 import type { Texture } from 'three';
-import type { Painter } from './brush/painter';
-import { setUpPainting } from './brush/set-up-painting';
-import { setUpCageTools } from './cage/set-up';
 import { Explain } from './explain/explain-tool';
 import { ExportPanel } from './export/export-panel';
 import { exportedPaint } from './export/linked-layers';
 import { followLinks } from './export/links';
-import { followPaints, showComposite } from './layers/follow';
-import { LayerList } from './layers/layer-list';
-import { setUpSaving } from './layers/save';
-import { Live } from './live/live-panel';
-import { keepOffline } from './offline';
+import { loaderFor } from './loading/load-model';
+import { makeChecker } from './loading/load-paint';
+import { Opener } from './loading/opener';
+import { fetchAhead, loadSamples } from './loading/samples';
+import { TransferClient } from './loading/transfer-client';
+import { beginProjects } from './panels/begin-projects';
+import { setUpCagePanel } from './panels/cage-panel';
 import { FitPanel } from './panels/fit-panel';
+import { followPaints, showComposite } from './panels/follow-paints';
+import { LayerList } from './panels/layer-list';
 import { offerGuide } from './panels/offer-guide';
 import { PartMenu } from './panels/part-menu';
 import { PartsTable } from './panels/parts-table';
 import { setUpPicture } from './panels/picture-panel';
+import { fadePoster, removeOtherPoster } from './panels/poster';
+import { offerPutAway } from './panels/put-away-layers';
 import { showResults } from './panels/results';
 import { setUpRules } from './panels/rules';
+import { setUpSaving } from './panels/save-texture';
 import { setUpSectionNav } from './panels/section-nav';
+import { setUpWardrobe } from './panels/set-up-wardrobe';
 import { showStatus } from './panels/status';
 import { recordControls } from './panels/steps';
 import { ThresholdMarks } from './panels/threshold-marks';
 import { catchLostFocus } from './platform/lost-focus';
-import { element } from './platform/page';
+import { keepOffline } from './platform/offline';
+import { announce, element } from './platform/page';
 import { setUpUndo } from './platform/undo';
-import { fadePoster, removeOtherPoster } from './poster';
-import { beginProjects } from './project/begin';
-import { CageMaker } from './scene/cage-maker';
-import { Opener } from './scene/opener';
-import { putAwayLayers } from './scene/put-away-layers';
-import { fetchAhead, loadSamples } from './scene/samples';
-import { Session } from './scene/session';
+import { CageMaker } from './state/cage-maker';
+import { PutAwayLayers } from './state/put-away-layers';
+import { Session } from './state/session';
+import { setUpCageTools } from './tools/cage/set-up-cage-tools';
+import { Live } from './tools/live/live-panel';
+import type { Painter } from './tools/paint/painter';
+import { setUpPainting } from './tools/paint/set-up-painting';
 import { ExactBorders } from './view/exact-borders';
 import { showModel } from './view/show-model';
 import { setUpStageButtons } from './view/stage-buttons';
@@ -41,7 +47,6 @@ import { Tools } from './view/tool-rail';
 import { setUpViewControls } from './view/view-controls';
 import { showViewModes } from './view/view-modes';
 import { Viewer } from './view/viewer';
-import { setUpWardrobe } from './wardrobe/set-up-wardrobe';
 
 /** Undefined without WebGL; the page still transfers then. */
 function startViewer(): Viewer | undefined {
@@ -66,15 +71,19 @@ removeOtherPoster();
 catchLostFocus();
 await painted();
 
-const session = new Session();
+const session = new Session(new TransferClient(), makeChecker());
 const viewer = startViewer();
+const loader = loaderFor(viewer?.renderer);
 // Each feature follows the session by its events. The order matters: the model comes before what is drawn on it.
 const stack = new LayerStack();
 const history = new History();
 const edits = new Edits(stack, history);
 followPaints(session, stack, edits);
-const away = putAwayLayers(session, stack, edits);
-const maker = new CageMaker(session, viewer?.renderer);
+const away = new PutAwayLayers(session, stack, edits);
+offerPutAway(away);
+const engine = () => import('cagecast/cages');
+const maker = new CageMaker({ session, loader, engine, announce });
+setUpCagePanel(session, maker);
 let png: (() => Promise<Blob>) | undefined;
 let paint: Texture | undefined;
 let painter: Painter | undefined;
@@ -109,10 +118,12 @@ setUpSectionNav();
 setUpStageButtons(viewer?.controls, history);
 const live = new Live(session, viewer);
 recordControls(session, live, history);
-const opener = new Opener(session, stack, edits, viewer?.renderer);
+const opener = new Opener(session, stack, edits, loader);
 const { png: exportPng, layers } = exportedPaint(session, stack, edits, opener, png);
 const wardrobe =
-  viewer && paint && setUpWardrobe({ session, viewer, stack, paint, png: exportPng, samples: () => opener.samples });
+  viewer &&
+  paint &&
+  setUpWardrobe({ session, loader, viewer, stack, paint, png: exportPng, samples: () => opener.samples });
 if (wardrobe) opener.takesDrop = (files) => wardrobe.take(files);
 const linked = { session, layers, live, controls: viewer?.controls };
 const exportPanel = new ExportPanel(linked, exportPng);
@@ -125,6 +136,7 @@ const restoreWork = beginProjects({
   maker,
   away,
   opener,
+  loader,
   painter,
   live,
   viewer,

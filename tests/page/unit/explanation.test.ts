@@ -4,7 +4,7 @@ import { before, test } from 'node:test';
 import { classify, init, type Mesh, type Projection, project } from 'cagecast';
 import { BoundaryLoops } from '../../../web/src/explain/boundary-loops';
 import { explain } from '../../../web/src/explain/explanation';
-import type { Shown } from '../../../web/src/scene/session';
+import type { Shown } from '../../../web/src/state/scene';
 import { modelFolders, readPlain, smallHole } from '../../package/scenes';
 
 before(() => init());

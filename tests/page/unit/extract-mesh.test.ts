@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { BufferAttribute, Mesh, MeshStandardMaterial, PlaneGeometry, Texture } from 'three';
-import { extractMesh } from '../../../web/src/scene/extract-mesh';
+import { extractMesh } from '../../../web/src/loading/extract-mesh';
 
 test('UVs are of the channel of the base colour texture, the first ones without a texture', () => {
   const geometry = new PlaneGeometry();

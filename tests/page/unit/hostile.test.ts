@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { readProject, writeProject } from '../../../web/src/project/container';
-import { loadModel } from '../../../web/src/scene/load-model';
+import { loadModel } from '../../../web/src/loading/load-model';
+import { readProject, writeProject } from '../../../web/src/platform/project-file';
+import { unzip, zip } from '../../../web/src/platform/zip';
 import { GlbMaker, tetrahedron } from '../../support/glb';
 
 /** A file of this many nodes that show one mesh. */
@@ -33,10 +34,38 @@ test('a model that refers to other files counts them', async () => {
   );
 });
 
-test('a text that begins as a project does is no project, nor one of a newer page', async () => {
-  const text = new Blob(['CAGECAST: how to paint many models at once']);
-  await assert.rejects(readProject(text), { message: 'this is not a Cagecast project' });
-  const bytes = new Uint8Array(await writeProject({}, new Map()).arrayBuffer());
-  bytes[8] = 9; // the version
-  await assert.rejects(readProject(new Blob([bytes])), /newer version/);
+test('a project is a ZIP that holds its files; what is none, or not whole, or of another version is refused', async () => {
+  const sizes = new File(['one'], '../a:b.txt', { type: 'text/plain' });
+  const whole = await writeProject(
+    { rules: 1 },
+    new Map<string, Blob>([
+      ['k1', sizes],
+      ['k2', new Blob(['two'])],
+    ]),
+  );
+  const { parts, files } = await readProject(whole);
+  assert.deepEqual(parts, { rules: 1 });
+  assert.deepEqual([files('k1').name, files('k1').type, await files('k1').text()], [sizes.name, sizes.type, 'one']);
+  assert.equal(await files('k2').text(), 'two');
+  assert.throws(() => files('k3'), { message: 'the project is damaged: a file is missing' });
+  assert.deepEqual([...(await unzip(whole))!.keys()], ['project.json', '1--a-b.txt', '2-painting']);
+
+  const none = { message: 'this is not a Cagecast project, or not a whole one' };
+  for (const other of [new Blob(['A text']), new Blob([]), whole.slice(0, -1), whole.slice(1), await zip([])])
+    await assert.rejects(readProject(other), none);
+  const bytes = new Uint8Array(await whole.arrayBuffer());
+  // What the last record says: that it is one, how many files there are, and where their list begins.
+  for (const at of [0, 8, 16]) {
+    const damaged = bytes.slice();
+    damaged.fill(255, bytes.length - 22 + at, bytes.length - 18 + at);
+    await assert.rejects(readProject(new Blob([damaged])), none);
+  }
+  const withText = (text: string) => zip([{ name: 'project.json', blob: new Blob([text]) }]).then(readProject);
+  await assert.rejects(withText('{'), /its text cannot be read/);
+  await assert.rejects(withText('{"version": 9}'), /another version of the page/);
+  await assert.rejects(
+    withText('{"version": 1, "parts": {}, "files": [{"key": 1, "path": "x"}]}'),
+    /a file is missing/,
+  );
+  await assert.rejects(withText('{"version": 1, "parts": {}, "files": 7}'), /no list of files/);
 });

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { adviceOn } from '../../../web/src/scene/other-formats';
+import { adviceOn } from '../../../web/src/loading/other-formats';
 
 const kHeads: [kind: RegExp, head: string, advice: RegExp][] = [
   [/FBX/, 'Kaydara FBX Binary  \0\x1a\0', /Blender.*FBX.*glTF 2\.0/],

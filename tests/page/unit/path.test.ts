@@ -4,7 +4,7 @@ import { before, test } from 'node:test';
 import { init, presetOptions, project } from 'cagecast';
 import { BoundaryLoops } from '../../../web/src/explain/boundary-loops';
 import { type Path, pathOf } from '../../../web/src/explain/path';
-import { diagonalOf } from '../../../web/src/scene/surface';
+import { diagonalOf } from '../../../web/src/state/surface';
 import { modelFolders, readPlain } from '../../package/scenes';
 
 /** The visibility that each outcome is. */

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { InstancedMesh, Matrix4, MeshBasicMaterial, PlaneGeometry, Raycaster, Vector3 } from 'three';
-import { extractMesh } from '../../../web/src/scene/extract-mesh';
+import { extractMesh } from '../../../web/src/loading/extract-mesh';
 import { pick } from '../../../web/src/view/pick';
 
 test('a spot on any instance of a mesh is the same place on the first one, where the paint is made', () => {

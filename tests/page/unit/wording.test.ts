@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { CagecastError } from 'cagecast';
-import { forPeople, reasonOf } from '../../../web/src/scene/wording';
+import { forPeople, reasonOf } from '../../../web/src/state/wording';
 import { inRepository } from '../../support/site';
 
 test('findings are said in the words of the page: parts', () => {

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
-import { forPeople } from '../../../web/src/scene/wording';
+import { forPeople } from '../../../web/src/state/wording';
 import { inspection, reportedCounts } from '../../support/command';
 import { glbOf, tetrahedron } from '../../support/glb';
 import { difference, look, modelArea } from '../../support/picture';

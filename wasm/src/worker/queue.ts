@@ -126,7 +126,7 @@ export class WorkerQueue {
 
   /** The only listener of a signal, however many calls have it. */
   readonly #onAbort = (): void => {
-    for (const job of [...this.#jobs]) if (job.signal?.aborted) this.#giveUp(job, job.signal.reason);
+    for (const job of [...this.#jobs]) if (job.signal?.aborted) this.#abort(job, job.signal.reason);
   };
 
   #start(): Thread {
@@ -155,12 +155,12 @@ export class WorkerQueue {
     try {
       job.onProgress?.(...progress);
     } catch (error) {
-      this.#giveUp(job, error);
+      this.#abort(job, error);
     }
   }
 
   /** Ends a call that is still waiting or running. */
-  #giveUp(job: Job, reason: unknown): void {
+  #abort(job: Job, reason: unknown): void {
     const place = this.#jobs.indexOf(job);
     if (place < 0) return;
     this.#jobs.splice(place, 1);

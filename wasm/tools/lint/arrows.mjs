@@ -23,23 +23,7 @@ const kPackageOrder = [
   'cli',
 ];
 const kCommandOrder = ['model', 'io', 'transfer', 'commands', 'command', 'main'];
-const kPageOrder = [
-  'platform',
-  'scene',
-  'view',
-  'brush',
-  'explain',
-  'cage',
-  'layers',
-  'live',
-  'export',
-  'panels',
-  'wardrobe',
-  'project',
-  'offline',
-  'poster',
-  'app',
-];
+const kPageOrder = ['state', 'platform', 'loading', 'view', 'tools', 'explain', 'export', 'panels', 'app'];
 
 /** The orders, by where they hold: of those that hold two files, the first counts. */
 const kOrders = {
@@ -81,6 +65,10 @@ const kScriptRules = [
   { from: 'web/', may: ['web/'], rule: "the page imports the package by its public name, 'cagecast'" },
   { from: 'examples/', may: ['examples/'], rule: "examples import the package by its public name, 'cagecast'" },
 ];
+
+/** What browsers have and Node lacks, which the state of the page does without. */
+const kOfBrowsers =
+  /\b(document|window|location|navigator|localStorage|sessionStorage|addEventListener|requestAnimationFrame|HTML\w*Element)\b/;
 
 /** `steps` for steps/holes.cpp, `transfer` for transfer.cpp. */
 function folderOf(path) {
@@ -139,6 +127,8 @@ export function checkArrows(root, files) {
       const text = isCpp(path) ? kInclude.exec(line)?.[1] : kImport.exec(line)?.[2];
       const problem = text && (isCpp(path) ? checkInclude(root, path, text) : checkImport(path, text));
       if (problem) problems.push(`${path}:${index + 1}: "${text}": ${problem}`);
+      const browsers = path.startsWith('web/src/state/') && kOfBrowsers.exec(line.replace(/\/\/.*/, ''))?.[0];
+      if (browsers) problems.push(`${path}:${index + 1}: "${browsers}": the state of the page does without browsers`);
     }
   }
   return problems;

@@ -1,5 +1,5 @@
 import { Line3, Triangle, Vector3 } from 'three';
-import { cornersOf, type Surface, weldedVertices } from '../scene/surface';
+import { cornersOf, type Surface, weldedVertices } from '../state/surface';
 
 /** The boundary edges of a cage: those of exactly one triangle with area. Vertices at equal positions count as one. */
 export class BoundaryLoops {

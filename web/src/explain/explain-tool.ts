@@ -1,5 +1,5 @@
 import { announce, element } from '../platform/page';
-import type { Session } from '../scene/session';
+import type { Session } from '../state/session';
 import type { Spot } from '../view/pick';
 import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';

@@ -1,6 +1,7 @@
 import { type Classification, presetOptions, Visibility, Zone } from 'cagecast';
-import type { Locks, Rules, Shown } from '../scene/session';
-import { diagonalOf } from '../scene/surface';
+import type { Locks, Rules } from '../state/choices';
+import type { Shown } from '../state/scene';
+import { diagonalOf } from '../state/surface';
 import type { BoundaryLoops } from './boundary-loops';
 import { type Path, pathOf } from './path';
 

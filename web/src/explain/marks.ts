@@ -13,7 +13,7 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import { cornersOf, type Surface } from '../scene/surface';
+import { cornersOf, type Surface } from '../state/surface';
 import type { BoundaryLoops } from './boundary-loops';
 import type { Explanation } from './explanation';
 import type { Path } from './path';

@@ -1,7 +1,7 @@
 import { Vector3 } from 'three';
-import { closestPointOnTriangle, type Surface } from '../scene/surface';
+import { closestPointOnTriangle, type Surface } from '../state/surface';
+import { firstHit, type Hit } from '../view/ray';
 import type { BoundaryLoops } from './boundary-loops';
-import { firstHit, type Hit } from './ray';
 
 /** Steps 1 to 3 of the method for one vertex: the closest point on the cage, and the ray from there. Lengths are in model units. */
 export interface Path {

@@ -1,5 +1,7 @@
 import { type Lock, presetOptions } from 'cagecast';
-import { asLock, type Locks, type Rules, type Session, type Shown } from '../scene/session';
+import { asLock, type Locks, type Rules } from '../state/choices';
+import type { Shown } from '../state/scene';
+import type { Session } from '../state/session';
 
 /** Code that reproduces the view. */
 export interface Code {

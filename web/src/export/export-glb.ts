@@ -1,7 +1,7 @@
 import type { Mesh } from 'cagecast';
-import type { ExtractedMesh } from '../scene/extract-mesh';
-import type { Model } from '../scene/load-model';
-import type { Rules, Session } from '../scene/session';
+import type { Rules } from '../state/choices';
+import type { ExtractedMesh, Model } from '../state/model';
+import type { Session } from '../state/session';
 import type { Baked, ExportReply, ExportRequest, PaintInto } from './export-messages';
 
 /** What is exported. */

@@ -1,6 +1,6 @@
 import { download } from '../platform/download';
 import { announce, element, showError, showNotice } from '../platform/page';
-import type { Session } from '../scene/session';
+import type { Session } from '../state/session';
 import { type Code, codeFor } from './code';
 import { endingOf } from './ending';
 import type { Baked, PaintInto } from './export-messages';

@@ -1,8 +1,8 @@
 import { type Document, type JSONDocument, Logger, WebIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { type BakeReport, bake, cagecast, type ImageCodec } from 'cagecast/gltf';
-import { readGltfHead } from '../scene/gltf-file';
-import { reasonOf } from '../scene/wording';
+import { readGltfHead } from '../loading/gltf-file';
+import { reasonOf } from '../state/wording';
 import { avatarExtensions } from './avatar-extensions';
 import type { Baked, ExportReply, ExportRequest } from './export-messages';
 import { readPixels, writePng } from './texture/pixels';

@@ -1,7 +1,7 @@
-import { type ChosenShape, kDeforms } from '../live/deform';
-import type { Choice, Locks, Rules } from '../scene/session';
-import { kLightNames, kModes, type Mode, type View } from '../scene/view-state';
-import type { Angle } from '../view/framing';
+import type { Choice, Locks, Rules } from '../state/choices';
+import { type ChosenShape, kDeforms } from '../state/deform';
+import type { Angle } from '../state/view-state';
+import { kLightNames, kModes, type Mode, type View } from '../state/view-state';
 
 /** A layer in a link. */
 export interface LinkedLayer {

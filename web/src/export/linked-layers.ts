@@ -1,9 +1,10 @@
 import { type Blend, blendModes, type Edits, type Layer, type LayerStack, type Style } from 'cagecast/three/paint';
+import type { Opener } from '../loading/opener';
+import { paintName } from '../loading/samples';
 import { pngOf } from '../platform/png';
-import type { Opener } from '../scene/opener';
-import { type Paint, titleOf } from '../scene/paint';
-import { kChecker, paintName } from '../scene/samples';
-import type { Session } from '../scene/session';
+import { type Paint, titleOf } from '../state/paint';
+import { kChecker } from '../state/sample';
+import type { Session } from '../state/session';
 import type { LinkedLayer } from './link';
 import type { LinkedLayers } from './links';
 

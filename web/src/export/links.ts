@@ -1,6 +1,6 @@
-import type { Live } from '../live/live-panel';
-import type { Opener } from '../scene/opener';
-import type { Session } from '../scene/session';
+import type { Opener } from '../loading/opener';
+import type { Session } from '../state/session';
+import type { Live } from '../tools/live/live-panel';
 import type { CameraControls } from '../view/camera-controls';
 import { type LinkedLayer, type LinkState, readLink, writeLink } from './link';
 

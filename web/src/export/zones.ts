@@ -1,4 +1,4 @@
-import type { Session } from '../scene/session';
+import type { Session } from '../state/session';
 
 /** The result as JSON, for tools: options, zones per vertex, and segments. */
 export function zonesJson({ shown, classification, rules: { preset, threshold }, locks }: Session): string {

@@ -1,13 +1,15 @@
 import type { Lock } from 'cagecast';
 import { type Finding, type Inspection, unfitFrom } from 'cagecast/inspect';
+import { TransferClient } from '../loading/transfer-client';
 import { element } from '../platform/page';
-import type { CageMaker } from '../scene/cage-maker';
-import type { Session } from '../scene/session';
-import { Superseded, TransferClient } from '../scene/transfer-client';
-import { forPeople, reasonOf } from '../scene/wording';
+import type { CageMaker } from '../state/cage-maker';
+import type { Session } from '../state/session';
+import { Superseded } from '../state/transfers';
+import { type KnownVerdict, paintableShare } from '../state/verdict';
+import { forPeople, reasonOf } from '../state/wording';
 import { marksOf } from '../view/segments';
 import type { Stage } from '../view/stage';
-import { type KnownVerdict, paintableShare, type Remedy, StageVerdict } from './stage-verdict';
+import { type Remedy, StageVerdict } from './stage-verdict';
 
 const kInspectDelay = 800; // milliseconds without a change before the cage is inspected
 const kMax = 60_000; // triangles that are inspected automatically; the time grows with their number
@@ -122,7 +124,7 @@ export class FitPanel {
     content.push(...making.map(buttonFor));
     // What is good needs no remedy on the stage; the findings offer theirs.
     this.#show(verdict, content, verdict === 'good' ? undefined : (remedies[0] ?? making[0]));
-    this.#session.tellInspection(inspection);
+    this.#session.reportInspection(inspection);
   }
 
   #show(verdict: KnownVerdict, content: HTMLElement[], remedy?: Remedy): void {

@@ -1,5 +1,5 @@
-import type { Session } from '../scene/session';
-import type { View } from '../scene/view-state';
+import type { Session } from '../state/session';
+import type { View } from '../state/view-state';
 
 interface Step {
   title: string;

@@ -1,5 +1,5 @@
 import { element } from '../platform/page';
-import type { Session } from '../scene/session';
+import type { Session } from '../state/session';
 
 const kKey = 'cagecast-guide';
 

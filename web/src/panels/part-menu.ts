@@ -1,5 +1,7 @@
 import { element } from '../platform/page';
-import type { Choice, Session, Shown } from '../scene/session';
+import type { Choice } from '../state/choices';
+import type { Shown } from '../state/scene';
+import type { Session } from '../state/session';
 import type { Spot } from '../view/pick';
 import { marksOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';

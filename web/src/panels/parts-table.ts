@@ -1,7 +1,9 @@
 import type { Classification, SegmentStats } from 'cagecast';
 import { element, showNotice } from '../platform/page';
-import type { Primitive } from '../scene/extract-mesh';
-import type { Choice, Locks, Session, Shown } from '../scene/session';
+import type { Choice, Locks } from '../state/choices';
+import type { Primitive } from '../state/model';
+import type { Shown } from '../state/scene';
+import type { Session } from '../state/session';
 import { cssColor, type Rgb } from '../view/colors';
 import { marksOf, segmentColors } from '../view/segments';
 import type { Stage } from '../view/stage';

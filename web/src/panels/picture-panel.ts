@@ -1,8 +1,8 @@
 import { download } from '../platform/download';
 import { requireGraphics } from '../platform/graphics';
 import { element, showError } from '../platform/page';
-import type { Session } from '../scene/session';
-import type { LightName } from '../scene/view-state';
+import type { Session } from '../state/session';
+import type { LightName } from '../state/view-state';
 import type { Viewer } from '../view/viewer';
 
 const kPicturePixels = 2; // of a saved picture, per pixel of the page

@@ -1,6 +1,7 @@
 import type { Classification, Timings } from 'cagecast';
 import { announce, element } from '../platform/page';
-import type { Session, Shown } from '../scene/session';
+import type { Shown } from '../state/scene';
+import type { Session } from '../state/session';
 
 const kZones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
 /** Titles of the steps. */

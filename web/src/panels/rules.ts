@@ -1,7 +1,7 @@
 import type { Preset } from 'cagecast';
 import type { Borders } from 'cagecast/three';
 import { element } from '../platform/page';
-import type { Session } from '../scene/session';
+import type { Session } from '../state/session';
 
 /** Connects the fields for preset, threshold and exact borders. */
 export function setUpRules(session: Session): void {

@@ -1,6 +1,6 @@
-import type { Inspection } from 'cagecast/inspect';
 import { element } from '../platform/page';
-import type { Session } from '../scene/session';
+import type { Session } from '../state/session';
+import { type KnownVerdict, paintableShare } from '../state/verdict';
 import { goTo } from './section-nav';
 
 /** Something that can be done about a cage that does not fit. */
@@ -8,9 +8,6 @@ export interface Remedy {
   title: string;
   run(): void;
 }
-
-/** Whether the cage fits; empty until it was inspected. */
-export type KnownVerdict = Inspection['verdict'] | '';
 
 /** Shows the verdict on the cage on the stage and on the model's card: first, how much of the model can be painted. */
 export class StageVerdict {
@@ -59,16 +56,4 @@ export class StageVerdict {
     if (leaves) this.#text.focus();
     this.#button.textContent = this.#remedy?.title ?? '';
   }
-}
-
-/** The share of the visible surface that can be painted, 0..1. */
-export function paintableShare(
-  parts: readonly { exposedArea: number; coveredArea: number; culled: boolean }[],
-): number {
-  let [visible, paintable] = [0, 0];
-  for (const { exposedArea, coveredArea, culled } of parts) {
-    visible += exposedArea;
-    if (!culled) paintable += coveredArea;
-  }
-  return visible > 0 ? Math.min(1, paintable / visible) : 0;
 }

@@ -1,6 +1,6 @@
 import { clearError, element, showError, showNotice } from '../platform/page';
-import type { Model } from '../scene/load-model';
-import { kReading, type Progress, type Session } from '../scene/session';
+import type { Model } from '../state/model';
+import { kReading, type Progress, type Session } from '../state/session';
 
 const kBlind =
   'WebGL 2 is not available in this browser, so there is no 3D view. The transfer works all the same; see the numbers in the panel.';
@@ -21,10 +21,10 @@ export function showStatus(session: Session, blind: boolean): void {
     showNotice('stage-notice', kBlind);
   }
   const bar = new ProgressBar(session);
-  let told: Model | undefined;
+  let said: Model | undefined;
   session.on('transfer', ({ target }) => {
-    if (target.damage && target !== told) showError(target.damage);
-    told = target;
+    if (target.damage && target !== said) showError(target.damage);
+    said = target;
   });
   session.on('progress', (progress) => {
     bar.show(progress);

@@ -1,8 +1,9 @@
 import type { History } from 'cagecast/three/paint';
-import type { ChosenShape } from '../live/deform';
-import type { Live } from '../live/live-panel';
-import { type Controlled, ControlSteps } from '../platform/controls';
-import type { Locks, Rules, Session } from '../scene/session';
+import type { Locks, Rules } from '../state/choices';
+import { type Controlled, ControlSteps } from '../state/control-steps';
+import type { ChosenShape } from '../state/deform';
+import type { Session } from '../state/session';
+import type { Live } from '../tools/live/live-panel';
 import { nameOfPart } from './part-menu';
 
 const kDone = { keep: 'keeping', always: 'painting anyway', exclude: 'excluding', auto: 'no override of' } as const;
@@ -35,6 +36,8 @@ export function recordControls(session: Session, live: Live, history: History): 
     nameOf: () => 'changing the shape',
   };
   const steps = new ControlSteps(history, [rules, locks, shape]);
+  // On the window, so that it runs after the controls' own.
+  for (const event of ['change', 'click'] as const) addEventListener(event, () => steps.record());
   let last: unknown;
   let isOpening = false;
   session.on('transfer', ({ target }) => {

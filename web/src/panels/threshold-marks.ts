@@ -1,7 +1,7 @@
 import { classify } from 'cagecast';
-import { Pace } from '../platform/pace';
 import { element } from '../platform/page';
-import type { Session } from '../scene/session';
+import { Pace } from '../state/pace';
+import type { Session } from '../state/session';
 import { nameOfPart } from './part-menu';
 
 const kSeekDelay = 500; // milliseconds without a change

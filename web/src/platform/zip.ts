@@ -48,12 +48,43 @@ export async function zip(files: readonly { name: string; blob: Blob }[]): Promi
   return new Blob([...parts, ...entries, end], { type: 'application/zip' });
 }
 
-/** A name that no other file has, and that every system can unpack: projects come from strangers, who name their files as they like. */
+/** A name that every system can unpack: projects come from strangers, who name their files as they like. */
+export function plainName(name: string): string {
+  const plain = name.replace(/[\p{Cc}"*/:<>?\\|]/gu, '-').replace(/^[.\s]+/, '');
+  return [...plain].slice(0, 50).join(''); // 200 bytes at most, of 255
+}
+
+/** Such a name, that no other file has. */
 export function freeName(stem: string, ending: string, files: readonly { name: string }[]): string {
-  const plain = stem.replace(/[\p{Cc}"*/:<>?\\|]/gu, '-').replace(/^[.\s]+/, '');
-  const short = [...plain].slice(0, 50).join('') || 'avatar'; // 200 bytes at most, of 255
+  const short = plainName(stem) || 'avatar';
   for (let number = 1; ; number++) {
     const name = `${short}${number > 1 ? `-${number}` : ''}-painted.${ending}`;
     if (!files.some((file) => file.name.toLowerCase() === name.toLowerCase())) return name;
   }
+}
+
+const kEntry = 46; // bytes of an entry without its name
+const kHead = 30; // bytes before a file, without its name
+const kEnd = 22; // bytes of the last record
+
+/** Finds the files in a file that `zip` made, without reading them; undefined if it is none. */
+export async function unzip(file: Blob): Promise<Map<string, Blob> | undefined> {
+  const view = async (from: number, to: number): Promise<DataView> =>
+    new DataView(await file.slice(from, to).arrayBuffer());
+  const last = file.size - kEnd;
+  const end = last < 0 ? undefined : await view(last, file.size);
+  if (end?.getUint32(0, true) !== 0x06054b50) return undefined;
+  const list = await view(end.getUint32(16, true), last);
+  const found = new Map<string, Blob>();
+  for (let at = 0; at + kEntry <= list.byteLength; ) {
+    const [size, length] = [list.getUint32(at + 24, true), list.getUint16(at + 28, true)];
+    const isStored = list.getUint32(at, true) === 0x02014b50 && list.getUint16(at + 10, true) === 0;
+    const next = at + kEntry + length;
+    const from = list.getUint32(at + 42, true) + kHead + length;
+    if (!isStored || next > list.byteLength || from + size > last) return undefined;
+    const name = new TextDecoder().decode(new Uint8Array(list.buffer, at + kEntry, length));
+    found.set(name, file.slice(from, from + size));
+    at = next;
+  }
+  return found.size === end.getUint16(10, true) ? found : undefined;
 }

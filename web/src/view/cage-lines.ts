@@ -1,6 +1,6 @@
 import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments } from 'three';
 import { disposeAfterFrame } from '../platform/programs';
-import type { ExtractedMesh } from '../scene/extract-mesh';
+import type { ExtractedMesh } from '../state/model';
 
 /** The cage as a wireframe; faint where the target is in front of it. */
 export class CageLines {

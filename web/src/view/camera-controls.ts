@@ -1,6 +1,7 @@
 import { MathUtils, MOUSE, PerspectiveCamera, Spherical, TOUCH, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { type Angle, aspectOf, type FreePart, fittingDistance, kFieldOfView, kHome } from './framing';
+import type { Angle } from '../state/view-state';
+import { aspectOf, type FreePart, fittingDistance, kFieldOfView, kHome } from './framing';
 import type { Stage } from './stage';
 
 const kLevel = MathUtils.degToRad(84); // of the views from the front and from the side

@@ -1,7 +1,7 @@
 import type { Classification } from 'cagecast';
-import type { ExtractedMesh } from '../scene/extract-mesh';
-import type { Shown } from '../scene/session';
-import { diagonalOf } from '../scene/surface';
+import type { ExtractedMesh } from '../state/model';
+import type { Shown } from '../state/scene';
+import { diagonalOf } from '../state/surface';
 import { type ColorMap, colorAt, kDiverging, kSequential, type Rgb } from './colors';
 import { segmentColors } from './segments';
 

@@ -1,9 +1,10 @@
 import type { Classification } from 'cagecast';
+import { TransferClient } from '../loading/transfer-client';
 import { element } from '../platform/page';
-import type { Session } from '../scene/session';
-import { Superseded, TransferClient } from '../scene/transfer-client';
-import type { SplitProjection } from '../scene/transfer-messages';
-import { reasonOf } from '../scene/wording';
+import type { Session } from '../state/session';
+import type { SplitProjection } from '../state/transfers';
+import { Superseded } from '../state/transfers';
+import { reasonOf } from '../state/wording';
 import type { Stage } from './stage';
 
 const kPatience = 300; // milliseconds without a change before cutting
@@ -47,7 +48,7 @@ export class ExactBorders {
 
   #follow(classification: Classification): void {
     const { shown, rules, locks, bare } = this.#session;
-    const wanted =
+    const basis =
       rules.borders === 'cut'
         ? {
             projection: shown!.projection,
@@ -59,10 +60,10 @@ export class ExactBorders {
           }
         : undefined;
     const keys = ['projection', 'culled', 'always', 'bare'] as const;
-    if (keys.every((key) => wanted?.[key] === this.#basis?.[key])) return;
+    if (keys.every((key) => basis?.[key] === this.#basis?.[key])) return;
     this.#clear();
-    if (!wanted || this.#session.awaitsCage) return; // the cut waits until that is made
-    this.#basis = wanted;
+    if (!basis || this.#session.isMakingCage) return; // the cut waits until that is made
+    this.#basis = basis;
     this.#due = setTimeout(() => void this.#cut(classification), kPatience);
   }
 
@@ -82,7 +83,7 @@ export class ExactBorders {
     const { target, cage, projection } = shown!;
     this.#cutting = true;
     const done = this.#session.work('Cutting borders', 0.3, {
-      giveUp: (why) => {
+      abort: (why) => {
         this.#clear();
         if (why === 'cancelled') this.#session.setRules({ borders: 'triangle' });
       },

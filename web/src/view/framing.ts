@@ -1,6 +1,6 @@
 import { MathUtils, type Object3D, type PerspectiveCamera, Spherical, Vector3 } from 'three';
-import type { Model } from '../scene/load-model';
-import type { Look } from './overlay/overlay';
+import type { Model } from '../state/model';
+import type { Look } from './overlay/looks';
 
 /** Degrees, of the height of all views. */
 export const kFieldOfView = 28;
@@ -10,16 +10,6 @@ export const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad
 const kMargin = 1.03;
 const kMaxPoints = 50_000; // more are sampled evenly
 const kTools = 70; // pixels at either side that tools cover
-
-/** Direction and distance of the camera. */
-export interface Angle {
-  /** Degrees around the model from its front; counter-clockwise seen from above. */
-  turn: number;
-  /** Degrees from straight above. */
-  tilt: number;
-  /** Magnification, relative to the distance at which the whole model is visible. */
-  near: number;
-}
 
 /** Other models beside the one on the stage. The viewer moves all of them together. */
 export interface Crowd {

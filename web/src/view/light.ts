@@ -10,7 +10,7 @@ import {
   type Texture,
   Vector3,
 } from 'three';
-import type { LightName } from '../scene/view-state';
+import type { LightName } from '../state/view-state';
 
 /** A distant lamp with soft edges: a spherical Gaussian. */
 interface Lamp {

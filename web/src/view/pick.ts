@@ -1,5 +1,5 @@
 import { InstancedMesh, type Intersection, Matrix4, type Raycaster, Triangle, Vector3 } from 'three';
-import type { ExtractedMesh, Primitive } from '../scene/extract-mesh';
+import type { ExtractedMesh, Primitive } from '../state/model';
 
 /** A spot on the surface of the target. */
 export interface Spot {

@@ -1,4 +1,4 @@
-import type { Shown } from '../scene/session';
+import type { Shown } from '../state/scene';
 import { distinctColor, type Rgb } from './colors';
 
 /** A colour for each segment; those of the largest are most distinct. */

@@ -1,4 +1,4 @@
-import type { Session } from '../scene/session';
+import type { Session } from '../state/session';
 import type { Viewer } from './viewer';
 
 /** Updates the viewer on events of the session. */

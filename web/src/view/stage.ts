@@ -10,11 +10,13 @@ import {
   type Texture,
   Vector3,
 } from 'three';
-import { disposeModel, type Model } from '../scene/load-model';
-import type { SplitProjection } from '../scene/transfer-messages';
+import { disposeModel } from '../loading/load-model';
+import type { Model } from '../state/model';
+import type { SplitProjection } from '../state/transfers';
 import { CageLines } from './cage-lines';
 import { type Crowd, frontOf } from './framing';
-import { type Highlighted, type Look, Overlay } from './overlay/overlay';
+import type { Highlighted, Look } from './overlay/looks';
+import { Overlay } from './overlay/overlay';
 import type { Studio } from './studio';
 
 /** What is shown in the studio: a target with its paint and its cage, marks of features on it, and a crowd beside it. */

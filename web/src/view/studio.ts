@@ -1,5 +1,5 @@
 import { type Camera, Color, DirectionalLight, Mesh, PlaneGeometry, Scene, ShadowMaterial, Vector3 } from 'three';
-import type { LightName } from '../scene/view-state';
+import type { LightName } from '../state/view-state';
 import { environmentOf, kLights } from './light';
 
 const kOrigin = new Vector3();

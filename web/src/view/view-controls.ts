@@ -1,6 +1,6 @@
 import { element } from '../platform/page';
-import type { Session } from '../scene/session';
-import { type Mode, showsPaint } from '../scene/view-state';
+import type { Session } from '../state/session';
+import { type Mode, showsPaint } from '../state/view-state';
 import { setUpDivider } from './divider';
 
 /** Connects the controls of the view. */

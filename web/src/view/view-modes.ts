@@ -1,6 +1,7 @@
 import type { Classification } from 'cagecast';
-import type { Session, Shown } from '../scene/session';
-import type { Mode } from '../scene/view-state';
+import type { Shown } from '../state/scene';
+import type { Session } from '../state/session';
+import type { Mode } from '../state/view-state';
 import { type Coloring, colorByDistance, colorBySegment, colorByStretch } from './color-maps';
 import { type Legend, showLegend } from './legend';
 import type { Stage } from './stage';

@@ -1,11 +1,11 @@
 import { NeutralToneMapping, PCFShadowMap, WebGLRenderer } from 'three';
 import { clearError, showError } from '../platform/page';
-import type { Model } from '../scene/load-model';
-import type { SplitProjection } from '../scene/transfer-messages';
-import { kFirstView, showsPaint, type View } from '../scene/view-state';
+import type { Model } from '../state/model';
+import type { SplitProjection } from '../state/transfers';
+import { kFirstView, showsPaint, type View } from '../state/view-state';
 import { CameraControls } from './camera-controls';
 import { type Crowd, freePartOf } from './framing';
-import { kLooks, type Look } from './overlay/overlay';
+import { kLooks, type Look } from './overlay/looks';
 import { Pointing } from './pointing';
 import { ScreenSpace } from './screen-space';
 import { Stage } from './stage';

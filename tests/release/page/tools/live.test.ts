@@ -5,7 +5,7 @@ import { init, type Mesh, transfer } from 'cagecast';
 import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
 import { Box3, Vector3 } from 'three';
-import { type Deform, deform, type Extent, kDeforms } from '../../../../web/src/live/deform';
+import { type Deform, deform, type Extent, kDeforms } from '../../../../web/src/state/deform';
 import { ball, islandCage, islandPaint } from '../../../support/models';
 import { difference, frames, look, modelArea, shareOfHue, watch } from '../../../support/picture';
 import { drop, Site, settled, shownCounts, shownError, type Upload } from '../../../support/site';

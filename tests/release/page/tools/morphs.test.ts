@@ -4,7 +4,7 @@ import { NodeIO } from '@gltf-transform/core';
 import { init, type Mesh, transfer } from 'cagecast';
 import type { Page } from 'playwright-core';
 import { Box3, Vector3 } from 'three';
-import { deform } from '../../../../web/src/live/deform';
+import { deform } from '../../../../web/src/state/deform';
 import { islandCage, islandPaint, morphingBalls } from '../../../support/models';
 import { difference, frames, look, modelArea, shareOfHue, watch } from '../../../support/picture';
 import { primitivesOf, saved, validModel } from '../../../support/saved';

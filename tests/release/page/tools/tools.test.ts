@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
-import { titleOfExpression, titleOfMorph } from '../../../../web/src/live/expression-names';
+import { titleOfExpression, titleOfMorph } from '../../../../web/src/tools/live/expression-names';
 import { faults } from '../../../support/axe';
 import { filled, names, savedTexture, texel } from '../../../support/layers';
 import { ball, islandCage, morphingBalls } from '../../../support/models';

@@ -1,6 +1,6 @@
 import { BufferAttribute, DoubleSide, type Mesh, MeshBasicMaterial } from 'three';
 import { disposeAfterFrame } from '../../platform/programs';
-import type { ExtractedMesh, Primitive } from '../../scene/extract-mesh';
+import type { ExtractedMesh, Primitive } from '../../state/model';
 import { detachShared, overlayMesh, shareVertices } from './geometry';
 import { onSurface } from './materials';
 

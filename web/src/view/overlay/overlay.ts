@@ -1,31 +1,11 @@
 import type { Classification, CutTarget } from 'cagecast';
 import type { Texture } from 'three';
-import { Pace } from '../../platform/pace';
-import type { ExtractedMesh } from '../../scene/extract-mesh';
-import type { SplitProjection } from '../../scene/transfer-messages';
-import type { Mode } from '../../scene/view-state';
+import type { ExtractedMesh } from '../../state/model';
+import { Pace } from '../../state/pace';
+import type { SplitProjection } from '../../state/transfers';
 import { Highlight } from './highlight';
+import type { Highlighted, Look } from './looks';
 import { PrimitiveOverlay } from './primitive-overlay';
-
-/**
- * What the overlay shows: nothing, the paint everywhere, the filtered paint, the zones, a checker, or colours per triangle
- * corner.
- */
-export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'checker' | 'colors';
-
-/** What can be highlighted: the parts that the user points to, and what is marked to stay bare. */
-export type Highlighted = 'parts' | 'bare';
-
-/** The overlay of each mode other than `compare`. */
-export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
-  result: 'result',
-  naive: 'naive',
-  zones: 'zones',
-  segments: 'colors',
-  checker: 'checker',
-  distance: 'colors',
-  stretch: 'colors',
-};
 
 /**
  * The paint over a target: overlay meshes for each of its meshes, which share its skin and morphs. The naive one shares its

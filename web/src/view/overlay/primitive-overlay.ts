@@ -11,8 +11,9 @@ import {
   SRGBColorSpace,
   type Texture,
 } from 'three';
+import { reverseWinding } from '../../loading/extract-mesh';
 import { disposeAfterFrame } from '../../platform/programs';
-import { type Primitive, reverseWinding } from '../../scene/extract-mesh';
+import type { Primitive } from '../../state/model';
 import {
   copyVertices,
   detachShared,
@@ -23,6 +24,7 @@ import {
   sortByZone,
   zonesOfTriangles,
 } from './geometry';
+import type { Look } from './looks';
 import {
   clayMaterial,
   colorMaterial,
@@ -32,7 +34,6 @@ import {
   paintMaterial,
   zoneMaterial,
 } from './materials';
-import type { Look } from './overlay';
 
 // The transferred UVs use a channel that glTF models leave free, so that the base maps keep theirs.
 const kUvChannel = 3;

@@ -1,0 +1,173 @@
+import { checkGltf } from 'cagecast/gltf';
+import { Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
+import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { disposeAfterFrame } from '../platform/programs';
+import type { Loader, Model } from '../state/model';
+import { reasonOf } from '../state/wording';
+import { extractMesh } from './extract-mesh';
+import { paths } from './file-paths';
+import { readGltfHead } from './gltf-file';
+import { damageOf } from './image-damage';
+import { adviceOn, kSniffed } from './other-formats';
+
+/**
+ * Reads a GLB or glTF model, Draco, meshopt, KTX2 and quantised data included.
+ * @param file       The model.
+ * @param renderer   Undefined without WebGL.
+ * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
+ * @throws Error with a message that begins with the file's name.
+ */
+export async function loadModel(
+  file: File,
+  renderer: WebGLRenderer | undefined,
+  companions: readonly File[] = [],
+): Promise<Model> {
+  const urls = new Map<string, string>();
+  try {
+    const bytes = await file.arrayBuffer().catch(() => {
+      throw new Error(
+        `the browser cannot read this file (${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB); it may be too large, or deleted`,
+      );
+    });
+    const advice = adviceOn(new Uint8Array(bytes, 0, Math.min(kSniffed, bytes.byteLength)));
+    if (advice) throw new Error(advice);
+    const head = readGltfHead(bytes);
+    const used = [...new Set(head.uris.map((uri) => findCompanion(uri, companions, file)))];
+    checkCost(bytes, used);
+    for (const uri of head.uris) urls.set(uri, URL.createObjectURL(findCompanion(uri, companions, file)));
+
+    const manager = new LoadingManager().setURLModifier((url) => urls.get(decodeURIComponent(url)) ?? url);
+    const loader = new GLTFLoader(manager);
+    const release = await addDecoders(loader, manager, head.extensions, renderer);
+    try {
+      const gltf = await loader.parseAsync(bytes, '');
+      const scene = await sceneOf(gltf);
+      const { associations, json } = gltf.parser;
+      const mesh = extractMesh(scene, (mesh) => nameOf(mesh, gltf));
+      const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer());
+      return {
+        name: file.name,
+        files: [file, ...used],
+        scene,
+        loaded: { scene, userData: gltf.userData, parser: { associations, json: { extensions: json.extensions } } },
+        animations: gltf.animations,
+        mesh,
+        ...(damage && { damage: `${file.name}: ${damage}` }),
+      };
+    } finally {
+      release();
+    }
+  } catch (error) {
+    throw new Error(`${file.name}: ${messageOf(error)}`, { cause: error });
+  } finally {
+    for (const url of urls.values()) URL.revokeObjectURL(url);
+  }
+}
+
+/** Frees the GPU memory of a model. */
+export function disposeModel({ mesh }: Model): void {
+  for (const primitive of mesh.primitives) {
+    primitive.mesh.geometry.dispose();
+    const materials = [primitive.mesh.material].flat();
+    for (const material of materials)
+      for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
+    disposeAfterFrame(materials);
+  }
+}
+
+/** The page's own loader. @param renderer Undefined without WebGL. */
+export const loaderFor = (renderer: WebGLRenderer | undefined): Loader => ({
+  load: (file, companions) => loadModel(file, renderer, companions),
+  dispose: disposeModel,
+});
+
+/** The default scene, or all nodes of a file without scenes; with exactly the file's node matrices. */
+async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
+  const nodes: Object3D[] = scene ? [] : await parser.getDependencies('node');
+  const root = scene ?? new Group().add(...nodes.filter((node) => !node.parent));
+  root.traverse((object) => {
+    const matrix: number[] | undefined = parser.json.nodes?.[parser.associations.get(object)?.nodes ?? -1]?.matrix;
+    if (!matrix) return;
+    // The loader decomposes matrices, which rounds them and loses shear.
+    object.matrixAutoUpdate = false;
+    object.matrix.fromArray(matrix);
+  });
+  // Ignore overlays that an earlier transfer added; `cagecast transfer` marks them.
+  const overlays: Object3D[] = [];
+  root.traverse((object) => {
+    // The loader gives a mesh one material.
+    if (object instanceof Mesh && [object.geometry, object.material].some(({ userData }) => userData.cagecastOverlay))
+      overlays.push(object);
+  });
+  for (const overlay of overlays) overlay.removeFromParent();
+  return root;
+}
+
+/** The name of a mesh as the command line reports it: its node's, and its material's if the node has several primitives. */
+function nameOf(mesh: Mesh, { parser }: GLTF): string | undefined {
+  const { nodes = [], meshes = [], materials = [] } = parser.json;
+  const place = parser.associations.get(mesh);
+  const primitives: { material?: number }[] = meshes[place?.meshes ?? -1]?.primitives ?? [];
+  // The loader merges a node with its mesh, unless that has several primitives.
+  const node = nodes[place?.nodes ?? (mesh.parent && parser.associations.get(mesh.parent)?.nodes) ?? -1];
+  const name: string | undefined = node?.name ?? meshes[place?.meshes ?? -1]?.name;
+  const material: string | undefined = materials[primitives[place?.primitives ?? -1]?.material ?? -1]?.name;
+  return name !== undefined && material !== undefined && material !== name && primitives.length > 1
+    ? `${name}/${material}`
+    : name;
+}
+
+/** Refuses a file that the loader, which trusts it, would take all memory for. @throws Error without the file's name. */
+function checkCost(bytes: ArrayBuffer, companions: readonly File[]): void {
+  try {
+    checkGltf(new Uint8Array(bytes), { otherBytes: companions.reduce((sum, { size }) => sum + size, 0) });
+  } catch (error) {
+    throw new Error(reasonOf(error), { cause: error });
+  }
+}
+
+function findCompanion(uri: string, companions: readonly File[], model: File): File {
+  const name = uri.split('/').at(-1);
+  const folder = paths.get(model);
+  const path = folder && decodeURI(new URL(encodeURI(uri), `file:${encodeURI(folder)}`).pathname);
+  const found =
+    companions.find((file) => path && paths.get(file) === path) ?? companions.find((file) => file.name === name);
+  if (!found) throw new Error(`the model needs the file ${uri}; choose or drop both together`);
+  return found;
+}
+
+/** Adds the decoders that the file needs, fetched on demand. @returns A function that frees them. */
+async function addDecoders(
+  loader: GLTFLoader,
+  manager: LoadingManager,
+  extensions: string[],
+  renderer: WebGLRenderer | undefined,
+): Promise<() => void> {
+  const held: { dispose(): void }[] = [];
+  if (extensions.includes('EXT_meshopt_compression') || extensions.includes('KHR_meshopt_compression')) {
+    const { MeshoptDecoder } = await import('meshoptimizer/decoder'); // as in the worker that exports: one file
+    loader.setMeshoptDecoder(MeshoptDecoder);
+  }
+  if (extensions.includes('KHR_texture_basisu')) {
+    const { makeKtx2Loader } = await import('./ktx2');
+    const ktx2 = makeKtx2Loader(manager, renderer);
+    loader.setKTX2Loader(ktx2);
+    held.push(ktx2);
+  }
+  if (extensions.includes('KHR_draco_mesh_compression')) {
+    const { makeDracoLoader } = await import('./draco');
+    const draco = makeDracoLoader(manager);
+    loader.setDRACOLoader(draco);
+    held.push(draco);
+  }
+  return () => held.forEach((decoder) => decoder.dispose());
+}
+
+function messageOf(error: unknown): string {
+  // The loader fails like this when it reads past the end of a buffer.
+  if (error instanceof RangeError || error instanceof TypeError)
+    return 'the file is damaged: it refers to data it does not contain';
+  if (error instanceof Error) return reasonOf(error).replace(/^THREE\.\w+: /, '');
+  // Decoders reject with a message or an event.
+  return (error as { error?: string })?.error ?? 'the file cannot be decoded';
+}

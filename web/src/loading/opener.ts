@@ -1,0 +1,238 @@
+import type { Edits, LayerStack, Sheet } from 'cagecast/three/paint';
+import { element, showError } from '../platform/page';
+import type { Locks } from '../state/choices';
+import { madeOf, sampleOf } from '../state/made-cages';
+import type { Loader, Model } from '../state/model';
+import { type Paint, titleOf } from '../state/paint';
+import { kChecker, type Sample, type Samples } from '../state/sample';
+import type { Requested, Shown } from '../state/scene';
+import { kReading, type Session } from '../state/session';
+import { type Intake, setUpFiles } from './files';
+import { loadPaint } from './load-paint';
+import { type Choice, offerPaints } from './paint-picker';
+import { fetchFile, paintName } from './samples';
+
+const kOwn = 'own';
+
+/** Opens samples and the user's own files, and shows what is open. */
+export class Opener implements Samples {
+  readonly #session: Session;
+  readonly #stack: LayerStack;
+  readonly #edits: Edits;
+  readonly #select = element('sample-select', HTMLSelectElement);
+  readonly #loader: Loader;
+  /** Whether what was dropped on the page is for somebody else, who takes it. */
+  takesDrop: (files: readonly File[]) => boolean = () => false;
+  #samples: Sample[] = [];
+  /** Warnings about the latest files, shown once these are loaded. */
+  #warnings: readonly string[] = [];
+  /** The base paint that was chosen last. */
+  #chosen: Promise<Paint> | undefined;
+
+  /** Opens a saved project. */
+  onProject: ((file: File) => void) | undefined;
+  /** Puts the user's own files aside, or a cage made for them, before a sample takes their place. */
+  onReplace: (() => void) | undefined;
+
+  constructor(session: Session, stack: LayerStack, edits: Edits, loader: Loader) {
+    this.#session = session;
+    this.#stack = stack;
+    this.#edits = edits;
+    this.#loader = loader;
+    setUpFiles(
+      (intake) => this.#open(intake),
+      (dropped) => this.takesDrop(dropped),
+    );
+    this.#select.addEventListener('change', () => this.openSample(this.#select.value));
+    element('swap', HTMLButtonElement).addEventListener('click', () => session.swap());
+    session.on('progress', ({ state }) => {
+      if (state === 'working') return;
+      if (session.shown) this.#describe(session.shown);
+      // The chosen one may have been cancelled or failed to load.
+      const { sample } = session.shown?.target ?? {};
+      if (sample && sample === session.shown?.cage.sample) this.#select.value = sample.name;
+      if (state !== 'failed' && this.#warnings.length > 0) showError(this.#warnings.join(' '));
+      this.#warnings = [];
+    });
+    stack.on('change', () => session.shown && this.#describe(session.shown));
+  }
+
+  get samples(): readonly Sample[] {
+    return this.#samples;
+  }
+
+  /** Fills the list of samples. */
+  listSamples(samples: Sample[]): void {
+    this.#samples = samples;
+    this.#select.replaceChildren(...samples.map(({ name, title }) => new Option(title, name)));
+  }
+
+  /**
+   * Opens a sample by name; does nothing if there is none.
+   * @param paint One of its paints, by `paintName`; the first by default.
+   * @param locks Locks of its segments.
+   */
+  openSample(name: string, paint?: string, locks: Locks = {}): void {
+    const sample = this.#samples.find((candidate) => candidate.name === name);
+    if (!sample) return;
+    this.putAside();
+    this.#select.value = name;
+    this.#warnings = [];
+    const { target, cage, paints } = sample;
+    const chosen = paint === kChecker ? undefined : (paints.find(({ file }) => paintName(file) === paint) ?? paints[0]);
+    const model = async (address: string): Promise<Model> => ({
+      ...(await this.#loader.load(await fetchFile(address))),
+      sample,
+    });
+    this.#session.request(
+      { target: model(target), cage: model(cage), paint: this.#fetchPaint(sample, chosen) },
+      locks,
+      true,
+    );
+  }
+
+  /** Call this before a sample's state replaces the one that is shown. */
+  putAside(): void {
+    const { shown } = this.#session;
+    if (shown && !(shown.target.sample && shown.cage.sample)) this.onReplace?.();
+  }
+
+  /** Loads a paint of any sample. @param name By `paintName`. @returns Undefined if there is none. */
+  async paint(name: string): Promise<Paint | undefined> {
+    if (name === kChecker) return this.#session.checker;
+    const found = this.find(name);
+    return found && this.#fetchPaint(found.sample, found.paint);
+  }
+
+  /** Whether there is a paint of that name, by `paintName`. */
+  has(name: string): boolean {
+    return name === kChecker || this.find(name) !== undefined;
+  }
+
+  /** A sample's paint by `paintName`. */
+  find(name: string): { sample: Sample; paint: Sample['paints'][number] } | undefined {
+    return this.#samples
+      .flatMap((sample) => sample.paints.map((paint) => ({ sample, paint })))
+      .find(({ paint }) => paintName(paint.file) === name);
+  }
+
+  async #fetchPaint(sample: Sample, paint: Sample['paints'][number] | undefined): Promise<Paint> {
+    return paint ? { ...(await loadPaint(await fetchFile(paint.file), paint.file)), sample } : this.#session.checker;
+  }
+
+  /** Opens the user's own files. */
+  #open({ target, cage, texture, project, unclear, warnings, all }: Intake): void {
+    if (project) {
+      this.onProject?.(project);
+      return;
+    }
+    const requested: Requested = {};
+    const load = (file: File): Promise<Model> => this.#loader.load(file, all);
+    if (target) requested.target = load(target);
+    if (cage) requested.cage = load(cage);
+    const [one, other] = unclear;
+    if (one && other) {
+      // Their names do not tell them apart: the cage is the one with fewer triangles.
+      const pair = Promise.all([load(one), load(other)]).then((models) =>
+        models.sort((a, b) => b.mesh.indices.length - a.mesh.indices.length),
+      );
+      requested.target = pair.then(([larger]) => larger!);
+      requested.cage = pair.then(([, smaller]) => smaller!);
+    }
+    if (texture) requested.paint = loadPaint(texture);
+    if (texture && !target && !cage && !one && this.#session.isMakingCage) {
+      void this.#use(requested.paint!, (paint) => this.#session.reportPaint(paint));
+      return;
+    }
+    this.#warnings = warnings;
+    this.#session.request(requested);
+  }
+
+  #describe({ target, cage }: Shown): void {
+    const { layers, base } = this.#stack;
+    const paints = layers.map(({ sheet }) => sheet as Sheet & Partial<Paint>);
+    const texture = paints.findLast(({ file, sample }) => file && !sample) ?? base?.sheet;
+    const names = { target: target.name, cage: cage.name, texture: (texture as Paint | undefined)?.name ?? 'none' };
+    for (const [slot, name] of Object.entries(names)) {
+      const label = element(`${slot}-name`, HTMLElement);
+      label.textContent = label.title = name;
+    }
+    const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`;
+    element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.`;
+    this.#describeOrigin({ target, cage });
+    this.#offerPaints({ cage });
+  }
+
+  /** Says which of the models still belongs to a sample. */
+  #describeOrigin({ target, cage }: Pick<Shown, 'target' | 'cage'>): void {
+    const own = this.#select.querySelector<HTMLOptionElement>(`option[value=${kOwn}]`);
+    if (target.sample && cage.sample) own?.remove();
+    else {
+      if (!own) this.#select.append(new Option('Your own files', kOwn));
+      this.#select.value = kOwn;
+    }
+    element('swap', HTMLButtonElement).hidden = Boolean(target.sample ?? cage.sample);
+    const isMade = madeOf(cage.files[0]!)?.target === target.files[0];
+    element('hint', HTMLElement).textContent =
+      isMade || !target.sample === !cage.sample
+        ? 'Choose your own files, or drop them anywhere on the page. They stay on this device.'
+        : target.sample
+          ? 'The cage is yours, but the target is still the sample’s. Add the target that your cage was made for.'
+          : 'The target is yours, but the cage is still the sample’s. Add the cage that was made for your target, or make one.';
+  }
+
+  /** Sets the base paint, as an undo step. */
+  async #choose(loaded: Promise<Paint>): Promise<void> {
+    const { isMakingCage, shown } = this.#session;
+    const set = (paint: Paint): unknown =>
+      this.#edits.do(`choosing ${titleOf(paint)}`, () => this.#stack.setBase(titleOf(paint), paint));
+    this.#chosen = loaded;
+    if (isMakingCage)
+      return this.#use(loaded, (paint) => {
+        if (loaded === this.#chosen && shown!.cage === this.#session.shown!.cage) set(paint);
+      });
+    let isRequested = true;
+    const done = this.#session.work(kReading, 0, { abort: () => (isRequested = false) });
+    try {
+      const paint = await loaded;
+      if (!isRequested) return;
+      set(paint);
+      done();
+    } catch (error) {
+      if (isRequested) this.#session.fail(error);
+      this.#offerPaints(this.#session.shown!);
+    }
+  }
+
+  /** Does something with a paint once it is loaded; a cage that is being made goes on. */
+  async #use(loading: Promise<Paint>, act: (paint: Paint) => unknown): Promise<void> {
+    try {
+      act(await loading);
+    } catch (error) {
+      showError((error as Error).message);
+      this.#offerPaints(this.#session.shown!);
+    }
+  }
+
+  /** Lists the base paints: the sample's, and the checker. */
+  #offerPaints({ cage }: Pick<Shown, 'cage'>): void {
+    const { checker } = this.#session;
+    const sample = sampleOf(cage);
+    const choices: (Choice & { load(): Promise<Paint> })[] = [
+      ...(sample?.paints ?? []).map((paint) => ({
+        title: paint.title,
+        picture: paint.file,
+        load: () => this.#fetchPaint(sample!, paint),
+      })),
+      { title: checker.name, picture: checker.picture, load: async () => checker },
+    ];
+    const chosen = choices.findIndex(({ picture }) => picture === this.#stack.base?.sheet.picture);
+    offerPaints(choices, chosen, {
+      onChoose: (index) => this.#choose(choices[index]!.load()),
+      onAdd: (index) =>
+        this.#use(choices[index]!.load(), (paint) =>
+          this.#edits.do(`adding ${titleOf(paint)}`, () => this.#stack.add(titleOf(paint), paint)),
+        ),
+    });
+  }
+}

@@ -1,0 +1,46 @@
+import type { Sample } from '../state/sample';
+
+const kFolder = new URL('samples/', document.baseURI);
+
+/** The name of a sample's paint in links. @param file Its URL. */
+export function paintName(file: string): string {
+  return file.startsWith(kFolder.href) ? file.slice(kFolder.href.length) : file;
+}
+
+/**
+ * Reads the list of samples.
+ * @throws Error if it is missing.
+ */
+export async function loadSamples(): Promise<Sample[]> {
+  const response = await fetch(new URL('index.json', kFolder)).catch(() => undefined);
+  const list: Sample[] | undefined = response?.ok ? await response.json().catch(() => undefined) : undefined;
+  if (!Array.isArray(list) || list.length === 0) {
+    throw new Error('The samples could not be loaded. You can still drop a target and a cage of your own.');
+  }
+  const address = (path: string): string => new URL(path, kFolder).href;
+  return list.map(({ name, title, target, cage, paints }) => ({
+    name,
+    title,
+    target: address(target),
+    cage: address(cage),
+    paints: paints.map((paint) => ({ title: paint.title, file: address(paint.file) })),
+  }));
+}
+
+const begun = new Map<string, Promise<Response | undefined>>();
+
+/** Starts fetching the files of a sample before the page is ready for them. */
+export function fetchAhead({ target, cage, paints }: Sample): void {
+  for (const address of [target, cage, ...paints.slice(0, 1).map(({ file }) => file)]) begun.set(address, ask(address));
+}
+
+const ask = (address: string): Promise<Response | undefined> => fetch(address).catch(() => undefined);
+
+/** Fetches one file of a sample. @throws Error that names it. */
+export async function fetchFile(address: string): Promise<File> {
+  const name = new URL(address).pathname.split('/').slice(-2).join('/');
+  const response = await (begun.get(address) ?? ask(address));
+  begun.delete(address); // a response body can be read only once
+  if (!response?.ok) throw new Error(`${name}: the file could not be loaded`);
+  return new File([await response.blob()], name.split('/').at(-1)!);
+}

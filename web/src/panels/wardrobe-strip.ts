@@ -1,0 +1,270 @@
+import type { LayerStack } from 'cagecast/three/paint';
+import type { Texture } from 'three';
+import { exportAll } from '../export/export-all';
+import { entriesOf, keptEntry, sampleEntry } from '../loading/entries';
+import { fitLike } from '../loading/fit-like';
+import { TransferClient } from '../loading/transfer-client';
+import { download } from '../platform/download';
+import { addError, announce, element, showError } from '../platform/page';
+import type { Loader } from '../state/model';
+import type { Sample } from '../state/sample';
+import type { Session } from '../state/session';
+import { type Avatar, kMaxAvatars } from '../state/wardrobe/avatar';
+import type { KeptWardrobe } from '../state/wardrobe/kept';
+import { Wardrobe } from '../state/wardrobe/wardrobe';
+import type { Viewer } from '../view/viewer';
+import { WardrobeStage } from '../view/wardrobe/wardrobe-stage';
+
+/** What the wardrobe needs of the page. */
+export interface WardrobePage {
+  session: Session;
+  loader: Loader;
+  viewer: Viewer;
+  stack: LayerStack;
+  /** The composite of the layers. */
+  paint: Texture;
+  /** Encodes it. */
+  png(): Promise<Blob>;
+  samples(): readonly Sample[];
+  /** Called when the wardrobe may have changed. */
+  onChange(): void;
+}
+
+const kTap = 6; // pixels that a pointer may move during a tap
+
+const kStrip = `
+  <div class="wardrobe-note" id="wardrobe-note" hidden>
+    <p role="status" data-testid="wardrobe-note"></p>
+    <button type="button" class="quiet" id="fit-all" data-testid="fit-all">Fit this cage to all</button>
+  </div>
+  <div class="wardrobe-row">
+    <div class="wardrobe-side">
+      <label class="toggle"><input type="checkbox" id="show-all" data-testid="show-all" /><span>Show all</span></label>
+      <button type="button" class="quiet" id="export-all" data-testid="export-all">Save all</button>
+    </div>
+    <ol class="avatars" id="avatars" data-testid="avatars"></ol>
+    <div class="wardrobe-side">
+      <label class="file quiet">Add files<input type="file" id="wardrobe-input" data-testid="wardrobe-input" multiple accept=".glb,.gltf,.vrm,.bin,.png,.jpg,.jpeg,.webp,.ktx2" /></label>
+      <select id="wardrobe-sample" data-testid="wardrobe-sample" aria-label="Add a sample"></select>
+    </div>
+  </div>`;
+
+const kCard = `
+  <button type="button" class="avatar"><img alt="" /><span class="name"></span><span class="unseen">, </span><span class="verdict"></span><span class="unseen more"></span></button>
+  <button type="button" class="icon remove"><svg viewBox="0 0 24 24" aria-hidden="true" focusable="false"><path d="M6 6l12 12M18 6 6 18"/></svg></button>`;
+
+/** The avatars of the wardrobe, in a strip below the stage. */
+export class WardrobeStrip {
+  readonly #page: WardrobePage;
+  readonly #stage: WardrobeStage;
+  readonly #wardrobe: Wardrobe;
+  readonly #list: HTMLOListElement;
+  readonly #all: HTMLInputElement;
+  readonly #export: HTMLButtonElement;
+  readonly #cards = new Map<Avatar, HTMLLIElement>();
+
+  constructor(page: WardrobePage) {
+    const { session, viewer, paint, loader, stack } = page;
+    this.#page = page;
+    this.#stage = new WardrobeStage(session, viewer, paint, () => this.#wardrobe.arrange());
+    this.#wardrobe = new Wardrobe({
+      session,
+      loader,
+      transferer: new TransferClient(),
+      fit: fitLike,
+      view: this.#stage,
+      errors: { show: showError, add: addError },
+    });
+    for (const event of ['change', 'pictures'] as const) stack.on(event, () => this.#wardrobe.refresh());
+    element('wardrobe', HTMLElement).innerHTML = kStrip;
+    this.#list = element('avatars', HTMLOListElement);
+    this.#all = element('show-all', HTMLInputElement);
+    this.#export = element('export-all', HTMLButtonElement);
+    this.#all.addEventListener('change', () => (this.#wardrobe.showsAll = this.#all.checked));
+    this.#export.addEventListener('click', () => void this.#exportAll());
+    element('fit-all', HTMLButtonElement).addEventListener('click', () => this.#wardrobe.fitAll());
+    const input = element('wardrobe-input', HTMLInputElement);
+    input.addEventListener('change', () => {
+      const files = [...(input.files ?? [])];
+      input.value = ''; // lets the user choose the same file again
+      this.add(files);
+    });
+    this.#listSamples();
+    this.#wardrobe.list.on('change', () => {
+      this.#show();
+      page.onChange();
+    });
+    this.#pickOnStage();
+    this.#show();
+  }
+
+  /** Adds models, with their cages if there are some among the files. @param instead Of the sample on the stage. */
+  add(files: readonly File[], instead = false): void {
+    const entries = entriesOf(files, this.#page.loader);
+    if (entries.length === 0) {
+      showError('There is no model among these files: choose GLB, glTF or VRM files.');
+      return;
+    }
+    const { active } = this.#wardrobe.list;
+    this.#addAll(entries, instead && active.sample ? active : undefined);
+  }
+
+  /** Moves the focus to the avatar on the stage, or to the first where that one is still to come. */
+  focus(): void {
+    const card = this.#cards.get(this.#wardrobe.list.active) ?? this.#list.firstElementChild;
+    card?.querySelector('button')?.focus({ preventScroll: true });
+  }
+
+  /** Only the model on the stage is shown from now on. */
+  close(): void {
+    this.#all.checked = this.#wardrobe.showsAll = false;
+  }
+
+  /** What a project has of it. */
+  get kept(): KeptWardrobe {
+    return this.#wardrobe.kept;
+  }
+
+  /** Brings the avatars of a project back. */
+  restore({ at, all, avatars }: KeptWardrobe): void {
+    const { samples, loader } = this.#page;
+    this.#wardrobe.restore(
+      avatars.map((avatar) => keptEntry(avatar, samples(), loader)),
+      at,
+    );
+    if (this.#all.checked !== all) this.#all.click();
+  }
+
+  #addAll(entries: Parameters<Wardrobe['add']>[0], instead?: Avatar): void {
+    void this.#wardrobe.add(entries, instead);
+    if (!this.#all.checked) this.#all.click();
+  }
+
+  #listSamples(): void {
+    const select = element('wardrobe-sample', HTMLSelectElement);
+    const samples = this.#page.samples();
+    select.replaceChildren(new Option('Add sample', ''), ...samples.map(({ name, title }) => new Option(title, name)));
+    select.addEventListener('change', () => {
+      const sample = samples.find(({ name }) => name === select.value);
+      select.value = '';
+      if (sample) this.#addAll([sampleEntry(sample, this.#page.loader)]);
+    });
+  }
+
+  #show(): void {
+    const { all: avatars, active } = this.#wardrobe.list;
+    for (const [avatar, card] of this.#cards) {
+      if (avatars.includes(avatar)) continue;
+      const focused = card.contains(document.activeElement);
+      card.remove();
+      this.#cards.delete(avatar);
+      if (focused) this.focus();
+    }
+    for (const avatar of avatars) {
+      const card = this.#cards.get(avatar) ?? this.#makeCard(avatar);
+      fillCard(card, avatar, avatar === active, avatars.length > 1);
+    }
+    const cards = avatars.map((avatar) => this.#cards.get(avatar)!);
+    if (cards.some((card, at) => card !== this.#list.children[at])) this.#list.replaceChildren(...cards);
+    const ready = avatars.filter(({ files, doing }) => files.length > 0 && doing === '');
+    const taking = ready.filter(({ takesPaint }) => takesPaint);
+    const note = element('wardrobe-note', HTMLElement);
+    note.hidden = taking.length === ready.length || ready.length < 2;
+    const text = `${taking.length} of ${ready.length} avatars take this paint; the cages of the others differ.`;
+    const said = note.querySelector('p')!;
+    if (!note.hidden && said.textContent !== text) said.textContent = text;
+    for (const control of [element('wardrobe-input', HTMLInputElement), element('wardrobe-sample', HTMLSelectElement)])
+      control.disabled = avatars.length >= kMaxAvatars;
+    this.#export.disabled = taking.length === 0;
+  }
+
+  #makeCard(avatar: Avatar): HTMLLIElement {
+    const card = document.createElement('li');
+    card.innerHTML = kCard;
+    const [choose, remove] = card.querySelectorAll('button') as unknown as [HTMLButtonElement, HTMLButtonElement];
+    choose.addEventListener('click', () => this.#wardrobe.activate(avatar));
+    choose.addEventListener('keydown', (event) => {
+      if (event.key === 'Delete') this.#remove(avatar);
+    });
+    remove.addEventListener('click', () => this.#remove(avatar));
+    this.#cards.set(avatar, card);
+    this.#list.append(card);
+    return card;
+  }
+
+  #remove(avatar: Avatar): void {
+    this.#wardrobe.remove(avatar);
+    announce(`${avatar.name} removed.`);
+  }
+
+  /** A tap on a model beside the one on the stage puts it there. */
+  #pickOnStage(): void {
+    const canvas = element('view', HTMLCanvasElement);
+    let pressed: PointerEvent | undefined;
+    canvas.addEventListener('pointerdown', (event) => (pressed = event.button === 0 ? event : undefined));
+    canvas.addEventListener('pointerup', (event) => {
+      if (!pressed || Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) > kTap) return;
+      const figure = this.#stage.at(event.clientX, event.clientY);
+      const found = figure && this.#wardrobe.list.all.find(({ standing }) => standing === figure);
+      if (found) this.#wardrobe.activate(found);
+    });
+  }
+
+  async #exportAll(): Promise<void> {
+    const button = this.#export;
+    // Not disabled, so that it keeps the focus.
+    if (button.ariaBusy) return;
+    button.ariaBusy = 'true';
+    const { session, png } = this.#page;
+    const { all: avatars, active } = this.#wardrobe.list;
+    const taking = avatars.filter(({ takesPaint, doing }) => takesPaint && doing === '');
+    try {
+      const report = (done: number): void => void (button.textContent = `Saving ${done + 1} of ${taking.length}`);
+      const { file, count, troubles } = await exportAll(taking, session, active, await png(), report);
+      download(file, 'avatars-painted.zip');
+      announce(`${count} avatars saved: ${(file.size / 1e6).toFixed(1)} megabytes.`);
+      const late = avatars.filter(({ doing }) => doing !== '').length;
+      const reportLeft = (count: number, why: string): void => {
+        if (count > 0) troubles.push(`${count} of the avatars ${count === 1 ? 'was' : 'were'} left out: ${why}.`);
+      };
+      reportLeft(late, 'not ready yet');
+      reportLeft(avatars.length - taking.length - late, 'of another cage');
+      if (troubles.length > 0) showError(troubles.join(' '));
+    } catch (error) {
+      showError((error as Error).message);
+    } finally {
+      button.ariaBusy = null;
+      button.textContent = 'Save all';
+    }
+  }
+}
+
+/** What is read aloud after what is seen. */
+const kVerdictWords: Record<Avatar['verdict'], string> = {
+  '': '',
+  good: ' paintable, good',
+  usable: ' paintable, with reservations',
+  unfit: '',
+};
+
+function fillCard(card: HTMLLIElement, avatar: Avatar, isActive: boolean, isRemovable: boolean): void {
+  const { name, picture, verdict, paintable, takesPaint, cage, doing, files } = avatar;
+  const [choose, remove] = card.querySelectorAll('button') as unknown as [HTMLButtonElement, HTMLButtonElement];
+  const image = card.querySelector('img')!;
+  if (picture && image.src !== picture) image.src = picture;
+  image.hidden = picture === '';
+  const share = paintable === undefined ? '' : `${Math.round(100 * paintable)} %`;
+  const badge =
+    doing || (!cage ? 'no cage' : !takesPaint ? 'other cage' : verdict === 'unfit' ? 'does not fit' : share);
+  const shown = card.querySelector('.verdict') as HTMLElement;
+  card.querySelector('.name')!.textContent = name;
+  shown.textContent = badge;
+  shown.dataset.verdict = doing || !cage || !takesPaint ? '' : verdict;
+  choose.ariaPressed = String(isActive);
+  choose.ariaDisabled = files.length === 0 ? 'true' : null;
+  choose.title = name;
+  const isSaid = doing === '' && takesPaint && verdict !== '';
+  card.querySelector('.more')!.textContent = isSaid ? kVerdictWords[verdict] : '';
+  remove.ariaLabel = `Remove ${name}`;
+  remove.hidden = !isRemovable || !isActive;
+}

@@ -1,0 +1,301 @@
+import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
+import { cageModel } from 'cagecast/three';
+import { Emitter } from 'cagecast/three/paint';
+import { likelyTemplate } from './likely-template';
+import { type Fitting, kMinLandmarks, lacksLandmarks, madeOf, noteMade, readable, sampleOf } from './made-cages';
+import type { Loader, Model } from './model';
+import type { Session } from './session';
+import { type Box, boxOf, diagonalOfBox } from './surface';
+import { reasonOf } from './wording';
+
+/** The engine that makes cages: `cagecast/cages`. It loads when it is asked for. */
+export type Engine = Pick<
+  typeof import('cagecast/cages'),
+  'cageGlb' | 'findLandmarks' | 'fitCage' | 'loadTemplate' | 'makeCage' | 'refineCage' | 'templateNames'
+>;
+
+/** What a cage maker needs of the page. */
+export interface Workshop {
+  session: Session;
+  loader: Loader;
+  engine(): Promise<Engine>;
+  /** Says a sentence to people. */
+  announce(sentence: string): void;
+}
+
+/** What the page shows of the cage on the stage. */
+interface CageNotes {
+  /** How it was made; empty if it was not made here. */
+  note: string;
+  /** Which landmarks were not found. */
+  missing: string;
+}
+
+/** What the steps of the engine are called for people. */
+const kStages: Record<string, string> = {
+  hull: 'Wrapping the model',
+  simplify: 'Simplifying the cage',
+  holes: 'Cutting holes',
+  unwrap: 'Unwrapping the cage',
+  landmarks: 'Finding landmarks',
+  fit: 'Fitting the template',
+  enclose: 'Enclosing the model',
+  align: 'Moving the cage',
+  bend: 'Bending the cage',
+};
+
+/**
+ * Makes a cage for a model that has none, or fits a template to it. `fitting` says with each cage whether it is a fit, and which
+ * landmarks that has; `notes` says what there is to say of the cage; `template` says which template a new target likely needs.
+ */
+export class CageMaker extends Emitter<{
+  fitting: Fitting | undefined;
+  notes: Partial<CageNotes>;
+  template: TemplateName;
+}> {
+  readonly #workshop: Workshop;
+  readonly #session: Session;
+  readonly #unmoved = new WeakSet<Model>();
+  /** What the user chose for cages that are made: options, and parts that are not painted. */
+  choices: ((model: CageModel) => { options: MakeOptions; marks?: Uint8Array }) | undefined;
+  /** What the last fit that was asked for here came to. */
+  latest: Fitting | undefined;
+
+  constructor(workshop: Workshop) {
+    super();
+    const { session } = workshop;
+    this.#workshop = workshop;
+    this.#session = session;
+    let shown: { target?: Model; cage?: Model } = {};
+    session.on('transfer', ({ target, cage }) => {
+      if (this.lacking) {
+        // Landmarks that were placed are of no cage yet: by other rules, they stay.
+        if (target === shown.target && cage === shown.cage) return;
+        this.latest = undefined;
+      }
+      if (target !== shown.target) this.emit('template', likelyTemplate(target.mesh.positions));
+      shown = { target, cage };
+      this.emit('notes', { note: madeOf(cage.files[0]!)?.note ?? '', missing: '' });
+      this.emit('fitting', this.isOthers ? undefined : madeOf(cage.files[0]!)?.fitting);
+    });
+    // Of a good cage, nobody needs to know what was not found.
+    session.on('inspected', ({ verdict }) => {
+      const missing = (verdict !== 'good' && madeOf(session.shown!.cage.files[0]!)?.fitting?.missing) || [];
+      const names = missing.map(readable).join(', ');
+      this.emit('notes', { missing: names && `Landmarks that were not found: ${names}.` });
+    });
+  }
+
+  /** A fit that lacks landmarks, while the user is asked for them. */
+  get lacking(): Fitting | undefined {
+    return this.latest && lacksLandmarks(this.latest.used) ? this.latest : undefined;
+  }
+
+  /** Whether the current cage stayed where it was when it was to be moved into place. */
+  get refusedToMove(): boolean {
+    return this.#unmoved.has(this.#session.shown!.cage);
+  }
+
+  /** Whether the current cage belongs to another model. */
+  get isOthers(): boolean {
+    const { target, cage } = this.#session.shown!;
+    if (cage.sample) return cage.sample !== target.sample;
+    const own = madeOf(cage.files[0]!);
+    return own !== undefined && own.target !== target.files[0];
+  }
+
+  /** Whether the current cage was made for the current target, and is no fit. */
+  get isMade(): boolean {
+    const own = madeOf(this.#session.shown!.cage.files[0]!);
+    return own !== undefined && !own.fitting && !this.isOthers;
+  }
+
+  /** Whether the current cage is as it was made for the current target: neither moving it nor making it again changes it. */
+  get isFresh(): boolean {
+    return this.isMade && madeOf(this.#session.shown!.cage.files[0]!)!.isNew === true;
+  }
+
+  /** Makes a cage for the current target. */
+  make(): Promise<void> {
+    return this.#run('Making a cage', this.#make);
+  }
+
+  /**
+   * Fits a template to the current target.
+   * @param given    Landmarks of the target; they override those that are found.
+   */
+  fit(template: TemplateName, given: Landmarks = {}): Promise<void> {
+    return this.#run('Fitting a template', (context) => this.#fit(context, template, given));
+  }
+
+  /** Moves, turns and scales the current cage onto the target, and bends it where it is inside. */
+  move(): Promise<void> {
+    return this.#run('Moving the cage', this.#move);
+  }
+
+  /** Reads a model again, as its file has it. */
+  read({ files: [file, ...rest] }: Model): Promise<Model> {
+    return this.#workshop.loader.load(file!, rest);
+  }
+
+  /** Shows a cage that was made for the current target, unless another target is being loaded. */
+  show(cage: Promise<Model>): void {
+    if (this.#session.keepTarget()) this.#session.request({ cage });
+  }
+
+  /** Shows the current cage with other positions or triangles. @returns It. */
+  async change(change: { positions?: Float32Array; indices?: Uint32Array }): Promise<Model> {
+    const { target, cage: current } = this.#session.shown!;
+    const { cageGlb } = await this.#workshop.engine();
+    const { positions, rest = positions, indices, uvs = new Float32Array() } = current.mesh;
+    const extras: Partial<Cage> = {};
+    current.scene.traverse(({ userData }) => void (userData.landmarks && Object.assign(extras, userData)));
+    const bytes = cageGlb({ ...extras, ...({ positions: rest, indices, uvs, ...change } as Cage) });
+    const file = new File([bytes], cageNameFrom(current.name));
+    const fitting = madeOf(current.files[0]!)?.fitting;
+    const note = 'The cage was changed. Save it if it is right.';
+    noteMade(file, { target: target.files[0]!, fitting, sample: sampleOf(current), note });
+    const cage = this.#workshop.loader.load(file);
+    this.show(cage);
+    return cage;
+  }
+
+  /** Turns triangles of the current cage to the other side. */
+  flip(triangles: readonly number[]): Promise<void> {
+    return this.#run('Turning triangles', async ({ old }) => {
+      const indices = old.indices.slice();
+      for (const t of triangles) [indices[3 * t + 1], indices[3 * t + 2]] = [indices[3 * t + 2]!, indices[3 * t + 1]!];
+      return { cage: { ...old, indices }, note: `${triangles.length} triangles of the cage were turned.` };
+    });
+  }
+
+  /** Does cancellable work on the current target, and shows the cage that it comes to; not while another target is being loaded. */
+  async #run(title: string, work: (context: Context) => Promise<Result | undefined>): Promise<void> {
+    if (!this.#session.keepTarget()) return this.#workshop.announce('Another model is being loaded.');
+    const { target, cage: current } = this.#session.shown!;
+    const abort = new AbortController();
+    const making = { abort: () => abort.abort(), makesCage: true };
+    const report = (stage: string, share: number): unknown => this.#session.work(stage, share, making);
+    const done = this.#session.work(title, 0, making);
+    try {
+      const [engine, read] = await Promise.all([
+        this.#workshop.engine(),
+        // The model on the stage may be deformed.
+        this.read(target),
+      ]);
+      if (abort.signal.aborted) return;
+      const onProgress = (share: number, step: string): unknown => report(kStages[step] ?? title, share);
+      const options = { signal: abort.signal, onProgress };
+      const { positions, rest = positions, indices, uvs = new Float32Array() } = current.mesh;
+      const old = { ...kNoName, positions: rest.slice(), indices: indices.slice(), uvs: uvs.slice() } as Cage;
+      const result = await work.call(this, { engine, model: cageModel(read.loaded), old, options });
+      if (abort.signal.aborted) return;
+      if (!result) return done();
+      const { cage, note, fitting, isNew } = result;
+      const isChanged = cage.uvs === old.uvs;
+      const file = new File([engine.cageGlb(cage)], cageNameFrom((isChanged ? current : target).name));
+      const sample = isChanged ? sampleOf(current) : undefined;
+      noteMade(file, { target: target.files[0]!, fitting, sample, note, isNew });
+      this.latest = fitting;
+      this.show(this.#workshop.loader.load(file));
+    } catch (error) {
+      if (abort.signal.aborted) return;
+      this.#session.fail(new Error(`${target.name}: ${reasonOf(error)}`, { cause: error }));
+    }
+  }
+
+  async #make({ engine, model, options }: Context): Promise<Result> {
+    const { options: chosen, marks: parts } = this.choices?.(model) ?? {};
+    const { bare } = this.#session;
+    // What was marked on the model is not painted, whatever is chosen for its part.
+    const marks = bare && parts ? parts.map((mark, t) => mark | bare[t]!) : (bare ?? parts);
+    const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
+    const { paint } = this.#session.shown!;
+    const next =
+      paint.file && !paint.sample
+        ? 'Save it with the paint that you draw for it.'
+        : 'The UV checker shows where paint lands; it goes away with the first paint.';
+    return { cage, note: `A cage of ${cage.indices.length / 3} triangles was made. ${next}`, isNew: true };
+  }
+
+  async #move({ engine, model, old, options }: Context): Promise<Result> {
+    const current = this.#session.shown!.cage;
+    const placed = placeAround(old, model.positions);
+    const cage = await engine.refineCage(placed, model, { ...options, reach: 0.2 }).catch((error: Error) => {
+      if (options.signal.aborted) throw error;
+      return placed;
+    });
+    if (cage.positions.every((value, i) => value === old.positions[i])) {
+      this.#unmoved.add(current);
+      this.#session.setRules({}); // its remedies are no longer offered
+      throw new Error(
+        `the cage ${current.name} cannot be moved into place: no place was found where it fits better. Make a cage`,
+      );
+    }
+    return { cage: { ...cage, uvs: old.uvs }, note: 'The cage was moved into place. Save it if it is right.' };
+  }
+
+  /** @returns Undefined if too few landmarks are known; the user is asked for more. */
+  async #fit({ engine, model, options }: Context, name: TemplateName, given: Landmarks): Promise<Result | undefined> {
+    const template = await engine.loadTemplate(name);
+    try {
+      const { cage, ...found } = await engine.fitCage(template, model, given, options);
+      const note = 'The template was fitted: a paint for it fits every model that it was fitted to.';
+      return { cage, note, fitting: { ...found, template: name, given } };
+    } catch (error) {
+      if ((error as { code?: string }).code !== 'badLandmarks') throw error;
+      const found = await engine.findLandmarks(model, options);
+      const names = Object.keys(template.landmarks);
+      const all = { ...found.landmarks, ...given };
+      const used = Object.fromEntries(names.flatMap((known) => (all[known] ? [[known, all[known]]] : [])));
+      if (!lacksLandmarks(used)) throw error;
+      const missing = names.filter((known) => !used[known]);
+      this.ask({ ...found, template: name, given, used, missing });
+      return undefined;
+    }
+  }
+
+  /** Asks the user for the landmarks that a fit lacks. */
+  ask(fitting: Fitting): void {
+    const found = Object.keys(fitting.used).length;
+    const note = `Of ${kMinLandmarks} landmarks that are needed, ${found} were found: place more on the model.`;
+    this.emit('notes', { note, missing: '' });
+    this.latest = fitting;
+    this.emit('fitting', fitting);
+  }
+}
+
+/** The name of a cage's file, from that of a model or of an earlier cage. */
+const cageNameFrom = (name: string): string =>
+  name.replace(/(^cage|-cage|)(\.\w+)?$/, (_, ending: string) => `${ending || '-cage'}.glb`);
+
+const kNoName = { landmarks: {}, holes: {}, kind: 'automatic' } as const;
+
+/** A cage that is nowhere near the model is put around it first, as large as the model. */
+export function placeAround(cage: Cage, model: ArrayLike<number>): Cage {
+  const [from, to] = [boxOf(cage.positions), boxOf(model)];
+  const apart = from.low.some((low, axis) => low > to.high[axis]! || from.high[axis]! < to.low[axis]!);
+  const scale = diagonalOfBox(to) / diagonalOfBox(from);
+  if (!apart && scale > 0.5 && scale < 2) return cage;
+  const middle = ({ low, high }: Box, axis: number): number => (low[axis]! + high[axis]!) / 2;
+  const positions = cage.positions.map((value, i) => middle(to, i % 3) + 1.05 * scale * (value - middle(from, i % 3)));
+  return { ...cage, positions };
+}
+
+interface Context {
+  engine: Engine;
+  model: ReturnType<typeof cageModel>;
+  /** The current cage, undeformed. */
+  old: Cage;
+  options: { signal: AbortSignal; onProgress(share: number, step: string): void };
+}
+
+interface Result {
+  cage: Cage;
+  /** What was made, for people. */
+  note: string;
+  /** If it is a fit. */
+  fitting?: Fitting;
+  /** Whether it was made from the model alone. */
+  isNew?: boolean;
+}

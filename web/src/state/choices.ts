@@ -1,0 +1,64 @@
+import type { ClassifyOptions, Lock, Preset } from 'cagecast';
+import type { Borders } from 'cagecast/three';
+import type { Model } from './model';
+import type { SplitProjection } from './transfers';
+
+/** Options of the transfer. */
+export interface Rules {
+  preset: Preset;
+  threshold: number;
+  /** Whether triangles are cut where the paint ends. */
+  borders: Borders;
+}
+
+export const kFirstRules: Rules = { preset: 'default', threshold: 0.5, borders: 'triangle' };
+
+/** A lock, or all of a part painted, whatever hides it. */
+export type Choice = Lock | 'always';
+
+/** Choices by segment; all others are `auto`. */
+export type Locks = Record<number, Choice>;
+
+/** The nearest to a choice that methods without masks know. */
+export const asLock = (choice: Choice): Lock => (choice === 'always' ? 'keep' : choice);
+
+/** Those of the choices that are for segments that a model has. */
+export const knownLocks = (locks: Locks, { segmentStats }: Pick<SplitProjection, 'segmentStats'>): Locks =>
+  Object.fromEntries(Object.entries(locks).filter(([segment]) => Number(segment) < segmentStats.length));
+
+/**
+ * The locks and masks that choices come to.
+ * @param projection Of the model that they are for.
+ * @param bare       Its triangles that stay bare, as `BareMarks` gives them.
+ */
+export function choicesOf(
+  chosen: Locks,
+  projection: Pick<SplitProjection, 'segments'> | undefined,
+  bare?: Uint8Array,
+): Pick<ClassifyOptions, 'locks' | 'masks'> {
+  const entries = Object.entries(chosen);
+  const always = new Set(entries.flatMap(([segment, choice]) => (choice === 'always' ? [Number(segment)] : [])));
+  const locks = { segments: Object.fromEntries(entries.map(([s, choice]) => [s, asLock(choice)])) };
+  const vertices =
+    always.size > 0 && projection && Int8Array.from(projection.segments, (segment) => (always.has(segment) ? 1 : 0));
+  const triangles = bare && Int8Array.from(bare, (mark) => -mark);
+  return { locks, ...((vertices || triangles) && { masks: { vertices: vertices || undefined, triangles } }) };
+}
+
+/** What stays bare of each target, by its file: it comes back with the target. */
+export class BareMarks {
+  readonly #marks = new WeakMap<File, Uint8Array>();
+
+  /** 1 for each triangle that was marked to stay bare; undefined if there are none. @param files Of the model. */
+  of([file]: readonly File[]): Uint8Array | undefined {
+    return file && this.#marks.get(file);
+  }
+
+  /** Sets the same; marks for another number of triangles are ignored. @returns Whether they were taken. */
+  set({ files: [file], mesh }: Model, marks: Uint8Array | undefined): boolean {
+    if (!file || (marks && marks.length !== mesh.indices.length / 3)) return false;
+    if (marks?.includes(1)) this.#marks.set(file, marks);
+    else this.#marks.delete(file);
+    return true;
+  }
+}

@@ -1,0 +1,48 @@
+import type { Fit, Landmarks, TemplateName } from 'cagecast/cages';
+import type { Model } from './model';
+import type { Sample } from './sample';
+
+/** A template that was fitted, or that lacks landmarks for that. */
+export interface Fitting extends Omit<Fit, 'cage'> {
+  template: TemplateName;
+  /** Those of `used` that the user placed. */
+  given: Landmarks;
+}
+
+/** A fit needs so many landmarks. */
+export const kMinLandmarks = 4;
+
+export const lacksLandmarks = (known: Landmarks): boolean => Object.keys(known).length < kMinLandmarks;
+
+/** How a cage was made here. */
+interface Made {
+  /** What it was made for. */
+  target: File;
+  /** The fit that it came from. */
+  fitting: Fitting | undefined;
+  /** The sample whose cage it was changed from. Its UVs are the same. */
+  sample?: Sample | undefined;
+  /** What was done, for people. */
+  note?: string;
+  /** Whether it was made from the model alone: it is where it belongs. */
+  isNew?: boolean | undefined;
+}
+
+/** By the files of the cages. */
+const made = new WeakMap<File, Made>();
+
+/** How a cage was made; undefined if it was not made here. */
+export const madeOf = (cage: File): Made | undefined => made.get(cage);
+
+/** The sample whose paints fit a cage. */
+export const sampleOf = ({ sample, files }: Model): Sample | undefined => sample ?? madeOf(files[0]!)?.sample;
+
+/** Notes how a cage was made. */
+export const noteMade = (cage: File, how: Made): unknown => made.set(cage, how);
+
+/** A landmark's name for people: "ear_lobe_left" is the left ear lobe. */
+export const readable = (landmark: string): string =>
+  landmark
+    .replace(/^(.*)_(left|right)$/, '$2 $1')
+    .replace(/^(.*?)joint_(.*)$/, '$1$2 joint')
+    .replaceAll('_', ' ');

@@ -1,0 +1,53 @@
+import type { LoadedGltf, Part } from 'cagecast/three';
+import type { AnimationClip, Mesh, Object3D } from 'three';
+import type { Sample } from './sample';
+
+/** One triangle mesh of the scene, and the ranges of its elements in the concatenated arrays; its name is for people. */
+export interface Primitive extends Omit<Part, 'geometry'> {
+  mesh: Mesh;
+  /** Whether its matrix mirrors it; its winding is reversed then. */
+  mirrored: boolean;
+}
+
+/** All triangles of a scene as arrays in world space, as the transfer takes them. */
+export interface ExtractedMesh {
+  /** 3 per vertex, in the scene's space; they may be deformed. */
+  positions: Float32Array;
+  /** The positions in the file, if `positions` may have been deformed. */
+  rest?: Float32Array;
+  /** 3 per triangle, counter-clockwise seen from outside. */
+  indices: Uint32Array;
+  /** 2 per vertex: where it is in its base colour texture; without one, the first set. Absent unless every primitive has UVs. */
+  uvs?: Float32Array | undefined;
+  /** 1 per vertex: the index of its primitive. Only vertices of the same primitive are welded. */
+  groups: Uint32Array;
+  primitives: Primitive[];
+}
+
+/** A loaded model: the scene to show, and its triangles for the transfer. */
+export interface Model {
+  /** The file's name, for people. */
+  name: string;
+  /** The file, then those it refers to. */
+  files: readonly File[];
+  scene: Object3D;
+  /** The scene with what says which nodes are the bones of a VRM. */
+  loaded: LoadedGltf;
+  animations: readonly AnimationClip[];
+  mesh: ExtractedMesh;
+  /** A message about images that cannot be shown; the model is usable all the same. */
+  damage?: string;
+  /** The sample it belongs to; undefined for the user's own files. */
+  sample?: Sample;
+}
+
+/** Reads models. The page's own is `loadModel`; tests hand in others. */
+export interface Loader {
+  /**
+   * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
+   * @throws Error with a message that begins with the file's name.
+   */
+  load(file: File, companions?: readonly File[]): Promise<Model>;
+  /** Frees the GPU memory of a model. */
+  dispose(model: Model): void;
+}

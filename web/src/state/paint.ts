@@ -1,0 +1,20 @@
+import type { Texture } from 'three';
+import type { Sample } from './sample';
+
+/** A texture in the cage's UV space. */
+export interface Paint {
+  /** The file's name, for people. */
+  name: string;
+  texture: Texture;
+  /** URL of the image. */
+  picture: string;
+  /** The image; absent for the checker. */
+  file?: File;
+  /** The sample it belongs to; undefined for the user's own and the checker. */
+  sample?: Sample;
+}
+
+/** The title of a paint in lists. */
+export function titleOf({ name, picture, sample }: Paint): string {
+  return sample?.paints.find(({ file }) => file === picture)?.title ?? name;
+}

@@ -1,0 +1,96 @@
+import { knownLocks } from '../choices';
+import { type ChosenShape, type Deform, kDeforms } from '../deform';
+import type { Session } from '../session';
+import { type Angle, kLightNames, kModes } from '../view-state';
+import { listOf, locksOf, numberOf, objectOf, oneOf, textOf } from './checks';
+import type { Contribution } from './project';
+
+const kMaxMorphs = 10_000;
+/** What can be moved, and how. */
+interface Shaped {
+  readonly shape: ChosenShape;
+  move(shape: ChosenShape): void;
+}
+
+/** What the model is seen by. */
+interface Camera {
+  readonly angle: Angle | undefined;
+  lookFrom(angle: Angle): void;
+}
+
+/** Rules, overrides of parts, the shape and the view. @param controls Undefined without WebGL. */
+export function settingsParts(session: Session, live: Shaped, controls: Camera | undefined): Contribution[] {
+  return [
+    {
+      name: 'rules',
+      isWork: true,
+      save: () => session.rules,
+      read(saved) {
+        const { preset, threshold, borders } = objectOf(saved, 'rules');
+        return {
+          before: () => session.setRules({ preset: oneOf(preset, ['default', 'paper']) }),
+          shown: () =>
+            session.setRules({
+              threshold: numberOf(threshold, 0, 1, 0.5),
+              borders: oneOf(borders, ['triangle', 'cut']),
+            }),
+        };
+      },
+    },
+    {
+      name: 'overrides',
+      isWork: true,
+      save: () => session.locks,
+      read(saved) {
+        const locks = locksOf(saved);
+        return { shown: () => session.setLocks(knownLocks(locks, session.shown!.projection)) };
+      },
+    },
+    {
+      name: 'shape',
+      isWork: true,
+      save: () => ({ ...live.shape, morphs: [...live.shape.morphs] }),
+      read(saved) {
+        const { deform, amount, cage, morphs } = objectOf(saved, 'shape');
+        const weights = listOf(morphs ?? [], kMaxMorphs, 'morphs').map((morph): [string, number] => {
+          const [name, weight] = listOf(morph, 2, 'morphs');
+          return [textOf(name, ''), numberOf(weight, -1e6, 1e6, 0)];
+        });
+        const shape = {
+          deform: oneOf<Deform>(deform, kDeforms),
+          amount: numberOf(amount, -1, 1, 0),
+          cage: cage !== false,
+          morphs: new Map(weights),
+        };
+        return shape.amount === 0 && weights.length === 0 ? {} : { shown: () => live.move(shape) };
+      },
+    },
+    {
+      name: 'view',
+      isWork: false,
+      save: () => ({ ...session.view, angle: controls?.angle }),
+      read(saved) {
+        const { mode, split, paint, cage, light, background, angle } = objectOf(saved, 'view');
+        const { turn, tilt, near } = (angle ?? {}) as Record<string, unknown>;
+        return {
+          shown() {
+            session.setView({
+              mode: oneOf(mode, kModes),
+              split: numberOf(split, 0, 1, 0.5),
+              paint: paint !== false,
+              cage: cage === true,
+              light: oneOf(light, kLightNames),
+              background: /^#[0-9a-f]{6}$/i.test(textOf(background, '')) ? (background as string) : '',
+            });
+            if (angle)
+              controls?.lookFrom({
+                turn: numberOf(turn, -360, 360, 0),
+                tilt: numberOf(tilt, 0, 180, 90),
+                near: numberOf(near, 0.01, 100, 1),
+              });
+          },
+        };
+      },
+    },
+  ];
+}

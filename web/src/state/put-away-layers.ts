@@ -1,0 +1,79 @@
+import { type Edits, Emitter, type Layer, type LayerStack, maxLayers, type Sheet } from 'cagecast/three/paint';
+import type { Model } from './model';
+import { haveSameUvs } from './same-uvs';
+import type { Session } from './session';
+
+/**
+ * Puts the layers away that were painted for another cage, and offers them again until they are brought back: those for the
+ * current cage, or else all. They stay where a cage has the same UVs.
+ */
+export class PutAwayLayers extends Emitter<{ change: undefined }> {
+  readonly #session: Session;
+  readonly #stack: LayerStack;
+  readonly #edits: Edits;
+  #last: Model | undefined;
+  #away: readonly Layer[] = [];
+  /** The mesh of the cage that each layer was painted for; not known of those from before the page was opened. */
+  readonly #meshes = new WeakMap<Sheet, Model['mesh']>();
+
+  constructor(session: Session, stack: LayerStack, edits: Edits) {
+    super();
+    this.#session = session;
+    this.#stack = stack;
+    this.#edits = edits;
+    session.on('transfer', ({ cage }) => this.#onCage(cage));
+    stack.on('change', () => this.emit('change', undefined));
+  }
+
+  /** Those that are offered. Undoing brings them back too, and redoing puts them away again. */
+  get layers(): readonly Layer[] {
+    return this.#away.filter(({ id }) => this.#stack.layers.every((layer) => layer.id !== id));
+  }
+
+  /** Offers others instead. */
+  show(layers: readonly Layer[]): void {
+    this.#away = layers;
+    this.emit('change', undefined);
+  }
+
+  /** Brings back as many as there is room for. @throws Error if there is room for none. */
+  bringBack(): void {
+    const all = this.layers;
+    const own = all.filter(({ sheet }) => {
+      const mesh = this.#meshes.get(sheet);
+      return mesh && haveSameUvs({ mesh }, this.#last!);
+    });
+    // Without any room, the stack says so.
+    const room = Math.max(1, maxLayers - this.#stack.layers.length);
+    this.#edits.do('bringing layers back', () => {
+      this.#stack.change([], (own.length > 0 ? own : all).slice(0, room));
+      this.#restyleChecker(false);
+    });
+    this.show(this.layers);
+  }
+
+  #restyleChecker(visible: boolean): void {
+    const { base } = this.#stack;
+    if (base?.sheet === this.#session.checker) this.#stack.restyle(base, { visible });
+  }
+
+  #onCage(cage: Model): void {
+    const before = this.#last;
+    this.#last = cage;
+    if (!before || haveSameUvs(before, cage)) return;
+    this.#edits.cancel(); // a stroke in progress is of the cage before
+    const old = this.#stack.layers.filter(({ id }) => id !== this.#stack.base?.id);
+    // Nothing else is to be seen now.
+    if (old.length === 0) {
+      this.#restyleChecker(true);
+      return;
+    }
+    for (const { sheet } of old) this.#meshes.set(sheet, before.mesh);
+    const kept = [...this.layers, ...old].slice(-maxLayers);
+    this.#edits.do('putting layers away', () => {
+      for (const { id } of old) this.#stack.remove(id);
+      this.#restyleChecker(true);
+    });
+    this.show(kept);
+  }
+}

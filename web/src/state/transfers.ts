@@ -1,0 +1,70 @@
+import type {
+  CagecastError,
+  CutTarget,
+  Mesh,
+  Projection,
+  ProjectOptions,
+  SplitVertices,
+  Timings,
+  TransferOptions,
+  TransferResult,
+} from 'cagecast';
+import type { Inspection, InspectOptions } from 'cagecast/inspect';
+import type { Model } from './model';
+
+/** A projection, and the split vertices that the view needs. */
+export interface SplitProjection extends Projection {
+  /** The target's vertices, split at UV seams; not split if there are no UVs per corner. */
+  split: SplitVertices;
+}
+
+/** A request was replaced by a later one: not a failure to report. */
+export class Superseded extends Error {}
+
+/** Input of exact borders: the zones of the target, and the options they were computed with. */
+interface CutOptions {
+  result: Pick<TransferResult, 'zones' | 'segments' | 'segmentStats'>;
+  rules: TransferOptions;
+}
+
+/** Tasks of the worker, with their options and answers. */
+export interface Tasks {
+  project: { options: ProjectOptions; answer: SplitProjection };
+  cut: { options: CutOptions; answer: CutTarget };
+  inspect: { options: InspectOptions; answer: Inspection };
+}
+
+/** A message to the worker. */
+export type Request = {
+  [Task in keyof Tasks]: { id: number; task: Task; cage: Mesh; target: Mesh; options: Tasks[Task]['options'] };
+}[keyof Tasks];
+
+/**
+ * A message from the worker, with the id of the request. `projected` comes before seams are split. `retimed` comes some time
+ * after a quick projection if no other request came: its timings once the browser has compiled the code.
+ */
+export type Reply =
+  | { id: number; projected: true }
+  | { id: number; answer: Tasks[keyof Tasks]['answer'] }
+  | { id: number; error: ConstructorParameters<typeof CagecastError> }
+  | { id: number; retimed: Timings };
+
+/** Runs transfers. The page's own is `TransferClient`; tests hand in others. */
+export interface Transferer {
+  /** Called some time after a quick projection, with its timings once the browser has compiled the code. */
+  onRetimed?: (timings: Timings) => void;
+  /**
+   * Runs a task on a cage and a target. The latest request wins: it ends the one in progress at once.
+   * @param onProjected Called when the projection is done and seams are being split.
+   * @throws CagecastError, or Superseded if another request came.
+   */
+  ask<Task extends keyof Tasks>(
+    task: Task,
+    cage: Model,
+    target: Model,
+    options: Tasks[Task]['options'],
+    onProjected?: () => void,
+  ): Promise<Tasks[Task]['answer']>;
+  /** Ends the request in progress, if any. */
+  cancel(): void;
+}

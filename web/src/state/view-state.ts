@@ -1,0 +1,41 @@
+/** View modes; `compare` shows naive and result on either side of a divider. */
+export const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
+export type Mode = (typeof kModes)[number];
+
+/** The lights to choose from. */
+export const kLightNames = ['studio', 'soft', 'day', 'evening'] as const;
+export type LightName = (typeof kLightNames)[number];
+
+/** State of the view. */
+export interface View {
+  mode: Mode;
+  /** Position of the divider in `compare`: 0 at the left edge, 1 at the right. */
+  split: number;
+  paint: boolean;
+  cage: boolean;
+  light: LightName;
+  /** What is behind the model, as #rrggbb; empty for the colour of the page. */
+  background: string;
+}
+
+export const kFirstView: View = {
+  mode: 'compare',
+  split: 0.5,
+  paint: true,
+  cage: false,
+  light: 'studio',
+  background: '',
+};
+
+/** Whether a mode shows paint, which can be switched off. */
+export const showsPaint = (mode: Mode): boolean => mode === 'compare' || mode === 'result' || mode === 'naive';
+
+/** Direction and distance of the camera. */
+export interface Angle {
+  /** Degrees around the model from its front; counter-clockwise seen from above. */
+  turn: number;
+  /** Degrees from straight above. */
+  tilt: number;
+  /** Magnification, relative to the distance at which the whole model is visible. */
+  near: number;
+}

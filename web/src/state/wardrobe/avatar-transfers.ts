@@ -1,0 +1,95 @@
+import { classify } from 'cagecast';
+import { choicesOf } from '../choices';
+import type { Model } from '../model';
+import { haveSameUvs } from '../same-uvs';
+import { paintableShare } from '../verdict';
+import type { Avatar } from './avatar';
+import type { AvatarList } from './avatar-list';
+import type { Surroundings } from './surroundings';
+
+const kMaxInspected = 60_000; // triangles; the time grows with their number
+
+/** Transfers the paint to the avatars that stand beside the stage. */
+export class AvatarTransfers {
+  readonly #around: Surroundings;
+  readonly #list: AvatarList;
+  readonly #onTransfer: (avatar: Avatar) => void;
+
+  /** @param onTransfer Called when an avatar begins to stand beside the stage. */
+  constructor(around: Surroundings, list: AvatarList, onTransfer: (avatar: Avatar) => void) {
+    this.#around = around;
+    this.#list = list;
+    this.#onTransfer = onTransfer;
+  }
+
+  /** Transfers the paint to an avatar, lets it stand beside the stage, and inspects it. */
+  async transfer(avatar: Avatar, model: Model): Promise<void> {
+    const { session, loader, transferer } = this.#around;
+    if (!this.#list.has(avatar)) return loader.dispose(model);
+    const { cage } = avatar;
+    const { preset } = session.rules;
+    this.#list.update(avatar, { doing: 'Painting' });
+    const projection = cage && (await transferer.ask('project', cage, model, { preset }));
+    if (!this.#list.has(avatar)) return loader.dispose(model);
+    const standing = this.#around.view.stand(model, projection);
+    avatar.takesPaint = cage !== undefined && haveSameUvs(cage, session.shown!.cage);
+    standing.takesPaint = avatar.takesPaint;
+    avatar.standing = standing;
+    this.update(avatar);
+    this.#onTransfer(avatar);
+    await this.#inspect(avatar);
+  }
+
+  async #inspect(avatar: Avatar): Promise<void> {
+    const { standing, cage, locks } = avatar;
+    if (!standing || !cage || standing.model.mesh.indices.length + cage.mesh.indices.length > 3 * kMaxInspected) return;
+    const { preset, threshold } = this.#around.session.rules;
+    const parts = standing.model.mesh.primitives.map(({ name, firstVertex, vertexCount }) => ({
+      name,
+      firstVertex,
+      vertexCount,
+    }));
+    const options = { preset, threshold, locks: choicesOf(locks, undefined).locks, parts };
+    const { verdict } = await this.#around.transferer.ask('inspect', cage, standing.model, options);
+    this.#list.update(avatar, { verdict });
+  }
+
+  /** Makes what stands beside the stage follow the rules: the threshold at once, another preset by another transfer. */
+  update(avatar: Avatar): void {
+    const isOutdated = (): boolean => {
+      const { projection } = avatar.standing ?? {};
+      return projection !== undefined && projection.preset !== this.#around.session.rules.preset;
+    };
+    this.#classify(avatar);
+    if (!isOutdated()) return;
+    this.#list.queue(avatar, async () => {
+      const { cage, standing } = avatar;
+      if (!cage || !standing || avatar === this.#list.active || !isOutdated()) return;
+      const { preset } = this.#around.session.rules;
+      const projection = await this.#around.transferer.ask('project', cage, standing.model, { preset });
+      if (avatar.standing !== standing) return;
+      standing.setProjection(projection);
+      this.update(avatar);
+    });
+  }
+
+  #classify(avatar: Avatar): void {
+    const { standing, locks, files } = avatar;
+    if (!standing?.projection) return;
+    const { threshold } = this.#around.session.rules;
+    const choices = choicesOf(locks, standing.projection, this.#around.session.bareOf(files));
+    const classification = classify(standing.projection, { threshold, ...choices });
+    standing.classify(classification);
+    avatar.paintable = paintableShare(classification.segmentStats);
+    this.#around.view.redraw();
+  }
+
+  /** Frees what stands beside the stage. */
+  clear(avatar: Avatar): void {
+    const { standing } = avatar;
+    if (!standing) return;
+    avatar.standing = undefined;
+    standing.dispose();
+    this.#around.loader.dispose(standing.model);
+  }
+}

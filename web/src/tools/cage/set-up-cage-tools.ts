@@ -1,0 +1,62 @@
+import type { History } from 'cagecast/three/paint';
+import { element } from '../../platform/page';
+import type { CageMaker } from '../../state/cage-maker';
+import type { Session } from '../../state/session';
+import type { Tools } from '../../view/tool-rail';
+import type { Viewer } from '../../view/viewer';
+import type { CageAdjuster } from './cage-adjuster';
+import type { LandmarkEditor } from './landmark-editor';
+
+/** Offers tools for a cage that was made here. They load when there is one. */
+export function setUpCageTools(
+  session: Session,
+  viewer: Viewer,
+  tools: Tools,
+  maker: CageMaker,
+  history: History,
+): void {
+  const details = element('make-options', HTMLDetailsElement);
+  let hasOptions = false;
+  const offerOptions = async (): Promise<void> => {
+    if (hasOptions) return;
+    hasOptions = true;
+    try {
+      const { MakeOptionsPanel } = await import('./make-options');
+      new MakeOptionsPanel(session, viewer, maker, tools, history);
+    } catch (error) {
+      hasOptions = false;
+      session.fail(error);
+    }
+  };
+  details.addEventListener('toggle', () => details.open && void offerOptions());
+  // Marks of an earlier visit are of use with their tool.
+  session.on('zones', () => session.bare && void offerOptions());
+
+  let adjuster: Promise<CageAdjuster> | undefined;
+  element('adjust-cage', HTMLButtonElement).addEventListener('click', async () => {
+    adjuster ??= import('./cage-adjuster').then(
+      ({ CageAdjuster }) => new CageAdjuster(session, viewer, tools, maker, history),
+    );
+    try {
+      (await adjuster).start();
+    } catch (error) {
+      adjuster = undefined;
+      session.fail(error);
+    }
+  });
+
+  let landmarks: Promise<LandmarkEditor> | undefined;
+  let last: object | undefined;
+  maker.on('fitting', async (fitting) => {
+    last = fitting;
+    if (!fitting && !landmarks) return;
+    landmarks ??= import('./landmark-editor').then(
+      ({ LandmarkEditor }) => new LandmarkEditor(session, viewer, tools, maker, history),
+    );
+    const editor = await landmarks.catch((error) => {
+      landmarks = undefined;
+      session.fail(error);
+    });
+    if (last === fitting) editor?.edit(fitting);
+  });
+}

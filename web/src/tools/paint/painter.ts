@@ -1,0 +1,188 @@
+import {
+  type Aim,
+  type CageMesh,
+  type Layer,
+  LayerPainter,
+  type PaintedLayers,
+  PaintedSheet,
+  type PaintingSize,
+  type PointerView,
+  readStraight,
+  StickersSheet,
+} from 'cagecast/three/paint';
+import { showError } from '../../platform/page';
+import type { ExtractedMesh } from '../../state/model';
+import type { Shown } from '../../state/scene';
+import type { Session } from '../../state/session';
+import type { Spot } from '../../view/pick';
+import type { Viewer } from '../../view/viewer';
+import type { PaintOptions } from './paint-options';
+
+const kPicture = 96; // pixels per side of a layer's thumbnail
+const kPictureDelay = 300; // milliseconds
+
+/** The layers that are painted on, their composite, and the undo steps. */
+export type Layers = Omit<PaintedLayers, 'renderer'>;
+
+/** Paints on the cage of the session: maps spots of the target to points of the cage, and makes thumbnails. */
+export class Painter extends LayerPainter implements PointerView {
+  readonly #session: Session;
+  readonly #viewer: Viewer;
+  readonly #options: PaintOptions;
+  readonly #stack: Layers['stack'];
+  #picturing: ReturnType<typeof setTimeout> | undefined;
+  readonly #unpictured = new Set<PaintedSheet>();
+  /** Called before texels are saved: it removes what is only a preview. */
+  settle: () => void = () => {};
+
+  constructor(session: Session, viewer: Viewer, layers: Layers, options: PaintOptions) {
+    super({ renderer: viewer.renderer, ...layers });
+    this.#session = session;
+    this.#viewer = viewer;
+    this.#options = options;
+    this.#stack = layers.stack;
+    session.on('transfer', ({ cage }) => {
+      this.settle();
+      this.setCage(atRest(cage.mesh));
+    });
+    layers.stack.on('select', (layer) => {
+      const sheet = layer?.sheet;
+      if (sheet instanceof StickersSheet && !sheet.fixed) return;
+      if (sheet instanceof PaintedSheet) options.texels = sheet.size;
+    });
+    this.on('change', () => viewer.redraw());
+    this.on('painted', (sheet) => this.#picture(sheet));
+  }
+
+  override get size(): PaintingSize {
+    return this.#options.texels;
+  }
+
+  override set size(size: PaintingSize) {
+    this.#options.texels = size;
+  }
+
+  override addLayer(): Layer {
+    const layer = super.addLayer();
+    this.hideChecker();
+    return layer;
+  }
+
+  /** Hides the checker below the first paint: it was only a placeholder, and would be saved with the model. */
+  hideChecker(): void {
+    const { base } = this.#stack;
+    if (base?.sheet === this.#session.checker) this.#stack.restyle(base, { visible: false });
+  }
+
+  /** Number of triangles of the target. */
+  get triangles(): number {
+    return (this.#session.shown?.target.mesh.indices.length ?? 0) / 3;
+  }
+
+  aimAt(x: number, y: number): Aim | undefined {
+    return this.aimOf(this.#viewer.screen.pick(x, y));
+  }
+
+  /** Where a spot of the target takes its paint from. */
+  aimOf(spot: Spot | undefined): Aim | undefined {
+    const { shown, classification } = this.#session;
+    if (!spot || !shown) return undefined;
+    const isPainted = classification?.cosmeticTriangles[spot.triangle];
+    return {
+      surface: isPainted ? this.cageTexels?.at(...uvOf(spot, shown)) : undefined,
+      scale: this.#viewer.screen.pixelsAt(spot.seen),
+    };
+  }
+
+  /** UVs of the painted triangles of the part that a spot lies on, 6 numbers for each. */
+  uvsOfPart(spot: Spot): number[] {
+    const { shown, classification } = this.#session;
+    if (!shown || !classification) return [];
+    const { segments } = shown.projection;
+    const { indices } = shown.target.mesh;
+    const part = segments[indices[3 * spot.triangle]!];
+    const found: number[] = [];
+    classification.cosmeticTriangles.forEach((isPainted, triangle) => {
+      if (!isPainted || segments[indices[3 * triangle]!] !== part) return;
+      for (const weights of kCorners) found.push(...uvOf({ triangle, weights }, shown));
+    });
+    return found;
+  }
+
+  /** A length in the cage's space. @param share Of the diagonal of the cage. */
+  lengthOf(share: number): number {
+    return share * (this.cageTexels?.diagonal ?? 0);
+  }
+
+  /** Begins something. @returns False, after telling why, if it cannot begin. */
+  telling(begin: () => boolean): boolean {
+    try {
+      return begin();
+    } catch (error) {
+      showError((error as Error).message);
+      return false;
+    }
+  }
+
+  /** A painting with these texels, as `PaintedSheet.get` returns them. */
+  sheetOf(size: PaintingSize, texels: Uint8Array): PaintedSheet {
+    const sheet = new PaintedSheet(size);
+    this.keep(sheet);
+    sheet.put(this.#viewer.renderer, { left: 0, top: 0, right: size, bottom: size }, texels);
+    this.#picture(sheet);
+    return sheet;
+  }
+
+  /** Updates a thumbnail in the list, once the strokes pause. */
+  #picture(sheet: PaintedSheet): void {
+    this.#unpictured.add(sheet);
+    clearTimeout(this.#picturing);
+    this.#picturing = setTimeout(() => {
+      for (const one of this.#unpictured)
+        one.picture = addressOf(readStraight(this.#viewer.renderer, one.texture, kPicture));
+      this.#unpictured.clear();
+      this.#stack.pictured();
+    }, kPictureDelay);
+  }
+}
+
+const kCorners: readonly Spot['weights'][] = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
+
+const cagesAtRest = new WeakMap<ExtractedMesh, CageMesh>();
+
+/** A cage as it is painted: at rest, however it is moved with the model. The same object for the same cage; undefined without UVs. */
+function atRest(mesh: ExtractedMesh): CageMesh | undefined {
+  const { uvs, indices } = mesh;
+  if (!uvs) return undefined;
+  const positions = (mesh.rest ??= mesh.positions.slice());
+  const cage = cagesAtRest.get(mesh) ?? { positions, indices, uvs };
+  cagesAtRest.set(mesh, cage);
+  return cage;
+}
+
+/** The UVs of a spot. */
+function uvOf(
+  { triangle, weights }: Pick<Spot, 'triangle' | 'weights'>,
+  { target: { mesh }, projection: { uvs, cornerUvs } }: Shown,
+): [number, number] {
+  let [u, v] = [0, 0];
+  weights.forEach((weight, index) => {
+    const corner = 3 * triangle + index;
+    const [of, at] = cornerUvs.length > 0 ? [cornerUvs, corner] : [uvs, mesh.indices[corner]!];
+    u += weight * of[2 * at]!;
+    v += weight * of[2 * at + 1]!;
+  });
+  return [u, v];
+}
+
+function addressOf(image: ImageData): string {
+  const canvas = document.createElement('canvas');
+  canvas.width = image.width;
+  canvas.height = image.height;
+  canvas.getContext('2d')!.putImageData(image, 0, 0);
+  return canvas.toDataURL();
+}

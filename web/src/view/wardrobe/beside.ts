@@ -1,0 +1,73 @@
+import type { Classification } from 'cagecast';
+import { Box3, Group, type Texture, Vector3 } from 'three';
+import type { Model } from '../../state/model';
+import type { SplitProjection } from '../../state/transfers';
+import type { Figure } from '../../state/wardrobe/avatar';
+import { Overlay } from '../overlay/overlay';
+
+/** How much room a model needs when it is turned, once it is scaled to a diagonal of 2. */
+export interface Room {
+  /** From its middle to its sides and to its feet. */
+  wide: number;
+  high: number;
+}
+
+/** Reads the room of a model, and how to scale and centre it. */
+export function measure({ scene }: Pick<Model, 'scene'>): Room & { scale: number; middle: Vector3 } {
+  const parent = scene.parent;
+  scene.removeFromParent(); // its own space
+  const box = new Box3().setFromObject(scene, true);
+  parent?.add(scene);
+  const size = box.getSize(new Vector3());
+  const scale = 2 / Math.max(size.length(), Number.MIN_VALUE);
+  return {
+    scale,
+    middle: box.getCenter(new Vector3()),
+    wide: (scale * Math.hypot(size.x, size.z)) / 2,
+    high: (scale * size.y) / 2,
+  };
+}
+
+/** A model that stands beside the one on the stage. */
+export class Beside implements Figure, Room {
+  readonly holder = new Group();
+  readonly model: Model;
+  /** Absent without a cage. */
+  readonly overlay: Overlay | undefined;
+  readonly wide: number;
+  readonly high: number;
+  takesPaint = false;
+  #projection: SplitProjection | undefined;
+
+  constructor(model: Model, projection: SplitProjection | undefined, paint: Texture) {
+    const { scale, middle, wide, high } = measure(model);
+    this.model = model;
+    this.#projection = projection;
+    this.wide = wide;
+    this.high = high;
+    const inner = new Group();
+    inner.position.copy(middle).negate();
+    inner.add(model.scene);
+    this.holder.add(inner);
+    this.holder.scale.setScalar(scale);
+    this.overlay = projection && new Overlay(model.mesh, projection, paint);
+  }
+
+  get projection(): SplitProjection | undefined {
+    return this.#projection;
+  }
+
+  setProjection(projection: SplitProjection): void {
+    this.#projection = projection;
+    this.overlay?.setProjection(projection);
+  }
+
+  classify(classification: Classification): void {
+    this.overlay?.classify(classification);
+  }
+
+  dispose(): void {
+    this.holder.removeFromParent();
+    this.overlay?.dispose();
+  }
+}
