@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { CagecastError, init, project } from 'cagecast';
+import { CagecastError, init, type ProjectOptions, project } from 'cagecast';
 import type { Cage } from 'cagecast/cages';
 import { BufferAttribute, BufferGeometry, Group, Mesh, Texture } from 'three';
 import { extractMesh } from '../../../web/src/loading/extract-mesh';
@@ -136,7 +136,7 @@ export class FakeTransferer implements Transferer {
         try {
           const [from, { positions, indices, groups }] = [cage.mesh, target.mesh];
           const mesh = { positions: from.positions, indices: from.indices, uvs: from.uvs };
-          resolve({ ...project(mesh, { positions, indices, groups }, options), split: {} } as never);
+          resolve({ ...project(mesh, { positions, indices, groups }, options as ProjectOptions), split: {} } as never);
         } catch (error) {
           reject(error);
         }

@@ -129,11 +129,7 @@ async function tab(browser: FakeBrowser, memory: Partial<Flags> = {}, fragment =
     },
     act: () => history.add(step('stroke')),
     close,
-    /** The same tab after a reload. */
-    async reload(): Promise<Awaited<ReturnType<typeof tab>>> {
-      close();
-      return tab(browser, memory, fragment);
-    },
+    fragment,
     /** Does what the last offer offers. */
     async take(): Promise<void> {
       const { length } = offers;
@@ -147,6 +143,14 @@ async function tab(browser: FakeBrowser, memory: Partial<Flags> = {}, fragment =
       return browser.works.map(({ files }) => files.map(nameOf).toSorted().join(' ')).toSorted();
     },
   };
+}
+
+type Tab = Awaited<ReturnType<typeof tab>>;
+
+/** The same tab after a reload. */
+async function reloaded({ close, browser, memory, fragment }: Tab): Promise<Tab> {
+  close();
+  return tab(browser, memory, fragment);
 }
 
 const never = (): never => {
@@ -167,7 +171,7 @@ test('work is back after a reload, with its files and settings; starting over ca
   assert.ok(first.keeper.isKept);
   const before = first.project.snapshot()!.work;
 
-  const second = await first.reload();
+  const second = await reloaded(first);
   assert.equal(await second.keeper.restore(), false);
   assert.deepEqual(second.shown.slice(0, 2), ['bust.glb', 'bust-cage.glb']);
   assert.equal(second.offer, 'Your last work is back.');
@@ -178,7 +182,7 @@ test('work is back after a reload, with its files and settings; starting over ca
 
   second.offers.at(-1)!.action!.run();
   await until(() => second.isOver, 'a new beginning');
-  const third = await second.reload();
+  const third = await reloaded(second);
   third.open('sample.glb', 'cage.glb');
   await third.ready();
   assert.equal(await third.keeper.restore(), false);
@@ -199,15 +203,15 @@ test('a work that is broken or old, or that took the page down, does not stop th
     [{ parts: { ...work!.parts, models: 7 } }, /could not be brought back: the project is damaged: it has no models/],
     [{ files: [] }, /could not be brought back: the project is damaged: a file is missing/],
   ] as const) {
-    browser.works = [{ ...work!, ...change }];
-    const next = await first.reload();
+    browser.works = [{ ...work!, ...(change as Partial<Work>) }];
+    const next = await reloaded(first);
     assert.equal(await next.keeper.restore(), true);
     assert.match(next.offer!, says);
     next.close();
   }
   browser.works = [work!];
   browser.work = 'opening';
-  const next = await first.reload();
+  const next = await reloaded(first);
   assert.equal(await next.keeper.restore(), false);
   assert.match(next.offer!, /did not get to show it/);
   await next.take();
@@ -300,7 +304,7 @@ test('a tab beside one that has the latest work offers the one before; starting 
   latest.act();
   await latest.keeper.save();
   await other.keeper.startOver();
-  const again = await other.reload();
+  const again = await reloaded(other);
   await again.keeper.restore();
   assert.equal(again.offer, 'Your last work is put aside.');
   await again.take();
@@ -357,7 +361,7 @@ test('files that are opened before the work is back stay, and the work is offere
     const first = await tab(browser);
     await first.keeper.restore();
     await first.work('bust');
-    const next = await first.reload();
+    const next = await reloaded(first);
     const gate = what === 'finding' ? browser.gate : next.loader.gate;
     gate.hold();
     const restored = next.keeper.restore();
