@@ -1,8 +1,8 @@
+import { modelsAmong } from '../state/intake';
 import type { Loader, Model } from '../state/model';
 import type { Sample } from '../state/sample';
 import { type Entry, nameOf } from '../state/wardrobe/avatar';
 import type { KeptAvatar } from '../state/wardrobe/kept';
-import { modelsAmong } from './files';
 import { fetchFile } from './samples';
 
 /** A sample as an avatar. */

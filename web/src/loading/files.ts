@@ -1,68 +1,6 @@
 import { element, showError } from '../platform/page';
+import { type Intake, kImage, kModel, kProject, sortFiles } from '../state/intake';
 import { paths } from './file-paths';
-
-/** Files that were chosen or dropped together. */
-export interface Intake {
-  target?: File | undefined;
-  cage?: File | undefined;
-  texture?: File | undefined;
-  /** A saved project: everything at once. */
-  project?: File | undefined;
-  /** Two models of which either may be the target. */
-  unclear: File[];
-  /** Warnings to show. */
-  warnings: string[];
-  /** All files: a .gltf finds its .bin and images here. */
-  all: File[];
-}
-
-const kModel = /\.(glb|gltf|vrm)$/i;
-const kForeign = /\.(obj|fbx|blend|usdz?|stl|ply|dae)$/i;
-const kProject = /\.cagecast$/i;
-const kCage = /cage/i;
-const kImage = /\.(png|jpe?g|webp)$/i;
-
-/** The models among files: those that are named as cages, and the others. */
-export function modelsAmong(files: readonly File[]): { cages: File[]; targets: File[] } {
-  const models = files.filter(({ name }) => kModel.test(name));
-  return {
-    cages: models.filter(({ name }) => kCage.test(name)),
-    targets: models.filter(({ name }) => !kCage.test(name)),
-  };
-}
-
-/**
- * Assigns files to roles: models by their names, images as paint unless a .gltf came with them.
- * A model of another format, or any other file if there is nothing else, becomes the target, so that the reader reports what is wrong with it.
- */
-function sortFiles(all: readonly File[]): Intake {
-  const { cages, targets: rest } = modelsAmong(all);
-  const models = all.filter(({ name }) => kModel.test(name));
-  const others = all.filter((file) => !models.includes(file));
-  // The images belong to the .gltf.
-  const withGltf = models.some(({ name }) => /\.gltf$/i.test(name));
-  const images = withGltf ? [] : others.filter(({ name, type }) => kImage.test(name) || type.startsWith('image/'));
-  const project = others.find(({ name }) => kProject.test(name));
-  if (project) return { project, unclear: [], warnings: [], all: [...all] };
-  const intake: Intake = { texture: images.at(-1), unclear: [], warnings: [], all: [...all] };
-  const known = cages.length === 1 || (cages.length > 0 && rest.length > 0) || models.length === 1;
-  if (known) [intake.cage, intake.target] = [cages[0], rest[0]];
-  else if (models.length > 1) intake.unclear = models.slice(0, 2);
-  else intake.target = others.find(({ name }) => kForeign.test(name)) ?? (images.length > 0 ? undefined : others[0]);
-
-  const [one, other] = intake.unclear;
-  if (one && other && cages.length > 0)
-    intake.warnings.push(
-      `${one.name} and ${other.name} are both named as cages; the one with more triangles is used as the target.`,
-    );
-  const used = [intake.target, intake.cage, intake.texture, one, other];
-  const [left, ...more] = (withGltf ? models : all).filter((file) => !used.includes(file));
-  if (left)
-    intake.warnings.push(
-      `${left.name}${more.length > 0 ? ` and ${more.length} more were` : ' was'} ignored: only one target, one cage and one paint can be opened at a time.`,
-    );
-  return intake;
-}
 
 const kMaxFiles = 1000;
 

@@ -1,13 +1,14 @@
 import type { Edits, LayerStack, Sheet } from 'cagecast/three/paint';
 import { element, showError } from '../platform/page';
 import type { Locks } from '../state/choices';
+import type { Intake } from '../state/intake';
 import { madeOf, sampleOf } from '../state/made-cages';
 import type { Loader, Model } from '../state/model';
 import { type Paint, titleOf } from '../state/paint';
 import { kChecker, type Sample, type Samples } from '../state/sample';
 import type { Requested, Shown } from '../state/scene';
 import { kReading, type Session } from '../state/session';
-import { type Intake, setUpFiles } from './files';
+import { setUpFiles } from './files';
 import { loadPaint } from './load-paint';
 import { type Choice, offerPaints } from './paint-picker';
 import { fetchFile, paintName } from './samples';

@@ -1,5 +1,5 @@
-import { modelsAmong } from '../loading/files';
 import { element, showError } from '../platform/page';
+import { modelsAmong } from '../state/intake';
 import { kAlone, type WardrobeOfPage } from '../state/wardrobe/kept';
 import type { WardrobePage, WardrobeStrip } from './wardrobe-strip';
 

@@ -1,9 +1,8 @@
-import { Composite, type Edits, type LayerStack } from 'cagecast/three/paint';
-import type { Model } from '../state/model';
-import { type Paint, titleOf } from '../state/paint';
-import { haveSameUvs } from '../state/same-uvs';
-import type { Session } from '../state/session';
-import type { Viewer } from '../view/viewer';
+import type { Edits, LayerStack } from 'cagecast/three/paint';
+import type { Model } from './model';
+import { type Paint, titleOf } from './paint';
+import { haveSameUvs } from './same-uvs';
+import type { Session } from './session';
 
 /** Makes the paint of the current model the base layer, and adds the user's own paints on top. */
 export function followPaints(session: Session, stack: LayerStack, edits: Edits): void {
@@ -28,16 +27,4 @@ export function followPaints(session: Session, stack: LayerStack, edits: Edits):
       if (stack.base?.sheet === checker) stack.restyle(stack.base, { visible: false });
     });
   });
-}
-
-/** Shows the composite of the layers on the model. */
-export function showComposite(viewer: Viewer, stack: LayerStack): Composite {
-  const composite = new Composite();
-  viewer.stage.setPaint(composite.texture);
-  viewer.beforeDraw(() => composite.update(viewer.renderer));
-  stack.on('change', (layers) => {
-    composite.set(layers);
-    viewer.redraw();
-  });
-  return composite;
 }

@@ -1,0 +1,268 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import type { Cage } from 'cagecast/cages';
+import { Edits, History, LayerStack, maxLayers } from 'cagecast/three/paint';
+import { CageMaker, type Engine } from '../../../web/src/state/cage-maker';
+import { followPaints } from '../../../web/src/state/follow-paints';
+import { type Fitting, madeOf, sampleOf } from '../../../web/src/state/made-cages';
+import { PutAwayLayers } from '../../../web/src/state/put-away-layers';
+import { tetrahedron } from '../../support/glb';
+import { begin, cageGlb, Gate, paintOf, quiet, until } from './harness';
+
+/** A maker of cages beside a session that shows `a.glb`. Each cage that it makes has UVs of its own; those it moves keep theirs. */
+async function workshop() {
+  const page = await begin();
+  const gate = new Gate();
+  const said: string[] = [];
+  let count = 10;
+  const box = (): Cage => {
+    const { uvs, ...mesh } = tetrahedron(1.5);
+    return { ...mesh, indices: new Uint32Array(mesh.indices), uvs: uvs.map((uv) => uv / ++count) } as never;
+  };
+  const state = { found: 6, moves: true };
+  const points = (n: number) => Object.fromEntries([...'abcdef'].slice(0, n).map((name) => [name, [0, 0, 0] as const]));
+  const engine = {
+    cageGlb,
+    loadTemplate: async () => ({ landmarks: points(6) }),
+    makeCage: async (_: object, { signal }: { signal: AbortSignal }) => gate.wait(signal).then(box),
+    refineCage: async (cage: Cage) => ({ ...cage, positions: cage.positions.map((x) => (state.moves ? x * 1.1 : x)) }),
+    findLandmarks: async () => ({ landmarks: points(state.found), confidence: {} }),
+    async fitCage(_: object, __: object, given: object, { signal }: { signal: AbortSignal }) {
+      await gate.wait(signal);
+      const used = { ...points(state.found), ...given };
+      if (Object.keys(used).length < 4) throw Object.assign(new Error('too few'), { code: 'badLandmarks' });
+      return { cage: box(), used, confidence: {}, missing: ['nose_tip', 'ear_lobe_left'] };
+    },
+  } as unknown as Engine;
+  const { session, loader } = page;
+  const maker = new CageMaker({ session, loader, engine: async () => engine, announce: (text) => said.push(text) });
+  const notes = { note: '', missing: '' };
+  maker.on('notes', (change) => Object.assign(notes, change));
+  let fitting: Fitting | undefined;
+  maker.on('fitting', (one) => (fitting = one));
+  page.open('a.glb', 'cage.glb');
+  await page.ready();
+  return {
+    ...page,
+    get shown() {
+      return page.shown;
+    },
+    get state() {
+      return page.state;
+    },
+    maker,
+    gate,
+    notes,
+    announced: said,
+    engine: state,
+    get fitting() {
+      return fitting;
+    },
+  };
+}
+
+test('a cage is made for the model, fitted to it, moved, and turned; the page knows how it came about', async () => {
+  const page = await workshop();
+  const { maker, session } = page;
+  const file = () => session.shown!.cage.files[0]!;
+  await maker.make();
+  await page.ready();
+  assert.deepEqual([page.shown[1], maker.isMade, maker.isFresh], ['a-cage.glb', true, true]);
+  assert.match(page.notes.note, /^A cage of 4 triangles was made\. The UV checker shows/);
+  await maker.flip([1]);
+  await page.ready();
+  assert.deepEqual([...session.shown!.cage.mesh.indices.subarray(3, 6)], [0, 3, 1]);
+  assert.deepEqual([page.shown[1], maker.isMade, maker.isFresh], ['a-cage.glb', true, false]);
+  page.engine.moves = false;
+  await maker.move();
+  assert.match(await page.failed(), /^a\.glb: the cage a-cage\.glb cannot be moved into place/);
+  assert.ok(maker.refusedToMove);
+  page.engine.moves = true;
+  await maker.move();
+  await page.ready();
+  assert.equal(page.notes.note, 'The cage was moved into place. Save it if it is right.');
+  await maker.fit('human-head', { a: [1, 2, 3] });
+  await page.ready();
+  const { fitting } = madeOf(file())!;
+  assert.deepEqual([fitting!.given, fitting!.template, fitting], [{ a: [1, 2, 3] }, 'human-head', page.fitting]);
+  assert.equal(maker.isMade, false);
+  session.reportInspection({ verdict: 'usable' } as never);
+  assert.equal(page.notes.missing, 'Landmarks that were not found: nose tip, left ear lobe.');
+  const changed = await maker.change({ positions: session.shown!.cage.mesh.positions.map((x) => 2 * x) });
+  await page.ready();
+  assert.equal(session.shown!.cage, changed);
+  assert.equal(madeOf(file())!.fitting, fitting);
+  page.open('b.glb');
+  await page.ready();
+  assert.deepEqual([maker.isOthers, page.fitting], [true, undefined]);
+});
+
+test('a cage that was made for one model never reaches another that is loading, or that waits for its own cage', async () => {
+  for (const work of ['make', 'fit', 'move'] as const) {
+    const page = await workshop();
+    const begin = () => (work === 'fit' ? page.maker.fit('car') : page.maker[work]());
+    page.loader.gate.hold();
+    page.session.request({ target: page.load('car.glb'), cage: page.load('car-cage.glb', 4) }, {}, true);
+    await begin();
+    assert.deepEqual(page.announced, ['Another model is being loaded.'], work);
+    page.loader.gate.open();
+    await page.ready();
+    assert.deepEqual(page.shown.slice(0, 2), ['car.glb', 'car-cage.glb'], work);
+
+    // One that is being made when another model is opened.
+    page.gate.hold();
+    const late = begin();
+    page.open('b.glb', 'b-cage.glb');
+    page.gate.open();
+    await late;
+    await page.ready();
+    assert.deepEqual(page.shown.slice(0, 2), ['b.glb', 'b-cage.glb'], work);
+
+    // A model whose cage cannot be read waits for another one.
+    page.session.request({ target: page.load('c.glb'), cage: page.load('broken.glb') });
+    await page.failed();
+    await begin();
+    await page.ready();
+    assert.equal(page.shown[0], 'b.glb', work);
+  }
+});
+
+test('a cage that is being made comes, though rules and paints are chosen meanwhile, and by these; cancelled, they go', async () => {
+  const page = await workshop();
+  const paints: string[] = [];
+  page.session.on('paint', ({ name }) => paints.push(name));
+  page.gate.hold();
+  const made = page.maker.make();
+  await until(() => page.gate.count === 1);
+  page.session.setRules({ preset: 'paper', threshold: 0.9 });
+  page.session.reportPaint(paintOf('violet.png'));
+  await quiet();
+  assert.deepEqual([page.state, paints], ['working', ['violet.png']]);
+  page.gate.open();
+  await made;
+  await page.ready();
+  assert.equal(page.session.shown!.projection.preset, 'paper');
+  assert.equal(page.shown[1], 'a-cage.glb');
+
+  page.gate.hold();
+  const cancelled = page.maker.make();
+  await until(() => page.gate.count === 1);
+  page.session.setRules({ preset: 'default' });
+  page.session.cancel();
+  await cancelled;
+  await page.ready();
+  assert.deepEqual([page.session.rules.preset, page.shown[1]], ['paper', 'a-cage.glb']);
+});
+
+test('a sample whose cage was moved keeps its paints; a cage that is made for it has none of them', async () => {
+  const page = await workshop();
+  const sample = { name: 'one', title: 'One', target: '', cage: '', paints: [] };
+  const ofSample = async (name: string, size: number) => ({ ...(await page.load(name, size)), sample });
+  page.session.request({ target: ofSample('target.glb', 1), cage: ofSample('cage.glb', 4) });
+  await page.ready();
+  await page.maker.move();
+  await page.ready();
+  assert.equal(page.shown[1], 'cage.glb');
+  assert.equal(sampleOf(page.session.shown!.cage), sample);
+  await page.maker.make();
+  await page.ready();
+  assert.equal(page.shown[1], 'target-cage.glb');
+  assert.equal(sampleOf(page.session.shown!.cage), undefined);
+});
+
+test('landmarks that are too few stay, whatever rules are chosen, until there are enough; they go with their model', async () => {
+  const page = await workshop();
+  const { maker } = page;
+  page.engine.found = 2;
+  await maker.fit('human-head');
+  await page.ready();
+  assert.match(page.notes.note, /^Of 4 landmarks that are needed, 2 were found/);
+  assert.deepEqual(
+    [Object.keys(maker.lacking!.used), maker.lacking!.missing],
+    [
+      ['a', 'b'],
+      ['c', 'd', 'e', 'f'],
+    ],
+  );
+  for (const preset of ['paper', 'default'] as const) {
+    page.session.setRules({ preset });
+    await page.ready();
+    assert.equal(maker.lacking, page.fitting);
+    assert.match(page.notes.note, /place more/);
+  }
+  await maker.fit('human-head', { c: [0, 0, 0], d: [0, 0, 0] });
+  await page.ready();
+  assert.equal(maker.lacking, undefined);
+  assert.match(page.notes.note, /was fitted/);
+  page.engine.found = 1;
+  await maker.fit('human-head');
+  assert.ok(maker.lacking);
+  page.open('b.glb', 'b-cage.glb');
+  await page.ready();
+  assert.deepEqual([maker.lacking, page.fitting, page.notes.note], [undefined, undefined, '']);
+});
+
+/** The layers of a page, the uppermost first, those that are hidden in brackets, and how many are put away. */
+async function layered() {
+  const page = await workshop();
+  const [stack, history] = [new LayerStack(), new History()];
+  const edits = new Edits(stack, history);
+  followPaints(page.session, stack, edits);
+  const away = new PutAwayLayers(page.session, stack, edits);
+  page.session.request({ cage: page.load('first.glb', 4) });
+  await page.ready();
+  page.session.request({ paint: Promise.resolve(page.session.checker) });
+  await page.ready();
+  stack.setBase('UV checker', page.session.checker);
+  const state = () => {
+    const names = stack.layers.toReversed().map(({ name, visible }) => (visible ? name : `(${name})`));
+    return [...names, away.layers.length];
+  };
+  const add = async (name: string) => {
+    page.session.request({ paint: Promise.resolve(paintOf(name)) });
+    await page.ready();
+  };
+  const cage = async (uv: number) => {
+    page.session.request({ cage: page.load(`cage-${uv}.glb`, 4, uv) });
+    await page.ready();
+  };
+  return { page, stack, history, away, state, add, cage };
+}
+
+test('layers for earlier cages are put away, however often a cage is made; undo brings them back, and so does the offer', async () => {
+  const { history, away, state, add, cage, stack } = await layered();
+  await add('one');
+  assert.deepEqual(state(), ['one', '(UV checker)', 0]);
+  await cage(1);
+  assert.deepEqual(state(), ['UV checker', 1]);
+  await cage(2);
+  assert.deepEqual(state(), ['UV checker', 1]);
+  await add('two');
+  await cage(3);
+  assert.deepEqual(state(), ['UV checker', 2]);
+  history.undo();
+  assert.deepEqual(state(), ['two', '(UV checker)', 1]);
+  history.redo();
+  assert.deepEqual(state(), ['UV checker', 2]);
+  await cage(2);
+  away.bringBack();
+  assert.deepEqual(state(), ['two', '(UV checker)', 1], 'those of this cage, without those of others');
+  await cage(9);
+  away.bringBack();
+  assert.deepEqual(state(), ['two', 'one', '(UV checker)', 0], 'where none is of the cage, all of them');
+
+  // As many as there is room for.
+  await cage(10);
+  for (let n = stack.layers.length; n < maxLayers - 1; n++) await add(`more ${n}`);
+  away.bringBack();
+  assert.deepEqual([stack.layers.length, away.layers.length], [maxLayers, 1]);
+  assert.throws(() => away.bringBack(), /layers/);
+});
+
+test('layers stay where a cage has the same UVs', async () => {
+  const { state, add, page } = await layered();
+  await add('one');
+  page.session.request({ cage: page.load('moved.glb', 5) });
+  await page.ready();
+  assert.deepEqual(state(), ['one', '(UV checker)', 0]);
+});
