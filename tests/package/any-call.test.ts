@@ -104,7 +104,8 @@ function resultOf<T>(call: () => T): T | undefined {
   }
 }
 
-const plain = ({ timings: _, peakBytes: __, ...rest }: ReturnType<typeof transfer>) => rest;
+const plain = ({ timings: _, peakBytes: __, ...rest }: ReturnType<typeof transfer> | ReturnType<typeof project>) =>
+  rest;
 
 describe('for any valid scene and options', () => {
   test('a transfer is consistent, the same again, and the same into the arrays of another', () => {
@@ -131,13 +132,19 @@ describe('for any valid scene and options', () => {
     );
   });
 
-  test('projecting and classifying is transferring', () => {
+  test('projecting and classifying is transferring, with locks too, and the same into the results of others', () => {
+    const kept = { project: project(cage, target), classify: classify(project(cage, target)) };
+    const lock = fc.constantFrom(undefined, 'keep' as const, 'exclude' as const);
     fc.assert(
-      fc.property(mesh, mesh, validOptions, (cage, target, { threshold, minCovered, steps, ...first }) => {
-        const classifying = { threshold, minCovered, steps: { floor: steps?.floor } };
+      fc.property(mesh, mesh, validOptions, lock, (cage, target, { threshold, minCovered, steps, ...first }, lock) => {
+        const locks = lock && { segments: { 0: lock } };
+        const classifying = { threshold, minCovered, locks, steps: { floor: steps?.floor } };
         const result = resultOf(() => transfer(cage, target, { ...first, ...classifying }));
         if (!result) return;
-        const classified = classify(project(cage, target, first), classifying);
+        const projection = project(cage, target, first);
+        const classified = classify(projection, classifying);
+        assert.deepEqual(plain(project(cage, target, { ...first, reuse: kept.project })), plain(projection));
+        assert.deepEqual(classify(kept.project, { ...classifying, reuse: kept.classify }), classified);
         assert.deepEqual(classified.zones, result.zones);
         assert.deepEqual(classified.cosmeticTriangles, result.cosmeticTriangles);
         assert.deepEqual(classified.segmentStats, result.segmentStats);

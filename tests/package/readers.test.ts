@@ -1,5 +1,7 @@
-// Every reader of the package makes the same of a glTF: that of files, that of documents, and that of what three.js has loaded.
+// Every reader makes the same of a glTF: those of the package, of files, of documents and of what three.js has loaded, and the native one.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { writeFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
@@ -11,6 +13,8 @@ import { Texture } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { loadFileLayer } from '../support/file-layer.js';
 import { fileNameOf, type GltfFile, gltfFiles, type Reader } from '../support/gltf-files.js';
+import { nativeCommand } from '../support/native.js';
+import { temporaryFolder } from '../support/temporary.js';
 
 await MeshoptDecoder.ready;
 const files = await loadFileLayer();
@@ -22,7 +26,16 @@ loader.register(() => ({ name: 'no pictures', loadTexture: async () => new Textu
 
 const isText = (bytes: Uint8Array): boolean => Buffer.from(bytes.subarray(0, 4)).toString() !== 'glTF';
 
-const readers: Record<Exclude<Reader, 'native'>, (file: GltfFile) => Promise<Mesh>> = {
+/** What the native reader says of each file, by its name. */
+const natively = (() => {
+  const { at } = temporaryFolder('readers');
+  const names = gltfFiles.map((file) => at(fileNameOf(file)));
+  gltfFiles.forEach(({ bytes }, i) => writeFileSync(names[i]!, bytes));
+  const lines = execFileSync(nativeCommand('cagecast_read_gltf'), names, { encoding: 'utf8' }).trim().split('\n');
+  return new Map(gltfFiles.map(({ name }, i) => [name, lines[i]!]));
+})();
+
+const readers: Record<Reader, (file: GltfFile) => Promise<Mesh>> = {
   file: async (file) => files.extract(await files.readGltf(fileNameOf(file), files.defaultReading, file.bytes)).mesh,
   document: async ({ bytes }) => {
     const document = isText(bytes)
@@ -36,6 +49,11 @@ const readers: Record<Exclude<Reader, 'native'>, (file: GltfFile) => Promise<Mes
       if ((error as CagecastError).code !== 'missingUvs') throw error;
     }
     return { positions, indices, groups: groups!, ...(uvs && { uvs }) } as Mesh;
+  },
+  native: async ({ name }) => {
+    const { error, uvs, ...mesh } = JSON.parse(natively.get(name)!);
+    if (error) throw new Error(error);
+    return { ...mesh, ...(uvs.length > 0 && { uvs }) };
   },
   three: async ({ bytes }) => extract((await loader.parseAsync(Uint8Array.from(bytes).buffer, '')).scene).mesh,
 };

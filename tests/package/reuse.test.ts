@@ -6,14 +6,13 @@ import {
   classify,
   init,
   type Mesh,
-  type Preset,
   type Projection,
   project,
   type TransferResult,
   transfer,
 } from 'cagecast';
 import * as worker from 'cagecast/worker';
-import { head, random, type Scene, smallest, soup } from './scenes.js';
+import { head, type Scene, smallest, soup } from './scenes.js';
 
 type Answer = TransferResult | Projection | Classification;
 
@@ -97,46 +96,6 @@ describe('reuse', () => {
     reuse.segments.set(target.indices);
     const again = transfer(cage, { ...target, indices: reuse.segments }, { masks, reuse });
     assert.deepEqual(again.cosmeticTriangles, transfer(cage, target, { masks }).cosmeticTriangles);
-  });
-
-  test('reusing one result for many scenes and options gives the same results as new ones', () => {
-    const scenes = [
-      one,
-      other,
-      soup(42),
-      soup(43, 60),
-      { name: 'smallest', ...smallest() },
-      { name: 'without groups', cage: one.cage, target: { ...one.target, groups: undefined } },
-    ];
-    for (const seed of [1, 2, 3]) {
-      const next = random(seed);
-      const pick = <T>(all: readonly T[]): T => all[Math.floor(all.length * next())]!;
-      const kept: { transfer?: TransferResult; project?: Projection; classify?: Classification } = {};
-      for (let step = 0; step < 60; ++step) {
-        const { name, cage, target } = pick(scenes);
-        const preset = pick<Preset>(['default', 'paper']);
-        const seams = pick(['corner', 'vertex'] as const);
-        const decide = {
-          threshold: next(),
-          locks: pick([undefined, { groups: { 0: 'keep' } }, { segments: { 0: 'exclude' } }] as const),
-        };
-        const message = `seed ${seed}, step ${step}: ${name}, ${preset}, ${seams}, ${JSON.stringify(decide)}`;
-        const projection = project(cage, target, { preset, seams });
-        kept.transfer = transfer(cage, target, { preset, seams, ...decide, reuse: kept.transfer });
-        assert.deepEqual(
-          lasting(kept.transfer),
-          lasting(transfer(cage, target, { preset, seams, ...decide })),
-          message,
-        );
-        kept.project = project(cage, target, { preset, seams, reuse: kept.project });
-        assert.deepEqual(lasting(kept.project), lasting(projection), message);
-        kept.classify = classify(pick([projection, kept.project]), { ...decide, reuse: kept.classify });
-        assert.deepEqual(kept.classify, classify(projection, decide), message);
-        // Locked or not, the three agree.
-        assert.deepEqual(kept.classify.zones, kept.transfer.zones, message);
-        assert.deepEqual(kept.classify.segmentStats, kept.transfer.segmentStats, message);
-      }
-    }
   });
 
   test('the reused result may share arrays with the arguments', () => {

@@ -81,6 +81,10 @@ describe('suggest', () => {
       const isCulled = culled(options)[1]!;
       assert.match(advice, /^If that is wrong, override it, /);
       assert.equal(culled({ ...options, locks })[1], !isCulled);
+      for (const lock of ['keep', 'exclude'] as const)
+        assert.ok(
+          !codes(suggest(cage, target, { ...options, locks: { segments: { 1: lock } } })).includes('segmentInDoubt'),
+        );
     }
   });
 

@@ -5,7 +5,6 @@ import { before, describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import type { CagecastError, Mesh } from 'cagecast';
 import * as direct from 'cagecast';
-import * as slim from 'cagecast/slim';
 import {
   classify,
   cutBorders,
@@ -213,9 +212,4 @@ describe('the worker', () => {
     const cannot = (fn: string) => `unsupported ${fn}: this host cannot start the worker \\(.+\\)\\n`;
     assert.match(printed(script, ...forbidden), new RegExp(`^${cannot('init')}${cannot('transfer')}$`));
   });
-});
-
-test('slim gives the same with the WebAssembly in a separate file', async () => {
-  await Promise.all([slim.init(), direct.init()]);
-  assert.deepEqual(plain(slim.transfer(cage, target)), plain(direct.transfer(cage, target)));
 });

@@ -124,11 +124,12 @@ async function open(address: string): Promise<{ page: Page; faults: string[] }> 
   return { page, faults };
 }
 
-/** Waits until what is drawn has enough of the paint. */
-async function seen(page: Page): Promise<void> {
+/** Waits until what is drawn has enough of the paint, and nothing went wrong. */
+async function seen({ page, faults }: { page: Page; faults: string[] }): Promise<void> {
   let count = 0;
   for (const end = Date.now() + 30000; count < 400 && Date.now() < end; ) count = orange(await page.screenshot());
   assert.ok(count >= 400, `${count} pixels`);
+  assert.deepEqual(faults, []);
 }
 
 describe('examples, from the packed package', () => {
@@ -143,37 +144,31 @@ describe('examples, from the packed package', () => {
     }
   });
 
-  for (const name of Object.keys(built).filter((one) => one !== 'web-component'))
+  for (const name of [...Object.keys(built).filter((one) => one !== 'web-component'), 'import-map'])
     test(`${name} shows the paint`, async () => {
-      const { page, faults } = await open(`${sites[0]!.origin}/${name}/index.html`);
-      await seen(page);
+      const visit = await open(`${sites[name === 'import-map' ? 1 : 0]!.origin}/${name}/index.html`);
+      await seen(visit);
+      const { page, faults } = visit;
       if (name === 'worker') {
         // The second visit needs no cage.
         let cages = 0;
         page.on('request', (request) => (cages += Number(request.url().endsWith('cage.glb'))));
-        await page.reload();
-        await painted(page, faults);
+        const again = async () => {
+          await page.reload();
+          await painted(page, faults);
+        };
+        await again();
         assert.equal(cages, 0);
         // What an earlier version kept is replaced.
         await page.evaluate('caches.open("cagecast").then((cache) => cache.put("transfer", new Response("old")))');
-        await page.reload();
-        await painted(page, faults);
-        await page.reload();
-        await painted(page, faults);
+        await again();
+        await again();
         assert.equal(cages, 1);
       }
       assert.deepEqual(faults, []);
       await page.close();
     });
 
-  test('import-map shows the paint, as it is', async () => {
-    const { page } = await open(`${sites[1]!.origin}/import-map/index.html`);
-    await seen(page);
-    await page.close();
-  });
-});
-
-describe('examples, as examples/README.md says', () => {
   test('worker shows the paint where cagecast is a link to the repository', async () => {
     const repository = join(user, 'repository');
     const folder = join(repository, 'examples/worker');
@@ -186,10 +181,9 @@ describe('examples, as examples/README.md says', () => {
     const server = await createServer({ root: folder, logLevel: 'error', server: { host: '127.0.0.1' } });
     try {
       await server.listen();
-      const { page, faults } = await open(server.resolvedUrls!.local[0]!);
-      await seen(page);
-      assert.deepEqual(faults, []);
-      await page.close();
+      const visit = await open(server.resolvedUrls!.local[0]!);
+      await seen(visit);
+      await visit.page.close();
     } finally {
       await server.close();
     }
@@ -205,35 +199,77 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     page.on('console', (message) => message.type() === 'warning' && warnings.push(message.text()));
     await page.evaluate(`
       globalThis.viewer = document.querySelector('cagecast-viewer');
+      globalThis.place = viewer.parentNode;
       globalThis.part = (selector) => viewer.shadowRoot.querySelector(selector);
       globalThis.told = [];
-      globalThis.watch = () => { for (const type of ['load', 'error']) viewer.addEventListener(type, ({ detail }) => told.push(detail ? type + ' ' + detail.message : type)); };
+      globalThis.steps = 0;
+      globalThis.listen = (element, told) => {
+        for (const type of ['load', 'error']) element.addEventListener(type, ({ detail }) => told.push(detail ? type + ' ' + detail.message : type));
+      };
+      globalThis.task = () => new Promise((done) => setTimeout(done));
+      globalThis.frames = async () => { for (let i = 0; i < 2; ++i) await new Promise((done) => requestAnimationFrame(() => setTimeout(done))); };
       globalThis.next = async () => { told.length = 0; while (told.length === 0) await new Promise((done) => setTimeout(done, 20)); return told[0]; };
+      globalThis.loaded = async () => { for (let i = 0; i < 3000 && !told.includes('load'); ++i) await new Promise((done) => setTimeout(done, 20)); return told; };
+      globalThis.set = (attributes) => {
+        told.length = 0;
+        for (const [name, value] of Object.entries(attributes)) value === null ? viewer.removeAttribute(name) : viewer.setAttribute(name, value);
+      };
       globalThis.text = (blob) => new Promise((done) => { const reader = new FileReader(); reader.onload = () => done(reader.result.split(',')[1]); reader.readAsDataURL(blob); });
-      watch();`);
+      globalThis.event = (name) => new Promise((done) => part('canvas').addEventListener(name, () => setTimeout(done), { once: true }));
+      globalThis.crowd = () => { globalThis.others = Array.from({ length: 16 }, () => document.createElement('canvas').getContext('webgl2')); };
+      globalThis.leave = () => { for (const other of others) other.getExtension('WEBGL_lose_context')?.loseContext(); };
+      listen(viewer, told);
+      viewer.addEventListener('progress', () => ++steps);`);
   });
   after(() => page?.close());
-  const bytesOf = async (script: string) => Buffer.from(await page.evaluate<string>(script), 'base64');
-  const picture = () => bytesOf('viewer.toBlob().then(text)');
+
+  const inPage = <T = string>(script: string): Promise<T> => page.evaluate<T>(`(async () => { ${script} })()`);
+  const bytesOf = async (script: string) => Buffer.from(await inPage(`return text(${script})`), 'base64');
+  const picture = () => bytesOf('await viewer.toBlob()');
+  const exported = () => bytesOf('new Blob([await viewer.exportGlb()])');
+  const alert = () => page.locator('cagecast-viewer [role=alert]:visible');
+  type Attributes = Record<string, string | null>;
+  const set = (attributes: Attributes) => inPage<void>(`set(${JSON.stringify(attributes)})`);
+  /** Sets attributes, or removes them. @returns what the element says next. */
+  const said = (attributes: Attributes) => inPage(`set(${JSON.stringify(attributes)}); return next()`);
+  /** What it says until it has loaded. */
+  const saidUntilLoad = (attributes: Attributes) =>
+    inPage<string[]>(`set(${JSON.stringify(attributes)}); return loaded()`);
+  const [target, tiger, war] = ['target.glb', 'paint-tiger.png', 'paint-war-paint.png'];
+
+  /**
+   * A test that leaves the element as it was.
+   * @param is  Compares pictures; `assertSameModel` where the model is loaded anew.
+   */
+  const steady = (
+    name: string,
+    body: (picture: Buffer) => Promise<void>,
+    is = assert.deepEqual as typeof assertSameModel,
+  ) =>
+    test(name, async () => {
+      const before = await picture();
+      await body(before);
+      is(await picture(), before);
+      assert.equal(await alert().count(), 0, 'no error is left');
+    });
 
   test('shows the painted model and says whether the cage fits', async () => {
-    await seen(page);
+    await seen({ page, faults });
     assert.match(await page.innerText('[role=status]'), /^The cage is (good|usable)\.$/);
     assert.ok(orange(await picture()) > 400);
   });
 
   test('has a role and a label, and nothing that axe-core complains about', async () => {
-    assert.deepEqual(
-      await page.evaluate('[part("canvas").getAttribute("role"), part("canvas").getAttribute("aria-label")]'),
-      ['img', 'The head of a lizard with the stripes of a tiger'],
-    );
+    assert.deepEqual(await inPage('return ["role", "aria-label"].map((name) => part("canvas").getAttribute(name))'), [
+      'img',
+      'The head of a lizard with the stripes of a tiger',
+    ]);
     await page.evaluate(readFileSync('node_modules/axe-core/axe.min.js', 'utf8'));
-    assert.deepEqual(await page.evaluate('axe.run().then(({ violations }) => violations.map(({ id }) => id))'), []);
+    assert.deepEqual(await inPage('return (await axe.run()).violations.map(({ id }) => id)'), []);
   });
 
-  test('is turned by keys, and goes back', async () => {
-    const before = await picture();
-    await page.evaluate('viewer.focus()');
+  steady('is turned by keys, and goes back', async (before) => {
+    await inPage('viewer.focus()');
     for (const key of ['ArrowRight', 'ArrowUp', '+']) {
       const last = await picture();
       await page.keyboard.press(key);
@@ -241,61 +277,54 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     }
     await page.keyboard.press('Home');
     assert.deepEqual(await picture(), before);
-    await page.evaluate('viewer.setAttribute("camera-orbit", "90deg 80deg 150%")');
+    await set({ 'camera-orbit': '90deg 80deg 150%' });
     assert.notDeepEqual(await picture(), before);
-    await page.evaluate('viewer.removeAttribute("camera-orbit")');
+    await set({ 'camera-orbit': null });
   });
 
   test('of an element that shows nothing, a picture is refused by the promise', async () => {
-    const said = await page.evaluate<string>('document.createElement("cagecast-viewer").toBlob().catch(String)');
-    assert.match(said, /^Error: toBlob: .* shows nothing yet/);
+    const refused = await inPage('return document.createElement("cagecast-viewer").toBlob().catch(String)');
+    assert.match(refused, /^Error: toBlob: .* shows nothing yet/);
   });
 
   test('exports a valid model with its paint', async () => {
-    const file = join(user, 'exported.glb');
-    writeFileSync(file, await bytesOf('viewer.exportGlb().then((glb) => text(new Blob([glb])))'));
+    const file = await exported();
     assert.deepEqual(await validate(file), []);
-    assert.match(readFileSync(file, 'latin1'), /"images":\[/);
+    assert.match(file.toString('latin1'), /"images":\[/);
   });
 
-  test('follows its attributes: opacity and paint without another transfer', async () => {
-    const before = await picture();
-    await page.evaluate('globalThis.steps = 0; viewer.addEventListener("progress", () => ++steps);');
-    await page.evaluate('viewer.setAttribute("opacity", "0")');
+  steady('follows its attributes: opacity and paint without another transfer', async (before) => {
+    await inPage('steps = 0');
+    await set({ opacity: '0' });
     assert.ok(orange(await picture()) < orange(before) / 2);
-    await page.evaluate('viewer.removeAttribute("opacity")');
+    await set({ opacity: null });
     assert.deepEqual(await picture(), before);
-    await page.evaluate('viewer.setAttribute("paint", "paint-war-paint.png"); next()');
+    await said({ paint: war });
     assert.notDeepEqual(await picture(), before);
-    await page.evaluate('viewer.setAttribute("paint", "paint-tiger.png"); next()');
+    await said({ paint: tiger });
     assert.deepEqual(await picture(), before);
     // Two in quick succession, too.
-    await page.evaluate(`(async () => {
-      viewer.setAttribute("paint", "paint-war-paint.png");
-      await Promise.resolve();
-      viewer.setAttribute("paint", "paint-tiger.png");
-      return next();
-    })()`);
-    assert.deepEqual(await picture(), before);
-    assert.equal(await page.evaluate('steps'), 0);
+    await inPage(`set({ paint: "${war}" }); await Promise.resolve(); set({ paint: "${tiger}" }); return next()`);
+    assert.equal(await inPage<number>('return steps'), 0);
   });
 
-  test('loads what could not be loaded for its opacity once that is right', async () => {
-    const target = await page.evaluate<string>('viewer.getAttribute("target")');
-    const said = await page.evaluate(
-      'viewer.setAttribute("opacity", "2"); viewer.setAttribute("target", "cage.glb"); next()',
-    );
-    assert.match(said as string, /^error .*\bopacity is 2, not a number from 0 to 1$/);
-    assert.equal(await page.evaluate('viewer.setAttribute("opacity", "1"); next()'), 'load');
-    assert.ok(await page.isHidden('cagecast-viewer [role=alert]'));
-    await page.evaluate(`viewer.removeAttribute("opacity"); viewer.setAttribute("target", "${target}"); next()`);
-  });
+  steady(
+    'loads what could not be loaded for its opacity once that is right',
+    async () => {
+      const wrong = await said({ opacity: '2', target: 'cage.glb' });
+      assert.match(wrong, /^error .*\bopacity is 2, not a number from 0 to 1$/);
+      assert.equal(await said({ opacity: '1' }), 'load');
+      assert.equal(await alert().count(), 0);
+      await said({ opacity: null, target });
+    },
+    assertSameModel,
+  );
 
   test('tells of a wrong opacity once where it is there from the beginning', async () => {
-    const told = await page.evaluate<string[]>(`(async () => {
+    const told = await inPage<string[]>(`
       const other = document.createElement('cagecast-viewer');
       const told = [];
-      for (const type of ['load', 'error']) other.addEventListener(type, ({ detail }) => told.push(detail ? detail.message : type));
+      listen(other, told);
       const parse = other.loader.parseAsync;
       const read = new Promise((done) => {
         other.loader.parseAsync = function (...given) {
@@ -306,19 +335,18 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
       });
       other.setAttribute('target', 'cage.glb');
       other.setAttribute('opacity', 'abc');
-      viewer.parentNode.append(other);
+      place.append(other);
       await read;
       other.setAttribute('opacity', '0.5');
       while (!told.includes('load')) await new Promise((done) => setTimeout(done, 20));
       other.remove();
-      return told;
-    })()`);
-    assert.deepEqual(told, ['cagecast-viewer: opacity is "abc", not a number', 'load']);
+      return told;`);
+    assert.deepEqual(told, ['error cagecast-viewer: opacity is "abc", not a number', 'load']);
   });
 
   test('frees pictures and buffers of what is not shown any more, and of what could not be loaded', async () => {
-    const { live, buffers } = await page.evaluate<{ live: string[]; buffers: number[] }>(`(async () => {
-      let live = 0;
+    const { live, buffers } = await inPage<{ live: string[]; buffers: number[] }>(`
+      let live = 0, held = 0;
       const make = createImageBitmap;
       const { close } = ImageBitmap.prototype;
       globalThis.createImageBitmap = (...args) => (++live, make(...args));
@@ -326,17 +354,15 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
         if (this.width > 0) --live;
         close.call(this);
       };
-      let held = 0;
-      const buffers = [];
       const { createBuffer, deleteBuffer } = WebGL2RenderingContext.prototype;
       WebGL2RenderingContext.prototype.createBuffer = function () { ++held; return createBuffer.call(this); };
       WebGL2RenderingContext.prototype.deleteBuffer = function (buffer) {
         if (buffer) --held;
         deleteBuffer.call(this, buffer);
       };
-      const seen = [];
+      const seen = [], buffers = [];
       for (const threshold of ['0.4', 'none', '0.5', 'some', '0.6']) {
-        viewer.setAttribute('threshold', threshold);
+        set({ threshold });
         const said = await next();
         await new Promise((done) => setTimeout(done, 200));
         seen.push(said.split(' ')[0] + ' ' + live);
@@ -345,79 +371,63 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
       globalThis.createImageBitmap = make;
       ImageBitmap.prototype.close = close;
       Object.assign(WebGL2RenderingContext.prototype, { createBuffer, deleteBuffer });
-      viewer.removeAttribute('threshold');
+      set({ threshold: null });
       await next();
-      return { live: seen, buffers };
-    })()`);
+      return { live: seen, buffers };`);
     assert.deepEqual(live, ['load 0', 'error 0', 'load 0', 'error 0', 'load 0']);
     assert.equal(buffers[4], buffers[2], 'as many buffers as with the model before');
   });
 
-  test('stays as it is where it is moved, even if its address leads nowhere by now', async () => {
-    const target = await page.evaluate<string>('viewer.getAttribute("target")');
-    await page.evaluate(`(async () => {
+  test('takes a model from an object URL, and stays as it is where it is moved, even if that leads nowhere by now', async () => {
+    const told = await inPage(`
       const address = URL.createObjectURL(await (await fetch("${target}")).blob());
-      viewer.setAttribute("target", address);
-      await next();
+      set({ target: address });
+      const told = await next();
       URL.revokeObjectURL(address);
       viewer.focus();
-    })()`);
+      return told;`);
+    assert.equal(told, 'load');
     await page.keyboard.press('ArrowRight');
     const before = await picture();
-    const told = await page.evaluate(`(async () => {
-      told.length = 0;
-      viewer.parentNode.append(viewer);
-      await new Promise((done) => setTimeout(done, 300));
-      return told;
-    })()`);
-    assert.deepEqual(told, []);
+    const later =
+      'told.length = 0; place.append(viewer); await new Promise((done) => setTimeout(done, 300)); return told';
+    assert.deepEqual(await inPage(later), []);
     assert.deepEqual(await picture(), before);
-    const exported = await bytesOf('viewer.exportGlb().then((glb) => text(new Blob([glb])))');
-    assert.match(exported.toString('latin1'), /"images":\[/);
-    await page.evaluate(`viewer.setAttribute("target", "${target}"); next()`);
+    assert.match((await exported()).toString('latin1'), /"images":\[/);
+    await said({ target });
   });
 
-  test('is shown as before in the document of a frame', async () => {
+  steady('is shown as before in the document of a frame', async (before) => {
     const styles = () =>
-      page.evaluate<string[]>(`[viewer, part('canvas'), part('.error')].map((element) => {
+      inPage<string[]>(`return [viewer, part('canvas'), part('.error')].map((element) => {
         const { display, position } = getComputedStyle(element);
         return display + ' ' + position;
       })`);
-    const [before, shown] = [await styles(), await picture()];
-    await page.evaluate(`
-      globalThis.place = viewer.parentNode;
+    const usual = await styles();
+    await inPage(`
       globalThis.frame = document.createElement('iframe');
       place.append(frame);
       frame.contentDocument.body.append(viewer);`);
     const [within, shownWithin] = [await styles(), await picture()];
-    await page.evaluate('place.append(viewer); frame.remove()');
-    assert.deepEqual([within, await styles()], [before, before]);
-    assert.deepEqual([shownWithin, await picture()], [shown, shown]);
+    await inPage('place.append(viewer); frame.remove()');
+    assert.deepEqual([within, await styles()], [usual, usual]);
+    assert.deepEqual(shownWithin, before);
   });
 
   test('shows all of the model where it is narrow, also if it was wide or hidden before', async () => {
-    const resized = (width: string) =>
-      page.evaluate(`(async () => {
-        viewer.style.width = "${width}";
-        const frame = () => new Promise((done) => requestAnimationFrame(done));
-        await frame();
-        await frame();
-      })()`);
     const at = async (width: string) => {
-      await resized(width);
-      return picture();
+      await inPage(`viewer.style.width = "${width}"; await frames()`);
+      return orange(await picture());
     };
     const plain = orange(await picture());
-    const narrow = orange(await at('120px'));
-    await page.evaluate('viewer.setAttribute("camera-orbit", "20deg 80deg 100%")');
-    await page.evaluate('viewer.removeAttribute("camera-orbit")');
+    const narrow = await at('120px');
+    await set({ 'camera-orbit': '20deg 80deg 100%' });
+    await set({ 'camera-orbit': null });
     const placed = orange(await picture());
-    assert.ok(
-      Math.abs(narrow - placed) < 0.02 * placed,
-      `${narrow}, as if it was placed when it was narrow: ${placed}`,
-    );
-    const wide = orange(await at(''));
-    assert.ok(Math.abs(wide - plain) < 0.02 * plain, `${wide}, as before: ${plain}`);
+    const near = (is: number, want: number, why: string) =>
+      assert.ok(Math.abs(is - want) < 0.02 * want, `${is}, ${why}: ${want}`);
+    near(narrow, placed, 'as if it was placed when it was narrow');
+    near(await at(''), plain, 'as before');
   });
 
   test('has the pixels of the screen, also where the page is zoomed or moved to another screen', async () => {
@@ -441,394 +451,291 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     }
   });
 
-  test('tells of an opacity that is no number until it is one', async () => {
-    const before = await picture();
-    const error = () => page.evaluate<string>('part(".error").hidden ? "" : part(".error").textContent');
-    assert.equal(
-      await page.evaluate('viewer.setAttribute("opacity", "abc"); next()'),
-      'error cagecast-viewer: opacity is "abc", not a number',
-    );
-    assert.equal(await error(), 'cagecast-viewer: opacity is "abc", not a number');
-    await page.evaluate('viewer.setAttribute("opacity", "1")');
-    assert.equal(await error(), '');
-    assert.deepEqual(await picture(), before);
-    await page.evaluate('viewer.removeAttribute("opacity")');
+  steady('tells of an opacity that is no number until it is one', async () => {
+    const sentence = 'cagecast-viewer: opacity is "abc", not a number';
+    assert.equal(await said({ opacity: 'abc' }), `error ${sentence}`);
+    assert.equal(await alert().innerText(), sentence);
+    await set({ opacity: '1' });
+    assert.equal(await alert().count(), 0);
+    await set({ opacity: null });
   });
 
-  test('goes on telling of an opacity when another paint comes, and exports the one that is shown', async () => {
-    const before = await picture();
-    assert.match(await page.evaluate('viewer.setAttribute("opacity", "5"); next()'), /^error .*5 is not a number/);
-    const file = join(user, 'opacity.glb');
-    writeFileSync(file, await bytesOf('viewer.exportGlb().then((glb) => text(new Blob([glb])))'));
-    assert.deepEqual(await validate(file), []);
-    await page.evaluate(`(async () => {
-      viewer.setAttribute("paint", "paint-war-paint.png");
-      while (!told.includes("load")) await next();
-    })()`);
-    assert.match(await page.innerText('cagecast-viewer [role=alert]'), /5 is not a number/);
+  steady('goes on telling of an opacity when another paint comes, and exports the one that is shown', async () => {
+    assert.match(await said({ opacity: '5' }), /^error .*opacity is 5, not a number/);
+    assert.deepEqual(await validate(await exported()), []);
+    await saidUntilLoad({ paint: war });
+    assert.match(await alert().innerText(), /opacity is 5, not a number/);
     // The error of something else stays when the opacity is mended.
-    assert.match(await page.evaluate('viewer.setAttribute("paint", "none.png"); next()'), /^error paint: .*none/);
-    await page.evaluate('viewer.removeAttribute("opacity")');
-    assert.match(await page.innerText('cagecast-viewer [role=alert]'), /none\.png/);
-    await page.evaluate('viewer.setAttribute("paint", "paint-tiger.png"); next()');
-    assert.ok(await page.isHidden('cagecast-viewer [role=alert]'), 'no error is left');
-    assert.deepEqual(await picture(), before);
+    assert.match(await said({ paint: 'none.png' }), /^error paint: .*none/);
+    await set({ opacity: null });
+    assert.match(await alert().innerText(), /none\.png/);
+    await said({ paint: tiger });
   });
 
-  test('tells of an orbit that is none, once, until it is one', async () => {
-    const before = await picture();
-    const alert = page.locator('cagecast-viewer [role=alert]:visible');
-    const set = (value: string) =>
-      page.evaluate<string[]>(
-        `told.length = 0; viewer.setAttribute("camera-orbit", "${value}"); Promise.resolve().then(() => told)`,
-      );
+  steady('tells of an orbit that is none, once, until it is one', async (before) => {
     const wrongs = ['left', '90deg 80deg 1.5m', '1.5rad', '20deg 80deg 0%', '20deg 80deg -100%', '1 2 3 4', 'deg'];
     const sentence = (wrong: string) =>
       `cagecast-viewer: camera-orbit is "${wrong}", not angles and a distance such as 20deg 80deg 100%`;
     for (const wrong of wrongs) {
-      assert.deepEqual(await set(wrong), [`error ${sentence(wrong)}`]);
-      assert.equal(await alert.innerText(), sentence(wrong));
+      await set({ 'camera-orbit': wrong });
+      assert.deepEqual(await inPage('return told'), [`error ${sentence(wrong)}`]);
+      assert.equal(await alert().innerText(), sentence(wrong));
     }
     // From the beginning, too.
-    const target = await page.evaluate<string>('viewer.getAttribute("target")');
-    for (const address of ['cage.glb', target]) {
-      const told = await page.evaluate<string[]>(`(async () => {
-        told.length = 0;
-        const loaded = new Promise((done) => viewer.addEventListener('load', done, { once: true }));
-        viewer.setAttribute("target", "${address}");
-        await loaded;
-        return told;
-      })()`);
-      assert.deepEqual(told, [`error ${sentence(wrongs.at(-1)!)}`, 'load']);
-    }
+    for (const address of ['cage.glb', target])
+      assert.deepEqual(await saidUntilLoad({ target: address }), [`error ${sentence(wrongs.at(-1)!)}`, 'load']);
     for (const [right, isOther] of [
       ['', false],
       ['20', false],
       [' 20deg  80 100% ', false],
       ['-.5e1deg 80.5', true],
     ] as const) {
-      await page.evaluate(`viewer.setAttribute("camera-orbit", "${right}")`);
-      assert.equal(await alert.count(), 0, right);
+      await set({ 'camera-orbit': right });
+      assert.equal(await alert().count(), 0, right);
       assert.equal((await picture()).equals(before), !isOther, right);
     }
-    await page.evaluate('viewer.removeAttribute("camera-orbit")');
-    assert.deepEqual(await picture(), before);
+    await set({ 'camera-orbit': null });
   });
 
-  test('leaves the camera where it is at another transfer of the same model, and places it for another model', async () => {
-    const placed = await picture();
-    await page.evaluate('viewer.focus()');
-    await page.keyboard.press('ArrowRight');
-    const turned = await picture();
-    assert.notDeepEqual(turned, placed);
-    await page.evaluate('viewer.setAttribute("threshold", "0.4"); next()');
-    await page.evaluate('viewer.removeAttribute("threshold"); next()');
-    assertSameModel(await picture(), turned);
-    const target = await page.evaluate<string>('viewer.getAttribute("target")');
-    await page.evaluate('viewer.setAttribute("target", "cage.glb"); next()');
-    await page.evaluate(`viewer.setAttribute("target", "${target}"); next()`);
-    assertSameModel(await picture(), placed);
-  });
+  steady(
+    'leaves the camera where it is at another transfer of the same model, and places it for another model',
+    async (placed) => {
+      await inPage('viewer.focus()');
+      await page.keyboard.press('ArrowRight');
+      const turned = await picture();
+      assert.notDeepEqual(turned, placed);
+      await said({ threshold: '0.4' });
+      await said({ threshold: null });
+      assertSameModel(await picture(), turned);
+      await said({ target: 'cage.glb' });
+      await said({ target });
+    },
+    assertSameModel,
+  );
 
-  test('shows its poster again when its target is taken away', async () => {
-    const target = await page.evaluate<string>('viewer.getAttribute("target")');
-    await page.evaluate('viewer.setAttribute("poster", "paint-tiger.png"); viewer.removeAttribute("target")');
-    assert.ok(await page.isVisible('cagecast-viewer .poster'), 'nothing is shown');
-    await page.evaluate(`viewer.setAttribute("target", "${target}"); next()`);
-    assert.ok(await page.isHidden('cagecast-viewer .poster'), 'the model is shown');
-    await page.evaluate('viewer.removeAttribute("poster")');
-  });
+  steady(
+    'shows its poster again when its target is taken away',
+    async () => {
+      await set({ poster: tiger, target: null });
+      assert.ok(await page.isVisible('cagecast-viewer .poster'), 'nothing is shown');
+      await said({ target });
+      assert.ok(await page.isHidden('cagecast-viewer .poster'), 'the model is shown');
+      await set({ poster: null });
+    },
+    assertSameModel,
+  );
 
-  test('exports what is shown, not what cannot be loaded', async () => {
-    const target = await page.evaluate<string>('viewer.getAttribute("target")');
-    const exported = () => bytesOf('viewer.exportGlb().then((glb) => text(new Blob([glb])))');
-    const before = await exported();
-    const told = await page.evaluate('viewer.setAttribute("target", "none.glb"); next()');
-    const after = await exported();
-    assert.equal(await page.evaluate(`viewer.setAttribute("target", ${JSON.stringify(target)}); next()`), 'load');
-    assert.match(told as string, /^error .*none\.glb/);
-    // The exporter numbers what it writes.
-    assert.ok(Math.abs(after.length - before.length) < 100, `${after.length}, ${before.length}`);
-  });
-
-  test('goes on telling that the model cannot be loaded when another paint comes', async () => {
-    const before = await picture();
-    const target = await page.evaluate<string>('viewer.getAttribute("target")');
-    const set = (name: string, value: string) =>
-      page.evaluate<string>(`viewer.setAttribute(${JSON.stringify(name)}, ${JSON.stringify(value)}); next()`);
-    assert.match(await set('target', 'none.glb'), /^error .*none\.glb/);
-    assert.match(await set('paint', 'paint-war-paint.png'), /^error .*none\.glb/);
-    assert.equal(await set('target', target), 'load');
-    assert.equal(await set('paint', 'paint-tiger.png'), 'load');
-    assertSameModel(await picture(), before);
-  });
+  steady(
+    'exports what is shown, not what cannot be loaded; goes on telling of it when another paint comes',
+    async () => {
+      const before = await exported();
+      assert.match(await said({ target: 'none.glb' }), /^error .*none\.glb/);
+      const after = await exported();
+      // The exporter numbers what it writes.
+      assert.ok(Math.abs(after.length - before.length) < 100, `${after.length}, ${before.length}`);
+      assert.match(await said({ paint: war }), /^error .*none\.glb/);
+      assert.equal(await said({ target }), 'load');
+      assert.equal(await said({ paint: tiger }), 'load');
+    },
+    assertSameModel,
+  );
 
   test('exports what is shown, even if its paint changes meanwhile', async () => {
-    const exported = await bytesOf(`(async () => {
-      const done = viewer.exportGlb();
-      viewer.setAttribute("paint", "paint-war-paint.png");
-      await next();
-      const glb = await done;
-      viewer.setAttribute("paint", "paint-tiger.png");
-      await next();
-      return text(new Blob([glb]));
-    })()`);
-    assert.match(exported.toString('latin1'), /"images":\[/);
+    const glb = Buffer.from(
+      await inPage(`
+        const done = viewer.exportGlb();
+        set({ paint: "${war}" });
+        await next();
+        const glb = await done;
+        set({ paint: "${tiger}" });
+        await next();
+        return text(new Blob([glb]));`),
+      'base64',
+    );
+    assert.match(glb.toString('latin1'), /"images":\[/);
   });
 
-  test('takes a model from an object URL', async () => {
-    const target = await page.evaluate<string>('viewer.getAttribute("target")');
-    const told = await page.evaluate(
-      `(async () => {
-        const file = await (await fetch(${JSON.stringify(target)})).blob();
-        viewer.setAttribute('target', URL.createObjectURL(file));
-        return next();
-      })()`,
-    );
-    assert.equal(told, 'load');
-    await page.evaluate(`viewer.setAttribute('target', ${JSON.stringify(target)}); next()`);
-  });
-
-  test('shows half-transparent paint as it is', async () => {
-    const before = await picture();
-    const told = await page.evaluate(
-      `(async () => {
-        const canvas = new OffscreenCanvas(4, 4);
-        const context = canvas.getContext('2d');
-        context.fillStyle = 'rgb(255 255 255 / 0.25)';
-        context.fillRect(0, 0, 4, 4);
-        viewer.setAttribute('paint', URL.createObjectURL(await canvas.convertToBlob()));
-        return next();
-      })()`,
-    );
+  steady('shows half-transparent paint as it is', async () => {
+    const told = await inPage(`
+      const canvas = new OffscreenCanvas(4, 4);
+      const context = canvas.getContext('2d');
+      context.fillStyle = 'rgb(255 255 255 / 0.25)';
+      context.fillRect(0, 0, 4, 4);
+      set({ paint: URL.createObjectURL(await canvas.convertToBlob()) });
+      return next();`);
     assert.equal(told, 'load');
     const light = brightness(await picture());
-    await page.evaluate('viewer.removeAttribute("paint"); next()');
+    await said({ paint: null });
     const bare = brightness(await picture());
-    await page.evaluate('viewer.setAttribute("paint", "paint-tiger.png"); next()');
-    assert.deepEqual(await picture(), before);
+    await said({ paint: tiger });
     assert.ok(light > bare, `a veil of white makes the model lighter: ${light}, ${bare}`);
   });
 
-  test('does not show a paint that comes after a later one', async () => {
-    const before = await picture();
-    const told = await page.evaluate<string[]>(
-      `(async () => {
-        const decode = globalThis.createImageBitmap;
-        let release;
-        const held = new Promise((done) => (release = done));
-        const begun = new Promise((begin) => {
-          globalThis.createImageBitmap = async (...given) => {
-            globalThis.createImageBitmap = decode;
-            begin();
-            await held;
-            return decode(...given);
-          };
-        });
-        viewer.setAttribute("paint", "paint-war-paint.png");
-        await begun;
-        viewer.setAttribute("paint", "paint-tiger.png");
-        await next();
-        release();
-        await new Promise((done) => setTimeout(done, 200));
-        return told;
-      })()`,
-    );
+  steady('does not show a paint that comes after a later one', async () => {
+    const told = await inPage<string[]>(`
+      const decode = globalThis.createImageBitmap;
+      let release;
+      const held = new Promise((done) => (release = done));
+      const begun = new Promise((begin) => {
+        globalThis.createImageBitmap = async (...given) => {
+          globalThis.createImageBitmap = decode;
+          begin();
+          await held;
+          return decode(...given);
+        };
+      });
+      set({ paint: "${war}" });
+      await begun;
+      set({ paint: "${tiger}" });
+      await next();
+      release();
+      await new Promise((done) => setTimeout(done, 200));
+      return told;`);
     assert.deepEqual(told, ['load']);
-    assert.deepEqual(await picture(), before);
   });
 
-  test('says that the graphics context is lost, and draws again once it is back', async () => {
-    const before = await picture();
+  steady('says that the graphics context is lost, and draws again once it is back', async (before) => {
     // It cannot be restored before the event has ended. What waits for a second or more waits until it is let go.
-    await page.evaluate(`
+    await inPage(`
       globalThis.waiting = [];
+      globalThis.goOn = () => { for (const run of waiting.splice(0)) run(); };
       globalThis.setTimeout = ((set) => (run, time = 0) => (time < 1000 ? set(run, time) : waiting.push(run)))(setTimeout);
-      globalThis.event = (name) => new Promise((done) => part('canvas').addEventListener(name, () => setTimeout(done), { once: true }));
-      globalThis.extension = part('canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
-      told.length = 0;
-      const lost = event('webglcontextlost');
-      extension.loseContext();
-      lost`);
-    const alert = page.locator('cagecast-viewer [role=alert]:visible');
-    assert.match(await alert.innerText({ timeout: 5000 }), /the browser has stopped this 3D view/);
-    assert.match(await page.evaluate('told.join()'), /^error cagecast-viewer: the browser has stopped this 3D view/);
-    assert.match(await page.evaluate('viewer.toBlob().then(() => "a picture", String)'), /has stopped this 3D view/);
-    await page.evaluate(`
-      const restored = event('webglcontextrestored');
-      extension.restoreContext();
-      restored`);
-    assert.equal(await alert.count(), 0);
-    await seen(page);
-    assert.deepEqual(await picture(), before);
-    assert.equal(await page.evaluate('told.length = 0; for (const run of waiting.splice(0)) run(); told.length'), 0);
-    assert.deepEqual(await picture(), before);
-  });
-
-  test('is loaded again where it stays in view and its context does not come back, once; then when it is seen again', async () => {
-    const before = await picture();
-    const told = await page.evaluate<string[]>(`(async () => {
-      const stop = async () => {
+      globalThis.stop = async () => {
         told.length = 0;
         const lost = event('webglcontextlost');
-        part('canvas').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext();
+        globalThis.extension = part('canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
+        extension.loseContext();
         await lost;
       };
-      const goOn = () => { for (const run of waiting.splice(0)) run(); };
-      const loaded = async () => { for (let i = 0; i < 3000 && !told.includes('load'); ++i) await new Promise((done) => setTimeout(done, 20)); };
-      const frames = async () => { for (let i = 0; i < 2; ++i) await new Promise((done) => requestAnimationFrame(() => setTimeout(done))); };
-      const kinds = () => told.map((text) => text.split(' ')[0]).join();
-      const shows = async (isShown) => {
-        Object.defineProperty(document, 'hidden', { value: !isShown, configurable: true });
-        document.dispatchEvent(new Event('visibilitychange'));
+      await stop();`);
+    assert.match(await alert().innerText({ timeout: 5000 }), /the browser has stopped this 3D view/);
+    assert.match(await inPage('return told.join()'), /^error cagecast-viewer: the browser has stopped this 3D view/);
+    assert.match(await inPage('return viewer.toBlob().then(() => "a picture", String)'), /has stopped this 3D view/);
+    await inPage(`const restored = event('webglcontextrestored'); extension.restoreContext(); await restored`);
+    assert.equal(await alert().count(), 0);
+    await seen({ page, faults: [] });
+    assert.deepEqual(await picture(), before);
+    assert.equal(await inPage<number>('told.length = 0; goOn(); return told.length'), 0);
+  });
+
+  steady(
+    'is loaded again where it stays in view and its context does not come back, once; then when it is seen again',
+    async () => {
+      const told = await inPage<string[]>(`
+        const seen = [];
+        const note = (when) => seen.push(when + ': ' + told.map((text) => text.split(' ')[0]).join());
+        const stopForGood = async () => { await stop(); goOn(); };
+        const shows = async (isShown) => {
+          Object.defineProperty(document, 'hidden', { value: !isShown, configurable: true });
+          document.dispatchEvent(new Event('visibilitychange'));
+          await frames();
+        };
+        await stopForGood();
+        await loaded();
         await frames();
-      };
-      const seen = [];
-      await stop();
-      goOn();
-      await loaded();
-      await frames();
-      seen.push('stays in view: ' + kinds());
-      await stop();
-      goOn();
-      await frames();
-      seen.push('again: ' + kinds());
-      told.length = 0;
-      await shows(false);
-      await shows(true);
-      await loaded();
-      seen.push('the page is shown again: ' + kinds());
-      await shows(false);
-      await stop();
-      goOn();
-      await frames();
-      seen.push('hidden: ' + kinds());
-      await shows(true);
-      await loaded();
-      delete document.hidden;
-      return seen;
-    })()`);
-    assert.deepEqual(told, [
-      'stays in view: error,load',
-      'again: error',
-      'the page is shown again: load',
-      'hidden: error',
-    ]);
-    assertSameModel(await picture(), before);
-  });
+        note('stays in view');
+        await stopForGood();
+        await frames();
+        note('again');
+        told.length = 0;
+        await shows(false);
+        await shows(true);
+        await loaded();
+        note('the page is shown again');
+        await shows(false);
+        await stopForGood();
+        await frames();
+        note('hidden');
+        await shows(true);
+        await loaded();
+        delete document.hidden;
+        return seen;`);
+      const expected = ['stays in view: error,load', 'again: error', 'the page is shown again: load', 'hidden: error'];
+      assert.deepEqual(told, expected);
+    },
+    assertSameModel,
+  );
 
-  test('says that the page has more 3D views than the browser allows, and draws again when it is put in anew', async () => {
-    const before = await picture();
-    const alert = page.locator('cagecast-viewer [role=alert]:visible');
-    await page.evaluate(
-      'globalThis.others = Array.from({ length: 16 }, () => document.createElement("canvas").getContext("webgl2")); 0',
-    );
-    assert.match(await alert.innerText({ timeout: 5000 }), /more of them than it allows/);
-    await page.evaluate('for (const other of others) other.getExtension("WEBGL_lose_context")?.loseContext()');
-    await page.evaluate(`(async () => {
-      const place = viewer.parentNode;
-      viewer.remove();
-      await new Promise((done) => setTimeout(done));
-      place.append(viewer);
-      await next();
-    })()`);
-    assert.equal(await alert.count(), 0);
-    assertSameModel(await picture(), before);
-    assert.match(warnings.splice(0).join(), /too many/i);
-  });
-
-  test('is loaded again when it comes into view after the browser has stopped it', async () => {
-    const before = await picture();
-    const alert = page.locator('cagecast-viewer [role=alert]:visible');
-    await page.evaluate(
-      'globalThis.others = Array.from({ length: 16 }, () => document.createElement("canvas").getContext("webgl2")); 0',
-    );
-    await alert.waitFor({ timeout: 5000 });
-    const frame = 'new Promise((done) => requestAnimationFrame(() => setTimeout(done)))';
-    const told = await page.evaluate<string[]>(`(async () => {
-      viewer.hidden = true;
-      // One for the observer, and one for what it has seen.
-      for (let i = 0; i < 2; ++i) await ${frame};
+  for (const [name, comeBack] of [
+    [
+      'says that the page has more 3D views than the browser allows, and draws again when it is put in anew',
+      'leave(); viewer.remove(); await task(); place.append(viewer); return [await next()]',
+    ],
+    [
+      'is loaded again when it comes into view after the browser has stopped it',
+      // Two frames: one for the observer, and one for what it has seen.
+      `viewer.hidden = true;
+      await frames();
       viewer.hidden = false;
       told.length = 0;
-      for (let i = 0; i < 2; ++i) await ${frame};
+      await frames();
       if (told.length === 0 && !part('.error:not([hidden])')) await next();
-      return told;
-    })()`);
-    await page.evaluate('for (const other of others) other.getExtension("WEBGL_lose_context")?.loseContext()');
-    assert.deepEqual(told, ['load']);
-    assert.equal(await alert.count(), 0);
-    assertSameModel(await picture(), before);
-    assert.match(warnings.splice(0).join(), /too many/i);
-  });
+      leave();
+      return told;`,
+    ],
+  ] as const)
+    steady(
+      name,
+      async () => {
+        await inPage('crowd()');
+        assert.match(await alert().innerText({ timeout: 5000 }), /more of them than it allows/);
+        assert.deepEqual(await inPage(comeBack), ['load']);
+        assert.match(warnings.splice(0).join(), /too many/i);
+      },
+      assertSameModel,
+    );
 
   test('shows what is wrong, by attribute and address; the last change wins', async () => {
     const many = new GlbMaker();
     const mesh = many.mesh(tetrahedron());
     for (let n = 0; n < 2000; ++n) many.node({ mesh });
     writeFileSync(join(user, 'out/web-component/many.glb'), many.finish());
-    const wrong: [string, string, RegExp][] = [
+    const tooMany = /many\.glb cannot be read \(.* 2000 places .*; the limit "instances" is 1,000\)$/;
+    for (const [name, value, message] of [
       ['target', 'missing.glb', /^error target: http.*missing\.glb: 404/],
-      [
-        'target',
-        'many.glb',
-        /^error target: http.*many\.glb cannot be read \(.* 2000 places .*; the limit "instances" is 1,000\)$/,
-      ],
-      ['cage', 'paint-tiger.png', /^error cage: http.*paint-tiger\.png cannot be read/],
+      ['target', 'many.glb', new RegExp(`^error target: http.*${tooMany.source}`)],
+      ['cage', tiger, /^error cage: http.*paint-tiger\.png cannot be read/],
       ['paint', 'cage.glb', /^error paint: http.*cage\.glb is not a picture/],
       ['feather', 'wide', /^error cagecast-viewer: feather is "wide", not a number/],
-    ];
-    for (const [name, value, message] of wrong) {
-      const before = await page.evaluate<string | null>(`viewer.getAttribute("${name}")`);
-      const said = await page.evaluate<string>(`viewer.setAttribute("${name}", "${value}"); next()`);
-      assert.match(said, message);
-      assert.equal(await page.evaluate('part("[role=alert]").textContent'), said.replace('error ', ''));
+    ] as const) {
+      const before = await inPage<string | null>(`return viewer.getAttribute("${name}")`);
+      const wrong = await said({ [name]: value });
+      assert.match(wrong, message);
+      assert.equal(await alert().textContent(), wrong.replace('error ', ''));
       // What would fail is given up; only the last is loaded.
-      const told = await page.evaluate<string[]>(
-        `(async () => {
-          const was = ${JSON.stringify(before)};
-          viewer.setAttribute("${name}", "other-${value}");
-          await new Promise((done) => setTimeout(done));
-          was === null ? viewer.removeAttribute("${name}") : viewer.setAttribute("${name}", was);
-          await next();
-          await new Promise((done) => setTimeout(done, 100));
-          return told;
-        })()`,
-      );
+      const told = await inPage<string[]>(`
+        set({ ${name}: "other-${value}" });
+        await task();
+        set(${JSON.stringify({ [name]: before })});
+        await next();
+        await new Promise((done) => setTimeout(done, 100));
+        return told;`);
       assert.deepEqual(told, ['load'], name);
-      assert.ok(await page.isHidden('cagecast-viewer [role=alert]'));
+      assert.equal(await alert().count(), 0);
     }
   });
 
   test('frees its graphics when it leaves the page, and comes back', async () => {
-    const lost = await page.evaluate(
-      `(async () => {
-        const [canvas, place] = [part('canvas'), viewer.parentNode];
-        viewer.remove();
-        await new Promise((done) => setTimeout(done, 50));
-        const lost = canvas.getContext('webgl2').isContextLost();
-        for (let i = 0; i < 20; ++i) {
-          const other = document.createElement('cagecast-viewer');
-          other.setAttribute('target', 'target.glb');
-          place.append(other);
-          await new Promise((done) => setTimeout(done));
-          other.remove();
-          await new Promise((done) => setTimeout(done));
-        }
-        place.append(viewer);
-        await next();
-        return lost;
-      })()`,
-    );
+    const lost = await inPage<boolean>(`
+      const canvas = part('canvas');
+      viewer.remove();
+      await task();
+      const lost = canvas.getContext('webgl2').isContextLost();
+      for (let i = 0; i < 20; ++i) {
+        const other = document.createElement('cagecast-viewer');
+        other.setAttribute('target', '${target}');
+        place.append(other);
+        await task();
+        other.remove();
+        await task();
+      }
+      place.append(viewer);
+      await next();
+      return lost;`);
     assert.equal(lost, true);
     assert.ok(orange(await picture()) > 400);
-    assert.deepEqual(
-      warnings.filter((text) => /too many/i.test(text)),
-      [],
-    );
-    assert.deepEqual(
-      faults.filter((text) => !/missing/.test(text)),
-      [],
-    );
+    const tooMany = warnings.filter((text) => /too many/i.test(text));
+    const others = faults.filter((text) => !/missing/.test(text));
+    assert.deepEqual([tooMany, others], [[], []]);
   });
 });

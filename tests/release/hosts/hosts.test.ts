@@ -1,12 +1,21 @@
 import assert from 'node:assert/strict';
-import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { setTimeout } from 'node:timers/promises';
 import type { Browser } from 'playwright-core';
 import { createServer } from 'vite';
 import { launchChromium } from '../../support/chromium.js';
-import { hostTools, installPacked, run, serve } from './install.js';
+import {
+  answer,
+  answerOf,
+  checkTypes,
+  hostTools,
+  installPacked,
+  linkPackages,
+  programOf,
+  run,
+  serve,
+} from './install.js';
 
 const user = installPacked();
 const dist = join(user, 'node_modules/cagecast/dist');
@@ -17,25 +26,9 @@ const manifest = JSON.parse(readFileSync('package.json', 'utf8')) as {
   typesVersions: { '*': Record<string, string[]> };
 };
 
-/** Each file of the package that a script names: the WebAssembly of the core, both workers, and a template. */
-const program = `
-import { init, transfer } from 'cagecast/slim';
-import { transfer as transferAsync } from 'cagecast/worker';
-import { loadTemplate, makeCage } from 'cagecast/cages';
-const mesh = (z) => ({ positions: new Float32Array([0, 0, z, 1, 0, z, 0, 1, z]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array([0, 0, 1, 0, 0, 1]) });
-const tetrahedron = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]), indices: new Uint32Array([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]) };
-const steps = [
-  async () => { await init(); return transfer(mesh(0.1), mesh(0)).zones.length; },
-  async () => (await transferAsync(mesh(0.1), mesh(0))).zones.length,
-  async () => (await makeCage(tetrahedron, { triangles: 100, voxels: 40 })).uvs.constructor.name,
-  async () => (await loadTemplate('car')).kind,
-];
-export const answer = await Promise.all(steps.map((step) => step().catch((error) => error.message)));
-globalThis.answer = answer;
-`;
-const answer = [3, 3, 'Float32Array', 'prop'];
+const program = programOf('cagecast/slim');
 /** The same, of the entry with its WebAssembly within. */
-const inlined = program.replace('cagecast/slim', 'cagecast');
+const inlined = programOf('cagecast');
 
 const put = (folder: string, files: Record<string, string>) => {
   mkdirSync(join(user, folder), { recursive: true });
@@ -92,52 +85,26 @@ describe('TypeScript before 5.7', () => {
     assert.deepEqual(manifest.typesVersions['*'], Object.fromEntries(exported));
   });
 
-  test('no declaration has what they do not know', () => {
+  test('no declaration has what they do not know, or a type of three.js, which has other parameters in r165', () => {
     for (const name of readdirSync(dist, { recursive: true, encoding: 'utf8' }))
       if (name.endsWith('.d.ts'))
-        assert.doesNotMatch(readFileSync(join(dist, name), 'utf8'), /\b(\w+\d+Array|DataView)<Array/, name);
-  });
-
-  test('no declaration has a type that was inferred from those of three.js, which have other parameters in r165', () => {
-    for (const name of readdirSync(dist, { recursive: true, encoding: 'utf8' }))
-      if (name.endsWith('.d.ts'))
-        assert.doesNotMatch(readFileSync(join(dist, name), 'utf8'), /import\("three"\)/, name);
+        assert.doesNotMatch(
+          readFileSync(join(dist, name), 'utf8'),
+          /\b(\w+\d+Array|DataView)<Array|import\("three"\)/,
+          name,
+        );
   });
 
   for (const [version, module, moduleResolution] of checked)
     test(`${version} sees no any, with moduleResolution ${moduleResolution}`, () => {
-      const folder = `types-${version}-${moduleResolution}`;
-      const compilerOptions = {
-        module,
-        moduleResolution,
-        target: 'es2022',
-        lib: ['es2022', 'dom'],
-        strict: true,
-        noEmit: true,
-        types: [],
-        // The types of three.js and glTF-Transform are for newer ones.
-        skipLibCheck: true,
-        preserveSymlinks: true,
-      };
-      const files = ['consumer.ts'];
-      put(folder, {
-        'package.json': '{ "type": "module" }',
-        'tsconfig.json': JSON.stringify({ compilerOptions, files }),
-        'consumer.ts': consumer,
-      });
-      put(`${folder}/node_modules/@types`, {});
-      mkdirSync(join(user, folder, 'node_modules/@gltf-transform'));
-      for (const name of ['three', '@types/three', '@gltf-transform/core', 'property-graph'])
-        symlinkSync(resolve('node_modules', name), join(user, folder, 'node_modules', name));
-      run(process.execPath, [join(hostTools, `typescript-${version}/bin/tsc`), '-p', '.'], join(user, folder));
+      const folder = join(user, `types-${version}-${moduleResolution}`);
+      const tsc = join(hostTools, `typescript-${version}`);
+      linkPackages(folder, ['three', '@types/three', '@gltf-transform/core', 'property-graph']);
+      // The types of three.js and glTF-Transform are for newer ones.
+      checkTypes(tsc, folder, consumer, { module, moduleResolution, skipLibCheck: true });
       // Its own types are checked too, where no others are needed.
-      const own = { ...compilerOptions, skipLibCheck: false };
-      put(folder, {
-        'tsconfig.json': JSON.stringify({ compilerOptions: own, files }),
-        'consumer.ts': entries.map((name, i) => `export * as e${i} from '${name}';`).join('\n'),
-      });
-      if (moduleResolution === 'node16')
-        run(process.execPath, [join(hostTools, `typescript-${version}/bin/tsc`), '-p', '.'], join(user, folder));
+      const all = entries.map((name, i) => `export * as e${i} from '${name}';`).join('\n');
+      if (moduleResolution === 'node16') checkTypes(tsc, folder, all, { module, moduleResolution });
     });
 });
 
@@ -175,20 +142,7 @@ describe('in Chromium', () => {
     site?.close();
   });
 
-  async function visit(path: string, origin = site.origin): Promise<unknown> {
-    const visited = await browser.newPage();
-    const faults: string[] = [];
-    visited.on('pageerror', (error) => faults.push(String(error)));
-    await visited.goto(`${origin}/${path}`);
-    let found: unknown;
-    for (const end = Date.now() + 60000; found === undefined && Date.now() < end && faults.length === 0; ) {
-      found = await visited.evaluate('globalThis.answer');
-      await setTimeout(20);
-    }
-    assert.deepEqual(faults, [], path);
-    await visited.close();
-    return found;
-  }
+  const visit = (path: string, origin = site.origin) => answerOf(browser, `${origin}/${path}`);
 
   test('an import map of the public names', async () => {
     const at = (file: string) => `/node_modules/cagecast/dist/${file}.js`;
