@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,8 +18,8 @@ inline Position toPosition(const Vec3& p) {
 inline Vec3 positionOf(const Landmark& landmark) { return toVec3(landmark.position); }
 
 inline std::vector<Vec3> positionsOf(const std::vector<Landmark>& landmarks) {
-  std::vector<Vec3> out;
-  for (const Landmark& landmark : landmarks) out.push_back(positionOf(landmark));
+  std::vector<Vec3> out(landmarks.size());
+  std::transform(landmarks.begin(), landmarks.end(), out.begin(), positionOf);
   return out;
 }
 
