@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
-import { ball, islandCage } from '../../support/models';
-import { difference, look, modelArea, shareOfHue } from '../../support/picture';
-import { drop, Site, settled, shownError, type Upload, type Visit } from '../../support/site';
+import { ball, islandCage } from '../../../support/models';
+import { difference, look, modelArea, shareOfHue } from '../../../support/picture';
+import { drop, Site, settled, shownError, type Upload, type Visit } from '../../../support/site';
 
 const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
 
