@@ -20,10 +20,15 @@ const kCheapDrawing = `
   HTMLCanvasElement.prototype.getContext = function (type, options) {
     return getContext.call(this, type, options?.antialias ? { ...options, antialias: false } : options)
   }`;
+/** A script that takes WebGL away, for pages of which no picture is needed: drawing takes most of the time. */
+export const kNoWebGl = `HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
+  apply: (original, canvas, args) => (String(args[0]).startsWith('webgl') ? null : Reflect.apply(original, canvas, args)),
+});`;
 /** The guide is offered at first visits only. */
 const kSecondVisit = `try { localStorage.setItem('cagecast-guide', 'seen') } catch {}`;
-/** Logged by Playwright when service workers are blocked, and by Chromium when it reads back what WebGL drew, to composite the page. */
-const kExpected = /^Service Worker registration blocked by Playwright$|GPU stall due to ReadPixels/;
+/** Logged by Playwright when service workers are blocked, by Chromium when it reads back what WebGL drew, and by three.js without it. */
+const kExpected =
+  /^Service Worker registration blocked by Playwright$|GPU stall due to ReadPixels|Error creating WebGL context/;
 
 /** A file inside the repository. */
 export const inRepository = (...names: string[]): string => path.join(kRoot, ...names);

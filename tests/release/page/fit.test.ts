@@ -1,9 +1,6 @@
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { readFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
-import { forPeople } from '../../../web/src/state/wording';
-import { inspection, reportedCounts } from '../../support/command';
+import { reportedCounts } from '../../support/command';
 import { glbOf, tetrahedron } from '../../support/glb';
 import { difference, look, modelArea } from '../../support/picture';
 import {
@@ -41,23 +38,6 @@ async function found(): Promise<{ verdict: string; findings: { sentence: string;
     verdict: (await panel.locator('#fit-verdict').textContent())!,
     findings: items.map(([sentence, advice]) => ({ sentence: sentence!.replace(/\.$/, ''), advice: advice! })),
   };
-}
-
-for (const name of ['car', 'human-misaligned', 'lizard']) {
-  test(`${name}: the page shows the findings of cagecast inspect`, async () => {
-    const { page, complaints } = visit;
-    await drop(page, [
-      glb('target.glb', readFileSync(asset(name, 'target.glb'))),
-      glb('cage.glb', readFileSync(asset(name, 'cage.glb'))),
-    ]);
-    assert.equal(await settled(page), 'ready', await shownError(page));
-    const { verdict, findings } = await inspection(asset(name, 'target.glb'), asset(name, 'cage.glb'));
-    assert.deepEqual(await found(), {
-      verdict,
-      findings: findings.map(({ sentence, advice }) => ({ sentence: forPeople(sentence), advice: forPeople(advice) })),
-    });
-    assert.deepEqual(complaints, []);
-  });
 }
 
 test('a finding highlights its part, and locks it as proposed', async () => {
@@ -128,70 +108,4 @@ test('a large model is inspected on request', async () => {
   assert.equal(await page.locator('#fit-verdict').textContent(), '');
   await page.getByRole('button', { name: 'Inspect the cage' }).click();
   assert.match((await found()).verdict, /^(good|usable|unfit)$/);
-});
-
-const human = (): Buffer => readFileSync(asset('human', 'target.glb'));
-
-/** Clicks, and waits until the cage that comes of it is shown. @returns What the page says of it. */
-async function made(button: string): Promise<string> {
-  const { page } = visit;
-  const before = await page.locator('#cage-note').textContent();
-  await page.getByTestId(button).click();
-  await page.waitForFunction(
-    (text) =>
-      document.querySelector('#cage-note')!.textContent !== text ||
-      !document.querySelector<HTMLElement>('#alert')!.hidden,
-    before,
-  );
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  return (await page.locator('#cage-note').textContent())!;
-}
-
-test('a model without a cage gets one: made for it, or a template’s; it is saved as a file that fits', async () => {
-  const { page, complaints } = visit;
-  await page.getByTestId('sample-select').selectOption({ index: 0 });
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  assert.ok(await page.locator('#no-cage').isHidden(), 'a sample has a cage');
-  await drop(page, [glb('figure.glb', human())]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
-
-  assert.match(await made('make-cage'), /^A cage of \d+ triangles was made/);
-  assert.equal(await page.locator('#cage-name').textContent(), 'figure-cage.glb');
-  assert.notEqual((await found()).verdict, 'unfit');
-  const counts = await shownCounts(page);
-  assert.ok(counts.cosmetic > counts.uncovered && counts.uncovered > 0, JSON.stringify(counts));
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('save-cage').click()]);
-  assert.equal(download.suggestedFilename(), 'figure-cage.glb');
-  const bytes = await readFile(await download.path());
-
-  await page.locator('#template-select').selectOption('human-head');
-  assert.match(await made('fit-cage'), /^The template was fitted/);
-  const { verdict } = await found();
-  assert.notEqual(verdict, 'unfit');
-  const missing = await page.locator('#cage-missing').textContent();
-  assert.match(missing!, verdict === 'good' ? /^$/ : /^(Landmarks that were not found: [a-z, ]+\.)?$/);
-  assert.notDeepEqual(await shownCounts(page), counts);
-
-  await drop(page, [glb('figure.glb', human()), glb('figure-cage.glb', bytes)]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  assert.deepEqual(await shownCounts(page), counts, 'the saved cage is the one that was shown');
-  assert.deepEqual(complaints, []);
-});
-
-test('a fit for which too little is found asks for landmarks; cancelling leaves everything as it was', async () => {
-  const { page } = visit;
-  const before = await page.locator('#cage-name').textContent();
-  await page.evaluate(() => {
-    for (const id of ['make-cage', 'cancel']) document.querySelector<HTMLElement>(`[data-testid=${id}]`)!.click();
-  });
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  assert.equal(await page.locator('#cage-name').textContent(), before);
-
-  await drop(page, [glb('pyramid.glb', glbOf(tetrahedron()))]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  await page.locator('#template-select').selectOption('human-body');
-  await page.getByTestId('fit-cage').click();
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  assert.match((await page.getByTestId('cage-note').textContent())!, /^Of 4 landmarks that are needed, \d were found/);
-  await page.getByTestId('landmark-ask').waitFor();
 });

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import type { Locator, Page } from 'playwright-core';
+import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
 import {
   asset,
@@ -16,16 +16,11 @@ import {
   workedFor,
 } from '../../support/cages';
 import { difference, look, modelArea } from '../../support/picture';
-import { saved } from '../../support/saved';
-import { drop, glb, passed, Site, type Visit } from '../../support/site';
+import { drop, glb, Site, type Visit } from '../../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
 after(() => site?.close());
-
-/** Waits until the browser keeps everything. */
-const kept = (page: Page): Promise<unknown> =>
-  page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
 
 test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit follows, and the cage is saved with them', async () => {
   const { page, complaints } = await site.visit();
@@ -139,106 +134,6 @@ test('with the keyboard alone: a model is opened, a template fitted, a landmark 
   assert.deepEqual(complaints, []);
 });
 
-test('a fit and the landmarks of the user are there after a reload, and in the project file; the cage can still be saved', async () => {
-  const { page, complaints } = await site.visit();
-  await drop(page, [head()]);
-  await ready(page);
-  await fitted(page);
-  await drag(page, 'mouth_corner_left', 0, 12);
-  await worked(page);
-  const before = await savedCage(page);
-  await kept(page);
-  await page.reload();
-  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
-  await ready(page);
-  assert.deepEqual(await savedCage(page), before);
-  await page.getByTestId('landmarks').waitFor();
-  assert.ok(await page.locator('#landmark-spots').isHidden(), 'no tool is taken up by itself');
-  await page.locator('#landmark-show').click();
-  const labels = (of: typeof page) =>
-    Promise.all(
-      ['mouth_corner_left', 'mouth_corner_right', 'nose_tip'].map((name) =>
-        of.locator(`[data-landmark=${name}]`).getAttribute('aria-label'),
-      ),
-    );
-  const wanted = ['left mouth corner, placed by you', 'right mouth corner, placed by you', 'nose tip, found'];
-  assert.deepEqual(await labels(page), wanted);
-  const { name, bytes } = await saved(page, 'save-project');
-
-  const fresh = await site.visit();
-  await drop(fresh.page, [{ name, mimeType: '', buffer: bytes }]);
-  await fresh.page.locator('#target-name', { hasText: 'bust.glb' }).waitFor();
-  await ready(fresh.page);
-  await fresh.page.getByTestId('landmarks').waitFor();
-  assert.deepEqual(await labels(fresh.page), wanted);
-  await fresh.page.locator('#landmark-reset').click();
-  await worked(fresh.page);
-  assert.notDeepEqual(await savedCage(fresh.page), before, 'it is fitted again, without them');
-
-  // One that somebody has changed by hand.
-  const length = bytes.readUInt32LE(12);
-  const text = bytes.subarray(16, 16 + length).toString();
-  const changed = Buffer.from(text.replace('"template":"human-head"', '"template":"no-template"'));
-  assert.notEqual(changed.toString(), text);
-  const heading = Buffer.from(bytes.subarray(0, 16));
-  heading.writeUInt32LE(changed.length, 12);
-  const buffer = Buffer.concat([heading, changed, bytes.subarray(16 + length)]);
-  await drop(fresh.page, [{ name: 'x.cagecast', mimeType: '', buffer }]);
-  await fresh.page
-    .locator('#error', { hasText: 'x.cagecast: the project is damaged: it has an unknown template' })
-    .waitFor();
-  assert.deepEqual([...complaints, ...fresh.complaints], []);
-});
-
-/** Asks for a fit to a car, which lacks landmarks of a head, and places one. @returns Where the page counts them, and what it says there. */
-async function tooFew(page: Page): Promise<{ count: Locator; placed: string }> {
-  await drop(page, [glb('car.glb', asset('car', 'target.glb'))]);
-  await page.locator('#target-name', { hasText: 'car.glb' }).waitFor();
-  await ready(page);
-  await page.locator('#template-select').selectOption('human-head');
-  await page.getByTestId('fit-cage').click();
-  await page.getByTestId('landmark-ask').waitFor();
-  await page.locator('#view').press('Enter');
-  const count = page.locator('#landmark-count', { hasText: 'by you' });
-  const placed = (await count.textContent())!;
-  assert.doesNotMatch(placed, /, 0 by you/, 'the model is under the cross');
-  return { count, placed };
-}
-
-test('landmarks stay while too few are placed, whatever rules are chosen meanwhile', async () => {
-  const { page, complaints } = await site.visit();
-  const { count, placed } = await tooFew(page);
-  const note = page.locator('#cage-note', { hasText: 'place more on the model' });
-  for (const preset of ['paper', 'default']) {
-    await page.getByTestId('preset').selectOption(preset);
-    await passed(page, 500);
-    await ready(page);
-    assert.equal(await count.textContent(), placed, preset);
-    for (const what of [page.getByTestId('landmarks'), note]) assert.ok(await what.isVisible(), preset);
-  }
-  assert.deepEqual(complaints, []);
-});
-
-test('landmarks that are too few for a fit are there after a reload, and gone with their model', async () => {
-  const { page, complaints } = await site.visit();
-  const { count, placed } = await tooFew(page);
-  await kept(page);
-  await page.reload();
-  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
-  await ready(page);
-  await page.locator('#cage-note', { hasText: 'place more on the model' }).waitFor();
-  assert.equal(await count.textContent(), placed);
-
-  await drop(page, [glb('lizard.glb', asset('lizard', 'target.glb'))]);
-  await page.locator('#target-name', { hasText: 'lizard.glb' }).waitFor();
-  await ready(page);
-  assert.ok(await page.getByTestId('landmarks').isHidden());
-  const { bytes } = await saved(page, 'save-project');
-  const { parts } = JSON.parse(bytes.subarray(16, 16 + bytes.readUInt32LE(12)).toString());
-  assert.ok(parts.models && !parts.landmarks, 'they are of that model alone');
-  assert.deepEqual(complaints, []);
-});
-
 test('an avatar’s landmarks are out of reach for undo and redo once another one is on the stage', async () => {
   const { page, complaints } = await site.visit();
   const names = ['one', 'two', 'three'];
@@ -303,48 +198,6 @@ test('keys that leave a dot for another tool leave the focus on the stage, where
   assert.deepEqual(complaints, []);
 });
 
-/** Fits a cage and moves it by hand. @returns What the cage is now, as asked, and what it is after the move. */
-async function changedByHand(page: Page) {
-  await drop(page, [head()]);
-  await ready(page);
-  await fitted(page);
-  const cage = async () => (await saved(page, 'save-cage')).bytes.toString('base64');
-  await page.getByTestId('adjust-cage').click();
-  await workedFor(page, () => page.locator('[data-handle=x]').press('ArrowRight'));
-  const changed = await cage();
-  await page.locator('#landmark-show').click();
-  return { cage, changed };
-}
-
-test('a key that finds no model beside a landmark leaves the cage as it was changed by hand', async () => {
-  const { page, complaints } = await site.visit();
-  const { cage, changed } = await changedByHand(page);
-  await page.locator('[data-landmark=crown]').press('ArrowUp');
-  await page.locator('#summary', { hasText: 'The model ends there.' }).waitFor({ state: 'attached' });
-  await passed(page, 1000);
-  await ready(page);
-  assert.ok((await cage()) === changed, 'it is not fitted again');
-  assert.deepEqual(complaints, []);
-});
-
-test('undoing what was done to a landmark brings the cage back that was there, though it had been changed by hand', async () => {
-  const { page, complaints } = await site.visit();
-  const { cage, changed } = await changedByHand(page);
-  await workedFor(page, () => page.locator('[data-landmark=nose_tip]').press('ArrowDown'));
-  const moved = await cage();
-  assert.ok(moved !== changed, 'it is fitted again');
-  await workedFor(page, () => page.keyboard.press('Control+z'));
-  assert.ok((await cage()) === changed, 'the changed cage is back');
-  assert.equal(
-    await page.locator('[data-landmark=nose_tip]').getAttribute('aria-label'),
-    'nose tip, found',
-    'and the landmark',
-  );
-  await workedFor(page, () => page.keyboard.press('Control+Shift+z'));
-  assert.ok((await cage()) === moved, 'the fit is back');
-  assert.deepEqual(complaints, []);
-});
-
 /** A head to which a template was fitted; while `window.holds` is set, further fits are held back. */
 async function fittedHead(): Promise<Visit> {
   const visit = await site.visit({}, holdingBack('fitCage'));
@@ -374,31 +227,6 @@ test('a landmark that is being dragged when an earlier fit comes is not lost', a
   const { landmarks } = await savedCage(page);
   for (const name of ['nose_tip', 'mouth_corner_left', 'mouth_corner_right'])
     assert.notDeepEqual(landmarks[name], found.landmarks[name], name);
-  assert.deepEqual(complaints, []);
-});
-
-test('fitting the template anew, which forgets the landmarks of the user, is a step that can be undone', async () => {
-  const { page, complaints } = await site.visit();
-  await drop(page, [head()]);
-  await ready(page);
-  await fitted(page);
-  const found = await savedCage(page);
-  await drag(page, 'mouth_corner_left', 0, 12);
-  await worked(page);
-  const moved = await savedCage(page);
-  await workedFor(page, () => page.getByTestId('fit-cage').click());
-  assert.deepEqual(await savedCage(page), found);
-  const undo = () => page.getByTestId('undo').getAttribute('title');
-  assert.equal(await undo(), 'Undo: fitting the template');
-  await workedFor(page, () => page.keyboard.press('Control+z'));
-  assert.deepEqual(await savedCage(page), moved);
-  assert.equal(
-    await page.locator('[data-landmark=mouth_corner_left]').getAttribute('aria-label'),
-    'left mouth corner, placed by you',
-  );
-  assert.equal(await undo(), 'Undo: moving the left mouth corner');
-  await workedFor(page, () => page.keyboard.press('Control+Shift+z'));
-  assert.deepEqual(await savedCage(page), found);
   assert.deepEqual(complaints, []);
 });
 

@@ -1,12 +1,10 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { asset, head, middleOf, ready } from '../../support/cages';
-import { packGlb, unpackGlb } from '../../support/glb';
+import { head, middleOf, ready } from '../../support/cages';
 import { rows } from '../../support/layers';
 import { lumpyBall } from '../../support/models';
-import { saved, validModel } from '../../support/saved';
-import { drop, glb, Site } from '../../support/site';
+import { drop, Site } from '../../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -65,21 +63,3 @@ for (const key of ['b', 's'])
     assert.deepEqual(await visible(page), [true], 'one step');
     assert.deepEqual(complaints, []);
   });
-
-test('a VRM stays one when it is saved', async () => {
-  const { page, complaints } = await site.visit();
-  const own = unpackGlb(asset('human', 'target.glb'));
-  const humanBones = [{ bone: 'head', node: own.json.scenes![0]!.nodes![0]! }];
-  own.json.extensions = { VRM: { exporterVersion: 'test', humanoid: { humanBones } } };
-  own.json.extensionsUsed = [...(own.json.extensionsUsed ?? []), 'VRM'];
-  await drop(page, [glb('ada.vrm', packGlb(own))]);
-  await ready(page);
-  for (const into of ['overlay', 'texture']) {
-    await page.locator(`#paint-into [value=${into}]`).check({ force: true });
-    const { name, bytes } = await saved(page, 'export-glb');
-    assert.equal(name, 'ada-painted.vrm');
-    await validModel(bytes);
-    assert.deepEqual(unpackGlb(bytes).json.extensions, own.json.extensions);
-  }
-  assert.deepEqual(complaints, []);
-});

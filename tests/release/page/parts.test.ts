@@ -1,17 +1,14 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Locator } from 'playwright-core';
-import { reportedCounts } from '../../support/command';
 import { glbOf, tetrahedron } from '../../support/glb';
 import { balls, islandCage } from '../../support/models';
 import { difference, look, modelArea } from '../../support/picture';
 import {
   drop,
   glb,
-  inRepository,
   type ShownPart,
   Site,
-  setThreshold,
   settled,
   shownCounts,
   shownError,
@@ -29,32 +26,9 @@ before(async () => {
 after(() => site?.close());
 
 const table = (): Locator => visit.page.getByTestId('segment-table');
-/** What the command line counts on the sample that the page opens with. */
-const counted = (flags: { keep?: string; exclude?: string }) =>
-  reportedCounts(inRepository('examples/samples/lizard/target.glb'), inRepository('examples/samples/lizard/cage.glb'), {
-    preset: 'default',
-    ...flags,
-  });
 /** The choice in a row, found by what a screen reader says. */
 const choice = ({ name }: ShownPart): Locator =>
   table().getByRole('combobox', { name: `Override for ${name}`, exact: true });
-
-test('the table lists the parts by name and verdict, the least covered first', async () => {
-  const parts = await shownParts(visit.page);
-  assert.ok(parts.length > 1);
-  assert.ok(parts.some(({ culled }) => culled) && parts.some(({ culled }) => !culled), 'some pass, some do not');
-  const coverage = parts.map(({ covered }) =>
-    covered === 'hidden' ? 0 : covered === '< 1 %' ? 0.5 : Number.parseInt(covered, 10),
-  );
-  assert.deepEqual(
-    coverage,
-    coverage.toSorted((a, b) => a - b),
-  );
-  assert.equal(new Set(parts.map(({ name }) => name)).size, parts.length, 'each has a name of its own');
-  assert.ok(parts.every(({ lock }) => lock === 'auto'));
-  assert.equal(await table().getByRole('columnheader').count(), 5);
-  assert.equal(await table().getByRole('rowheader').count(), parts.length);
-});
 
 test('uncovered teeth share a row, and its override applies to all', async () => {
   const { page } = visit;
@@ -72,52 +46,6 @@ test('uncovered teeth share a row, and its override applies to all', async () =>
   await choice(teeth[0]!).selectOption('auto');
   assert.equal(await culled(), before);
   assert.deepEqual(await shownCounts(page), counts);
-});
-
-test('excluding and keeping a part changes counts and view at once, survives presets, and is reversible', async () => {
-  const { page, complaints } = visit;
-  await page.locator('input[value=result]').check({ force: true });
-  await page.mouse.move(5, 5); // off the table, where it would light up a part
-  const area = await modelArea(page);
-  const [counts, picture] = [await shownCounts(page), await look(page, area)];
-  const parts = await shownParts(page);
-  const verdictOf = async ({ name }: ShownPart): Promise<boolean> =>
-    (await shownParts(page)).find((part) => part.name === name)!.culled;
-
-  const skin = parts.filter(({ culled }) => !culled).toSorted((a, b) => b.points - a.points)[0]!;
-  await choice(skin).selectOption('exclude');
-  const excluded = await shownCounts(page);
-  assert.equal(await page.getByTestId('status').textContent(), 'ready', 'without another transfer');
-  assert.equal(await verdictOf(skin), true);
-  assert.deepEqual(excluded, await counted({ exclude: skin.name }));
-  assert.ok(excluded.cosmetic < counts.cosmetic && excluded.culled > counts.culled, JSON.stringify(excluded));
-  await choice(skin).blur();
-  assert.ok(difference(picture, await look(page, area)) > 0.05, 'its paint is gone');
-
-  await page.getByTestId('preset').selectOption('paper');
-  assert.equal(await settled(page), 'ready');
-  assert.equal(await verdictOf(skin), true);
-  assert.equal(await choice(skin).inputValue(), 'exclude');
-  await page.getByTestId('preset').selectOption('default');
-  assert.equal(await settled(page), 'ready');
-  assert.deepEqual(await shownCounts(page), excluded);
-  await choice(skin).selectOption('auto');
-  assert.deepEqual(await shownCounts(page), counts);
-
-  const eye = parts.find(({ name }) => name === 'l-eye')!;
-  await setThreshold(page, 1);
-  await choice(eye).selectOption('keep');
-  assert.equal(await verdictOf(eye), false, 'whatever the threshold');
-  await setThreshold(page, 0.5);
-  const kept = await shownCounts(page);
-  assert.deepEqual(kept, await counted({ keep: eye.name }));
-  assert.ok(kept.culled < counts.culled && kept.cosmetic > counts.cosmetic, JSON.stringify(kept));
-  await choice(eye).selectOption('auto');
-  await choice(eye).blur();
-  assert.deepEqual(await shownCounts(page), counts);
-  assert.ok(difference(picture, await look(page, area)) < 0.0005);
-  await page.locator('input[value=compare]').check({ force: true });
-  assert.deepEqual(complaints, []);
 });
 
 test('the hovered or focused part is highlighted', async () => {
@@ -149,28 +77,6 @@ test('a part focused when the card opens stays highlighted', async () => {
   assert.ok(difference(before, await look(page, area)) > 0.002, 'lit');
   await page.evaluate(() => (document.activeElement as HTMLElement).blur());
   assert.ok(difference(before, await look(page, area)) < 0.0005, 'and dark again');
-});
-
-test('the keyboard opens the table and sets overrides', async () => {
-  const { page } = visit;
-  const counts = await shownCounts(page);
-  const summary = page.locator('#parts summary');
-  await summary.focus();
-  await page.keyboard.press('Enter');
-  assert.equal(await table().isVisible(), false, 'closed');
-  await page.keyboard.press('Enter');
-  assert.equal(await table().isVisible(), true, 'open');
-  await page.keyboard.press('Tab');
-  const first = (await shownParts(page))[0]!;
-  assert.equal(
-    await page.evaluate(() => document.activeElement!.getAttribute('aria-label')),
-    `Override for ${first.name}`,
-  );
-  await page.keyboard.press('ArrowDown');
-  assert.equal((await shownParts(page))[0]!.lock, 'keep');
-  assert.equal((await shownParts(page))[0]!.culled, false);
-  await page.keyboard.press('ArrowUp');
-  assert.deepEqual(await shownCounts(page), counts);
 });
 
 test('the table follows a moving model', async () => {

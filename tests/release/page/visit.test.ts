@@ -4,7 +4,7 @@ import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
 import { asset } from '../../support/cages';
 import { difference, frames, look, modelArea } from '../../support/picture';
-import { drop, glb, Site, settled, shownCounts, shownError, shownParts, type Upload } from '../../support/site';
+import { drop, glb, Site, settled, shownError, shownParts, type Upload } from '../../support/site';
 
 const figure = (): Upload => glb('figure.glb', asset('human-body', 'target.glb'));
 
@@ -198,83 +198,6 @@ test('the wheel brings near what is under the pointer; the right button and Shif
   for (let i = 0; i < 4; i++) await page.locator('#view').press('-');
   assert.ok(Math.abs((await crown()).y - before.y) < 3, 'and all comes back');
   assert.deepEqual(complaints, []);
-});
-
-test('a verdict on the model before is not shown for the one that comes', async () => {
-  const { page, complaints } = await site.visit(
-    {},
-    // Holds the first verdict back until the next model is shown.
-    `const { set } = Object.getOwnPropertyDescriptor(Worker.prototype, 'onmessage');
-    Object.defineProperty(Worker.prototype, 'onmessage', {
-      set(handler) {
-        set.call(this, (event) => {
-          if (window.held || !event.data.answer?.verdict) return handler.call(this, event);
-          window.held = () => handler.call(this, event);
-          const observer = new MutationObserver(() => {
-            observer.disconnect();
-            window.held();
-          });
-          observer.observe(document.querySelector('#fit-findings'), { childList: true });
-        });
-      },
-    });`,
-  );
-  await page.waitForFunction(() => 'held' in window);
-  await open(page, [
-    glb('bust.glb', asset('human', 'target.glb')),
-    glb('bust-cage.glb', asset('human-misaligned', 'cage.glb')),
-  ]);
-  assert.notEqual(await verdict(page), 'good');
-  assert.deepEqual(complaints, []);
-});
-
-test('a cage beside its model is moved into place from the stage, and the layers stay', async () => {
-  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
-  await open(page, [
-    glb('bust.glb', asset('human', 'target.glb')),
-    glb('bust-cage.glb', asset('human-misaligned', 'cage.glb')),
-  ]);
-  assert.notEqual(await verdict(page), 'good');
-  await page.getByTestId('add-painting').click();
-  const before = await shownCounts(page);
-  assert.equal(await page.getByTestId('stage-remedy').textContent(), 'Move the cage');
-  assert.ok(await page.getByRole('button', { name: 'Do it: move the cage' }).first().isVisible());
-  await page.getByTestId('stage-remedy').click();
-  await page.locator('#cage-note', { hasText: 'moved into place' }).waitFor();
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  await page.locator('#stage-verdict[data-verdict=good]').waitFor();
-  assert.ok((await shownCounts(page)).cosmetic > before.cosmetic);
-  assert.deepEqual(await page.getByTestId('layer-list').locator('.name').allTextContents(), [
-    'Painting 1',
-    'UV checker',
-  ]);
-  assert.ok(await page.getByTestId('put-away').isHidden());
-
-  // Another file that cannot be opened leaves all of that alone.
-  const state = async () => [
-    await shownCounts(page),
-    await page.locator('#target-name').textContent(),
-    await page.locator('#cage-name').textContent(),
-    await page.getByTestId('undo').getAttribute('title'),
-    await page.getByTestId('stage-verdict').textContent(),
-  ];
-  const last = await state();
-  await drop(page, [{ ...glb('statue.fbx', Buffer.from('Kaydara FBX Binary  \0')), mimeType: '' }]);
-  assert.equal(await settled(page), 'error');
-  assert.match(await shownError(page), /^statue\.fbx: this is an FBX file.*convert it with Blender/);
-  assert.deepEqual(await state(), last);
-  assert.deepEqual(complaints, []);
-});
-
-test('on a desk too, colour and size are beside the tools while one paints', async () => {
-  const { page } = await site.visit({ viewport: { width: 1440, height: 900 } });
-  const quick = page.locator('#quick-paint');
-  assert.ok(await quick.isHidden());
-  await page.locator('#tools input[data-key=b]').check({ force: true });
-  const [rail, box] = [(await page.locator('#tools').boundingBox())!, (await quick.boundingBox())!];
-  assert.ok(box.x > rail.x + rail.width && box.x < rail.x + rail.width + 30, `it begins at ${box.x}`);
-  assert.ok(await page.locator('#angles').isVisible());
-  assert.deepEqual(await faults(page), []);
 });
 
 test('while one paints, colour, size, undo and redo are on the stage; a part that is clicked can be chosen for', async () => {

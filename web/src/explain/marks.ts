@@ -14,13 +14,14 @@ import {
   Vector3,
 } from 'three';
 import { cornersOf, type Surface } from '../state/surface';
+import { kZones } from '../state/zones';
 import type { BoundaryLoops } from './boundary-loops';
 import type { Explanation } from './explanation';
 import type { Path } from './path';
 
 const kCageColor = '#19b394';
-/** Colours of the spot by zone, as in overlay/materials.ts; cosmetic is in the cage's colour. */
-const kSpotColors = [kCageColor, '#0072b2', '#e69f00', '#cc79a7'];
+/** Colours of the spot by zone; cosmetic is in the cage's colour. */
+const kSpotColors = kZones.map(({ name, color }) => (name === 'cosmetic' ? kCageColor : color));
 /** Colours of the ray by outcome, which later steps may overrule. */
 const kRayColors: Record<Path['outcome'], string> = {
   covered: kCageColor,

@@ -1,8 +1,9 @@
 import type { Mesh } from 'cagecast';
+import { askWorker } from '../platform/ask-worker';
 import type { Rules } from '../state/choices';
 import type { ExtractedMesh, Model } from '../state/model';
 import type { Session } from '../state/session';
-import type { Baked, ExportReply, ExportRequest, PaintInto } from './export-messages';
+import type { Baked, ExportAnswer, ExportRequest, PaintInto } from './export-messages';
 
 /** What is exported. */
 interface Exported {
@@ -34,20 +35,11 @@ export async function exportGlb(
     options: { ...rules, ...choices },
   };
   const worker = new Worker(new URL('./export-worker.ts', import.meta.url), { type: 'module' });
-  try {
-    const reply = await new Promise<ExportReply>((resolve, reject) => {
-      worker.onmessage = ({ data }: MessageEvent<ExportReply>) => resolve(data);
-      worker.onerror = (event) =>
-        reject(
-          new Error(`${target.name}: the export could not be started${event.message ? `: ${event.message}` : ''}`),
-        );
-      worker.postMessage(request, { transfer: files.map(({ bytes }) => bytes) });
-    });
-    if ('message' in reply) throw new Error(`${target.name}: ${reply.message}`);
-    return { ...reply, glb: new Blob([reply.glb], { type: 'model/gltf-binary' }) };
-  } finally {
-    worker.terminate();
-  }
+  const transfer = files.map(({ bytes }) => bytes);
+  const { glb, baked } = await askWorker<ExportAnswer>(worker, request, transfer).catch((cause: Error) => {
+    throw new Error(`${target.name}: ${cause.message}`, { cause });
+  });
+  return { glb: new Blob([glb], { type: 'model/gltf-binary' }), ...(baked && { baked }) };
 }
 
 async function read(file: File): Promise<ArrayBuffer> {

@@ -25,5 +25,8 @@ export interface Baked {
 
 export type PaintInto = 'overlay' | 'texture';
 
-/** The model, with a summary if paint was baked into textures; or an error message. */
-export type ExportReply = { glb: Uint8Array<ArrayBuffer>; baked?: Baked } | { message: string };
+/** The model, with a summary if paint was baked into textures. */
+export interface ExportAnswer {
+  glb: Uint8Array<ArrayBuffer>;
+  baked?: Baked;
+}

@@ -2,31 +2,18 @@ import { type Document, type JSONDocument, Logger, WebIO } from '@gltf-transform
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { type BakeReport, bake, cagecast, type ImageCodec } from 'cagecast/gltf';
 import { readGltfHead } from '../loading/gltf-file';
-import { reasonOf } from '../state/wording';
+import { answerBy } from '../platform/ask-worker';
 import { avatarExtensions } from './avatar-extensions';
-import type { Baked, ExportReply, ExportRequest } from './export-messages';
+import type { Baked, ExportAnswer, ExportRequest } from './export-messages';
 import { readPixels, writePng } from './texture/pixels';
 
 /** Removed on export: the overlay shares vertices with the model, so both are written uncompressed. */
 const kCompressions = ['KHR_draco_mesh_compression', 'EXT_meshopt_compression', 'KHR_meshopt_compression'];
 
-addEventListener('message', async ({ data }: MessageEvent<ExportRequest>) => {
-  try {
-    const reply = await paintModel(data);
-    postMessage(reply satisfies ExportReply, { transfer: [reply.glb.buffer] });
-  } catch (error) {
-    postMessage({ message: reasonOf(error) } satisfies ExportReply);
-  }
-});
+answerBy(paintModel, ({ glb }) => [glb.buffer]);
 
 /** Writes the target with the new UV set, its zones, and the paint as an overlay or in its textures. */
-async function paintModel({
-  files,
-  cage,
-  texture,
-  into,
-  options,
-}: ExportRequest): Promise<Exclude<ExportReply, { message: string }>> {
+async function paintModel({ files, cage, texture, into, options }: ExportRequest): Promise<ExportAnswer> {
   const io = new WebIO()
     .setLogger(new Logger(Logger.Verbosity.SILENT))
     .registerExtensions([...ALL_EXTENSIONS, ...avatarExtensions]);

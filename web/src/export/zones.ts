@@ -1,12 +1,11 @@
 import type { Session } from '../state/session';
+import { countZones } from '../state/zones';
 
 /** The result as JSON, for tools: options, zones per vertex, and segments. */
 export function zonesJson({ shown, classification, rules: { preset, threshold }, locks }: Session): string {
   const { target, cage, projection } = shown!;
   const { zones, segmentStats } = classification!;
-  const counts = [0, 0, 0, 0];
-  for (const zone of zones) counts[zone]!++;
-  const [cosmetic, occluded, uncovered, culled] = counts;
+  const [cosmetic, occluded, uncovered, culled] = countZones(zones);
   return JSON.stringify({
     target: target.name,
     cage: cage.name,

@@ -2,21 +2,21 @@ import type { Classification, Timings } from 'cagecast';
 import { announce, element } from '../platform/page';
 import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
+import { countZones, kZones } from '../state/zones';
 
-const kZones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
-/** Titles of the steps. */
-const kSteps = {
-  weld: 'weld',
-  build: 'build',
-  project: 'project',
-  occluded: 'occluded',
-  covered: 'covered',
-  segments: 'segments',
-  recheck: 'recheck',
-  holes: 'holes',
-  seams: 'seams',
-  classify: 'classify',
-} as const;
+/** The steps, as they are shown. */
+const kSteps = [
+  'weld',
+  'build',
+  'project',
+  'occluded',
+  'covered',
+  'segments',
+  'recheck',
+  'holes',
+  'seams',
+  'classify',
+] as const;
 /** A first run that took longer by this factor is mentioned. */
 const kMuchLonger = 1.5;
 const kBeyondPaper: readonly string[] = ['recheck', 'holes', 'seams'];
@@ -24,6 +24,8 @@ const kBeyondPaper: readonly string[] = ['recheck', 'holes', 'seams'];
 /** Shows the number of vertices per zone, and the timings. */
 export function showResults(session: Session): void {
   const first = element('time-first', HTMLElement);
+  for (const { name, color } of kZones)
+    for (const mark of document.querySelectorAll<HTMLElement>(`[data-zone=${name}]`)) mark.style.background = color;
   let latest = 0;
   session.on('transfer', () => (first.hidden = true));
   session.on('zones', ({ classification, spent }) => {
@@ -40,13 +42,12 @@ export function showResults(session: Session): void {
 
 /** Shows the number of vertices per zone. */
 function showCounts({ zones, segmentStats }: Classification): void {
-  const counts = [0, 0, 0, 0];
-  for (const zone of zones) counts[zone]!++;
+  const counts = countZones(zones);
   element('count-total', HTMLElement).textContent = zones.length.toLocaleString('en');
-  kZones.forEach((zone, number) => {
-    element(`count-${zone}`, HTMLElement).textContent = String(counts[number]);
+  kZones.forEach(({ name }, number) => {
+    element(`count-${name}`, HTMLElement).textContent = String(counts[number]);
     const share = zones.length > 0 ? counts[number]! / zones.length : 0;
-    document.querySelector<HTMLElement>(`#bar [data-zone=${zone}]`)!.style.flexGrow = String(share);
+    document.querySelector<HTMLElement>(`#bar [data-zone=${name}]`)!.style.flexGrow = String(share);
   });
   const culled = segmentStats.filter((segment) => segment.culled).length;
   announce(
@@ -62,16 +63,14 @@ function showCounts({ zones, segmentStats }: Classification): void {
 function showTimings({ projection: { timings: projected, preset } }: Shown, spent: number): number {
   const timings: Timings = { ...projected, classify: spent, total: projected.total + spent };
   element('time-total', HTMLElement).textContent = round(timings.total);
-  const steps = (Object.keys(kSteps) as (keyof typeof kSteps)[]).filter(
-    (step) => preset !== 'paper' || !kBeyondPaper.includes(step),
-  );
+  const steps = kSteps.filter((step) => preset !== 'paper' || !kBeyondPaper.includes(step));
   const longest = Math.max(...steps.map((step) => timings[step]), Number.MIN_VALUE);
   element('timings', HTMLElement).replaceChildren(
     ...steps.map((step) => {
       const row = document.createElement('div');
       const name = document.createElement('dt');
       const time = document.createElement('dd');
-      name.textContent = kSteps[step];
+      name.textContent = step;
       time.textContent = round(timings[step]);
       row.style.setProperty('--share', String(timings[step] / longest));
       row.append(name, time);

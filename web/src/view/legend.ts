@@ -1,16 +1,14 @@
 import { element } from '../platform/page';
+import { kZones } from '../state/zones';
 import type { Scale } from './color-maps';
 import { cssColor } from './colors';
 
-/** The meaning of the colours in the view: zones, or a scale. */
-export type Legend = { scale: Scale } | { keys: string[] };
-
-/** Shows a legend, or hides it. */
-export function showLegend(legend: Legend | undefined): void {
+/** Shows what the colours in the view mean: zones, or a scale; or nothing. */
+export function showLegend(legend: { scale: Scale } | 'zones' | undefined): void {
   const box = element('legend', HTMLElement);
   box.hidden = legend === undefined;
   if (!legend) return;
-  box.replaceChildren(...('scale' in legend ? ofScale(legend.scale) : legend.keys.map(ofKey)));
+  box.replaceChildren(...(legend === 'zones' ? kZones.map(ofZone) : ofScale(legend.scale)));
 }
 
 function ofScale({ title, map, ticks }: Scale): HTMLElement[] {
@@ -21,11 +19,11 @@ function ofScale({ title, map, ticks }: Scale): HTMLElement[] {
   return [made('b', '', title), band, marks];
 }
 
-function ofKey(zone: string): HTMLElement {
+function ofZone({ name, color }: (typeof kZones)[number]): HTMLElement {
   const key = made('span', 'key');
   const swatch = made('i', 'swatch');
-  swatch.dataset.zone = zone;
-  key.append(swatch, zone);
+  swatch.style.background = color;
+  key.append(swatch, name);
   return key;
 }
 

@@ -3,7 +3,7 @@ import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
 import type { Mode } from '../state/view-state';
 import { type Coloring, colorByDistance, colorBySegment, colorByStretch } from './color-maps';
-import { type Legend, showLegend } from './legend';
+import { showLegend } from './legend';
 import type { Stage } from './stage';
 
 const kColorings: { [Name in Mode]?: (shown: Shown, classification: Classification) => Coloring } = {
@@ -11,8 +11,6 @@ const kColorings: { [Name in Mode]?: (shown: Shown, classification: Classificati
   distance: colorByDistance,
   stretch: colorByStretch,
 };
-
-const kZoneKeys: Legend = { keys: ['cosmetic', 'occluded', 'uncovered', 'culled'] };
 
 /** Colours the model in the view modes without paint, and shows the legend. */
 export function showViewModes(session: Session, stage: Stage): void {
@@ -27,7 +25,7 @@ export function showViewModes(session: Session, stage: Stage): void {
     if (mode === 'checker') stage.setChecker(session.checker.texture);
     const coloring = kColorings[mode]?.(shown, classification);
     if (coloring) stage.setColors(coloring.colors);
-    showLegend(mode === 'zones' ? kZoneKeys : coloring?.scale && { scale: coloring.scale });
+    showLegend(mode === 'zones' ? 'zones' : coloring?.scale && { scale: coloring.scale });
   };
   session.on('zones', update);
   session.on('view', update);

@@ -1,23 +1,9 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import type { PNG } from 'pngjs';
 import { type Report, report } from '../../../support/command';
-import { glbOf, tetrahedron } from '../../../support/glb';
-import { ball, islandCage } from '../../../support/models';
 import { type Area, difference, frames, look, modelArea, shareOfHue } from '../../../support/picture';
-import {
-  drop,
-  glb,
-  inRepository,
-  Site,
-  setThreshold,
-  settled,
-  shownError,
-  type Upload,
-  type Visit,
-  violetPaint,
-} from '../../../support/site';
+import { inRepository, Site, setThreshold, type Visit } from '../../../support/site';
 
 let site: Site;
 let visit: Visit;
@@ -40,37 +26,6 @@ async function ask(page: Page, x: number, y: number): Promise<string> {
   await page.mouse.click(x, y);
   return (await page.getByTestId('explain-bubble').isVisible()) ? bubble(page) : '';
 }
-
-test('the explanation of a spot agrees with the view', async () => {
-  const { page, complaints } = visit;
-  const area = await modelArea(page);
-  await page.getByTestId('texture-input').setInputFiles(violetPaint());
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  await mode(page, 'zones');
-  const zones = await look(page, area);
-  await mode(page, 'result');
-  const result = await look(page, area);
-
-  await choose(page, 'Explain');
-  const seen = new Set<string>();
-  for (let row = 1; row < 9; row += 2) {
-    for (let column = 3; column < 9; column++) {
-      const [x, y] = [Math.round((area.width * column) / 10), Math.round((area.height * row) / 10)];
-      const told = await ask(page, area.x + x, area.y + y);
-      const verdict = /^(Painted|Not painted: (\w+))/.exec(told)?.[0] ?? 'nothing';
-      seen.add(verdict);
-      const at = (picture: PNG): number[] => [...picture.data.subarray(4 * (y * picture.width + x)).subarray(0, 3)];
-      const [red, green, blue] = at(result) as [number, number, number];
-      const where = `${told} at ${x}, ${y}: ${at(result)}`;
-      assert.equal(verdict === 'Painted', red > green + 60 && blue > green + 60, where);
-      const [r, , b] = at(zones) as [number, number, number];
-      if (verdict === 'Not painted: occluded') assert.ok(b > r + 80, `blue: ${where}`);
-      if (verdict === 'Not painted: uncovered') assert.ok(r > b + 80, `orange: ${where}`);
-    }
-  }
-  for (const verdict of ['Not painted: occluded', 'Painted', 'nothing']) assert.ok(seen.has(verdict), [...seen].join());
-  assert.deepEqual(complaints, []);
-});
 
 test('the explanation follows the mouse, is pinned by a click, follows the threshold, and ends with Escape without a trace', async () => {
   const { page } = await site.visit({ viewport: { width: 760, height: 500 }, deviceScaleFactor: 1 });
@@ -123,88 +78,6 @@ async function findEye(page: Page, area: Area): Promise<{ x: number; y: number }
   }
   throw new Error(`none of ${pixels.length} pixels is on the eye`);
 }
-
-test('keyboard: X chooses the tool, Enter explains the centre, and screen readers get the whole text', async () => {
-  const { page } = visit;
-  await drop(page, [await ball(), await islandCage(1)]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  await page.locator('#view').focus();
-  await page.keyboard.press('x');
-  assert.equal(await page.getByRole('radio', { name: 'Explain' }).isChecked(), true);
-  assert.equal(await page.locator('.crosshair').isVisible(), true);
-  await page.keyboard.press('Enter');
-  assert.match(await bubble(page), /^Painted/);
-  assert.match(await explanation(page), /meets the cage after \d.* %, with nothing of the model before it/);
-  await page.waitForFunction(() => /^Painted: .*meets the cage/.test(document.querySelector('#summary')!.textContent!));
-  await page.keyboard.press('ArrowRight');
-  await page.keyboard.press('Enter');
-  assert.match(await bubble(page), /^Painted/);
-});
-
-test('a pinned explanation follows the model as it moves', async () => {
-  const { page } = visit;
-  await page.getByRole('button', { name: 'Explain the centre' }).click();
-  const still = await explanation(page);
-  const inflate = async (amount: string): Promise<void> => {
-    await page.locator('#deform').selectOption('inflate');
-    await page.getByTestId('amount').fill(amount);
-    await page.waitForFunction(
-      (amount) =>
-        document.querySelector<HTMLOutputElement>('#amount-value')!.value === amount &&
-        document.querySelector('#live')!.ariaBusy === 'false',
-      Number(amount).toFixed(2),
-    );
-  };
-  await inflate('-0.8');
-  const away = (told: string): number => Number.parseFloat(/, (\S+) % of the model’s diagonal away/.exec(told)![1]!);
-  assert.ok(
-    away(await explanation(page)) > away(still) + 1,
-    `${away(still)} % away, then ${away(await explanation(page))} %`,
-  );
-  await inflate('0');
-  assert.equal(await explanation(page), still);
-});
-
-for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'skinned and morphed': { pose: true } })) {
-  test(`${name}: the visible surface is explained, not what lies behind it`, async () => {
-    const { page } = visit;
-    const nearest = async (target: Upload): Promise<string> => {
-      await drop(page, [target, await islandCage(1)]);
-      assert.equal(await settled(page), 'ready', await shownError(page));
-      await page.getByRole('button', { name: 'Explain the centre' }).click();
-      return /triangle is number \d+,/.exec(await explanation(page))![0];
-    };
-    // The side of the cage that faces the viewer is the fifth; each side is of two triangles.
-    assert.match(await nearest(await ball(options)), /triangle is number (8|9),/);
-  });
-}
-
-test('each reason for being painted or not has its own text', async () => {
-  const { page } = visit;
-  const open = async (size: number): Promise<string> => {
-    await drop(page, [
-      glb('thing.glb', glbOf(tetrahedron(size), 'thing')),
-      glb('cage.glb', glbOf(tetrahedron(2), 'thing')),
-    ]);
-    assert.equal(await settled(page), 'ready', await shownError(page));
-    await page.getByRole('button', { name: 'Explain the centre' }).click();
-    return `${await bubble(page)} ${await explanation(page)}`;
-  };
-  assert.match(await open(1), /Painted.*the cage covers it, and nothing of the model lies between/s);
-  assert.match(await open(4), /Not painted: uncovered.*it lies outside the cage/s);
-  assert.match(await open(2.002), /Painted.*pokes out of the cage a little/s);
-
-  await open(1);
-  await page
-    .getByTestId('segment-table')
-    .locator('select')
-    .first()
-    .evaluate((select: HTMLSelectElement) => {
-      select.value = 'exclude';
-      select.dispatchEvent(new Event('change'));
-    });
-  assert.match(await bubble(page), /Not painted: culled\s+you excluded “thing”/);
-});
 
 test('on a phone a tap explains, and a swipe still turns the model', async () => {
   const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });

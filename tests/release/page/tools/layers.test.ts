@@ -1,13 +1,8 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Locator } from 'playwright-core';
-import { PNG } from 'pngjs';
-import { cancelOnceShown, kSlowWorker } from '../../../support/cancel';
-import { glbOf, tetrahedron } from '../../../support/glb';
-import { filled, image, names, rows, savedTexture, texel } from '../../../support/layers';
-import { difference, look, modelArea } from '../../../support/picture';
-import { saved, validModel } from '../../../support/saved';
-import { drop, glb, Site, settled, shownError, type Upload, type Visit } from '../../../support/site';
+import { filled, names, rows, savedTexture, texel } from '../../../support/layers';
+import { Site, settled, shownError, type Visit } from '../../../support/site';
 
 let site: Site;
 let visit: Visit;
@@ -31,9 +26,6 @@ after(() => site?.close());
 
 const kBands = 16;
 const kBand = 1024 / kBands;
-/** Bands of colours from clear to full, from the left to the right or from top to bottom. */
-const bands = (name: string, across: boolean, colorAt: (band: number) => readonly number[]): Upload =>
-  image(name, 1024, (x, y) => colorAt(Math.floor((across ? x : y) / kBand)));
 const below = (band: number): number[] => [
   17 * band,
   255 - 13 * band,
@@ -81,71 +73,8 @@ async function assertTexture(expected: (column: number, row: number) => number[]
     }
   }
 }
-
-const row = (name: string): Locator => rows(visit.page).filter({ hasText: name });
 const control = (role: 'slider' | 'combobox' | 'checkbox' | 'button', name: string): Locator =>
   visit.page.getByTestId('layer-list').getByRole(role, { name });
-
-async function add(upload: Upload): Promise<void> {
-  await visit.page.getByTestId('texture-input').setInputFiles(upload);
-  assert.equal(await settled(visit.page), 'ready', await shownError(visit.page));
-  await row(upload.name).waitFor();
-}
-
-test('a sample’s paint is the base layer, and another paint replaces it', async () => {
-  const { page } = visit;
-  assert.deepEqual(await names(page), ['Tiger stripes']);
-  const area = await modelArea(page);
-  const tiger = await look(page, area);
-  await page.getByRole('radio', { name: 'War paint' }).check({ force: true });
-  assert.equal(await settled(page), 'ready');
-  assert.deepEqual(await names(page), ['War paint']);
-  assert.ok(difference(tiger, await look(page, area)) > 0.05);
-});
-
-test('layers blend by the formulas of their modes, in linear light, with alpha', async () => {
-  const { page } = visit;
-  await control('button', 'Remove War paint').click();
-  assert.deepEqual(await names(page), []);
-  assert.equal(filled(await savedTexture(page)), 0, 'nothing is left');
-  await add(bands('below.png', true, below));
-  await assertTexture((column) => below(column), 'one layer alone is what its image is');
-  await add(bands('above.png', false, above));
-  assert.deepEqual(await names(page), ['above.png', 'below.png']);
-  for (const blend of Object.keys(kFormulas)) {
-    await control('combobox', 'Blending of above.png').selectOption(blend);
-    await assertTexture((column, row) => joined(below(column), above(row), blend), blend);
-  }
-});
-
-test('the texture is encoded off the main thread', async () => {
-  const { page } = visit;
-  const texture = await savedTexture(page);
-  await page.locator('#paint-into [value=overlay]').check({ force: true });
-  const document = await validModel((await saved(page, 'export-glb')).bytes);
-  const images = document
-    .getRoot()
-    .listTextures()
-    .map((texture) => texture.getImage()!)
-    .filter((image) => PNG.sync.read(Buffer.from(image)).data.equals(texture.data));
-  assert.equal(images.length, 1, 'the same in a model');
-  assert.equal(await page.evaluate('encoded'), 0);
-});
-
-test('opacity, tint and visibility of a layer follow the same formulas', async () => {
-  await control('combobox', 'Blending of above.png').selectOption('multiply');
-  await control('slider', 'Opacity of above.png').fill('40');
-  await assertTexture((column, row) => joined(below(column), above(row), 'multiply', 0.4), 'at 40 %');
-  await visit.page.getByLabel('Tint of above.png').fill('#ff8020');
-  await assertTexture((column, row) => joined(below(column), above(row), 'multiply', 0.4, [255, 128, 32]), 'tinted');
-  await control('checkbox', 'Show above.png').uncheck({ force: true });
-  await assertTexture((column) => below(column), 'hidden');
-  await control('checkbox', 'Show above.png').check({ force: true });
-  await control('slider', 'Opacity of above.png').fill('100');
-  await visit.page.getByLabel('Tint of above.png').fill('#ffffff');
-  await control('combobox', 'Blending of above.png').selectOption('normal');
-  await assertTexture((column, row) => joined(below(column), above(row), 'normal'), 'as before');
-});
 
 test('layers are reordered with the keys, which keep the focus, and by dragging', async () => {
   const { page } = visit;
@@ -169,101 +98,6 @@ test('layers are reordered with the keys, which keep the focus, and by dragging'
   await page.mouse.move(grip.x + grip.width / 2, grip.y + 200, { steps: 3 });
   assert.deepEqual(await names(page), ['above.png', 'below.png'], 'and stays where it was let go');
   await assertTexture((column, row) => joined(below(column), above(row), 'normal'), 'dragged back');
-});
-
-test('undo restores a removed layer with its style, and redo removes it', async () => {
-  const { page } = visit;
-  await control('combobox', 'Blending of above.png').selectOption('screen');
-  const before = await savedTexture(page);
-  await control('button', 'Remove above.png').click();
-  assert.deepEqual(await names(page), ['below.png']);
-  await assertTexture((column) => below(column), 'removed');
-  await page.keyboard.press('Control+z');
-  assert.deepEqual(await names(page), ['above.png', 'below.png']);
-  assert.deepEqual((await savedTexture(page)).data, before.data);
-  await page.keyboard.press('Control+Shift+z');
-  assert.deepEqual(await names(page), ['below.png']);
-  await page.getByTestId('undo').click();
-  assert.deepEqual((await savedTexture(page)).data, before.data);
-});
-
-test('layers for the last cage are put away when another model is opened, and come back when wanted', async () => {
-  const { page } = visit;
-  await page.getByRole('radio', { name: 'Tiger stripes' }).check({ force: true });
-  assert.equal(await settled(page), 'ready');
-  assert.deepEqual(await names(page), ['above.png', 'below.png', 'Tiger stripes']);
-  await page.getByTestId('sample-select').selectOption('human');
-  assert.equal(await settled(page), 'ready');
-  assert.deepEqual(await names(page), ['Painted skull']);
-  await page.getByRole('button', { name: 'Bring back' }).click();
-  assert.deepEqual(await names(page), ['above.png', 'below.png', 'Painted skull']);
-  assert.ok(await page.getByTestId('put-away').isHidden());
-  await row('above.png').locator('.choose').click();
-  assert.equal(await control('combobox', 'Blending of above.png').inputValue(), 'screen');
-});
-
-test('layers are composited when something changes, and not when the model turns', async () => {
-  const { page } = visit;
-  const area = await modelArea(page);
-  const composed = (): Promise<number> => page.evaluate('composed') as Promise<number>;
-  const [before, home] = [await composed(), await look(page, area)];
-  await page.locator('#view').focus();
-  for (let i = 0; i < 3; i++) {
-    await page.keyboard.press('ArrowRight');
-    await look(page, area);
-  }
-  assert.ok(difference(home, await look(page, area)) > 0.02, 'it turned');
-  assert.equal(await composed(), before);
-  await control('slider', 'Opacity of above.png').fill('50');
-  await look(page, area);
-  assert.ok((await composed()) > before);
-});
-
-test('a larger image enlarges the texture, and smaller layers are interpolated', async () => {
-  const { page } = visit;
-  await add(
-    image('large.png', 2048, (x, y) => [(x % 2) * 255, (y % 2) * 255, (x * 7 + y) % 256, y < 1024 ? 255 : 128]),
-  );
-  const texture = await savedTexture(page);
-  assert.equal(texture.width, 2048);
-  for (const [x, y] of [
-    [0, 0],
-    [1, 0],
-    [2047, 1023],
-    [777, 512],
-  ] as const)
-    assert.deepEqual(texel(texture, x, y), [(x % 2) * 255, (y % 2) * 255, (x * 7 + y) % 256, 255]);
-  await control('checkbox', 'Show large.png').uncheck({ force: true });
-  assert.equal((await savedTexture(page)).width, 1024);
-});
-
-test('a seventeenth layer is refused with a message', async () => {
-  const { page, complaints } = visit;
-  while ((await names(page)).length < 16) await page.getByTestId('add-painting').click();
-  assert.equal(await page.getByTestId('add-painting').isDisabled(), true);
-  await page.getByTestId('texture-input').setInputFiles(image('next.png', 4, () => [0, 0, 0, 255]));
-  await page.getByTestId('error').waitFor();
-  assert.match(await shownError(page), /16 layers.*Remove one/);
-  assert.equal((await names(page)).length, 16);
-  assert.deepEqual(complaints, []);
-});
-
-test('of more layers than there is room for, as many as possible are brought back', async () => {
-  const { page, complaints } = visit;
-  await drop(page, [glb('cage.glb', glbOf(tetrahedron(2), 'thing')), glb('target.glb', glbOf(tetrahedron(), 'thing'))]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  await page.getByTestId('add-painting').click();
-  await page.getByTestId('sample-select').selectOption('car');
-  const offer = page.getByTestId('put-away');
-  await offer.filter({ hasText: '16 layers of earlier cages put away.' }).waitFor();
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  await page.locator('#bring-back').click();
-  await offer.filter({ hasText: 'One layer of an earlier cage put away.' }).waitFor();
-  assert.equal((await names(page)).length, 16);
-  assert.equal(await shownError(page), '');
-  await page.locator('#bring-back').click();
-  assert.match(await shownError(page), /16 layers.*Remove one/);
-  assert.deepEqual(complaints, []);
 });
 
 test('a sample’s paint can be added as a layer, and a link restores all layers', async () => {
@@ -297,21 +131,6 @@ test('a sample’s paint can be added as a layer, and a link restores all layers
   assert.equal(filled(await savedTexture(other.page)), 0);
   await other.page.waitForFunction(() => document.querySelector<HTMLButtonElement>('#undo')!.disabled);
   assert.deepEqual([...complaints, ...other.complaints], []);
-});
-
-test('cancelling a link changes no layers', async () => {
-  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } }, kSlowWorker);
-  await page.getByRole('button', { name: 'Add War paint as a layer' }).click();
-  await rows(page).filter({ hasText: 'War paint' }).waitFor();
-  const before = await names(page);
-  const givenUp = cancelOnceShown(page, 'button');
-  await page
-    .getByTestId('sample-select')
-    .evaluate((select) => (location.hash = `sample=${(select as HTMLSelectElement).options[1]!.value}&layer=none`));
-  await givenUp;
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  assert.deepEqual(await names(page), before);
-  assert.deepEqual(complaints, []);
 });
 
 test('a missing paint of a link is reported, and the layers stay', async () => {

@@ -1,14 +1,10 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { NodeIO } from '@gltf-transform/core';
-import { init, type Mesh, transfer } from 'cagecast';
 import type { Page } from 'playwright-core';
-import type { PNG } from 'pngjs';
-import { Box3, Vector3 } from 'three';
-import { type Deform, deform, type Extent, kDeforms } from '../../../../web/src/state/deform';
+import { kDeforms } from '../../../../web/src/state/deform';
 import { ball, islandCage, islandPaint } from '../../../support/models';
 import { difference, frames, look, modelArea, shareOfHue, watch } from '../../../support/picture';
-import { drop, Site, settled, shownCounts, shownError, type Upload } from '../../../support/site';
+import { drop, Site, settled, shownCounts, shownError } from '../../../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -22,63 +18,6 @@ async function bend(page: Page, amount: number): Promise<void> {
   // A browser's clock may be too coarse for a ball.
   assert.match((await page.getByTestId('frame-time').textContent())!, /^\d/);
 }
-
-/** The only mesh of a model, as arrays to transfer with. */
-async function meshOf({ buffer }: Upload): Promise<Mesh & { indices: Uint32Array }> {
-  const primitive = (await new NodeIO().readBinary(new Uint8Array(buffer)))
-    .getRoot()
-    .listMeshes()[0]!
-    .listPrimitives()[0]!;
-  const floats = (semantic: string): Float32Array | undefined =>
-    primitive.getAttribute(semantic)?.getArray() as Float32Array | undefined;
-  return {
-    positions: floats('POSITION')!,
-    indices: Uint32Array.from(primitive.getIndices()!.getArray()!),
-    uvs: floats('TEXCOORD_0'),
-  };
-}
-
-/** A mesh moved as the page moves it. */
-function moved(mesh: Mesh, how: Deform, amount: number, extent: Extent): Mesh {
-  const positions = mesh.positions.slice();
-  const point = new Vector3();
-  for (let at = 0; at < positions.length; at += 3) {
-    deform(point.fromArray(positions, at), how, amount, extent);
-    point.toArray(positions, at);
-  }
-  return { ...mesh, positions };
-}
-
-test('a deformed model has the counts of a transfer of its deformed vertices, with the cage deformed or not', async () => {
-  await init();
-  const { page, complaints } = await site.visit({ viewport: { width: 960, height: 500 } });
-  const [targetFile, cageFile] = [{ ...(await ball()), name: 'target.glb' }, await islandCage(0.85)];
-  await drop(page, [targetFile, cageFile]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  await page.getByTestId('preset').selectOption('paper');
-  assert.equal(await settled(page), 'ready', await shownError(page));
-  const [target, cage] = [await meshOf(targetFile), await meshOf(cageFile)];
-  const box = new Box3().setFromArray(target.positions as Float32Array);
-  const extent = { center: box.getCenter(new Vector3()), half: (box.max.y - box.min.y) / 2 };
-  const seen = new Set<string>();
-  for (const how of kDeforms) {
-    for (const along of [true, false]) {
-      await page.getByTestId('deform').selectOption(how);
-      await page.getByTestId('deform-cage').setChecked(along);
-      await bend(page, -0.7);
-      const { zones } = transfer(moved(cage, how, along ? -0.7 : 0, extent), moved(target, how, -0.7, extent), {
-        preset: 'paper',
-      });
-      const [cosmetic, occluded, uncovered, culled] = [0, 1, 2, 3].map(
-        (zone) => zones.filter((other) => other === zone).length,
-      );
-      assert.deepEqual(await shownCounts(page), { cosmetic, occluded, uncovered, culled }, `${how}, ${along}`);
-      seen.add(JSON.stringify(await shownCounts(page)));
-    }
-  }
-  assert.ok(seen.size > 3, 'they differ');
-  assert.deepEqual(complaints, []);
-});
 
 test('a deformed model is shown with its paint, and returns to the same pixels', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 600 } });
@@ -109,44 +48,6 @@ test('a deformed model is shown with its paint, and returns to the same pixels',
   assert.equal(difference(before.picture, await look(page, area)), 0);
   assert.equal(await shownError(page), '');
   assert.deepEqual(complaints, []);
-});
-
-test('the view follows every step in compare mode and after highlighting', async () => {
-  const { page } = await site.visit({ viewport: { width: 1000, height: 600 } });
-  const area = await modelArea(page);
-  const paint = page.locator('#show-paint');
-  const bare = async (): Promise<PNG> => {
-    await paint.uncheck({ force: true });
-    const picture = await look(page, area);
-    await paint.check({ force: true });
-    return picture;
-  };
-  await bend(page, 0.8);
-  const at = await bare();
-  for (const amount of [0.2, 0.5]) {
-    await bend(page, amount);
-    await look(page, area);
-  }
-  assert.ok(difference(at, await bare()) > 0.01);
-  await bend(page, 0.8);
-  assert.equal(difference(at, await bare()), 0);
-});
-
-test('the deformation is relative to the size of the model', async () => {
-  const { page } = await site.visit({ viewport: { width: 1000, height: 600 } });
-  await page.locator('input[value=naive]').check({ force: true });
-  const pictures: PNG[] = [];
-  for (const size of [1, 20]) {
-    await drop(page, [await islandCage(size), { ...(await ball({ size })), name: 'target.glb' }]);
-    assert.equal(await settled(page), 'ready', await shownError(page));
-    await page.getByTestId('deform').selectOption('twist');
-    await bend(page, 0.5);
-    pictures.push(await look(page, await modelArea(page)));
-  }
-  assert.ok(
-    difference(pictures[0]!, pictures[1]!) < 0.01,
-    `${difference(pictures[0]!, pictures[1]!)} of the picture differs`,
-  );
 });
 
 test('Animate runs until it is switched off or another model is opened', async () => {

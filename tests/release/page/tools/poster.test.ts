@@ -68,68 +68,6 @@ for (const [screen, viewport, most] of [
   });
 }
 
-test('no loading message covers the poster image, while scripts or the model load', async () => {
-  for (const viewport of [
-    { width: 390, height: 844 },
-    { width: 1440, height: 900 },
-  ]) {
-    const told: [string, number][] = [];
-    await site.visit({ viewport }, async (page) => {
-      const [script, model] = [await hold(page, kScript), await hold(page, /\/samples\/.*\.glb$/)];
-      const orangeUnder = async (id: string): Promise<void> => {
-        await page.locator(id).waitFor();
-        const clip = (await page.locator(id).boundingBox())!;
-        const style = await page.addStyleTag({ content: '#stage > :not(#view, #poster) { opacity: 0 }' });
-        told.push([id, shareOfHue(PNG.sync.read(await page.screenshot({ clip })), kOrange)]);
-        await style.evaluate((element) => (element as Element).remove());
-      };
-      void page
-        .waitForFunction(() => document.querySelector<HTMLImageElement>('#poster')?.complete)
-        .then(() => orangeUnder('#stage-notice'))
-        .finally(script)
-        .then(() => orangeUnder('#progress'))
-        .finally(model);
-    });
-    assert.deepEqual(
-      told,
-      [
-        ['#stage-notice', 0],
-        ['#progress', 0],
-      ],
-      `${viewport.width} wide`,
-    );
-  }
-});
-
-test('with the CPU slowed four times, the poster image appears before anything is drawn in 3D', async () => {
-  const { page } = await site.visit({}, async (page) => {
-    const session = await page.context().newCDPSession(page);
-    await session.send('Emulation.setCPUThrottlingRate', { rate: 4 });
-    await page.addInitScript(() => {
-      const times = ((globalThis as unknown as { times: object }).times = {} as { poster?: number; drawn?: number });
-      new PerformanceObserver((list) => {
-        for (const entry of list.getEntries() as (PerformanceEntry & { element?: Element })[])
-          if (entry.element?.id === 'poster') times.poster ??= entry.startTime;
-      }).observe({ type: 'largest-contentful-paint', buffered: true });
-      const { drawElements } = WebGL2RenderingContext.prototype;
-      WebGL2RenderingContext.prototype.drawElements = function (...args) {
-        times.drawn ??= performance.now();
-        return drawElements.apply(this, args);
-      };
-    });
-    // What comes after the first drawing need not be slow.
-    void page
-      .waitForFunction(() => (globalThis as unknown as { times?: { drawn?: number } }).times?.drawn)
-      .then(() => session.send('Emulation.setCPUThrottlingRate', { rate: 1 }))
-      .catch(() => {});
-  });
-  const { poster, drawn } = (await page.evaluate('times')) as { poster?: number; drawn?: number };
-  assert.ok(
-    poster !== undefined && drawn !== undefined && poster < drawn,
-    `the poster after ${poster} ms, the drawing after ${drawn} ms`,
-  );
-});
-
 test('the poster image fades out, or disappears at once with reduced motion', async () => {
   for (const [reducedMotion, fades] of [
     ['no-preference', 1],

@@ -2,12 +2,11 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
-import { titleOfExpression, titleOfMorph } from '../../../../web/src/tools/live/expression-names';
 import { faults } from '../../../support/axe';
-import { filled, names, savedTexture, texel } from '../../../support/layers';
-import { ball, islandCage, morphingBalls } from '../../../support/models';
+import { filled, names, savedTexture } from '../../../support/layers';
+import { ball, islandCage } from '../../../support/models';
 import { type Area, difference, look, modelArea, shareOfHue } from '../../../support/picture';
-import { drop, Site, settled, shownError, type Upload } from '../../../support/site';
+import { drop, Site, settled, shownError } from '../../../support/site';
 
 const kGreen = 140; // the hue of the paint; the ball is blue
 const kGreenPaint = '#00c040';
@@ -145,109 +144,6 @@ test('a sticker is seen before it is placed, and is moved, turned, scaled, mirro
   assert.deepEqual(complaints, []);
 });
 
-test('letters of a sticker are sharp, and legible as they are at first', async () => {
-  const { page } = await site.visit({ viewport: { width: 900, height: 500 } });
-  const area = await openBall(page);
-  await choose(page, 'Sticker');
-  await set(page, { 'sticker-text': 'WORD' });
-  await page.mouse.click(at(area, 0.5, 0.5).x, at(area, 0.5, 0.5).y);
-  await page.keyboard.press('Escape');
-  await away(page);
-  const texture = await savedTexture(page);
-  assert.equal(texture.width, 2048);
-  // Letters and the line around them differ in brightness; few texels are between them.
-  let [solid, between] = [0, 0];
-  for (let y = 0; y < 2048; y++)
-    for (let x = 0; x < 2048; x++) {
-      const [, g, , a] = texel(texture, x, y) as [number, number, number, number];
-      if (a < 250) continue;
-      if (g < 45 || g > 235) solid++;
-      else between++;
-    }
-  assert.ok(solid > 2000, `${solid} texels`);
-  assert.ok(between < 0.25 * solid, `${between} of ${solid} are blurred`);
-});
-
-test('the eraser takes away all that the brush left, with its soft edge, and stickers too', async () => {
-  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } });
-  const area = await openBall(page);
-  const path = [
-    [0.44, 0.45],
-    [0.52, 0.5],
-    [0.56, 0.45],
-  ] as const;
-  await choose(page, 'Brush');
-  await set(page, { 'brush-color': kGreenPaint, 'brush-size': '55', 'brush-hardness': '0' });
-  await drag(page, area, ...path);
-  assert.ok(filled(await savedTexture(page)) > 500);
-  await choose(page, 'Erase');
-  await drag(page, area, ...path);
-  assert.equal(filled(await savedTexture(page)), 0);
-  await choose(page, 'Sticker');
-  await page.mouse.click(at(area, 0.5, 0.5).x, at(area, 0.5, 0.5).y);
-  await choose(page, 'Erase');
-  await away(page);
-  const before = await bareLook(page, area);
-  await set(page, { 'brush-size': '60', 'brush-hardness': '100' });
-  await drag(page, area, [0.5, 0.5], [0.51, 0.5]);
-  await away(page);
-  assert.ok(difference(before, await bareLook(page, area)) > 0.005);
-  await page.keyboard.press('Control+z');
-  await page.keyboard.press('Control+z');
-  await away(page);
-  assert.ok(difference(before, await bareLook(page, area)) < 0.0005);
-  await choose(page, 'Sticker');
-  await page.mouse.click(at(area, 0.5, 0.5).x, at(area, 0.5, 0.5).y);
-  assert.ok(await page.locator('.sticker-bar').isVisible(), 'a sticker again');
-  assert.deepEqual(complaints, []);
-});
-
-test('the eraser works on what lies under it: a sticker elsewhere stays one, and where nothing is, that is said', async () => {
-  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } });
-  const area = await openBall(page);
-  const path = [
-    [0.45, 0.6],
-    [0.55, 0.6],
-  ] as const;
-  await choose(page, 'Brush');
-  await set(page, { 'brush-color': kGreenPaint, 'brush-size': '40', 'brush-hardness': '100' });
-  await drag(page, area, ...path);
-  await choose(page, 'Sticker');
-  await set(page, { 'brush-size': '60' });
-  const sticker = at(area, 0.5, 0.35);
-  await page.mouse.click(sticker.x, sticker.y);
-  assert.deepEqual(await names(page), ['Stickers 1', 'Painting 1']);
-  const both = filled(await savedTexture(page));
-  await choose(page, 'Erase');
-  await drag(page, area, [0.42, 0.68], ...path); // it begins beside the paint
-  const rest = filled(await savedTexture(page));
-  await page.getByRole('checkbox', { name: 'Show Painting 1' }).uncheck({ force: true });
-  assert.equal(rest, filled(await savedTexture(page)), `of ${both} texels only those of the sticker are left`);
-  await page.getByRole('checkbox', { name: 'Show Painting 1' }).check({ force: true });
-  const fine = page.getByTestId('painting-fine');
-  assert.equal(await fine.isChecked(), false);
-
-  await drag(page, area, [0.45, 0.75], [0.55, 0.75]);
-  assert.match(await shownError(page), /nothing to erase/i);
-  assert.equal(rest, filled(await savedTexture(page)));
-  await choose(page, 'Sticker');
-  await page.mouse.click(sticker.x, sticker.y);
-  assert.ok(await page.locator('.sticker-bar').isVisible(), 'it is a sticker still');
-  assert.deepEqual(await names(page), ['Stickers 1', 'Painting 1']);
-
-  // Stickers that are erased become paint, but the brush goes on as it was.
-  await choose(page, 'Erase');
-  await set(page, { 'brush-size': '30' });
-  await drag(page, area, [0.5, 0.5], [0.5, 0.35]);
-  assert.equal(await shownError(page), '');
-  assert.ok(filled(await savedTexture(page)) < rest);
-  assert.equal(await fine.isChecked(), false);
-  await choose(page, 'Brush');
-  await drag(page, area, ...path);
-  assert.equal(await page.locator('.layer [aria-pressed=true] .name').textContent(), 'Painting 1');
-  assert.deepEqual(complaints, []);
-});
-
 test('a click fills the whole part; its colour is taken by the eyedropper and stays among the swatches', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 640 } });
   const area = await openBall(page);
@@ -339,89 +235,4 @@ test('where no paint is seen, nobody paints: the pointer turns the model again, 
   await page.getByTestId('part-menu').waitFor();
   assert.deepEqual(await names(page), before, 'nothing was painted');
   assert.deepEqual(complaints, []);
-});
-
-/** A model whose file has expressions, of either version of VRM. */
-async function vrm(version: 0 | 1): Promise<Upload> {
-  const file = await morphingBalls({ names: ['eyeBlinkLeft', 'Fcl_MTH_A'] });
-  return {
-    ...patched(file, (json) => {
-      const mesh = json.nodes.findIndex((node: { mesh?: number }) => node.mesh === 0);
-      const expression = (index: number) => ({ morphTargetBinds: [{ node: mesh, index, weight: 1 }] });
-      const group = (presetName: string, index: number) => ({
-        presetName,
-        name: presetName,
-        binds: [{ mesh: 0, index, weight: 80 }],
-      });
-      json.extensions =
-        version === 1
-          ? { VRMC_vrm: { expressions: { preset: { blinkLeft: expression(0), aa: expression(1) } } } }
-          : { VRM: { blendShapeMaster: { blendShapeGroups: [group('blink_l', 0), group('joy', 1)] } } };
-    }),
-    name: `figure-${version}.vrm`,
-  };
-}
-
-/** A GLB with another JSON. */
-// biome-ignore lint/suspicious/noExplicitAny: JSON of glTF
-function patched(file: Upload, change: (json: any) => void): Upload {
-  const length = file.buffer.readUInt32LE(12);
-  const json = JSON.parse(file.buffer.subarray(20, 20 + length).toString());
-  change(json);
-  const text = Buffer.from(JSON.stringify(json));
-  const padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]);
-  const head = Buffer.from(file.buffer.subarray(0, 20));
-  head.writeUInt32LE(padded.length, 12);
-  const rest = file.buffer.subarray(20 + length);
-  head.writeUInt32LE(20 + padded.length + rest.length, 8);
-  return { ...file, buffer: Buffer.concat([head, padded, rest]) };
-}
-
-test('morphs have names in words, and the expressions of a VRM are buttons', async () => {
-  const { page, complaints } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true });
-  for (const version of [0, 1] as const) {
-    await drop(page, [await vrm(version), await islandCage(1)]);
-    assert.equal(await settled(page), 'ready', await shownError(page));
-    const titles = page.getByTestId('expressions').getByRole('button');
-    assert.deepEqual(await titles.allTextContents(), version === 1 ? ['Blink left', 'Aa'] : ['Blink left', 'Happy']);
-    const blink = page.getByTestId('morphs').getByLabel('Left eye: blink');
-    const mouth = page.getByTestId('morphs').getByLabel('Mouth: A');
-    await titles.nth(1).click();
-    assert.equal(Number(await mouth.inputValue()), version === 1 ? 1 : 0.8);
-    await titles.nth(0).click();
-    assert.deepEqual([Number(await blink.inputValue()) > 0.7, Number(await mouth.inputValue())], [true, 0]);
-    assert.equal(await titles.nth(0).getAttribute('aria-pressed'), 'true');
-    assert.equal(await titles.nth(1).getAttribute('aria-pressed'), 'false');
-    await page.locator('#live[aria-busy=false]').waitFor();
-    if (version === 1) {
-      assert.deepEqual(await faults(page), []);
-      assert.ok((await titles.first().boundingBox())!.height >= 44);
-    }
-    await titles.nth(0).click();
-    assert.equal(Number(await blink.inputValue()), 0);
-  }
-  assert.deepEqual(complaints, []);
-});
-
-test('names of ARKit, VRoid and VRM in words; others stay as they are', () => {
-  const names = ['browOuterUpRight', 'mouthSmileLeft', 'mouthLeft', 'jawOpen', 'cheekPuff', 'eyeLookInLeft'];
-  assert.deepEqual([...names, 'Fcl_EYE_Close_L', 'Fcl_ALL_Joy', 'grow', 'Smile_L', 'eyelash'].map(titleOfMorph), [
-    'Right brow: outer up',
-    'Mouth: smile, left',
-    'Mouth: left',
-    'Jaw: open',
-    'Cheek: puff',
-    'Left eye: look in',
-    'Eyes: close, left',
-    'Face: joy',
-    'grow',
-    'Smile_L',
-    'eyelash',
-  ]);
-  assert.deepEqual(['fun', 'surprised', 'lookUp', 'E'].map(titleOfExpression), [
-    'Relaxed',
-    'Surprised',
-    'Look up',
-    'Ee',
-  ]);
 });

@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry, InstancedMesh, Mesh, SkinnedMesh } from 'three';
 
 /** Zones in the order of the triangles in the index: cosmetic first, then occluded, uncovered and culled. */
-export const kZones = [0, 1, 2, 3] as const;
+export const kZoneNumbers = [0, 1, 2, 3] as const;
 
 // Material indices of a filtered mesh: the paint, the three zones, the same seen through the surface, clay.
 const kHidden = 3;
@@ -31,13 +31,13 @@ export function zonesOfTriangles(
 
 /** Sorts the triangles of a geometry by zone into its index, with a group for each material. */
 export function sortByZone(geometry: BufferGeometry, corners: Uint32Array, triangleZones: Uint8Array): void {
-  const counts = kZones.map(() => 0);
+  const counts = kZoneNumbers.map(() => 0);
   for (const zone of triangleZones) counts[zone]!++;
   geometry.clearGroups();
   /** Index position of the next triangle of each zone. */
-  const next = kZones.map(() => 0);
+  const next = kZoneNumbers.map(() => 0);
   let filled = 0;
-  for (const zone of kZones) {
+  for (const zone of kZoneNumbers) {
     const count = 3 * counts[zone]!;
     next[zone] = filled;
     filled += count;

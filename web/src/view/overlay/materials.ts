@@ -8,9 +8,6 @@ import {
   MeshStandardMaterial,
 } from 'three';
 
-/** Colours of the zones, as in base.css. After Okabe and Ito, so that they are colour-blind safe. */
-export const kZoneColors = { 1: '#0072b2', 2: '#e69f00', 3: '#cc79a7' } as const;
-
 /** Colour of cosmetic triangles in the view “Zones”: the paint itself could be mistaken for a zone. */
 const kClayColor = '#9aa7b3';
 

@@ -14,10 +14,11 @@ import {
 import { reverseWinding } from '../../loading/extract-mesh';
 import { disposeAfterFrame } from '../../platform/programs';
 import type { Primitive } from '../../state/model';
+import { kZones } from '../../state/zones';
 import {
   copyVertices,
   detachShared,
-  kZones,
+  kZoneNumbers,
   overlayMesh,
   shareVertices,
   shifted,
@@ -25,15 +26,7 @@ import {
   zonesOfTriangles,
 } from './geometry';
 import type { Look } from './looks';
-import {
-  clayMaterial,
-  colorMaterial,
-  hiddenMaterial,
-  kZoneColors,
-  onSurface,
-  paintMaterial,
-  zoneMaterial,
-} from './materials';
+import { clayMaterial, colorMaterial, hiddenMaterial, onSurface, paintMaterial, zoneMaterial } from './materials';
 
 // The transferred UVs use a channel that glTF models leave free, so that the base maps keep theirs.
 const kUvChannel = 3;
@@ -60,11 +53,11 @@ export class PrimitiveOverlay {
   #look: Look = 'bare';
   readonly #paint: MeshStandardMaterial;
   readonly #nothing = new MeshBasicMaterial({ visible: false });
-  readonly #zoneMaterials = kExcludedZones.map((zone) => zoneMaterial(kZoneColors[zone]));
+  readonly #zoneMaterials = kExcludedZones.map((zone) => zoneMaterial(kZones[zone].color));
   readonly #clay = clayMaterial();
   readonly #checker = onSurface(new MeshStandardMaterial({ roughness: 0.9 }));
   readonly #vertexColors = colorMaterial();
-  readonly #hidden = kExcludedZones.map((zone) => hiddenMaterial(kZoneColors[zone]));
+  readonly #hidden = kExcludedZones.map((zone) => hiddenMaterial(kZones[zone].color));
 
   constructor(primitive: Primitive, indices: Uint32Array, paint: Texture | undefined) {
     this.#primitive = primitive;
@@ -199,7 +192,7 @@ export class PrimitiveOverlay {
       case 'zones':
         return [this.#nothing, ...this.#zoneMaterials, ...this.#hidden, this.#clay];
       case 'checker':
-        return kZones.map(() => this.#checker);
+        return kZoneNumbers.map(() => this.#checker);
       default:
         return [];
     }

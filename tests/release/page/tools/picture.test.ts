@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { PNG } from 'pngjs';
-import { share } from '../../web/share';
-import { faults } from '../support/axe';
-import { difference, look, modelArea, watch } from '../support/picture';
-import { saved } from '../support/saved';
-import { Site, settled } from '../support/site';
+import { share } from '../../../../web/share';
+import { faults } from '../../../support/axe';
+import { difference, look, modelArea, watch } from '../../../support/picture';
+import { saved } from '../../../support/saved';
+import { Site, settled } from '../../../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

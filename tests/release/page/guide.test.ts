@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { faults } from '../support/axe';
-import { passed, Site, settled } from '../support/site';
+import { faults } from '../../support/axe';
+import { passed, Site, settled } from '../../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

@@ -5,7 +5,7 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
-import { inRepository, Site, settled, shownCounts, shownError } from '../support/site';
+import { inRepository, Site, settled, shownCounts, shownError } from '../../support/site';
 
 let site: Site;
 let folder: string;
@@ -76,41 +76,5 @@ test('keyboard only: load files, change the rules, and save the model', async ()
   assert.equal(zones.length, counts.cosmetic + counts.occluded + counts.uncovered + counts.culled);
   await page.locator('#export-glb:not([aria-busy])').waitFor();
   assert.equal(await focused(page), 'export-glb', 'the keyboard stays where it was');
-  assert.deepEqual(complaints, []);
-});
-
-test('keyboard only: undo everything, and redo it', async () => {
-  const { page } = await site.visit();
-  await page.getByTestId('add-painting').click();
-  await page.getByTestId('undo').focus();
-  for (const [key, next] of [
-    ['Enter', 'redo'],
-    ['Enter', 'undo'],
-    ['Enter', 'redo'],
-  ] as const) {
-    await page.keyboard.press(key);
-    assert.equal(await focused(page), next);
-  }
-});
-
-test('what is hidden while it has the focus gives it to the stage; a link that copies takes the space bar, too', async () => {
-  const { page, complaints } = await site.visit();
-  const focusedAfter = async (id: string, key: string): Promise<string> => {
-    await page.locator(`#${id}`).focus();
-    await page.keyboard.press(key);
-    await page.locator(`#${id}`).waitFor({ state: 'hidden' });
-    return focused(page);
-  };
-  await page.locator('#view-mode input[value=segments]').check({ force: true });
-  await page.locator('#view').focus();
-  await page.keyboard.press('Enter');
-  await page.locator('#part-menu').waitFor();
-  assert.equal(await focusedAfter('part-menu-close', 'Enter'), 'view', 'the menu of a part');
-  await page.getByTestId('target-input').setInputFiles({ name: 'x.glb', mimeType: '', buffer: Buffer.from('x') });
-  await page.locator('#alert-close').waitFor();
-  assert.equal(await focusedAfter('alert-close', 'Enter'), 'view', 'an error');
-  await page.locator('#share-link').focus();
-  await page.keyboard.press('Space');
-  await page.locator('#copy-note', { hasText: /copied|does not allow/ }).waitFor();
   assert.deepEqual(complaints, []);
 });

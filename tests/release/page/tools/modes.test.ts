@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
-import { ball, islandCage } from '../support/models';
-import { difference, look, modelArea, shareOfHue } from '../support/picture';
-import { drop, Site, setThreshold, settled, shownCounts, shownError, type Upload, type Visit } from '../support/site';
+import { ball, islandCage } from '../../../support/models';
+import { difference, look, modelArea, shareOfHue } from '../../../support/picture';
+import { drop, Site, settled, shownError, type Upload, type Visit } from '../../../support/site';
 
 const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
 
@@ -37,62 +37,6 @@ function middle({ data, width, height }: PNG): number[] {
   const at = 4 * (Math.floor(height / 2) * width + Math.floor(width / 2));
   return [...data.subarray(at, at + 3)];
 }
-
-test('each view mode shows a different picture and a legend, and returns unchanged', async () => {
-  const { page, complaints } = visit;
-  assert.deepEqual(
-    await page
-      .getByTestId('view-mode')
-      .locator('input')
-      .evaluateAll((all) => all.map((input) => (input as HTMLInputElement).value)),
-    [...kModes],
-  );
-  const area = await modelArea(page);
-  const pictures: PNG[] = [];
-  for (const mode of kModes) {
-    await choose(page, mode);
-    pictures.push(await look(page, area));
-    assert.equal(
-      await page.locator('#legend').isVisible(),
-      ['zones', 'distance', 'stretch'].includes(mode),
-      `${mode}: legend`,
-    );
-    assert.equal(
-      await page.locator('#show-paint').isEnabled(),
-      ['compare', 'result', 'naive'].includes(mode),
-      `${mode}: switch of the paint`,
-    );
-  }
-  for (const [i, picture] of pictures.entries()) {
-    for (const other of pictures.slice(i + 1)) assert.ok(difference(picture, other) > 0.01);
-    await choose(page, kModes[i]!);
-    assert.ok(difference(picture, await look(page, area)) < 0.0005, `${kModes[i]} comes back`);
-  }
-  await choose(page, 'compare');
-  assert.deepEqual(complaints, []);
-});
-
-test('the keyboard cycles through the view modes', async () => {
-  const { page } = visit;
-  await page.locator('#view-mode input[value=compare]').focus();
-  for (const mode of kModes.slice(1)) {
-    await page.keyboard.press('ArrowRight');
-    assert.equal(await page.locator('#view-mode input:checked').inputValue(), mode);
-  }
-  await choose(page, 'compare');
-});
-
-test('the checker covers the whole model', async () => {
-  const { page } = visit;
-  const area = await modelArea(page);
-  await choose(page, 'checker');
-  const before = await look(page, area);
-  const counts = await shownCounts(page);
-  await setThreshold(page, 1);
-  assert.notDeepEqual(await shownCounts(page), counts);
-  assert.ok(difference(before, await look(page, area)) < 0.0005);
-  await setThreshold(page, 0.5);
-});
 
 test('parts have distinct colours', async () => {
   const { page } = visit;

@@ -1,0 +1,402 @@
+// What a visitor does first, in one browser and three visits: most of it needs no picture, and is done without WebGL.
+import assert from 'node:assert/strict';
+import { after, before, describe, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { faults } from '../support/axe';
+import { asset } from '../support/cages';
+import { glbOf, tetrahedron } from '../support/glb';
+import { filled, image, names, savedTexture } from '../support/layers';
+import { type Area, columns, difference, look, modelArea, shareOfHue } from '../support/picture';
+import { primitivesOf, saved, validModel } from '../support/saved';
+import {
+  drop,
+  glb,
+  kNoWebGl,
+  Site,
+  setThreshold,
+  settled,
+  shownCounts,
+  shownError,
+  shownParts,
+  type Visit,
+  violetPaint,
+} from '../support/site';
+
+let site: Site;
+let visit: Visit;
+let page: Page;
+let area: Area;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+async function ready(): Promise<void> {
+  assert.equal(await settled(page), 'ready', await shownError(page));
+}
+
+/** Chooses in a list, and waits for what follows. */
+async function choose(list: string, value: string): Promise<void> {
+  await page.getByTestId(list).selectOption(value);
+  await ready();
+}
+
+const check = (what: string): Promise<void> => page.locator(what).check({ force: true });
+const undoTitle = () => page.getByTestId('undo').getAttribute('title');
+const bust = () => [glb('bust.glb', asset('human', 'target.glb')), glb('bust-cage.glb', asset('human', 'cage.glb'))];
+
+describe('without a picture', () => {
+  before(async () => {
+    visit = await site.visit({}, kNoWebGl);
+    page = visit.page;
+  });
+  after(() => assert.deepEqual([visit.complaints, visit.foreign], [[], []]));
+
+  test('the page opens with the first sample, and says that there is no picture', async () => {
+    await ready();
+    const { cosmetic, occluded, uncovered, culled } = await shownCounts(page);
+    assert.ok(cosmetic > 0 && occluded > 0 && uncovered > 0);
+    const total = Number((await page.locator('#count-total').textContent())!.replaceAll(',', ''));
+    assert.equal(cosmetic + occluded + uncovered + culled, total);
+    assert.match((await page.locator('#stage-notice').textContent())!, /WebGL/);
+    const still = page.getByAltText(/lizard/);
+    await still.evaluate((one: HTMLImageElement) => one.decode());
+    assert.deepEqual(await faults(page), []);
+  });
+
+  test('the content security policy forbids other hosts', async () => {
+    const refused = await page.evaluate(() =>
+      fetch('https://example.org/').then(
+        () => false,
+        () => true,
+      ),
+    );
+    assert.ok(refused);
+    visit.complaints.length = visit.foreign.length = 0; // this one
+  });
+
+  test('the threshold, and the overrides of parts, change the counts at once and back', async () => {
+    const before = await shownCounts(page);
+    await setThreshold(page, 1);
+    const strict = await shownCounts(page);
+    assert.ok(strict.cosmetic < before.cosmetic);
+    await setThreshold(page, 0.5);
+    await page.locator('#parts summary').click();
+    const { name } = (await shownParts(page)).find(({ culled }) => !culled)!;
+    const override = page.getByLabel(`Override for ${name}`, { exact: true });
+    await override.selectOption('exclude');
+    assert.ok((await shownCounts(page)).culled > before.culled);
+    assert.equal(await undoTitle(), `Undo: excluding ${name}`);
+    await page.keyboard.press('Control+z');
+    assert.equal(await override.inputValue(), 'auto');
+    assert.deepEqual(await shownCounts(page), before);
+  });
+
+  test('the preset of the paper has fewer steps and other counts', async () => {
+    const steps = () => page.locator('#timings dt').count();
+    const before = { counts: await shownCounts(page), steps: await steps() };
+    await choose('preset', 'paper');
+    assert.notDeepEqual(await shownCounts(page), before.counts);
+    assert.ok((await steps()) < before.steps);
+    await page.locator('#code', { hasText: "{ texture, preset: 'paper' }" }).waitFor();
+    await choose('preset', 'default');
+    assert.deepEqual({ counts: await shownCounts(page), steps: await steps() }, before);
+  });
+
+  test('the model can be deformed, and the counts follow', async () => {
+    const before = await shownCounts(page);
+    const still = page.locator('#live[aria-busy=true]');
+    await page.getByTestId('amount').fill('0.9');
+    await still.waitFor({ state: 'detached' });
+    assert.notDeepEqual(await shownCounts(page), before);
+    await page.getByTestId('amount').fill('0');
+    await still.waitFor({ state: 'detached' });
+    assert.deepEqual(await shownCounts(page), before);
+  });
+
+  test('a link restores the state in a page that shows something else', async () => {
+    await setThreshold(page, 0.35);
+    await page.getByTestId('share-link').focus();
+    const link = await page.getByTestId('share-link').evaluate((one) => (one as HTMLAnchorElement).hash);
+    const before = await shownCounts(page);
+    await choose('sample-select', 'human');
+    await setThreshold(page, 0.5);
+    await page.evaluate((hash) => void (location.hash = hash), link);
+    await page.locator('#sample-select').evaluate(async (select: HTMLSelectElement) => {
+      while (select.value !== 'lizard') await new Promise(requestAnimationFrame);
+    });
+    await ready();
+    assert.deepEqual(await shownCounts(page), before);
+    await setThreshold(page, 0.5);
+  });
+
+  test('a file that cannot be read is reported, and the next one works', async () => {
+    const before = await shownCounts(page);
+    await page.getByTestId('target-input').setInputFiles(glb('poem.glb', Buffer.from('Shall I compare thee')));
+    assert.equal(await settled(page), 'error');
+    assert.match(await shownError(page), /poem\.glb: .*not a GLB or glTF file/);
+    assert.deepEqual(await shownCounts(page), before);
+    assert.deepEqual(await faults(page), []);
+    const cube = [
+      glb('thing.glb', glbOf(tetrahedron(), 'thing')),
+      glb('thing-cage.glb', glbOf(tetrahedron(2), 'thing')),
+    ];
+    await drop(page, cube);
+    await ready();
+    assert.equal(await shownError(page), '');
+    assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
+    assert.deepEqual((await page.locator('.files .name').allTextContents()).slice(0, 2), [
+      'thing.glb',
+      'thing-cage.glb',
+    ]);
+  });
+
+  test('own paints are layers, which are restyled, moved and removed, as steps that can be undone', async () => {
+    await drop(page, bust());
+    await ready();
+    for (const name of ['one.png', 'two.png']) {
+      await page.getByTestId('texture-input').setInputFiles(image(name, 8, () => [200, 0, 220, 255]));
+      await page.getByTestId('layer-list').getByText(name).waitFor();
+    }
+    const list = page.getByTestId('layer-list');
+    await list.getByRole('slider', { name: 'Opacity of two.png' }).fill('40');
+    await list.getByRole('button', { name: 'Reorder two.png' }).press('ArrowDown');
+    await list.getByRole('button', { name: 'Remove one.png' }).click();
+    assert.deepEqual((await names(page)).slice(0, 1), ['two.png']);
+    for (const title of ['removing one.png', 'moving two.png', 'changing the opacity of two.png', 'adding two.png']) {
+      assert.equal(await undoTitle(), `Undo: ${title}`);
+      await page.getByTestId('undo').click();
+    }
+    assert.deepEqual((await names(page)).slice(0, 1), ['one.png']);
+    await page.getByTestId('redo').click();
+    assert.deepEqual((await names(page)).slice(0, 2), ['two.png', 'one.png']);
+  });
+
+  test('layers of another cage are put away, and brought back', async () => {
+    const before = await names(page);
+    await choose('sample-select', 'car');
+    await page.getByTestId('put-away').filter({ hasText: '2 layers of earlier cages put away.' }).waitFor();
+    await page.locator('#bring-back').click();
+    assert.deepEqual((await names(page)).slice(0, 2), before.slice(0, 2));
+  });
+
+  test('a cage is made for a model without one, and a template is fitted', async () => {
+    await drop(page, bust().slice(0, 1));
+    await ready();
+    await page.getByTestId('make-cage').click();
+    await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+    await ready();
+    assert.ok((await shownCounts(page)).cosmetic > 0);
+    await page.getByTestId('fit-cage').click();
+    await page.locator('#cage-note', { hasText: 'was fitted' }).waitFor();
+    await ready();
+    const { name, bytes } = await saved(page, 'save-cage');
+    assert.equal(name, 'bust-cage.glb');
+    await validModel(bytes);
+  });
+
+  test('the cage is inspected, and findings offer what can be done', async () => {
+    await choose('sample-select', 'human-misaligned');
+    await page.locator('#model-verdict[data-verdict=unfit]').waitFor();
+    assert.ok((await page.locator('#fit-findings li').count()) > 0);
+    await page.getByRole('button', { name: 'Do it: move the cage' }).first().click();
+    await page.locator('#cage-note', { hasText: 'was moved into place' }).waitFor();
+    await page.locator('#model-verdict:not([data-verdict=unfit]):not([data-verdict=""])').waitFor();
+  });
+
+  test('a project that was saved brings everything back, and so does a reload', async () => {
+    await setThreshold(page, 0.65);
+    await ready();
+    const state = async () => ({
+      files: await page.locator('.files .name').allTextContents(),
+      counts: await shownCounts(page),
+      threshold: await page.getByTestId('threshold').inputValue(),
+      layers: await names(page),
+    });
+    const before = await state();
+    const { name, bytes } = await saved(page, 'save-project');
+    assert.equal(name, 'target.cagecast');
+    assert.equal(bytes.subarray(0, 2).toString(), 'PK', 'it is a ZIP');
+    await choose('sample-select', 'car');
+    await setThreshold(page, 0.5);
+    await drop(page, [{ name, mimeType: '', buffer: bytes }]);
+    await page.locator('#threshold').evaluate(async (slider: HTMLInputElement) => {
+      while (slider.value !== '0.65') await new Promise(requestAnimationFrame);
+    });
+    await ready();
+    assert.deepEqual(await state(), before);
+    await setThreshold(page, 0.7);
+    const changed = await state();
+    // It asks before it is left until the browser keeps it.
+    await page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
+    await page.getByTestId('kept-note').filter({ hasText: 'Your work is kept on this device' }).waitFor();
+    await page.reload();
+    await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+    await ready();
+    assert.deepEqual(await state(), changed);
+    assert.deepEqual(await faults(page), []);
+  });
+});
+
+describe('with a picture', () => {
+  before(async () => {
+    visit = await site.visit({ viewport: { width: 900, height: 560 } });
+    page = visit.page;
+    area = await modelArea(page);
+  });
+  after(() => assert.deepEqual([visit.complaints, visit.foreign], [[], []]));
+
+  const mode = (value: string): Promise<void> => check(`#view-mode input[value=${value}]`);
+  const at = (u: number, v: number) => [area.x + u * area.width, area.y + v * area.height] as const;
+
+  test('each view mode shows another picture, and some have a legend; the divider separates naive and filtered', async () => {
+    const pictures = [];
+    const modes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'];
+    for (const one of modes) {
+      await mode(one);
+      for (const other of pictures) assert.ok(difference(other, await look(page, area)) > 0.01, one);
+      pictures.push(await look(page, area));
+      const hasLegend = ['zones', 'distance', 'stretch'].includes(one);
+      assert.equal(await page.locator('#legend').isVisible(), hasLegend, one);
+    }
+    const [compared, result, naive, zones] = pictures;
+    assert.ok(difference(columns(compared!, 0, 0.45), columns(naive!, 0, 0.45)) < 0.002, 'naive on the left');
+    assert.ok(difference(columns(compared!, 0.55, 1), columns(result!, 0.55, 1)) < 0.002, 'filtered on the right');
+    const [blue, orange] = [shareOfHue(zones!, 202), shareOfHue(zones!, 41)];
+    assert.ok(blue > 0.005 && orange > 0.005, `occluded in blue (${blue}), uncovered in orange (${orange})`);
+  });
+
+  test('the model turns by keys and by a drag, and Home resets it', async () => {
+    await mode('result');
+    const home = await look(page, area);
+    await page.locator('#view').press('ArrowRight');
+    assert.ok(difference(home, await look(page, area)) > 0.02);
+    await page.locator('#view').press('Home');
+    assert.ok(difference(home, await look(page, area)) < 0.01);
+    await page.mouse.move(...at(0.5, 0.5));
+    await page.mouse.down();
+    await page.mouse.move(...at(0.7, 0.5), { steps: 3 });
+    await page.mouse.up();
+    assert.ok(difference(home, await look(page, area)) > 0.02);
+    await page.locator('#view').press('Home');
+  });
+
+  test('an own paint is drawn on the model, the light changes it, and the cage is drawn', async () => {
+    await page.getByTestId('texture-input').setInputFiles(violetPaint());
+    await ready();
+    const violet = await look(page, area);
+    assert.ok(shareOfHue(violet, 295) > 0.1);
+    await page.getByTestId('light').selectOption('evening');
+    assert.ok(difference(violet, await look(page, area)) > 0.05);
+    await page.getByTestId('light').selectOption('studio');
+    await check('#show-cage');
+    assert.ok(difference(violet, await look(page, area)) > 0.02);
+    await page.locator('#show-cage').uncheck({ force: true });
+    await page.locator('#undo').click();
+  });
+
+  test('exact borders are cut, and switched off without a trace', async () => {
+    const plain = await look(page, area);
+    await check('#exact-borders');
+    await page
+      .getByTestId('borders-note')
+      .filter({ hasText: /^Adds [\d,]+ triangles\.$/ })
+      .waitFor();
+    await ready();
+    await page.locator('#exact-borders').uncheck({ force: true });
+    assert.ok(difference(plain, await look(page, area)) < 0.0005);
+  });
+
+  test('a spot is explained, and a part that is clicked can be chosen for', async () => {
+    await check('#tools input[data-key=x]');
+    await page.mouse.click(...at(0.5, 0.5));
+    assert.match(await page.getByTestId('explain-bubble').innerText(), /^(Painted|Not painted)/);
+    await page.keyboard.press('Escape');
+    await check('#tools input[data-key=t]');
+    await mode('segments');
+    await page.locator('#view').press('Enter');
+    await page.getByTestId('part-menu').waitFor();
+    assert.deepEqual(await faults(page), []);
+    await page.locator('#part-menu-close').press('Enter');
+    await mode('result');
+  });
+
+  test('a stroke is on a new layer and on the model, is saved, and undone', async () => {
+    const [bare, before] = [await look(page, area), filled(await savedTexture(page))];
+    await check('#tools input[data-key=b]');
+    await page.getByTestId('brush-color').fill('#00c040');
+    await page.mouse.move(...at(0.45, 0.45));
+    await page.mouse.down();
+    await page.mouse.move(...at(0.55, 0.5), { steps: 4 });
+    await page.mouse.up();
+    await page.mouse.move(5, 5);
+    assert.equal((await names(page))[0], 'Painting 1');
+    assert.ok(difference(bare, await look(page, area)) > 0.002);
+    const { name, bytes } = await saved(page, 'stage-save');
+    assert.equal(name, 'target-painted.glb');
+    const zones = primitivesOf(await validModel(bytes)).flatMap((one) => [
+      ...(one.getAttribute('_NCZ')?.getArray() ?? []),
+    ]);
+    assert.ok(zones.length > 0 && zones.includes(0));
+    await page.keyboard.press('Control+z');
+    assert.equal(filled(await savedTexture(page)), before);
+    assert.ok(difference(bare, await look(page, area)) < 0.0005);
+    await check('#tools input[data-key=t]');
+  });
+
+  test('a sticker is placed, and the eraser and the filler are at hand', async () => {
+    const before = (await names(page)).length;
+    await check('#tools input[data-key=s]');
+    await page.getByTestId('sticker-text').fill('FLAG');
+    await page.mouse.click(...at(0.5, 0.45));
+    await page.getByTestId('layer-list').getByText('Stickers 1').waitFor();
+    await page.keyboard.press('Control+z');
+    assert.equal((await names(page)).length, before);
+    await check('#tools input[data-key=t]');
+  });
+
+  test('what is hidden while it has the focus gives it to the stage', async () => {
+    await page.getByTestId('target-input').setInputFiles(glb('x.glb', Buffer.from('x')));
+    await page.locator('#alert-close').press('Enter');
+    assert.equal(await page.evaluate(() => document.activeElement!.id), 'view');
+  });
+
+  test('another avatar stands beside the model, comes on the stage, and all are saved', async () => {
+    await page.getByTestId('open-wardrobe').click();
+    await page.getByTestId('wardrobe-sample').selectOption('human');
+    const cards = page.locator('.avatars .avatar');
+    await cards.nth(1).filter({ hasText: 'other cage' }).waitFor();
+    await cards.nth(1).click();
+    await page.locator('.avatars li:nth-child(2) .avatar[aria-pressed=true]').waitFor();
+    await ready();
+    assert.equal(await page.getByTestId('sample-select').inputValue(), 'human');
+    assert.deepEqual(await faults(page), []);
+    const { name } = await saved(page, 'export-all');
+    assert.equal(name, 'avatars-painted.zip');
+    await page
+      .locator('#avatars')
+      .getByRole('button', { name: /^Remove / })
+      .press('Enter');
+    await page.locator('.avatars li:only-child .avatar[aria-pressed=true]').waitFor();
+    await ready();
+  });
+});
+
+describe('on a phone', () => {
+  before(async () => {
+    const first = `${kNoWebGl} localStorage.removeItem('cagecast-guide');`;
+    visit = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true }, first);
+    page = visit.page;
+  });
+
+  test('nothing overflows, and a first visit is offered a way through the page', async () => {
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    const guide = page.getByTestId('guide');
+    await guide.getByRole('button', { name: 'Show me' }).click();
+    for (let step = 1; step <= 4; step++) {
+      assert.match((await guide.textContent())!, new RegExp(`Step ${step} of 4`));
+      await page.keyboard.press('Enter');
+    }
+    await guide.waitFor({ state: 'detached' });
+    assert.deepEqual(await faults(page), []);
+    assert.deepEqual(visit.complaints, []);
+  });
+});
