@@ -11,7 +11,16 @@ import { type CagecastOptions, cagecast } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { Vector3 } from 'three';
 import { loadFileLayer } from '../support/file-layer.js';
-import { assertNear, assertTransferred, GlbMaker, glbOf, storedUv, validate } from '../support/gltf.js';
+import {
+  assertNear,
+  assertTransferred,
+  GlbMaker,
+  glbOf,
+  isOverlay,
+  primitivesOf as primitives,
+  storedUv,
+  validate,
+} from '../support/gltf.js';
 import { richFile } from '../support/rich-files.js';
 import { ball, head, modelFolders } from './scenes.js';
 
@@ -21,11 +30,6 @@ const { cage, target } = head(2, 10);
 const vertices = target.positions.length / 3;
 const texture = new Uint8Array(PNG.sync.write(new PNG({ width: 4, height: 4 })));
 const documentOf = (glb: Uint8Array): Promise<Document> => io.readBinary(new Uint8Array(glb));
-const primitives = (document: Document): Primitive[] =>
-  document
-    .getRoot()
-    .listMeshes()
-    .flatMap((mesh) => mesh.listPrimitives());
 const arrayOf = (primitive: Primitive, semantic: string) => primitive.getAttribute(semantic)!.getArray()!;
 /** The primitives of meshes in the order of the nodes that show them, as numbers of meshes may differ. */
 const shown = (document: Document): Primitive[] =>
@@ -33,7 +37,6 @@ const shown = (document: Document): Primitive[] =>
     .getRoot()
     .listNodes()
     .flatMap((node) => node.getMesh()?.listPrimitives() ?? []);
-const isOverlay = (primitive: Primitive) => primitive.getExtras()['cagecastOverlay'] === true;
 
 before(init);
 

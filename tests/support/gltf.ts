@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import type { Accessor, Primitive } from '@gltf-transform/core';
+import type { Accessor, Document, Primitive } from '@gltf-transform/core';
 import type { TransferResult } from 'cagecast';
 
 export * from './glb.js';
@@ -27,6 +27,16 @@ export async function validate(file: string | Uint8Array, most = 0): Promise<str
     .filter(({ severity }) => severity <= most)
     .map(({ code, message, pointer }) => `${pointer}: ${code}: ${message}`);
 }
+
+/** The primitives of all meshes of a document. */
+export const primitivesOf = (document: Document): Primitive[] =>
+  document
+    .getRoot()
+    .listMeshes()
+    .flatMap((mesh) => mesh.listPrimitives());
+
+/** Whether a transfer has added a primitive. */
+export const isOverlay = (primitive: Primitive): boolean => primitive.getExtras()['cagecastOverlay'] === true;
 
 /** A UV of a file, decoded. */
 export const storedUv = (uvs: Accessor, vertex: number): number[] => uvs.getElement(vertex, []);

@@ -2,7 +2,6 @@ import assert from 'node:assert/strict';
 import { type ExecFileSyncOptions, execFileSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { dirname, join } from 'node:path';
-import * as simd from 'cagecast';
 
 /**
  * A program of the core's tests, built if it is not of this code: `cagecast_reference` writes scenes, `cagecast_read_gltf` reads files.
@@ -19,11 +18,4 @@ export function nativeCommand(program = 'cagecast_reference'): string {
   }
   assert.ok(existsSync(native), `${native} is missing`);
   return native;
-}
-
-/** The package with its WebAssembly as it is shipped, inlined and beside it; ready. */
-export async function packages(): Promise<Record<'inline' | 'slim', typeof simd>> {
-  const slim = await import('cagecast/slim');
-  await Promise.all([simd.init(), slim.init()]);
-  return { inline: simd, slim };
 }

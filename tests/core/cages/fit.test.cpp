@@ -197,15 +197,7 @@ TEST_CASE("what must make no difference to a fit makes none", "[cages][fit]") {
 
 TEST_CASE("a fit can be cancelled", "[cages][fit]") {
   Heads heads;
-  for (const float until : {0.4f, 0.7f, 0.95f}) {
-    float last = 0;
-    const Status status = heads.fit([&](float done, const char*) {
-      CHECK(done >= last);
-      last = done;
-      return done < until;
-    });
-    CHECK(status.code == Code::aborted);
-  }
+  checkProgress([&](const Progress& progress) { return heads.fit(progress).ok(); }, {-1, 0.4f, 0.7f, 0.95f, 2});
 }
 
 TEST_CASE("what cannot be fitted is said in a sentence", "[cages][fit]") {

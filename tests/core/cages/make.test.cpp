@@ -216,21 +216,8 @@ TEST_CASE("making a cage can be cancelled, and tells how far it is", "[cages][ma
   MakeOptions options;
   options.voxels = 50;
   Cage cage;
-  float last = 0;
-  bool rising = true;
-  const auto rises = [&](float share, const char*) {
-    rising = rising && share >= last && share <= 1;
-    last = share;
-    return true;
-  };
-  REQUIRE(makeCage(model.model(), options, rises, cage).ok());
-  CHECK(rising);
-  CHECK(last > 0.9f);
-  for (const float until : {0.0f, 0.2f, 0.4f, 0.55f, 0.7f, 0.9f}) {
-    CAPTURE(until);
-    const auto stops = [&](float share, const char*) { return share < until; };
-    CHECK(makeCage(model.model(), options, stops, cage).code == Code::aborted);
-  }
+  checkProgress([&](const Progress& progress) { return makeCage(model.model(), options, progress, cage).ok(); },
+                {-1, 0.2f, 0.4f, 0.55f, 0.7f, 0.9f, 1});
 }
 
 TEST_CASE("looking for eyes by their shape can be cancelled", "[cages][make]") {

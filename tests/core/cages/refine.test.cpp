@@ -234,18 +234,6 @@ TEST_CASE("what a refined cage cannot be made of is said", "[cages][refine]") {
 TEST_CASE("a refinement reports its progress and can be cancelled", "[cages][refine]") {
   const OwnedModel head = makeHead(), cage = moved(makeHeadCage(), {0.05, 0, 0});
   Cage out;
-  std::vector<float> shares;
-  const auto note = [&](float share, const char*) {
-    shares.push_back(share);
-    return true;
-  };
-  REQUIRE(refineCage(cage.view(), head.model(), {}, note, out).ok());
-  CHECK(shares.size() > 10);
-  CHECK(shares.front() == 0);
-  CHECK(shares.back() == 1);
-  CHECK(std::is_sorted(shares.begin(), shares.end()));
-  for (std::size_t last : {std::size_t{0}, shares.size() / 2, shares.size() - 1})
-    CHECK(refineCage(
-              cage.view(), head.model(), {}, [&](float, const char*) { return last-- > 0; }, out)
-              .code == Code::aborted);
+  checkProgress([&](const Progress& progress) { return refineCage(cage.view(), head.model(), {}, progress, out).ok(); },
+                {-1, 0.03f, 0.06f, 0.2f, 2});
 }

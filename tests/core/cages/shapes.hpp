@@ -1,6 +1,10 @@
 #pragma once
 
+#include <catch2/catch.hpp>
+
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -50,6 +54,25 @@ inline TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
   a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
   for (const Triangle3& t : b.triangles) a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   return a;
+}
+
+/// Checks that a call reports its progress, rising up to 1, and ends where it is told to.
+/// @param call  Whether it succeeds with this progress.
+/// @param shares  Between each two of these it reports, and gives up if that says so.
+inline void checkProgress(const std::function<bool(const Progress&)>& call, const std::vector<float>& shares) {
+  std::vector<float> found;
+  CHECK(call([&](float share, const char*) {
+    found.push_back(share);
+    return true;
+  }));
+  REQUIRE_FALSE(found.empty());
+  CHECK(std::is_sorted(found.begin(), found.end()));
+  CHECK(found.front() >= 0);
+  CHECK(found.back() == 1);
+  for (std::size_t i = 0; i + 1 < shares.size(); ++i) {
+    INFO("between " << shares[i] << " and " << shares[i + 1]);
+    CHECK_FALSE(call([&](float share, const char*) { return !(share > shares[i] && share < shares[i + 1]); }));
+  }
 }
 
 /// A model with the arrays that it refers to.

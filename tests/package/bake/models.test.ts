@@ -9,7 +9,7 @@ import type { Image } from 'cagecast/bake';
 import { type BakeReport, bake, cagecast, type ImageCodec } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { fails, ok } from '../../support/command.js';
-import { packGlb, unpackGlb, validate } from '../../support/gltf.js';
+import { isOverlay, packGlb, primitivesOf, unpackGlb, validate } from '../../support/gltf.js';
 import { ktx2Of } from '../../support/ktx2';
 import { islandAt, islandCage, texturedBox } from '../../support/models';
 import { temporaryFolder } from '../../support/temporary.js';
@@ -159,11 +159,7 @@ describe('documents and files', () => {
   test('an overlay of an earlier transfer is taken away', async () => {
     const document = await box();
     await document.transform(cagecast({ cage: await io.read('cage.glb'), texture: pngOf(red) }));
-    const overlaysOf = (one: Document) =>
-      one
-        .getRoot()
-        .listMeshes()
-        .flatMap((mesh) => mesh.listPrimitives().filter((primitive) => primitive.getExtras()['cagecastOverlay']));
+    const overlaysOf = (one: Document) => primitivesOf(one).filter(isOverlay);
     assert.equal(overlaysOf(document).length, 1);
     const { documents, stdout } = await both(document);
     assert.match(stdout, /\ntook away 1 overlay of an earlier transfer$/m);

@@ -10,9 +10,9 @@ import { transfer } from 'cagecast';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder, MeshoptEncoder } from 'meshoptimizer';
 import { ok } from '../../support/command.js';
-import { glbOf, unpackGlb, validate } from '../../support/gltf.js';
+import { glbOf, isOverlay, primitivesOf, unpackGlb, validate } from '../../support/gltf.js';
 import { ball, head } from '../scenes.js';
-import { io, isOverlay, jsonOf, primitivesOf, workplace, write, writeChanged, writeMade } from './workplace.js';
+import { io, jsonOf, workplace, write, writeChanged, writeMade } from './workplace.js';
 
 const { cage, target } = workplace('lean', head(3, 24));
 const indices = target.indices as Uint32Array;

@@ -7,9 +7,9 @@ import type { Mesh } from 'cagecast';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
 import { fails, json, ok, run } from '../../support/command.js';
-import { glbOf, unpackGlb, validate } from '../../support/gltf.js';
+import { glbOf, isOverlay, primitivesOf, unpackGlb, validate } from '../../support/gltf.js';
 import { head } from '../scenes.js';
-import { io, isOverlay, jsonOf, png, primitivesOf, workplace, write } from './workplace.js';
+import { io, jsonOf, png, workplace, write } from './workplace.js';
 
 const scene = head(5, 12);
 const { cage } = workplace('paint', { ...scene, target: { ...scene.target, uvs: undefined } });

@@ -3,7 +3,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { after, before } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { type Document, type GLTF, NodeIO, type Primitive } from '@gltf-transform/core';
+import { type GLTF, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { init } from 'cagecast';
 import { PNG } from 'pngjs';
@@ -60,14 +60,6 @@ export function writeMade(name: string, make: (maker: GlbMaker) => void): void {
 }
 
 export const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
-
-export const primitivesOf = (document: Document): Primitive[] =>
-  document
-    .getRoot()
-    .listMeshes()
-    .flatMap((mesh) => mesh.listPrimitives());
-
-export const isOverlay = (primitive: Primitive): boolean => primitive.getExtras()['cagecastOverlay'] === true;
 
 /** The JSON of a file. */
 export const jsonOf = (name: string): GLTF.IGLTF => unpackGlb(readFileSync(name)).json;

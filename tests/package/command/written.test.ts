@@ -12,13 +12,15 @@ import {
   type Glb,
   GlbMaker,
   glbOf,
+  isOverlay,
+  primitivesOf,
   storedUv,
   unpackGlb,
   validate,
 } from '../../support/gltf.js';
 import { ktx2Of } from '../../support/ktx2.js';
 import { ball } from '../scenes.js';
-import { io, isOverlay, jsonOf, png, primitivesOf, workplace, write, writeChanged, writeMade } from './workplace.js';
+import { io, jsonOf, png, workplace, write, writeChanged, writeMade } from './workplace.js';
 
 const { cage, target } = workplace('written');
 const vertices = target.positions.length / 3;
@@ -32,18 +34,6 @@ interface Report {
 
 const glb = (name: string): Glb => unpackGlb(readFileSync(name));
 const read = async (name: string) => primitivesOf(await io.read(name));
-
-test('vertices are split so that no triangle stretches across the texture', async () => {
-  const { parts } = await json<Report>('transfer target.glb --cage cage.glb -o split.glb');
-  assert.deepEqual(await validate('split.glb'), []);
-  const [[before], [written]] = [await read('target.glb'), await read('split.glb')];
-  const added = assertTransferred(before!, written!, transfer(cage, target));
-  assert.ok(added > 0);
-  assert.deepEqual(
-    parts.map(({ splitVertices, uvSet }) => [splitVertices, uvSet]),
-    [[added, 'TEXCOORD_1']],
-  );
-});
 
 test('a target without UVs gets its first set; UVs that 16 bits cannot hold are floats', async () => {
   const { uvs: _, ...plain } = target;
@@ -68,15 +58,10 @@ test('nothing to paint, no overlay', async () => {
   assert.equal(jsonOf('bare.glb').meshes![0]!.primitives.length, 1);
 });
 
-test('the overlay has the cosmetic triangles only, and the vertices of its base; the same input gives the same bytes', async () => {
+test('the same input gives the same bytes', async () => {
   for (const name of ['overlay', 'again'])
     await ok(`transfer target.glb --cage cage.glb --texture paint.png -o ${name}.glb`);
   assert.deepEqual(readFileSync('overlay.glb'), readFileSync('again.glb'));
-  const [base, overlay] = await read('overlay.glb');
-  const { cosmeticTriangles } = transfer(cage, target);
-  const corners = [...base!.getIndices()!.getArray()!].filter((_, i) => cosmeticTriangles[Math.floor(i / 3)]);
-  assert.deepEqual([...overlay!.getIndices()!.getArray()!], corners);
-  assert.equal(overlay!.getAttribute('POSITION'), base!.getAttribute('POSITION'));
 });
 
 test('an overlay is lit as its base is, and as transparent; where it fills what a material cuts out, it says so', async () => {
@@ -304,12 +289,10 @@ test('an unknown extension that is required, and nodes outside the scene that ar
   assert.deepEqual(await countsOf('odd.glb'), await countsOf('target.glb'));
 });
 
-test('quantised positions, normalised, with the scale in the node; vertices that are split stay so, in words of four bytes', async () => {
+test('quantised vertices that are split stay so, in words of four bytes', async () => {
   const words = Int16Array.from({ length: 4 * vertices }, (_, i) =>
     i % 4 === 3 ? 0 : Math.round((target.positions[3 * Math.floor(i / 4) + (i % 4)]! / 2) * 32767),
   );
-  const rounded = target.positions.map((x) => (Math.round((x / 2) * 32767) / 32767) * 2);
-  write('rounded.glb', glbOf({ ...target, positions: rounded }));
   writeMade('quantised.glb', (maker) => {
     const bound = (pick: typeof Math.min) => [0, 1, 2].map((k) => pick(...words.filter((_, i) => i % 4 === k)));
     const accessor = { componentType: 5122, normalized: true, count: vertices, type: 'VEC3' } as const;
@@ -320,40 +303,34 @@ test('quantised positions, normalised, with the scale in the node; vertices that
     maker.node({ mesh: maker.json.meshes.push({ primitives: [primitive] }) - 1, scale: [2, 2, 2] });
     maker.json.extensionsUsed = maker.json.extensionsRequired = ['KHR_mesh_quantization'];
   });
-  assert.deepEqual(await countsOf('quantised.glb'), await countsOf('rounded.glb'));
   assert.match(await ok('transfer quantised.glb --cage cage.glb -o split.glb'), / split at seams/);
   assert.deepEqual(await validate('split.glb'), []);
-  const [primitive] = await read('split.glb');
-  const positions = primitive!.getAttribute('POSITION')!;
+  const positions = (await read('split.glb'))[0]!.getAttribute('POSITION')!;
   assert.ok(positions.getNormalized());
-  assert.deepEqual(
-    positions.getArray()!.slice(0, 3 * vertices),
-    words.filter((_, i) => i % 4 < 3),
-  );
+  const before = words.filter((_, i) => i % 4 < 3);
+  assert.deepEqual(positions.getArray()!.slice(0, 3 * vertices), before);
 });
 
-test('strips and fans', async () => {
+test('the triangles of strips and fans face the same way in the overlay', async () => {
   const positions = new Float32Array([-0.1, -0.1, 0.9, 0.1, -0.1, 0.9, -0.1, 0.1, 0.9, 0.1, 0.1, 0.9]);
-  const answers = [];
   for (const [mode, indices] of [
     [4, [0, 1, 2, 2, 1, 3]],
     [5, [0, 1, 2, 3]],
     [6, [1, 3, 2, 0]],
   ] as const) {
     write('mode.glb', glbOf({ positions, indices: Uint16Array.from(indices), mode }));
-    answers.push(await countsOf('mode.glb'));
     await ok('transfer mode.glb --cage cage.glb --texture paint.png -o wound.glb');
     const overlay = (await read('wound.glb'))[1]!;
     const corners = [...overlay.getIndices()!.getArray()!].map((v) =>
       overlay.getAttribute('POSITION')!.getElement(v, [] as number[]),
     );
-    // All triangles of the overlay face up, as the cage is above.
+    assert.equal(corners.length, 6);
+    // They face up, as the cage is above.
     for (let i = 0; i < corners.length; i += 3) {
       const [a, b, c] = corners.slice(i, i + 3) as [number[], number[], number[]];
       assert.ok((b[0]! - a[0]!) * (c[1]! - a[1]!) > (b[1]! - a[1]!) * (c[0]! - a[0]!), `mode ${mode}`);
     }
   }
-  assert.deepEqual(answers, Array(3).fill(answers[0]));
 });
 
 test('buffers and images beside a glTF, or in it as data URIs of any kind, become one GLB', async () => {

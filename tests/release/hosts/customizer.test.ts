@@ -1,34 +1,22 @@
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
-import { cpSync, mkdirSync, mkdtempSync, readFileSync, realpathSync, rmSync, symlinkSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { cpSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import type { Browser, Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { build, type PreviewServer, preview } from 'vite';
 import { launchChromium } from '../../support/chromium.js';
+import { installPacked, linkPackages } from './install.js';
 
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-customizer-'));
-const modules = join(folder, 'node_modules');
+const folder = installPacked();
 const faults: string[] = [];
 let server: PreviewServer;
 let browser: Browser;
 let page: Page;
 
-function run(command: string, ...args: string[]): string {
-  const { status, stdout, stderr } = spawnSync(command, args, { encoding: 'utf8' });
-  assert.equal(status, 0, `${command} ${args.join(' ')}:\n${stdout}${stderr}`);
-  return stdout;
-}
-
 before(async () => {
   cpSync('examples/customizer', folder, { recursive: true });
-  mkdirSync(modules);
-  const pack = ['pack', '--json', '--ignore-scripts', '--pack-destination', folder];
-  const [packed] = JSON.parse(run('npm', ...pack)) as [{ filename: string }];
-  run('tar', '-xzf', join(folder, packed.filename), '-C', modules, '--transform', 's/^package/cagecast/');
-  symlinkSync(realpathSync('node_modules/three'), join(modules, 'three'));
+  linkPackages(folder, ['three']);
   const options = {
     root: folder,
     publicDir: join(process.cwd(), 'examples/samples/lizard'),

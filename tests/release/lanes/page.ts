@@ -1,6 +1,6 @@
 // What a browser runs: computes the hashes and sends them to the server that the page came from.
 import * as cagecast from 'cagecast';
-import { hashesOf } from './hashes.js';
+import { hashesOf } from '../../support/golden.js';
 
 const load = async (name: string) => (await fetch(name)).arrayBuffer();
 

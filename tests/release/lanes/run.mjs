@@ -5,7 +5,7 @@
 //
 // Other native builds are made in build/lanes. A lane whose tools are not here is left out, and the table says so.
 
-import { execFile, spawn, spawnSync } from 'node:child_process';
+import { execFile, execFileSync, spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import {
   copyFileSync,
@@ -23,7 +23,8 @@ import { join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { promisify } from 'node:util';
 import { build } from 'esbuild';
-import { hashesOf } from './hashes.ts';
+import { hashesOf } from '../../support/golden.ts';
+import { nativeCommand } from '../../support/native.ts';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 const work = join(root, 'build/lanes');
@@ -33,7 +34,8 @@ const scenes = mkdtempSync(join(tmpdir(), 'cagecast-lanes-'));
 const call = promisify(execFile);
 
 const has = (name) => spawnSync('sh', ['-c', `command -v ${name}`]).status === 0;
-const read = (name) => Uint8Array.from(readFileSync(join(scenes, name))).buffer;
+const read = (name) =>
+  existsSync(join(scenes, name)) ? Uint8Array.from(readFileSync(join(scenes, name))).buffer : new ArrayBuffer(0);
 
 /** Thrown by a lane that this machine cannot have. */
 class LeftOut extends Error {}
@@ -43,6 +45,9 @@ function need(...programs) {
   const missing = programs.filter((name) => !has(name));
   if (missing.length > 0) throw new LeftOut(`no ${missing.join(', no ')}`);
 }
+
+/** What writes the scenes for those in JavaScript. */
+const writer = () => (isQuick ? join(root, 'build/twins/tests/core/cagecast_reference') : nativeCommand());
 
 const printed = async (program, args = []) => (await call(program, args)).stdout.trim();
 
@@ -108,14 +113,12 @@ const native =
 /** What is missing is an error with `--built`; else its lane is left out. */
 const notBuilt = (text) => (isQuick ? new Error(text) : new LeftOut(text));
 
-/** A native build that `npm test` has made anyway. */
-const built =
-  (name, ...args) =>
-  async () => {
-    const program = join(release, name);
-    if (!existsSync(program)) throw notBuilt(`build/twins has no ${name}`);
-    return printed(program, args);
-  };
+/** A native build that `npm run test:all` has made anyway. */
+const built = (name) => async () => {
+  const program = join(release, name);
+  if (!existsSync(program)) throw notBuilt(`build/twins has no ${name}`);
+  return printed(program);
+};
 
 /** A build of the package, in Node. */
 const inNode = (path) => async () => {
@@ -139,10 +142,9 @@ async function servePage() {
     '/': ['text/html', '<!doctype html><script type="module" src="page.js"></script>'],
     '/page.js': ['text/javascript', outputFiles[0].contents],
     ...Object.fromEntries(
-      ['paper', 'default', 'borders'].map((name) => [
-        `/${name}.bin`,
-        ['application/octet-stream', readFileSync(join(scenes, `${name}.bin`))],
-      ]),
+      readdirSync(scenes)
+        .filter((name) => name.endsWith('.scene'))
+        .map((name) => [`/${name}`, ['application/octet-stream', readFileSync(join(scenes, name))]]),
     ),
   };
   const server = createServer((request, response) => {
@@ -187,14 +189,14 @@ async function onAarch64() {
   return printed('qemu-aarch64', [await compiled('aarch64-linux-gnu-g++', ['-O2', '-static'])]);
 }
 
-// The first one also writes the scenes that those in JavaScript read.
 const quick = [
-  ['g++ -O3, AVX2 if there is', built('cagecast_lane', scenes)],
+  ['g++ -O3, AVX2 if there is', built('cagecast_lane')],
   ['g++ -O3, without SIMD', built('cagecast_lane_scalar')],
   ['g++ -O1, with sanitizers', built('cagecast_lane_sanitized')],
 ];
 const own = [
   ['g++ -O0', native('g++', '-O0')],
+  ['g++ -O2', native('g++', '-O2')],
   ['g++ -O3', native('g++', '-O3')],
   ['g++ -O3 -march=native', native('g++', '-O3', '-march=native')],
   ['clang++ -O0', native('clang++', '-O0')],
@@ -222,8 +224,7 @@ function chosenLanes() {
     throw new LeftOut('npm run lanes');
   };
   if (isQuick) return [...quick, ...wasm, browsers[0], ...[...own, browsers[1]].map(([name]) => [name, later])];
-  const scenesOf = async () => printed(await compiled('g++', ['-O2']), [scenes]);
-  return [['g++ -O2', scenesOf], ...quick, ...own, ...wasm, ...browsers];
+  return [...quick, ...own, ...wasm, ...browsers];
 }
 
 const golden = (name) => readFileSync(join(root, `tests/core/golden/${name}.txt`), 'utf8').trim();
@@ -232,6 +233,7 @@ let failed = 0;
 const expected = ['hash', 'hash-default', 'hash-borders'].map(golden).join(' ');
 console.log(`${'lane'.padEnd(30)} ${'paper'.padEnd(16)} ${'default'.padEnd(16)} cut borders`);
 try {
+  execFileSync(writer(), ['--golden', scenes]);
   for (const [name, lane] of chosenLanes()) {
     let line;
     try {

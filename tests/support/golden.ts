@@ -1,4 +1,4 @@
-import type { Mesh } from 'cagecast';
+import { readScene, type Scene } from '../../bench/scene-file.js';
 
 type Numbers = Uint8Array | Uint32Array | Float32Array;
 
@@ -27,48 +27,37 @@ class Hash {
   }
 }
 
-/** The scenes that tests/release/lanes/lane.cpp wrote. */
-function readScenes(bytes: ArrayBuffer): { cage: Mesh; target: Mesh }[] {
-  let at = 0;
-  const take = <A>(type: new (buffer: ArrayBuffer, offset: number, length: number) => A): A => {
-    const [count] = new Uint32Array(bytes, at, 1);
-    const values = new type(bytes, at + 4, count!);
-    at += 4 + 4 * count!;
-    return values;
-  };
-  const takeMesh = (): Mesh => ({
-    positions: take(Float32Array),
-    indices: take(Uint32Array),
-    uvs: take(Float32Array),
-    groups: take(Uint32Array),
-  });
+/** Gets a file that `cagecast_reference --golden` wrote; none, if there is no such file. */
+export type Load = (name: string) => ArrayBuffer | Promise<ArrayBuffer>;
+
+/** The scenes that a hash is of, in its order. */
+async function scenesOf(kind: 'paper' | 'default' | 'borders', load: Load): Promise<Scene[]> {
   const scenes = [];
-  while (at < bytes.byteLength) scenes.push({ cage: takeMesh(), target: takeMesh() });
-  return scenes;
+  for (;;) {
+    const bytes = await load(`${kind}-${scenes.length}.scene`);
+    if (bytes.byteLength === 0) return scenes;
+    scenes.push(readScene(bytes));
+  }
 }
 
 /**
  * The hashes that tests/release/lanes/lane.cpp prints.
  * @param build  A build of the package, ready.
- * @param load  Gets a file of scenes that lane.cpp wrote.
  */
-export async function hashesOf(
-  build: typeof import('cagecast'),
-  load: (name: string) => ArrayBuffer | Promise<ArrayBuffer>,
-): Promise<string> {
+export async function hashesOf(build: typeof import('cagecast'), load: Load): Promise<string> {
   const { transfer, cutBorders } = build;
   const hashes = [new Hash(), new Hash(), new Hash()] as const;
-  for (const { cage, target } of readScenes(await load('paper.bin'))) {
+  for (const { cage, target } of await scenesOf('paper', load)) {
     const { uvs, zones, triangles, segments } = transfer(cage, target, { preset: 'paper' });
     hashes[0].add(uvs, zones, triangles, segments);
   }
-  for (const { cage, target } of readScenes(await load('default.bin'))) {
+  for (const { cage, target } of await scenesOf('default', load)) {
     const { uvs, zones, triangles, segments, cosmeticTriangles, cornerUvs } = transfer(cage, target);
     hashes[1].add(uvs, zones, triangles, segments, cosmeticTriangles, cornerUvs);
   }
-  const borders = await load('borders.bin');
+  const borders = await scenesOf('borders', load);
   for (const seams of ['vertex', 'corner'] as const) {
-    for (const { cage, target } of readScenes(borders)) {
+    for (const { cage, target } of borders) {
       const cut = cutBorders(cage, target, transfer(cage, target, { seams }), { seams });
       hashes[2].add(cut.sources, cut.weights, cut.indices, cut.triangles, cut.uvs, cut.cornerUvs);
       hashes[2].add(cut.zones, cut.cosmeticTriangles);
