@@ -1,4 +1,4 @@
-// A cage and its target that are turned together are the same model. Rounding and, in step 6, the directions of further rays, which
+// A cage and its target that are turned together are the same model. Rounding and, in step 9, the directions of further rays, which
 // are set out from the axes, may change zones where a ray passes close to an edge.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
@@ -44,7 +44,7 @@ function areasOf({ positions, indices }: Mesh): Float64Array {
 }
 
 for (const files of listFiles().filter(({ kind }) => kind === 'sample')) {
-  test(`${files.name}: under any rotation zones change in at most 1 % of the area, without step 6 in 0.05 %`, async () => {
+  test(`${files.name}: under any rotation zones change in at most 1 % of the area, without step 9 in 0.05 %`, async () => {
     const { cage, target } = (await loadFiles(files)).scene;
     const areas = areasOf(target);
     const all = areas.reduce((sum, area) => sum + area);
