@@ -309,6 +309,9 @@ describe('with a picture', () => {
     await check('#tools input[data-key=x]');
     await page.mouse.click(...at(0.5, 0.5));
     assert.match(await page.getByTestId('explain-bubble').innerText(), /^(Painted|Not painted)/);
+    const spot = page.getByTestId('explain-bubble').locator('.swatch');
+    const colour = await spot.evaluate((one) => getComputedStyle(one).backgroundColor);
+    assert.notEqual(colour, 'rgba(0, 0, 0, 0)', 'it has the colour of its zone');
     await page.keyboard.press('Escape');
     await check('#tools input[data-key=t]');
     await mode('segments');

@@ -1,13 +1,13 @@
+import { make, swatch } from '../platform/make';
 import { announce, element } from '../platform/page';
 import type { Session } from '../state/session';
+import { kZones } from '../state/zones';
 import type { Spot } from '../view/pick';
 import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
 import { BoundaryLoops } from './boundary-loops';
 import { type Explanation, explain, percent, type SegmentFacts } from './explanation';
 import { ExplanationMarks } from './marks';
-
-const kZoneNames = ['cosmetic', 'occluded', 'uncovered', 'culled'];
 
 /**
  * The tool that explains why a spot is painted or not: under the mouse, pinned by a click or tap, or at the centre of the view
@@ -108,49 +108,28 @@ export class Explain {
     element('explain-hint', HTMLElement).hidden = explanation !== undefined;
     if (!explanation) return;
     const { zone, verdict, because, steps, part } = explanation;
-    this.#bubble.replaceChildren(swatch(zone), text('b', verdict), text('span', because));
-    const list = document.createElement('ol');
-    for (const { title, sentence } of steps) {
-      const item = document.createElement('li');
-      item.append(text('b', title), text('p', sentence));
-      list.append(item);
-    }
-    const head = text('p', `${because}.`);
-    const title = document.createElement('h3');
-    title.append(swatch(zone), verdict);
-    this.#panel.replaceChildren(title, head, list, areasOf(part));
+    this.#bubble.replaceChildren(swatch(kZones[zone]!.color), make('b', {}, verdict), make('span', {}, because));
+    const items = steps.map(({ title, sentence }) => make('li', {}, make('b', {}, title), make('p', {}, sentence)));
+    this.#panel.replaceChildren(
+      make('h3', {}, swatch(kZones[zone]!.color), verdict),
+      make('p', {}, `${because}.`),
+      make('ol', {}, ...items),
+      areasOf(part),
+    );
   }
 }
 
 /** The areas of a part as a bar: exposed, covered, and the threshold. */
 function areasOf({ exposed, covered, coverage, threshold, score, passes }: SegmentFacts): HTMLElement {
-  const figure = document.createElement('figure');
-  figure.className = 'areas';
-  const bar = document.createElement('div');
-  bar.className = 'area-bar';
+  const bar = make('div', { className: 'area-bar' }, make('i'), make('i'), make('i'));
   for (const [name, value] of Object.entries({ exposed, covered, threshold: threshold * exposed }))
     bar.style.setProperty(`--${name}`, String(value));
-  bar.append(text('i', ''), text('i', ''), text('i', ''));
-  const facts = document.createElement('dl');
-  const fact = (name: string, value: string): void => facts.append(text('dt', name), text('dd', value));
+  const facts = make('dl');
+  const fact = (name: string, value: string): void => facts.append(make('dt', {}, name), make('dd', {}, value));
   fact('E exposed', percent(exposed));
   fact('C covered', percent(covered));
   fact('F = C / E', `${percent(coverage)}, ${passes ? 'passes' : 'culled'}`);
   fact('Threshold', percent(threshold));
   if (Number.isFinite(score)) fact('Score (kept from 1)', score.toFixed(2));
-  figure.append(bar, facts);
-  return figure;
-}
-
-function swatch(zone: number): HTMLElement {
-  const made = text('i', '');
-  made.className = 'swatch';
-  made.dataset.zone = kZoneNames[zone]!;
-  return made;
-}
-
-function text(tag: string, content: string): HTMLElement {
-  const made = document.createElement(tag);
-  made.textContent = content;
-  return made;
+  return make('figure', { className: 'areas' }, bar, facts);
 }

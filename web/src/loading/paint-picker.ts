@@ -1,3 +1,4 @@
+import { make } from '../platform/make';
 import { element } from '../platform/page';
 
 /** A paint to choose: its title and the URL of its image. */
@@ -32,27 +33,10 @@ export function offerPaints(choices: readonly Choice[], chosen: number, { onChoo
 }
 
 function choiceOf({ title, picture }: Choice): HTMLElement {
-  const input = document.createElement('input');
-  input.type = 'radio';
-  input.name = 'paint';
-  const frame = document.createElement('span');
-  frame.className = 'picture';
-  const image = document.createElement('img');
-  image.src = picture;
-  image.alt = '';
-  frame.append(image);
-  const name = document.createElement('span');
-  name.className = 'title';
-  name.textContent = title;
-  const label = document.createElement('label');
-  label.append(input, frame, name);
-  const add = document.createElement('button');
-  add.type = 'button';
-  add.name = 'add-paint';
-  add.title = 'Add as a layer';
-  add.ariaLabel = `Add ${title} as a layer`;
-  add.textContent = '+';
-  const choice = document.createElement('div');
-  choice.append(label, add);
-  return choice;
+  const input = make('input', { type: 'radio', name: 'paint' });
+  const frame = make('span', { className: 'picture' }, make('img', { src: picture, alt: '' }));
+  const label = make('label', {}, input, frame, make('span', { className: 'title' }, title));
+  const ariaLabel = `Add ${title} as a layer`;
+  const add = make('button', { type: 'button', name: 'add-paint', title: 'Add as a layer', ariaLabel }, '+');
+  return make('div', {}, label, add);
 }

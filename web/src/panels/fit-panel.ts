@@ -1,6 +1,7 @@
 import type { Lock } from 'cagecast';
 import { type Finding, type Inspection, unfitFrom } from 'cagecast/inspect';
 import { TransferClient } from '../loading/transfer-client';
+import { make } from '../platform/make';
 import { element } from '../platform/page';
 import type { CageMaker } from '../state/cage-maker';
 import type { Session } from '../state/session';
@@ -51,7 +52,7 @@ export class FitPanel {
     this.#stage = stage;
     session.on('transfer', () => {
       this.#forget();
-      this.#show('', [text('p', kSoon)]);
+      this.#show('', [make('p', {}, kSoon)]);
     });
     session.on('zones', () => this.#onChange());
     this.#button.addEventListener('click', () => void this.#inspect());
@@ -63,7 +64,7 @@ export class FitPanel {
     const triangles = (target.mesh.indices.length + cage.mesh.indices.length) / 3;
     this.#forget();
     if (triangles <= kMax) this.#waiting = setTimeout(() => void this.#inspect(), kInspectDelay);
-    else this.#show('', [text('p', 'This model is large; inspecting it takes a while.')], this.#next);
+    else this.#show('', [make('p', {}, 'This model is large; inspecting it takes a while.')], this.#next);
     this.#button.hidden = triangles <= kMax;
   }
 
@@ -90,7 +91,7 @@ export class FitPanel {
     } = this.#session;
     if (!shown) return;
     this.#button.hidden = true;
-    this.#show('', [text('p', 'The cage is being inspected.')]);
+    this.#show('', [make('p', {}, 'The cage is being inspected.')]);
     this.#client ??= new TransferClient();
     try {
       const { target, cage } = shown;
@@ -102,14 +103,13 @@ export class FitPanel {
       this.#write(await this.#client.ask('inspect', cage, target, { preset, threshold, locks, parts }));
     } catch (error) {
       if (error instanceof Superseded) return;
-      this.#show('', [text('p', `The cage could not be inspected: ${reasonOf(error)}`)], this.#next);
+      this.#show('', [make('p', {}, `The cage could not be inspected: ${reasonOf(error)}`)], this.#next);
     }
   }
 
   #write(inspection: Inspection): void {
     const { verdict, findings, segments } = inspection;
-    const list = document.createElement('ul');
-    list.append(...findings.map((finding) => this.#item(finding, inspection)));
+    const list = make('ul', {}, ...findings.map((finding) => this.#item(finding, inspection)));
     const share = `${Math.round(100 * paintableShare(segments))} % of the visible surface can be painted.`;
     const remedies = findings.flatMap((finding) => this.#remedyFor(finding, inspection) ?? []);
     const { isFresh, isOthers } = this.#maker;
@@ -120,7 +120,10 @@ export class FitPanel {
     const making = verdict === 'unfit' && !isFresh && !kept ? [this.#making] : [];
     // The cage of another model is not meant for this one.
     if (isOthers) remedies.unshift(...making);
-    const content = [text('p', `${share} ${kVerdicts[verdict]}`), ...(findings.length > 0 ? [list] : [])];
+    const content: HTMLElement[] = [
+      make('p', {}, `${share} ${kVerdicts[verdict]}`),
+      ...(findings.length > 0 ? [list] : []),
+    ];
     content.push(...making.map(buttonFor));
     // What is good needs no remedy on the stage; the findings offer theirs.
     this.#show(verdict, content, verdict === 'good' ? undefined : (remedies[0] ?? making[0]));
@@ -145,8 +148,7 @@ export class FitPanel {
 
   #item(finding: Finding, inspection: Inspection): HTMLElement {
     const { sentence, advice, places = [], locks } = finding;
-    const item = document.createElement('li');
-    item.append(text('p', `${forPeople(sentence)}.`), text('p', forPeople(advice)));
+    const item = make('li', {}, make('p', {}, `${forPeople(sentence)}.`), make('p', {}, forPeople(advice)));
     const remedy = this.#remedyFor(finding, inspection);
     if (remedy) item.append(buttonFor({ ...remedy, title: `Do it: ${remedy.title.toLowerCase()}` }));
     const segments = places.map(({ segment }) => segment);
@@ -175,16 +177,7 @@ export class FitPanel {
 }
 
 function buttonFor({ title, run }: Remedy): HTMLButtonElement {
-  const button = document.createElement('button');
-  button.type = 'button';
-  button.className = 'quiet';
-  button.textContent = title;
+  const button = make('button', { type: 'button', className: 'quiet' }, title);
   button.addEventListener('click', run);
   return button;
-}
-
-function text(tag: string, content: string): HTMLElement {
-  const made = document.createElement(tag);
-  made.textContent = content;
-  return made;
 }

@@ -1,3 +1,4 @@
+import { make } from '../platform/make';
 import type { Session } from '../state/session';
 import type { View } from '../state/view-state';
 
@@ -40,7 +41,7 @@ const kSteps: readonly Step[] = [
 export class Guide {
   readonly #session: Session;
   readonly #before: View;
-  readonly #box = document.createElement('div');
+  readonly #box = make('div', { className: 'guide' });
   readonly #ended: () => void;
 
   /** Offers the way. @param ended  Called when it was walked, or is not wanted. */
@@ -48,7 +49,6 @@ export class Guide {
     this.#session = session;
     this.#before = session.view;
     this.#ended = ended;
-    this.#box.className = 'guide';
     this.#box.dataset.testid = 'guide';
     this.#box.setAttribute('role', 'dialog');
     this.#box.setAttribute('aria-labelledby', 'guide-title');
@@ -74,29 +74,19 @@ export class Guide {
       ...(isLast ? [] : [['Skip', () => this.#end()] as const]),
       [isLast ? 'Done' : 'Next', () => (isLast ? this.#end() : this.show(at + 1))],
     ]);
-    const count = document.createElement('small');
-    count.textContent = `Step ${at + 1} of ${kSteps.length}`;
-    this.#box.querySelector('.row')!.prepend(count);
+    this.#box.querySelector('.row')!.prepend(make('small', {}, `Step ${at + 1} of ${kSteps.length}`));
     this.#box.querySelector<HTMLElement>('button.strong')!.focus();
   }
 
   #fill(title: string, text: string, buttons: readonly (readonly [string, () => void])[]): void {
-    const heading = document.createElement('h2');
-    heading.id = 'guide-title';
-    heading.textContent = title;
-    const words = document.createElement('p');
-    words.textContent = text;
-    const row = document.createElement('div');
-    row.className = 'row';
-    for (const [label, act] of buttons) {
-      const button = document.createElement('button');
-      button.type = 'button';
-      button.className = act === buttons.at(-1)![1] ? 'strong' : 'quiet';
-      button.textContent = label;
+    const all = buttons.map(([label, act]) => {
+      const className = act === buttons.at(-1)![1] ? 'strong' : 'quiet';
+      const button = make('button', { type: 'button', className }, label);
       button.addEventListener('click', act);
-      row.append(button);
-    }
-    this.#box.replaceChildren(heading, words, row);
+      return button;
+    });
+    const heading = make('h2', { id: 'guide-title' }, title);
+    this.#box.replaceChildren(heading, make('p', {}, text), make('div', { className: 'row' }, ...all));
   }
 
   #mark(about: string | undefined): void {

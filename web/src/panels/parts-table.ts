@@ -1,4 +1,5 @@
 import type { Classification, SegmentStats } from 'cagecast';
+import { make, swatch } from '../platform/make';
 import { element, showNotice } from '../platform/page';
 import type { Choice, Locks } from '../state/choices';
 import type { Primitive } from '../state/model';
@@ -105,25 +106,19 @@ export class PartsTable {
 
   #row(entry: Entry, colors: readonly Rgb[]): Row {
     const { name, segments, points } = entry;
-    const row = document.createElement('tr');
-    const head = cell('th', name);
-    head.scope = 'row';
-    head.prepend(swatch(segments.slice(0, kMaxColors).map((segment) => colors[segment]!)));
-    const verdict = cell('td', '');
+    const head = make('th', { scope: 'row' }, name);
+    head.prepend(swatchOf(segments.slice(0, kMaxColors).map((segment) => colors[segment]!)));
     const choice = this.#select(entry);
-    const last = document.createElement('td');
-    last.append(choice);
-    const cover = cell('td', '');
-    row.append(head, cell('td', points.toLocaleString('en')), cover, verdict, last);
+    const [cover, verdict] = [make('td'), make('td')];
+    const count = make('td', {}, points.toLocaleString('en'));
+    const row = make('tr', {}, head, count, cover, verdict, make('td', {}, choice));
     row.addEventListener('pointerenter', () => this.#highlight(segments));
     row.addEventListener('focusin', () => this.#highlight(segments));
     return { segments, row, cover, verdict, choice };
   }
 
   #select({ name, segments, lock }: Entry): HTMLSelectElement {
-    const select = document.createElement('select');
-    select.name = 'lock';
-    select.setAttribute('aria-label', `Override for ${name}`);
+    const select = make('select', { name: 'lock', ariaLabel: `Override for ${name}` });
     for (const [value, text] of Object.entries(kLocks)) select.add(new Option(text, value, false, value === lock));
     select.addEventListener('change', () => this.#session.lock(segments, select.value as Choice));
     return select;
@@ -185,20 +180,11 @@ function coverageOf({ exposedArea, coveredArea }: Entry): number {
 }
 
 /** The colours of segments in the view “Parts”, side by side. */
-function swatch(colors: readonly Rgb[]): HTMLElement {
-  const made = document.createElement('i');
-  made.className = 'swatch';
+function swatchOf(colors: readonly Rgb[]): HTMLElement {
   const stops = colors.map(
     (color, i) => `${cssColor(color)} ${(100 * i) / colors.length}% ${(100 * (i + 1)) / colors.length}%`,
   );
-  made.style.background = `linear-gradient(to right, ${stops.join(', ')})`;
-  return made;
-}
-
-function cell(type: 'td' | 'th', text: string): HTMLTableCellElement {
-  const made = document.createElement(type);
-  made.textContent = text;
-  return made;
+  return swatch(`linear-gradient(to right, ${stops.join(', ')})`);
 }
 
 /** Rounded down: 100 % only if nothing is missing, and 0 % only if there is nothing. */

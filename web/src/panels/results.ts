@@ -1,4 +1,5 @@
 import type { Classification, Timings } from 'cagecast';
+import { make } from '../platform/make';
 import { announce, element } from '../platform/page';
 import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
@@ -67,13 +68,8 @@ function showTimings({ projection: { timings: projected, preset } }: Shown, spen
   const longest = Math.max(...steps.map((step) => timings[step]), Number.MIN_VALUE);
   element('timings', HTMLElement).replaceChildren(
     ...steps.map((step) => {
-      const row = document.createElement('div');
-      const name = document.createElement('dt');
-      const time = document.createElement('dd');
-      name.textContent = step;
-      time.textContent = round(timings[step]);
+      const row = make('div', {}, make('dt', {}, step), make('dd', {}, round(timings[step])));
       row.style.setProperty('--share', String(timings[step] / longest));
-      row.append(name, time);
       return row;
     }),
   );

@@ -1,3 +1,4 @@
+import { make } from '../platform/make';
 import { element } from '../platform/page';
 
 const kNear = 60; // pixels: a section that starts this close below the bar counts as current
@@ -36,9 +37,7 @@ export function goTo(section: HTMLElement): void {
 }
 
 function linkTo(section: HTMLElement): HTMLAnchorElement {
-  const link = document.createElement('a');
-  link.href = `#${section.id}`;
-  link.textContent = section.dataset.nav!;
+  const link = make('a', { href: `#${section.id}` }, section.dataset.nav!);
   link.addEventListener('click', (event) => {
     // The URL fragment is used for links to a view.
     event.preventDefault();

@@ -1,4 +1,5 @@
 import { classify } from 'cagecast';
+import { make } from '../platform/make';
 import { element } from '../platform/page';
 import { Pace } from '../state/pace';
 import type { Session } from '../state/session';
@@ -53,9 +54,8 @@ export class ThresholdMarks {
 
   #write(flips: ReadonlyMap<number, ReadonlySet<string>>): void {
     const marks = [...flips].map(([step, names]) => {
-      const mark = document.createElement('i');
+      const mark = make('i', { title: [...names].join(', ') });
       mark.style.left = `${(100 * step) / kSteps}%`;
-      mark.title = [...names].join(', ');
       return mark;
     });
     element('threshold-marks', HTMLElement).replaceChildren(...marks);

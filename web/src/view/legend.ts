@@ -1,3 +1,4 @@
+import { make, swatch } from '../platform/make';
 import { element } from '../platform/page';
 import { kZones } from '../state/zones';
 import type { Scale } from './color-maps';
@@ -12,24 +13,11 @@ export function showLegend(legend: { scale: Scale } | 'zones' | undefined): void
 }
 
 function ofScale({ title, map, ticks }: Scale): HTMLElement[] {
-  const band = made('i', 'band');
+  const band = make('i', { className: 'band' });
   band.style.background = `linear-gradient(to right, ${map.map(cssColor).join(', ')})`;
-  const marks = made('span', 'ticks');
-  marks.append(...ticks.map((tick) => made('span', '', tick)));
-  return [made('b', '', title), band, marks];
+  const marks = ticks.map((tick) => make('span', {}, tick));
+  return [make('b', {}, title), band, make('span', { className: 'ticks' }, ...marks)];
 }
 
-function ofZone({ name, color }: (typeof kZones)[number]): HTMLElement {
-  const key = made('span', 'key');
-  const swatch = made('i', 'swatch');
-  swatch.style.background = color;
-  key.append(swatch, name);
-  return key;
-}
-
-function made(tag: string, className: string, text = ''): HTMLElement {
-  const element = document.createElement(tag);
-  element.className = className;
-  element.textContent = text;
-  return element;
-}
+const ofZone = ({ name, color }: (typeof kZones)[number]): HTMLElement =>
+  make('span', { className: 'key' }, swatch(color), name);

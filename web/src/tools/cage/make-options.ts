@@ -1,6 +1,7 @@
 import type { CageModel } from 'cagecast/cages';
 import { cageModel } from 'cagecast/three';
 import type { History } from 'cagecast/three/paint';
+import { make } from '../../platform/make';
 import { announce, element } from '../../platform/page';
 import type { CageMaker } from '../../state/cage-maker';
 import type { Model } from '../../state/model';
@@ -99,12 +100,8 @@ export class MakeOptionsPanel {
     if (target !== this.#target || parts.length !== primitives.length || parts.length < 2) return;
     this.#usual = bare.map((isBare) => !isBare);
     const rows = primitives.map(({ name, firstTriangle, triangleCount }, part) => {
-      const row = document.createElement('label');
-      row.className = 'check';
-      const input = document.createElement('input');
-      input.type = 'checkbox';
-      input.checked = this.#usual[part]!;
-      row.append(input, name);
+      const input = make('input', { type: 'checkbox', checked: this.#usual[part]! });
+      const row = make('label', { className: 'check' }, input, name);
       const show = (): void => {
         const marks = new Uint8Array(target.mesh.indices.length / 3);
         this.#viewer.stage.highlight('parts', marks.fill(1, firstTriangle, firstTriangle + triangleCount));

@@ -1,3 +1,4 @@
+import { make } from '../../platform/make';
 import { element } from '../../platform/page';
 import type { ExtractedMesh } from '../../state/model';
 import { titleOfMorph } from './expression-names';
@@ -73,10 +74,7 @@ export class Morphs {
     this.#presets.hidden = expressions.length === 0;
     this.#presets.replaceChildren(
       ...expressions.map(({ title, weights }) => {
-        const button = document.createElement('button');
-        button.type = 'button';
-        button.textContent = title;
-        button.ariaPressed = 'false';
+        const button = make('button', { type: 'button', ariaPressed: 'false' }, title);
         button.addEventListener('click', () => {
           const on = button.ariaPressed !== 'true';
           const rest = expressions.flatMap((other) => [...other.weights.keys()].map((name) => [name, 0] as const));
@@ -90,24 +88,11 @@ export class Morphs {
   }
 
   #slider(name: string, weight: number): HTMLElement {
-    const label = document.createElement('label');
-    const [title, input, output] = [
-      document.createElement('span'),
-      document.createElement('input'),
-      document.createElement('output'),
-    ];
-    title.textContent = titleOfMorph(name);
-    title.title = name;
-    Object.assign(input, {
-      type: 'range',
-      name,
-      min: String(Math.min(0, weight)),
-      max: String(Math.max(1, weight)),
-      step: 'any',
-    });
+    const [min, max] = [String(Math.min(0, weight)), String(Math.max(1, weight))];
+    const input = make('input', { type: 'range', name, min, max, step: 'any' });
     input.valueAsNumber = weight;
-    output.value = weight.toFixed(2);
-    label.append(title, input, output);
+    const title = make('span', { title: name }, titleOfMorph(name));
+    const label = make('label', {}, title, input, make('output', { value: weight.toFixed(2) }));
     input.addEventListener('input', () => {
       this.#read(input);
       this.#onMove();

@@ -1,3 +1,4 @@
+import { make } from '../../platform/make';
 import { element } from '../../platform/page';
 import type { PaintOptions } from './paint-options';
 
@@ -29,9 +30,7 @@ export class Swatches {
   #show(): void {
     this.#box.replaceChildren(
       ...this.#colors.map((color) => {
-        const button = document.createElement('button');
-        button.type = 'button';
-        button.ariaLabel = button.title = color;
+        const button = make('button', { type: 'button', title: color, ariaLabel: color });
         button.style.setProperty('--color', color);
         button.addEventListener('click', () => this.options.setColor(color));
         return button;
