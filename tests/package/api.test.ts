@@ -1,5 +1,4 @@
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { copyFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
@@ -17,6 +16,7 @@ import {
   Visibility,
   Zone,
 } from 'cagecast';
+import { printed } from '../support/script.js';
 import { temporaryFolder } from '../support/temporary.js';
 import { head, smallest, smallHole, soup } from './scenes.js';
 
@@ -26,10 +26,6 @@ const presets: Preset[] = ['paper', 'default'];
 function bytes(result: Pick<TransferResult, (typeof arrays)[number]>): Buffer[] {
   return arrays.map((name) => Buffer.from(new Uint8Array(result[name].buffer)));
 }
-
-/** What a script prints in a process of its own. */
-const printed = (script: string): string =>
-  execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8' }).trim();
 
 describe('init', () => {
   test('resolves for any number of calls at once', async () => {

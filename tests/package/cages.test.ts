@@ -1,6 +1,5 @@
 // cagecast/cages, for arrays and for models that glTF-Transform or three.js has loaded.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { before, describe, test } from 'node:test';
 import { Document, NodeIO } from '@gltf-transform/core';
 import { type Code, init, type Mesh } from 'cagecast';
@@ -29,6 +28,7 @@ import type { Bone } from 'three';
 import { GLTFLoader, type GLTF as Loaded } from 'three/addons/loaders/GLTFLoader.js';
 import { countingEnds } from '../support/ended-workers.js';
 import { GlbMaker, glbOf, validate } from '../support/gltf.js';
+import { printed } from '../support/script.js';
 import { ball, join3d } from './scenes.js';
 
 before(() => Promise.all([init(), sync.init()]));
@@ -197,7 +197,6 @@ describe('makeCage', () => {
       [call({}, { signal: 1 }), 'badOption', 'options.signal is 1, not an AbortSignal'],
       [call({ indices: new Uint32Array(0) }), 'badModel', 'model has no triangles; at least one is needed'],
       [call({ positions: nan }), 'badModel', 'model.positions[4] = NaN is not a finite number'],
-      [call({ parts: ['skin'] }), 'badModel', /^model\.groups\[\d+\] = 1, but there are 1 parts$/],
     ]);
     await assertFailures('matchingParts', [
       [
@@ -227,9 +226,7 @@ describe('makeCage', () => {
       import { defaultExclusions } from 'cagecast/cages';
       import { makeCage } from 'cagecast/cages/sync';
       try { makeCage({}); } catch ({ code }) { console.log(code, (await defaultExclusions()).length > 0); }`;
-    const line = ['--input-type=module', '-e', script];
-    const printed = execFileSync(process.execPath, line, { encoding: 'utf8', timeout: 60000 });
-    assert.equal(printed, 'notInitialised true\n');
+    assert.equal(printed(script), 'notInitialised true');
   });
 });
 
@@ -303,7 +300,6 @@ describe('fitCage', () => {
       [call({}, {}, { chin: 'low' }), 'badArgument', /^landmarks\.chin is "low", not 3 finite numbers/],
       [call({}, {}, {}, { triangles: 5 }), 'badOption', /^options\.triangles is unknown; there are: exclude$/],
       [call({ indices: none }), 'badTemplate', /template/],
-      [call({}, { indices: none }), 'badModel', /^model has no triangles/],
       [call({}, {}, { antler: [0, 0, 0] }), 'badLandmarks', /^landmarks: antler is .* outside the box/],
     ]);
   });

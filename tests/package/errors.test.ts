@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { before, describe, test } from 'node:test';
 import { CagecastError, type Code, classify, init, type Mesh, project, transfer } from 'cagecast';
+import { printed } from '../support/script.js';
 import { head, random, smallest } from './scenes.js';
 
 function fails(call: () => unknown, code: Code, message: string | RegExp, at = 0): void {
@@ -39,7 +39,7 @@ describe('errors', () => {
         try { call(); } catch (error) { console.log(error.code, error.message); }
       }`;
     assert.equal(
-      execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8' }).trim(),
+      printed(script),
       ['transfer', 'project', 'classify']
         .map((fn) => `notInitialised ${fn}: Cagecast is not ready; await init() once before the first call`)
         .join('\n'),

@@ -1,5 +1,4 @@
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { getEventListeners } from 'node:events';
 import { before, describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
@@ -16,6 +15,7 @@ import {
   transfer,
 } from 'cagecast/worker';
 import { countingEnds } from '../support/ended-workers.js';
+import { printed } from '../support/script.js';
 import { head } from './scenes.js';
 
 const { cage, target } = head(30, 12);
@@ -189,27 +189,18 @@ describe('the worker', () => {
   });
 
   const mesh = `{ positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array(6) }`;
-  const printed = (script: string, ...flags: string[]) =>
-    execFileSync(
-      process.execPath,
-      [
-        ...flags,
-        '--input-type=module',
-        '-e',
-        `import { init, transfer } from 'cagecast/worker'; const mesh = ${mesh}; ${script}`,
-      ],
-      { encoding: 'utf8', timeout: 60000 },
-    );
+  const answered = (script: string, ...flags: string[]) =>
+    printed(`import { init, transfer } from 'cagecast/worker'; const mesh = ${mesh}; ${script}`, ...flags);
 
   test('an idle worker does not keep a process alive', () => {
-    assert.equal(printed('await init(); console.log((await transfer(mesh, mesh)).zones.length);'), '3\n');
+    assert.equal(answered('await init(); console.log((await transfer(mesh, mesh)).zones.length);'), '3');
   });
 
   test('if no worker can be started, the error says so', () => {
     const script = `for (const call of [() => init(), () => transfer(mesh, mesh)])
       await call().catch(({ code, message }) => console.log(code, message));`;
     const forbidden = ['--experimental-permission', '--no-warnings', '--allow-fs-read=*'];
-    const cannot = (fn: string) => `unsupported ${fn}: this host cannot start the worker \\(.+\\)\\n`;
-    assert.match(printed(script, ...forbidden), new RegExp(`^${cannot('init')}${cannot('transfer')}$`));
+    const cannot = (fn: string) => `unsupported ${fn}: this host cannot start the worker \\(.+\\)`;
+    assert.match(answered(script, ...forbidden), new RegExp(`^${cannot('init')}\\n${cannot('transfer')}$`));
   });
 });

@@ -1,16 +1,15 @@
 // Opens one page in Chromium and runs each scene of it as a test.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { createServer } from 'node:http';
+import { writeFileSync } from 'node:fs';
 import { after, test } from 'node:test';
 import { build } from 'esbuild';
 import { launchChromium } from '../../support/chromium.js';
+import { serve } from '../../support/serve.js';
 import { temporaryFolder } from '../../support/temporary.js';
 
 /** The three.js of these scenes, as package.json names it; `oldest-three.test.ts` gives another. */
 const three = process.env['CAGECAST_THREE'] ?? 'three';
 const { folder, at } = temporaryFolder('three');
-const types: Record<string, string> = { js: 'text/javascript', wasm: 'application/wasm', html: 'text/html' };
 
 await build({
   entryPoints: ['tests/package/three/page.ts'],
@@ -22,26 +21,12 @@ await build({
   ...(three !== 'three' && { alias: { three } }),
 });
 
-const server = createServer((request, response) => {
-  const name = new URL(request.url ?? '/', 'http://localhost').pathname.slice(1);
-  const isolated = {
-    'content-type': types[name.split('.').at(-1)!] ?? 'text/html',
-    // Isolated pages may read the clock exactly.
-    'cross-origin-opener-policy': 'same-origin',
-    'cross-origin-embedder-policy': 'require-corp',
-  };
-  if (name === '') {
-    response.writeHead(200, isolated).end('<!doctype html><script type="module" src="page.js"></script>');
-    return;
-  }
-  try {
-    const bytes = readFileSync(name === 'page.js' ? at(name) : `dist/${name}`);
-    response.writeHead(200, isolated).end(bytes);
-  } catch {
-    response.writeHead(404).end();
-  }
+writeFileSync(at('index.html'), '<!doctype html><script type="module" src="page.js"></script>');
+// Isolated pages may read the clock exactly.
+const server = await serve([folder, 'dist'], {
+  'cross-origin-opener-policy': 'same-origin',
+  'cross-origin-embedder-policy': 'require-corp',
 });
-await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
 const browser = await launchChromium({ drawing: true });
 after(async () => {
   await browser.close();
@@ -58,7 +43,7 @@ page.on('console', (message) => {
   const harmless = /404|GPU stall|object does not belong to this context/;
   if (['error', 'warning'].includes(message.type()) && !harmless.test(message.text())) complaints.push(message.text());
 });
-await page.goto(`http://127.0.0.1:${(server.address() as { port: number }).port}/`);
+await page.goto(`${server.origin}/index.html`);
 await page.waitForFunction(() => 'run' in globalThis || undefined, undefined, { timeout: 60000 });
 
 for (const name of await page.evaluate(() => (globalThis as unknown as { names: string[] }).names)) {

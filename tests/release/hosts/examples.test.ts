@@ -9,7 +9,8 @@ import { build, createServer } from 'vite';
 import { launchChromium } from '../../support/chromium.js';
 import { GlbMaker, tetrahedron } from '../../support/glb.js';
 import { validate } from '../../support/gltf.js';
-import { hostTools, installPacked, run, serve } from './install.js';
+import { serve } from '../../support/serve.js';
+import { hostTools, installPacked, run } from './install.js';
 
 const user = installPacked();
 /** The examples, and the folder of models that lies beside each. */

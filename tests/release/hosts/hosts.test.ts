@@ -5,17 +5,8 @@ import { after, before, describe, test } from 'node:test';
 import type { Browser } from 'playwright-core';
 import { createServer } from 'vite';
 import { launchChromium } from '../../support/chromium.js';
-import {
-  answer,
-  answerOf,
-  checkTypes,
-  hostTools,
-  installPacked,
-  linkPackages,
-  programOf,
-  run,
-  serve,
-} from './install.js';
+import { serve } from '../../support/serve.js';
+import { answer, answerOf, checkTypes, hostTools, installPacked, linkPackages, programOf, run } from './install.js';
 
 const user = installPacked();
 const dist = join(user, 'node_modules/cagecast/dist');

@@ -1,10 +1,8 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, symlinkSync, writeFileSync } from 'node:fs';
-import { createServer } from 'node:http';
-import type { AddressInfo } from 'node:net';
+import { mkdirSync, mkdtempSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { extname, join, resolve } from 'node:path';
+import { join, resolve } from 'node:path';
 import { setTimeout } from 'node:timers/promises';
 import type { Browser } from 'playwright-core';
 
@@ -32,34 +30,6 @@ export function installPacked(): string {
   writeFileSync(join(user, 'package.json'), JSON.stringify(manifest));
   run('npm', ['install', '--offline', '--no-audit', '--no-fund', '--ignore-scripts', join(user, file)], user);
   return user;
-}
-
-const types: Record<string, string> = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
-
-/**
- * Serves a folder. A path that begins with /app/ is answered with a page if there is no such file, as servers of single-page
- * applications do.
- * @param headers  Of every answer.
- */
-export async function serve(folder: string, headers: Record<string, string> = {}) {
-  const server = createServer((request, response) => {
-    const { pathname } = new URL(request.url ?? '/', 'http://localhost');
-    const file = join(folder, pathname);
-    const type = types[extname(file)] ?? 'application/octet-stream';
-    if (existsSync(file) && extname(file) !== '')
-      response.writeHead(200, { 'content-type': type, ...headers }).end(readFileSync(file));
-    else if (pathname.startsWith('/app/'))
-      response.writeHead(200, { 'content-type': 'text/html' }).end('<!doctype html>');
-    else response.writeHead(404).end();
-  });
-  await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
-  return {
-    origin: `http://127.0.0.1:${(server.address() as AddressInfo).port}`,
-    close: () => {
-      server.close();
-      server.closeAllConnections();
-    },
-  };
 }
 
 /** What an entry of the core does for a user, by a function. */

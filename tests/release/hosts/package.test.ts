@@ -7,6 +7,7 @@ import { build } from 'vite';
 import { head } from '../../package/scenes.js';
 import { launchChromium } from '../../support/chromium.js';
 import { glbOf } from '../../support/gltf.js';
+import { serve } from '../../support/serve.js';
 import {
   answer,
   answerOf,
@@ -17,7 +18,6 @@ import {
   linkPackages,
   programOf,
   run as runIn,
-  serve,
 } from './install.js';
 
 const user = installPacked();
