@@ -75,6 +75,7 @@ test('none points up: each that does is named', () => {
     ],
     'a folder of the page imports a file above it': ['web/src/panels/a.ts', "const app = await import('../app');\n"],
     'a folder of the page has no place in the order': ['web/src/misc/a.ts', "import { b } from '../platform/b';\n"],
+    'the state of the page uses the browser': ['web/src/state/a.ts', 'document.title = location.hash;\n'],
     'the page loads the package by its path': ['web/src/late.ts', "const it = import('../../dist/index.js');\n"],
     'an example imports a test': ['examples/node/one.js', "import { glb } from '../../tests/support/glb.js';\n"],
   };

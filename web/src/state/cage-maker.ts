@@ -15,7 +15,7 @@ export type Engine = Pick<
 >;
 
 /** What a cage maker needs of the page. */
-export interface Workshop {
+interface Workshop {
   session: Session;
   loader: Loader;
   engine(): Promise<Engine>;

@@ -13,7 +13,7 @@ const kFarthest = 1e9; // of a landmark
 const kName = /^[a-z][a-z0-9_]{0,60}$/; // of a landmark
 
 /** What says how cages were made. */
-export interface CagesOfPage {
+interface CagesOfPage {
   session: Session;
   samples: Samples;
   /** The names of all templates. */

@@ -43,7 +43,7 @@ interface Painting {
 }
 
 /** Reads and writes images. */
-export interface ImageFiles {
+interface ImageFiles {
   /** @param picture URL of the image; an object URL of the file by default. */
   load(file: File, picture?: string): Promise<Paint>;
   /** The name of a sample's paint in links. @param picture Its URL. */
