@@ -23,7 +23,7 @@ enum class Zone : std::uint8_t {
   cosmetic = 0,   ///< May be painted.
   occluded = 1,   ///< Another surface of the target lies over it.
   uncovered = 2,  ///< The cage has a hole over it, or it lies outside the cage.
-  culled = 3,     ///< Its segment is culled; see `CulledBy`.
+  culled = 3,     ///< Its segment is culled (see `CulledBy`), or a mask excludes it.
 };
 
 /// Why a segment is culled, that is, why none of it may be painted.

@@ -78,7 +78,7 @@ export interface SegmentStats {
  * without interior samples; in squared units of the input.
  */
 export interface HoleShare {
-  /** The number of the hole. */
+  /** The number of the hole, in the order of the cage's open edges; `inspect` lists the largest first. */
   hole: number;
   /** The number of the segment. */
   segment: number;

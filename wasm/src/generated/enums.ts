@@ -21,7 +21,7 @@ export const Zone = {
   Occluded: 1,
   /** The cage has a hole over it, or it lies outside the cage. */
   Uncovered: 2,
-  /** Its segment is culled; see `culledBy`. */
+  /** Its segment is culled (see `culledBy`), or a mask excludes it. */
   Culled: 3,
 } as const;
 

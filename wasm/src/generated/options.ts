@@ -32,8 +32,9 @@ export interface ClassifyStage {
    */
   threshold?: number | undefined;
   /**
-   * A segment is painted only if the cage covers at least this share of its whole area. A large segment that is clearly
-   * covered where it is exposed is painted anyway. No effect with the preset paper. 0 to 1. Default: `0.2`.
+   * A segment is painted only if its covered area, times the covered share of its exposed area, is at least this share
+   * of its whole area. A large segment that is clearly covered where it is exposed is painted anyway. No effect with
+   * the preset paper. 0 to 1. Default: `0.2`.
    */
   minCovered?: number | undefined;
 }
@@ -146,6 +147,6 @@ export const optionFlags = [
     range: [0, 1],
     standard: 0.2,
     paper: 0.2,
-    text: 'A segment is painted only if the cage covers at least this share of its whole area. A large segment that is clearly covered where it is exposed is painted anyway. No effect with the preset paper.',
+    text: 'A segment is painted only if its covered area, times the covered share of its exposed area, is at least this share of its whole area. A large segment that is clearly covered where it is exposed is painted anyway. No effect with the preset paper.',
   },
 ] as const;
