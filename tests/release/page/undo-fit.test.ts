@@ -52,6 +52,73 @@ const pause = (): Promise<void> =>
     performance.now = () => now() + 700;
   });
 
+test('every edit of a layer is an undo step, also between strokes', async () => {
+  const { page, complaints } = visit;
+  const tint = (color: string): Promise<void> => page.getByLabel('Tint of blue.png').fill(color);
+  const area = await modelArea(page);
+  const stroke = async (): Promise<void> => {
+    await page.getByRole('radio', { name: 'Brush' }).check({ force: true });
+    await page.mouse.move(area.x + 0.45 * area.width, area.y + 0.4 * area.height);
+    await page.mouse.down();
+    await page.mouse.move(area.x + 0.5 * area.width, area.y + 0.45 * area.height, { steps: 3 });
+    await page.mouse.up();
+  };
+  const steps: [string, () => Promise<unknown>][] = [
+    ['changing the opacity of blue.png', () => control('slider', 'Opacity of blue.png').fill('40')],
+    ['changing the tint of blue.png', () => tint('#ff8020')],
+    ['changing the blending of blue.png', () => control('combobox', 'Blending of blue.png').selectOption('multiply')],
+    ['changing the visibility of red.png', () => control('checkbox', 'Show red.png').uncheck({ force: true })],
+    ['stroke', stroke],
+    ['moving blue.png', () => control('button', 'Reorder blue.png').press('ArrowDown')],
+    [
+      'adding War paint',
+      async () => {
+        await page.getByRole('button', { name: 'Add War paint as a layer' }).click();
+        await rows(page).filter({ hasText: 'War paint' }).waitFor();
+      },
+    ],
+    [
+      'choosing UV checker',
+      async () => {
+        await page.getByRole('radio', { name: 'UV checker' }).check({ force: true });
+        assert.equal(await settled(page), 'ready', await shownError(page));
+      },
+    ],
+    ['adding a painting', () => page.getByTestId('add-painting').click()],
+    ['removing red.png', () => control('button', 'Remove red.png').click()],
+    [
+      'changing the visibility of red.png',
+      async () => {
+        await page.keyboard.press('Control+z');
+        await control('checkbox', 'Show red.png').check({ force: true });
+      },
+    ],
+  ];
+  const states = [await state()];
+  for (const [name, act] of steps) {
+    await act();
+    assert.match(await undoTitle(), new RegExp(`: ${name}$`));
+    states.push(await state());
+  }
+  // The last but one was undone for the sake of the last.
+  states.splice(-2, 1);
+  const done = steps.filter(([name]) => name !== 'removing red.png');
+  for (const [at, [name]] of [...done.entries()].toReversed()) {
+    assert.notDeepEqual(states[at], states[at + 1], `${name} does something`);
+    await page.keyboard.press('Control+z');
+    assert.deepEqual(await state(), states[at], `${name}, undone`);
+  }
+  assert.match(await undoTitle(), /adding blue.png/);
+  for (const [at, [name]] of done.entries()) {
+    await page.getByTestId('redo').click();
+    assert.deepEqual(await state(), states[at + 1], `${name}, redone`);
+  }
+  await page.waitForFunction(
+    () => document.querySelector('#summary')!.textContent === 'Redone: changing the visibility of red.png.',
+  );
+  assert.deepEqual(complaints, []);
+});
+
 test('a drag is one undo step, and so is a held key', async () => {
   const { page } = visit;
   await rows(page).filter({ hasText: 'red.png' }).locator('.choose').click();
@@ -167,6 +234,29 @@ test('undo is blocked during an edit, which is kept', async () => {
   await page.keyboard.press('Control+z');
   assert.deepEqual([await undoTitle(), await state()], before);
   assert.deepEqual(complaints, []);
+});
+
+test('undo does not affect the paint of a model opened since', async () => {
+  const { page } = visit;
+  await page.getByRole('radio', { name: 'Tiger stripes' }).check({ force: true });
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.match(await undoTitle(), /choosing Tiger stripes/);
+  await control('button', 'Reorder red.png').focus();
+  const before = await names(page);
+  await page.keyboard.press('ArrowDown');
+  const after = await names(page);
+  assert.notDeepEqual(after, before);
+  await page.getByTestId('sample-select').selectOption('human');
+  assert.equal(await settled(page), 'ready');
+  // The first step brings back the layers, which were put away with the last cage.
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  assert.deepEqual(
+    await names(page),
+    before.map((name) => (name === 'Tiger stripes' ? 'Painted skull' : name)),
+  );
+  // Which of its paints lay under everything is not a step on another model.
+  assert.doesNotMatch(await undoTitle(), /choice/);
 });
 
 test('undoing the stroke that created a layer removes it, and so does cancelling', async () => {
