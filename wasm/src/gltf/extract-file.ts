@@ -94,8 +94,9 @@ function listParts(file: GltfFile): Part[] {
     meshDef.primitives.forEach((primitive, p) => {
       if (isOverlay(primitive, file.json)) return;
       const ref = { mesh: nodeDef.mesh!, primitive: p };
-      const positions = readPositions(file, ref);
-      if (positions === undefined) return;
+      const accessor = accessorOf(file, ref, 'POSITION');
+      if (accessor === undefined) return;
+      const positions = decodePositions(primitivePath(ref), accessor);
       const indices = readTriangles(file, ref, positions.length / 3);
       if (indices === undefined) return;
       const piece = nextPiece(parts, {
@@ -182,11 +183,6 @@ function accessorOf(file: GltfFile, ref: PrimitiveRef, semantic: string): Access
     );
   }
   return accessor;
-}
-
-function readPositions(file: GltfFile, ref: PrimitiveRef): Float32Array | undefined {
-  const accessor = accessorOf(file, ref, 'POSITION');
-  return accessor && decodePositions(primitivePath(ref), accessor);
 }
 
 /** The triangles of a primitive, strips and fans expanded; `undefined` if it is of points or lines. */
