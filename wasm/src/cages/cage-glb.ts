@@ -5,11 +5,7 @@ import { packGlb } from '../parts/glb.js';
 import type { Cage, Template } from './types.js';
 
 /** What a GLB's node has in its `extras` if its mesh is a cage, as `cageGlb` writes it: docs/cages.md describes the format. */
-export interface CageExtras {
-  landmarks: Cage['landmarks'];
-  holes: Cage['holes'];
-  kind: Cage['kind'];
-}
+type CageExtras = Pick<Cage, 'landmarks' | 'holes' | 'kind'>;
 
 /**
  * Writes a cage as a GLB file: one node named `cage`, with landmarks, holes and kind in its `extras`. So it is a template for fits.
