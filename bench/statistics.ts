@@ -1,9 +1,3 @@
-export interface Spread {
-  median: number;
-  min: number;
-  max: number;
-}
-
 export function median(values: readonly number[]): number {
   const sorted = [...values].sort((a, b) => a - b);
   const middle = sorted.length >> 1;
@@ -14,10 +8,6 @@ export function median(values: readonly number[]): number {
 export function mean(values: readonly number[]): number {
   const some = values.filter(Number.isFinite);
   return some.reduce((sum, value) => sum + value, 0) / some.length;
-}
-
-export function spread(values: readonly number[]): Spread {
-  return { median: median(values), min: Math.min(...values), max: Math.max(...values) };
 }
 
 /** The slope of the line through the points on logarithmic axes: 1 if y grows as x does. */

@@ -3,7 +3,9 @@
 #include <emscripten/val.h>
 #include <cagecast/array.hpp>
 #include <cagecast/mesh.hpp>
+#include <cagecast/status.hpp>
 
+#include <string>
 #include <type_traits>
 
 /// How arrays and meshes cross from JavaScript to C++ and back.
@@ -45,10 +47,25 @@ bool copyRecords(const val& source, Array<T>& out) {
   return true;
 }
 
-template <typename T>
-val records(const Array<T>& array) {
+/// An array of records, names or enumeration values.
+template <typename List>
+val listed(const List& values) {
   val out = val::array();
-  for (std::size_t i = 0; i < array.size(); ++i) out.set(i, array[i]);
+  for (std::size_t i = 0; i < values.size(); ++i) out.set(i, values[i]);
+  return out;
+}
+
+constexpr Status kOutOfMemory{Code::outOfMemory};
+
+/// How a call ended: its `status`, to which results are added.
+/// @param message  `describe`; empty if all went well.
+inline val ending(const Status& status, const std::string& message) {
+  val fields = val::object(), out = val::object();
+  fields.set("code", std::string(codeName(status.code)));
+  fields.set("message", message);
+  fields.set("argument", std::string(argumentName(status.argument)));
+  fields.set("at", status.at);
+  out.set("status", fields);
   return out;
 }
 

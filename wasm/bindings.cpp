@@ -16,8 +16,6 @@ namespace {
 using namespace cagecast;
 using namespace cagecast::bindings;
 
-constexpr Status kOutOfMemory{Code::outOfMemory};
-
 struct Meshes {
   Mesh cage;
   Mesh target;
@@ -52,19 +50,8 @@ TransferOptions presetOptions(Preset preset) {
   return preset == Preset::paper ? TransferOptions::paper() : TransferOptions{};
 }
 
-/// How a call ended, for JavaScript.
-struct Ending {
-  std::string code;      ///< `codeName`; "ok" if all went well.
-  std::string message;   ///< `describe`; empty if all went well.
-  std::string argument;  ///< `argumentName`.
-  std::uint32_t at = 0;
-};
-
-val ending(const Status& status, const Meshes& meshes = {}) {
-  val out = val::object();
-  const std::string message = status.ok() ? "" : describe(status, meshes.cage.view(), meshes.target.view());
-  out.set("status", Ending{codeName(status.code), message, argumentName(status.argument), status.at});
-  return out;
+val endingOf(const Status& status, const Meshes& meshes = {}) {
+  return ending(status, status.ok() ? "" : describe(status, meshes.cage.view(), meshes.target.view()));
 }
 
 /// The memory that calls work in and leave their results in. The arrays that a call returns are views of it, valid
@@ -73,16 +60,16 @@ class Calls {
  public:
   val project(const val& cage, const val& target, const TransferOptions& options) {
     Meshes meshes;
-    if (!meshes.copy(cage, target)) return ending(kOutOfMemory);
+    if (!meshes.copy(cage, target)) return endingOf(kOutOfMemory);
     Projection& projection = result_.projection;
     const Status status = cagecast::project(meshes.cage.view(), meshes.target.view(), options, workspace_, projection);
-    if (!status.ok()) return ending(status, meshes);
+    if (!status.ok()) return endingOf(status, meshes);
     indices_ = std::move(meshes.target.indices);
     val out = projected();
     out.set("visibility", view(projection.visibility));
-    out.set("segmentStats", records(projection.segmentStats));
+    out.set("segmentStats", listed(projection.segmentStats));
     out.set("recovery", view(projection.recovery));
-    out.set("holeShares", records(projection.holeShares));
+    out.set("holeShares", listed(projection.holeShares));
     out.set("indices", view(indices_));
     return out;
   }
@@ -90,12 +77,12 @@ class Calls {
   val transfer(const val& cage, const val& target, const TransferOptions& options, const val& given) {
     Meshes meshes;
     Overrides overrides;
-    if (!meshes.copy(cage, target) || !overrides.copy(given)) return ending(kOutOfMemory);
+    if (!meshes.copy(cage, target) || !overrides.copy(given)) return endingOf(kOutOfMemory);
     const Status status =
         cagecast::transfer(meshes.cage.view(), meshes.target.view(), overrides.over(options), workspace_, result_);
-    if (!status.ok()) return ending(status, meshes);
+    if (!status.ok()) return endingOf(status, meshes);
     val out = projected();
-    out.set("segmentStats", records(result_.projection.segmentStats));
+    out.set("segmentStats", listed(result_.projection.segmentStats));
     decided(out);
     return out;
   }
@@ -107,13 +94,13 @@ class Calls {
         !copyArray(source["segments"], projection.segments) || !copyArray(source["recovery"], projection.recovery) ||
         !copyArray(source["indices"], indices_) || !copyRecords(source["segmentStats"], projection.segmentStats) ||
         !copyRecords(source["holeShares"], projection.holeShares)) {
-      return ending(kOutOfMemory);
+      return endingOf(kOutOfMemory);
     }
     const Status status = cagecast::classify(projection.view(), indices_, overrides.over(options), result_.zones);
-    if (!status.ok()) return ending(status);
+    if (!status.ok()) return endingOf(status);
     result_.setVerdicts();
-    val out = ending(status);
-    out.set("segmentStats", records(projection.segmentStats));
+    val out = endingOf(status);
+    out.set("segmentStats", listed(projection.segmentStats));
     decided(out);
     return out;
   }
@@ -121,11 +108,11 @@ class Calls {
   val splitVertices(const val& target, const val& cornerUvs) {
     Meshes meshes;
     Array<float> uvs;
-    if (!meshes.target.copy(target) || !copyArray(cornerUvs, uvs)) return ending(kOutOfMemory);
+    if (!meshes.target.copy(target) || !copyArray(cornerUvs, uvs)) return endingOf(kOutOfMemory);
     const auto vertexCount = static_cast<std::uint32_t>(meshes.target.positions.size() / 3);
     const Status status = cagecast::splitVertices(meshes.target.indices, uvs, vertexCount, split_);
-    if (!status.ok()) return ending(status, meshes);
-    val out = ending(status);
+    if (!status.ok()) return endingOf(status, meshes);
+    val out = endingOf(status);
     out.set("sources", view(split_.sources));
     out.set("indices", view(split_.indices));
     out.set("uvs", view(split_.uvs));
@@ -142,12 +129,12 @@ class Calls {
     Array<CulledBy> culledBy;
     if (!meshes.copy(cage, target) || !overrides.copy(given) || !copyArray(decision["zones"], zones) ||
         !copyArray(decision["segments"], segments) || !copyRecords(decision["culledBy"], culledBy)) {
-      return ending(kOutOfMemory);
+      return endingOf(kOutOfMemory);
     }
     const Status status = cagecast::cutBorders(meshes.cage.view(), {meshes.target.view(), zones, segments, culledBy},
                                                overrides.over(options), workspace_, cut_);
-    if (!status.ok()) return ending(status, meshes);
-    val out = ending(status);
+    if (!status.ok()) return endingOf(status, meshes);
+    val out = endingOf(status);
     out.set("sources", view(cut_.sources));
     out.set("weights", view(cut_.weights));
     out.set("indices", view(cut_.indices));
@@ -172,7 +159,7 @@ class Calls {
   /// What `project` and `transfer` both return.
   val projected() {
     const Projection& projection = result_.projection;
-    val out = ending({});
+    val out = endingOf({});
     out.set("uvs", view(projection.uvs));
     out.set("cornerUvs", view(projection.cornerUvs));
     out.set("triangles", view(projection.triangles));
@@ -231,11 +218,6 @@ EMSCRIPTEN_BINDINGS(cagecast) {
   }
 
   value_object<LockEntry>("LockEntry").field("id", &LockEntry::id).field("lock", &LockEntry::lock);
-  value_object<Ending>("Status")
-      .field("code", &Ending::code)
-      .field("message", &Ending::message)
-      .field("argument", &Ending::argument)
-      .field("at", &Ending::at);
   value_object<Ratios>("Ratios")
       .field("threshold", &Ratios::threshold)
       .field("floor", &Ratios::floor)

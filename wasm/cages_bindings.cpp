@@ -23,33 +23,17 @@ val copied(const std::vector<T>& values) {
 }
 
 template <typename T>
-val listed(const std::vector<T>& values) {
-  val out = val::array();
-  for (std::size_t i = 0; i < values.size(); ++i) out.set(i, values[i]);
-  return out;
-}
-
-template <typename T>
 std::vector<T> listOf(const val& source) {
   std::vector<T> out(source["length"].as<std::size_t>());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = source[i].as<T>();
   return out;
 }
 
-/// How a call ended, for JavaScript.
-/// @param given  What it was given, for `describe`.
+/// @param given  What a call was given, for `describe`.
 template <typename... Given>
-val ending(const Status& status, const Given&... given) {
-  val fields = val::object(), out = val::object();
-  fields.set("code", std::string(codeName(status.code)));
-  fields.set("message", describe(status, given...));
-  fields.set("argument", std::string(argumentName(status.argument)));
-  fields.set("at", status.at);
-  out.set("status", fields);
-  return out;
+val endingOf(const Status& status, const Given&... given) {
+  return ending(status, describe(status, given...));
 }
-
-const Status kOutOfMemory{Code::outOfMemory};
 
 /// A model, copied from JavaScript.
 struct ModelArrays {
@@ -78,10 +62,10 @@ void setCage(val& out, const Cage& cage) {
 
 val makeCageCall(const val& target, const MakeOptions& options, const val& report) {
   ModelArrays arrays;
-  if (!arrays.copy(target)) return ending(kOutOfMemory, arrays.model);
+  if (!arrays.copy(target)) return endingOf(kOutOfMemory, arrays.model);
   Cage cage;
   const Status status = makeCage(arrays.model, options, progressTo(report), cage);
-  val out = ending(status, arrays.model);
+  val out = endingOf(status, arrays.model);
   if (status.ok()) setCage(out, cage);
   return out;
 }
@@ -89,12 +73,12 @@ val makeCageCall(const val& target, const MakeOptions& options, const val& repor
 val fitCageCall(const val& from, const val& target, const val& landmarks, FitOptions options, const val& report) {
   ModelArrays arrays;
   Mesh mesh;
-  if (!arrays.copy(target) || !mesh.copy(from["mesh"])) return ending(kOutOfMemory, arrays.model);
+  if (!arrays.copy(target) || !mesh.copy(from["mesh"])) return endingOf(kOutOfMemory, arrays.model);
   const Template source{mesh.view(), listOf<Landmark>(from["landmarks"]), from["kind"].as<Kind>()};
   options.landmarks = listOf<Landmark>(landmarks);
   FittedCage cage;
   const Status status = fitCage(source, arrays.model, options, progressTo(report), cage);
-  val out = ending(status, source, arrays.model, options, cage.missing);
+  val out = endingOf(status, source, arrays.model, options, cage.missing);
   if (!status.ok()) return out;
   setCage(out, cage);
   out.set("missing", listed(cage.missing));
@@ -103,10 +87,10 @@ val fitCageCall(const val& from, const val& target, const val& landmarks, FitOpt
 
 val findLandmarksCall(const val& target, const val& report) {
   ModelArrays arrays;
-  if (!arrays.copy(target)) return ending(kOutOfMemory, arrays.model);
+  if (!arrays.copy(target)) return endingOf(kOutOfMemory, arrays.model);
   FoundLandmarks found;
   const Status status = findLandmarks(arrays.model, progressTo(report), found);
-  val out = ending(status, arrays.model);
+  val out = endingOf(status, arrays.model);
   if (!status.ok()) return out;
   out.set("landmarks", listed(found.landmarks));
   out.set("missing", listed(found.missing));
@@ -118,10 +102,10 @@ val findLandmarksCall(const val& target, const val& report) {
 val refineCageCall(const val& cage, const val& target, const RefineOptions& options, const val& report) {
   ModelArrays arrays;
   Mesh mesh;
-  if (!arrays.copy(target) || !mesh.copy(cage)) return ending(kOutOfMemory, arrays.model);
+  if (!arrays.copy(target) || !mesh.copy(cage)) return endingOf(kOutOfMemory, arrays.model);
   Cage refined;
   const Status status = refineCage(mesh.view(), arrays.model, options, progressTo(report), refined);
-  val out = ending(status, mesh.view(), arrays.model, options);
+  val out = endingOf(status, mesh.view(), arrays.model, options);
   if (status.ok()) setCage(out, refined);
   return out;
 }

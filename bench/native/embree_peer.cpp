@@ -205,17 +205,14 @@ class EmbreePeer final : public Contestant {
 
   Timings run(const Model& model) override {
     Timings t;
-    StopWatch watch;
-    gather(model.cage);
-    cageScene_.build(device_, model.cage.positions, cageIndices_);
-    targetScene_.build(device_, model.target.positions, model.target.indices);
-    t.build = watch.lap();
-    project(model.points);
-    t.project = watch.lap();
-    occlude(model.points);
-    t.occluded = watch.lap();
-    cover(model.points);
-    t.covered = watch.lap();
+    timed(t.build, [&] {
+      gather(model.cage);
+      cageScene_.build(device_, model.cage.positions, cageIndices_);
+      targetScene_.build(device_, model.target.positions, model.target.indices);
+    });
+    timed(t.project, [&] { project(model.points); });
+    timed(t.occluded, [&] { occlude(model.points); });
+    timed(t.covered, [&] { cover(model.points); });
     t.total = t.build + t.project + t.occluded + t.covered;
     return t;
   }

@@ -24,17 +24,18 @@ class NanoflannPeer final : public Contestant {
  public:
   Timings run(const Model& model) override {
     Timings t;
-    StopWatch watch;
     const Cloud cloud{model.cage.positions.data(), model.cage.positions.size() / 3};
-    const Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
-    t.build = watch.lap();
+    const auto tree = timed(t.build, [&] {
+      return std::make_unique<Tree>(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+    });
     const std::vector<float>& points = model.points.positions;
     nearest_.resize(points.size() / 3);
-    for (std::size_t i = 0; i < nearest_.size(); ++i) {
-      float squaredDistance = 0;
-      tree.knnSearch(&points[3 * i], 1, &nearest_[i], &squaredDistance);
-    }
-    t.project = watch.lap();
+    timed(t.project, [&] {
+      for (std::size_t i = 0; i < nearest_.size(); ++i) {
+        float squaredDistance = 0;
+        tree->knnSearch(&points[3 * i], 1, &nearest_[i], &squaredDistance);
+      }
+    });
     t.total = t.build + t.project;
     return t;
   }

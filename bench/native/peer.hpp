@@ -24,19 +24,6 @@ class Contestant {
   std::vector<Zone> zones_;
 };
 
-/// Hands out the time since it was last asked.
-class StopWatch {
- public:
-  double lap() noexcept {
-    const double before = last_;
-    last_ = clockMilliseconds();
-    return last_ - before;
-  }
-
- private:
-  double last_ = clockMilliseconds();
-};
-
 // Peers only search. What the library does besides is done for them, and is not timed: they are given points, and make
 // neither UVs nor segments. So ratios flatter the peers a little.
 

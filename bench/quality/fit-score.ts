@@ -1,19 +1,8 @@
 import type { Template } from 'cagecast/cages';
 import { Vector3 } from 'three';
-import { vertexAreas } from '../../wasm/src/inspect/geometry.js';
+import { boxOf, firstInPlace, vertexAreas } from '../../wasm/src/inspect/geometry.js';
 import type { Figure } from './models.js';
-import {
-  bordersOf,
-  diagonalOf,
-  edgesOf,
-  places,
-  pointOn,
-  Search,
-  type Shape,
-  type SurfacePoint,
-  triangleAt,
-  vertexAt,
-} from './shape.js';
+import { bordersOf, edgesOf, pointOn, Search, type Shape, type SurfacePoint, triangleAt, vertexAt } from './shape.js';
 
 /** Median and 95th percentile of an error, as shares of the diagonal of the template's target. */
 export interface Spread {
@@ -53,7 +42,7 @@ export class FitScorer {
     const { target, landmarks } = template;
     const cage = template.cage!;
     this.cage = cage;
-    this.diagonal = diagonalOf(target.positions);
+    this.diagonal = boxOf(target.positions).diagonal;
     this.own = new Search(cage);
     this.onCage = closestOf(this.own, target.positions);
     const loops = bordersOf(cage);
@@ -111,7 +100,7 @@ export class FitScorer {
   }
 
   private landmarkError(fitted: Search, { target, landmarks }: Figure, used: readonly string[]): number {
-    const diagonal = diagonalOf(target.positions);
+    const diagonal = boxOf(target.positions).diagonal;
     const names = Object.keys(landmarks).filter(
       (name) => !/^joint_|^eye_centre|^wrist/.test(name) && !used.includes(name) && this.template.landmarks[name],
     );
@@ -159,7 +148,7 @@ function coverOf({ target, truth }: Figure, eye: number, loop: Vector3[] | undef
     positions,
     indices: seen.flatMap((t) => [0, 1, 2].map((k) => indices[3 * t + k]!)),
   });
-  const size = diagonalOf(positions);
+  const size = boxOf(positions).diagonal;
   const axis = new Vector3();
   const points = [...loop];
   for (const t of ball) {
@@ -203,7 +192,7 @@ function isWithin(loop: readonly [number, number][], x: number, y: number): bool
 
 /** The share of the skin in front of the nearest point of the cage; where that is on a border, it says nothing. */
 function outsideOf(cage: Shape, { target, truth }: Figure): number {
-  const at = places(cage.positions);
+  const at = firstInPlace(cage.positions);
   const edges = edgesOf(cage, at);
   const normals = Array.from({ length: cage.indices.length / 3 }, (_, t) =>
     triangleAt(cage, t).getNormal(new Vector3()),
@@ -251,7 +240,7 @@ function outsideOf(cage: Shape, { target, truth }: Figure): number {
  * Triangles that face away from the mean of those around them, and pairs that turn by more than 120° at their common edge.
  */
 function foldedTriangles(cage: Shape): Set<number> {
-  const at = places(cage.positions);
+  const at = firstInPlace(cage.positions);
   const count = cage.indices.length / 3;
   const normals: Vector3[] = [];
   const around = new Map<number, Vector3>();

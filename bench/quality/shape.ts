@@ -1,9 +1,10 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, Ray, Triangle, Vector3 } from 'three';
 import { MeshBVH } from 'three-mesh-bvh';
+import { firstInPlace } from '../../wasm/src/inspect/geometry.js';
 
 /** Positions, 3 per vertex, and triangles, 3 vertices each. */
 export interface Shape {
-  positions: ArrayLike<number>;
+  positions: Float32Array;
   indices: ArrayLike<number>;
 }
 
@@ -23,16 +24,6 @@ export function pointOn({ positions, indices }: Shape, triangle: number, weights
   const at = new Vector3();
   for (let k = 0; k < 3; ++k) at.addScaledVector(vertexAt(positions, indices[3 * triangle + k]!), weights[k]!);
   return at;
-}
-
-/** The length of the diagonal of the bounding box. */
-export function diagonalOf(positions: ArrayLike<number>): number {
-  const [low, high] = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)];
-  for (let v = 0; v < positions.length / 3; ++v) {
-    low.min(vertexAt(positions, v));
-    high.max(vertexAt(positions, v));
-  }
-  return high.distanceTo(low);
 }
 
 export const triangleAt = ({ positions, indices }: Shape, t: number): Triangle => {
@@ -64,20 +55,10 @@ export class Search {
   }
 }
 
-/** For each vertex the first that has the same position. */
-export function places(positions: ArrayLike<number>): Uint32Array {
-  const first = new Map<string, number>();
-  return Uint32Array.from({ length: positions.length / 3 }, (_, v) => {
-    const key = `${positions[3 * v]} ${positions[3 * v + 1]} ${positions[3 * v + 2]}`;
-    if (!first.has(key)) first.set(key, v);
-    return first.get(key)!;
-  });
-}
-
 /** The triangles at each edge between places; an edge is `low * count + high`. */
 export function edgesOf(
   { positions, indices }: Shape,
-  at: ArrayLike<number> = places(positions),
+  at: ArrayLike<number> = firstInPlace(positions),
 ): Map<number, number[]> {
   const edges = new Map<number, number[]>();
   for (let c = 0; c < indices.length; ++c) {
@@ -92,7 +73,7 @@ export function edgesOf(
 
 /** The open borders, each a walk of vertices. */
 export function bordersOf({ positions, indices }: Shape): number[][] {
-  const at = places(positions);
+  const at = firstInPlace(positions);
   const edges = edgesOf({ positions, indices }, at);
   const next = new Map<number, number>();
   for (let c = 0; c < indices.length; ++c) {

@@ -101,58 +101,24 @@ export type ${type} = (typeof ${type})[keyof typeof ${type}];
   return kHead('result.hpp') + types.map(one).join('');
 }
 
+/** The page about options: its text as it is here, with what follows from the list between marks. */
 function makePage(options) {
   const row = (option) =>
     `| \`${option.name}\` | ${rangeOf(option).replace(/\|/g, '\\|')} | \`${option.standard}\` | \`${option.paper}\` | ${option.stage} | ${option.text} |\n`;
   const head = '| Option | Values | `default` | `paper` | Read by | What it does |\n|---|---|---|---|---|---|\n';
-  const rows = (isStep) =>
-    options
-      .filter((option) => option.isStep === isStep)
-      .map(row)
-      .join('');
-  const flags = options.filter(({ isStep }) => !isStep).map((option) => `\`${flagOf(option)}\``);
-  return `# Options
-
-<!-- Made by wasm/tools/generate.mjs from core/include/cagecast/options.def. Do not edit. -->
-
-C++ (\`TransferOptions\`), JavaScript and the command have the same options with the same defaults. \`transfer\`
-reads all of them, \`project\` and \`classify\` those of their own stage. \`cutBorders\` keeps the verdicts on segments that it is
-given: of the options of \`project\` it reads all (\`weldTolerance\` only decides which vertices take part: what is cut is not welded by it), of those of
-\`classify\` only \`partialTriangles\`. Options that are not given have the value of the preset: \`default\`, or \`paper\` for the method as published.
-
-${head}${rows(false)}
-JavaScript also has \`preset\`, \`locks\`, \`masks\` and \`reuse\` (an earlier result whose arrays are overwritten). C++ also has
-\`locks\` and \`masks\`, and \`TransferOptions::paper()\` in place of \`preset\`. For example, in JavaScript,
-\`locks: { segments: { 7: 'keep' }, groups: { 3: 'exclude' } }\` never culls segment 7 and always culls the other segments
-of group 3: the lock of a segment overrides that of its group. \`keep\` only prevents culling: occluded and uncovered points of a kept segment stay unpainted unless step 9 or 10
-recovers them. The command has ${flags.join(', ')}, \`--preset\`, \`--keep\` and \`--exclude\`.
-
-## Masks
-
-Locks are for whole segments and parts. Masks are for what no name tells apart, such as the eyes of a scan in one piece:
-−1 is never painted, 1 always, and 0 is left to the method. −1 overrides 1, and masks override locks.
-
-| Source | \`cagecast\`, \`cagecast/worker\` | \`cagecast/gltf\` | \`cagecast/three\` | Command |
-|---|---|---|---|---|
-| an array, as a painting tool makes | \`masks: { vertices, triangles }\`, \`Int8Array\`s; in C++ \`masks\`, spans of \`Mask\` | \`masks\` | \`masks\` | |
-| an image in the model's own UVs: white is masked | \`maskTriangles\` of \`cagecast/bake\` | \`maskImages: { never, always }\` | \`modelMasks(model, { never, always })\` | \`--never-mask\`, \`--always-mask\` |
-| vertex colours: red never, green always | \`maskVertices\` of \`cagecast/bake\` | \`maskColors: 'COLOR_0'\` | \`modelMasks(model, { attribute: 'color' })\` | \`--mask-colors COLOR_0\` |
-
-- **Masks end at edges of triangles.** An image masks a triangle if at least half of it is white. A vertex of −1 keeps paint
-  from all triangles at it; a triangle with a vertex of 1 is painted if its other vertices may be. With \`borders: 'cut'\`, a masked
-  triangle is decided as a whole.
-- **"Always" does not make room on the cage.** Over a hole, or beyond the cage's border, what is painted shows the nearest place of the
-  cage, often stretched. Under another surface it is painted, but not seen.
-- Masks change neither segments nor their scores, and explain no holes. A masked vertex has zone 3, culled, though its
-  segment is not. Pass the same masks to \`classify\` and \`cutBorders\`.
-- Images hold for all parts with UVs. Where parts have textures of their own, use arrays.
-
-## Steps
-
-The switches in \`steps\` turn single steps of the [method](method.md) on and off. They are meant for measuring what each step
-contributes and are not part of the stable interface.
-
-${head}${rows(true)}`;
+  const table = (some) => `\n${head}${some.map(row).join('')}`;
+  const [steps, others] = [true, false].map((isStep) => options.filter((option) => option.isStep === isStep));
+  const made = {
+    'table: options': table(others),
+    'table: steps': table(steps),
+    flags: others.map((option) => `\`${flagOf(option)}\``).join(', '),
+  };
+  const page = readFileSync(new URL('../../docs/options.md', import.meta.url), 'utf8');
+  return Object.entries(made).reduce((text, [mark, content]) => {
+    const [start, end] = [`<!-- ${mark} -->`, '<!-- end -->'];
+    const first = text.indexOf(start) + start.length;
+    return text.slice(0, first) + content + text.slice(text.indexOf(end, first));
+  }, page);
 }
 
 /**

@@ -1,5 +1,4 @@
-import type { CDPSession, Page } from 'playwright-core';
-import type { Site } from '../../../tests/support/site';
+import type { Page } from 'playwright-core';
 
 /** What the page's main thread did. Milliseconds of its own processor time: a busy machine does not count against it. */
 export interface Work {
@@ -68,51 +67,6 @@ export function compute(page: Page, tasks = 1): Promise<unknown> {
   }, tasks);
 }
 
-/**
- * Opens the page and returns the seconds of processor time until its first picture: of the page's thread, and of the graphics process.
- * And what is always the same: a computation of the page's thread, and each of the next pictures.
- */
-export async function processorTime(
-  site: Site,
-): Promise<{ page: number; graphics: number; computation: number; picture: number }> {
-  const { browser } = site;
-  const system = await browser.newBrowserCDPSession();
-  const graphics = async (): Promise<number> => {
-    const { processInfo } = await system.send('SystemInfo.getProcessInfo');
-    return processInfo.find(({ type }) => type === 'GPU')?.cpuTime ?? 0;
-  };
-  const before = await graphics();
-  let session: CDPSession | undefined;
-  const { page } = await site.visit({ deviceScaleFactor: 1 }, async (page) => {
-    session = await page.context().newCDPSession(page);
-    await session.send('Performance.enable', { timeDomain: 'threadTicks' });
-  });
-  // Reading a pixel waits until everything before it is drawn.
-  const drawn = (turns: number): Promise<void> =>
-    page.evaluate(async (turns) => {
-      const canvas = document.querySelector('canvas')!;
-      for (let turn = 0; turn < turns; turn++) {
-        canvas.dispatchEvent(
-          new KeyboardEvent('keydown', { key: turn % 2 === 0 ? 'ArrowRight' : 'ArrowLeft', bubbles: true }),
-        );
-        await new Promise(requestAnimationFrame);
-      }
-      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
-      const gl = canvas.getContext('webgl2')!;
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-    }, turns);
-  await drawn(0);
-  const first = await graphics();
-  const ofPage = async (): Promise<number> =>
-    (await session!.send('Performance.getMetrics')).metrics.find(({ name }) => name === 'ThreadTime')!.value;
-  const firstOfPage = await ofPage();
-  await compute(page);
-  const computation = (await ofPage()) - firstOfPage;
-  const kTurns = 4;
-  await drawn(kTurns);
-  return { page: firstOfPage, graphics: first - before, computation, picture: ((await graphics()) - first) / kTurns };
-}
-
 interface TraceEvent {
   name: string;
   pid: number;
@@ -124,29 +78,25 @@ interface TraceEvent {
   args?: { name?: string };
 }
 
-/** Milliseconds that a task of the page's main thread may take. */
-export const kMaxMs = 100;
+const kRuns = 3;
+const kTasks = 10;
 
 /**
- * Processor time of the longest task of an action, in ms: the minimum of up to three runs, relative to a fixed computation in
- * tasks of 30 ms.
+ * Processor time of the longest task of an action, in ms: the minimum of three runs, relative to a fixed computation in tasks of
+ * 30 ms.
  * @param undo Called before the action is repeated.
  */
 export async function longestTask(
   page: Page,
   action: () => Promise<unknown>,
-  undo: () => Promise<unknown>,
+  undo: () => Promise<unknown> = async () => {},
 ): Promise<number> {
-  const kTasks = 10;
-  const once = async (): Promise<number> => {
+  const runs: number[] = [];
+  while (runs.length < kRuns) {
+    if (runs.length > 0) await undo();
     const { longest } = await mainThreadWork(page, action);
     const same = await mainThreadWork(page, () => compute(page, kTasks));
-    return longest / Math.max(1, same.longest / (kComputation / kTasks));
-  };
-  let longest = await once();
-  for (let more = 2; longest >= kMaxMs && more > 0; --more) {
-    await undo();
-    longest = Math.min(longest, await once());
+    runs.push(longest / Math.max(1, same.longest / (kComputation / kTasks)));
   }
-  return longest;
+  return Math.min(...runs);
 }

@@ -1,37 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <type_traits>
-#include <utility>
 
 #include "cagecast/array.hpp"
 
 namespace cagecast {
 
-/// The part of a list that does not depend on its element type.
-class AnyList {
- public:
-  [[nodiscard]] bool failed() const noexcept { return failed_; }
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  /// Removes the elements from `size` on.
-  void truncate(std::size_t size) noexcept { size_ = size < size_ ? size : size_; }
-
- protected:
-  /// Makes more room, if there is memory for it.
-  /// @param size  Of an element.
-  /// @return The elements, where they are now.
-  void* grown(void* data, std::size_t size) noexcept;
-
-  std::size_t size_ = 0;
-  std::size_t room_ = 0;
-  bool failed_ = false;
-};
-
 /// A growable array of plain values. Like `Array` it reports a lack of memory; what was added after that is lost.
 template <typename T>
-class List : public AnyList {
+class List {
   static_assert(std::is_trivially_copyable_v<T>, "elements are copied as bytes");
 
  public:
@@ -47,6 +29,11 @@ class List : public AnyList {
   /// Removes one element; later ones move forward.
   void remove(std::size_t i) noexcept { std::memmove(data_ + i, data_ + i + 1, (--size_ - i) * sizeof(T)); }
 
+  /// Removes the elements from `size` on.
+  void truncate(std::size_t size) noexcept { size_ = std::min(size_, size); }
+
+  [[nodiscard]] bool failed() const noexcept { return failed_; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }
   [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return data_[i]; }
 
@@ -58,12 +45,23 @@ class List : public AnyList {
   }
 
  private:
+  /// Makes more room. @return false if there is no memory for it.
   bool grow() noexcept {
-    data_ = static_cast<T*>(grown(data_, sizeof(T)));
-    return size_ < room_;
+    const std::size_t room = room_ < 32 ? 64 : 2 * room_;
+    auto* more = room > SIZE_MAX / sizeof(T) ? nullptr : static_cast<T*>(std::realloc(data_, room * sizeof(T)));
+    if (more == nullptr) {
+      failed_ = true;
+      return false;
+    }
+    data_ = more;
+    room_ = room;
+    return true;
   }
 
   T* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t room_ = 0;
+  bool failed_ = false;
 };
 
 }  // namespace cagecast

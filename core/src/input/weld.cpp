@@ -6,7 +6,6 @@
 #include <tuple>
 #include <utility>
 
-#include "base/heap_sort.hpp"
 #include "geometry/hilbert.hpp"
 #include "geometry/triangle.hpp"
 #include "input/merge_near.hpp"
@@ -97,11 +96,14 @@ struct alignas(16) Site {
 void sortCell(Placed* begin, const Site* sites) {
   Placed* end = begin;
   while (keyOf(*end) == keyOf(*begin)) ++end;
-  heapSort(begin, end, [&](Placed a, Placed b) {
+  const auto isBefore = [&](Placed a, Placed b) {
     const Site& s = sites[vertexOf(a)];
     const Site& t = sites[vertexOf(b)];
     return s == t ? a < b : s < t;
-  });
+  };
+  // Takes little of the time; std::sort would be a larger function.
+  std::make_heap(begin, end, isBefore);
+  std::sort_heap(begin, end, isBefore);
 }
 
 /// The points that vertices are welded to.

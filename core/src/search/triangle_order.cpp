@@ -13,7 +13,7 @@ namespace {
 using simd::f32x4;
 using simd::load;
 
-constexpr std::size_t kStride = sizeof(OrderedTriangle) / sizeof(float);
+constexpr std::size_t kTriangleStride = sizeof(OrderedTriangle) / sizeof(float);
 
 /// Moves the triangles that come first along the longest side of the box around all of them before `middle`. This is
 /// `std::nth_element` with partitions that have no branch to mispredict.
@@ -23,7 +23,7 @@ void split(OrderedTriangle* triangles, std::uint32_t begin, std::uint32_t middle
   float high[4];
   const auto measure = [&] {
     Box box;
-    for (std::uint32_t i = begin; i < end; ++i) box.grow(load(all + kStride * i));
+    for (std::uint32_t i = begin; i < end; ++i) box.grow(load(all + kTriangleStride * i));
     simd::store(low, box.low);
     simd::store(high, box.high);
   };
@@ -39,16 +39,16 @@ void split(OrderedTriangle* triangles, std::uint32_t begin, std::uint32_t middle
     const float share = isBalanced ? static_cast<float>(middle - begin) / static_cast<float>(end - begin) : 0.5f;
     const float between = low[axis] + share * (high[axis] - low[axis]);
     const float pivot = between > low[axis] ? between : high[axis];
-    float* less = all + kStride * begin;
-    for (float* item = less; item < all + kStride * end; item += kStride) {
+    float* less = all + kTriangleStride * begin;
+    for (float* item = less; item < all + kTriangleStride * end; item += kTriangleStride) {
       const f32x4 moved = load(item);
       const bool isLess = item[axis] < pivot;
       simd::store(item, load(less));
       simd::store(less, moved);
-      less += isLess ? kStride : 0;
+      less += isLess ? kTriangleStride : 0;
     }
     const std::uint32_t before = end - begin;
-    const auto cut = static_cast<std::uint32_t>((less - all) / std::ptrdiff_t{kStride});
+    const auto cut = static_cast<std::uint32_t>((less - all) / std::ptrdiff_t{kTriangleStride});
     if (cut <= middle) {
       begin = cut;
       low[axis] = pivot;

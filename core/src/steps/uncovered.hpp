@@ -10,7 +10,8 @@ namespace cagecast {
 void findCageDistances(const Scene& scene, PointData& data) noexcept;
 
 /// Step 3: marks the points, other than occluded ones, whose ray leaves through a hole of the cage. Step 6 spares
-/// those that poke out of the cage by no more than `pokeThrough`. Step 10 may recover them.
+/// those that poke out of the cage by no more than `pokeThrough`, away from boundary loops. Step 10 may recover those
+/// that are marked.
 void markUncovered(const Scene& scene, PointData& data) noexcept;
 
 }  // namespace cagecast

@@ -100,7 +100,7 @@ TEST_CASE("what the target covers is occluded, from either side; what lies on it
   CHECK(zonesOf(cage, target) == Ints(12, 0));
 }
 
-TEST_CASE("a surface beyond the cage occludes up to the reach, and a point may poke out a little", "[reach]") {
+TEST_CASE("a surface beyond the cage occludes up to the reach, and a point may poke out a little", "[reach][pokeThrough]") {
   const Mesh cage = square(9, 2);  // The diagonal of a target is about 6, the reach about 0.18.
   const auto zoneUnder = [&](float height, const TransferOptions& options) {
     Mesh target = square(0.5f, 0);
@@ -117,9 +117,12 @@ TEST_CASE("a surface beyond the cage occludes up to the reach, and a point may p
   };
   TransferOptions withoutHoles;
   withoutHoles.steps.holes = false;
+  CHECK(zoneAt(2.01f, {}) == 0);
   CHECK(zoneAt(2.01f, withoutHoles) == 0);
   CHECK(zoneAt(2.1f, withoutHoles) == 2);
   CHECK(zoneAt(2.01f, TransferOptions::paper()) == 2);
+  // As little out of the cage, but beside its border.
+  CHECK(zonesOf(cage, square(9.005f, 2.005f), withoutHoles)[0] == 2);
 }
 
 TEST_CASE("degenerate triangles take no part, and a point in no triangle is a segment of its own", "[degenerate]") {

@@ -1,13 +1,11 @@
 import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
+import { boxOf } from '../inspect/geometry.js';
+import { packGlb } from '../parts/glb.js';
 import type { Cage, Template } from './types.js';
 
 /** What a GLB's node has in its `extras` if its mesh is a cage, as `cageGlb` writes it: docs/cages.md describes the format. */
-export interface CageExtras {
-  landmarks: Cage['landmarks'];
-  holes: Cage['holes'];
-  kind: Cage['kind'];
-}
+type CageExtras = Pick<Cage, 'landmarks' | 'holes' | 'kind'>;
 
 /**
  * Writes a cage as a GLB file: one node named `cage`, with landmarks, holes and kind in its `extras`. So it is a template for fits.
@@ -28,12 +26,7 @@ export function cageGlb(
       throw new CagecastError('badArgument', 'cageGlb', `cage.${name} is ${show(cage[name])}, not a ${known[0]}`, {
         argument: 'cage',
       });
-  const min = [Infinity, Infinity, Infinity];
-  const max = [-Infinity, -Infinity, -Infinity];
-  positions.forEach((x, i) => {
-    min[i % 3] = Math.min(min[i % 3]!, x);
-    max[i % 3] = Math.max(max[i % 3]!, x);
-  });
+  const { min, max } = boxOf(positions);
   const arrays = [positions, uvs, indices instanceof Uint32Array ? indices : Uint32Array.from(indices)];
   let end = 0;
   const bufferViews = arrays.map(({ byteLength }, a) => {
@@ -55,17 +48,8 @@ export function cageGlb(
     bufferViews,
     buffers: [{ byteLength: end }],
   };
-  const text = new TextEncoder().encode(JSON.stringify(json));
-  const textLength = Math.ceil(text.length / 4) * 4;
-  const out = new Uint8Array(28 + textLength + end);
-  const view = new DataView(out.buffer);
-  // "glTF", its version, its length; a chunk "JSON", a chunk "BIN\0".
-  [0x46546c67, 2, out.length, textLength, 0x4e4f534a].forEach((word, i) => view.setUint32(4 * i, word, true));
-  out.fill(0x20, 20, 20 + textLength).set(text, 20);
-  view.setUint32(20 + textLength, end, true);
-  view.setUint32(24 + textLength, 0x004e4942, true);
-  bufferViews.forEach(({ byteOffset, byteLength }, a) =>
-    out.set(new Uint8Array(arrays[a]!.buffer, arrays[a]!.byteOffset, byteLength), 28 + textLength + byteOffset),
+  return packGlb(
+    json,
+    arrays.map(({ buffer, byteOffset, byteLength }) => new Uint8Array(buffer, byteOffset, byteLength)),
   );
-  return out;
 }

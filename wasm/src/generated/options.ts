@@ -18,8 +18,8 @@ export interface ProjectStage {
    */
   occlusionReach?: number | undefined;
   /**
-   * How far a point may poke out of the cage and still count as covered. 0 to 1, as a share of the target's diagonal.
-   * Default: `0.0025`; in the preset `paper`: `0`.
+   * How far a point may poke out of the cage, not at the border of a hole, and still count as covered. 0 to 1, as a
+   * share of the target's diagonal. Default: `0.0025`; in the preset `paper`: `0`.
    */
   pokeThrough?: number | undefined;
 }
@@ -138,7 +138,7 @@ export const optionFlags = [
     range: [0, 1],
     standard: 0.0025,
     paper: 0,
-    text: 'How far a point may poke out of the cage and still count as covered.',
+    text: 'How far a point may poke out of the cage, not at the border of a hole, and still count as covered.',
   },
   {
     name: 'minCovered',

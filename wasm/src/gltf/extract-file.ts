@@ -3,7 +3,7 @@ import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
 import { type Skinned, skinMatrices } from '../parts/skin.js';
 import { topNodes } from './check-geometry.js';
-import { InputError, withName } from './input-error.js';
+import { InputError, naming } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';
 import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
 import { isOverlay } from './overlay.js';
@@ -48,14 +48,12 @@ export interface Extracted {
  * @throws {InputError} that names the file, the primitive and the element.
  */
 export function extract(file: GltfFile): Extracted {
-  try {
+  return naming(file.path, () => {
     const parts = listParts(file);
     const mesh = joinPieces(parts);
     const uvs = readUvs(file, parts, mesh.positions.length / 3);
     return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts };
-  } catch (error) {
-    throw withName(error, file.path);
-  }
+  });
 }
 
 /** The path of a primitive in the file's JSON: "meshes[0].primitives[1]". */
@@ -96,8 +94,9 @@ function listParts(file: GltfFile): Part[] {
     meshDef.primitives.forEach((primitive, p) => {
       if (isOverlay(primitive, file.json)) return;
       const ref = { mesh: nodeDef.mesh!, primitive: p };
-      const positions = readPositions(file, ref);
-      if (positions === undefined) return;
+      const accessor = accessorOf(file, ref, 'POSITION');
+      if (accessor === undefined) return;
+      const positions = decodePositions(primitivePath(ref), accessor);
       const indices = readTriangles(file, ref, positions.length / 3);
       if (indices === undefined) return;
       const piece = nextPiece(parts, {
@@ -184,11 +183,6 @@ function accessorOf(file: GltfFile, ref: PrimitiveRef, semantic: string): Access
     );
   }
   return accessor;
-}
-
-function readPositions(file: GltfFile, ref: PrimitiveRef): Float32Array | undefined {
-  const accessor = accessorOf(file, ref, 'POSITION');
-  return accessor && decodePositions(primitivePath(ref), accessor);
 }
 
 /** The triangles of a primitive, strips and fans expanded; `undefined` if it is of points or lines. */

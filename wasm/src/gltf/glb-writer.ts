@@ -2,11 +2,12 @@ import { dirname, parse } from 'node:path';
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
 import { show } from '../core/error.js';
+import { packGlb, paddedLength } from '../parts/glb.js';
 import { type MeshoptView, meshoptExtensions, meshoptView } from './check-geometry.js';
 import { localFile, type ReadOptions, readUri } from './files.js';
 import { imageType } from './image-file.js';
 import { InputError } from './input-error.js';
-import { type Contents, imageFile, type NamedFile, packGlb, packGltf, paddedLength } from './output/pack-gltf.js';
+import { type Contents, imageFile, type NamedFile, packGltf } from './output/pack-gltf.js';
 import { subtract } from './output/ranges.js';
 import type { Paint } from './overlay.js';
 import { sparseElements } from './primitive-group.js';
@@ -370,7 +371,8 @@ export class GlbWriter {
 
   /** The bytes of the GLB. */
   finish(): Uint8Array {
-    return packGlb(this.#contents([]));
+    const { json, chunks } = this.#contents([]);
+    return packGlb(json, chunks);
   }
 
   /** The text of a glTF, and what belongs beside it. @param stem  How its file is named, without the ending. */

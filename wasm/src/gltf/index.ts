@@ -9,6 +9,7 @@ import { type Borders, isCut } from '../parts/borders-option.js';
 import type { MaskSources } from './bake/mask-sources.js';
 import { addTransfer } from './document/add-transfer.js';
 import { transferDocument, wrong } from './document/transfer-document.js';
+import type { Piece } from './pieces.js';
 
 export { type BakeOptions, bake } from './bake/bake-document.js';
 export type { MaskSources } from './bake/mask-sources.js';
@@ -26,15 +27,8 @@ export {
 } from './document/document-cages.js';
 export type { ReadLimits } from './limits.js';
 
-/** The ranges of a part of a document in the arrays of a result. */
-export interface PartRange {
-  /** The name of its node, followed by that of its material if they differ. */
-  name: string;
-  firstVertex: number;
-  vertexCount: number;
-  firstTriangle: number;
-  triangleCount: number;
-}
+/** The ranges of a part of a document in the arrays of a result, and its name. */
+export type PartRange = Pick<Piece, 'name' | 'firstVertex' | 'vertexCount' | 'firstTriangle' | 'triangleCount'>;
 
 /** Options of `cagecast`: those of `transfer`, and what to transfer. */
 export interface CagecastOptions extends TransferOptions, MaskSources {

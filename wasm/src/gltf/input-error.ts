@@ -13,6 +13,19 @@ export class InputError extends Error {
 export const withName = (error: unknown, name: string): unknown =>
   error instanceof InputError ? error.in(name) : error;
 
+/** Does something with what has a name, such as a file. @throws {InputError} with the name in front. */
+export function naming<Result>(name: string, work: () => Result): Result {
+  try {
+    const result = work();
+    if (!(result instanceof Promise)) return result;
+    return result.catch((error: unknown) => {
+      throw withName(error, name);
+    }) as Result;
+  } catch (error) {
+    throw withName(error, name);
+  }
+}
+
 /** The first line of any error's message. */
 export function firstLine(error: unknown): string {
   return (error instanceof Error ? error.message : String(error)).split('\n', 1)[0] ?? '';

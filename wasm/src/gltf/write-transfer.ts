@@ -128,14 +128,9 @@ function addToGroup(
   const { primitive: first, part } = members[0]!;
   const shared = shareVertices(part.vertexCount, members);
   const isNew = shared.isNew || form !== 'keep';
-  if (isNew)
-    rewriteAttributes(
-      writer,
-      file,
-      members.map(({ primitive }) => primitive),
-      shared,
-    );
-  if (form === 'none' || form === 'meshopt') unmarkDraco(members.map(({ primitive }) => primitive));
+  const own = members.map(({ primitive }) => primitive);
+  if (isNew) rewriteAttributes(writer, file, own, shared);
+  if (form === 'none' || form === 'meshopt') unmarkDraco(own);
   const uvSet = freeUvSet((semantic) => first.attributes[semantic] !== undefined);
   const uvs = storedUvs(shared.uvs);
   const attributes = {
@@ -151,7 +146,7 @@ function addToGroup(
     Object.assign(primitive.attributes, attributes);
     const all = cosmeticCorners(shared.indices[m]!, cosmetic);
     for (const overlay of overlays) {
-      const corners = overlay.cornersOf(all, shared.uvs);
+      const corners = cornersIn(overlay.paint.area, all, shared.uvs);
       if (corners.length === 0) continue;
       primitives.push(overlay.primitive(primitive, corners, attributes[uvSet]!));
       added.overlayTriangles += corners.length / 3;
@@ -210,10 +205,8 @@ function rewriteAttributes(
     Object.fromEntries(
       Object.entries(of).map(([semantic, accessor]) => [semantic, rewrite(accessor, semantic, isDelta)]),
     );
-  const [ownAttributes, ownTargets] = [
-    rewriteAll(attributes, false),
-    targets?.map((deltas) => rewriteAll(deltas, true)),
-  ];
+  const ownAttributes = rewriteAll(attributes, false);
+  const ownTargets = targets?.map((deltas) => rewriteAll(deltas, true));
   for (const primitive of primitives) {
     primitive.attributes = { ...ownAttributes };
     if (ownTargets) primitive.targets = ownTargets.map((deltas) => ({ ...deltas }));
@@ -234,18 +227,13 @@ function boundsOf(values: ArrayLike<number>, size: number): { min: number[]; max
 /** Writes overlays that show a texture. */
 class OverlayWriter {
   readonly #writer: GlbWriter;
-  readonly #paint: Paint;
+  readonly paint: Paint;
   #texture: number | undefined;
   readonly #materials = new Map<string, number>();
 
   constructor(writer: GlbWriter, paint: Paint) {
     this.#writer = writer;
-    this.#paint = paint;
-  }
-
-  /** Those of some triangles that show the texture. */
-  cornersOf(corners: Uint32Array, uvs: Float32Array): Uint32Array {
-    return cornersIn(this.#paint.area, corners, uvs);
+    this.paint = paint;
   }
 
   /** A primitive of some triangles of `base`, with the same vertices, skin and morph targets. @param uvs  Its UVs' accessor. */
@@ -276,7 +264,7 @@ class OverlayWriter {
 
   /** The texture, which is only written if something shows it. */
   #shown(): number {
-    this.#texture ??= this.#writer.addTexture(this.#paint, this.#paint.area === 'bounded');
+    this.#texture ??= this.#writer.addTexture(this.paint, this.paint.area === 'bounded');
     return this.#texture;
   }
 

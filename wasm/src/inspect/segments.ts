@@ -13,21 +13,11 @@ const kMuchCulled = 0.3;
 const kMinCosmetic = 0.02;
 
 /** A connected component of the target. */
-export interface Segment {
+export interface Segment extends Omit<SegmentStats, 'depth' | 'ratios' | 'score'> {
   /** The part of its first vertex. */
   part: string;
-  /** The group of its first vertex, in `target.groups`. */
-  group: number;
-  points: number;
-  /** A, E and C, in squared units of the input, and F = C/E. */
-  area: number;
-  exposedArea: number;
-  coveredArea: number;
-  coverage: number;
   /** The ratio of actual to required area: kept from 1 on, unless a lock decides. `null` if no area is required. */
   score: number | null;
-  culled: boolean;
-  culledBy: SegmentStats['culledBy'];
 }
 
 /** The segments in the order of their numbers, with the parts they belong to. */

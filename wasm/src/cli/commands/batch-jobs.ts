@@ -2,7 +2,7 @@ import { createHash } from 'node:crypto';
 import { existsSync, statSync } from 'node:fs';
 import { basename, dirname, extname } from 'node:path';
 import { readBytes, standard } from '../../gltf/files.js';
-import { firstLine, InputError, withName } from '../../gltf/input-error.js';
+import { firstLine, InputError, naming } from '../../gltf/input-error.js';
 import { filesBeside } from '../io/beside.js';
 import { filesOf } from '../io/glob.js';
 import { canonicalPath } from '../io/output.js';
@@ -52,9 +52,7 @@ export async function jobsOfPatterns(patterns: readonly string[], defaults: JobD
  * @throws {InputError} if the manifest cannot be read, or two jobs write the same file.
  */
 export async function jobsOfManifest(path: string, defaults: JobDefaults): Promise<Job[]> {
-  const bytes = await readBytes(path).catch((error: unknown) => {
-    throw withName(error, path);
-  });
+  const bytes = await naming(path, () => readBytes(path));
   const folder = path === standard ? '.' : dirname(path);
   const lines = new TextDecoder().decode(bytes).split('\n');
   const jobs = lines.flatMap((line, i) => {
@@ -117,8 +115,8 @@ const pathIn = (given: Json, name: string, folder: string): string | undefined =
 function regionsOf(regions: unknown, folder: string): Region[] {
   const form = '{"cage": …, "texture": …}';
   if (!Array.isArray(regions)) throw new InputError(`"regions" is ${shown(regions)}, not an array of ${form}`);
-  return regions.map((region: unknown, r) => {
-    try {
+  return regions.map((region: unknown, r) =>
+    naming(`regions[${r}]`, () => {
       if (!isObject(region)) throw new InputError(`is ${shown(region)}, not ${form}`);
       const [cage, texture] = ['cage', 'texture'].map((name) => {
         const path = pathIn(region, name, folder);
@@ -126,10 +124,8 @@ function regionsOf(regions: unknown, folder: string): Region[] {
         return path;
       });
       return { cage: cage!, texture: texture! };
-    } catch (error) {
-      throw withName(error, `regions[${r}]`);
-    }
-  });
+    }),
+  );
 }
 
 /** What is wrong with the placeholders in the paths of what a job writes, if anything is. */

@@ -6,7 +6,7 @@ import { templateNames } from '../../cages/template-names.js';
 import type { Cage, Fit, Kind, Landmarks, Template } from '../../cages/types.js';
 import { templateOf } from '../../gltf/cage-file.js';
 import { readBytes, standard } from '../../gltf/files.js';
-import { InputError, withName } from '../../gltf/input-error.js';
+import { InputError, naming } from '../../gltf/input-error.js';
 import { counted } from '../../inspect/finding.js';
 import { isPosition } from '../../parts/template-extras.js';
 import type { Io } from '../io/io.js';
@@ -167,15 +167,13 @@ function templateFile(path: string): string {
 }
 
 /** Reads landmarks: a JSON object, name → [x, y, z]. @throws {InputError} that names the file and the landmark. */
-async function readLandmarks(path: string): Promise<Landmarks> {
-  try {
+function readLandmarks(path: string): Promise<Landmarks> {
+  return naming(path, async () => {
     const landmarks = parseObject(new TextDecoder().decode(await readBytes(path)));
     for (const [name, position] of Object.entries(landmarks))
       if (!isPosition(position)) throw new InputError(`"${name}" is ${shown(position)}, not 3 numbers [x, y, z]`);
     return landmarks as Landmarks;
-  } catch (error) {
-    throw withName(error, path);
-  }
+  });
 }
 
 /** How many landmarks are listed at most. */

@@ -1,7 +1,7 @@
 import { lstatSync } from 'node:fs';
 import { basename, dirname, extname, join, relative, resolve } from 'node:path';
 import { type ReadOptions, readBeside, readBytes, standard } from '../../gltf/files.js';
-import { InputError, withName } from '../../gltf/input-error.js';
+import { InputError, naming } from '../../gltf/input-error.js';
 import { isObject, parseObject, refuseUnknown } from '../model/json.js';
 import { matcher } from '../model/patterns.js';
 import { kSettingNames, type Layer, type Settings, settingsOf } from '../model/settings.js';
@@ -60,19 +60,17 @@ export class Configuration {
     return known;
   }
 
-  async #readNew(path: string): Promise<ConfigFile> {
+  #readNew(path: string): Promise<ConfigFile> {
     const shown = relative('.', path).startsWith('..') ? path : relative('.', path);
     const folder = dirname(path);
-    try {
+    return naming(shown, async () => {
       // The file itself may be a link to anywhere.
       const bytes =
         this.#given === undefined
           ? await readBeside(path, folder, { ...this.#reading, allowOutside: true })
           : await readBytes(path, this.#reading.limits);
       return { path: shown, ...parseConfig(new TextDecoder().decode(bytes), folder) };
-    } catch (error) {
-      throw withName(error, shown);
-    }
+    });
   }
 }
 
@@ -93,16 +91,14 @@ function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
     throw new InputError(`"characters" is ${shown(characters)}, not an object of patterns and settings`);
   return {
     common: settingsOf(all, folder),
-    characters: inOrder(text).map((pattern) => {
-      const given = characters[pattern];
-      try {
+    characters: inOrder(text).map((pattern) =>
+      naming(`"characters" "${pattern}"`, () => {
+        const given = characters[pattern];
         if (!isObject(given)) throw new InputError(`is ${shown(given)}, not an object of settings`);
         refuseUnknown(given, kSettingNames);
         return { matches: matcher(pattern), settings: settingsOf(given, folder) };
-      } catch (error) {
-        throw withName(error, `"characters" "${pattern}"`);
-      }
-    }),
+      }),
+    ),
   };
 }
 

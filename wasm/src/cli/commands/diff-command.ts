@@ -2,7 +2,7 @@ import { readdir } from 'node:fs/promises';
 import { join } from 'node:path';
 import type { Command } from 'commander';
 import { isFolder, listingError } from '../../gltf/files.js';
-import { InputError, withName } from '../../gltf/input-error.js';
+import { InputError, naming } from '../../gltf/input-error.js';
 import { counted, percent } from '../../inspect/finding.js';
 import type { Io } from '../io/io.js';
 import { kExit } from '../model/failures.js';
@@ -80,11 +80,7 @@ const exitCodeOf = (over: number): number => (over > 0 ? kExit.changed : 0);
  */
 async function diff(command: DiffCommand): Promise<Found> {
   const areFolders = await Promise.all(
-    [command.before, command.after].map((path) =>
-      isFolder(path).catch((error) => {
-        throw withName(error, path);
-      }),
-    ),
+    [command.before, command.after].map((path) => naming(path, () => isFolder(path))),
   );
   if (areFolders[0] !== areFolders[1])
     throw new InputError('is a folder, and the other is a file; compare two files or two folders').in(

@@ -1,5 +1,5 @@
 import { readBytes } from '../../gltf/files.js';
-import { InputError, withName } from '../../gltf/input-error.js';
+import { InputError, naming } from '../../gltf/input-error.js';
 import { isObject, parseObject } from '../model/json.js';
 import { shown } from '../model/text.js';
 import { kZoneNames } from '../model/zones.js';
@@ -75,17 +75,13 @@ const checkReport = objectOf({
 });
 
 /** Reads a report. @throws {InputError} that names the file and what of it cannot be compared. */
-export async function readReport(path: string): Promise<AnyReport> {
-  try {
+export function readReport(path: string): Promise<AnyReport> {
+  return naming(path, async () => {
     const report = parseObject(new TextDecoder().decode(await readBytes(path)));
-    try {
+    naming('is no report of cagecast transfer (--report) or inspect (--json)', () => {
       checkReport(report, '');
       if (report['coverage'] === undefined) anObject(report['areas'], 'areas');
-    } catch (error) {
-      throw withName(error, 'is no report of cagecast transfer (--report) or inspect (--json)');
-    }
+    });
     return report as unknown as AnyReport;
-  } catch (error) {
-    throw withName(error, path);
-  }
+  });
 }

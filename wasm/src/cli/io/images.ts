@@ -2,22 +2,17 @@ import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
 import { type ReadOptions, readBeside, readBytes } from '../../gltf/files.js';
 import { imageIsWhole, imageType, pngLength } from '../../gltf/image-file.js';
-import { firstLine, InputError, withName } from '../../gltf/input-error.js';
+import { firstLine, InputError, naming } from '../../gltf/input-error.js';
 
 /**
  * Reads an image file.
  * @param folder  Where it has to be, as a regular file, unless files outside may be read. Default: anywhere, and pipes too.
  * @throws {InputError} that names the file.
  */
-export async function readImage(path: string, reading: ReadOptions, folder?: string): Promise<Image> {
-  try {
-    return await decodeImage(
-      await (folder === undefined ? readBytes(path, reading.limits) : readBeside(path, folder, reading)),
-    );
-  } catch (error) {
-    throw withName(error, path);
-  }
-}
+export const readImage = (path: string, reading: ReadOptions, folder?: string): Promise<Image> =>
+  naming(path, async () =>
+    decodeImage(await (folder === undefined ? readBytes(path, reading.limits) : readBeside(path, folder, reading))),
+  );
 
 /**
  * Decodes a PNG; other types by sharp, if it is installed.

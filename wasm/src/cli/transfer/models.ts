@@ -59,13 +59,17 @@ export async function readBack(cage: Cage, path: string): Promise<ReadModel> {
   return { file, extracted: extract(file) };
 }
 
-/** An error of the core as one of the model at fault, and of the place in it; any other error as it is. */
-export function inFile(error: unknown, models: { target: ReadModel; cage: ReadModel }): unknown {
-  if (!(error instanceof CagecastError)) return error;
-  const { reason, argument, code, at } = error;
-  const { file, extracted } = models[argument === 'cage' ? 'cage' : 'target'];
-  const perVertex = { nonFinitePosition: 3, tooLarge: 3, nonFiniteUv: 2 }[code as string];
-  const part = perVertex === undefined ? undefined : partOf(extracted.parts, Math.floor(at / perVertex));
-  const where = part ? ` (${primitivePath(part)}, ${quoted(part.name)})` : '';
-  return new InputError(`${reason}${where}`).in(file.path);
+/** Calls the core for two models. @throws {InputError} that names the file at fault and the place in it. */
+export function inFile<Result>(models: { target: ReadModel; cage: ReadModel }, call: () => Result): Result {
+  try {
+    return call();
+  } catch (error) {
+    if (!(error instanceof CagecastError)) throw error;
+    const { reason, argument, code, at } = error;
+    const { file, extracted } = models[argument === 'cage' ? 'cage' : 'target'];
+    const perVertex = { nonFinitePosition: 3, tooLarge: 3, nonFiniteUv: 2 }[code as string];
+    const part = perVertex === undefined ? undefined : partOf(extracted.parts, Math.floor(at / perVertex));
+    const where = part ? ` (${primitivePath(part)}, ${quoted(part.name)})` : '';
+    throw new InputError(`${reason}${where}`).in(file.path);
+  }
 }

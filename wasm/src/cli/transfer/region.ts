@@ -1,7 +1,7 @@
 import { basename } from 'node:path';
 import { dracoOf, meshoptView } from '../../gltf/check-geometry.js';
 import type { Form } from '../../gltf/glb-writer.js';
-import { withName } from '../../gltf/input-error.js';
+import { naming } from '../../gltf/input-error.js';
 import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/overlay.js';
 import { writeTransfer } from '../../gltf/write-transfer.js';
 import type { CutTarget, TransferResult } from '../../index.js';
@@ -73,11 +73,9 @@ export async function transferRegion(
   io.step(`writing ${output ?? target}`);
   const form = before?.form ?? command.compress;
   const isText = isLast && output !== undefined && /\.gltf$/i.test(output);
-  const written = await writeTransfer(
-    run.target.file,
-    run.target.extracted,
-    cut ? run.result : { ...run.result, cosmeticTriangles: own },
-    {
+  const { file, extracted } = run.target;
+  const written = await naming(target, () =>
+    writeTransfer(file, extracted, cut ? run.result : { ...run.result, cosmeticTriangles: own }, {
       paints,
       cut: cut && { ...cut, cosmeticTriangles: own },
       // Draco changes the order of triangles, which says what is painted already.
@@ -85,10 +83,8 @@ export async function transferRegion(
       zones,
       isFurther: before !== undefined,
       stem: isText ? basename(output).slice(0, -'.gltf'.length) : undefined,
-    },
-  ).catch((error: unknown) => {
-    throw withName(error, target);
-  });
+    }),
+  );
   return { ...found, written };
 }
 

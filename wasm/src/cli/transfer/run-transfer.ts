@@ -1,7 +1,7 @@
 import { FileModel } from '../../gltf/bake/bake-file.js';
 import { masksOf } from '../../gltf/bake/mask-sources.js';
 import type { ReadOptions } from '../../gltf/files.js';
-import { withName } from '../../gltf/input-error.js';
+import { naming } from '../../gltf/input-error.js';
 import {
   type CutTarget,
   cutBorders,
@@ -71,17 +71,13 @@ async function readMasks(
     Object.entries({ never, always }).map(
       ([kind, mask]) =>
         mask &&
-        readImage(mask.path, reading, mask.config?.folder).catch((error: unknown) => {
-          throw mask.config ? withName(error, `${mask.config.path}: "${kind}Mask"`) : error;
-        }),
+        (mask.config
+          ? naming(`${mask.config.path}: "${kind}Mask"`, () => readImage(mask.path, reading, mask.config?.folder))
+          : readImage(mask.path, reading)),
     ),
   );
-  try {
-    const images = never || always ? { never: neverImage, always: alwaysImage } : undefined;
-    return masksOf(new FileModel(file, extracted.parts), undefined, { images, colors });
-  } catch (error) {
-    throw withName(error, file.path);
-  }
+  const images = never || always ? { never: neverImage, always: alwaysImage } : undefined;
+  return naming(file.path, () => masksOf(new FileModel(file, extracted.parts), undefined, { images, colors }));
 }
 
 /** Transfers from a cage to a target that are read. @throws {InputError} that names the file at fault. */
@@ -93,20 +89,12 @@ export async function transferModels(
 ): Promise<Run> {
   io.step(`transferring to ${(target.extracted.mesh.positions.length / 3).toLocaleString('en')} vertices`);
   await init();
-  try {
-    const result = transfer(cage.extracted.mesh, target.extracted.mesh, options);
-    return { target, cage, wholeCage: cage, options, result };
-  } catch (error) {
-    throw inFile(error, { target, cage });
-  }
+  const result = inFile({ target, cage }, () => transfer(cage.extracted.mesh, target.extracted.mesh, options));
+  return { target, cage, wholeCage: cage, options, result };
 }
 
 /** Cuts the target. @throws {InputError} that names the file and the element at fault. */
 export function cutTarget({ cage, target, result, options }: Run, io: Io): CutTarget {
   io.step('cutting borders');
-  try {
-    return cutBorders(cage.extracted.mesh, target.extracted.mesh, result, options);
-  } catch (error) {
-    throw inFile(error, { target, cage });
-  }
+  return inFile({ target, cage }, () => cutBorders(cage.extracted.mesh, target.extracted.mesh, result, options));
 }

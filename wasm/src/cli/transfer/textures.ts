@@ -1,7 +1,7 @@
 import { basename } from 'node:path';
 import { partOf, primitivePath } from '../../gltf/extract-file.js';
 import { readBytes } from '../../gltf/files.js';
-import { InputError, withName } from '../../gltf/input-error.js';
+import { InputError, naming } from '../../gltf/input-error.js';
 import type { ReadLimits } from '../../gltf/limits.js';
 import { type Paint, paintOf, tileAt } from '../../gltf/overlay.js';
 import { quoted } from '../model/text.js';
@@ -12,13 +12,8 @@ import type { ReadModel } from './models.js';
 const kTypes = ['image/png', 'image/jpeg', 'image/webp', 'image/ktx2'];
 
 /** Reads a texture. @throws {InputError} that names the file. */
-export async function readPaint(path: string, limits: ReadLimits): Promise<Paint> {
-  try {
-    return paintOf(await readBytes(path, limits), basename(path), kTypes);
-  } catch (error) {
-    throw withName(error, path);
-  }
-}
+export const readPaint = (path: string, limits: ReadLimits): Promise<Paint> =>
+  naming(path, async () => paintOf(await readBytes(path, limits), basename(path), kTypes));
 
 /** Reads the texture of each tile that a cage uses. @throws {InputError} that names the file, or the cage's triangle. */
 export async function readTiles(

@@ -11,7 +11,7 @@ import type {
   TypedArray,
 } from '@gltf-transform/core';
 import type { CutTarget, TransferResult } from '../../index.js';
-import { type AttributeArray, type Blends, blend, blendSkin, ruleOf } from '../../parts/blend.js';
+import { type AttributeArray, blend, blendSkin, ruleOf } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
 import {
   cosmeticCorners,
@@ -26,7 +26,14 @@ import {
   zoneAttribute,
 } from '../overlay.js';
 import type { Piece } from '../pieces.js';
-import { type GroupMember, groupMember, shareVertices, sparseElements, storedUvs } from '../primitive-group.js';
+import {
+  type GroupMember,
+  groupMember,
+  type SharedVertices,
+  shareVertices,
+  sparseElements,
+  storedUvs,
+} from '../primitive-group.js';
 import { disposeUnused, removeAttributes, removeOverlays } from './earlier-in-document.js';
 import type { DocumentPart, ExtractedDocument } from './extract-document.js';
 
@@ -96,17 +103,12 @@ export const createAccessor = (document: Document, array: AttributeArray, type: 
 function addToGroup(document: Document, members: readonly Member[]): void {
   const { part, primitive: first } = members[0]!;
   const shared = shareVertices(part.vertexCount, members);
-  const { sources, blends } = shared;
   const indices = (corners: Uint32Array) =>
-    createAccessor(document, sources.length < 65536 ? Uint16Array.from(corners) : corners, 'SCALAR');
+    createAccessor(document, shared.sources.length < 65536 ? Uint16Array.from(corners) : corners, 'SCALAR');
   if (shared.isNew) {
-    const before = members.flatMap(({ primitive }) => primitive.getIndices() ?? []);
-    remakePrimitives(
-      document,
-      members.map(({ primitive }) => primitive),
-      sources,
-      blends.sources.length > 0 ? blender(first, blends) : undefined,
-    );
+    const primitives = members.map(({ primitive }) => primitive);
+    const before = primitives.flatMap((primitive) => primitive.getIndices() ?? []);
+    remakePrimitives(document, primitives, shared);
     members.forEach(({ primitive }, m) => primitive.setIndices(indices(shared.indices[m]!)).setMode(4)); // strips and fans have become lists
     for (const accessor of before) disposeUnused(document, accessor);
   }
@@ -130,44 +132,27 @@ function isSparse(values: AttributeArray, size: number): boolean {
   return listed !== undefined && 2 * listed.length <= values.length / size;
 }
 
-/** The values of an accessor, with those of new vertices after them. @param semantic  None of a morph target's. */
-type Extend = (accessor: Accessor, semantic?: string) => TypedArray;
-
-/** Blends the attributes of a primitive. */
-function blender(primitive: Primitive, blends: Blends): Extend {
-  const skin = blendSkin((semantic) => primitive.getAttribute(semantic)?.getArray() ?? undefined, blends);
-  return (accessor, semantic) => {
-    const array = accessor.getArray()!;
-    const pulls = semantic === undefined ? undefined : skin.get(semantic);
-    return (
-      pulls ??
-      blend(
-        array,
-        accessor.getElementSize(),
-        blends,
-        semantic === undefined ? 'mean' : ruleOf(semantic, array, accessor.getNormalized()),
-      )
-    );
-  };
-}
-
 /**
- * Adds new vertices, those that `extend` makes and copies, to all attributes and morph targets that primitives share. Accessors that
- * nothing else uses are disposed.
+ * Adds new vertices, blends and copies, to all attributes and morph targets that primitives share. Accessors that nothing else uses
+ * are disposed.
  */
 function remakePrimitives(
   document: Document,
   primitives: readonly Primitive[],
-  sources: Uint32Array,
-  extend: Extend = (accessor) => accessor.getArray()!,
+  { sources, blends }: SharedVertices,
 ): void {
+  const skin = blendSkin((semantic) => primitives[0]!.getAttribute(semantic)?.getArray() ?? undefined, blends);
   const made = new Map<Accessor, Accessor>();
+  /** @param semantic  None of a morph target's. */
   const remake = (accessor: Accessor, semantic?: string): Accessor => {
     const known = made.get(accessor);
     if (known) return known;
-    const values = gather(extend(accessor, semantic), accessor.getElementSize(), sources);
+    const [array, size] = [accessor.getArray()!, accessor.getElementSize()];
+    const rule = semantic === undefined ? 'mean' : ruleOf(semantic, array, accessor.getNormalized());
+    const pulls = semantic === undefined ? undefined : skin.get(semantic);
+    const values = gather(pulls ?? blend(array, size, blends, rule), size, sources);
     const own = accessor.clone().setArray(values);
-    if (own.getSparse()) own.setSparse(isSparse(values, own.getElementSize()));
+    if (own.getSparse()) own.setSparse(isSparse(values, size));
     made.set(accessor, own);
     return own;
   };
