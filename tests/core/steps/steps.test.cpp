@@ -100,7 +100,8 @@ TEST_CASE("what the target covers is occluded, from either side; what lies on it
   CHECK(zonesOf(cage, target) == Ints(12, 0));
 }
 
-TEST_CASE("a surface beyond the cage occludes up to the reach, and a point may poke out a little", "[reach][pokeThrough]") {
+TEST_CASE("a surface beyond the cage occludes up to the reach, and a point may poke out a little",
+          "[reach][pokeThrough]") {
   const Mesh cage = square(9, 2);  // The diagonal of a target is about 6, the reach about 0.18.
   const auto zoneUnder = [&](float height, const TransferOptions& options) {
     Mesh target = square(0.5f, 0);
