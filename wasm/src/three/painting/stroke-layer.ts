@@ -85,8 +85,9 @@ const blending = (
 export class StrokeLayer {
   readonly #target: WebGLRenderTarget;
   readonly #brush: Pass<ReturnType<typeof brushUniforms>>;
-  /** Lays stickers over each other. */
   readonly #sticker: Pass<ReturnType<typeof stickerUniforms>>;
+  /** Lays stickers over each other. */
+  readonly #stickers: Pass<ReturnType<typeof stickerUniforms>>;
   readonly #fill: FillPass;
   readonly #lay = new Pass(kCommitShader, commitUniforms(), blending(AddEquation, OneMinusSrcAlphaFactor));
   readonly #erase = new Pass(kEraseShader, commitUniforms());
@@ -119,8 +120,9 @@ export class StrokeLayer {
       texture.needsUpdate = true;
     }
     this.#brush = new Pass(brushShader(size), brushUniforms(owners, patches), blending(MaxEquation, OneFactor));
+    this.#sticker = new Pass(stickerShader(size), stickerUniforms(owners, patches));
     this.#fill = new FillPass(size, owners, patches);
-    this.#sticker = new Pass(
+    this.#stickers = new Pass(
       stickerShader(size),
       stickerUniforms(owners, patches),
       blending(AddEquation, OneMinusSrcAlphaFactor),
@@ -177,7 +179,7 @@ export class StrokeLayer {
   /** Draws a sticker in place of the stroke so far. @returns The parts that changed, in shares. */
   stick(renderer: WebGLRenderer, center: SurfacePoint, sticker: Sticker): Rect[] {
     const before = this.clear(renderer);
-    this.#place({ center, sticker, opacity: 1 });
+    this.#place(this.#sticker, { center, sticker, opacity: 1 });
     return [...before, ...this.#draw(renderer, this.#sticker, this.reach(center, sticker))];
   }
 
@@ -196,13 +198,12 @@ export class StrokeLayer {
   ): void {
     this.#clear.run(renderer, target, rects);
     for (const one of stickers) {
-      this.#place(one);
-      this.#sticker.run(renderer, target, rects);
+      this.#place(this.#stickers, one);
+      this.#stickers.run(renderer, target, rects);
     }
   }
 
-  #place({ center, sticker, opacity }: LaidSticker): void {
-    const { uniforms } = this.#sticker;
+  #place({ uniforms }: Pass<ReturnType<typeof stickerUniforms>>, { center, sticker, opacity }: LaidSticker): void {
     const { texture, width, height, right, up, mirrored = false } = sticker;
     uniforms.picture.value = texture;
     uniforms.center.value.copy(center.point);
@@ -256,7 +257,16 @@ export class StrokeLayer {
     this.#target.dispose();
     this.#rest?.dispose();
     for (const texture of this.#textures) texture.dispose();
-    for (const pass of [this.#fill, this.#brush, this.#sticker, this.#lay, this.#erase, this.#copy, this.#clear])
+    for (const pass of [
+      this.#fill,
+      this.#brush,
+      this.#sticker,
+      this.#stickers,
+      this.#lay,
+      this.#erase,
+      this.#copy,
+      this.#clear,
+    ])
       pass.dispose();
   }
 
