@@ -54,7 +54,6 @@ const kNeeds = {
   clang: { what: 'Clang 14 or newer (clang++)', there: command('clang++') },
   'libclang-rt-dev': { what: "Clang's sanitizers and libFuzzer", there: linksFuzzTarget },
   lld: { what: 'LLD (ld.lld)', there: command('ld.lld') },
-  llvm: { what: 'LLVM (llvm-profdata, llvm-cov)', there: command('llvm-profdata') },
 };
 const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev', 'libeigen3-dev'];
 const kTests = [
@@ -75,7 +74,7 @@ const kPurposes = {
   lint: ['clang-format'],
   test: kTests,
   'test:all': kAllTests,
-  clang: [...kAllTests, 'clang', 'libclang-rt-dev', 'lld', 'llvm'],
+  clang: [...kAllTests, 'clang', 'libclang-rt-dev', 'lld'],
   bench: [...kAllTests, 'libembree-dev', 'qemu-user', 'g++-aarch64-linux-gnu'],
   pictures: [...kPage, 'chromium'],
   docs: ['doxygen'],
