@@ -85,9 +85,8 @@ const blending = (
 export class StrokeLayer {
   readonly #target: WebGLRenderTarget;
   readonly #brush: Pass<ReturnType<typeof brushUniforms>>;
-  readonly #sticker: Pass<ReturnType<typeof stickerUniforms>>;
   /** Lays stickers over each other. */
-  readonly #stickers: Pass<ReturnType<typeof stickerUniforms>>;
+  readonly #sticker: Pass<ReturnType<typeof stickerUniforms>>;
   readonly #fill: FillPass;
   readonly #lay = new Pass(kCommitShader, commitUniforms(), blending(AddEquation, OneMinusSrcAlphaFactor));
   readonly #erase = new Pass(kEraseShader, commitUniforms());
@@ -120,9 +119,8 @@ export class StrokeLayer {
       texture.needsUpdate = true;
     }
     this.#brush = new Pass(brushShader(size), brushUniforms(owners, patches), blending(MaxEquation, OneFactor));
-    this.#sticker = new Pass(stickerShader(size), stickerUniforms(owners, patches));
     this.#fill = new FillPass(size, owners, patches);
-    this.#stickers = new Pass(
+    this.#sticker = new Pass(
       stickerShader(size),
       stickerUniforms(owners, patches),
       blending(AddEquation, OneMinusSrcAlphaFactor),
@@ -179,7 +177,7 @@ export class StrokeLayer {
   /** Draws a sticker in place of the stroke so far. @returns The parts that changed, in shares. */
   stick(renderer: WebGLRenderer, center: SurfacePoint, sticker: Sticker): Rect[] {
     const before = this.clear(renderer);
-    this.#place(this.#sticker, { center, sticker, opacity: 1 });
+    this.#place({ center, sticker, opacity: 1 });
     return [...before, ...this.#draw(renderer, this.#sticker, this.reach(center, sticker))];
   }
 
@@ -198,12 +196,13 @@ export class StrokeLayer {
   ): void {
     this.#clear.run(renderer, target, rects);
     for (const one of stickers) {
-      this.#place(this.#stickers, one);
-      this.#stickers.run(renderer, target, rects);
+      this.#place(one);
+      this.#sticker.run(renderer, target, rects);
     }
   }
 
-  #place({ uniforms }: Pass<ReturnType<typeof stickerUniforms>>, { center, sticker, opacity }: LaidSticker): void {
+  #place({ center, sticker, opacity }: LaidSticker): void {
+    const { uniforms } = this.#sticker;
     const { texture, width, height, right, up, mirrored = false } = sticker;
     uniforms.picture.value = texture;
     uniforms.center.value.copy(center.point);
@@ -257,16 +256,7 @@ export class StrokeLayer {
     this.#target.dispose();
     this.#rest?.dispose();
     for (const texture of this.#textures) texture.dispose();
-    for (const pass of [
-      this.#fill,
-      this.#brush,
-      this.#sticker,
-      this.#stickers,
-      this.#lay,
-      this.#erase,
-      this.#copy,
-      this.#clear,
-    ])
+    for (const pass of [this.#fill, this.#brush, this.#sticker, this.#lay, this.#erase, this.#copy, this.#clear])
       pass.dispose();
   }
 
