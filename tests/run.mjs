@@ -77,6 +77,7 @@ const phases = [];
 /** Notes how long something takes. */
 async function timed(name, work) {
   const began = Date.now();
+  console.log(`${name} …`);
   try {
     return await work();
   } finally {

@@ -5,6 +5,7 @@ import { before, describe, test } from 'node:test';
 import { CagecastError, classify, cutBorders, init, type Mesh, project, splitVertices, transfer } from 'cagecast';
 import { inspect, suggest } from 'cagecast/inspect';
 import fc from 'fast-check';
+import { optionFlags } from '../../wasm/src/generated/options.js';
 import { tetrahedron } from '../support/gltf.js';
 
 const { CAGECAST_RUNS = 150, CAGECAST_SEED = 1 } = process.env;
@@ -74,7 +75,7 @@ const validOptions = fc.record(
 const anyOf = (...names: string[]) =>
   fc.record(Object.fromEntries(names.map((name) => [name, junk])), { requiredKeys: [] });
 const anyOptions = fc.oneof(
-  anyOf('preset', 'threshold', 'minCovered', 'seams', 'weldTolerance', 'occlusionReach', 'pokeThrough'),
+  anyOf('preset', ...optionFlags.map(({ name }) => name)),
   anyOf('steps', 'locks', 'reuse', 'result', 'parts'),
   anyOf('interiorSamples', 'floor', 'projection', 'nothing').map((steps) => ({ steps })),
   anyOf('segments', 'groups').map((locks) => ({ locks })),

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { CagecastError, type Code, classify, init, type Mesh, project, transfer } from 'cagecast';
+import { optionFlags } from '../../wasm/src/generated/options.js';
 import { printed } from '../support/script.js';
 import { head, random, smallest } from './scenes.js';
 
@@ -109,8 +110,7 @@ describe('errors', () => {
     [inCage({ uvs: 'uv' }), 'cage.uvs is "uv", not a Float32Array'],
     [inTarget({ groups: [0, 0, 0] }), 'target.groups is of type Array, not a Uint32Array'],
   ];
-  const all =
-    'preset, threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered, steps, locks, masks, reuse';
+  const all = ['preset', ...optionFlags.map(({ name }) => name), 'steps', 'locks', 'masks', 'reuse'].join(', ');
   const ofOptions: [options: unknown, sentence: string | RegExp, at?: number][] = [
     [0.5, 'options is 0.5, not an object'],
     [{ treshold: 0.5 }, `options.treshold is not an option; transfer takes: ${all}`],

@@ -76,7 +76,9 @@ if (existsSync(stamp) && readFileSync(stamp, 'utf8') === hash && existsSync(join
   process.exit(0);
 }
 
-console.log(`Building ${shipped ? 'the package' : `the package (${preset})`} …`);
+console.log(
+  `Building ${shipped ? 'the package' : `the package (${preset})`} into ${shipped ? 'dist' : 'build'}: a few minutes the first time …`,
+);
 rmSync(stamp, { force: true });
 buildWasm();
 await buildPackage();

@@ -49,15 +49,16 @@ export function effectiveOptions({
   referenceCage,
 }: Pick<Sources, 'rules' | 'uvBounds' | 'referenceCage'>) {
   const all = { ...presetOptions(preset), ...single };
+  // JSON leaves out what is undefined, and has no infinite numbers.
+  const infinite = Object.entries(all).flatMap(([name, value]) => (value === Infinity ? [[name, 'Infinity']] : []));
   const patterns = (lock: string) => [
     ...new Set(names.filter((rule) => rule.lock === lock).map(({ pattern }) => pattern)),
   ];
   const { never, always, colors } = masks;
-  // JSON leaves out what is undefined, and has no infinite numbers.
   return {
     preset,
     ...all,
-    occlusionReach: Number.isFinite(all.occlusionReach) ? all.occlusionReach : 'Infinity',
+    ...Object.fromEntries(infinite),
     keep: patterns('keep'),
     exclude: patterns('exclude'),
     masks: (never ?? always ?? colors) ? { never: never?.path, always: always?.path, colors } : undefined,
