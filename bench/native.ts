@@ -11,7 +11,7 @@ export const root = fileURLToPath(new URL('..', import.meta.url));
 export const resultsFolder = `${root}bench/results`;
 
 /** What results were measured on. */
-export const machine = { processor: cpus()[0]!.model, cores: cpus().length, node: process.versions.node };
+export const kMachine = { processor: cpus()[0]!.model, cores: cpus().length, node: process.versions.node };
 
 /** Writes numbers with six digits: more than they are good for. What has no parts of its own is kept on one line. */
 export async function writeJson(name: string, results: unknown): Promise<void> {
@@ -42,7 +42,7 @@ export function output(command: string, args: readonly string[]): Promise<{ stdo
 }
 
 /** The steps, as `cagecast_bench` names them. */
-export const stages = [
+export const kStages = [
   'weld',
   'build',
   'project',
@@ -55,7 +55,7 @@ export const stages = [
   'classify',
   'total',
 ] as const;
-export type Stage = (typeof stages)[number];
+export type Stage = (typeof kStages)[number];
 
 /** What `cagecast_bench` prints; times in ms of CPU time, run by run. */
 export interface NativeResult {

@@ -12,7 +12,7 @@
 import { writeFile } from 'node:fs/promises';
 import { parseArgs } from 'node:util';
 import { init } from 'cagecast';
-import { machine, writeJson } from './native.js';
+import { kMachine, writeJson } from './native.js';
 import { measureCages } from './quality/cages.js';
 import { missedCageGoals, missedGoals } from './quality/goals.js';
 import { measure } from './quality/measure.js';
@@ -31,7 +31,7 @@ async function main(): Promise<void> {
   await init();
   const results: QualityResults = {
     date: new Date().toISOString().slice(0, 10),
-    machine,
+    machine: kMachine,
     models: {},
     cages: { made: {}, byHand: {}, fitted: {}, given: {}, failed: [] },
   };

@@ -38,7 +38,7 @@ export interface Results {
   sizes?: Record<string, number>;
 }
 
-const contestants = ['paper', 'default', 'embree', 'nanoflann'];
+const kContestants = ['paper', 'default', 'embree', 'nanoflann'];
 
 /** Three digits; nothing for what was not measured. */
 const ms = (value: number | undefined): string =>
@@ -101,7 +101,7 @@ export function speedReport(results: Results): string {
       scene,
       triangles.toLocaleString('en'),
       cageTriangles.toLocaleString('en'),
-      ...contestants.map((name) => ms(took[name])),
+      ...kContestants.map((name) => ms(took[name])),
       times(ratios.embree),
       times(ratios.nanoflann),
       (peakBytes / 1e6).toFixed(1),
@@ -109,7 +109,7 @@ export function speedReport(results: Results): string {
   );
   const stageRows = Object.entries(native['4.8k']?.stages ?? {}).map(([stage, took]) => [
     stage,
-    ...contestants.map((name) => ms(took[name] || undefined)),
+    ...kContestants.map((name) => ms(took[name] || undefined)),
   ]);
   const webRows = Object.entries(web?.races ?? {}).map(([scene, { cagecast, peer, ratio }]) => [
     scene,

@@ -12,9 +12,9 @@ import { readFileSync } from 'node:fs';
 import { writeFile } from 'node:fs/promises';
 import { parseArgs } from 'node:util';
 import { checkInstructions, checkSizes, countInstructions, measureSizes, recordBudget } from './budget.js';
-import { buildNative, machine, measureNative, ratioOf, resultsFolder, stages, timeOf, writeJson } from './native.js';
+import { buildNative, kMachine, kStages, measureNative, ratioOf, resultsFolder, timeOf, writeJson } from './native.js';
 import { goalsOf, type Results, speedReport } from './report.js';
-import { type BenchScene, givenScenes, makeScenes, sampleScene, scenes } from './scenes.js';
+import { type BenchScene, givenScenes, kScenes, makeScenes, sampleScene } from './scenes.js';
 import { median } from './statistics.js';
 import type { FirstUse } from './web/page.js';
 import { WebBench } from './web.js';
@@ -58,10 +58,10 @@ async function check(): Promise<void> {
 async function measure(only: readonly string[], quick: boolean): Promise<void> {
   say('building');
   await buildNative();
-  const chosen = scenes.filter(({ triangles }) => !quick || triangles <= 50_000);
+  const chosen = kScenes.filter(({ triangles }) => !quick || triangles <= 50_000);
   await makeScenes(chosen, say);
   const all = [...chosen, ...(await givenScenes())];
-  const results: Results = { ...earlier(), date: new Date().toISOString().slice(0, 10), machine };
+  const results: Results = { ...earlier(), date: new Date().toISOString().slice(0, 10), machine: kMachine };
   if (only.includes('size')) results.sizes = await measureSizes();
   if (only.includes('native')) results.native = await measureNatively(all, quick);
   if (only.includes('web')) results.web = await measureWeb(all, quick);
@@ -110,7 +110,10 @@ async function measureNatively(all: readonly BenchScene[], quick: boolean): Prom
         ...(embree && { embree: ratio('paper', 'embree') }),
       },
       stages: Object.fromEntries(
-        stages.map((stage) => [stage, Object.fromEntries(contestants.map((one) => [one, timeOf(result, one, stage)]))]),
+        kStages.map((stage) => [
+          stage,
+          Object.fromEntries(contestants.map((one) => [one, timeOf(result, one, stage)])),
+        ]),
       ),
       peakBytes: paper!.peakBytes!,
       ...(embree && { otherZones: embree.otherZones! / result.vertices }),

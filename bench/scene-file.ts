@@ -14,14 +14,14 @@ export interface Scene {
   target: SceneMesh;
 }
 
-const magic = 'CAGESCN1';
+const kMagic = 'CAGESCN1';
 
 /**
  * A scene as bytes, little-endian: "CAGESCN1", then the cage, then the target, each as u32 vertexCount, u32 indexCount,
  * u8 hasUvs, u8 hasGroups, two bytes 0, f32 positions, u32 indices, f32 uvs (if any), u32 groups (if any).
  */
 export function writeScene({ cage, target }: Scene): Uint8Array {
-  const parts: Uint8Array[] = [new TextEncoder().encode(magic)];
+  const parts: Uint8Array[] = [new TextEncoder().encode(kMagic)];
   for (const { positions, indices, uvs, groups } of [cage, target]) {
     parts.push(bytesOf(Uint32Array.of(positions.length / 3, indices.length)));
     parts.push(Uint8Array.of(Number(uvs !== undefined), Number(groups !== undefined), 0, 0));
@@ -39,8 +39,8 @@ export function writeScene({ cage, target }: Scene): Uint8Array {
 /** Reads what `writeScene` wrote. */
 export function readScene(bytes: ArrayBuffer | Uint8Array): Scene {
   const all = new Uint8Array(bytes);
-  if (new TextDecoder().decode(all.subarray(0, magic.length)) !== magic) throw new Error('not a scene file');
-  let at = magic.length;
+  if (new TextDecoder().decode(all.subarray(0, kMagic.length)) !== kMagic) throw new Error('not a scene file');
+  let at = kMagic.length;
   const take = <A>(type: new (buffer: ArrayBuffer) => A, size: number): A =>
     new type(all.slice(at, (at += size)).buffer);
   const takeMesh = (): SceneMesh => {

@@ -32,13 +32,13 @@ const describe = (triangles: number, isCageGrown: boolean): BenchScene => {
 };
 
 /** Everything that is measured: each size with a growing cage, and from the sample up with a fixed one. */
-export const scenes: readonly BenchScene[] = [
+export const kScenes: readonly BenchScene[] = [
   ...kSizes.map((triangles) => describe(triangles, true)),
   ...kSizes.filter((triangles) => triangles > kSampleTriangles).map((triangles) => describe(triangles, false)),
 ];
 
 /** The sample model itself. */
-export const sampleScene = scenes.find(({ triangles }) => triangles === kSampleTriangles)!;
+export const sampleScene = kScenes.find(({ triangles }) => triangles === kSampleTriangles)!;
 
 /** Makes the scene files that are not there yet, or were made of another model or by other code. */
 export async function makeScenes(wanted: readonly BenchScene[], say: (line: string) => void): Promise<void> {

@@ -1,7 +1,7 @@
 import { mean } from '../statistics.js';
 import type { CageResults } from './cages.js';
 import type { FitScore, Spread } from './fit-score.js';
-import { type Quality, shift } from './measure.js';
+import { kShift, type Quality } from './measure.js';
 import type { Score } from './score.js';
 
 /** What the product is held to; shares of area and of pixels, see `Score`. */
@@ -75,7 +75,7 @@ export function missedGoals(results: Readonly<Record<string, Quality>>): string[
       if (Number(threshold) >= kGoals.whole.from && Number(threshold) <= kGoals.whole.to)
         missed.both(`${name}, default at threshold ${threshold}`, value, kGoals.whole);
     for (const [axis, value] of Object.entries(kind === 'trap' ? {} : quality.shifted))
-      missed.both(`${name}, default, cage moved by ${shown(shift)} along ${axis}`, value, kGoals.shifted);
+      missed.both(`${name}, default, cage moved by ${shown(kShift)} along ${axis}`, value, kGoals.shifted);
     missed.atMost(`${name}, smeared area`, quality.smear.corner, kGoals.smear);
     missed.atMost(`${name}, smeared area, borders cut`, quality.smear.cut, kGoals.smear);
   }

@@ -13,8 +13,8 @@ import {
 import { visiblePixels } from './visible.js';
 
 /** The ways that are compared, each with the steps of the one before it. */
-export const methodNames = ['naive', 'step 2', 'step 3', 'paper', 'default'] as const;
-export type MethodName = (typeof methodNames)[number];
+export const kMethodNames = ['naive', 'step 2', 'step 3', 'paper', 'default'] as const;
+export type MethodName = (typeof kMethodNames)[number];
 
 /** What is found out about one model. */
 export interface Quality {
@@ -30,9 +30,9 @@ export interface Quality {
   smear: Smear;
 }
 
-export const thresholds: readonly number[] = [1, 2, 3, 4, 5, 6, 7, 8, 9].map((tenths) => tenths / 10);
+export const kThresholds: readonly number[] = [1, 2, 3, 4, 5, 6, 7, 8, 9].map((tenths) => tenths / 10);
 /** How far the cage is moved, as a share of the target's diagonal. */
-export const shift = 0.01;
+export const kShift = 0.01;
 
 /** Measures a model. `init` the package before. */
 export function measure(model: Model): Quality {
@@ -47,19 +47,19 @@ export function measure(model: Model): Quality {
     kind: model.kind,
     triangles: target.indices.length / 3,
     methods: named(
-      methodNames.map((name) => [
+      kMethodNames.map((name) => [
         name,
         { ...scoreOf(decisions[name]), ...pictureScore(model, pixels, decisions[name]) },
       ]),
     ) as Quality['methods'],
     thresholds: named(
-      thresholds.map((threshold) => [threshold.toFixed(1), scoreOf(classify(projection, { threshold }))]),
+      kThresholds.map((threshold) => [threshold.toFixed(1), scoreOf(classify(projection, { threshold }))]),
     ),
     without: named(withoutEachStep(scene).map(([step, decision]) => [step, scoreOf(decision)])),
     shifted: named(
       [0, 1, 2].flatMap((axis) =>
         [1, -1].map((sign): [string, Score] => {
-          const there = shifted(scene, axis, sign * shift);
+          const there = shifted(scene, axis, sign * kShift);
           return [`${sign > 0 ? '+' : '−'}${'xyz'[axis]}`, scoreOf(transfer(there.cage, there.target))];
         }),
       ),

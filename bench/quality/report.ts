@@ -3,7 +3,7 @@ import { table } from '../table.js';
 import type { CageQuality, CageResults } from './cages.js';
 import type { FitScore } from './fit-score.js';
 import { meanError, missedCageGoals, missedGoals } from './goals.js';
-import { type Quality, shift, thresholds } from './measure.js';
+import { kShift, kThresholds, type Quality } from './measure.js';
 import type { Score } from './score.js';
 
 /** Everything that one run found out. */
@@ -40,15 +40,15 @@ const rowsOf = <T>(
   );
 
 /** Methods with a column. */
-const shown = ['naive', 'paper', 'default'] as const;
+const kShown = ['naive', 'paper', 'default'] as const;
 
 function modelTable(models: QualityResults['models']): string {
-  const range = `${thresholds[0]} to ${thresholds.at(-1)}`;
-  const head = ['', 'triangles', ...shown, `worst at ${range}`, 'worst when moved', 'forbidden · bare', 'smeared'];
+  const range = `${kThresholds[0]} to ${kThresholds.at(-1)}`;
+  const head = ['', 'triangles', ...kShown, `worst at ${range}`, 'worst when moved', 'forbidden · bare', 'smeared'];
   return rowsOf(models, head, ({ kind, triangles, methods, ...quality }) => [
     kind,
     triangles.toLocaleString('en'),
-    ...shown.map((method) => byArea(methods[method])),
+    ...kShown.map((method) => byArea(methods[method])),
     worst(quality.thresholds),
     worst(quality.shifted),
     `${percent(methods.default.forbidden)} · ${percent(methods.default.bare)}`,
@@ -137,7 +137,7 @@ export function qualityReport({ date, machine, models, cages }: QualityResults):
     `- *suppressed* · *kept*: of the area that must not be painted, the share that is not; of the area that should be painted, the share
   that is. [How they are measured](../../docs/evaluation.md#what-is-measured).
 - *naive*: everything painted.
-- *worst at 0.1 to 0.9*: \`default\` at other thresholds; *worst when moved*: with the cage ${percent(shift)} of the diagonal aside, in six directions.
+- *worst at 0.1 to 0.9*: \`default\` at other thresholds; *worst when moved*: with the cage ${percent(kShift)} of the diagonal aside, in six directions.
 - *forbidden* · *bare*: share of the model's pixels, from all sides, with paint where none must be; share of the pixels of what should be
   painted without paint. *smeared*: share of the painted area whose texture is smeared.
 - A *trap* is difficult on purpose. A *spoiled* model is expected to fail, as on the poster, and has no goals.`,

@@ -8,7 +8,7 @@ const directions = Array.from({ length: 12 }, (_, i) => {
 });
 const fieldOfView = (28 * Math.PI) / 180; // the page's
 /** Pixels along each side of a picture. */
-const size = 400;
+const kSize = 400;
 
 /**
  * Counts what of a mesh is seen in 12 pictures of 400 × 400 pixels from all around, in perspective, both sides of each
@@ -24,7 +24,7 @@ export function visiblePixels({ positions, indices }: Mesh): Uint32Array {
   const middle: Vector = [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, (min[2] + max[2]) / 2];
   // All of the ball around the box is in the picture.
   const distance = diagonal / 2 / Math.sin(fieldOfView / 2);
-  const focus = size / 2 / Math.tan(fieldOfView / 2);
+  const focus = kSize / 2 / Math.tan(fieldOfView / 2);
   const [xs, ys, nears] = [new Float64Array(vertices), new Float64Array(vertices), new Float64Array(vertices)];
   for (const { turn, rise } of directions) {
     const eye: Vector = [Math.sin(turn) * Math.cos(rise), Math.sin(rise), Math.cos(turn) * Math.cos(rise)];
@@ -33,8 +33,8 @@ export function visiblePixels({ positions, indices }: Mesh): Uint32Array {
     for (let v = 0; v < vertices; ++v) {
       const p = minus(pointAt(positions, v), middle);
       nears[v] = 1 / (distance - dot(p, eye));
-      xs[v] = size / 2 + focus * dot(p, right) * nears[v]! - 0.5;
-      ys[v] = size / 2 - focus * dot(p, up) * nears[v]! - 0.5;
+      xs[v] = kSize / 2 + focus * dot(p, right) * nears[v]! - 0.5;
+      ys[v] = kSize / 2 - focus * dot(p, up) * nears[v]! - 0.5;
     }
     for (const corner of frontCorners(indices, xs, ys, nears)) if (corner >= 0) ++counts[corner]!;
   }
@@ -43,8 +43,8 @@ export function visiblePixels({ positions, indices }: Mesh): Uint32Array {
 
 /** Per pixel: of the triangle in front, the corner that is nearest; -1 where there is none. @param nears  1 ÷ depth. */
 function frontCorners(indices: Mesh['indices'], xs: Float64Array, ys: Float64Array, nears: Float64Array): Int32Array {
-  const corners = new Int32Array(size * size).fill(-1);
-  const depths = new Float64Array(size * size);
+  const corners = new Int32Array(kSize * kSize).fill(-1);
+  const depths = new Float64Array(kSize * kSize);
   for (let t = 0; t < indices.length; t += 3) {
     const [a, b, c] = [indices[t]!, indices[t + 1]!, indices[t + 2]!];
     const [ax, ay, bx, by, cx, cy] = [xs[a]!, ys[a]!, xs[b]!, ys[b]!, xs[c]!, ys[c]!];
@@ -52,11 +52,11 @@ function frontCorners(indices: Mesh['indices'], xs: Float64Array, ys: Float64Arr
     if (area === 0) continue;
     const [left, last] = [
       Math.max(0, Math.ceil(Math.min(ax, bx, cx))),
-      Math.min(size - 1, Math.floor(Math.max(ax, bx, cx))),
+      Math.min(kSize - 1, Math.floor(Math.max(ax, bx, cx))),
     ];
     const [top, bottom] = [
       Math.max(0, Math.ceil(Math.min(ay, by, cy))),
-      Math.min(size - 1, Math.floor(Math.max(ay, by, cy))),
+      Math.min(kSize - 1, Math.floor(Math.max(ay, by, cy))),
     ];
     for (let y = top; y <= bottom; ++y) {
       for (let x = left; x <= last; ++x) {
@@ -65,7 +65,7 @@ function frontCorners(indices: Mesh['indices'], xs: Float64Array, ys: Float64Arr
         const v = (((cx - x) * (ay - y) - (cy - y) * (ax - x)) / area) * nears[b]!;
         const w = (((ax - x) * (by - y) - (ay - y) * (bx - x)) / area) * nears[c]!;
         if (u < 0 || v < 0 || w < 0) continue;
-        const at = y * size + x;
+        const at = y * kSize + x;
         if (u + v + w <= depths[at]!) continue;
         depths[at] = u + v + w;
         corners[at] = t + (u >= v && u >= w ? 0 : v >= w ? 1 : 2);
