@@ -30,7 +30,7 @@ const kStages = [
   { name: 'short', most: 0.25, limit: 60 },
   { name: 'medium', most: 2.5, limit: 200 },
   { name: 'long', most: Infinity, limit: 600 },
-  // What reads or writes outside its memory shows here only, as in `npm test`.
+  // What reads or writes outside its memory shows here only, as in the suite `twins`.
   { name: 'sanitized', most: 0.25, limit: 300, build: 'sanitized' },
 ];
 
