@@ -35,7 +35,10 @@ export class Gate {
 
   wait(signal?: AbortSignal): Promise<void> {
     return new Promise((done, fail) => {
-      signal?.addEventListener('abort', () => fail(signal.reason));
+      signal?.addEventListener('abort', () => {
+        this.#held = this.#held.filter((pass) => pass !== done);
+        fail(signal.reason);
+      });
       if (this.#isOpen) done();
       else this.#held.push(done);
     });

@@ -74,6 +74,10 @@ test('of files that belong together none comes if one fails; a file that waits f
   await page.ready();
   page.session.request({ target: page.load('broken.glb'), cage: page.load('other-cage.glb', 4) }, {}, true);
   assert.equal(await page.failed(), 'broken.glb: it is broken');
+  page.session.swap();
+  await page.ready();
+  assert.deepEqual(page.shown.slice(0, 2), ['cage.glb', 'a.glb']);
+  page.session.swap();
   page.session.setRules({ preset: 'paper' });
   await page.ready();
   assert.deepEqual(page.shown.slice(0, 2), ['a.glb', 'cage.glb']);

@@ -150,6 +150,15 @@ test('another cage on the stage is fitted to those that follow; why it does not 
   assert.deepEqual(page.errors, ['own: the cage does not fit', 'three: the cage does not fit']);
 });
 
+test('a fit ends when its avatar is removed, and the next one is read', async () => {
+  const page = await beingFitted();
+  page.all.remove(page.named('two'));
+  assert.equal(page.fits.count, 0);
+  page.fits.open();
+  await page.add('three');
+  assert.deepEqual([page.names, page.errors], ['[one] three', []]);
+});
+
 test('an avatar that comes on the stage while a cage is fitted to it gets that cage, unless another is chosen there', async () => {
   const page = await beingFitted();
   await page.choose('two');
