@@ -58,6 +58,20 @@ function blended(layers: readonly LayerStyle[]): number[] {
 export const layerScenes: Scenes = {
   'sixteen layers blend by the formulas of their modes; a seventeenth is refused; all can be undone'() {
     const blends = Object.keys(formulas) as Blend[];
+    for (const blend of blends) {
+      const two = createLayers({ renderer, size: 256 });
+      const colors = [
+        { color: [230, 180, 120, 255], blend: 'normal' as const, opacity: 1, tint: '#ffffff' },
+        { color: [200, 220, 140, 255], blend, opacity: 0.9, tint: '#ffcc99' },
+      ] satisfies LayerStyle[];
+      for (const {
+        color: [r, g, b, a],
+        ...style
+      } of colors)
+        two.add(clear((r! << 16) + (g! << 8) + b!, a!), style);
+      near(texelOf(two.toImageData(16)), blended(colors), 1);
+      two.dispose();
+    }
     const layers = createLayers({ renderer, size: 256 });
     const styles = Array.from(
       { length: 16 },
