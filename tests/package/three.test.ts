@@ -551,6 +551,17 @@ describe('geometries', () => {
     assert.notDeepEqual(attribute(first!, 'uv1'), attribute(second!, 'uv1'));
   });
 
+  test('leave what a mesh elsewhere shows as it is, also where both share a geometry', () => {
+    const first = meshOf(scene.target);
+    const second = first.clone();
+    second.position.x = 0.2;
+    applyTransfer(first, cage(), { texture: new Texture() });
+    const shown = structuredClone(arraysOf(first));
+    applyTransfer(second, cage(), { texture: new Texture() });
+    assert.deepEqual(arraysOf(first), shown);
+    assert.notDeepEqual(attribute(second.geometry, 'uv1'), shown['uv1']);
+  });
+
   test('take a result from elsewhere as it is, but not one of what they were', () => {
     const target = meshOf(scene.target);
     const result = transfer(extract(cage(), 'cage').mesh, extract(target).mesh);
