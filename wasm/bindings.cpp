@@ -69,6 +69,8 @@ class Calls {
     out.set("visibility", view(projection.visibility));
     out.set("segmentStats", listed(projection.segmentStats));
     out.set("recovery", view(projection.recovery));
+    out.set("hiddenBy", view(projection.hiddenBy));
+    out.set("hiders", view(projection.hiders));
     out.set("holeShares", listed(projection.holeShares));
     out.set("indices", view(indices_));
     return out;
@@ -92,6 +94,7 @@ class Calls {
     Overrides overrides;
     if (!overrides.copy(given) || !copyArray(source["visibility"], projection.visibility) ||
         !copyArray(source["segments"], projection.segments) || !copyArray(source["recovery"], projection.recovery) ||
+        !copyArray(source["hiddenBy"], projection.hiddenBy) || !copyArray(source["hiders"], projection.hiders) ||
         !copyArray(source["indices"], indices_) || !copyRecords(source["segmentStats"], projection.segmentStats) ||
         !copyRecords(source["holeShares"], projection.holeShares)) {
       return endingOf(kOutOfMemory);

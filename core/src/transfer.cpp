@@ -41,22 +41,29 @@ void measureSegments(const Scene& scene, PointData& data, Array<SegmentStats>& s
 }
 
 /// Steps 9 and 10: which points are recovered if their segment is not culled.
-void findRecovery(const Scene& scene, PointData& data, Projection& out) {
+void findRecovery(const Scene& scene, PointData& data, HiderRecords& hiders, Projection& out) {
   const Steps& steps = scene.options.steps;
   if (steps.projection != ProjectionMode::nearestPoint || !(steps.recheck || steps.holes)) return;
   data.recovery = scene.arena.allocate<std::uint32_t>(data.points.count);
   if (scene.arena.failed()) return;
   std::fill(data.recovery, data.recovery + data.points.count, Recovery::never);
-  if (steps.recheck) timed(out.timings.recheck, [&] { recheckOccluded(scene, data, out.segmentStats); });
+  if (steps.recheck) {
+    timed(out.timings.recheck, [&] {
+      findHiders(scene, data, out.segmentStats, hiders);
+      if (!scene.arena.failed()) recheckOccluded(scene, data, out.segmentStats, hiders);
+    });
+  }
   if (steps.holes) timed(out.timings.holes, [&] { assignHoles(scene, data, out.segmentStats, out.holeShares); });
 }
 
 /// Hands the results of the points to their vertices, in the caller's units and numbering.
-void writeProjection(const Scene& scene, const PointData& data, Projection& out) {
+void writeProjection(const Scene& scene, const PointData& data, const HiderRecords& hiders, Projection& out) {
   const std::size_t vertexCount = scene.targetMesh.positions.size() / 3;
   if (scene.arena.failed() || !out.uvs.reset(2 * vertexCount) || !out.visibility.reset(vertexCount) ||
       !out.triangles.reset(vertexCount) || !out.distances.reset(vertexCount) || !out.segments.reset(vertexCount) ||
-      !out.recovery.reset(data.recovery == nullptr ? 0 : vertexCount)) {
+      !out.recovery.reset(data.recovery == nullptr ? 0 : vertexCount) ||
+      !out.hiddenBy.reset(hiders.empty() ? 0 : vertexCount) ||
+      !(hiders.empty() ? out.hiders.reset(0) : hiders.copyTo(out.hiders))) {
     return scene.arena.fail();
   }
   const float toInput = 1 / scene.units.scale;  // A power of two, like the scale.
@@ -77,6 +84,7 @@ void writeProjection(const Scene& scene, const PointData& data, Projection& out)
     segments[v] = from.segments[i];
   }
   for (std::size_t v = 0; v < out.recovery.size(); ++v) out.recovery[v] = from.recovery[from.points.ofVertex[v]];
+  for (std::size_t v = 0; v < out.hiddenBy.size(); ++v) out.hiddenBy[v] = from.hiddenBy[from.points.ofVertex[v]];
 }
 
 template <typename... T>
@@ -104,8 +112,9 @@ Status project(const MeshView& cage, const MeshView& target, const TransferOptio
     timed(times.project, [&] { projectToVertices(scene, points); });
   }
   timed(times.segments, [&] { measureSegments(scene, points, out.segmentStats); });
-  findRecovery(scene, points, out);
-  timed(times.segments, [&] { writeProjection(scene, points, out); });
+  HiderRecords hiders(*arena);
+  findRecovery(scene, points, hiders, out);
+  timed(times.segments, [&] { writeProjection(scene, points, hiders, out); });
   const bool hasCornerUvs = options.seams == Seams::corner && options.steps.projection == ProjectionMode::nearestPoint;
   if (hasCornerUvs) {
     timed(times.seams, [&] { projectCorners(scene, points, out.cornerUvs); });
@@ -113,8 +122,9 @@ Status project(const MeshView& cage, const MeshView& target, const TransferOptio
     arena->fail();
   }
 
-  out.peakBytes = arena->peak() + bytesOf(out.uvs, out.cornerUvs, out.visibility, out.triangles, out.distances,
-                                          out.segments, out.segmentStats, out.recovery, out.holeShares);
+  out.peakBytes =
+      arena->peak() + bytesOf(out.uvs, out.cornerUvs, out.visibility, out.triangles, out.distances, out.segments,
+                              out.segmentStats, out.recovery, out.hiddenBy, out.hiders, out.holeShares);
   return arena->failed() ? Status{Code::outOfMemory} : Status{};
 }
 

@@ -243,7 +243,9 @@ describe('for any arguments at all: a clear error, or a result, and the next cal
     junk,
     anyOf('positions', 'indices', 'uvs', 'groups'),
     mesh.chain((good) => anyOf('positions', 'indices', 'uvs', 'groups').map((bad) => ({ ...good, ...bad }))),
-    mesh.chain((good) => anyOf('zones', 'segments', 'segmentStats', 'recovery').map((bad) => ({ ...good, ...bad }))),
+    mesh.chain((good) =>
+      anyOf('zones', 'segments', 'segmentStats', 'recovery', 'hiddenBy', 'hiders').map((bad) => ({ ...good, ...bad })),
+    ),
   );
   for (const [name, call] of calls) {
     test(name, () => {

@@ -35,7 +35,7 @@ describe('errors', () => {
     const script = `
       import { transfer, project, classify } from 'cagecast';
       const mesh = { positions: new Float32Array(9), indices: new Uint32Array(3), uvs: new Float32Array(6) };
-      const projection = { visibility: new Uint8Array(1), segments: new Uint32Array(1), indices: new Uint32Array(0), preset: 'paper', recovery: new Uint32Array(0), holeShares: [], segmentStats: [{ points: 1, area: 0, exposedArea: 0, coveredArea: 0, depth: 0, group: 0 }] };
+      const projection = { visibility: new Uint8Array(1), segments: new Uint32Array(1), indices: new Uint32Array(0), preset: 'paper', recovery: new Uint32Array(0), hiddenBy: new Uint32Array(0), hiders: new Uint32Array(0), holeShares: [], segmentStats: [{ points: 1, area: 0, exposedArea: 0, coveredArea: 0, depth: 0, group: 0 }] };
       for (const call of [() => transfer(mesh, mesh), () => project(mesh, mesh), () => classify(projection)]) {
         try { call(); } catch (error) { console.log(error.code, error.message); }
       }`;
@@ -190,6 +190,11 @@ describe('errors', () => {
       [{ indices: corners(0, 1, 3) }, /projection\.indices\[2\] = 3 is out of range/, 2],
       [{ recovery: corners(0, 5, 0) }, /projection\.recovery\[1\] = 5 is out of range \(\d+ holes\)/, 1],
       [{ recovery: corners(0, 0) }, /has 3 entries of visibility but 2 of recovery/],
+      [{ hiddenBy: corners(0, 0) }, /has 3 entries of visibility but 2 of hiddenBy/],
+      ...[[0], [0, 1, 1], [0, 1, 1, 2, 0], [0, 1, 1, 1, 99], [0, 1, 2, 0]].map((hiders): [object, RegExp, number] => {
+        const change = { hiddenBy: corners(0, 1, 0), hiders: corners(...hiders) };
+        return [change, /hiddenBy\[1\] = 1 is no record of hiders/, 1];
+      }),
       [{ holeShares: [{ ...share, segment: 4 }] }, /projection\.holeShares\[0\]/],
       [{ holeShares: [{ ...share, hiddenArea: undefined }] }, /projection\.holeShares\[0\] is not .* hiddenArea/],
       [{ segmentStats: [{ ...stats, depth: NaN }] }, /projection\.segmentStats\[0\]/],

@@ -86,10 +86,20 @@ struct SegmentStats {
 
 /// Whether an occluded or uncovered vertex becomes cosmetic if its segment is not culled: `never`, `always`, or, for
 /// values of at least `throughHole`, if a culled segment lies behind hole number `value − throughHole` and explains it.
+/// If the vertex has a record in `Hiders`, what hides it must be culled as well.
 struct Recovery {
   static constexpr std::uint32_t never = 0;
   static constexpr std::uint32_t always = 1;
   static constexpr std::uint32_t throughHole = 2;
+};
+
+/// What hides occluded vertices, by segment: a vertex is free if enough of its rays hit nothing but culled segments.
+struct Hiders {
+  /// 1 per vertex: where its record in `records` begins; 0 if its recovery depends on no segment but its own.
+  std::span<const std::uint32_t> ofVertex;
+  /// One after the other, from 1 on: how many rays are enough, how many follow, and for each of these the number of
+  /// segments that it hits, and their numbers.
+  std::span<const std::uint32_t> records;
 };
 
 /// The part of a segment that lies nearest to the boundary loop of one hole of the cage. All areas are those at this
@@ -112,6 +122,7 @@ struct ProjectionView {
   std::span<const SegmentStats> segmentStats;
   std::span<const std::uint32_t> recovery = {};
   std::span<const HoleShare> holeShares = {};
+  Hiders hiders = {};
 };
 
 /// The result of `project`: steps 1 to 4, and what later steps need.
@@ -128,6 +139,8 @@ struct Projection {
   Array<SegmentStats> segmentStats;  ///< 1 per segment.
   Array<std::uint32_t> recovery;     ///< 1 per vertex, see `Recovery`, with `recheck` or `holes`;
                                      ///< else, and with `nearestVertex`, empty.
+  Array<std::uint32_t> hiddenBy;     ///< 1 per vertex, see `Hiders::ofVertex`, if anything is in `hiders`; else empty.
+  Array<std::uint32_t> hiders;       ///< With `recheck` and not `nearestVertex`: `Hiders::records`.
   Array<HoleShare> holeShares;       ///< 1 per hole and segment near it, with `holes` and not
                                      ///< `nearestVertex`; ordered by hole.
   Timings timings;
@@ -136,7 +149,7 @@ struct Projection {
   std::uint64_t peakBytes = 0;
 
   [[nodiscard]] ProjectionView view() const noexcept {
-    return {visibility, segments, segmentStats, recovery, holeShares};
+    return {visibility, segments, segmentStats, recovery, holeShares, {hiddenBy, hiders}};
   }
 };
 

@@ -68,6 +68,23 @@ void applyCuts(const ClippedMesh& cut, const TransferOptions& options, Zones& zo
   for (std::size_t t = 0; t < cut.areBeyond.size(); ++t) zones.cosmeticTriangles[t] &= cut.areBeyond[t] == 0;
 }
 
+/// Gives the segments in `Projection::hiders` other numbers.
+/// @param segments  1 per vertex: the other number of its segment.
+/// @return false if memory ran out.
+bool renumberHiders(Projection& projection, std::span<const std::uint32_t> segments) {
+  Array<std::uint32_t> numbers;  // 1 per segment.
+  if (!numbers.reset(projection.segmentStats.size())) return false;
+  for (std::size_t v = 0; v < segments.size(); ++v) numbers[projection.segments[v]] = segments[v];
+  Array<std::uint32_t>& records = projection.hiders;
+  for (std::size_t at = 1; at < records.size();) {
+    std::uint32_t rays = records[at + 1];
+    for (at += 2; rays > 0; --rays) {
+      for (std::uint32_t left = records[at++]; left > 0; --left, ++at) records[at] = numbers[records[at]];
+    }
+  }
+  return true;
+}
+
 /// The source of a new vertex with the greatest weight.
 std::uint32_t heaviestSource(const ClippedMesh& cut, std::size_t newVertex) {
   const float* const weights = &cut.weights[3 * newVertex];
@@ -149,7 +166,8 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
     return status;
   locked.locks = {locks, {}};
   Zones zones;
-  const ProjectionView view{again.visibility, segments, stats, again.recovery, {}};
+  if (!renumberHiders(again, segments)) return kOutOfMemory;
+  const ProjectionView view{again.visibility, segments, stats, again.recovery, {}, {again.hiddenBy, again.hiders}};
   if (const Status status = classify(view, cut.indices, locked, zones); !status.ok()) return status;
   applyCuts(cut, options, zones);
   if (!applyMasks(decided, options, cut, zones)) return kOutOfMemory;

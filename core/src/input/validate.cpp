@@ -132,6 +132,27 @@ std::size_t firstTooLarge(std::span<const float> positions, double limit) {
   return i;
 }
 
+/// Whether each vertex has 0 or a whole record with existing segments.
+bool areRecords(const Hiders& hiders, std::size_t vertexCount, std::size_t segmentCount) {
+  const auto& [ofVertex, records] = hiders;
+  if (!ofVertex.empty() && ofVertex.size() != vertexCount) return false;
+  std::size_t last = 0;
+  return std::all_of(ofVertex.begin(), ofVertex.end(), [&, &records = records](std::size_t at) {
+    if (at == last) return true;
+    last = at;
+    if (at == 0) return true;
+    if (records.size() < 2 || at > records.size() - 2) return false;
+    std::uint32_t rays = records[at + 1];
+    for (at += 2; rays > 0 && at < records.size(); --rays) {
+      const std::size_t count = records[at++];
+      if (count > records.size() - at) return false;
+      if (firstStray(records.subspan(at, count), segmentCount) < count) return false;
+      at += count;
+    }
+    return rays == 0;
+  });
+}
+
 }  // namespace
 
 Status checkArrays(const MeshView& mesh, Argument argument) noexcept {
@@ -143,7 +164,7 @@ Status checkProjection(const ProjectionView& projection, std::span<const std::ui
   const auto fault = [](Code code, std::size_t at) {
     return Status{code, Argument::target, static_cast<std::uint32_t>(at)};
   };
-  const auto& [visibility, segments, stats, recovery, shares] = projection;
+  const auto& [visibility, segments, stats, recovery, shares, hiders] = projection;
   const Status mismatch = fault(Code::resultMismatch, visibility.size());
   if (indices.size() % 3 != 0) return fault(Code::indicesNotTriples, indices.size());
   if (segments.size() != visibility.size()) return mismatch;
@@ -154,6 +175,7 @@ Status checkProjection(const ProjectionView& projection, std::span<const std::ui
   const auto isShare = [=](const HoleShare& of) { return of.segment < segmentCount && of.hole < kMaxTriangles; };
   const bool isWhole = firstStray(segments, segmentCount) == segments.size() &&
                        (recovery.empty() || recovery.size() == visibility.size()) &&
+                       areRecords(hiders, visibility.size(), segmentCount) &&
                        std::all_of(shares.begin(), shares.end(), isShare) &&
                        std::is_sorted(shares.begin(), shares.end(),
                                       [](const HoleShare& a, const HoleShare& b) { return a.hole < b.hole; });

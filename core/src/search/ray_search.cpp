@@ -33,10 +33,17 @@ RaySearch::RaySearch(const RayTree& tree, double from, Arena& arena) noexcept
       floatRays_(arena.allocate<FloatRay>(kMaxRays)),
       lists_(arena.allocate<std::uint16_t>(kListRoom)) {}
 
-void RaySearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noexcept {
+void RaySearch::search(Ray* rays, std::uint32_t count, bool* hit, SegmentHits& hits) noexcept {
+  hits.restart(count);
+  hits_ = &hits;
+  search(rays, count, hit, Find::all);
+}
+
+void RaySearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find, std::uint32_t* hitsAt) noexcept {
   rays_ = rays;
   hit_ = hit;
   find_ = find;
+  hitsAt_ = hitsAt;
   // Copies of the pointers: the compiler would reload the members after each store.
   FloatRay* const floatRays = floatRays_;
   std::uint16_t* const list = lists_;
@@ -159,12 +166,22 @@ void RaySearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::
     rays[left] = static_cast<std::uint16_t>(unsigned{ray} << 4 | possible);
     left += possible != 0;
   }
-  if (left > 0) decide(leaf, rays, left);
+  if (left == 0) return;
+  if (find_ == Find::all) {
+    listSegments(leaf, firstOf(node.child[child]), rays, left);
+  } else {
+    decide(leaf, firstOf(node.child[child]), rays, left);
+  }
 }
 
 /// Decides which rays hit a leaf's triangles.
-/// @param rays  Each with its possible hits, as `testLeaf` lists them.
-void RaySearch::decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint32_t count) noexcept {
+/// @param first  The leaf's first triangle.
+/// @param rays   Each with its possible hits, as `testLeaf` lists them.
+void RaySearch::decide(const RayLeaf& leaf, std::uint32_t first, const std::uint16_t* rays,
+                       std::uint32_t count) noexcept {
+  const auto keep = [&](std::size_t ray, int lane) {
+    if (hitsAt_ != nullptr) hitsAt_[ray] = tree_.corners[std::size_t{3} * (first + static_cast<std::uint32_t>(lane))];
+  };
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::size_t id = rays[i] >> 4;
     Ray& ray = rays_[id];
@@ -175,6 +192,7 @@ void RaySearch::decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint
       if (verdict.hit != 0) {
         hit_[id] = true;
         floatRay.end = kDone;
+        keep(id, std::countr_zero(verdict.hit));
         continue;
       }
       open &= verdict.open;
@@ -183,8 +201,38 @@ void RaySearch::decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint
       const double distance = hitDistance(leaf, std::countr_zero(open), ray);
       if (!(distance > from_ && distance <= ray.end)) continue;
       hit_[id] = true;
+      keep(id, std::countr_zero(open));
       ray.end = distance;
       floatRay.end = find_ == Find::any ? kDone : looseEnd(distance);
+    }
+  }
+}
+
+/// Lists the segments of a leaf's triangles that rays hit.
+/// @param first,rays  As in `decide`.
+void RaySearch::listSegments(const RayLeaf& leaf, std::uint32_t first, const std::uint16_t* rays,
+                             std::uint32_t count) noexcept {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::size_t id = rays[i] >> 4;
+    Ray& ray = rays_[id];
+    FloatRay& floatRay = floatRays_[id];
+    const Verdict verdict = judge(leaf, floatRay, tree_.sceneSize, limits_, kStrictEnd * floatRay.end);
+    for (unsigned left = rays[i] & 15u & (verdict.hit | verdict.open); left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      const std::uint32_t segment =
+          hits_->segmentOf(tree_.corners[std::size_t{3} * (first + static_cast<std::uint32_t>(lane))]);
+      if (hits_->has(id, segment)) continue;
+      if ((verdict.hit >> lane & 1u) == 0) {
+        const double distance = hitDistance(leaf, lane, ray);
+        if (!(distance > from_ && distance <= ray.end)) continue;
+      }
+      if (segment != hits_->own[id]) {
+        hits_->add(id, segment);
+        continue;
+      }
+      hit_[id] = true;
+      floatRay.end = kDone;
+      break;
     }
   }
 }

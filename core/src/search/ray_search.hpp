@@ -7,6 +7,7 @@
 #include "search/ray.hpp"
 #include "search/ray_leaf.hpp"
 #include "search/ray_tree.hpp"
+#include "search/segment_hits.hpp"
 
 namespace cagecast {
 
@@ -28,11 +29,20 @@ class RaySearch {
   enum class Find : std::uint8_t {
     any,      ///< Whether a ray hits anything.
     nearest,  ///< The distance of its first hit as well, which becomes the ray's end.
+    all,      ///< All segments of the target that it hits, unless it hits its own.
   };
 
-  /// @param rays      At most `kMaxRays`.
-  /// @param[out] hit  1 per ray.
-  void search(Ray* rays, std::uint32_t count, bool* hit, Find find = Find::any) noexcept;
+  /// @param rays         At most `kMaxRays`.
+  /// @param[out] hit     1 per ray.
+  /// @param[out] hitsAt  If not null, with `Find::any`: 1 per ray that hits anything, the first corner of a triangle
+  /// that
+  ///                     it hits.
+  void search(Ray* rays, std::uint32_t count, bool* hit, Find find = Find::any,
+              std::uint32_t* hitsAt = nullptr) noexcept;
+  /// Finds which segments rays hit.
+  /// @param[in,out] hits  `own` is read; the rest is overwritten.
+  /// @param[out] hit      1 per ray: whether it hits its own segment. What else it hits is incomplete then.
+  void search(Ray* rays, std::uint32_t count, bool* hit, SegmentHits& hits) noexcept;
 
  private:
   /// Entries for the lists of all levels: enough for usual trees. Where they run out, rays are traced in smaller
@@ -47,7 +57,8 @@ class RaySearch {
   void testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* lists,
                  std::uint32_t (&counts)[4]) const noexcept;
   void testLeaf(const Node& node, int child, std::uint16_t* rays, std::uint32_t count) noexcept;
-  void decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint32_t count) noexcept;
+  void decide(const RayLeaf& leaf, std::uint32_t first, const std::uint16_t* rays, std::uint32_t count) noexcept;
+  void listSegments(const RayLeaf& leaf, std::uint32_t first, const std::uint16_t* rays, std::uint32_t count) noexcept;
 
   const RayTree& tree_;
   double from_;
@@ -58,6 +69,8 @@ class RaySearch {
   Ray* rays_ = nullptr;
   bool* hit_ = nullptr;
   Find find_ = Find::any;
+  std::uint32_t* hitsAt_ = nullptr;
+  SegmentHits* hits_ = nullptr;
 };
 
 }  // namespace cagecast

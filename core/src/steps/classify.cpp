@@ -6,6 +6,7 @@
 #include "cagecast/transfer.hpp"
 #include "input/validate.hpp"
 #include "steps/masks.hpp"
+#include "steps/typical_depth.hpp"
 
 namespace cagecast {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 constexpr double kSmall = 0.01;
 /// A large segment passes the floor if at most this share of its exposed area is uncovered.
 constexpr double kMaxUncovered = 0.25;
-/// The covered area of a small segment may be this much deeper than that of all segments, in diagonals of the target.
-constexpr double kMaxDeeper = 0.015;
 /// At most this share of a small segment may lie bare or hidden in one hole.
 constexpr double kMaxInHole = 0.25;
 /// A hole is explained if the exposed area of culled segments there is at least this share of the uncovered area of the
@@ -30,12 +29,7 @@ double ratio(double has, double needs) { return needs > 0 ? has / needs : std::n
 class Rules {
  public:
   Rules(const ProjectionView& projection, const TransferOptions& options) noexcept
-      : projection_(projection), options_(options) {
-    for (const SegmentStats& s : projection.segmentStats) {
-      allCovered_ += s.coveredArea;
-      allDepth_ += s.coveredArea * s.depth;
-    }
-  }
+      : projection_(projection), options_(options), typical_(projection.segmentStats) {}
 
   /// @param[out] ratios  1 per segment.
   void apply(Array<Ratios>& ratios) const noexcept {
@@ -55,7 +49,7 @@ class Rules {
   }
 
  private:
-  [[nodiscard]] bool isSmall(const SegmentStats& s) const { return s.coveredArea < kSmall * allCovered_; }
+  [[nodiscard]] bool isSmall(const SegmentStats& s) const { return s.coveredArea < kSmall * typical_.covered; }
 
   /// Step 8.
   void applyFloor(const SegmentStats& s, Ratios& ratios) const {
@@ -65,7 +59,7 @@ class Rules {
     ratios.floor = ratio(s.coveredArea * s.coverage(), static_cast<double>(options_.minCovered) * s.area);
     if (isSmall(s)) {
       // Teeth and tongues lie several times as deep under the cage as the lips around them.
-      ratios.depth = ratio(allDepth_ / allCovered_ + kMaxDeeper, s.depth);
+      ratios.depth = ratio(typical_.most(), s.depth);
     } else {
       // The skin of a dressed body: most of it is hidden, but it is clearly covered where it is exposed.
       ratios.floor = std::max(ratios.floor, ratio(kMaxUncovered * s.exposedArea, s.exposedArea - s.coveredArea));
@@ -74,8 +68,7 @@ class Rules {
 
   const ProjectionView& projection_;
   const TransferOptions& options_;
-  double allCovered_ = 0;  ///< K of docs/method.md.
-  double allDepth_ = 0;    ///< The sum of covered area times depth.
+  TypicalDepth typical_;
 };
 
 /// Step 10: finds which holes are explained by culled segments behind them.
@@ -125,6 +118,20 @@ Zone zoneOf(Visibility visibility) {
   return static_cast<Zone>(visibility);
 }
 
+/// Step 9: whether enough rays of a vertex hit nothing but culled segments.
+/// @param record  Of `Hiders`.
+template <typename IsCulled>
+bool isFree(const std::uint32_t* record, IsCulled isCulled) {
+  std::uint32_t missing = record[0];
+  std::uint32_t rays = record[1];
+  for (record += 2; rays > 0 && missing > 0; --rays) {
+    const std::uint32_t count = *record++;
+    missing -= std::all_of(record, record + count, isCulled);
+    record += count;
+  }
+  return missing == 0;
+}
+
 /// Gives every vertex its zone, as its segment and its recovery have it.
 void writeZones(const ProjectionView& projection, Zones& out) {
   const std::span<const std::uint32_t> segments = projection.segments;
@@ -134,8 +141,15 @@ void writeZones(const ProjectionView& projection, Zones& out) {
     const Zone zone = zoneOf(projection.visibility[v]);
     out.zones[v] = isCulled(segments[v]) && zone == Zone::cosmetic ? Zone::culled : zone;
   }
+  const auto& [hiddenBy, records] = projection.hiders;
+  std::uint32_t last = 0;  // The record of the last hidden vertex: neighbours have mostly the same.
+  bool isLastFree = true;
   for (std::size_t v = 0; v < recovery.size(); ++v) {
     if (recovery[v] == Recovery::never || isCulled(segments[v])) continue;
+    if (!hiddenBy.empty() && hiddenBy[v] != 0) {
+      if (hiddenBy[v] != last) isLastFree = isFree(&records[last = hiddenBy[v]], isCulled);
+      if (!isLastFree) continue;
+    }
     bool isRecovered = true;
     if (recovery[v] >= Recovery::throughHole) {
       const std::size_t hole = recovery[v] - Recovery::throughHole;

@@ -1,6 +1,7 @@
 #include "steps/holes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -25,18 +26,27 @@ struct Share {
   std::int64_t exposed, uncovered, hidden;
 };
 
-/// Whether a point takes part in the areas at holes. Exposed points take part. Occluded ones only if their ray misses
-/// the cage and their segment has C > 0.
-bool takesPart(const PointData& data, const Array<SegmentStats>& stats, std::uint32_t point) {
-  if (data.visibility[point] != Visibility::occluded) return true;
-  const bool isUnderCage =
-      data.cageDistances == nullptr || data.cageDistances[point] < std::numeric_limits<double>::infinity();
-  return !isUnderCage && stats[data.segments[point]].coveredArea > 0;
+/// Whether the ray of an occluded point surely misses the cage.
+bool missesCage(const PointData& data, std::uint32_t point) {
+  return data.cageDistances != nullptr && data.cageDistances[point] == std::numeric_limits<double>::infinity();
 }
 
-/// Finds the boundary loop that a point's closest point on the cage lies on, and decides by the overhang whether an
-/// uncovered point at a loop is recovered.
-/// @param[in,out] recovery  Of an uncovered point: `always` before.
+/// Whether a point takes part in the areas at holes. Exposed points take part. Occluded ones only if their ray misses
+/// the cage and their segment has C > 0.
+bool takesPart(const Scene& scene, const PointData& data, const Array<SegmentStats>& stats, std::uint32_t point) {
+  if (data.visibility[point] != Visibility::occluded) return true;
+  return std::isfinite(scene.options.occlusionReach) && missesCage(data, point) &&
+         stats[data.segments[point]].coveredArea > 0;
+}
+
+/// Whether a point would be uncovered if what hides it were culled.
+bool isUncoveredIfFree(const PointData& data, std::uint32_t point) {
+  return data.hiddenBy != nullptr && data.hiddenBy[point] != 0 && missesCage(data, point);
+}
+
+/// Finds the boundary loop that a point's closest point on the cage lies on, and decides by the overhang whether a
+/// point at a loop is recovered.
+/// @param[in,out] recovery  `always` before, else it stays as it is.
 std::uint32_t loopOfPoint(const Scene& scene, const PointData& data, std::uint32_t point, std::uint32_t& recovery) {
   const BoundaryLoops& loops = scene.loops;
   const std::uint32_t t = data.cageTriangles[point];
@@ -45,7 +55,7 @@ std::uint32_t loopOfPoint(const Scene& scene, const PointData& data, std::uint32
   const Vec3 p = data.points.exactly(point);
   const Vec3 q = positionOf(triangle, closestPointOnTriangle(triangle, p));
   const std::uint32_t loop = loops.at(triangle, t, q, scene.units.diagonal);
-  if (loop == kNone || data.visibility[point] != Visibility::uncovered) return loop;
+  if (loop == kNone || recovery != Recovery::always) return loop;
   const Vec3 offset = p - q;
   const Vec3 normal = triangle.normal.exact;
   const double overhang = length(offset - dot(offset, normal) * normal);
@@ -101,8 +111,13 @@ void assignHoles(const Scene& scene, PointData& data, const Array<SegmentStats>&
 
   std::fill(ends, ends + loopCount, 0u);
   for (std::uint32_t i = 0; i < pointCount; ++i) {
-    if (data.visibility[i] == Visibility::uncovered) data.recovery[i] = Recovery::always;
-    loopOf[i] = takesPart(data, stats, i) ? loopOfPoint(scene, data, i, data.recovery[i]) : kNone;
+    std::uint32_t recovery = Recovery::never;
+    const bool isUncovered = data.visibility[i] == Visibility::uncovered || isUncoveredIfFree(data, i);
+    if (isUncovered) recovery = Recovery::always;
+    const bool isCounted = takesPart(scene, data, stats, i);
+    loopOf[i] = isCounted || isUncovered ? loopOfPoint(scene, data, i, recovery) : kNone;
+    if (isUncovered) data.recovery[i] = recovery;
+    if (!isCounted) loopOf[i] = kNone;
     if (loopOf[i] != kNone) ++ends[loopOf[i]];
   }
   // List the points loop by loop. Each entry of `ends` is first the start of its loop, and moves to its end.

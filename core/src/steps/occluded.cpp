@@ -26,7 +26,7 @@ void markOccluded(const Scene& scene, PointData& data) noexcept {
       setNormalRay(rays[i], of, cage, begin + i);
       if (of.cageDistances != nullptr) rays[i].end = of.cageDistances[begin + i] + reach;
     }
-    search.search(rays, count, hit);
+    search.search(rays, count, hit, RaySearch::Find::any, of.occluders == nullptr ? nullptr : of.occluders + begin);
     for (std::uint32_t i = 0; i < count; ++i) {
       if (hit[i]) of.visibility[begin + i] = Visibility::occluded;
     }

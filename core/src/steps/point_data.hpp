@@ -23,7 +23,9 @@ struct PointData {
         visibility(arena.allocate<Visibility>(at.count)),
         meetsCage(arena.allocate<bool>(at.count)),
         segments(arena.allocate<std::uint32_t>(at.count)) {
-    if (std::isfinite(options.occlusionReach)) cageDistances = arena.allocate<double>(at.count);
+    if (options.steps.recheck) occluders = arena.allocate<std::uint32_t>(at.count);
+    if (std::isfinite(options.occlusionReach) || options.steps.recheck)
+      cageDistances = arena.allocate<double>(at.count);
   }
 
   Points points;
@@ -33,8 +35,11 @@ struct PointData {
   float* distances = nullptr;              ///< To the closest point of the cage.
   std::uint32_t* cageTriangles = nullptr;  ///< The triangle of that point, in `Cage::triangles`.
   Visibility* visibility = nullptr;
-  bool* meetsCage = nullptr;        ///< Whether the ray of step 3 hits the cage; false if step 1 left that open.
-  double* cageDistances = nullptr;  ///< How far along its ray the cage is; infinity: nowhere. With step 6, else null.
+  bool* meetsCage = nullptr;  ///< Whether the ray of step 3 hits the cage; false if step 1 left that open.
+  double* cageDistances =
+      nullptr;  ///< How far along its ray the cage is; infinity: nowhere. With steps 6 and 9, else null.
+  std::uint32_t* occluders =
+      nullptr;  ///< For occluded points: a corner of a triangle that hides it. With step 9, else null.
 
   // Of steps 4 and 7:
   std::uint32_t* segments = nullptr;
@@ -43,6 +48,8 @@ struct PointData {
 
   /// Of steps 9 and 10: values of `Recovery`. Null if there is neither.
   std::uint32_t* recovery = nullptr;
+  /// Of step 9: values of `Hiders::ofVertex`. Null without it.
+  std::uint32_t* hiddenBy = nullptr;
 };
 
 }  // namespace cagecast

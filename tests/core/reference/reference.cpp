@@ -9,6 +9,8 @@
 #include <memory>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <set>
 #include <tuple>
 
 #include "reference/scene.hpp"
@@ -30,6 +32,9 @@ constexpr double kAside = 1e-7;
 // pass a very narrow triangle by.
 constexpr double kSmallShare = 1e-5;
 
+// Distances of the library are floats.
+constexpr double kDepthNoise = 1e-6;
+
 // Sums of areas that differ by less than this share may differ only by the order of adding.
 constexpr double kSumNoise = 1e-12;
 
@@ -37,6 +42,35 @@ constexpr double kSumNoise = 1e-12;
 struct Verdict {
   bool is = false, might = false, must = false;
 };
+constexpr Verdict kSurely{true, true, true};
+
+Verdict operator&&(const Verdict& a, const Verdict& b) { return {a.is && b.is, a.might && b.might, a.must && b.must}; }
+Verdict operator!(const Verdict& a) { return {!a.is, !a.must, !a.might}; }
+Verdict operator||(const Verdict& a, const Verdict& b) { return {a.is || b.is, a.might || b.might, a.must || b.must}; }
+
+// -------------------- 4 Segments
+
+/// The segment of each point, numbered by the first point. Points and vertices come in the same order.
+using Segments = std::vector<std::uint32_t>;
+Segments findSegments(const Scene& scene, std::uint32_t& count) {
+  Sets sets(scene.points.count());
+  for (const auto& [a, b, c] : scene.corners) {
+    sets.join(a, b);
+    sets.join(b, c);
+  }
+  std::vector<std::uint32_t> segments(scene.points.count());
+  count = 0;
+  for (std::uint32_t p = 0; p < segments.size(); ++p) {
+    const std::uint32_t first = sets.find(p);
+    segments[p] = first == p ? count++ : segments[first];
+  }
+  return segments;
+}
+
+/// The segment of a triangle of the target.
+std::uint32_t segmentOf(const Scene& scene, const Segments& segments, const Triangle& triangle) {
+  return segments[scene.corners[static_cast<std::size_t>(&triangle - scene.target.triangles().data())][0]];
+}
 
 // -------------------- 2, 3, 6 Rays
 
@@ -78,22 +112,25 @@ double cageDistance(const Scene& scene, const Sight& sight, const Ray& ray, cons
 
 /// What one ray tells.
 struct Outcome {
-  Zone zone;
-  bool isHidden = false;  // The target occludes the point, and the cage is not over it either; with step 6.
+  Zone zone = Zone::cosmetic;
+  bool isUnderCage = false;
+  std::set<std::uint32_t> hiders;  // The segments that it hits, within reach.
+  bool operator==(const Outcome&) const = default;
 };
 
 /// Steps 2 and 3 for one ray.
-Outcome outcomeOf(const Scene& scene, const Options& options, const Sight& sight, const Ray& ray,
-                  const ClosestPoint& place) {
+Outcome outcomeOf(const Scene& scene, const Segments& segments, const Options& options, const Sight& sight,
+                  const Ray& ray, const ClosestPoint& place) {
   const double cage = cageDistance(scene, sight, ray, place);
   const auto reach = static_cast<double>(options.occlusionReach);
   const double end = std::isfinite(reach) ? cage + reach * scene.diag : kInfinity;
-  const bool occluded = std::any_of(sight.target.begin(), sight.target.end(), [&](const Triangle* triangle) {
+  std::set<std::uint32_t> hiders;
+  for (const Triangle* triangle : sight.target) {
     const double t = hit(ray, *triangle);
-    return t > kSelfHitStart * scene.diag && t <= end;
-  });
-  if (occluded) return {Zone::occluded, std::isfinite(reach) && cage == kInfinity};
-  return {cage < kInfinity || sight.pokesThrough ? Zone::cosmetic : Zone::uncovered};
+    if (t > kSelfHitStart * scene.diag && t <= end) hiders.insert(segmentOf(scene, segments, *triangle));
+  }
+  if (!hiders.empty()) return {Zone::occluded, cage < kInfinity, hiders};
+  return {cage < kInfinity || sight.pokesThrough ? Zone::cosmetic : Zone::uncovered, cage < kInfinity, {}};
 }
 
 unsigned bit(Zone zone) { return 1u << static_cast<unsigned>(zone); }
@@ -121,42 +158,38 @@ std::vector<Ray> nudged(const Scene& scene, const Ray& ray) {
 struct Finding {
   Zone zone = Zone::cosmetic;
   unsigned nearby = bit(Zone::cosmetic);
-  Verdict hidden;
+  Verdict hidden;  // With a finite reach: the target occludes it, and the cage is not over it either.
+  std::vector<Outcome> outcomes{Outcome{}};  // What is, and then what might be if the ray were turned.
 };
 
-Finding judge(const Scene& scene, const Options& options, const Sight& sight, const ClosestPoint& place) {
+Finding judge(const Scene& scene, const Segments& segments, const Options& options, const Sight& sight,
+              const ClosestPoint& place) {
   Finding finding;
-  const Outcome is = outcomeOf(scene, options, sight, sight.ray, place);
-  finding.zone = is.zone;
-  finding.nearby = bit(is.zone);
-  finding.hidden = {is.isHidden, is.isHidden, is.isHidden};
+  std::vector<Outcome>& outcomes = finding.outcomes;
+  outcomes = {outcomeOf(scene, segments, options, sight, sight.ray, place)};
   if (options.findsStability)
     for (const Ray& ray : nudged(scene, sight.ray)) {
-      const Outcome beside = outcomeOf(scene, options, sight, ray, place);
-      finding.nearby |= bit(beside.zone);
-      finding.hidden.might = finding.hidden.might || beside.isHidden;
-      finding.hidden.must = finding.hidden.must && beside.isHidden;
+      const Outcome beside = outcomeOf(scene, segments, options, sight, ray, place);
+      if (std::find(outcomes.begin(), outcomes.end(), beside) == outcomes.end()) outcomes.push_back(beside);
     }
+  finding.zone = outcomes[0].zone;
+  finding.nearby = 0;
+  finding.hidden = {false, false, true};
+  for (const Outcome& outcome : outcomes) {
+    finding.nearby |= bit(outcome.zone);
+    const bool isHidden =
+        outcome.zone == Zone::occluded && !outcome.isUnderCage && std::isfinite(options.occlusionReach);
+    if (&outcome == &outcomes[0]) finding.hidden.is = isHidden;
+    finding.hidden.might = finding.hidden.might || isHidden;
+    finding.hidden.must = finding.hidden.must && isHidden;
+  }
   return finding;
 }
 
-// -------------------- 4 Segments
-
-/// The segment of each point, numbered by the first point. Points and vertices come in the same order.
-std::vector<std::uint32_t> findSegments(const Scene& scene, std::uint32_t& count) {
-  Sets sets(scene.points.count());
-  for (const auto& [a, b, c] : scene.corners) {
-    sets.join(a, b);
-    sets.join(b, c);
-  }
-  std::vector<std::uint32_t> segments(scene.points.count());
-  count = 0;
-  for (std::uint32_t p = 0; p < segments.size(); ++p) {
-    const std::uint32_t first = sets.find(p);
-    segments[p] = first == p ? count++ : segments[first];
-  }
-  return segments;
-}
+/// A sum whose terms are not all certain.
+struct Range {
+  double is = 0, least = 0, most = 0;
+};
 
 /// Everything that is known of the points, and of their segments.
 struct State {
@@ -168,6 +201,7 @@ struct State {
   std::uint32_t segmentCount = 0;
   std::vector<Verdict> passes;   // Per segment.
   std::vector<Verdict> covered;  // Per segment: whether any of it is.
+  Range deepest;                 // How deep, in diagonals, what is to be painted may lie.
 };
 
 // -------------------- 7 Interior samples
@@ -223,16 +257,11 @@ std::vector<Sample> findInteriorSamples(const Scene& scene, const Options& optio
                                 (a + b + c) * (1.0 / 3)}) {
       const ClosestPoint place = project(scene, centroid);
       const Sight sight = look(scene, options, centroid, place, [&](std::size_t other) { return other == t; });
-      samples.push_back({segment, triangle.area / 4, judge(scene, options, sight, place), place});
+      samples.push_back({segment, triangle.area / 4, judge(scene, state.segments, options, sight, place), place});
     }
   }
   return samples;
 }
-
-/// A sum whose terms are not all certain.
-struct Range {
-  double is = 0, least = 0, most = 0;
-};
 
 // -------------------- 5, 8, 10 Rules on segments
 
@@ -315,7 +344,6 @@ Ratios ratiosOf(const Options& options, const Tally& tally, double area, bool is
 void decide(const Scene& scene, const Options& options, const std::vector<Sample>& samples, State& state,
             Result& result) {
   constexpr double kMaxDeeper = 0.015;
-  constexpr double kDepthNoise = 1e-6;  // Distances of the library are floats.
   std::vector<Sums> sums(state.segmentCount);
   Range covered, depth;  // Of all segments.
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) sums[s].area = result.segmentStats[s].area;
@@ -344,6 +372,8 @@ void decide(const Scene& scene, const Options& options, const std::vector<Sample
   if (options.steps.holes) judgeContents(state, sums);
 
   const auto over = [](double a, double b) { return b > 0 ? a / b : a > 0 ? kInfinity : 0; };
+  state.deepest = {over(depth.is, covered.is) + kMaxDeeper, over(depth.least, covered.most) + kMaxDeeper,
+                   over(depth.most, covered.least) + kMaxDeeper};
   // With a threshold of 0 or 1 a tie is a sum compared with nothing or with itself: exact, whatever the order.
   const bool exact = !options.steps.floor && (options.threshold == 0 || options.threshold == 1);
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
@@ -356,15 +386,14 @@ void decide(const Scene& scene, const Options& options, const std::vector<Sample
     stats.exposedArea = sum.is.exposed;
     stats.coveredArea = sum.is.covered;
     stats.depth = over(sum.depth.is, sum.covered.is);
-    stats.ratios =
-        ratiosOf(options, sum.is, sum.area, isSmall, stats.depth, over(depth.is, covered.is) + kMaxDeeper, sum.hole.is);
-    const double worst = ratiosOf(options, sum.worst, sum.area, mightBeSmall,
-                                  over(sum.depth.most, sum.covered.least) * (1 + kDepthNoise),
-                                  over(depth.least, covered.most) + kMaxDeeper, sum.hole.most)
-                             .least();
+    stats.ratios = ratiosOf(options, sum.is, sum.area, isSmall, stats.depth, state.deepest.is, sum.hole.is);
+    const double worst =
+        ratiosOf(options, sum.worst, sum.area, mightBeSmall,
+                 over(sum.depth.most, sum.covered.least) * (1 + kDepthNoise), state.deepest.least, sum.hole.most)
+            .least();
     const double best =
         ratiosOf(options, sum.best, sum.area, mustBeSmall, over(sum.depth.least, sum.covered.most) * (1 - kDepthNoise),
-                 over(depth.most, covered.least) + kMaxDeeper, sum.hole.least)
+                 state.deepest.most, sum.hole.least)
             .least();
     const bool passes = stats.ratios.least() >= 1;
     state.passes.push_back({passes, passes || best >= 1 - noise, passes && worst >= 1 + noise});
@@ -429,8 +458,11 @@ std::vector<Outlook> outlooks(const Scene& scene, const State& state, std::vecto
   return result;
 }
 
+/// Whether a triangle of the target is in the way of rays.
+using InTheWay = std::function<Verdict(const Triangle&)>;
+
 /// Whether enough rays from a point, in twelve directions about its normal, come to the cage past the target.
-Verdict isSeen(const Scene& scene, const Options& options, Vec p, Vec normal) {
+Verdict isSeen(const Scene& scene, const Options& options, Vec p, Vec normal, const InTheWay& inTheWay) {
   constexpr int kDirections = 12, kEnough = 2;
   constexpr double kGoldenAngle = 2.399963229728653, kLift = 1e-4;
   if (dot(normal, normal) == 0) return {};
@@ -445,79 +477,178 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, Vec normal) {
                   normal * z + (t1 * std::cos(azimuth) + t2 * std::sin(azimuth)) * aside};
     const auto target = scene.target.along(ray, behind), cage = scene.cage.along(ray, behind);
     const auto isGood = [&](const Ray& turned) {
-      const auto hits = [&](const std::vector<const Triangle*>& triangles, double start) {
-        return std::any_of(triangles.begin(), triangles.end(),
-                           [&](const Triangle* t) { return hit(turned, *t) > start * scene.diag; });
+      const auto isHit = [&](double start) {
+        return [&, start](const Triangle* t) { return hit(turned, *t) > start * scene.diag; };
       };
-      return !hits(target, kSelfHitStart) && hits(cage, kCageHitStart);
+      if (std::none_of(cage.begin(), cage.end(), isHit(kCageHitStart))) return Verdict{};
+      Verdict passes = kSurely;
+      for (const Triangle* t : target) {
+        if (!isHit(kSelfHitStart)(t)) continue;
+        passes = passes && !inTheWay(*t);
+      }
+      return passes;
     };
-    const bool is = isGood(ray);
-    bool any = is, all = is;
+    Verdict is = isGood(ray);
     if (options.findsStability)
       for (const Ray& turned : nudged(scene, ray)) {
-        const bool other = isGood(turned);
-        any = any || other;
-        all = all && other;
+        const Verdict other = isGood(turned);
+        is.might = is.might || other.might;
+        is.must = is.must && other.must;
       }
-    good += is, might += any, must += all;
+    good += is.is, might += is.might, must += is.must;
     if (!options.findsStability && good >= kEnough) break;
   }
   return {good >= kEnough, might >= kEnough, must >= kEnough};
 }
 
-Verdict isSeen(const Scene& scene, const Options& options, Vec p, const Outlook& outlook) {
-  Verdict seen = isSeen(scene, options, p, outlook.normal);
-  if (!outlook.twoSided) return seen;
-  const Verdict behind = isSeen(scene, options, p, outlook.normal * -1);
-  return {seen.is || behind.is, seen.might || behind.might, seen.must || behind.must};
+/// Whether other segments alone hide a point, given one of its outcomes.
+bool isHiddenByOthers(const Outcome& outcome, std::uint32_t segment) {
+  return outcome.zone == Zone::occluded && outcome.hiders.count(segment) == 0;
 }
 
-/// Step 9: the occluded points of passing, covered segments that are seen from elsewhere. Begins at the loop of what is
-/// occluded; a recovered point brings its neighbours in, a rejected one does not.
-std::vector<Verdict> recheck(const Scene& scene, const Options& options, const State& state) {
-  const std::size_t count = scene.points.count();
-  std::vector<bool> firm;
-  const std::vector<Outlook> outlook = outlooks(scene, state, firm);
-  std::vector<std::vector<std::uint32_t>> neighbours(count);
-  for (const auto& corners : scene.corners)
-    for (std::size_t c = 0; c < 3; ++c) {
-      neighbours[corners[c]].push_back(corners[(c + 1) % 3]);
-      neighbours[corners[c]].push_back(corners[(c + 2) % 3]);
+/// Whether a point is surely or perhaps so, given whether each of its outcomes is.
+template <typename IsSo>
+Verdict overOutcomes(const Finding& finding, IsSo isSo) {
+  Verdict result{isSo(finding.outcomes[0]), false, true};
+  for (const Outcome& outcome : finding.outcomes) {
+    result.might = result.might || isSo(outcome);
+    result.must = result.must && isSo(outcome);
+  }
+  return result;
+}
+
+/// Step 9: whether a point lies no deeper than what is to be painted.
+Verdict isShallow(const Scene& scene, const State& state, std::size_t p) {
+  const double depth = state.places[p].nearest.distance / scene.diag;
+  return {depth <= state.deepest.is, depth * (1 - kDepthNoise) <= state.deepest.most,
+          depth * (1 + kDepthNoise) <= state.deepest.least};
+}
+
+/// Step 9: whether what hides a point, other segments alone, is culled.
+/// @param underHole  Whether step 10 recovers it where it is uncovered.
+Verdict isFree(const State& state, const Finding& finding, std::uint32_t segment, const Verdict& underHole) {
+  Verdict result{false, false, true};
+  for (const Outcome& outcome : finding.outcomes) {
+    if (outcome.zone != Zone::occluded) continue;
+    Verdict free = isHiddenByOthers(outcome, segment) ? state.covered[segment] : Verdict{};
+    for (const std::uint32_t s : outcome.hiders) free = free && !state.passes[s];
+    if (!outcome.isUnderCage) free = free && underHole;
+    if (&outcome == &finding.outcomes[0]) result.is = free.is;
+    result.might = result.might || free.might;
+    result.must = result.must && free.must;
+  }
+  return result;
+}
+
+/// Step 9: the occluded points of passing, covered segments that are seen from elsewhere.
+class Recheck {
+ public:
+  Recheck(const Scene& scene, const Options& options, const State& state)
+      : scene_(scene),
+        options_(options),
+        state_(state),
+        outlooks_(outlooks(scene, state, firm_)),
+        neighbours_(scene.points.count()) {
+    for (const auto& corners : scene.corners)
+      for (std::size_t c = 0; c < 3; ++c) {
+        neighbours_[corners[c]].push_back(corners[(c + 1) % 3]);
+        neighbours_[corners[c]].push_back(corners[(c + 2) % 3]);
+      }
+  }
+
+  /// Begins at what is not occluded; a recovered point brings its neighbours in, a rejected one does not.
+  std::vector<Verdict> recovered() {
+    Seen seen(scene_.points.count());
+    const auto isOccluded = [&](std::uint32_t p) {
+      return overOutcomes(state_.findings[p], [](const Outcome& o) { return o.zone == Zone::occluded; });
+    };
+    const auto isOpen = [&](std::uint32_t p) { return !isOccluded(p); };
+    const auto isSeenBy = [&](std::uint32_t p) { return isSeen(seen, p, [](const Triangle&) { return kSurely; }); };
+    std::vector<Verdict> result(scene_.points.count());
+    for (const How how : kHows)
+      for (const std::uint32_t p : spread(how, isOpen, isSeenBy)) result[p].*how = true;
+    return result;
+  }
+
+  /// The same, once more, of points that their own segment hides, past all segments that are not painted. Points bring
+  /// their neighbours in if they would be seen without any other segment.
+  /// @param recovered  The points that are recovered without.
+  std::vector<Verdict> recoveredPastOthers(const std::vector<Verdict>& recovered) {
+    Seen clear(scene_.points.count()), seen(scene_.points.count());
+    const auto isTested = [&](std::uint32_t p) {
+      const Verdict isHidden = overOutcomes(state_.findings[p], [&](const Outcome& o) {
+        return o.zone == Zone::occluded && !isHiddenByOthers(o, state_.segments[p]);
+      });
+      return isHidden && !recovered[p] && isShallow(scene_, state_, p);
+    };
+    const auto isOpen = [&](std::uint32_t p) { return !isTested(p); };
+    const auto isClear = [&](std::uint32_t p) {
+      const Verdict tested = outlooks_[p].twoSided ? Verdict{} : isTested(p);
+      if (!tested.might) return tested;
+      return tested && isSeen(clear, p, [&](const Triangle& t) {
+               return segmentOf(scene_, state_.segments, t) == state_.segments[p] ? kSurely : Verdict{};
+             });
+    };
+    const auto isSeenBy = [&](std::uint32_t p) {
+      return isSeen(seen, p, [&](const Triangle& t) {
+        const std::uint32_t s = segmentOf(scene_, state_.segments, t);
+        return s == state_.segments[p] ? kSurely : state_.passes[s];
+      });
+    };
+    std::vector<Verdict> result(scene_.points.count());
+    for (const How how : kHows)
+      for (const std::uint32_t p : spread(how, isOpen, isClear)) result[p].*how = isSeenBy(p).*how;
+    return result;
+  }
+
+ private:
+  using How = bool Verdict::*;
+  static constexpr How kHows[] = {&Verdict::is, &Verdict::might, &Verdict::must};
+  using Seen = std::vector<std::optional<Verdict>>;
+
+  Verdict isSeen(Seen& known, std::uint32_t p, const InTheWay& inTheWay) const {
+    if (!known[p]) {
+      const auto& [normal, twoSided] = outlooks_[p];
+      const Vec position = scene_.points.positions[p];
+      const auto look = [&](Vec along) { return reference::isSeen(scene_, options_, position, along, inTheWay); };
+      known[p] = look(normal);
+      if (twoSided) known[p] = *known[p] || look(normal * -1);
+      if (!firm_[state_.segments[p]] && !twoSided) known[p]->might = true, known[p]->must = false;
     }
-  std::vector<Verdict> seen(count), result(count);
-  std::vector<bool> known(count, false);
-  const auto isSeenFrom = [&](std::uint32_t p) {
-    if (!known[p]) seen[p] = isSeen(scene, options, scene.points.positions[p], outlook[p]);
-    known[p] = true;
-    if (!firm[state.segments[p]] && !outlook[p].twoSided) seen[p].might = true, seen[p].must = false;
-    return seen[p];
-  };
-  // Once as it is, and once each as it might and as it must be.
-  const auto spread = [&](bool Verdict::*how, auto isOccluded, auto isOpen) {
-    std::vector<std::uint32_t> open;
-    for (std::uint32_t p = 0; p < count; ++p)
-      if (isOpen(state.findings[p])) open.push_back(p);
+    return *known[p];
+  }
+
+  /// The occluded points that are recovered, as it is, as it might or as it must be.
+  template <typename IsOpen, typename IsSeenBy>
+  std::vector<std::uint32_t> spread(How how, IsOpen isOpen, IsSeenBy isSeenBy) const {
+    std::vector<std::uint32_t> open, result;
+    std::vector<bool> isRecovered(scene_.points.count(), false);
+    for (std::uint32_t p = 0; p < scene_.points.count(); ++p)
+      if (isOpen(p).*how) open.push_back(p);
     while (!open.empty()) {
       const std::uint32_t from = open.back();
       open.pop_back();
-      for (const std::uint32_t p : neighbours[from]) {
-        const std::uint32_t s = state.segments[p];
-        if (!isOccluded(state.findings[p]) || result[p].*how) continue;
-        if (!(state.passes[s].*how) || !(state.covered[s].*how)) continue;
-        if (!(isSeenFrom(p).*how)) continue;
-        result[p].*how = true;
+      for (const std::uint32_t p : neighbours_[from]) {
+        const std::uint32_t s = state_.segments[p];
+        if ((state_.findings[p].nearby & bit(Zone::occluded)) == 0 || isRecovered[p]) continue;
+        if (how == &Verdict::is && state_.findings[p].zone != Zone::occluded) continue;
+        if (!(state_.passes[s].*how) || !(state_.covered[s].*how)) continue;
+        if (!(isSeenBy(p).*how)) continue;
+        isRecovered[p] = true;
+        result.push_back(p);
         open.push_back(p);
       }
     }
-  };
-  const auto isOccluded = [](const Finding& f) { return f.zone == Zone::occluded; };
-  const auto mightBeOccluded = [](const Finding& f) { return (f.nearby & bit(Zone::occluded)) != 0; };
-  const auto mightBeOpen = [](const Finding& f) { return (f.nearby & ~bit(Zone::occluded)) != 0; };
-  spread(&Verdict::is, isOccluded, std::not_fn(isOccluded));
-  spread(&Verdict::might, mightBeOccluded, mightBeOpen);
-  spread(&Verdict::must, mightBeOccluded, std::not_fn(mightBeOccluded));
-  return result;
-}
+    return result;
+  }
+
+  const Scene& scene_;
+  const Options& options_;
+  const State& state_;
+  std::vector<bool> firm_;
+  std::vector<Outlook> outlooks_;
+  std::vector<std::vector<std::uint32_t>> neighbours_;
+};
 
 // -------------------- 10 Holes
 
@@ -587,8 +718,7 @@ unsigned outcomes(Zone found, const Verdict& passes, const Verdict& seen, const 
   unsigned zones = 0;
   if (!passes.must) zones |= bit(found == Zone::cosmetic ? Zone::culled : found);
   if (!passes.might) return zones;
-  const Verdict always{true, true, true};
-  const Verdict& recovered = found == Zone::occluded ? seen : found == Zone::uncovered ? underHole : always;
+  const Verdict& recovered = found == Zone::occluded ? seen : found == Zone::uncovered ? underHole : kSurely;
   if (recovered.might) zones |= bit(Zone::cosmetic);
   if (!recovered.must) zones |= bit(found);
   return zones;
@@ -628,8 +758,10 @@ void nearestVertex(const MeshView& cage, const Scene& scene, Result& result) {
 class LastScene {
  public:
   LastScene(const MeshView& cage, const MeshView& target, const Options& options)
-      : scene(makeScene(cage, target, static_cast<double>(options.weldTolerance))),
-        key_(keyOf(cage, target, options)) {}
+      : scene(makeScene(cage, target, static_cast<double>(options.weldTolerance))), key_(keyOf(cage, target, options)) {
+    std::uint32_t count = 0;
+    segments_ = findSegments(scene, count);
+  }
   LastScene(const LastScene&) = delete;  // Places point into the scene.
   LastScene& operator=(const LastScene&) = delete;
 
@@ -659,7 +791,7 @@ class LastScene {
       const Sight sight = look(scene, options, scene.points.positions[p], place, [&](std::size_t t) {
         return std::find(scene.corners[t].begin(), scene.corners[t].end(), p) != scene.corners[t].end();
       });
-      found.push_back(judge(scene, options, sight, place));
+      found.push_back(judge(scene, segments_, options, sight, place));
     }
     return found;
   }
@@ -677,6 +809,7 @@ class LastScene {
   }
 
   const Key key_;
+  Segments segments_;
   std::vector<ClosestPoint> places_;
   std::vector<std::int32_t> loops_;
   std::map<std::tuple<float, float, bool>, std::vector<Finding>> findings_;
@@ -732,8 +865,15 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
     }
   }
   std::vector<Verdict> seen(pointCount), underHole(pointCount);
-  if (filtered && options.steps.recheck) seen = recheck(scene, options, state);
   if (filtered && options.steps.holes) underHole = underHoles(scene, state);
+  if (filtered && options.steps.recheck) {
+    Recheck recheck(scene, options, state);
+    seen = recheck.recovered();
+    const std::vector<Verdict> past = recheck.recoveredPastOthers(seen);
+    for (std::size_t p = 0; p < pointCount; ++p)
+      seen[p] = seen[p] || past[p] ||
+                (isShallow(scene, state, p) && isFree(state, state.findings[p], state.segments[p], underHole[p]));
+  }
 
   result.uvs.resize(vertexCount * 2);
   result.triangles.resize(vertexCount);

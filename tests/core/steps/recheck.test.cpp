@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cagecast/clip.hpp"
 #include "checks.hpp"
 
 using namespace cagecast;
@@ -103,6 +104,39 @@ TEST_CASE("a part that faces neither to the cage nor away from it is seen on the
     CHECK(occludedOf(81, cage, target, true) == (isTurned ? once : 0));
     requireSameAsReference("an upright sheet", cage.view(), target.view(), {});
   }
+}
+
+TEST_CASE("what stays unpainted hides nothing, also by a lock that is set later, and on a cut target", "[recheck]") {
+  // Skin with strands of hair before it, outside the cage, and in it a groove, whose walls hide each other.
+  const auto inGroove = [](Point p) { return p[0] > 0.2f && p[0] < 0.3f ? Point{p[0], p[1], p[2] - 0.02f} : p; };
+  const Mesh cage = sheet({-1, -1, 0.01f}, {2, 0, 0}, {0, 2, 0}, 4);
+  Mesh target = scenes::mapped(sheet({-0.9f, -0.9f, 0}, {1.8f, 0, 0}, {0, 1.8f, 0}, 24), inGroove);
+  const std::size_t skin = target.vertexCount();
+  for (int strand = 0; strand < 8; ++strand)
+    append(target, sheet({-0.85f + 0.21f * static_cast<float>(strand), -1.1f, 0.03f}, {0.15f, 0, 0}, {0, 2.2f, 0}, 3));
+  const auto occluded = [&](const Array<Zone>& zones) { return std::count(&zones[0], &zones[skin], Zone::occluded); };
+  TransferOptions options;
+  options.steps.recheck = false;
+  CHECK(occluded(transferred(cage.view(), target.view(), options).zones.zones) > 300);
+  options.steps.recheck = true;
+  const TransferResult result = transferred(cage.view(), target.view(), options);
+  CHECK(occluded(result.zones.zones) == 0);
+  CHECK(requireSameAsReference("hair", cage.view(), target.view(), options).unstable == 0);
+
+  const std::vector<std::uint32_t> segments = copied(result.projection.segments);
+  CutTarget cut;
+  const DecidedTarget decided{target.view(), result.zones.zones, segments, result.zones.culledBy};
+  REQUIRE(cutBorders(cage.view(), decided, options, testWorkspace(), cut).ok());
+  CHECK(occluded(cut.zones) == 0);
+
+  // Hair that is painted hides what is behind it.
+  std::vector<LockEntry> kept;
+  for (std::uint32_t s = 1; s < result.projection.segmentStats.size(); ++s) kept.push_back({s, Lock::keep});
+  options.locks.segments = kept;
+  Zones zones;
+  REQUIRE(classify(result.projection.view(), target.indices, options, zones).ok());
+  CHECK(occluded(zones.zones) > 50);
+  CHECK(copied(zones.zones) == copied(transferred(cage.view(), target.view(), options).zones.zones));
 }
 
 TEST_CASE("a point overhangs a small hole by a share of the hole, not of the model", "[holes]") {

@@ -47,6 +47,8 @@ function checkProjection(projection: Projection): CoreProjection {
   const visibility = arrayOf('visibility', 'Uint8Array');
   const segments = arrayOf('segments', 'Uint32Array');
   const recovery = arrayOf('recovery', 'Uint32Array');
+  const hiddenBy = arrayOf('hiddenBy', 'Uint32Array');
+  const hiders = arrayOf('hiders', 'Uint32Array');
   const indices = arrayOf('indices', 'Uint32Array');
   const { segmentStats, holeShares } = projection;
   for (const [name, array] of Object.entries({ segmentStats, holeShares }))
@@ -54,8 +56,9 @@ function checkProjection(projection: Projection): CoreProjection {
   const vertices = visibility.length;
   if (segments.length !== vertices)
     throw wrong(` has ${vertices} entries of visibility but ${segments.length} of segments`);
-  if (recovery.length !== 0 && recovery.length !== vertices)
-    throw wrong(` has ${vertices} entries of visibility but ${recovery.length} of recovery`);
+  for (const [name, { length }] of Object.entries({ recovery, hiddenBy }))
+    if (length !== 0 && length !== vertices)
+      throw wrong(` has ${vertices} entries of visibility but ${length} of ${name}`);
   if (indices.length % 3 !== 0) throw wrong(`.indices has ${indices.length} entries, not 3 per triangle`);
   const { none, throughHole, maxTriangles } = useCore('classify', ({ module }) => ({
     none: module['CulledBy']!['none']!,
@@ -76,7 +79,8 @@ function checkProjection(projection: Projection): CoreProjection {
   outOfRange('recovery', recovery, throughHole + holes, `${holes} holes`);
   outOfRange('indices', indices, vertices, count(vertices, 'vertex'));
   outOfRange('visibility', visibility, Visibility.Uncovered + 1, `0..${Visibility.Uncovered}`);
-  return { visibility, segments, segmentStats: stats, recovery, holeShares: shares, indices };
+  checkHiders(hiddenBy, hiders, stats.length);
+  return { visibility, segments, segmentStats: stats, recovery, hiddenBy, hiders, holeShares: shares, indices };
 }
 
 const isBelow = (value: unknown, limit: number) =>
@@ -90,6 +94,22 @@ function checkSegment(segment: SegmentStats, s: number): SegmentStats {
   const ratios = { threshold: Infinity, floor: Infinity, depth: Infinity, hole: Infinity };
   const computed = { ratios, coverage: 0, score: Infinity, culled: false, culledBy: 'none' as const };
   return { points, area, exposedArea, coveredArea, depth, group, ...computed };
+}
+
+/** Checks that each vertex has 0 or a whole record. */
+function checkHiders(hiddenBy: Uint32Array, hiders: Uint32Array, segments: number): void {
+  let last = 0;
+  for (let v = 0; v < hiddenBy.length; ++v) {
+    if (hiddenBy[v] === last || hiddenBy[v] === 0) continue;
+    let at = (last = hiddenBy[v]!) + 1;
+    let isWhole = at < hiders.length;
+    for (let rays = hiders[at++] ?? 0; rays > 0 && isWhole; --rays) {
+      const end = at + 1 + (hiders[at] ?? Infinity);
+      isWhole = end <= hiders.length && hiders.subarray(at + 1, end).every((segment) => segment < segments);
+      at = end;
+    }
+    if (!isWhole) throw wrong(`.hiddenBy[${v}] = ${last} is no record of hiders`, v);
+  }
 }
 
 /**

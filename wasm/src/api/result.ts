@@ -34,9 +34,16 @@ export interface Projection extends Projected {
   /**
    * 1 per vertex, with `steps.recheck` or `steps.holes`; else, and with `nearestVertex`, empty. Whether an occluded or uncovered
    * vertex becomes cosmetic if its segment is kept: 0 never, 1 always, 2 and above if a culled segment lies behind hole number
-   * `value - 2` and explains it.
+   * `value - 2` and explains it. If the vertex has a record in `hiders`, what hides it must be culled as well.
    */
   recovery: Uint32Array<ArrayBuffer>;
+  /** 1 per vertex: where its record in `hiders` begins; 0 if its recovery depends on no other segment. Empty if none does. */
+  hiddenBy: Uint32Array<ArrayBuffer>;
+  /**
+   * With `steps.recheck` and not `nearestVertex`, what hides occluded vertices. One record after the other, from 1 on: how many rays
+   * must hit nothing but culled segments, how many rays follow, and for each the number of segments that it hits, and the segments.
+   */
+  hiders: Uint32Array<ArrayBuffer>;
   /** 1 per hole and segment near it, with `steps.holes` and not `nearestVertex`; ordered by hole. */
   holeShares: HoleShare[];
   /** The target's indices, 3 per triangle. */

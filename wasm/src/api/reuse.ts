@@ -23,6 +23,8 @@ const kTypes = {
   segments: 'Uint32Array',
   cosmeticTriangles: 'Uint8Array',
   recovery: 'Uint32Array',
+  hiddenBy: 'Uint32Array',
+  hiders: 'Uint32Array',
   indices: 'Uint32Array',
 } as const satisfies Record<string, ArrayKind>;
 const kNames = Object.keys(kTypes) as (keyof typeof kTypes)[];
@@ -31,7 +33,7 @@ const kNames = Object.keys(kTypes) as (keyof typeof kTypes)[];
 const kProjected: readonly (keyof typeof kTypes)[] = ['uvs', 'cornerUvs', 'triangles', 'distances', 'segments'];
 const kNamesOf = {
   transfer: [...kProjected, 'zones', 'cosmeticTriangles'],
-  project: [...kProjected, 'visibility', 'recovery', 'indices'],
+  project: [...kProjected, 'visibility', 'recovery', 'hiddenBy', 'hiders', 'indices'],
   classify: ['zones', 'cosmeticTriangles'],
 } as const satisfies Record<string, readonly (keyof typeof kTypes)[]>;
 

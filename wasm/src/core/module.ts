@@ -60,6 +60,8 @@ interface ProjectedAnswer extends Answer {
 interface ProjectAnswer extends ProjectedAnswer {
   visibility: U8;
   recovery: U32;
+  hiddenBy: U32;
+  hiders: U32;
   holeShares: HoleShare[];
   indices: U32;
 }
@@ -91,6 +93,8 @@ export interface CoreProjection {
   segments: Uint32Array;
   segmentStats: CoreSegment[];
   recovery: Uint32Array;
+  hiddenBy: Uint32Array;
+  hiders: Uint32Array;
   holeShares: HoleShare[];
   indices: Uint32Array;
 }

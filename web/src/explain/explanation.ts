@@ -1,4 +1,4 @@
-import { type Classification, presetOptions, Visibility, Zone } from 'cagecast';
+import { type Classification, type Projection, presetOptions, Visibility, Zone } from 'cagecast';
 import type { Locks, Rules } from '../state/choices';
 import type { Shown } from '../state/scene';
 import { diagonalOf } from '../state/surface';
@@ -105,15 +105,22 @@ function decidedBy(
   return { zone, vertex: deciding.reduce((best, corner) => (corner.weight > best.weight ? corner : best)).vertex };
 }
 
-function segmentOf({ shown, classification, rules }: Facts, vertex: number): SegmentFacts {
-  const segment = shown.projection.segments[vertex]!;
-  const stats = classification.segmentStats[segment]!;
-  const { area, exposedArea, coveredArea, coverage, group, score, culled } = stats;
+/** What to call a segment. */
+function nameOf({ shown, classification }: Facts, segment: number): string {
+  const { group } = classification.segmentStats[segment]!;
   const pieces = classification.segmentStats.filter((other) => other.group === group && other.area > 0).length;
   const name = `“${shown.target.mesh.primitives[group]!.name}”`;
+  return pieces > 1 ? `a piece of ${name}` : name;
+}
+
+function segmentOf(facts: Facts, vertex: number): SegmentFacts {
+  const { shown, classification, rules } = facts;
+  const segment = shown.projection.segments[vertex]!;
+  const stats = classification.segmentStats[segment]!;
+  const { area, exposedArea, coveredArea, coverage, score, culled } = stats;
   const of = (value: number): number => (area > 0 ? value / area : 0);
   return {
-    name: pieces > 1 ? `a piece of ${name}` : name,
+    name: nameOf(facts, segment),
     segment,
     exposed: of(exposedArea),
     covered: of(coveredArea),
@@ -157,22 +164,45 @@ function rayStep({ shown }: Facts, { outcome, cage, model, outside }: Path, diag
   }
 }
 
+/** The segments that hide a vertex, besides its own. */
+function hidersOf({ hiddenBy, hiders }: Projection, vertex: number): number[] {
+  const segments = new Set<number>();
+  let at = hiddenBy[vertex] ?? 0;
+  if (at === 0) return [];
+  for (let rays = hiders[++at]!; rays > 0; --rays) {
+    const end = at + 2 + hiders[at + 1]!;
+    for (const segment of hiders.subarray(at + 2, end)) segments.add(segment);
+    at = end - 1;
+  }
+  return [...segments];
+}
+
 /** The outcome of the recheck of an occluded vertex, or of the rule for holes of an uncovered one; none if they do not apply. */
-function recoveryStep({ shown: { projection }, classification }: Facts, vertex: number): Explanation['steps'] {
+function recoveryStep(facts: Facts, vertex: number): Explanation['steps'] {
+  const { shown, classification } = facts;
+  const { projection } = shown;
   const first = projection.visibility[vertex]!;
   const recovery = projection.recovery[vertex] ?? 0;
   if (first === Visibility.Covered || recovery === 0) return [];
   const isCulled = classification.segmentStats[projection.segments[vertex]!]!.culled;
   const isHidden = first === Visibility.Occluded;
+  const painted = hidersOf(projection, vertex).filter((segment) => !classification.segmentStats[segment]!.culled);
+  const isCosmetic = classification.zones[vertex] === Zone.Cosmetic;
   const sentence = isCulled
     ? 'It would be recovered, but its part is culled.'
-    : isHidden
-      ? 'Rays in other directions reach the cage, so it is recovered.'
-      : recovery === 1
-        ? 'It is hardly beyond a hole, if at all, so it is recovered.'
-        : classification.zones[vertex] === Zone.Cosmetic
-          ? 'The hole is meant for the part behind it, not for this spot, so it is recovered.'
-          : 'No unpainted part lies behind this hole, so it stays bare.';
+    : isHidden && projection.hiddenBy[vertex]
+      ? isCosmetic
+        ? 'What hides it stays bare itself and hides nothing, so it is recovered.'
+        : painted.length > 0
+          ? `It is hidden by ${nameOf(facts, painted[0]!)}, which is painted.`
+          : 'What hides it stays bare itself, but it lies under a hole of the cage that no unpainted part explains.'
+      : isHidden
+        ? 'Rays in other directions reach the cage, so it is recovered.'
+        : recovery === 1
+          ? 'It is hardly beyond a hole, if at all, so it is recovered.'
+          : isCosmetic
+            ? 'The hole is meant for the part behind it, not for this spot, so it is recovered.'
+            : 'No unpainted part lies behind this hole, so it stays bare.';
   return [{ title: isHidden ? 'Recheck' : 'Hole', sentence }];
 }
 
@@ -209,7 +239,9 @@ function brief(
     case Zone.Cosmetic:
       if (locks[part.segment] === 'always') return `you chose to paint ${part.name} anyway`;
       if (shown.projection.visibility[vertex] === Visibility.Occluded)
-        return 'it seemed hidden, but rays in other directions reach the cage';
+        return shown.projection.hiddenBy[vertex]
+          ? 'only what stays bare itself lies over it'
+          : 'it seemed hidden, but rays in other directions reach the cage';
       if (shown.projection.visibility[vertex] === Visibility.Uncovered)
         return 'it seemed uncovered, but the rule for holes recovers it';
       return outcome === 'pokesOut'

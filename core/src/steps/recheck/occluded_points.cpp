@@ -3,19 +3,27 @@
 #include <algorithm>
 #include <utility>
 
+#include "steps/typical_depth.hpp"
+
 namespace cagecast {
 
 // The conditions here are unpredictable, so they are computed without branches: & and |, and counters that grow by 0
 // or 1.
 
-OccludedPoints::OccludedPoints(const Scene& scene, const PointData& data, const Array<SegmentStats>& stats) noexcept
+OccludedPoints::OccludedPoints(const Scene& scene, const PointData& data, const Array<SegmentStats>& stats,
+                               bool hiddenByOwn) noexcept
     : points_(data.points),
       isOccluded_(scene.arena.allocate<bool>(points_.count)),
       isQueued_(scene.arena.allocate<bool>(points_.count)),
       ends_(scene.arena.allocate<std::uint32_t>(points_.count)) {
   if (scene.arena.failed()) return;
+  const double deepest = scene.length(TypicalDepth(stats).most());
   for (std::uint32_t p = 0; p < points_.count; ++p) {
     isOccluded_[p] = (data.visibility[p] == Visibility::occluded) & (stats[data.segments[p]].coveredArea > 0);
+    if (hiddenByOwn) {
+      isOccluded_[p] = isOccluded_[p] & (data.hiddenBy[p] == 0) & (data.recovery[p] == Recovery::never) &
+                       (static_cast<double>(data.distances[p]) <= deepest);
+    }
   }
   listTriangles(scene.arena);
 }

@@ -8,22 +8,24 @@
 
 namespace cagecast {
 
-/// The occluded points that step 9 tests, and the edges between them. A point is tested if it has a neighbour that is
-/// not occluded, or that step 9 recovers: what is seen grows from what is already visible.
+/// Occluded points that step 9 tests, and the edges between them. A point is tested if it has a neighbour that is not
+/// one of them, or that step 9 recovers: what is seen grows from what is already visible.
 class OccludedPoints {
  public:
-  /// Allocates from the scene's arena.
-  OccludedPoints(const Scene& scene, const PointData& data, const Array<SegmentStats>& stats) noexcept;
+  /// Those in segments of which anything is covered. Allocates from the scene's arena.
+  /// @param hiddenByOwn  Only those that their own segment hides and that were not recovered.
+  OccludedPoints(const Scene& scene, const PointData& data, const Array<SegmentStats>& stats,
+                 bool hiddenByOwn = false) noexcept;
 
-  /// 1 per point: whether it is occluded, and in a segment of which anything is covered.
+  /// 1 per point: whether it is one of these points.
   [[nodiscard]] const bool* flags() const noexcept { return isOccluded_; }
 
-  /// Queues the points with a neighbour that is not occluded, in ascending order.
+  /// Queues the points with a neighbour that is not one of them, in ascending order.
   /// @param[out] queue  Room for all points.
   /// @return How many there are.
   std::uint32_t queueBorder(std::uint32_t* queue) const noexcept;
 
-  /// Queues the occluded neighbours of a point that were never queued.
+  /// Queues the neighbours of a point among them that were never queued.
   /// @param count  How many there are in the queue.
   /// @return How many there are now.
   std::uint32_t queueNeighbours(std::uint32_t point, std::uint32_t* queue, std::uint32_t count) noexcept;

@@ -44,39 +44,75 @@ VisibilityTest::VisibilityTest(const Scene& scene, const Facing& facing) noexcep
       directions_(scene.arena.allocate<RayDirection>(RaySearch::kMaxRays)),
       rays_(scene.arena.allocate<Ray>(RaySearch::kMaxRays)),
       testOfRay_(scene.arena.allocate<std::uint16_t>(RaySearch::kMaxRays)),
-      hit_(scene.arena.allocate<bool>(RaySearch::kMaxRays)) {
+      hit_(scene.arena.allocate<bool>(RaySearch::kMaxRays)),
+      numbers_(scene.arena.allocate<std::uint8_t>(RaySearch::kMaxRays)),
+      hitsAt_(scene.arena.allocate<std::uint32_t>(RaySearch::kMaxRays)),
+      clear_(scene.arena.allocate<std::uint32_t>(RaySearch::kMaxRays)) {
   static_assert(std::size(kDirections) == kDirectionCount);
 }
 
 void VisibilityTest::add(std::uint32_t point, bool isTurned) noexcept {
-  tests_[count_++] = {point, isTurned, 0, 0};
-  if (facing_.isTwoSided[point]) tests_[count_++] = {point, !isTurned, 0, 0};
+  tests_[count_++] = {point, isTurned, 0, 0, 0};
+  if (facing_.isTwoSided[point]) tests_[count_++] = {point, !isTurned, 0, 0, 0};
 }
 
-void VisibilityTest::sendRays() noexcept {
+void VisibilityTest::block(std::uint32_t ray) noexcept {
+  Test& test = tests_[testOfRay_[ray]];
+  test.blocked = static_cast<std::uint16_t>(test.blocked | 1u << numbers_[ray]);
+}
+
+void VisibilityTest::sendRays(const std::uint32_t* segments) noexcept {
   std::uint32_t rayCount = 0;
   for (std::uint32_t i = 0; i < count_; ++i) {
     const unsigned more = *std::upper_bound(std::begin(kStages), std::end(kStages), tests_[i].sent) - tests_[i].sent;
     if (rayCount + more > RaySearch::kMaxRays) break;
-    std::fill(testOfRay_ + rayCount, testOfRay_ + rayCount + more, static_cast<std::uint16_t>(i));
-    setRays(tests_[i], more, rayCount);
-    rayCount += more;
+    rayCount += setRays(i, more, rayCount);
   }
-  pastTarget_.search(rays_, rayCount, hit_);
+  pastTarget_.search(rays_, rayCount, hit_, RaySearch::Find::any, hitsAt_);
   std::uint32_t passed = 0;
   for (std::uint32_t r = 0; r < rayCount; ++r) {
-    if (hit_[r]) continue;
+    if (hit_[r]) {
+      if (segments[hitsAt_[r]] == segments[tests_[testOfRay_[r]].point]) block(r);
+      continue;
+    }
     testOfRay_[passed] = testOfRay_[r];
+    numbers_[passed] = numbers_[r];
     rays_[passed++] = rays_[r];
   }
   toCage_.search(rays_, passed, hit_);
   for (std::uint32_t r = 0; r < passed; ++r) {
     Test& test = tests_[testOfRay_[r]];
     test.clear = static_cast<std::uint8_t>(test.clear + hit_[r]);
+    if (!hit_[r]) block(r);
   }
 }
 
-void VisibilityTest::setRays(Test& test, unsigned more, std::uint32_t firstRay) noexcept {
+std::uint32_t VisibilityTest::listClear(const std::uint32_t* segments, SegmentHits& hits) noexcept {
+  std::uint32_t rayCount = 0;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const std::uint32_t more = setRays(i, kDirectionCount, rayCount);
+    std::fill_n(hits.own + rayCount, more, segments[tests_[i].point]);
+    rayCount += more;
+  }
+  pastTarget_.search(rays_, rayCount, hit_, hits);
+  std::uint32_t passed = 0;
+  for (std::uint32_t r = 0; r < rayCount; ++r) {
+    if (hit_[r]) continue;
+    clear_[passed] = r;
+    rays_[passed++] = rays_[r];
+  }
+  toCage_.search(rays_, passed, hit_);
+  std::uint32_t count = 0;
+  for (std::uint32_t r = 0; r < passed; ++r) {
+    if (!hit_[r]) continue;
+    testOfRay_[count] = testOfRay_[clear_[r]];
+    clear_[count++] = clear_[r];
+  }
+  return count;
+}
+
+std::uint32_t VisibilityTest::setRays(std::uint32_t of, unsigned more, std::uint32_t firstRay) noexcept {
+  Test& test = tests_[of];
   const Vec3 normal = (test.isTurned ? -1 : 1) * facing_.normals[test.point];
   const Vec3 across = cross(normal, std::abs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
   const Vec3 t1 = 1 / length(across) * across;
@@ -84,15 +120,20 @@ void VisibilityTest::setRays(Test& test, unsigned more, std::uint32_t firstRay) 
   float position[Points::kStride];
   float positionLow[3];
   Points::split(points_.exactly(test.point) + lift_ * normal, position, positionLow);
-  for (std::uint32_t r = firstRay; r < firstRay + more; ++r) {
-    const double(&d)[3] = kDirections[test.sent++];
+  std::uint32_t r = firstRay;
+  for (const unsigned end = test.sent + more; test.sent < end; ++test.sent) {
+    if ((test.blocked >> test.sent & 1u) != 0) continue;
+    const double(&d)[3] = kDirections[test.sent];
     // Made in place: a direction that is copied right after it was written waits for those writes.
     new (&directions_[r]) RayDirection(RayDirection::along(d[2] * normal + (d[0] * t1 + d[1] * t2)));
     Ray& ray = rays_[r];
     ray.startAt(position, positionLow);
     ray.direction = &directions_[r];
     ray.end = std::numeric_limits<double>::infinity();
+    testOfRay_[r] = static_cast<std::uint16_t>(of);
+    numbers_[r++] = test.sent;
   }
+  return r - firstRay;
 }
 
 }  // namespace cagecast

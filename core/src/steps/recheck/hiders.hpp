@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/list.hpp"
+#include "search/segment_hits.hpp"
+#include "steps/point_data.hpp"
+#include "steps/scene.hpp"
+
+namespace cagecast {
+
+/// Writes the records of `Hiders`.
+class HiderRecords {
+ public:
+  /// Allocates from `arena`; check `arena.failed()` afterwards.
+  explicit HiderRecords(Arena& arena) noexcept;
+
+  /// Adds a record, or finds an equal one among those of late: neighbours are mostly hidden by the same.
+  /// @param enough  How many of the rays are enough.
+  /// @param rays    Their numbers in `hits`.
+  /// @return Where it begins.
+  std::uint32_t add(std::uint32_t enough, std::span<const std::uint32_t> rays, const SegmentHits& hits) noexcept;
+
+  [[nodiscard]] bool failed() const noexcept { return words_.failed(); }
+  /// Whether there is no record.
+  [[nodiscard]] bool empty() const noexcept { return words_.size() <= 1; }
+  /// @return false if memory ran out.
+  [[nodiscard]] bool copyTo(Array<std::uint32_t>& out) const noexcept { return words_.copyTo(out); }
+
+ private:
+  static constexpr std::size_t kSlots = 1024;
+
+  /// Whether what one ray hits is hit by another as well. Both are given by their places in `words_`.
+  [[nodiscard]] bool isWithin(std::size_t one, std::size_t other) const noexcept;
+
+  List<std::uint32_t> words_;
+  std::uint32_t* recent_;  ///< `kSlots`: where records of late begin, by their hash.
+};
+
+/// Step 9: finds the occluded points that other segments alone hide, of segments with covered area: `data.hiddenBy`
+/// gets their records, and `data.recovery` is `always` if their rays meet the cage.
+void findHiders(const Scene& scene, PointData& data, const Array<SegmentStats>& stats, HiderRecords& records) noexcept;
+
+}  // namespace cagecast
