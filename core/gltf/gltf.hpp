@@ -44,9 +44,10 @@ struct Model {
 /// Takes sparse and quantised accessors (KHR_mesh_quantization) and buffers that are embedded, data URIs or regular
 /// files in its folder, links followed. A mirrored node has its triangles turned round, so that they still face
 /// outward. Skinned meshes are placed by their skeleton, in the bind pose; as the format demands, the transform of
-/// their node is ignored. UVs are of the set that the base colour texture names, moved by its KHR_texture_transform; of
-/// TEXCOORD_0 without a texture. A mesh with instances (EXT_mesh_gpu_instancing) is taken once, where its first
-/// instance is; overlays of an earlier transfer are left out. Not understood: Draco and meshopt compression.
+/// their node is ignored. Morph targets shape a mesh by the weights of its node, or else of itself. UVs are of the set
+/// that the base colour texture names, moved by its KHR_texture_transform; of TEXCOORD_0 without a texture. A mesh with
+/// instances (EXT_mesh_gpu_instancing) is taken once, where its first instance is; overlays of an earlier transfer are
+/// left out. Not understood: Draco and meshopt compression.
 Result read(const std::string& path, Model& out);
 
 /// Reads a .glb or .gltf file out of memory.

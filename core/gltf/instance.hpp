@@ -43,7 +43,8 @@ struct Instance {
   std::string where, name;  ///< In the file, and for people.
   Transform world;
   int node;
-  int skin;  ///< −1: none.
+  int skin;                            ///< −1: none.
+  const std::vector<double>& weights;  ///< Of its morph targets; others are 0.
 };
 
 }  // namespace cagecast::gltf

@@ -234,10 +234,17 @@ const cases: Record<string, Omit<GltfFile, 'name'>> = {
   },
   'morph-targets': {
     bytes: file((maker, primitive) => {
-      primitive.targets = [{ POSITION: scaled(maker, 0.5) }];
-      maker.json.meshes[0]!.weights = [1];
+      const quantised = Int8Array.from(solid.positions, (x) => 127 * Math.sign(x));
+      primitive.targets = [
+        { POSITION: scaled(maker, 0.5) },
+        { POSITION: maker.accessor(quantised, 'VEC3', { normalized: true }) },
+      ];
+      maker.json.meshes[0]!.weights = [1, 0];
+      maker.node({ mesh: 0, weights: [-1, Math.sqrt(3)] });
+      maker.json.extensionsUsed = maker.json.extensionsRequired = ['KHR_mesh_quantization'];
     }),
-    expected: plain,
+    // As they are shown: by the weights of the node, or else of the mesh.
+    expected: joined(...[1.5, 3.5].map((by) => ({ ...plain, positions: plain.positions.map((x) => by * x) }))),
   },
   meshopt: {
     bytes: await compressed(),

@@ -44,7 +44,7 @@ export interface Extracted {
  * Vertices keep their order and number; each primitive of each node is a group of its own. Transforms are applied in
  * double precision and rounded once; the winding of mirrored parts is reversed. Skinned meshes are placed by their skeleton, in the
  * bind pose; as the format demands, the transform of their node is ignored. Points, lines and overlays that were added before are
- * left out, and morph targets are not applied.
+ * left out. Morph targets shape a mesh by the weights of its node, or else of itself.
  * @throws {InputError} that names the file, the primitive and the element.
  */
 export function extract(file: GltfFile): Extracted {
@@ -96,7 +96,8 @@ function listParts(file: GltfFile): Part[] {
       const ref = { mesh: nodeDef.mesh!, primitive: p };
       const accessor = accessorOf(file, ref, 'POSITION');
       if (accessor === undefined) return;
-      const positions = decodePositions(primitivePath(ref), accessor);
+      const deltas = (t: number) => file.accessors[primitive.targets?.[t]?.['POSITION'] ?? -1];
+      const positions = decodePositions(primitivePath(ref), accessor, nodeDef.weights ?? meshDef.weights ?? [], deltas);
       const indices = readTriangles(file, ref, positions.length / 3);
       if (indices === undefined) return;
       const piece = nextPiece(parts, {

@@ -1,6 +1,6 @@
 import type { Accessor } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
-import { movePoints } from '../parts/points.js';
+import { morphed, movePoints } from '../parts/points.js';
 import { InputError } from './input-error.js';
 import { identity, isMirrored, type Matrix } from './matrix.js';
 import { layUvs, type UvLayout } from './uv-layout.js';
@@ -17,7 +17,7 @@ export interface Piece {
   vertexCount: number;
   firstTriangle: number;
   triangleCount: number;
-  /** Its positions as stored, decoded, 3 per vertex. */
+  /** Its positions as stored, decoded, in the shape that its morph targets give it, 3 per vertex. */
   localPositions: Float32Array;
   /** Its triangles among its own vertices, with the winding that they have in the file. */
   localIndices: Uint32Array;
@@ -95,14 +95,27 @@ export function requireFinite(place: string, semantic: string, values: Float32Ar
 }
 
 /**
- * The positions of an accessor.
- * @param place  Its primitive, for messages.
+ * The positions of an accessor, in the shape that is shown.
+ * @param place    Its primitive, for messages.
+ * @param weights  Of its morph targets; those beyond are 0.
+ * @param deltas   The positions of a morph target.
  * @throws {InputError} that names the vertex.
  */
-export function decodePositions(place: string, accessor: Accessor): Float32Array {
-  if (accessor.getElementSize() !== 3)
-    throw new InputError(`${place}.attributes.POSITION is ${accessor.getType()}, not VEC3`);
-  const positions = decodeFloats(accessor);
+export function decodePositions(
+  place: string,
+  accessor: Accessor,
+  weights: readonly number[],
+  deltas: (target: number) => Accessor | null | undefined,
+): Float32Array {
+  const decode = (path: string, one: Accessor) => {
+    if (one.getElementSize() !== 3) throw new InputError(`${place}.${path}.POSITION is ${one.getType()}, not VEC3`);
+    return decodeFloats(one);
+  };
+  const morphs = weights.flatMap((weight, t) => {
+    const found = weight === 0 ? undefined : deltas(t);
+    return found ? [{ weight, deltas: decode(`targets[${t}]`, found) }] : [];
+  });
+  const positions = morphed(decode('attributes', accessor), morphs);
   requireFinite(place, 'POSITION', positions, 3);
   return positions;
 }

@@ -17,7 +17,8 @@ export function extractMesh(
   const primitives = parts.map(({ geometry, ...part }): Primitive => {
     const mesh = part.mesh as Mesh;
     const name = nameOf(mesh) || part.name;
-    return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0 };
+    const weights = [...(mesh.morphTargetInfluences ?? [])];
+    return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0, weights };
   });
   return { ...mesh, primitives };
 }

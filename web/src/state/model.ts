@@ -7,6 +7,8 @@ export interface Primitive extends Omit<Part, 'geometry'> {
   mesh: Mesh;
   /** Whether its matrix mirrors it; its winding is reversed then. */
   mirrored: boolean;
+  /** The weights of its morph targets in the file, which have shaped its positions. */
+  weights: readonly number[];
 }
 
 /** All triangles of a scene as arrays in world space, as the transfer takes them. */

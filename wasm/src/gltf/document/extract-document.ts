@@ -41,8 +41,8 @@ export interface ExtractedDocument {
 
 /**
  * Collects the triangles of a document's default scene (else its first), depth first, in the scene's space, by the same
- * rules as the command: vertices keep their order, every primitive of every node is a group of its own, and skinned meshes are placed
- * by their skeletons, in the bind pose.
+ * rules as the command: vertices keep their order, every primitive of every node is a group of its own, skinned meshes are placed
+ * by their skeletons, in the bind pose, and morph targets shape meshes by their weights.
  * @throws {InputError} that names the primitive and the element.
  */
 export function extractDocument(document: Document): ExtractedDocument {
@@ -103,6 +103,7 @@ function listParts(document: Document): DocumentPart[] {
         matrix,
         firstInstance(`"${node.getName() || mesh.getName()}"`, (semantic) => instances.getAttribute(semantic)),
       );
+    const weights = node.getWeights().length > 0 ? node.getWeights() : mesh.getWeights();
     mesh.listPrimitives().forEach((primitive, p) => {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');
@@ -112,7 +113,9 @@ function listParts(document: Document): DocumentPart[] {
       );
       const short = all.find(([, count]) => count < position.getCount());
       if (short) throw new InputError(`${place} has ${short[1]} ${short[0]} for ${position.getCount()} vertices`);
-      const positions = decodePositions(place, position);
+      const targets = primitive.listTargets();
+      const deltas = (t: number) => targets[t]?.getAttribute('POSITION');
+      const positions = decodePositions(place, position, weights, deltas);
       const piece = nextPiece(parts, {
         node: node.getName(),
         mesh: mesh.getName(),

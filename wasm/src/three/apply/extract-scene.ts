@@ -12,7 +12,7 @@ import {
 } from 'three';
 import { show } from '../../core/error.js';
 import type { CagecastError, Mesh } from '../../index.js';
-import { movePoints } from '../../parts/points.js';
+import { morphed, movePoints } from '../../parts/points.js';
 import { type Skinned, skinMatrices } from '../../parts/skin.js';
 import { transformUvs } from '../../parts/uv-transform.js';
 import { wrong } from '../errors.js';
@@ -47,7 +47,7 @@ const identity = new Matrix4();
  *
  * Vertices keep their order and number. Positions are in the scene's space: world matrices are applied in double precision and
  * rounded once, and the winding of mirrored meshes is reversed. Skinned meshes are placed by their skeleton, in the bind pose;
- * morph targets are not applied. An instanced mesh is taken once, where its first instance is. Each mesh, or each of its material
+ * morph targets shape them as they do now (`morphTargetInfluences`). An instanced mesh is taken once, where its first instance is. Each mesh, or each of its material
  * groups, is a group.
  * @param argument  The name of the argument, for messages.
  * @throws {CagecastError} that names the part and the element.
@@ -211,13 +211,22 @@ const wrongPart = (argument: string, name: string, text: string, at?: number): C
 /** Whether a matrix mirrors, so that the winding of triangles must be reversed. */
 export const isMirrored = (matrix: Matrix4): boolean => matrix.determinant() < 0;
 
-/** Writes the positions of a part in the scene's space. */
+/** Writes the positions of a part in the scene's space; without a mesh, as morph targets do not shape it. */
 export function placePositions(
-  { geometry, matrix, firstVertex, vertexCount }: Pick<Part, 'geometry' | 'matrix' | 'firstVertex' | 'vertexCount'>,
+  { mesh, geometry, matrix, firstVertex, vertexCount }: Omit<Part, 'name' | 'firstTriangle' | 'triangleCount'>,
   out: Float32Array,
 ): void {
   // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
-  const values = valuesOf(geometry.getAttribute('position') as Attribute).subarray(0, 3 * vertexCount);
+  const stored = valuesOf(geometry.getAttribute('position') as Attribute).subarray(0, 3 * vertexCount);
+  const targets = (geometry.morphAttributes.position ?? []) as Attribute[];
+  const values = morphed(
+    stored,
+    (mesh?.morphTargetInfluences ?? []).flatMap((weight, t) => {
+      if (weight === 0 || !targets[t]) return [];
+      const shape = valuesOf(targets[t]);
+      return [{ weight, deltas: geometry.morphTargetsRelative ? shape : stored.map((x, i) => shape[i]! - x) }];
+    }),
+  );
   if (matrix.equals(identity)) out.set(values, 3 * firstVertex);
   else movePoints(matrix.elements, values, out, 3 * firstVertex);
 }
