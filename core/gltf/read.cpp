@@ -343,7 +343,7 @@ void checkElements(const tinygltf::Model& model, const std::vector<Instance>& in
   }
 }
 
-Model flatten(const tinygltf::Model& model) {
+Model flatten(const tinygltf::Model& model, const Place& origin) {
   std::vector<Instance> instances = instancesIn(model);
   checkElements(model, instances);
   for (Instance& instance : instances) {
@@ -353,6 +353,8 @@ Model flatten(const tinygltf::Model& model) {
   }
   if (std::any_of(instances.begin(), instances.end(), [](const Instance& instance) { return instance.skin >= 0; }))
     placeSkinned(model, worldsOf(model), instances);
+  for (Instance& instance : instances)
+    for (std::size_t row = 0; row < 3; ++row) instance.world.m[row * 4 + 3] -= origin[row];
   Model out;
   bool haveUvs = true;
   for (const Instance& instance : instances) append(model, instance, out, haveUvs);
@@ -363,11 +365,12 @@ Model flatten(const tinygltf::Model& model) {
 
 }  // namespace
 
-Result readMemory(std::span<const std::uint8_t> bytes, const std::string& name, const std::string& folder, Model& out) {
-  return guarded(name, kNotValid, [&] { out = flatten(parse(bytes, folder)); });
+Result readMemory(std::span<const std::uint8_t> bytes, const std::string& name, const std::string& folder, Model& out,
+                  const Place& origin) {
+  return guarded(name, kNotValid, [&] { out = flatten(parse(bytes, folder), origin); });
 }
 
-Result read(const std::string& path, Model& out) {
+Result read(const std::string& path, Model& out, const Place& origin) {
   std::vector<std::uint8_t> bytes;
   Result result = guarded(path, kNotValid, [&] {
     std::error_code error;
@@ -380,7 +383,7 @@ Result read(const std::string& path, Model& out) {
   });
   if (!result.ok()) return result;
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  return readMemory(bytes, path, folder.empty() ? "." : folder, out);
+  return readMemory(bytes, path, folder.empty() ? "." : folder, out, origin);
 }
 
 }  // namespace cagecast::gltf

@@ -546,6 +546,15 @@ TEST_CASE("without transforms every bit of a position is kept", "[gltf]") {
   CHECK(positions[2] == 3.4e38f);
 }
 
+TEST_CASE("an origin is subtracted before positions are rounded", "[gltf]") {
+  File file = triangle();
+  const Floats near = readable(file.bytes()).positions;
+  file.nodes = R"({"mesh":0,"translation":[1e7,-1e7,1e5]})";
+  gltf::Model model;
+  REQUIRE(gltf::readMemory(file.bytes(), "file", "", model, {1e7, -1e7, 1e5}).ok());
+  CHECK(model.positions == near);
+}
+
 TEST_CASE("numbers that are not finite reach the library, which names them", "[gltf]") {
   File file;
   file.accessor(file.view<float>({0, 0, 0, 1, std::numeric_limits<float>::quiet_NaN(), 0, 1, 1, 0}), kFloat, "VEC3", 3);

@@ -209,6 +209,24 @@ test('new vertices of cut borders have all attributes of those around them, in p
 });
 
 describe('document.transform(cagecast(…))', () => {
+  test('far from the origin', async () => {
+    const translation = [1e7, -1e7, 3e6];
+    const place = (mesh: Mesh) => {
+      const maker = new GlbMaker();
+      maker.node({ mesh: maker.mesh(mesh), translation });
+      return documentOf(maker.finish());
+    };
+    const painted = async (document: Document, around: Document | Mesh) => {
+      let count = 0;
+      const onResult = ({ cosmeticTriangles }: TransferResult) =>
+        void (count = cosmeticTriangles.filter(Boolean).length);
+      await document.transform(cagecast({ cage: around, onResult }));
+      return count;
+    };
+    const expected = await painted(await documentOf(glbOf(target)), cage);
+    assert.equal(await painted(await place(target), await place(cage)), expected);
+  });
+
   test('writes the UVs and zones of the package, by its options, and keeps the rest', async () => {
     for (const options of [{}, { threshold: 1, seams: 'vertex' }] as const) {
       const document = await documentOf(glbOf(target));

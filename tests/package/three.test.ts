@@ -232,6 +232,15 @@ function assertSplit(geometry: BufferGeometry, before: BufferGeometry, result: T
 }
 
 describe('applyTransfer', () => {
+  test('far from the origin', () => {
+    const painted = (x: number) => {
+      const [object, around] = [meshOf(ungrouped), cage()];
+      for (const one of [object, around]) one.position.set(x, -x, 0);
+      return applyTransfer(object, around).result.cosmeticTriangles.filter(Boolean).length;
+    };
+    assert.equal(painted(1e7), painted(0));
+  });
+
   test('splits vertices with all their attributes at the seams of the texture', () => {
     const target = meshOf(scene.target);
     const { geometry } = target;

@@ -62,6 +62,19 @@ test('reports the result of the package', async () => {
   assert.ok(timings.total > 0);
 });
 
+test('a model far from the origin is read, inspected and given a cage as one at it', async () => {
+  const translation = [3e6, -1e5, 1e7];
+  for (const [name, mesh] of Object.entries({ target, cage }))
+    writeMade(`far-${name}.glb`, (maker) => maker.node({ mesh: maker.mesh(mesh), translation }));
+  const far = 'far-target.glb --cage far-cage.glb';
+  const [near, away] = [await json<Report>(plain), await json<Report>(`transfer ${far}`)];
+  const shares = ({ areas }: Report) => Object.values(areas).map((area) => (area / areas.total).toFixed(4));
+  assert.deepEqual(shares(away), shares(near));
+  assert.equal((await json<{ verdict: string }>(`inspect ${far}`)).verdict, 'good');
+  await ok('make far-target.glb --triangles 300 -o far-made.glb');
+  assert.match(await ok('inspect far-target.glb --cage far-made.glb'), /^(GOOD|USABLE)/m);
+});
+
 test('the preset and single options are obeyed', async () => {
   const painted = (options: object) => transfer(cage, target, options).cosmeticTriangles.filter(Boolean).length;
   for (const [flags, options] of [

@@ -1,6 +1,8 @@
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
+import type { Vector } from '../inspect/geometry.js';
+import { kSceneOrigin, type Origin } from '../parts/origin.js';
 import { type Skinned, skinMatrices } from '../parts/skin.js';
 import { topNodes } from './check-geometry.js';
 import { InputError, naming } from './input-error.js';
@@ -13,6 +15,7 @@ import {
   decodeUvs,
   hasTriangles,
   joinPieces,
+  moveTo,
   nextPiece,
   type Piece,
 } from './pieces.js';
@@ -36,6 +39,8 @@ export interface Extracted {
   mesh: Mesh & { indices: Uint32Array };
   /** In the order of their vertices. */
   parts: Part[];
+  /** What was subtracted from their places in the scene. */
+  origin: Vector;
 }
 
 /**
@@ -45,14 +50,16 @@ export interface Extracted {
  * double precision and rounded once; the winding of mirrored parts is reversed. Skinned meshes are placed by their skeleton, in the
  * bind pose; as the format demands, the transform of their node is ignored. Points, lines and overlays that were added before are
  * left out. Morph targets shape a mesh by the weights of its node, or else of itself.
+ * @param origin  What is subtracted from positions. Target and cage need the same one.
  * @throws {InputError} that names the file, the primitive and the element.
  */
-export function extract(file: GltfFile): Extracted {
+export function extract(file: GltfFile, origin: Origin = kSceneOrigin): Extracted {
   return naming(file.path, () => {
     const parts = listParts(file);
+    const near = moveTo(parts, origin);
     const mesh = joinPieces(parts);
     const uvs = readUvs(file, parts, mesh.positions.length / 3);
-    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts };
+    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts, origin: near };
   });
 }
 

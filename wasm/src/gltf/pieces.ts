@@ -1,5 +1,7 @@
 import type { Accessor } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
+import type { Vector } from '../inspect/geometry.js';
+import { fromOrigin, type Origin, originOf } from '../parts/origin.js';
 import { morphed, movePoints } from '../parts/points.js';
 import { InputError } from './input-error.js';
 import { identity, isMirrored, type Matrix } from './matrix.js';
@@ -11,7 +13,7 @@ export interface Piece {
   name: string;
   /** The names that select it: of its node, its mesh and its material, and `name`. */
   aliases: string[];
-  /** The matrix from its own space to the scene's, column-major; of a skinned mesh, in the bind pose. */
+  /** The matrix from its own space to that of the arrays, column-major; of a skinned mesh, in the bind pose. */
   matrix: Matrix;
   firstVertex: number;
   vertexCount: number;
@@ -68,8 +70,16 @@ const kTriangleFan = 6;
 /** Whether a primitive of this mode consists of triangles: a list, a strip or a fan. */
 export const hasTriangles = (mode: number): boolean => mode >= kTriangles && mode <= kTriangleFan;
 
+/** Places pieces around an origin. @returns where that is in the scene. */
+export function moveTo(pieces: readonly Piece[], origin: Origin): Vector {
+  const place =
+    origin === 'own' ? originOf(pieces.map(({ localPositions: points, matrix }) => ({ points, matrix }))) : origin;
+  for (const piece of pieces) piece.matrix = fromOrigin(piece.matrix, place);
+  return place;
+}
+
 /**
- * Joins pieces into arrays in the scene's space, with a group for each. Vertices keep their order, transforms are applied in double
+ * Joins pieces into arrays, with a group for each. Vertices keep their order, transforms are applied in double
  * precision and rounded once, and the winding of mirrored pieces is reversed.
  */
 export function joinPieces(pieces: readonly Piece[]): Mesh & { indices: Uint32Array } {

@@ -3,7 +3,7 @@ import { cageModel } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/paint';
 import { likelyTemplate } from './likely-template';
 import { type Fitting, kMinLandmarks, lacksLandmarks, madeOf, noteMade, readable, sampleOf } from './made-cages';
-import type { Loader, Model } from './model';
+import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
 import { type Box, boxOf, diagonalOfBox } from './surface';
 import { reasonOf } from './wording';
@@ -150,7 +150,11 @@ export class CageMaker extends Emitter<{
     const { positions, rest = positions, indices, uvs = new Float32Array() } = current.mesh;
     const extras: Partial<Cage> = {};
     current.scene.traverse(({ userData }) => void (userData.landmarks && Object.assign(extras, userData)));
-    const bytes = cageGlb({ ...extras, ...({ positions: rest, indices, uvs, ...change } as Cage) });
+    const bytes = cageGlb({
+      ...extras,
+      ...({ positions: rest, indices, uvs, ...change } as Cage),
+      origin: originOf(current),
+    });
     const file = new File([bytes], cageNameFrom(current.name));
     const fitting = madeOf(current.files[0]!)?.fitting;
     const note = 'The cage was changed. Save it if it is right.';
@@ -193,7 +197,10 @@ export class CageMaker extends Emitter<{
       if (!result) return done();
       const { cage, note, fitting, isNew } = result;
       const isChanged = cage.uvs === old.uvs;
-      const file = new File([engine.cageGlb(cage)], cageNameFrom((isChanged ? current : target).name));
+      const file = new File(
+        [engine.cageGlb({ ...cage, origin: originOf(target) })],
+        cageNameFrom((isChanged ? current : target).name),
+      );
       const sample = isChanged ? sampleOf(current) : undefined;
       noteMade(file, { target: target.files[0]!, fitting, sample, note, isNew });
       this.latest = fitting;

@@ -43,6 +43,13 @@ export interface Model {
   sample?: Sample;
 }
 
+/** Where the origin of a model that was moved is in the scene of its file. */
+export const originOf = ({ scene: { position } }: Model): [number, number, number] => [
+  0 - position.x,
+  0 - position.y,
+  0 - position.z,
+];
+
 /** Reads models. The page's own is `loadModel`; tests hand in others. */
 export interface Loader {
   /**

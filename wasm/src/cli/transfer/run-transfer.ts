@@ -17,7 +17,7 @@ import type { Rules } from '../model/settings.js';
 import { kAutoCage, type Sources } from '../model/sources.js';
 import { withinBounds, withoutLacking } from './cage-area.js';
 import { makeCageFor, partsLeftOut } from './made-cage.js';
-import { inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
+import { besideOf, inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
 import { transferOptions } from './part-names.js';
 
 /** Two models, and what was transferred. */
@@ -50,8 +50,8 @@ export async function runTransfer(
   const isMade = cage === kAutoCage;
   const leftOut = isMade ? await partsLeftOut(target) : [];
   const options = { ...transferOptions(rules, target, leftOut), ...(masks && { masks }) };
-  const cageOf = async (file: string) => withUvs(await readCage(file, reading, io));
-  const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage) : await cageOf(cage);
+  const cageOf = async (file: string) => besideOf(target, withUvs(await readCage(file, reading, io)));
+  const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage, target) : await cageOf(cage);
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
   const wholeCage = withoutLacking(whole, reference);
   const run = await transferModels(target, withinBounds(wholeCage, uvBounds), options, io);

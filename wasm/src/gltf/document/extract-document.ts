@@ -8,6 +8,8 @@ import type {
   TextureInfo,
 } from '@gltf-transform/core';
 import type { Mesh } from '../../index.js';
+import type { Vector } from '../../inspect/geometry.js';
+import { kSceneOrigin, type Origin } from '../../parts/origin.js';
 import { type Skinned, skinMatrices } from '../../parts/skin.js';
 import { InputError } from '../input-error.js';
 import { firstInstance, instancing } from '../instancing.js';
@@ -19,6 +21,7 @@ import {
   decodeUvs,
   hasTriangles,
   joinPieces,
+  moveTo,
   nextPiece,
   type Piece,
 } from '../pieces.js';
@@ -37,25 +40,29 @@ export interface ExtractedDocument {
   mesh: Mesh & { indices: Uint32Array };
   /** In the order of their vertices. */
   parts: DocumentPart[];
+  /** What was subtracted from their places in the scene. */
+  origin: Vector;
 }
 
 /**
  * Collects the triangles of a document's default scene (else its first), depth first, in the scene's space, by the same
  * rules as the command: vertices keep their order, every primitive of every node is a group of its own, skinned meshes are placed
  * by their skeletons, in the bind pose, and morph targets shape meshes by their weights.
+ * @param origin  What is subtracted from positions. Target and cage need the same one.
  * @throws {InputError} that names the primitive and the element.
  */
-export function extractDocument(document: Document): ExtractedDocument {
+export function extractDocument(document: Document, origin: Origin = kSceneOrigin): ExtractedDocument {
   const parts = listParts(document);
+  const near = moveTo(parts, origin);
   const mesh = joinPieces(parts);
   const layouts = parts.map(({ primitive }) => uvLayoutOf(primitive.getMaterial()?.getBaseColorTextureInfo()));
   const sets = parts.map(({ primitive }, p) => primitive.getAttribute(layouts[p]!.set));
-  if (parts.length === 0 || sets.some((set) => set === null)) return { mesh, parts };
+  if (parts.length === 0 || sets.some((set) => set === null)) return { mesh, parts, origin: near };
   const uvs = new Float32Array((mesh.positions.length / 3) * 2);
   parts.forEach(({ name, firstVertex, vertexCount }, p) =>
     uvs.set(decodeUvs(`"${name}"`, layouts[p]!, sets[p]!, vertexCount), 2 * firstVertex),
   );
-  return { mesh: { ...mesh, uvs }, parts };
+  return { mesh: { ...mesh, uvs }, parts, origin: near };
 }
 
 export function uvLayoutOf(info: TextureInfo | null | undefined): UvLayout {

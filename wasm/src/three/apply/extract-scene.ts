@@ -12,6 +12,8 @@ import {
 } from 'three';
 import { show } from '../../core/error.js';
 import type { CagecastError, Mesh } from '../../index.js';
+import type { Vector } from '../../inspect/geometry.js';
+import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/origin.js';
 import { morphed, movePoints } from '../../parts/points.js';
 import { type Skinned, skinMatrices } from '../../parts/skin.js';
 import { transformUvs } from '../../parts/uv-transform.js';
@@ -52,8 +54,22 @@ const identity = new Matrix4();
  * @param argument  The name of the argument, for messages.
  * @throws {CagecastError} that names the part and the element.
  */
-export function extract(object: Object3D | BufferGeometry, argument = 'target'): Extracted {
+export const extract = (object: Object3D | BufferGeometry, argument = 'target'): Extracted =>
+  extractNear(object, argument, kSceneOrigin);
+
+/** The same with positions around an origin, which target and cage need in common; and that origin. */
+export function extractNear(
+  object: Object3D | BufferGeometry,
+  argument: string,
+  origin: Origin,
+): Extracted & { origin: Vector } {
   const parts = listParts(object, argument);
+  const placed = ({ geometry, matrix }: Part) => ({
+    points: valuesOf(geometry.getAttribute('position') as Attribute),
+    matrix: matrix.elements,
+  });
+  const near = origin === 'own' ? originOf(parts.map(placed)) : origin;
+  for (const part of parts) part.matrix = new Matrix4().fromArray(fromOrigin(part.matrix.elements, near));
   const [vertices, triangles] = endOf(parts);
   const positions = new Float32Array(3 * vertices);
   const indices = new Uint32Array(3 * triangles);
@@ -65,7 +81,7 @@ export function extract(object: Object3D | BufferGeometry, argument = 'target'):
     group = placeGroups(part, groups, group);
   }
   const uvs = readUvs(parts, vertices, argument);
-  return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts };
+  return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts, origin: near };
 }
 
 /** Where the next part begins: how many vertices and triangles there are before it. */
