@@ -352,7 +352,7 @@ Model flatten(const tinygltf::Model& model, const Place& origin) {
       instance.world = instance.world * firstInstance(model, node, nodeAt(instance.node));
   }
   if (std::any_of(instances.begin(), instances.end(), [](const Instance& instance) { return instance.skin >= 0; }))
-    placeSkinned(model, worldsOf(model), instances);
+    placeMeshes(model, worldsOf(model), instances);
   for (Instance& instance : instances)
     for (std::size_t row = 0; row < 3; ++row) instance.world.m[row * 4 + 3] -= origin[row];
   Model out;

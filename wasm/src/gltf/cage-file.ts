@@ -2,7 +2,7 @@ import type { CageModel, Template } from '../cages/types.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
 import { fromOrigin } from '../parts/origin.js';
 import { readExtras } from '../parts/template-extras.js';
-import { type Extracted, worldMatrices } from './extract-file.js';
+import { type Extracted, parentsOf, worldMatrices } from './extract-file.js';
 import { InputError } from './input-error.js';
 import type { GltfFile } from './read-gltf.js';
 
@@ -30,7 +30,7 @@ export function templateOf({ json, path }: GltfFile, { mesh, parts }: Extracted)
 
 function jointsOf(file: GltfFile, { parts, origin }: Pick<Extracted, 'parts' | 'origin'>) {
   const { nodes = [], extensions } = file.json;
-  const parents = new Map(nodes.flatMap((node, n) => (node.children ?? []).map((child) => [child, n])));
+  const parents = parentsOf(nodes);
   const bones = vrmBones(extensions as VrmExtensions | undefined);
   const matrices = worldMatrices(file.json);
   const nameOf = (node: number) => bones.get(node) ?? nodes[node]!.name ?? `nodes[${node}]`;

@@ -2,12 +2,13 @@ import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
 import type { Vector } from '../inspect/geometry.js';
+import { identity, type Matrix, multiply } from '../parts/affine.js';
 import { kSceneOrigin, type Origin } from '../parts/origin.js';
-import { type Skinned, skinMatrices } from '../parts/skin.js';
+import { placeMeshes, type Skin } from '../parts/skin.js';
 import { topNodes } from './check-geometry.js';
 import { InputError, naming } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';
-import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
+import { localMatrix } from './matrix.js';
 import { isOverlay } from './overlay.js';
 import {
   decodePositions,
@@ -120,11 +121,18 @@ function listParts(file: GltfFile): Part[] {
       parts.push({ ...piece, node, ...ref });
     });
   }
-  const skinned = parts.filter(({ node }) => nodes[node]!.skin !== undefined);
-  const skins = skinned.map((part) => skinOf(file, part, matrices));
-  skinMatrices(skins).forEach((matrix, s) => (skinned[s]!.matrix = matrix));
+  const parents = parentsOf(nodes);
+  const placed = placeMeshes(
+    parts.map((part) => ({ ...part, skin: skinOf(file, part) })),
+    { parentOf: (node) => parents.get(node), worldOf: (node) => matrices[node]! },
+  );
+  parts.forEach((part, p) => (part.matrix = placed[p]!));
   return parts;
 }
+
+/** The node above each node that is below one. */
+export const parentsOf = (nodes: readonly GLTF.INode[]): Map<number, number> =>
+  new Map(nodes.flatMap((node, n) => (node.children ?? []).map((child) => [child, n])));
 
 /** The matrix of the first instance of a node. */
 function instanceOf(file: GltfFile, path: string, attributes: Record<string, unknown> = {}): Matrix {
@@ -141,19 +149,20 @@ function instanceOf(file: GltfFile, path: string, attributes: Record<string, unk
 }
 
 /** How its skin holds a part. */
-function skinOf(file: GltfFile, part: Part, matrices: readonly Matrix[]): Skinned<Matrix> {
-  const { joints = [], inverseBindMatrices } = file.json.skins![file.json.nodes![part.node]!.skin!]!;
+function skinOf(file: GltfFile, part: Part): Skin<number> | undefined {
+  const { skin } = file.json.nodes![part.node]!;
+  if (skin === undefined) return undefined;
+  const { joints = [], inverseBindMatrices } = file.json.skins![skin]!;
   const inverses = file.accessors[inverseBindMatrices ?? -1]?.getArray();
   const arrayOf = (semantic: string) => accessorOf(file, part, semantic)?.getArray() ?? [];
   return {
-    matrices: joints.map((joint, j) =>
-      inverses ? multiply(matrices[joint]!, inverses.subarray(16 * j)) : matrices[joint]!,
-    ),
+    joints,
+    inverseOf: (j) => inverses?.subarray(16 * j, 16 * j + 16),
+    bind: identity,
     held: arrayOf('JOINTS_0'),
     weights: arrayOf('WEIGHTS_0'),
     positions: part.localPositions,
     isFloat: arrayOf('POSITION') instanceof Float32Array,
-    stored: [identity],
   };
 }
 

@@ -1,10 +1,11 @@
 import type { Accessor } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import type { Vector } from '../inspect/geometry.js';
+import { isIdentity, type Matrix } from '../parts/affine.js';
 import { fromOrigin, type Origin, originOf } from '../parts/origin.js';
 import { morphed, movePoints } from '../parts/points.js';
 import { InputError } from './input-error.js';
-import { identity, isMirrored, type Matrix } from './matrix.js';
+import { isMirrored } from './matrix.js';
 import { layUvs, type UvLayout } from './uv-layout.js';
 
 /** One primitive of one node, and the ranges of its elements in the joined arrays. */
@@ -190,7 +191,7 @@ export function decodeFloats(accessor: Accessor): Float32Array {
 }
 
 function placePositions({ matrix: m, localPositions, firstVertex }: Piece, out: Float32Array): void {
-  if (m === identity || m.every((value, i) => value === identity[i])) {
+  if (isIdentity(m)) {
     out.set(localPositions, 3 * firstVertex);
     return;
   }

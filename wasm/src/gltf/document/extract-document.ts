@@ -9,11 +9,12 @@ import type {
 } from '@gltf-transform/core';
 import type { Mesh } from '../../index.js';
 import type { Vector } from '../../inspect/geometry.js';
+import { identity, type Matrix, multiply } from '../../parts/affine.js';
+import { upFrom } from '../../parts/joints.js';
 import { kSceneOrigin, type Origin } from '../../parts/origin.js';
-import { type Skinned, skinMatrices } from '../../parts/skin.js';
+import { placeMeshes, type Skin } from '../../parts/skin.js';
 import { InputError } from '../input-error.js';
 import { firstInstance, instancing } from '../instancing.js';
-import { identity, type Matrix, multiply } from '../matrix.js';
 import { isMarked } from '../overlay.js';
 import {
   decodePositions,
@@ -141,35 +142,35 @@ function listParts(document: Document): DocumentPart[] {
       parts.push({ ...piece, node, mesh, primitive });
     });
   }
-  const skinned = parts.filter(({ node }) => node.getSkin());
-  skinMatrices(skinned.map(skinOf)).forEach((matrix, s) => (skinned[s]!.matrix = matrix));
+  const placed = placeMeshes(
+    parts.map((part) => ({ ...part, skin: skinOf(part) })),
+    { parentOf, worldOf: jointMatrix },
+  );
+  parts.forEach((part, p) => (part.matrix = placed[p]!));
   return parts;
 }
 
+const parentOf = (node: Node): Node | null => node.getParentNode();
+
 /** The matrix of a joint to the scene; the identity if it is below itself, which no node of a scene is. */
 export function jointMatrix(joint: Node): Matrix {
-  const above = new Set<Node>();
-  for (let node: Node | null = joint; node; node = node.getParentNode()) {
-    if (above.has(node)) return identity;
-    above.add(node);
-  }
-  return joint.getWorldMatrix();
+  const top = [...upFrom(joint, parentOf)].at(-1)!;
+  return parentOf(top) === null ? joint.getWorldMatrix() : identity;
 }
 
 /** How its skin holds a part. */
-function skinOf({ node, primitive, localPositions: positions }: DocumentPart): Skinned<Matrix> {
-  const skin = node.getSkin()!;
+function skinOf({ node, primitive, localPositions: positions }: DocumentPart): Skin<Node> | undefined {
+  const skin = node.getSkin();
+  if (!skin) return undefined;
   const inverses = skin.getInverseBindMatrices()?.getArray();
   const arrayOf = (semantic: string) => primitive.getAttribute(semantic)?.getArray() ?? [];
   return {
-    matrices: skin.listJoints().map((joint, j) => {
-      const matrix = jointMatrix(joint);
-      return inverses ? multiply(matrix, inverses.subarray(16 * j)) : matrix;
-    }),
+    joints: skin.listJoints(),
+    inverseOf: (j) => inverses?.subarray(16 * j, 16 * j + 16),
+    bind: identity,
     held: arrayOf('JOINTS_0'),
     weights: arrayOf('WEIGHTS_0'),
     positions,
     isFloat: arrayOf('POSITION') instanceof Float32Array,
-    stored: [identity],
   };
 }

@@ -15,7 +15,7 @@ import type { CagecastError, Mesh } from '../../index.js';
 import type { Vector } from '../../inspect/geometry.js';
 import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/origin.js';
 import { morphed, movePoints } from '../../parts/points.js';
-import { type Skinned, skinMatrices } from '../../parts/skin.js';
+import { placeMeshes, type Skin } from '../../parts/skin.js';
 import { transformUvs } from '../../parts/uv-transform.js';
 import { wrong } from '../errors.js';
 
@@ -156,34 +156,32 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
  * moved follows from all meshes that it holds, so give them together. Cost: linear in the vertices of skinned meshes.
  */
 export function placesOf(meshes: readonly ThreeMesh[]): Matrix4[] {
-  const held = skinMatrices(meshes.filter(isAttached).map(skinOf));
-  return meshes.map((mesh) => {
+  const all = meshes.map((mesh) => {
     const place = new Matrix4();
-    if (isAttached(mesh)) return place.fromArray(held.shift()!);
     if (isInstanced(mesh)) mesh.getMatrixAt(0, place);
-    return place.premultiply(mesh.matrixWorld);
+    const skin = isAttached(mesh) ? skinOf(mesh) : undefined;
+    return { node: mesh as Object3D, matrix: place.premultiply(mesh.matrixWorld).elements, skin };
   });
+  const nodes = {
+    parentOf: ({ parent }: Object3D) => parent,
+    worldOf: ({ matrixWorld }: Object3D) => matrixWorld.elements,
+  };
+  return placeMeshes(all, nodes).map((place) => new Matrix4().fromArray(place));
 }
 
 /** Whether a mesh is where its skeleton is. A detached one is where it is itself. */
 const isAttached = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).bindMode === 'attached';
 
-function skinOf(mesh: SkinnedMesh): Skinned<ArrayLike<number>> {
+function skinOf(mesh: SkinnedMesh): Skin<Object3D> {
   const { skeleton, bindMatrix, geometry } = mesh;
   const values = (name: string) => {
     const attribute = geometry.getAttribute(name) as Attribute | undefined;
     return attribute ? valuesOf(attribute) : new Float32Array();
   };
-  const bones = skeleton?.bones ?? [];
-  // Three applies the bind matrix to the vertices first.
-  const placedBy = (matrix: Matrix4) => matrix.clone().multiply(bindMatrix).elements;
-  // The model may have been moved since the mesh was bound, with all that is in it.
-  const moved: number[][] = [];
-  for (let above: Object3D | null | undefined = bones[0]; above; above = above.parent)
-    if (!('isBone' in above)) moved.push(placedBy(above.matrixWorld));
   return {
-    matrices: bones.map((bone, b) => placedBy(bone.matrixWorld.clone().multiply(skeleton!.boneInverses[b]!))),
-    stored: [bindMatrix.elements, ...moved],
+    joints: skeleton?.bones ?? [],
+    inverseOf: (b) => skeleton!.boneInverses[b]!.elements,
+    bind: bindMatrix.elements,
     held: values('skinIndex'),
     weights: values('skinWeight'),
     positions: values('position'),
