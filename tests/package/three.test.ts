@@ -232,6 +232,13 @@ function assertSplit(geometry: BufferGeometry, before: BufferGeometry, result: T
 }
 
 describe('applyTransfer', () => {
+  test('a note says why nothing may be painted, and what helps', () => {
+    assert.equal(applyTransfer(meshOf(ungrouped), cage()).note, undefined);
+    const target = Object.assign(meshOf(ungrouped), { name: 'head' });
+    const { note } = applyTransfer(target, cage(), { locks: { groups: { 0: 'exclude' } } });
+    assert.equal(note, 'nothing may be painted: "head" is excluded by choice; lift the lock');
+  });
+
   test('far from the origin', () => {
     const painted = (x: number) => {
       const [object, around] = [meshOf(ungrouped), cage()];

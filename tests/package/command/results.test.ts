@@ -7,7 +7,7 @@ import { presetOptions, transfer } from 'cagecast';
 import { PNG } from 'pngjs';
 import { fails, json, ok, run } from '../../support/command.js';
 import { type GlbMaker, glbOf } from '../../support/gltf.js';
-import { head } from '../scenes.js';
+import { ball, head, within } from '../scenes.js';
 import { modelsLike, workplace, write, writeMade } from './workplace.js';
 
 const models = modelsLike(/lizard|misaligned/);
@@ -101,6 +101,41 @@ const culledIn = async (line: string, names: readonly string[], by?: string) => 
   const isCulled = (one: Report['segments'][number]) => (by ? one.culledBy === by : one.culled);
   return names.map((name) => segments.filter((one) => one.part === name && one.points > 1).every(isCulled));
 };
+
+test('a line says why next to nothing may be painted, and what helps', async () => {
+  const away = (by: number) => glbOf({ ...cage, positions: cage.positions.map((x) => x + by) });
+  write('away.glb', away(9));
+  writeMade('hidden.glb', (maker) => {
+    maker.node({ name: 'body', mesh: maker.mesh(target) });
+    const shell = ball([0, 0, 0], () => 1.12, 12, 18);
+    const inward = shell.indices.map((_, i, all) => all[i % 3 === 0 ? i : i % 3 === 1 ? i + 1 : i - 1]!);
+    maker.node({ name: 'shell', mesh: maker.mesh({ ...shell, indices: inward }) });
+  });
+  writeMade('half.glb', (maker) => {
+    const front = within(cage, (x) => x > 0.9);
+    maker.node({ name: 'cap', mesh: maker.mesh(front) });
+  });
+  for (const [line, note] of [
+    [
+      'transfer target.glb --cage away.glb',
+      /^nothing may be painted: the cage lies over next to none of the target; put /m,
+    ],
+    [
+      'transfer hidden.glb --cage cage.glb --exclude shell',
+      /^nothing .*: most of "body" is hidden by "shell"; take out /m,
+    ],
+    ['transfer target.glb --cage half.glb', /^nothing .* covers only [\d.]+ % of .* "only"; try --keep "only" or a /m],
+    [
+      'transfer target.glb --cage cage.glb --exclude only',
+      /^nothing .*: "only" is excluded by choice; leave out --exc/m,
+    ],
+  ] as const) {
+    assert.match(await ok(line), note, line);
+    const { note: told } = await json<{ note?: string }>(line);
+    assert.match(told!, note);
+  }
+  assert.equal((await json<{ note?: string }>(plain)).note, undefined);
+});
 
 test('--keep and --exclude lock parts by the names of nodes and materials', async () => {
   writeMade('named.glb', (maker) => {

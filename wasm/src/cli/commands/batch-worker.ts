@@ -16,6 +16,7 @@ export type Outcome =
       ms: number;
       counts: Report['counts'];
       triangles: Report['triangles'];
+      note?: string;
       verdict?: Verdict;
       findings?: string[];
     }
@@ -32,9 +33,9 @@ export function serveBatch(): void {
     try {
       makeFolders(command);
       const { report } = await transferToFile(command, io, readCage);
-      const { counts, triangles, verdict, findings } = report;
+      const { counts, triangles, note, verdict, findings } = report;
       const inspected = verdict && { verdict, findings: findings!.map(({ code }) => code) };
-      answer({ status: 'done', counts, triangles, ...inspected });
+      answer({ status: 'done', counts, triangles, ...(note && { note }), ...inspected });
     } catch (error) {
       answer({ status: 'failed', error: messageOf(error) });
     }

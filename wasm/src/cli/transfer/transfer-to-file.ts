@@ -65,7 +65,7 @@ export async function transferToFile(
 
 /** The report for people. */
 function summary(command: TransferCommand, report: Report): Line[] {
-  const { target, cage, counts, areas, triangles, cut, segments, regions, timings, output } = report;
+  const { target, cage, counts, areas, triangles, cut, segments, regions, timings, output, note } = report;
   const culled = segments.filter((segment) => segment.culled).length;
   const { outOfBounds = 0 } = cut?.triangles ?? triangles;
   const cutText = cut ? `; cut along borders, ${shareOf(cut.triangles)}` : '';
@@ -73,6 +73,7 @@ function summary(command: TransferCommand, report: Report): Line[] {
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${counted(segments.length, 'segment')} (${integer(culled)} culled)`,
     ...zoneTable(counts, areas, areas.total),
     `${shareOf(triangles)} triangles may be painted${cutText}; ${timings.total.toFixed(1)} ms`,
+    note,
     outOfBounds > 0 &&
       `${integer(outOfBounds)} more could be painted, but lie outside of --uv-bounds; zones do not depend on the bounds`,
     ...(output === null ? [] : outputLines(output, report)),
