@@ -52,7 +52,7 @@ const meshOf = (mesh: Mesh): ThreeMesh<BufferGeometry, MeshStandardMaterial> =>
 const unpaintable = () => new ThreeMesh(geometryOf(scene.target), new MeshNormalMaterial());
 const cage = () => meshOf(scene.cage);
 const attribute = (geometry: BufferGeometry, name: string) => geometry.getAttribute(name).array as Float32Array;
-const arraysOf = ({ geometry }: ThreeMesh) => ({
+const arraysOf = ({ geometry }: ThreeMesh): Record<string, object> => ({
   ...Object.fromEntries(Object.entries(geometry.attributes).map(([name, { array }]) => [name, array])),
   index: geometry.index!.array,
 });
