@@ -29,8 +29,8 @@ A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
 Its members: target, cage, referenceCage, uvBounds, texture, regions, output, report, and any setting of cagecast.config.json.
 A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
-failed or skipped), ms, counts, triangles, and error, verdict, findings (codes) and note (why next to nothing may be painted) if
-there are. After the lines, a summary goes
+failed or skipped), ms, counts, triangles, and error, verdict, findings (codes), note (why next to nothing may be painted) and
+isTurned (the cage faced the other way, so it was turned by half) if there are. After the lines, a summary goes
 to the standard error; with --quiet, only the errors of jobs go there.
 The cages of a batch are left out of the files that a pattern names.
 A job that fails does not stop the others. Files are complete or not there, even if the batch is killed. Missing folders are made.

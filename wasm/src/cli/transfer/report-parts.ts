@@ -19,12 +19,16 @@ export const targetReport = (file: string, { extracted: { mesh } }: ReadModel) =
   diagonal: boxOf(mesh.positions).diagonal,
 });
 
-/** What a report says of a cage; of one that was made on the way, also the names of the parts that are not painted because of them. */
-export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { excluded }: Run) => ({
+/**
+ * What a report says of a cage; of one that was made on the way, also the names of the parts that are not painted because of them; and
+ * whether it was turned.
+ */
+export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { excluded, isTurned }: Run) => ({
   file,
   vertices: mesh.positions.length / 3,
   triangles: mesh.indices.length / 3,
   ...(excluded && { excluded }),
+  ...(isTurned && { isTurned }),
 });
 
 export type CageReport = ReturnType<typeof cageReport>;
@@ -54,6 +58,10 @@ export const zoneTable = (counts: PerZone, areas: PerZone, total = 1): string[] 
     ['', 'vertices', 'area'],
     ...kZoneNames.map((zone) => [zone, integer(counts[zone]), percent(areas[zone] / (total || 1))]),
   ]);
+
+/** Says that a cage was turned, if it was. */
+export const turnedLine = ({ isTurned }: { isTurned?: boolean }): Line =>
+  isTurned && 'the cage faced the other way; turned by half about the vertical axis, it fits clearly better, so it was';
 
 /** How many names a line has at most. */
 const kMaxNames = 12;

@@ -71,6 +71,8 @@ export interface Report {
     zones: string;
     counts: PerZone;
     triangles: { total: number; cosmetic: number };
+    /** Whether the cage faced the other way, and was turned by half. */
+    isTurned?: boolean;
   }[];
   /** Why next to nothing may be painted, if so, and what helps. */
   note?: string;
@@ -174,5 +176,6 @@ export function regionReport(
     zones,
     counts: perZone(run.result.zones),
     triangles: { total: painted.length, cosmetic: countOf(painted) - paintedBefore },
+    ...(run.isTurned && { isTurned: true }),
   };
 }

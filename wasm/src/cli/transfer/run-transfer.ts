@@ -11,6 +11,7 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
+import { isBackward, turnedBack } from '../../inspect/backward.js';
 import { readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import type { Rules } from '../model/settings.js';
@@ -28,6 +29,8 @@ export interface Run {
   wholeCage: ReadModel;
   /** The names of the parts that the cage was made without, if it was made on the way. */
   excluded?: readonly string[] | undefined;
+  /** Whether the cage faced the other way, and was turned by half about the vertical axis. */
+  isTurned?: boolean;
   /** What `transfer` was called with. */
   options: TransferOptions;
   result: TransferResult;
@@ -54,10 +57,26 @@ export async function runTransfer(
   const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage, target) : await cageOf(cage);
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
   const wholeCage = withoutLacking(whole, reference);
-  const run = await transferModels(target, withinBounds(wholeCage, uvBounds), options, io);
+  const run = await faceForward(await transferModels(target, withinBounds(wholeCage, uvBounds), options, io), io);
   const isLeftOut = (p: number) => leftOut[p] && options.locks?.groups?.[p] !== 'keep';
   const names = target.extracted.parts.filter((_, p) => isLeftOut(p)).map(({ name }) => name);
-  return { ...run, wholeCage, excluded: isMade ? [...new Set(names)] : undefined };
+  return {
+    ...run,
+    wholeCage: run.isTurned ? turned(wholeCage) : wholeCage,
+    excluded: isMade ? [...new Set(names)] : undefined,
+  };
+}
+
+const turned = ({ file, extracted }: ReadModel): ReadModel => ({
+  file,
+  extracted: { ...extracted, mesh: turnedBack(extracted.mesh) },
+});
+
+/** A run as it is, or with its cage turned by half, if that faces the other way. */
+async function faceForward(run: Run, io: Io): Promise<Run> {
+  const { target, cage, options, result } = run;
+  if (!isBackward(cage.extracted.mesh, target.extracted.mesh, result)) return run;
+  return { ...(await transferModels(target, turned(cage), options, io)), isTurned: true };
 }
 
 /** The masks of a target. @throws {InputError} that names the file at fault. */
