@@ -1,11 +1,14 @@
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
-import { type Skinned, skinMatrices } from '../parts/skin.js';
+import type { Vector } from '../inspect/geometry.js';
+import { identity, type Matrix, multiply } from '../parts/affine.js';
+import { kSceneOrigin, type Origin } from '../parts/origin.js';
+import { placeMeshes, type Skin } from '../parts/skin.js';
 import { topNodes } from './check-geometry.js';
 import { InputError, naming } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';
-import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
+import { localMatrix } from './matrix.js';
 import { isOverlay } from './overlay.js';
 import {
   decodePositions,
@@ -13,6 +16,7 @@ import {
   decodeUvs,
   hasTriangles,
   joinPieces,
+  moveTo,
   nextPiece,
   type Piece,
 } from './pieces.js';
@@ -36,6 +40,8 @@ export interface Extracted {
   mesh: Mesh & { indices: Uint32Array };
   /** In the order of their vertices. */
   parts: Part[];
+  /** What was subtracted from their places in the scene. */
+  origin: Vector;
 }
 
 /**
@@ -44,15 +50,17 @@ export interface Extracted {
  * Vertices keep their order and number; each primitive of each node is a group of its own. Transforms are applied in
  * double precision and rounded once; the winding of mirrored parts is reversed. Skinned meshes are placed by their skeleton, in the
  * bind pose; as the format demands, the transform of their node is ignored. Points, lines and overlays that were added before are
- * left out, and morph targets are not applied.
+ * left out. Morph targets shape a mesh by the weights of its node, or else of itself.
+ * @param origin  What is subtracted from positions. Target and cage need the same one.
  * @throws {InputError} that names the file, the primitive and the element.
  */
-export function extract(file: GltfFile): Extracted {
+export function extract(file: GltfFile, origin: Origin = kSceneOrigin): Extracted {
   return naming(file.path, () => {
     const parts = listParts(file);
+    const near = moveTo(parts, origin);
     const mesh = joinPieces(parts);
     const uvs = readUvs(file, parts, mesh.positions.length / 3);
-    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts };
+    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts, origin: near };
   });
 }
 
@@ -96,7 +104,8 @@ function listParts(file: GltfFile): Part[] {
       const ref = { mesh: nodeDef.mesh!, primitive: p };
       const accessor = accessorOf(file, ref, 'POSITION');
       if (accessor === undefined) return;
-      const positions = decodePositions(primitivePath(ref), accessor);
+      const deltas = (t: number) => file.accessors[primitive.targets?.[t]?.['POSITION'] ?? -1];
+      const positions = decodePositions(primitivePath(ref), accessor, nodeDef.weights ?? meshDef.weights ?? [], deltas);
       const indices = readTriangles(file, ref, positions.length / 3);
       if (indices === undefined) return;
       const piece = nextPiece(parts, {
@@ -112,11 +121,18 @@ function listParts(file: GltfFile): Part[] {
       parts.push({ ...piece, node, ...ref });
     });
   }
-  const skinned = parts.filter(({ node }) => nodes[node]!.skin !== undefined);
-  const skins = skinned.map((part) => skinOf(file, part, matrices));
-  skinMatrices(skins).forEach((matrix, s) => (skinned[s]!.matrix = matrix));
+  const parents = parentsOf(nodes);
+  const placed = placeMeshes(
+    parts.map((part) => ({ ...part, skin: skinOf(file, part) })),
+    { parentOf: (node) => parents.get(node), worldOf: (node) => matrices[node]! },
+  );
+  parts.forEach((part, p) => (part.matrix = placed[p]!));
   return parts;
 }
+
+/** The node above each node that is below one. */
+export const parentsOf = (nodes: readonly GLTF.INode[]): Map<number, number> =>
+  new Map(nodes.flatMap((node, n) => (node.children ?? []).map((child) => [child, n])));
 
 /** The matrix of the first instance of a node. */
 function instanceOf(file: GltfFile, path: string, attributes: Record<string, unknown> = {}): Matrix {
@@ -133,19 +149,20 @@ function instanceOf(file: GltfFile, path: string, attributes: Record<string, unk
 }
 
 /** How its skin holds a part. */
-function skinOf(file: GltfFile, part: Part, matrices: readonly Matrix[]): Skinned<Matrix> {
-  const { joints = [], inverseBindMatrices } = file.json.skins![file.json.nodes![part.node]!.skin!]!;
+function skinOf(file: GltfFile, part: Part): Skin<number> | undefined {
+  const { skin } = file.json.nodes![part.node]!;
+  if (skin === undefined) return undefined;
+  const { joints = [], inverseBindMatrices } = file.json.skins![skin]!;
   const inverses = file.accessors[inverseBindMatrices ?? -1]?.getArray();
   const arrayOf = (semantic: string) => accessorOf(file, part, semantic)?.getArray() ?? [];
   return {
-    matrices: joints.map((joint, j) =>
-      inverses ? multiply(matrices[joint]!, inverses.subarray(16 * j)) : matrices[joint]!,
-    ),
+    joints,
+    inverseOf: (j) => inverses?.subarray(16 * j, 16 * j + 16),
+    bind: identity,
     held: arrayOf('JOINTS_0'),
     weights: arrayOf('WEIGHTS_0'),
     positions: part.localPositions,
     isFloat: arrayOf('POSITION') instanceof Float32Array,
-    stored: [identity],
   };
 }
 

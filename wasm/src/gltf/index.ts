@@ -5,6 +5,7 @@
  */
 import type { Document, Transform } from '@gltf-transform/core';
 import type { Mesh, TransferOptions, TransferResult } from '../index.js';
+import { noteOf } from '../inspect/bare.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import type { MaskSources } from './bake/mask-sources.js';
 import { addTransfer } from './document/add-transfer.js';
@@ -43,9 +44,10 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
   borders?: Borders | undefined;
   /**
    * Called with a copy of the result, and with the parts of the document in the order of the result's arrays, before the document is changed:
-   * if it throws, the document stays as it was.
+   * if it throws, the document stays as it was. `note` says why nothing, or less than 5 % of what the cage covers, may be painted, and
+   * what helps; the document's logger warns of it, too.
    */
-  onResult?: ((result: TransferResult, parts: PartRange[]) => void) | undefined;
+  onResult?: ((result: TransferResult, parts: PartRange[], note: string | undefined) => void) | undefined;
 }
 
 /**
@@ -76,6 +78,8 @@ export function cagecast(options: CagecastOptions): Transform {
   return async function cagecast(document: Document): Promise<void> {
     const cuts = isCut('cagecast', borders);
     const { target, result, cut, paint } = await transferDocument('cagecast', document, own, cuts);
+    const note = noteOf(target.mesh, result, target.parts);
+    if (note) document.getLogger().warn(`cagecast: ${note}`);
     onResult?.(
       structuredClone(result),
       target.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({
@@ -85,6 +89,7 @@ export function cagecast(options: CagecastOptions): Transform {
         firstTriangle,
         triangleCount,
       })),
+      note,
     );
     addTransfer(document, target, result, { paint, cut });
   };

@@ -20,7 +20,7 @@ import {
   transferOptions,
 } from './apply/apply-options.js';
 import { cutGeometry } from './apply/cut-geometry.js';
-import { type Extracted, extract, type Part } from './apply/extract-scene.js';
+import { type Extracted, extract, extractNear, type Part } from './apply/extract-scene.js';
 import { atOnce } from './apply/remake.js';
 import { checkSaved, deserialize, keyOf, remember, serialize } from './apply/saved-transfer.js';
 import { zoneAttribute } from './apply/shown-parts.js';
@@ -145,11 +145,11 @@ function read(
   options: ApplyOptions,
 ): Call {
   const cuts = isCut(fn, options.borders);
-  const extracted = extract(target);
+  const extracted = extractNear(target, 'target', 'own');
   const { saved, result } = options;
   const rules = transferOptions(options);
   const needsCage = !saved && (cuts || !result);
-  const around = needsCage ? extract(cage!, 'cage').mesh : undefined;
+  const around = needsCage ? extractNear(cage!, 'cage', extracted.origin).mesh : undefined;
   if (result) checkResult(result, extracted);
   const states = statesOf(extracted);
   return {

@@ -4,7 +4,7 @@ import type { ExtractedMesh, Primitive } from '../state/model';
 
 /**
  * Reads all triangle meshes below `root`, depth first, into one set of arrays, as `extract` of `cagecast/three`.
- * @param root   A scene that has not been moved since it was loaded.
+ * @param root   A scene as it was loaded, perhaps moved as a whole.
  * @param nameOf The name of a mesh in its file, if any.
  * @throws Error that names the primitive and the element that cannot be read; or if there are no triangles.
  */
@@ -17,7 +17,8 @@ export function extractMesh(
   const primitives = parts.map(({ geometry, ...part }): Primitive => {
     const mesh = part.mesh as Mesh;
     const name = nameOf(mesh) || part.name;
-    return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0 };
+    const weights = [...(mesh.morphTargetInfluences ?? [])];
+    return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0, weights };
   });
   return { ...mesh, primitives };
 }

@@ -7,6 +7,8 @@ export interface Primitive extends Omit<Part, 'geometry'> {
   mesh: Mesh;
   /** Whether its matrix mirrors it; its winding is reversed then. */
   mirrored: boolean;
+  /** The weights of its morph targets in the file, which have shaped its positions. */
+  weights: readonly number[];
 }
 
 /** All triangles of a scene as arrays in world space, as the transfer takes them. */
@@ -40,6 +42,13 @@ export interface Model {
   /** The sample it belongs to; undefined for the user's own files. */
   sample?: Sample;
 }
+
+/** Where the origin of a model that was moved is in the scene of its file. */
+export const originOf = ({ scene: { position } }: Model): [number, number, number] => [
+  0 - position.x,
+  0 - position.y,
+  0 - position.z,
+];
 
 /** Reads models. The page's own is `loadModel`; tests hand in others. */
 export interface Loader {

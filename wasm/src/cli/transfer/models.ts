@@ -18,7 +18,7 @@ export interface ReadModel {
 export async function readModel(path: string, reading: ReadOptions, io: Io, bytes?: Uint8Array): Promise<ReadModel> {
   io.step(`reading ${path}`);
   const file = await readGltf(path, reading, bytes);
-  const extracted = extract(file);
+  const extracted = extract(file, 'own');
   if (extracted.mesh.indices.length > 0) return { file, extracted };
   const what = (file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene';
   throw new InputError(`has no ${what}; at least one triangle is needed`).in(path);
@@ -53,10 +53,16 @@ export function withUvs(model: ReadModel): ReadModel {
   ).in(file.path);
 }
 
-/** A cage as if it was read from a file. */
-export async function readBack(cage: Cage, path: string): Promise<ReadModel> {
-  const file = await readGltf(path, undefined, cageGlb(cage));
-  return { file, extracted: extract(file) };
+/** A cage around a model, as if it was read from a file. */
+export async function readBack(cage: Cage, path: string, { extracted: { origin } }: ReadModel): Promise<ReadModel> {
+  const file = await readGltf(path, undefined, cageGlb({ ...cage, origin }));
+  return { file, extracted: extract(file, origin) };
+}
+
+/** A model around the origin of another one. */
+export function besideOf({ extracted: { origin } }: ReadModel, model: ReadModel): ReadModel {
+  const isBeside = model.extracted.origin.every((x, k) => x === origin[k]);
+  return isBeside ? model : { ...model, extracted: extract(model.file, origin) };
 }
 
 /** Calls the core for two models. @throws {InputError} that names the file at fault and the place in it. */

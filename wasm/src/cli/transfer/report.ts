@@ -8,7 +8,15 @@ import type { Borders } from '../../parts/borders-option.js';
 import type { Region, TransferCommand } from '../model/sources.js';
 import type { PerZone } from '../model/zones.js';
 import { countOf, type RegionRun } from './region.js';
-import { type CageReport, cageReport, effectiveOptions, perZone, targetReport, versions } from './report-parts.js';
+import {
+  bareNote,
+  type CageReport,
+  cageReport,
+  effectiveOptions,
+  perZone,
+  targetReport,
+  versions,
+} from './report-parts.js';
 import { type Stretch, stretchOf } from './stretch.js';
 
 /** The JSON report of a transfer. Areas are in squared units of the target; lengths in its units. */
@@ -63,7 +71,11 @@ export interface Report {
     zones: string;
     counts: PerZone;
     triangles: { total: number; cosmetic: number };
+    /** Whether the cage faced the other way, and was turned by half. */
+    isTurned?: boolean;
   }[];
+  /** Why next to nothing may be painted, if so, and what helps. */
+  note?: string;
   /** Whether all of the cages fit, and why not; if they were inspected. */
   verdict?: Verdict;
   findings?: Finding[];
@@ -95,6 +107,7 @@ export function makeReport(command: TransferCommand, { run, shown, cut, ...rest 
   const written = command.output === undefined ? undefined : rest.written;
   const isBounded = command.uvBounds !== undefined;
   const areas = vertexAreas(mesh);
+  const note = bareNote(run);
   return {
     versions: versions(),
     target: targetReport(command.target, target),
@@ -117,6 +130,7 @@ export function makeReport(command: TransferCommand, { run, shown, cut, ...rest 
     segments: segmentReports(parts, result),
     parts: parts.map((part, p) => partReport(part, result, written?.added[p])),
     replacedOverlays: written?.replaced ?? 0,
+    ...(note && { note }),
     regions: [],
     timings: result.timings,
     peakBytes: result.peakBytes,
@@ -162,5 +176,6 @@ export function regionReport(
     zones,
     counts: perZone(run.result.zones),
     triangles: { total: painted.length, cosmetic: countOf(painted) - paintedBefore },
+    ...(run.isTurned && { isTurned: true }),
   };
 }

@@ -11,13 +11,14 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
+import { isBackward, turnedBack } from '../../inspect/backward.js';
 import { readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import type { Rules } from '../model/settings.js';
 import { kAutoCage, type Sources } from '../model/sources.js';
 import { withinBounds, withoutLacking } from './cage-area.js';
 import { makeCageFor, partsLeftOut } from './made-cage.js';
-import { inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
+import { besideOf, inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
 import { transferOptions } from './part-names.js';
 
 /** Two models, and what was transferred. */
@@ -28,6 +29,8 @@ export interface Run {
   wholeCage: ReadModel;
   /** The names of the parts that the cage was made without, if it was made on the way. */
   excluded?: readonly string[] | undefined;
+  /** Whether the cage faced the other way, and was turned by half about the vertical axis. */
+  isTurned?: boolean;
   /** What `transfer` was called with. */
   options: TransferOptions;
   result: TransferResult;
@@ -50,14 +53,30 @@ export async function runTransfer(
   const isMade = cage === kAutoCage;
   const leftOut = isMade ? await partsLeftOut(target) : [];
   const options = { ...transferOptions(rules, target, leftOut), ...(masks && { masks }) };
-  const cageOf = async (file: string) => withUvs(await readCage(file, reading, io));
-  const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage) : await cageOf(cage);
+  const cageOf = async (file: string) => besideOf(target, withUvs(await readCage(file, reading, io)));
+  const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage, target) : await cageOf(cage);
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
   const wholeCage = withoutLacking(whole, reference);
-  const run = await transferModels(target, withinBounds(wholeCage, uvBounds), options, io);
+  const run = await faceForward(await transferModels(target, withinBounds(wholeCage, uvBounds), options, io), io);
   const isLeftOut = (p: number) => leftOut[p] && options.locks?.groups?.[p] !== 'keep';
   const names = target.extracted.parts.filter((_, p) => isLeftOut(p)).map(({ name }) => name);
-  return { ...run, wholeCage, excluded: isMade ? [...new Set(names)] : undefined };
+  return {
+    ...run,
+    wholeCage: run.isTurned ? turned(wholeCage) : wholeCage,
+    excluded: isMade ? [...new Set(names)] : undefined,
+  };
+}
+
+const turned = ({ file, extracted }: ReadModel): ReadModel => ({
+  file,
+  extracted: { ...extracted, mesh: turnedBack(extracted.mesh) },
+});
+
+/** A run as it is, or with its cage turned by half, if that faces the other way. */
+async function faceForward(run: Run, io: Io): Promise<Run> {
+  const { target, cage, options, result } = run;
+  if (!isBackward(cage.extracted.mesh, target.extracted.mesh, result)) return run;
+  return { ...(await transferModels(target, turned(cage), options, io)), isTurned: true };
 }
 
 /** The masks of a target. @throws {InputError} that names the file at fault. */

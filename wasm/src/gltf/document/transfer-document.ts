@@ -10,6 +10,7 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
+import { moved } from '../../parts/origin.js';
 import { type MaskSources, masksOf } from '../bake/mask-sources.js';
 import { InputError } from '../input-error.js';
 import { type Paint, paintOf } from '../overlay.js';
@@ -51,8 +52,11 @@ export async function transferDocument(
     throw wrong(caller, 'maskImages', maskImages, '{ never, always }');
   await init();
   const paint = texture && within(caller, 'texture', () => paintOf(texture));
-  const source = isDocument(cage) ? within(caller, 'cage', () => extractDocument(cage).mesh) : cage;
-  const target = read(caller, 'target', document, () => extractDocument(document));
+  const target = read(caller, 'target', document, () => extractDocument(document, 'own'));
+  const { origin } = target;
+  const source = isDocument(cage)
+    ? within(caller, 'cage', () => extractDocument(cage, origin).mesh)
+    : moved(cage, origin);
   const model = new DocumentModel(document, target.parts);
   const masks = within(caller, 'target', () => masksOf(model, own.masks, { images: maskImages, colors: maskColors }));
   const rules = { ...own, masks };
