@@ -75,6 +75,18 @@ test('a model far from the origin is read, inspected and given a cage as one at 
   assert.match(await ok('inspect far-target.glb --cage far-made.glb'), /^(GOOD|USABLE)/m);
 });
 
+test('vertices that no triangle uses are no segments of reports', async () => {
+  const spare = Array.from({ length: 3000 }, (_, i) => target.positions[i % 100]! / 2);
+  const positions = Float32Array.from([...target.positions, ...spare]);
+  write('spare.glb', glbOf({ positions, indices: target.indices }));
+  for (const command of ['transfer', 'inspect']) {
+    const [without, report] = await Promise.all(
+      ['target', 'spare'].map((name) => json<Report>(`${command} ${name}.glb --cage cage.glb`)),
+    );
+    assert.deepEqual(report!.segments, without!.segments);
+  }
+});
+
 test('the preset and single options are obeyed', async () => {
   const painted = (options: object) => transfer(cage, target, options).cosmeticTriangles.filter(Boolean).length;
   for (const [flags, options] of [

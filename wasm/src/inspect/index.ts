@@ -22,7 +22,7 @@ import { checkNormals, facingOutward, orientationOf } from './normals.js';
 import { checkPlacement, type Placement, placementOf } from './placement.js';
 import { reverse } from './reverse.js';
 import { type PartName, sceneOf } from './scene.js';
-import { checkSegments, type Segment, segmentsOf } from './segments.js';
+import { checkSegments, hasArea, type Segment, segmentsOf } from './segments.js';
 import { checkTopology, type Topology, topologyOf } from './topology.js';
 import { checkUvs, type UvLayout, uvLayoutOf } from './uv.js';
 
@@ -50,7 +50,7 @@ export interface Inspection {
   uv: UvLayout;
   /** The cage's holes, the largest first. */
   holes: Hole[];
-  /** In the order of their numbers. */
+  /** Those that have an area, in the order of their numbers. */
   segments: Segment[];
 }
 
@@ -135,7 +135,7 @@ function outcomeOf(fn: string, cage: Mesh, target: Mesh, given: InspectOptions =
     ...checkHoles(holes, segments),
     ...checkSegments(scene, segments, options.locks),
   ];
-  return { scene, orientation, findings, placement, inside, holes, segments };
+  return { scene, orientation, findings, placement, inside, holes, segments: segments.filter(hasArea) };
 
   // One cause, one finding: everything else is judged as if inward-facing triangles were flipped.
   function uprightScene() {

@@ -14,11 +14,16 @@ const kMinCosmetic = 0.02;
 
 /** A connected component of the target. */
 export interface Segment extends Omit<SegmentStats, 'depth' | 'ratios' | 'score'> {
+  /** Its number in `result.segments`. */
+  segment: number;
   /** The part of its first vertex. */
   part: string;
   /** The ratio of actual to required area: kept from 1 on, unless a lock decides. `null` if no area is required. */
   score: number | null;
 }
+
+/** Whether a segment is more than a vertex without a triangle, of which files may have hundreds of thousands. */
+export const hasArea = ({ area }: Pick<Segment, 'area'>): boolean => area > 0;
 
 /** The segments in the order of their numbers, with the parts they belong to. */
 export function segmentsOf({ parts, result }: Pick<Scene, 'parts' | 'result'>): Segment[] {
@@ -27,6 +32,7 @@ export function segmentsOf({ parts, result }: Pick<Scene, 'parts' | 'result'>): 
   for (let v = result.segments.length - 1; v >= 0; --v) partOfSegment[result.segments[v]!] = partOf[v]!;
   return result.segmentStats.map(
     ({ points, group, area, beyondArea, exposedArea, coveredArea, coverage, score, culled, culledBy }, s) => ({
+      segment: s,
       part: parts[partOfSegment[s]!]?.name ?? '',
       group,
       points,

@@ -99,12 +99,12 @@ const kFates: Record<Segment['culledBy'], string> = {
 
 /** The segments with the largest exposed areas, as a table. @param most  How many. */
 export function segmentTable(segments: readonly Segment[], most: number): string[][] {
-  const largest = [...segments.entries()].sort(([a, one], [b, other]) => other.exposedArea - one.exposedArea || a - b);
+  const largest = [...segments].sort((a, b) => b.exposedArea - a.exposedArea || a.segment - b.segment);
   return [
     ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
-    ...largest.slice(0, most).map(([s, { part, points, exposedArea, coveredArea, coverage, score, culledBy }]) => [
+    ...largest.slice(0, most).map(({ segment, part, points, exposedArea, coveredArea, coverage, score, culledBy }) => [
       part,
-      String(s),
+      String(segment),
       integer(points),
       short(exposedArea),
       short(coveredArea),

@@ -3,7 +3,7 @@ import type { Added } from '../../gltf/write-transfer.js';
 import type { SegmentStats, TransferResult } from '../../index.js';
 import { vertexAreas } from '../../inspect/geometry.js';
 import type { Finding, Segment, Verdict } from '../../inspect/index.js';
-import { segmentsOf } from '../../inspect/segments.js';
+import { hasArea, segmentsOf } from '../../inspect/segments.js';
 import type { Borders } from '../../parts/borders-option.js';
 import type { Region, TransferCommand } from '../model/sources.js';
 import type { PerZone } from '../model/zones.js';
@@ -40,7 +40,7 @@ export interface Report {
    * target as it was read.
    */
   cut: { vertices: number; counts: PerZone; triangles: Triangles } | null;
-  /** Every connected component of the target, in the order of their first vertices. */
+  /** Every connected component of the target that has an area, in the order of their first vertices. */
   segments: (Segment & Pick<SegmentStats, 'depth'> & { vertices: number })[];
   /**
    * Every primitive of every node, in scene order. `uvSet` is the added attribute, `splitVertices` the number of vertices that were
@@ -140,11 +140,13 @@ export function makeReport(command: TransferCommand, { run, shown, cut, ...rest 
 function segmentReports(parts: readonly Part[], result: TransferResult): Report['segments'] {
   const vertices = new Uint32Array(result.segmentStats.length);
   for (const s of result.segments) ++vertices[s]!;
-  return segmentsOf({ parts, result }).map((segment, s) => ({
-    ...segment,
-    vertices: vertices[s]!,
-    depth: result.segmentStats[s]!.depth,
-  }));
+  return segmentsOf({ parts, result })
+    .filter(hasArea)
+    .map((segment) => ({
+      ...segment,
+      vertices: vertices[segment.segment]!,
+      depth: result.segmentStats[segment.segment]!.depth,
+    }));
 }
 
 function partReport(part: Part, { zones }: TransferResult, added: Added | undefined): Report['parts'][number] {
