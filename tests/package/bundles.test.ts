@@ -21,7 +21,7 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'applyTransferAsync',
-    16_200,
+    18_000,
     "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [

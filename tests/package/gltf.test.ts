@@ -224,6 +224,29 @@ describe('document.transform(cagecast(…))', () => {
     }
   });
 
+  test('the option parts says what counts; what is left out gets nothing', async () => {
+    const maker = new GlbMaker();
+    for (const name of ['head', 'Visor', 'Head_Att']) maker.node({ name, mesh: maker.mesh(target) });
+    const document = await documentOf(maker.finish());
+    const left: string[] = [];
+    await document.transform(
+      cagecast({
+        cage,
+        texture,
+        parts: (_, node, isDrawn) => isDrawn && node.getName() !== 'Visor',
+        onResult: (_, parts, leftOut) => void left.push(...[...parts, ...leftOut].map(({ name }) => name)),
+      }),
+    );
+    assert.deepEqual(left, ['head', 'Visor', 'Head_Att']);
+    assert.deepEqual(
+      document
+        .getRoot()
+        .listMeshes()
+        .map((mesh) => mesh.listPrimitives().map((one) => one.getAttribute('_NCZ') !== null)),
+      [[true, false], [false], [false]],
+    );
+  });
+
   test('a mesh that two nodes show, one of them mirrored, becomes one for each; what another scene shows stays', async () => {
     const document = await documentOf(shared());
     const [left, right] = document.getRoot().listNodes();
@@ -232,7 +255,7 @@ describe('document.transform(cagecast(…))', () => {
     document.createScene('other').addChild(other);
     let names: string[] = [];
     const onResult = (_: TransferResult, parts: { name: string }[]) => (names = parts.map(({ name }) => name));
-    await document.transform(cagecast({ cage, texture, onResult: (...all) => void onResult(...all) }));
+    await document.transform(cagecast({ cage, texture, onResult: (result, parts) => void onResult(result, parts) }));
     assert.deepEqual(names, ['left', 'right', 'upper']);
     const all = [left!, right!].map((node) => node.getMesh()!.listPrimitives());
     assert.deepEqual(
@@ -343,6 +366,8 @@ describe('document.transform(cagecast(…))', () => {
       [{ texture: new Uint8Array(100) }, /^cagecast: texture: is neither a PNG nor a JPEG image/],
       [{ texture: texture.subarray(0, 50) }, /^cagecast: texture: is truncated/],
       [{ texture: texture.buffer }, /^cagecast: texture is of type ArrayBuffer, not a Uint8Array$/],
+      [{ parts: 'head' }, /^cagecast: parts is "head", not a function$/],
+      [{ parts: () => false }, /^cagecast: target: all parts are left out: "only" \(ignored\); the option parts says/],
       [{ maskImages: { nevr: 1 } }, /^cagecast: maskImages is .*, not \{ never, always \}/],
       [{ threshold: 2 }, /threshold = 2/, 'badOption'],
       [

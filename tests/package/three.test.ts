@@ -5,6 +5,8 @@ import { classify, init, type Mesh, project, type TransferResult, transfer, Zone
 import { type ApplyOptions, applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
 import { terminate } from 'cagecast/worker';
 import {
+  ArrowHelper,
+  BackSide,
   BatchedMesh,
   Bone,
   BoxGeometry,
@@ -90,6 +92,64 @@ describe('extract', () => {
     assert.deepEqual([...new Set(one.mesh.groups)], [0]);
   });
 
+  test('what three.js does not draw is left out, unless the option parts says otherwise', () => {
+    const skin = meshOf(scene.target);
+    const part = (change: (mesh: typeof skin) => void, around?: Object3D) => {
+      const mesh = meshOf(scene.target);
+      change(mesh);
+      return around?.add(mesh) ?? mesh;
+    };
+    const root = new Group().add(
+      skin,
+      part((mesh) => void (mesh.visible = false)),
+      part(() => {}, Object.assign(new Group(), { visible: false })),
+      part(({ material }) => void (material.visible = false)),
+      part(({ material }) => void Object.assign(material, { transparent: true, opacity: 0 })),
+      part(({ material }) => void Object.assign(material, { alphaTest: 0.5, opacity: 0.4 })),
+      part((mesh) => void Object.assign(mesh.scale.setScalar(1.01) && mesh.material, { side: BackSide })),
+      part((mesh) => void (mesh.name = 'Head_OuterCage')),
+      part(() => {}, new ArrowHelper()),
+    );
+    // Who gives a root means it.
+    root.visible = false;
+    const { mesh, leftOut } = extract(root);
+    assert.deepEqual(mesh, extract(skin).mesh);
+    const reasons = [...new Set(leftOut.map(({ why }) => why))];
+    const counts = reasons.map((reason) => [reason, leftOut.filter(({ why }) => why === reason).length]);
+    assert.deepEqual(counts, [
+      ['hidden', 3],
+      ['transparent', 2],
+      ['outline', 1],
+      ['name', 1],
+    ]);
+    const all = applyTransfer(root, cage(), { parts: () => true });
+    assert.equal(all.parts.length, 8);
+    const { parts, leftOut: others } = applyTransfer(root, cage(), {
+      parts: (one, isDrawn) => (isDrawn && one !== skin) || !one.visible,
+    });
+    assert.deepEqual([parts.length, others[0]!.why, others[0]!.mesh === skin], [1, 'ignored', true]);
+    assert.equal(
+      extract(
+        part((one) => void (one.name = 'Head_OuterCage')),
+        'cage',
+      ).parts.length,
+      1,
+    );
+  });
+
+  test('accessories stay bare, unless all is such or locks say otherwise', () => {
+    const [skin, hat] = [meshOf(scene.target), meshOf(ball([0, 0.9, 0], () => 0.05, 8, 12))];
+    hat.name = 'Wolf3D_Headwear';
+    const painted = (target: Object3D, options = {}) => {
+      const { result, parts } = applyTransfer(target, cage(), options);
+      return parts.map(({ firstVertex }) => result.segmentStats[result.segments[firstVertex]!]!.culledBy);
+    };
+    const both = () => new Group().add(skin.clone(), hat.clone());
+    assert.deepEqual(painted(both()).at(-1), 'lock');
+    assert.notEqual(painted(both(), { locks: { groups: { 1: 'keep' } } }).at(-1), 'lock');
+    assert.notEqual(painted(hat.clone())[0], 'lock');
+  });
+
   test('posed and placed figures are taken in their bind pose, wherever they stand', async () => {
     const load = async (name: string) => {
       const { bytes } = gltfFiles.find((file) => file.name === name)!;
@@ -164,6 +224,11 @@ test('arguments that are none, and models that cannot be read, are errors that n
     [() => apply(new Group(), cage()), /has no vertices/, 'emptyMesh'],
     [() => extract(flat), /target: "geometry" has positions of 2 numbers, not 3/],
     [() => extract(few), /target: "long name [^"]*…" has 5 heat for \d+ vertices/],
+    [
+      () => extract(new Group().add(Object.assign(meshOf(scene.target), { visible: false, name: 'head' }))),
+      /^cagecast\/three: target: all parts are left out: "head" \(hidden\); the option parts says which count$/,
+    ],
+    [() => apply(target, cage(), { parts: 'head' }), /options\.parts is "head", not a function/, 'badOption'],
     [() => extract(new Group().add(new BatchedMesh(2, 99, 99, target.material))), whole],
     [() => extract(new ThreeMesh(instanced, target.material)), whole],
     [() => applied.setOpacity(2), /^setOpacity: opacity is 2, not a number from 0 to 1/],

@@ -7,7 +7,7 @@ import { presetOptions, transfer } from 'cagecast';
 import { PNG } from 'pngjs';
 import { fails, json, ok, run } from '../../support/command.js';
 import { type GlbMaker, glbOf } from '../../support/gltf.js';
-import { head } from '../scenes.js';
+import { ball, head } from '../scenes.js';
 import { modelsLike, workplace, write, writeMade } from './workplace.js';
 
 const models = modelsLike(/lizard|misaligned/);
@@ -20,7 +20,7 @@ interface Report {
   areas: Record<'total' | 'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
   segments: (Record<'points' | 'vertices', number> & { culled: boolean; culledBy: string; part: string })[];
   parts: { name: string; place: string; vertices: number; uvSet: string | null; splitVertices: number | null }[];
-  target: { vertices: number; triangles: number };
+  target: { vertices: number; triangles: number; leftOut: { name: string; why: string }[]; bare: string[] };
   triangles: { total: number; cosmetic: number };
   stretch: Record<'median' | 'p95' | 'overTwice', number>;
   options: { occlusionReach: unknown; keep: string[]; exclude: string[] };
@@ -57,7 +57,7 @@ test('reports the result of the package', async () => {
   assert.ok(Math.abs(sum - areas.total) < 1e-9 * areas.total);
   const [part, ...others] = parts.map((one) => [one.name, one.place, one.vertices, one.uvSet, one.splitVertices]);
   assert.deepEqual([part, others], [['only', 'meshes[0].primitives[0]', found.vertices, null, null], []]);
-  assert.deepEqual(options, { preset: 'default', ...presetOptions(), keep: [], exclude: [], config: null });
+  assert.deepEqual(options, { preset: 'default', ...presetOptions(), keep: [], exclude: [], ignore: [], config: null });
   assert.match(versions.cagecast, /^\d+\.\d+\.\d+/);
   assert.ok(timings.total > 0);
 });
@@ -129,6 +129,59 @@ test('--keep and --exclude take a node that holds others for all below it, unles
     assert.deepEqual(await culledIn(`${holding} --exclude ${name}`, ['head', 'eye', 'tongue'], 'lock'), culled, name);
   const both = 'holding.glb: --keep tongue and --exclude Face both match "tongue"';
   await fails(1, both, `${holding} --exclude Face --keep tongue`);
+});
+
+/** A head under a visor, with an outfit that is hidden, a hat and a cage for it. */
+function dressed(maker: GlbMaker): void {
+  const off = { extensions: { KHR_node_visibility: { visible: false } } };
+  maker.node({ name: 'head', mesh: meshOf(maker, 0) });
+  maker.node({ name: 'Visor', mesh: maker.mesh(ball([0, 0, 0], () => 1.12, 12, 24)) });
+  maker.node({ name: 'Outfit', mesh: maker.mesh(ball([0, 0, 0], () => 1.13, 12, 24)), ...off });
+  maker.node({ name: 'StrawHat', mesh: maker.mesh(ball([0, 0, 1.05], () => 0.04, 6, 9)) });
+  maker.node({ name: 'head_OuterCage', mesh: maker.mesh(cage) });
+  maker.json.extensionsUsed = ['KHR_node_visibility'];
+}
+
+test('what is not drawn is left out, and what --ignore names; hats stay bare', async () => {
+  writeMade('dressed.glb', dressed);
+  const line = 'transfer dressed.glb --cage cage.glb';
+  const partsOf = async (flags = '') => {
+    const { target, parts } = await json<Report>(`${line} --keep head${flags}`);
+    return [parts.map(({ name }) => name), target.leftOut.map(({ name, why }) => `${name}: ${why}`), target.bare];
+  };
+  const [cage, outfit] = ['head_OuterCage: name', 'Outfit: hidden'];
+  assert.deepEqual(await partsOf(), [['head', 'Visor', 'StrawHat'], [outfit, cage], ['StrawHat']]);
+  assert.deepEqual(await partsOf(' --ignore Vis* --keep *Hat'), [
+    ['head', 'StrawHat'],
+    ['Visor: ignored', outfit, cage],
+    [],
+  ]);
+  assert.deepEqual(await partsOf(' --ignore head_* --ignore '), [
+    ['head', 'Visor', 'Outfit', 'StrawHat'],
+    [cage],
+    ['StrawHat'],
+  ]);
+  const painted = async (flags: string) => (await json<Report>(`${line}${flags}`)).areas.cosmetic;
+  assert.ok((await painted(' --ignore Visor')) > 2 * (await painted(' --exclude Visor --preset paper')));
+  assert.match(
+    await ok(`inspect dressed.glb --cage cage.glb --ignore Visor`),
+    /^left out: "Visor" \(ignored\), "Outfit" \(hidden\), "head_OuterCage" \(a cage, marker or [^)]+\)\nbare by their names, unless --keep names them: StrawHat$/m,
+  );
+  await fails(
+    1,
+    /dressed\.glb: --ignore Hat: no node or material has this name; there are: head, Visor/,
+    `${line} --ignore Hat`,
+  );
+  await fails(
+    1,
+    /--keep Outfit: no node or material has this name; .*; left out: "Outfit" \(hidden\)/,
+    `${line} --keep Outfit`,
+  );
+  await fails(
+    1,
+    /^cagecast: dressed\.glb: all parts are left out: "head" \(ignored\), .*; --ignore '' takes what is not drawn, too$/m,
+    `${line} --ignore *`,
+  );
 });
 
 interface Inspection {

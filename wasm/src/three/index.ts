@@ -7,6 +7,7 @@ import type { BufferGeometry, Object3D } from 'three';
 import type { TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import type { CutPart } from '../parts/cut-part.js';
+import { type LeftOut, withBare } from '../parts/drawn.js';
 import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
@@ -20,7 +21,7 @@ import {
   transferOptions,
 } from './apply/apply-options.js';
 import { cutGeometry } from './apply/cut-geometry.js';
-import { type Extracted, extract, type Part } from './apply/extract-scene.js';
+import { type Extracted, extract, type Part, type PartsOption } from './apply/extract-scene.js';
 import { atOnce } from './apply/remake.js';
 import { checkSaved, deserialize, keyOf, remember, serialize } from './apply/saved-transfer.js';
 import { zoneAttribute } from './apply/shown-parts.js';
@@ -47,8 +48,10 @@ export {
   deserialize,
   type Extracted,
   extract,
+  type LeftOut,
   type Part,
   type PartRange,
+  type PartsOption,
   type Prepared,
   type Saved,
   type SplitPart,
@@ -145,9 +148,10 @@ function read(
   options: ApplyOptions,
 ): Call {
   const cuts = isCut(fn, options.borders);
-  const extracted = extract(target);
-  const { saved, result } = options;
-  const rules = transferOptions(options);
+  const { saved, result, parts } = options;
+  const extracted = extract(target, 'target', parts);
+  const own = transferOptions(options);
+  const rules = { ...own, locks: withBare(extracted.accessories, own.locks) };
   const needsCage = !saved && (cuts || !result);
   const around = needsCage ? extract(cage!, 'cage').mesh : undefined;
   if (result) checkResult(result, extracted);

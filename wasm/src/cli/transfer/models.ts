@@ -1,6 +1,15 @@
 import { cageGlb } from '../../cages/cage-glb.js';
 import type { Cage } from '../../cages/types.js';
-import { type Extracted, extract, type Part, partOf, primitivePath, uvLayout } from '../../gltf/extract-file.js';
+import {
+  allParts,
+  type Extracted,
+  extract,
+  type Part,
+  partOf,
+  primitivePath,
+  uvLayout,
+  type WhichCount,
+} from '../../gltf/extract-file.js';
 import type { ReadOptions } from '../../gltf/files.js';
 import { InputError } from '../../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../../gltf/read-gltf.js';
@@ -14,11 +23,24 @@ export interface ReadModel {
   extracted: Extracted;
 }
 
-/** Reads a model. @param bytes  Its content, if it is known already. @throws {InputError} that names the file. */
-export async function readModel(path: string, reading: ReadOptions, io: Io, bytes?: Uint8Array): Promise<ReadModel> {
+/** How a model is read. */
+interface ModelOptions {
+  /** Its content, if it is known already. */
+  bytes?: Uint8Array | undefined;
+  /** Default: all parts, as of a cage. */
+  whichCount?: WhichCount;
+}
+
+/** Reads a model. @throws {InputError} that names the file. */
+export async function readModel(
+  path: string,
+  reading: ReadOptions,
+  io: Io,
+  { bytes, whichCount = allParts }: ModelOptions = {},
+): Promise<ReadModel> {
   io.step(`reading ${path}`);
   const file = await readGltf(path, reading, bytes);
-  const extracted = extract(file);
+  const extracted = extract(file, whichCount);
   if (extracted.mesh.indices.length > 0) return { file, extracted };
   const what = (file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene';
   throw new InputError(`has no ${what}; at least one triangle is needed`).in(path);
@@ -56,7 +78,7 @@ export function withUvs(model: ReadModel): ReadModel {
 /** A cage as if it was read from a file. */
 export async function readBack(cage: Cage, path: string): Promise<ReadModel> {
   const file = await readGltf(path, undefined, cageGlb(cage));
-  return { file, extracted: extract(file) };
+  return { file, extracted: extract(file, allParts) };
 }
 
 /** Calls the core for two models. @throws {InputError} that names the file at fault and the place in it. */

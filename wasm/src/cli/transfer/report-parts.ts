@@ -2,6 +2,7 @@
 import { presetOptions, type TransferResult } from '../../index.js';
 import { percent } from '../../inspect/finding.js';
 import { boxOf } from '../../inspect/geometry.js';
+import { leftOutText } from '../../parts/drawn.js';
 import type { Sources } from '../model/sources.js';
 import { integer, type Line, listed, table } from '../model/text.js';
 import { kZoneNames, type PerZone } from '../model/zones.js';
@@ -10,20 +11,23 @@ import type { Run } from './run-transfer.js';
 
 export const versions = () => ({ cagecast: CAGECAST_VERSION, node: process.versions.node });
 
-/** What a report says of a target. */
-export const targetReport = (file: string, { extracted: { mesh } }: ReadModel) => ({
+/** What a report says of a target; with the parts that are left out, and those that stay bare by their names. */
+export const targetReport = (file: string, { target: { extracted }, bare = [] }: Run) => ({
   file,
-  vertices: mesh.positions.length / 3,
-  triangles: mesh.indices.length / 3,
-  diagonal: boxOf(mesh.positions).diagonal,
+  vertices: extracted.mesh.positions.length / 3,
+  triangles: extracted.mesh.indices.length / 3,
+  diagonal: boxOf(extracted.mesh.positions).diagonal,
+  leftOut: extracted.leftOut,
+  bare,
 });
 
-/** What a report says of a cage; of one that was made on the way, also the names of the parts that are not painted because of them. */
-export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { excluded }: Run) => ({
+export type TargetReport = ReturnType<typeof targetReport>;
+
+/** What a report says of a cage. */
+export const cageReport = (file: string, { extracted: { mesh } }: ReadModel) => ({
   file,
   vertices: mesh.positions.length / 3,
   triangles: mesh.indices.length / 3,
-  ...(excluded && { excluded }),
 });
 
 export type CageReport = ReturnType<typeof cageReport>;
@@ -38,13 +42,15 @@ export const zoneTable = (counts: PerZone, areas: PerZone, total = 1): string[] 
 /** How many names a line has at most. */
 const kMaxNames = 12;
 
-/** Says which parts a cage was made without, if there are any. */
-export const excludedLine = ({ excluded = [] }: CageReport): Line =>
-  excluded.length > 0 && `excluded from the cage by their names: ${listed(excluded, kMaxNames)}`;
+/** Says which parts are left out or stay bare without a flag that says so, if there are any. */
+export const leftOutLines = ({ leftOut, bare }: TargetReport): Line[] => [
+  leftOut.length > 0 && `left out: ${leftOutText(leftOut)}`,
+  bare.length > 0 && `bare by their names, unless --keep names them: ${listed(bare, kMaxNames)}`,
+];
 
 /** All options that a transfer was made with; needs `init`. */
 export function effectiveOptions({
-  rules: { preset, single, names, masks, config },
+  rules: { preset, single, names, ignored, masks, config },
   uvBounds,
   referenceCage,
 }: Pick<Sources, 'rules' | 'uvBounds' | 'referenceCage'>) {
@@ -61,6 +67,7 @@ export function effectiveOptions({
     ...Object.fromEntries(infinite),
     keep: patterns('keep'),
     exclude: patterns('exclude'),
+    ignore: ignored.map(({ pattern }) => pattern),
     masks: (never ?? always ?? colors) ? { never: never?.path, always: always?.path, colors } : undefined,
     uvBounds,
     referenceCage,

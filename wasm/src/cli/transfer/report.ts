@@ -8,13 +8,21 @@ import type { Borders } from '../../parts/borders-option.js';
 import type { Region, TransferCommand } from '../model/sources.js';
 import type { PerZone } from '../model/zones.js';
 import { countOf, type RegionRun } from './region.js';
-import { type CageReport, cageReport, effectiveOptions, perZone, targetReport, versions } from './report-parts.js';
+import {
+  type CageReport,
+  cageReport,
+  effectiveOptions,
+  perZone,
+  type TargetReport,
+  targetReport,
+  versions,
+} from './report-parts.js';
 import { type Stretch, stretchOf } from './stretch.js';
 
 /** The JSON report of a transfer. Areas are in squared units of the target; lengths in its units. */
 export interface Report {
   versions: ReturnType<typeof versions>;
-  target: ReturnType<typeof targetReport>;
+  target: TargetReport;
   cage: CageReport;
   texture: string | null;
   output: string | null;
@@ -97,8 +105,8 @@ export function makeReport(command: TransferCommand, { run, shown, cut, ...rest 
   const areas = vertexAreas(mesh);
   return {
     versions: versions(),
-    target: targetReport(command.target, target),
-    cage: cageReport(command.cage, run.cage, run),
+    target: targetReport(command.target, run),
+    cage: cageReport(command.cage, run.cage),
     texture: command.texture ?? null,
     output: command.output ?? null,
     borders: command.borders,

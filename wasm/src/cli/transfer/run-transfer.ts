@@ -19,6 +19,7 @@ import { withinBounds, withoutLacking } from './cage-area.js';
 import { makeCageFor, partsLeftOut } from './made-cage.js';
 import { inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
 import { transferOptions } from './part-names.js';
+import { readTarget } from './read-target.js';
 
 /** Two models, and what was transferred. */
 export interface Run {
@@ -26,8 +27,8 @@ export interface Run {
   cage: ReadModel;
   /** The cage before its UVs were moved to those of the texture. */
   wholeCage: ReadModel;
-  /** The names of the parts that the cage was made without, if it was made on the way. */
-  excluded?: readonly string[] | undefined;
+  /** The names of the parts that stay bare because of their names. */
+  bare?: readonly string[] | undefined;
   /** What `transfer` was called with. */
   options: TransferOptions;
   result: TransferResult;
@@ -45,19 +46,20 @@ export async function runTransfer(
   readCage: typeof readModel = readModel,
   read?: ReadModel,
 ): Promise<Run> {
-  const target = read ?? (await readModel(path, reading, io));
+  const target = read ?? (await readTarget(path, reading, io, rules.ignored));
   const masks = await readMasks(target, rules.masks, reading);
   const isMade = cage === kAutoCage;
-  const leftOut = isMade ? await partsLeftOut(target) : [];
-  const options = { ...transferOptions(rules, target, leftOut), ...(masks && { masks }) };
+  const { parts, accessories } = target.extracted;
+  const named = isMade ? await partsLeftOut(target) : [];
+  const isBare = parts.map((_, p) => named[p] === true || accessories.includes(p));
+  const options = { ...transferOptions(rules, target, isBare), ...(masks && { masks }) };
   const cageOf = async (file: string) => withUvs(await readCage(file, reading, io));
   const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage) : await cageOf(cage);
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
   const wholeCage = withoutLacking(whole, reference);
   const run = await transferModels(target, withinBounds(wholeCage, uvBounds), options, io);
-  const isLeftOut = (p: number) => leftOut[p] && options.locks?.groups?.[p] !== 'keep';
-  const names = target.extracted.parts.filter((_, p) => isLeftOut(p)).map(({ name }) => name);
-  return { ...run, wholeCage, excluded: isMade ? [...new Set(names)] : undefined };
+  const names = parts.filter((_, p) => isBare[p] && options.locks?.groups?.[p] !== 'keep').map(({ name }) => name);
+  return { ...run, wholeCage, bare: [...new Set(names)] };
 }
 
 /** The masks of a target. @throws {InputError} that names the file at fault. */

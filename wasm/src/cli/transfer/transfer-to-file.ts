@@ -11,7 +11,7 @@ import { inspectionReport, isWorse } from './inspection.js';
 import type { readModel } from './models.js';
 import { compressionOf, transferRegion } from './region.js';
 import { makeReport, type Report, regionReport } from './report.js';
-import { excludedLine, zoneTable } from './report-parts.js';
+import { leftOutLines, zoneTable } from './report-parts.js';
 
 /**
  * Runs the transfer and writes the requested files.
@@ -65,7 +65,7 @@ export async function transferToFile(
 
 /** The report for people. */
 function summary(command: TransferCommand, report: Report): Line[] {
-  const { target, cage, counts, areas, triangles, cut, segments, regions, timings, output } = report;
+  const { target, counts, areas, triangles, cut, segments, regions, timings, output } = report;
   const culled = segments.filter((segment) => segment.culled).length;
   const { outOfBounds = 0 } = cut?.triangles ?? triangles;
   const cutText = cut ? `; cut along borders, ${shareOf(cut.triangles)}` : '';
@@ -78,7 +78,7 @@ function summary(command: TransferCommand, report: Report): Line[] {
     ...(output === null ? [] : outputLines(output, report)),
     ...regions.map((one) => `${one.cage}: ${shareOf(one.triangles)} triangles more may be painted, by ${one.texture}`),
     command.report !== undefined && `wrote ${command.report}`,
-    excludedLine(cage),
+    ...leftOutLines(target),
     configLine(command.rules.config),
     output === null &&
       command.report === undefined &&

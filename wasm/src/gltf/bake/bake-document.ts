@@ -4,6 +4,7 @@ import type { Mesh, TransferOptions } from '../../index.js';
 import { type Borders, isCut } from '../../parts/borders-option.js';
 import { addTransfer } from '../document/add-transfer.js';
 import { removeOverlays } from '../document/earlier-in-document.js';
+import type { PartsOption } from '../document/extract-document.js';
 import { ofArgument, transferDocument, wrong } from '../document/transfer-document.js';
 import type { MaskSources } from './mask-sources.js';
 import { type BakeReport, bakeModel, type ImageCodec, type Paints, type Slot, slots } from './plan.js';
@@ -25,6 +26,8 @@ export interface BakeOptions extends TransferOptions, MaskSources {
    * hold the paint get an overlay. Default: the geometry stays as it is, and such parts are not painted.
    */
   texture?: Uint8Array | undefined;
+  /** Which primitives are painted. Default: what a viewer draws; see `cagecast`. */
+  parts?: PartsOption | undefined;
   /** Called with what was done. */
   onBaked?: ((report: BakeReport) => void) | undefined;
 }

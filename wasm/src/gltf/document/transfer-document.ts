@@ -10,16 +10,18 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
+import { withBare } from '../../parts/drawn.js';
 import { type MaskSources, masksOf } from '../bake/mask-sources.js';
 import { InputError } from '../input-error.js';
 import { type Paint, paintOf } from '../overlay.js';
 import { DocumentModel } from './document-model.js';
-import { type ExtractedDocument, extractDocument } from './extract-document.js';
+import { allParts, type ExtractedDocument, extractDocument, type PartsOption } from './extract-document.js';
 
 /** Options of a transfer from a cage to a document. */
 interface DocumentTransferOptions extends TransferOptions, MaskSources {
   cage: Document | Mesh;
   texture?: Uint8Array | undefined;
+  parts?: PartsOption | undefined;
 }
 
 /** A transfer to a document, which is not changed by it. */
@@ -43,19 +45,20 @@ export async function transferDocument(
   options: DocumentTransferOptions,
   cuts: boolean,
 ): Promise<DocumentTransfer> {
-  const { cage, texture, maskImages, maskColors, ...own } = options;
+  const { cage, texture, parts, maskImages, maskColors, ...own } = options;
   if (typeof cage !== 'object' || cage === null) throw wrong(caller, 'cage', cage, 'a document or a mesh');
   if (texture !== undefined && !(texture instanceof Uint8Array))
     throw wrong(caller, 'texture', texture, 'a Uint8Array');
+  if (parts !== undefined && typeof parts !== 'function') throw wrong(caller, 'parts', parts, 'a function');
   if (Object.keys(maskImages ?? {}).some((name) => name !== 'never' && name !== 'always'))
     throw wrong(caller, 'maskImages', maskImages, '{ never, always }');
   await init();
   const paint = texture && within(caller, 'texture', () => paintOf(texture));
-  const source = isDocument(cage) ? within(caller, 'cage', () => extractDocument(cage).mesh) : cage;
-  const target = read(caller, 'target', document, () => extractDocument(document));
+  const source = isDocument(cage) ? within(caller, 'cage', () => extractDocument(cage, allParts).mesh) : cage;
+  const target = read(caller, 'target', document, () => extractDocument(document, parts));
   const model = new DocumentModel(document, target.parts);
   const masks = within(caller, 'target', () => masksOf(model, own.masks, { images: maskImages, colors: maskColors }));
-  const rules = { ...own, masks };
+  const rules = { ...own, masks, locks: withBare(target.accessories, own.locks) };
   const result = transfer(source, target.mesh, rules);
   return { target, model, result, cut: cuts ? cutBorders(source, target.mesh, result, rules) : undefined, paint };
 }

@@ -1,9 +1,12 @@
 import {
+  BackSide,
   type BufferAttribute,
   type BufferGeometry,
+  FrontSide,
   type InstancedBufferAttribute,
   type InstancedMesh,
   type InterleavedBufferAttribute,
+  type Material,
   Matrix4,
   type Object3D,
   type SkinnedMesh,
@@ -12,6 +15,7 @@ import {
 } from 'three';
 import { show } from '../../core/error.js';
 import type { CagecastError, Mesh } from '../../index.js';
+import { chooseParts, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
 import { movePoints } from '../../parts/points.js';
 import { type Skinned, skinMatrices } from '../../parts/skin.js';
 import { transformUvs } from '../../parts/uv-transform.js';
@@ -38,7 +42,20 @@ export interface Extracted {
   mesh: Mesh & { indices: Uint32Array; groups: Uint32Array };
   /** In the order of their vertices. */
   parts: Part[];
+  /** The meshes that are left out, and why. */
+  leftOut: (LeftOut & { mesh: ThreeMesh })[];
+  /** The numbers in `groups` of what a figure wears or carries, by its name. `applyTransfer` leaves it bare. */
+  accessories: number[];
 }
+
+/**
+ * Says which meshes are painted; the others hide nothing.
+ * @param isDrawn  Whether three.js draws it, and its name is not that of a cage, a marker or a collision shape.
+ */
+export type PartsOption = (mesh: ThreeMesh, isDrawn: boolean) => boolean;
+
+/** All meshes, as of a cage, which is mostly hidden. */
+export const allParts: PartsOption = () => true;
 
 const identity = new Matrix4();
 
@@ -50,10 +67,15 @@ const identity = new Matrix4();
  * morph targets are not applied. An instanced mesh is taken once, where its first instance is. Each mesh, or each of its material
  * groups, is a group.
  * @param argument  The name of the argument, for messages.
+ * @param isMeant   Which meshes count. Default: what is drawn; of the argument `cage`, all
  * @throws {CagecastError} that names the part and the element.
  */
-export function extract(object: Object3D | BufferGeometry, argument = 'target'): Extracted {
-  const parts = listParts(object, argument);
+export function extract(
+  object: Object3D | BufferGeometry,
+  argument = 'target',
+  isMeant: PartsOption | undefined = argument === 'cage' ? allParts : undefined,
+): Extracted {
+  const { parts, leftOut, accessories } = listParts(object, argument, isMeant);
   const [vertices, triangles] = endOf(parts);
   const positions = new Float32Array(3 * vertices);
   const indices = new Uint32Array(3 * triangles);
@@ -65,7 +87,11 @@ export function extract(object: Object3D | BufferGeometry, argument = 'target'):
     group = placeGroups(part, groups, group);
   }
   const uvs = readUvs(parts, vertices, argument);
-  return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts };
+  const bare = accessories.flatMap((p) => {
+    const { firstVertex, vertexCount } = parts[p]!;
+    return [...new Set(groups.subarray(firstVertex, firstVertex + vertexCount))];
+  });
+  return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts, leftOut, accessories: bare };
 }
 
 /** Where the next part begins: how many vertices and triangles there are before it. */
@@ -76,7 +102,11 @@ function endOf(parts: readonly Part[]): [vertices: number, triangles: number] {
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
-function listParts(object: Object3D | BufferGeometry, argument: string): Part[] {
+function listParts(
+  object: Object3D | BufferGeometry,
+  argument: string,
+  isMeant: PartsOption | undefined,
+): Pick<Extracted, 'parts' | 'leftOut' | 'accessories'> {
   if (!isGeometry(object) && !isObject(object)) {
     throw wrong(
       `${argument} is ${show(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
@@ -117,7 +147,7 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   };
   if (isGeometry(object)) {
     add(object.name || 'geometry', undefined, object, identity);
-    return parts;
+    return { parts, leftOut: [], accessories: [] };
   }
   object.updateWorldMatrix(true, true);
   const meshes: ThreeMesh[] = [];
@@ -125,13 +155,65 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
     // Its bones may be elsewhere in the scene.
     for (const bone of (child as SkinnedMesh).skeleton?.bones ?? []) bone.updateWorldMatrix(true, false);
     if (!isMesh(child) || [child, child.geometry, child.material].flat().some(isMarked)) return;
+    if (isAid(child, object)) return;
     if (!isInstanced(child) || child.count > 0) meshes.push(child);
   });
-  placesOf(meshes).forEach((matrix, m) => {
+  const found = placesOf(meshes).map((matrix, m) => {
     const mesh = meshes[m]!;
-    add(mesh.name || mesh.parent?.name || `mesh ${parts.length}`, mesh, mesh.geometry, matrix);
+    return { mesh, matrix, name: mesh.name || mesh.parent?.name || `mesh ${m}` };
   });
-  return parts;
+  const chosen = chooseParts(
+    found,
+    ({ mesh, matrix }) => lookOf(mesh, matrix, object),
+    isMeant && ((p, isDrawn) => isMeant(meshes[p]!, isDrawn)),
+    (text) => wrong(`${argument}: ${text}; the option parts says which count`, undefined, undefined, { argument }),
+  );
+  for (const { name, mesh, matrix } of chosen.parts) add(name, mesh, mesh.geometry, matrix);
+  const accessories = new Set(chosen.accessories.map((p) => chosen.parts[p]!.mesh));
+  return {
+    parts,
+    leftOut: chosen.leftOut.map(({ part, name, why }) => ({ name, why, mesh: part.mesh })),
+    accessories: [...parts.keys()].filter((p) => accessories.has(parts[p]!.mesh!)),
+  };
+}
+
+/** An object and all above it, below a root: whoever gives a root means it, even while it is hidden. */
+function below(root: Object3D, object: Object3D): Object3D[] {
+  const path: Object3D[] = [];
+  for (let one: Object3D | null = object; one && one !== root; one = one.parent) path.push(one);
+  return path;
+}
+
+/** Whether a mesh only shows something else: a thick line, or a part of a helper. */
+const isAid = (mesh: ThreeMesh, root: Object3D): boolean =>
+  'isLineSegments2' in mesh || below(root, mesh).some(({ type }) => type.endsWith('Helper'));
+
+/** The object that holds the meshes of one glTF mesh, if it has several. */
+export function holderOf(mesh: ThreeMesh | undefined, root: object): Object3D | undefined {
+  const holder = mesh?.parent;
+  const isHolder = holder && holder !== root && holder.children.length > 1 && holder.children.every(isMesh);
+  return isHolder ? holder : undefined;
+}
+
+function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
+  const { geometry, name, userData } = mesh;
+  const position = geometry.getAttribute('position') as Attribute | undefined;
+  const materials = ([mesh.material].flat() as (Material | undefined)[]).filter((one) => one !== undefined);
+  const all = (fits: (material: Material) => boolean) => materials.length > 0 && materials.every(fits);
+  const isOff = ({ visible, userData: { gltfExtensions } }: Object3D) =>
+    !visible || gltfExtensions?.[visibilityExtension]?.visible === false;
+  return {
+    // Of a glTF, `userData` has the name as it is in the file.
+    names: [name, userData['name'], geometry.name, holderOf(mesh, root)?.name, ...materials.map((one) => one.name)],
+    isHidden: below(root, mesh).some(isOff) || all(({ visible }) => !visible),
+    isClear: all(({ transparent, alphaTest, opacity }) =>
+      isClear(transparent ? 'BLEND' : alphaTest > 0 ? 'MASK' : 'OPAQUE', opacity, alphaTest),
+    ),
+    sides: all(({ side }) => side === FrontSide) ? 'front' : all(({ side }) => side === BackSide) ? 'back' : 'both',
+    positions: position ? valuesOf(position) : [],
+    indices: geometry.index?.array,
+    matrix: matrix.elements,
+  };
 }
 
 /**
