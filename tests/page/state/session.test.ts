@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { begin, paintOf, quiet, refusal } from './harness';
+import { begin, paintOf, quiet, refusal, sceneOf } from './harness';
 
 test('of several requests the last one comes, and the first gives way at once', async () => {
   const page = await begin();
@@ -184,6 +184,31 @@ test('a sample’s paint does not lie on the cage of another; it stays on one wi
   page.session.request({ cage: page.load('own.glb', 4, 1) });
   await page.ready();
   assert.equal(page.shown[2], 'UV checker');
+});
+
+test('what is not drawn is part of a cage alone; accessories stay bare until the user decides', async () => {
+  const page = await begin();
+  const file = sceneOf('figure.glb', { head: 1, '(outfit)': 2, StrawHat: 0.2, Head_InnerCage: 3 });
+  page.session.request({ target: page.loader.load(file), cage: page.load('cage.glb', 4) });
+  await page.ready();
+  const { mesh } = page.session.shown!.target;
+  assert.deepEqual(
+    mesh.primitives.map(({ name }) => name),
+    ['head', 'StrawHat'],
+  );
+  assert.deepEqual(mesh.leftOut, ['(outfit)', 'Head_InnerCage']);
+  const fate = () => page.session.classification!.segmentStats[1]!.culledBy;
+  assert.equal(fate(), 'lock');
+  page.session.lock([1], 'keep');
+  assert.notEqual(fate(), 'lock');
+  page.session.swap();
+  await page.ready();
+  assert.equal(page.session.shown!.cage.mesh.primitives.length, 4);
+  page.session.swap();
+  await page.ready();
+  assert.equal(page.session.shown!.target.mesh.primitives.length, 2);
+  page.session.request({ target: page.loader.load(sceneOf('hidden.glb', { '(outfit)': 1 })) });
+  assert.match(await page.failed(), /^hidden\.glb: nothing of it is drawn but cages, markers and collision shapes;/);
 });
 
 test('work ends once: done, cancelled, superseded by other work or by a request', async () => {

@@ -1,9 +1,10 @@
 import { extract } from 'cagecast/three';
 import type { Mesh, Object3D } from 'three';
-import type { ExtractedMesh, Primitive } from '../state/model';
+import type { ExtractedMesh, Model, Primitive } from '../state/model';
 
 /**
- * Reads all triangle meshes below `root`, depth first, into one set of arrays, as `extract` of `cagecast/three`.
+ * Reads all triangle meshes below `root`, depth first, into one set of arrays, as `extract` of `cagecast/three`: those that are drawn,
+ * or of a cage all.
  * @param root   A scene that has not been moved since it was loaded.
  * @param nameOf The name of a mesh in its file, if any.
  * @throws Error that names the primitive and the element that cannot be read; or if there are no triangles.
@@ -11,15 +12,36 @@ import type { ExtractedMesh, Primitive } from '../state/model';
 export function extractMesh(
   root: Object3D,
   nameOf: (mesh: Mesh) => string | undefined = () => undefined,
+  slot: 'target' | 'cage' = 'target',
 ): ExtractedMesh {
-  const { mesh, parts } = extract(root, 'the scene');
+  const isMeant = slot === 'cage' ? () => true : undefined;
+  const { mesh, parts, accessories, leftOut } = extract(root, 'the scene', isMeant);
   if (parts.length === 0) throw new Error('the file contains no triangles, only points, lines or an empty scene');
   const primitives = parts.map(({ geometry, ...part }): Primitive => {
     const mesh = part.mesh as Mesh;
     const name = nameOf(mesh) || part.name;
     return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0 };
   });
-  return { ...mesh, primitives };
+  // They would hide the model on the stage.
+  for (const { mesh, why } of leftOut) if (why === 'name') mesh.visible = false;
+  const names = leftOut.map(({ mesh, name }) => nameOf(mesh) || name);
+  return { ...mesh, primitives, accessories, leftOut: names };
+}
+
+/** The meshes of a model, as a target and as a cage. @throws Error as `extractMesh`. */
+export function meshesOf(
+  root: Object3D,
+  nameOf?: (mesh: Mesh) => string | undefined,
+): Pick<Model, 'mesh' | 'cageMesh'> {
+  const cageMesh = extractMesh(root, nameOf, 'cage');
+  try {
+    const mesh = extractMesh(root, nameOf);
+    return mesh.leftOut.length > 0 ? { mesh, cageMesh } : { mesh, cageMesh: mesh };
+  } catch {
+    // What is wrong with its arrays has been said by now.
+    const leftOut = cageMesh.primitives.map(({ name }) => name);
+    return { mesh: { ...cageMesh, primitives: [], accessories: [], leftOut }, cageMesh };
+  }
 }
 
 /** Swaps the last two corners of every triangle. */

@@ -1,4 +1,5 @@
 import type { Locks } from './choices';
+import { asCage, asTarget } from './model';
 import { kSlots, type Requested, type Scene, type Shown, type Slot } from './scene';
 
 /** The files that were requested for the next scene. */
@@ -67,7 +68,9 @@ export class Requests {
    * @returns Undefined if some are missing.
    */
   async read(isSuperseded: () => boolean): Promise<Scene | undefined> {
-    const { target, cage, paint } = this.#files;
+    const { paint } = this.#files;
+    const target = this.#files.target?.then(asTarget);
+    const cage = this.#files.cage?.then(asCage);
     const results = await Promise.allSettled([target, cage, paint]);
     const failed = results.find((result) => result.status === 'rejected');
     if (failed && !isSuperseded()) {
