@@ -35,7 +35,7 @@ import {
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { gltfFiles } from '../support/gltf-files.js';
 import { allocatedBy, frame, renderer } from '../support/no-renderer.js';
-import { ball, head, join3d } from './scenes.js';
+import { ball, cagedFigure, head, isOfCage, join3d, kCagedParts } from './scenes.js';
 
 before(init);
 Object.assign(globalThis, { self: globalThis }); // which GLTFLoader expects
@@ -148,6 +148,24 @@ describe('extract', () => {
     assert.deepEqual(painted(both()).at(-1), 'lock');
     assert.notEqual(painted(both(), { locks: { groups: { 1: 'keep' } } }).at(-1), 'lock');
     assert.notEqual(painted(hat.clone())[0], 'lock');
+  });
+
+  test('without a cage, the cages in a model are taken, each for the part of its name', async () => {
+    const { scene: model } = await new GLTFLoader().parseAsync(Uint8Array.from(cagedFigure()).buffer, '');
+    const { result, parts } = applyTransfer(model, undefined);
+    assert.deepEqual(
+      parts.map(({ name }) => name),
+      kCagedParts,
+    );
+    for (const [p, { firstVertex, vertexCount }] of parts.entries())
+      for (let v = firstVertex; v < firstVertex + vertexCount; ++v) assert.ok(isOfCage(result.uvs[2 * v]!, p));
+    assert.ok(result.cosmeticTriangles.every((one) => one === 1));
+    assert.equal(extract(model, 'cage').parts.length, 3);
+    model.children[0]!.name = model.children[0]!.userData['name'] = 'Foot_Geo';
+    assert.throws(
+      () => applyTransfer(model, undefined),
+      /target: "Foot_Geo" has no cage: none is named Foot_OuterCage/,
+    );
   });
 
   test('posed and placed figures are taken in their bind pose, wherever they stand', async () => {

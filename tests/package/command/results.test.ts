@@ -7,8 +7,8 @@ import { presetOptions, transfer } from 'cagecast';
 import { PNG } from 'pngjs';
 import { fails, json, ok, run } from '../../support/command.js';
 import { type GlbMaker, glbOf } from '../../support/gltf.js';
-import { ball, head } from '../scenes.js';
-import { modelsLike, workplace, write, writeMade } from './workplace.js';
+import { ball, cagedFigure, head, isOfCage, kCagedParts } from '../scenes.js';
+import { io, modelsLike, workplace, write, writeChanged, writeMade } from './workplace.js';
 
 const models = modelsLike(/lizard|misaligned/);
 const { groups } = head(1, 10).target;
@@ -182,6 +182,54 @@ test('what is not drawn is left out, and what --ignore names; hats stay bare', a
     /^cagecast: dressed\.glb: all parts are left out: "head" \(ignored\), .*; --ignore '' takes what is not drawn, too$/m,
     `${line} --ignore *`,
   );
+});
+
+test('without --cage, the cages in the file are taken, each for the part of its name', async () => {
+  write('figure.glb', cagedFigure());
+  await ok('transfer figure.glb -o out.glb --borders cut --report figure.json');
+  const { parts, triangles } = JSON.parse(readFileSync('figure.json', 'utf8')) as Report;
+  assert.equal(triangles.cosmetic, triangles.total);
+  assert.deepEqual(
+    parts.map(({ name }) => name),
+    kCagedParts,
+  );
+  const document = await io.read('out.glb');
+  for (const [p, name] of kCagedParts.entries()) {
+    const [primitive] = document
+      .getRoot()
+      .listNodes()
+      .find((node) => node.getName() === name)!
+      .getMesh()!
+      .listPrimitives();
+    const uvs = primitive!.getAttribute('TEXCOORD_1')!;
+    for (let v = 0; v < uvs.getCount(); ++v) {
+      const u = uvs.getElement(v, [])[0]!;
+      assert.ok(isOfCage(u, p), `${name}: ${u}`);
+    }
+  }
+  // It says that the tiles of the parts are outside of 0..1.
+  const { verdict, holes, findings } = await json<Inspection>('inspect figure.glb');
+  assert.deepEqual([verdict, holes, findings.map(({ code }) => code)], ['usable', [], ['uvsOverlap', 'uvsOutside']]);
+  // The cages of a file fit others, too; a part without one is named.
+  assert.equal(
+    (await json<Report & { cage: { triangles: number } }>(`${plain.replace('cage.glb', 'figure.glb')}`)).cage.triangles,
+    triangles.total,
+  );
+  await fails(
+    1,
+    /^cagecast: target\.glb: has no cage: no mesh in it is named as an outer cage, as Head_OuterCage/,
+    'transfer target.glb',
+  );
+  writeChanged('lost.glb', cagedFigure(), ({ nodes }) => (nodes![3]!.name = 'Hand_OuterCage'));
+  await fails(
+    1,
+    'lost.glb: "Left_Geo" has no cage: none is named Left_OuterCage; --ignore leaves the part out',
+    'transfer lost.glb',
+  );
+  writeChanged('bare.glb', cagedFigure(), ({ nodes }) => {
+    for (const [p, name] of kCagedParts.entries()) Object.assign(nodes![p]!, { name: `${name}_OuterCage` });
+  });
+  await fails(1, /bare\.glb: all parts are left out: "Left_Geo_OuterCage" \(a cage, /, 'transfer bare.glb');
 });
 
 interface Inspection {

@@ -49,8 +49,8 @@ export interface Extracted extends Pick<Chosen<Part>, 'accessories'> {
   leftOut: LeftOut[];
 }
 
-/** Says which parts of a file count; `undefined` for those that are drawn. */
-export type WhichCount = (parts: readonly Part[], file: GltfFile) => IsMeant | undefined;
+/** Says which parts of a file count. */
+export type WhichCount = 'cage' | ((parts: readonly Part[], file: GltfFile) => IsMeant);
 
 /**
  * Collects the triangles of a glTF's default scene (else its first), depth first, in the scene's space.
@@ -59,14 +59,18 @@ export type WhichCount = (parts: readonly Part[], file: GltfFile) => IsMeant | u
  * double precision and rounded once; the winding of mirrored parts is reversed. Skinned meshes are placed by their skeleton, in the
  * bind pose; as the format demands, the transform of their node is ignored. Points, lines and overlays that were added before are
  * left out, and morph targets are not applied.
- * @param whichCount  Says which of the parts count. Default: those that are drawn
+ * @param whichCount  Default: the parts that are drawn; of a `cage`, its outer cages, or all if there are none
  * @throws {InputError} that names the file, the primitive and the element.
  */
-export function extract(file: GltfFile, whichCount: WhichCount = () => undefined): Extracted {
+export function extract(file: GltfFile, whichCount?: WhichCount): Extracted {
   return naming(file.path, () => {
     const all = listParts(file);
     const fail = (text: string) => new InputError(`${text}; --ignore '' takes what is not drawn, too`);
-    const { parts, leftOut: others, accessories } = chooseParts(all, looksOf(file), whichCount(all, file), fail);
+    const {
+      parts,
+      leftOut: others,
+      accessories,
+    } = chooseParts(all, looksOf(file), typeof whichCount === 'function' ? whichCount(all, file) : whichCount, fail);
     renumber(parts);
     const leftOut = others.map(({ name, why }) => ({ name, why }));
     const mesh = joinPieces(parts);
@@ -74,9 +78,6 @@ export function extract(file: GltfFile, whichCount: WhichCount = () => undefined
     return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts, leftOut, accessories };
   });
 }
-
-/** All that a file has. */
-export const allParts: WhichCount = () => () => true;
 
 /** Returns what tells whether a part is drawn. */
 function looksOf({ json }: GltfFile): (part: Part) => Look {

@@ -35,8 +35,11 @@ export type PartRange = Pick<Piece, 'name' | 'firstVertex' | 'vertexCount' | 'fi
 
 /** Options of `cagecast`: those of `transfer`, and what to transfer. */
 export interface CagecastOptions extends TransferOptions, MaskSources {
-  /** The cage that the texture was drawn for: a mesh, or a document, of which the default scene is used. It must have UVs. */
-  cage: Document | Mesh;
+  /**
+   * The cage that the texture was drawn for: a mesh, or a document, of which the default scene is used. It must have UVs.
+   * Default: the meshes of the document that are named as the outer cages of others, as `Head_OuterCage` of `Head_Geo`.
+   */
+  cage?: Document | Mesh | undefined;
   /** The bytes of a PNG or JPEG file in the cage's UV space, shown as an overlay on the cosmetic triangles. Default: no overlay. */
   texture?: Uint8Array | undefined;
   /**

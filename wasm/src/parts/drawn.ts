@@ -2,6 +2,7 @@
 import type { Locks } from '../api/options.js';
 import { show } from '../core/error.js';
 import { determinant } from './affine.js';
+import { cageParts } from './own-cages.js';
 import { movePoints } from './points.js';
 
 /** What decides whether a viewer draws a part. */
@@ -55,24 +56,25 @@ export interface Chosen<Part> {
   accessories: number[];
 }
 
-/** Whether a part counts. @param isDrawn  Whether a viewer draws it, and it is no cage, marker or collision shape. */
+/** Whether a part of a target counts. @param isDrawn  Whether a viewer draws it, and it is no cage, marker or collision shape. */
 export type IsMeant = (part: number, isDrawn: boolean) => boolean;
 
 /**
- * Chooses the parts of a target that count.
+ * Chooses the parts of a target, or of a cage, that count.
  * @param lookOf   What is known of a part.
- * @param isMeant  Default: what is drawn.
+ * @param isMeant  Default: what is drawn. `cage`: the outer cages, or all if there are none.
  * @param fail     Makes the error if parts are there, but none counts.
  */
 export function chooseParts<Part extends { name: string }>(
   parts: readonly Part[],
   lookOf: (part: Part) => Look,
-  isMeant: IsMeant = (_, isDrawn) => isDrawn,
+  isMeant: IsMeant | 'cage' = (_, isDrawn) => isDrawn,
   fail: (text: string) => Error,
 ): Chosen<Part> {
   const looks = parts.map(lookOf);
   const reasons = whyNotDrawn(looks);
-  const isLeftOut = reasons.map((reason, p) => !isMeant(p, reason === undefined));
+  const counts = isMeant === 'cage' ? cageParts(looks.map(({ names }) => names)) : isMeant;
+  const isLeftOut = reasons.map((reason, p) => !counts(p, reason === undefined));
   const leftOut = parts.flatMap((part, p) =>
     isLeftOut[p] ? [{ part, name: part.name, why: reasons[p] ?? ('ignored' as const) }] : [],
   );

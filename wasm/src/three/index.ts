@@ -8,6 +8,7 @@ import type { TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import type { CutPart } from '../parts/cut-part.js';
 import { type LeftOut, withBare } from '../parts/drawn.js';
+import { hasCages, moveApart } from '../parts/own-cages.js';
 import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
@@ -26,6 +27,7 @@ import { atOnce } from './apply/remake.js';
 import { checkSaved, deserialize, keyOf, remember, serialize } from './apply/saved-transfer.js';
 import { zoneAttribute } from './apply/shown-parts.js';
 import { type Calling, nextTask, runInTasks } from './apply/tasks.js';
+import { wrong } from './errors.js';
 
 export {
   cageGeometry,
@@ -78,7 +80,8 @@ export {
  * Call `await init()` once before. `applyTransferAsync` keeps the main thread free.
  *
  * @param target  A loaded scene, a mesh, or a geometry (which gets the attributes; `Applied.paint` paints its material).
- * @param cage    Of the same types, with the attribute `uv`, and in the same space as the target; not needed with `saved`.
+ * @param cage    Of the same types, with the attribute `uv`, and in the same space as the target; not needed with `saved`, or if the target
+ * has meshes that are named as outer cages of others, as `Head_OuterCage` of `Head_Geo`.
  * @param options `texture` or `material` show something; without them, geometries only get the attributes.
  * @throws {CagecastError} as `transfer` does; `badOption` that names an option and its value; `badArgument` if a part cannot be read or
  * no channel of UVs is free. Then nothing is changed.
@@ -153,14 +156,16 @@ function read(
   const own = transferOptions(options);
   const rules = { ...own, locks: withBare(extracted.accessories, own.locks) };
   const needsCage = !saved && (cuts || !result);
-  const around = needsCage ? extract(cage!, 'cage').mesh : undefined;
+  const outer = needsCage ? extract(cage ?? ownCage(target), 'cage') : undefined;
+  const apart = outer && moveApart(extracted, outer, (text) => wrong(`target: ${text}`));
+  const around = apart?.cage ?? outer?.mesh;
   if (result) checkResult(result, extracted);
   const states = statesOf(extracted);
   return {
     saved: saved && checkSaved(saved, extracted),
     input: {
       cage: around,
-      target: extracted.mesh,
+      target: apart?.target ?? extracted.mesh,
       parts: rangesOf(extracted),
       options: rules,
       result,
@@ -172,6 +177,12 @@ function read(
       return remember(applied, () => ({ key: saved?.key ?? keyOf(extracted, around, rules, cuts), prepared }));
     },
   };
+}
+
+/** A target that has its cage with it; nothing if it has none. */
+function ownCage(target: Object3D | BufferGeometry): Object3D {
+  const has = (target as Object3D).isObject3D && hasCages(extract(target, 'cage').parts);
+  return has ? (target as Object3D) : (undefined as never);
 }
 
 function checkResult(result: TransferResult, { mesh }: Extracted): void {

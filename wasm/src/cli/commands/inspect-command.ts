@@ -46,9 +46,17 @@ Example: cagecast inspect head.glb --cage cage.glb --html report.html`,
 
 /** Checks whether a cage fits a target. @throws {InputError} that names the file at fault. */
 async function inspectTarget(target: string, flags: InspectFlags, io: Io): Promise<Found> {
-  const { cage, uvBounds, referenceCage, html } = flags;
+  const { cage = target, uvBounds, referenceCage, html } = flags;
   const { rules } = resolveSettings(await common.layersFor(flags)(target));
-  const sources = { target, cage, uvBounds, referenceCage, rules, reading: common.readingOf(flags) };
+  const sources = {
+    target,
+    cage,
+    isOwnCage: !flags.cage,
+    uvBounds,
+    referenceCage,
+    rules,
+    reading: common.readingOf(flags),
+  };
   const run = await runTransfer(sources, io);
   io.step('inspecting');
   const report = inspectionReport(sources, run, uvBounds ? [uvBounds] : []);

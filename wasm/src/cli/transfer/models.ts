@@ -1,7 +1,6 @@
 import { cageGlb } from '../../cages/cage-glb.js';
 import type { Cage } from '../../cages/types.js';
 import {
-  allParts,
   type Extracted,
   extract,
   type Part,
@@ -14,6 +13,7 @@ import type { ReadOptions } from '../../gltf/files.js';
 import { InputError } from '../../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../../gltf/read-gltf.js';
 import { CagecastError } from '../../index.js';
+import { hasCages } from '../../parts/own-cages.js';
 import type { Io } from '../io/io.js';
 import { quoted } from '../model/text.js';
 
@@ -27,7 +27,7 @@ export interface ReadModel {
 interface ModelOptions {
   /** Its content, if it is known already. */
   bytes?: Uint8Array | undefined;
-  /** Default: all parts, as of a cage. */
+  /** Default: as of a cage. */
   whichCount?: WhichCount;
 }
 
@@ -36,7 +36,7 @@ export async function readModel(
   path: string,
   reading: ReadOptions,
   io: Io,
-  { bytes, whichCount = allParts }: ModelOptions = {},
+  { bytes, whichCount = 'cage' }: ModelOptions = {},
 ): Promise<ReadModel> {
   io.step(`reading ${path}`);
   const file = await readGltf(path, reading, bytes);
@@ -75,10 +75,19 @@ export function withUvs(model: ReadModel): ReadModel {
   ).in(file.path);
 }
 
+/** The cage that a target has with it. @throws {InputError} that names the file, if it has none. */
+export function cageIn({ file }: ReadModel): ReadModel {
+  const extracted = extract(file, 'cage');
+  if (hasCages(extracted.parts)) return { file, extracted };
+  throw new InputError(
+    'has no cage: no mesh in it is named as an outer cage, as Head_OuterCage of Head_Geo; give one with --cage, or let --cage auto make one',
+  ).in(file.path);
+}
+
 /** A cage as if it was read from a file. */
 export async function readBack(cage: Cage, path: string): Promise<ReadModel> {
   const file = await readGltf(path, undefined, cageGlb(cage));
-  return { file, extracted: extract(file, allParts) };
+  return { file, extracted: extract(file, 'cage') };
 }
 
 /** Calls the core for two models. @throws {InputError} that names the file at fault and the place in it. */

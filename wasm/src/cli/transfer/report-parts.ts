@@ -12,11 +12,11 @@ import type { Run } from './run-transfer.js';
 export const versions = () => ({ cagecast: CAGECAST_VERSION, node: process.versions.node });
 
 /** What a report says of a target; with the parts that are left out, and those that stay bare by their names. */
-export const targetReport = (file: string, { target: { extracted }, bare = [] }: Run) => ({
+export const targetReport = (file: string, { target: { extracted }, diagonal, bare = [] }: Run) => ({
   file,
   vertices: extracted.mesh.positions.length / 3,
   triangles: extracted.mesh.indices.length / 3,
-  diagonal: boxOf(extracted.mesh.positions).diagonal,
+  diagonal: diagonal ?? boxOf(extracted.mesh.positions).diagonal,
   leftOut: extracted.leftOut,
   bare,
 });

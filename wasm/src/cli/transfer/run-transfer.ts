@@ -1,7 +1,7 @@
 import { FileModel } from '../../gltf/bake/bake-file.js';
 import { masksOf } from '../../gltf/bake/mask-sources.js';
 import type { ReadOptions } from '../../gltf/files.js';
-import { naming } from '../../gltf/input-error.js';
+import { InputError, naming } from '../../gltf/input-error.js';
 import {
   type CutTarget,
   cutBorders,
@@ -11,13 +11,15 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
+import { boxOf } from '../../inspect/geometry.js';
+import { moveApart } from '../../parts/own-cages.js';
 import { readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import type { Rules } from '../model/settings.js';
 import { kAutoCage, type Sources } from '../model/sources.js';
 import { withinBounds, withoutLacking } from './cage-area.js';
 import { makeCageFor, partsLeftOut } from './made-cage.js';
-import { inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
+import { cageIn, inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
 import { transferOptions } from './part-names.js';
 import { readTarget } from './read-target.js';
 
@@ -27,6 +29,8 @@ export interface Run {
   cage: ReadModel;
   /** The cage before its UVs were moved to those of the texture. */
   wholeCage: ReadModel;
+  /** Of the target before its parts were moved apart, if they were. */
+  diagonal?: number;
   /** The names of the parts that stay bare because of their names. */
   bare?: readonly string[] | undefined;
   /** What `transfer` was called with. */
@@ -41,7 +45,7 @@ export interface Run {
  * @throws {InputError} that names the file at fault.
  */
 export async function runTransfer(
-  { target: path, cage, uvBounds, referenceCage, rules, reading }: Sources,
+  { target: path, cage, isOwnCage, uvBounds, referenceCage, rules, reading }: Sources,
   io: Io,
   readCage: typeof readModel = readModel,
   read?: ReadModel,
@@ -53,13 +57,31 @@ export async function runTransfer(
   const named = isMade ? await partsLeftOut(target) : [];
   const isBare = parts.map((_, p) => named[p] === true || accessories.includes(p));
   const options = { ...transferOptions(rules, target, isBare), ...(masks && { masks }) };
-  const cageOf = async (file: string) => withUvs(await readCage(file, reading, io));
+  const cageOf = async (file: string) =>
+    withUvs(isOwnCage && file === cage ? cageIn(target) : await readCage(file, reading, io));
   const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage) : await cageOf(cage);
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
-  const wholeCage = withoutLacking(whole, reference);
-  const run = await transferModels(target, withinBounds(wholeCage, uvBounds), options, io);
+  const apart = movedApart(target, withoutLacking(whole, reference));
+  const { wholeCage } = apart;
+  const run = await transferModels(apart.target, withinBounds(wholeCage, uvBounds), options, io);
   const names = parts.filter((_, p) => isBare[p] && options.locks?.groups?.[p] !== 'keep').map(({ name }) => name);
-  return { ...run, wholeCage, bare: [...new Set(names)] };
+  const { diagonal } = boxOf(target.extracted.mesh.positions);
+  return { ...run, wholeCage, diagonal, bare: [...new Set(names)] };
+}
+
+/** The parts of a target apart, each with the cage of its name, if there are such. @throws {InputError} that names one without. */
+function movedApart(target: ReadModel, wholeCage: ReadModel): { target: ReadModel; wholeCage: ReadModel } {
+  const fail = (text: string) => new InputError(`${text}; --ignore leaves the part out`).in(target.file.path);
+  const apart = moveApart(target.extracted, wholeCage.extracted, fail);
+  if (!apart) return { target, wholeCage };
+  const withMesh = (model: ReadModel, mesh: ReadModel['extracted']['mesh']) => ({
+    ...model,
+    extracted: { ...model.extracted, mesh },
+  });
+  return {
+    target: withMesh(target, apart.target),
+    wholeCage: withMesh(wholeCage, apart.cage),
+  };
 }
 
 /** The masks of a target. @throws {InputError} that names the file at fault. */

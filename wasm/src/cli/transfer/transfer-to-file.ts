@@ -35,7 +35,7 @@ export async function transferToFile(
   }
   let last = first;
   for (const [r, { cage, texture }] of regions.entries()) {
-    const own = { ...command, cage, uvBounds: undefined, referenceCage: undefined };
+    const own = { ...command, cage, isOwnCage: false, uvBounds: undefined, referenceCage: undefined };
     last = await transferRegion(own, texture, io, {
       readCage,
       isLast: r === regions.length - 1,

@@ -11,8 +11,11 @@ import { type BakeReport, bakeModel, type ImageCodec, type Paints, type Slot, sl
 
 /** Options of `bake`: those of `transfer`, and what to bake. */
 export interface BakeOptions extends TransferOptions, MaskSources {
-  /** The cage that the paints were drawn for: a mesh, or a document, of which the default scene is used. It must have UVs. */
-  cage: Document | Mesh;
+  /**
+   * The cage that the paints were drawn for: a mesh, or a document, of which the default scene is used. It must have UVs.
+   * Default: the meshes of the document that are named as the outer cages of others, as `Head_OuterCage` of `Head_Geo`.
+   */
+  cage?: Document | Mesh | undefined;
   /** Images in the cage's UVs; at least one. */
   paints: Paints;
   /** Reads and writes the model's images, as this package does not: by sharp, say, or a canvas. Images are written as PNG. */

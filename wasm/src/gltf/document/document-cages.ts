@@ -5,7 +5,7 @@ import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } 
 import { readExtras } from '../../parts/template-extras.js';
 import { InputError } from '../input-error.js';
 import { createAccessor } from './add-transfer.js';
-import { allParts, type DocumentPart, extractDocument, jointMatrix } from './extract-document.js';
+import { type DocumentPart, extractDocument, jointMatrix } from './extract-document.js';
 import { isDocument, read, wrong } from './transfer-document.js';
 
 /** What glTF-Transform does not keep of a file. */
@@ -37,7 +37,7 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
  */
 export function cageTemplate(document: Document): cages.Template {
   return read('cageTemplate', 'template', document, () => {
-    const { mesh, parts } = extractDocument(document, allParts);
+    const { mesh, parts } = extractDocument(document, 'cage');
     if (mesh.uvs === undefined)
       throw new CagecastError('missingUvs', 'cageTemplate', 'template has a primitive without UVs', {
         argument: 'template',

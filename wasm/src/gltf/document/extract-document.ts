@@ -56,9 +56,12 @@ export interface ExtractedDocument {
  * by their skeletons, in the bind pose.
  * @throws {InputError} that names the primitive and the element.
  */
-export function extractDocument(document: Document, isMeant?: PartsOption): ExtractedDocument {
+export function extractDocument(document: Document, isMeant?: PartsOption | 'cage'): ExtractedDocument {
   const all = listParts(document);
-  const asked = isMeant && ((p: number, isDrawn: boolean) => isMeant(all[p]!.primitive, all[p]!.node, isDrawn));
+  const asked =
+    typeof isMeant === 'function'
+      ? (p: number, isDrawn: boolean) => isMeant(all[p]!.primitive, all[p]!.node, isDrawn)
+      : isMeant;
   const fail = (text: string) => new InputError(`${text}; the option parts says which count`);
   const { parts, leftOut, accessories } = chooseParts(all, lookOf, asked, fail);
   renumber(parts);
@@ -73,9 +76,6 @@ export function extractDocument(document: Document, isMeant?: PartsOption): Extr
   );
   return { mesh: { ...mesh, uvs }, parts, ...others };
 }
-
-/** All that a document has. */
-export const allParts: PartsOption = () => true;
 
 function lookOf({ node, primitive, aliases, matrix, localPositions, localIndices }: DocumentPart): Look {
   const material = primitive.getMaterial();

@@ -25,6 +25,8 @@ import { wrong } from '../errors.js';
 export interface Part {
   /** The name of the mesh, or of its parent if it has none. */
   name: string;
+  /** All that it is called: with the names in its file, of its geometry and its materials. */
+  aliases: readonly string[];
   /** The mesh; `undefined` if a geometry was given. */
   mesh: ThreeMesh | undefined;
   geometry: BufferGeometry;
@@ -54,9 +56,6 @@ export interface Extracted {
  */
 export type PartsOption = (mesh: ThreeMesh, isDrawn: boolean) => boolean;
 
-/** All meshes, as of a cage, which is mostly hidden. */
-export const allParts: PartsOption = () => true;
-
 const identity = new Matrix4();
 
 /**
@@ -67,14 +66,10 @@ const identity = new Matrix4();
  * morph targets are not applied. An instanced mesh is taken once, where its first instance is. Each mesh, or each of its material
  * groups, is a group.
  * @param argument  The name of the argument, for messages.
- * @param isMeant   Which meshes count. Default: what is drawn; of the argument `cage`, all
+ * @param isMeant   Which meshes count. Default: what is drawn; of a `cage` or `template`, its outer cages, or all if there are none
  * @throws {CagecastError} that names the part and the element.
  */
-export function extract(
-  object: Object3D | BufferGeometry,
-  argument = 'target',
-  isMeant: PartsOption | undefined = argument === 'cage' ? allParts : undefined,
-): Extracted {
+export function extract(object: Object3D | BufferGeometry, argument = 'target', isMeant?: PartsOption): Extracted {
   const { parts, leftOut, accessories } = listParts(object, argument, isMeant);
   const [vertices, triangles] = endOf(parts);
   const positions = new Float32Array(3 * vertices);
@@ -115,8 +110,15 @@ function listParts(
       { argument },
     );
   }
+  const isCage = argument === 'cage' || argument === 'template';
   const parts: Part[] = [];
-  const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
+  const add = (
+    aliases: readonly string[],
+    name: string,
+    mesh: ThreeMesh | undefined,
+    geometry: BufferGeometry,
+    matrix: Matrix4,
+  ) => {
     if ((mesh && 'isBatchedMesh' in mesh) || 'isInstancedBufferGeometry' in geometry)
       throw wrongPart(argument, name, 'is a batch or an instanced geometry; make each instance a mesh of its own');
     const position = geometry.getAttribute('position') as Attribute | undefined;
@@ -136,6 +138,7 @@ function listParts(
     const [firstVertex, firstTriangle] = endOf(parts);
     parts.push({
       name,
+      aliases,
       mesh,
       geometry,
       matrix,
@@ -146,7 +149,7 @@ function listParts(
     });
   };
   if (isGeometry(object)) {
-    add(object.name || 'geometry', undefined, object, identity);
+    add([], object.name || 'geometry', undefined, object, identity);
     return { parts, leftOut: [], accessories: [] };
   }
   object.updateWorldMatrix(true, true);
@@ -165,10 +168,10 @@ function listParts(
   const chosen = chooseParts(
     found,
     ({ mesh, matrix }) => lookOf(mesh, matrix, object),
-    isMeant && ((p, isDrawn) => isMeant(meshes[p]!, isDrawn)),
+    isMeant ? (p, isDrawn) => isMeant(meshes[p]!, isDrawn) : isCage ? 'cage' : undefined,
     (text) => wrong(`${argument}: ${text}; the option parts says which count`, undefined, undefined, { argument }),
   );
-  for (const { name, mesh, matrix } of chosen.parts) add(name, mesh, mesh.geometry, matrix);
+  for (const { name, mesh, matrix } of chosen.parts) add(namesOf(mesh, object), name, mesh, mesh.geometry, matrix);
   const accessories = new Set(chosen.accessories.map((p) => chosen.parts[p]!.mesh));
   return {
     parts,
@@ -195,16 +198,26 @@ export function holderOf(mesh: ThreeMesh | undefined, root: object): Object3D | 
   return isHolder ? holder : undefined;
 }
 
+/** The materials of a mesh. Three.js draws nothing where a list of them has a gap. */
+const materialsOf = ({ material }: ThreeMesh): Material[] =>
+  ([material].flat() as (Material | undefined)[]).filter((one) => one !== undefined);
+
+function namesOf(mesh: ThreeMesh, root: Object3D): string[] {
+  const holder = holderOf(mesh, root);
+  // Of a glTF, `userData` has the name as it is in the file.
+  const own = [mesh, holder].flatMap((one) => [one?.name, one?.userData['name']]);
+  return [...own, mesh.geometry.name, ...materialsOf(mesh).map(({ name }) => name)].filter((name) => name);
+}
+
 function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
-  const { geometry, name, userData } = mesh;
+  const { geometry } = mesh;
   const position = geometry.getAttribute('position') as Attribute | undefined;
-  const materials = ([mesh.material].flat() as (Material | undefined)[]).filter((one) => one !== undefined);
+  const materials = materialsOf(mesh);
   const all = (fits: (material: Material) => boolean) => materials.length > 0 && materials.every(fits);
   const isOff = ({ visible, userData: { gltfExtensions } }: Object3D) =>
     !visible || gltfExtensions?.[visibilityExtension]?.visible === false;
   return {
-    // Of a glTF, `userData` has the name as it is in the file.
-    names: [name, userData['name'], geometry.name, holderOf(mesh, root)?.name, ...materials.map((one) => one.name)],
+    names: namesOf(mesh, root),
     isHidden: below(root, mesh).some(isOff) || all(({ visible }) => !visible),
     isClear: all(({ transparent, alphaTest, opacity }) =>
       isClear(transparent ? 'BLEND' : alphaTest > 0 ? 'MASK' : 'OPAQUE', opacity, alphaTest),

@@ -4,7 +4,7 @@ import type { Mesh } from '../../index.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { readExtras } from '../../parts/template-extras.js';
 import { wrong } from '../errors.js';
-import { allParts, extract, holderOf, isSkinned, type Part } from './extract-scene.js';
+import { extract, holderOf, isSkinned, type Part } from './extract-scene.js';
 
 /**
  * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones; else
@@ -47,7 +47,7 @@ export function cageModel(model: Loaded): cages.CageModel {
  * @throws {CagecastError} `badArgument`, `missingUvs`
  */
 export function cageTemplate(model: Loaded): cages.Template {
-  const { mesh, parts } = extract(objectOf(model), 'template', allParts);
+  const { mesh, parts } = extract(objectOf(model), 'template');
   if (mesh.uvs === undefined)
     throw wrong('template has a mesh without the attribute uv', 'cageTemplate', 'missingUvs', { argument: 'template' });
   const sources = parts.flatMap(({ name, mesh: of, geometry, matrix, firstVertex, vertexCount }) =>
