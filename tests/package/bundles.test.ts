@@ -21,12 +21,12 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'applyTransferAsync',
-    18_000,
+    20_000,
     "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
     'applyTransferAsync, layers and painting',
-    35_000,
+    39_000,
     `import { applyTransferAsync } from 'cagecast/three';
     import { createLayers, createPainter } from 'cagecast/three/paint';
     console.log(applyTransferAsync, createLayers, createPainter);`,

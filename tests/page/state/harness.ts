@@ -3,6 +3,7 @@ import { CagecastError, init, type ProjectOptions, project } from 'cagecast';
 import type { Cage } from 'cagecast/cages';
 import { BufferAttribute, BufferGeometry, Group, Mesh, Texture } from 'three';
 import { meshesOf } from '../../../web/src/loading/extract-mesh';
+import { arraysOf } from '../../../web/src/state/arrays';
 import type { Loader, Model } from '../../../web/src/state/model';
 import type { Paint } from '../../../web/src/state/paint';
 import { Session } from '../../../web/src/state/session';
@@ -156,9 +157,8 @@ export class FakeTransferer implements Transferer {
         if (failure) return reject(failure);
         if (task === 'inspect') return resolve({ verdict: 'good', findings: [] } as never);
         try {
-          const [from, { positions, indices, groups }] = [cage.mesh, target.mesh];
-          const mesh = { positions: from.positions, indices: from.indices, uvs: from.uvs };
-          resolve({ ...project(mesh, { positions, indices, groups }, options as ProjectOptions), split: {} } as never);
+          const arrays = arraysOf(cage, target);
+          resolve({ ...project(arrays.cage, arrays.target, options as ProjectOptions), split: {} } as never);
         } catch (error) {
           reject(error);
         }

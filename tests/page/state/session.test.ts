@@ -211,6 +211,35 @@ test('what is not drawn is part of a cage alone; accessories stay bare until the
   assert.match(await page.failed(), /^hidden\.glb: nothing of it is drawn but cages, markers and collision shapes;/);
 });
 
+test('a model that is opened alone brings its own cage, each of the part of its name', async () => {
+  const page = await begin();
+  page.open('a.glb', 'cage.glb');
+  await page.ready();
+  const figure = (cages: Record<string, number>) =>
+    page.loader.load(sceneOf('figure.glb', { Head_Geo: 1, Hand_Geo: 0.5, ...cages }));
+  page.session.request({ target: figure({ Head_OuterCage: 4, Hand_OuterCage: 3 }) });
+  await page.ready();
+  assert.deepEqual(page.shown.slice(0, 2), ['figure.glb', 'figure.glb']);
+  const { target, cage, projection } = page.session.shown!;
+  const names = [target, cage].map(({ mesh }) => mesh.primitives.map(({ name }) => name));
+  assert.deepEqual(names, [
+    ['Head_Geo', 'Hand_Geo'],
+    ['Head_OuterCage', 'Hand_OuterCage'],
+  ]);
+  // The smaller cage is the nearer one to both.
+  assert.deepEqual(
+    [...projection.triangles].map((t) => Math.floor(t / 4)),
+    [0, 0, 0, 0, 1, 1, 1, 1],
+  );
+  page.session.request({ target: figure({ Head_OuterCage: 4, Foot_OuterCage: 3 }) });
+  assert.match(await page.failed(), /"Hand_Geo" has no cage: none is named Hand_OuterCage/);
+  page.open('b.glb', 'other.glb');
+  await page.ready();
+  page.session.request({ cage: figure({ Head_OuterCage: 4 }) });
+  await page.ready();
+  assert.deepEqual(page.shown.slice(0, 2), ['b.glb', 'figure.glb']);
+});
+
 test('work ends once: done, cancelled, superseded by other work or by a request', async () => {
   const page = await begin();
   page.open('a.glb', 'cage.glb');

@@ -31,23 +31,31 @@ interface Range {
 }
 
 /** A target and its cage, and their parts. */
-interface Caged<M extends Mesh = Mesh> {
+export interface Caged<M extends Mesh = Mesh> {
   mesh: M;
   parts: readonly Range[];
+}
+
+/** What was moved apart. */
+export interface Apart<T extends Mesh, C extends Mesh> {
+  target: T;
+  cage: C;
+  /** Puts triangles of the cage in place of those of lids in a result. */
+  mend(result: { triangles: Uint32Array }): void;
 }
 
 /**
  * Moves the parts of a target apart, each with the cage of its name: arms that hang down are nearer to the cage of the body than to their own.
  * Where a cage is open towards another, it gets a lid. What is computed holds for the parts where they were; only the diagonal is longer.
- * @returns `undefined` if the cage is one, or has other names.
+ * @returns both as `transfer` takes them; `undefined` if the cage is one, or has other names.
  * @throws {Error} of `fail` that names a part without a cage.
  */
 export function moveApart<T extends Mesh, C extends Mesh>(
   target: Caged<T>,
   cage: Caged<C>,
   fail: (text: string) => Error,
-): { target: T; cage: C } | undefined {
-  const own = cagesOf(target.parts, cage.parts, fail);
+): Apart<T, C> | undefined {
+  const own = cage.mesh.uvs && cagesOf(target.parts, cage.parts, fail);
   if (own === undefined) return undefined;
   const lids = lidsOf(cage);
   const boxes = cage.parts.map((part, c) => {
@@ -68,7 +76,15 @@ export function moveApart<T extends Mesh, C extends Mesh>(
   const around = cage.mesh.positions.slice();
   cage.parts.forEach((part, c) => move(around, moves[c]!, part));
   for (const lid of lids) move(lid.positions, moves[lid.part]!);
-  return { target: { ...target.mesh, positions }, cage: { ...cage.mesh, ...joined(cage.mesh, around, lids) } };
+  const count = cage.mesh.indices.length / 3;
+  const besides = lids.flatMap(({ besides }) => besides);
+  return {
+    target: { ...target.mesh, positions },
+    cage: { ...cage.mesh, ...joined(cage.mesh, around, lids) },
+    mend: ({ triangles }) => {
+      for (const [v, t] of triangles.entries()) if (t >= count) triangles[v] = besides[t - count]!;
+    },
+  };
 }
 
 /** A cage and its lids. @param positions  Of the cage where it was moved. */
@@ -135,6 +151,7 @@ function move(positions: Float32Array, by: readonly number[], { firstVertex, ver
 interface Edge {
   from: number;
   to: number;
+  triangle: number;
   part: number;
 }
 
@@ -145,6 +162,8 @@ interface Lid {
   uvs: number[];
   /** 3 per triangle; −1 and below for the vertices of the cage itself, −1 − number. */
   indices: number[];
+  /** For each triangle, the one of the cage that it goes on from. */
+  besides: number[];
 }
 
 /**
@@ -157,8 +176,11 @@ function lidsOf({ mesh, parts }: Caged): Lid[] {
   const at = (v: number) => [0, 1, 2].map((k) => mesh.positions[3 * v + k]!);
   const reach = kNear * diagonalOf(mesh, parts);
   const distance = (a: readonly number[], b: readonly number[]) => Math.hypot(...a.map((x, k) => x - b[k]!));
-  const meets = ({ from, part }: Edge) =>
-    edges.some((other) => other.part !== part && distance(at(from), at(other.from)) <= reach);
+  const starts = edges.map(({ from, part }) => ({ part, point: at(from) }));
+  const meets = ({ from, part }: Edge) => {
+    const point = at(from);
+    return starts.some((other) => other.part !== part && distance(point, other.point) <= reach);
+  };
   return loopsOf(edges, places.of)
     .filter((loop) => loop.filter(meets).length >= kMeeting * loop.length)
     .map((loop) => {
@@ -193,6 +215,7 @@ function lidsOf({ mesh, parts }: Caged): Lid[] {
         positions: Float32Array.from([...ends.map(at), centre].flatMap(beyond)),
         uvs: [...uvs, ...[0, 1].map((k) => mean(({ from }) => uvOf(from), k))],
         indices,
+        besides: loop.flatMap(({ triangle }) => [triangle, triangle, triangle]),
       };
     });
 }
@@ -234,7 +257,7 @@ function openEdges({ indices }: Mesh, { of, partOf }: ReturnType<typeof placesOf
   for (let i = 0; i < indices.length; ++i) {
     const [from, to] = [indices[i]!, indices[i % 3 === 2 ? i - 2 : i + 1]!];
     const key = [of[from]!, of[to]!].sort((a, b) => a - b).join();
-    edges.set(key, edges.has(key) ? undefined : { from, to, part: partOf[from]! });
+    edges.set(key, edges.has(key) ? undefined : { from, to, triangle: Math.floor(i / 3), part: partOf[from]! });
   }
   return [...edges.values()].filter((edge) => edge !== undefined);
 }

@@ -4,11 +4,11 @@
  * @module cagecast/three
  */
 import type { BufferGeometry, Object3D } from 'three';
-import type { TransferResult } from '../index.js';
+import type { Mesh, TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import type { CutPart } from '../parts/cut-part.js';
 import { type LeftOut, withBare } from '../parts/drawn.js';
-import { hasCages, moveApart } from '../parts/own-cages.js';
+import { type Apart, type Caged, hasCages, moveApart as partsApart } from '../parts/own-cages.js';
 import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
@@ -42,6 +42,7 @@ export {
 } from './apply/loaded-cages.js';
 export { type ModelMasks, modelMasks } from './model-masks.js';
 export {
+  type Apart,
   type Applied,
   type ApplyOptions,
   type Borders,
@@ -136,6 +137,18 @@ export async function applyTransferAsync(
   return applied;
 }
 
+/**
+ * Moves the parts of a target apart, each with the cage of its name, as `applyTransfer` does: for those who call `transfer`. Limbs that
+ * are near each other keep to their own cages. A result holds for the parts where they were.
+ * @param target  What `extract` returned; or its arrays, with parts that have its ranges.
+ * @param cage    What it returned for a cage.
+ * @returns both as `transfer` takes them, and `mend`, which makes the `triangles` of a result those of the cage; undefined if the cage is
+ * one, or has other names.
+ * @throws {CagecastError} `badArgument` that names a part without a cage.
+ */
+export const moveApart = <T extends Mesh, C extends Mesh>(target: Caged<T>, cage: Caged<C>): Apart<T, C> | undefined =>
+  partsApart(target, cage, (text) => wrong(`target: ${text}`));
+
 interface Call {
   /** What was prepared earlier. */
   saved: Prepared | undefined;
@@ -157,7 +170,7 @@ function read(
   const rules = { ...own, locks: withBare(extracted.accessories, own.locks) };
   const needsCage = !saved && (cuts || !result);
   const outer = needsCage ? extract(cage ?? ownCage(target), 'cage') : undefined;
-  const apart = outer && moveApart(extracted, outer, (text) => wrong(`target: ${text}`));
+  const apart = outer && moveApart(extracted, outer);
   const around = apart?.cage ?? outer?.mesh;
   if (result) checkResult(result, extracted);
   const states = statesOf(extracted);
@@ -173,6 +186,7 @@ function read(
       paints: !!options.texture && !options.material,
     },
     *finish(prepared) {
+      if (!saved) apart?.mend(prepared.result);
       const applied = yield* apply(extracted, states, prepared, options);
       return remember(applied, () => ({ key: saved?.key ?? keyOf(extracted, around, rules, cuts), prepared }));
     },

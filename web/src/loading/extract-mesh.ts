@@ -4,7 +4,7 @@ import type { ExtractedMesh, Model, Primitive } from '../state/model';
 
 /**
  * Reads all triangle meshes below `root`, depth first, into one set of arrays, as `extract` of `cagecast/three`: those that are drawn,
- * or of a cage all.
+ * or of a cage its outer cages, or all if there are none.
  * @param root   A scene that has not been moved since it was loaded.
  * @param nameOf The name of a mesh in its file, if any.
  * @throws Error that names the primitive and the element that cannot be read; or if there are no triangles.
@@ -14,8 +14,7 @@ export function extractMesh(
   nameOf: (mesh: Mesh) => string | undefined = () => undefined,
   slot: 'target' | 'cage' = 'target',
 ): ExtractedMesh {
-  const isMeant = slot === 'cage' ? () => true : undefined;
-  const { mesh, parts, accessories, leftOut } = extract(root, 'the scene', isMeant);
+  const { mesh, parts, accessories, leftOut } = extract(root, slot === 'cage' ? 'cage' : 'the scene');
   if (parts.length === 0) throw new Error('the file contains no triangles, only points, lines or an empty scene');
   const primitives = parts.map(({ geometry, ...part }): Primitive => {
     const mesh = part.mesh as Mesh;
@@ -23,7 +22,7 @@ export function extractMesh(
     return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0 };
   });
   // They would hide the model on the stage.
-  for (const { mesh, why } of leftOut) if (why === 'name') mesh.visible = false;
+  if (slot === 'target') for (const { mesh, why } of leftOut) if (why === 'name') mesh.visible = false;
   const names = leftOut.map(({ mesh, name }) => nameOf(mesh) || name);
   return { ...mesh, primitives, accessories, leftOut: names };
 }
@@ -33,14 +32,20 @@ export function meshesOf(
   root: Object3D,
   nameOf?: (mesh: Mesh) => string | undefined,
 ): Pick<Model, 'mesh' | 'cageMesh'> {
-  const cageMesh = extractMesh(root, nameOf, 'cage');
+  let mesh: ExtractedMesh | undefined;
+  let fault: unknown;
   try {
-    const mesh = extractMesh(root, nameOf);
-    return mesh.leftOut.length > 0 ? { mesh, cageMesh } : { mesh, cageMesh: mesh };
-  } catch {
-    // What is wrong with its arrays has been said by now.
+    mesh = extractMesh(root, nameOf);
+    if (mesh.leftOut.length === 0) return { mesh, cageMesh: mesh };
+  } catch (error) {
+    fault = error;
+  }
+  try {
+    const cageMesh = extractMesh(root, nameOf, 'cage');
     const leftOut = cageMesh.primitives.map(({ name }) => name);
-    return { mesh: { ...cageMesh, primitives: [], accessories: [], leftOut }, cageMesh };
+    return { mesh: mesh ?? { ...cageMesh, primitives: [], accessories: [], leftOut }, cageMesh };
+  } catch (error) {
+    throw fault ?? error;
   }
 }
 

@@ -39,7 +39,7 @@ export interface Model {
   loaded: LoadedGltf;
   animations: readonly AnimationClip[];
   mesh: ExtractedMesh;
-  /** The same as a cage, of which all counts, drawn or not. */
+  /** The same as a cage: its outer cages if there are any, else all, drawn or not. */
   cageMesh: ExtractedMesh;
   /** A message about images that cannot be shown; the model is usable all the same. */
   damage?: string;
@@ -58,6 +58,10 @@ export function asCage(model: Model): Model {
   targets.set(cage, model);
   return cage;
 }
+
+/** The cage that a model has with it: the meshes that are named so. */
+export const ownCage = (model: Model): Model | undefined =>
+  model.cageMesh.leftOut.length > 0 && model.mesh.primitives.length > 0 ? asCage(model) : undefined;
 
 /** A model as it is a target. @throws Error that begins with the file's name, if nothing of it is drawn. */
 export function asTarget(cage: Model): Model {

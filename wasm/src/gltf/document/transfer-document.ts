@@ -69,7 +69,9 @@ export async function transferDocument(
   );
   const rules = { ...options, masks, locks: withBare(target.accessories, options.locks) };
   const result = transfer(source, own, rules);
-  return { target, model, result, cut: cuts ? cutBorders(source, own, result, rules) : undefined, paint };
+  const cut = cuts ? cutBorders(source, own, result, rules) : undefined;
+  apart?.mend(result);
+  return { target, model, result, cut, paint };
 }
 
 /** What a cage has to be. */

@@ -1,4 +1,4 @@
-import { asCage, asTarget, type Model } from '../model';
+import { asCage, asTarget, type Model, ownCage } from '../model';
 import { haveSameUvs } from '../same-uvs';
 import type { Shown } from '../scene';
 import type { Session } from '../session';
@@ -258,7 +258,7 @@ export class Wardrobe {
     const model = asTarget(await target());
     if (!this.list.has(avatar)) return this.#around.loader.dispose(model);
     try {
-      avatar.cage = cage && asCage(await cage());
+      avatar.cage = cage ? asCage(await cage()) : ownCage(model);
       this.#session.keepBare(model, avatar.kept?.bare ?? this.#session.bareOf(model.files));
       avatar.files = model.files;
       avatar.kept = undefined;
