@@ -25,7 +25,7 @@ export interface Look {
 
 /** Why a part does not count, for people. */
 const kReasons = {
-  name: 'a cage, marker or collision shape by its name',
+  name: 'by name a cage, marker or collision shape',
   hidden: 'hidden',
   transparent: 'fully transparent',
   outline: 'only its back is drawn, around others',
@@ -91,8 +91,12 @@ const kMaxNamed = 8;
 /** Says which parts are left out, and why. */
 export function leftOutText(leftOut: readonly LeftOut[]): string {
   const more = leftOut.length - kMaxNamed;
-  const named = leftOut.slice(0, kMaxNamed).map(({ name, why }) => `${show(name)} (${kReasons[why]})`);
-  return `${named.join(', ')}${more > 0 ? ` and ${more} more` : ''}`;
+  const named = leftOut.slice(0, kMaxNamed);
+  const reasons = [...new Set(named.map(({ why }) => why))].map((reason) => {
+    const names = named.flatMap(({ name, why }) => (why === reason ? show(name) : []));
+    return `${names.join(', ')} (${kReasons[reason]})`;
+  });
+  return `${reasons.join(', ')}${more > 0 ? ` and ${more} more` : ''}`;
 }
 
 /** Locks that leave groups bare, under those that are given. */

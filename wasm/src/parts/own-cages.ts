@@ -204,9 +204,12 @@ function lidsOf({ mesh, parts }: Caged): Lid[] {
         return [...[-1 - to, -1 - from, start], ...[-1 - to, start, end], ...[end, start, 2 * n]];
       });
       const ends = loop.flatMap(({ from, to }) => [from, to]);
-      const uvs = loop.flatMap(({ from, to }) => {
-        const [[u, v], [toU, toV]] = [uvOf(from), uvOf(to)] as [Uv, Uv];
-        const aside = kAside / (Math.hypot(toU - u, toV - v) || 1);
+      const uvs = loop.flatMap(({ from, to, triangle }) => {
+        const third = mesh.indices.subarray(3 * triangle, 3 * triangle + 3).find((one) => one !== from && one !== to)!;
+        const [[u, v], [toU, toV], [inU, inV]] = [from, to, third].map(uvOf) as [Uv, Uv, Uv];
+        // Towards the triangle: beside it may be another tile.
+        const side = Math.sign((inU - u) * (v - toV) + (inV - v) * (toU - u));
+        const aside = (side * kAside) / (Math.hypot(toU - u, toV - v) || 1);
         const [du, dv] = [aside * (v - toV), aside * (toU - u)];
         return [...[u + du, v + dv], ...[toU + du, toV + dv]];
       });
