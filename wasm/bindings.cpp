@@ -229,6 +229,7 @@ EMSCRIPTEN_BINDINGS(cagecast) {
   value_object<SegmentStats>("SegmentStats")
       .field("points", &SegmentStats::points)
       .field("area", &SegmentStats::area)
+      .field("beyondArea", &SegmentStats::beyondArea)
       .field("exposedArea", &SegmentStats::exposedArea)
       .field("coveredArea", &SegmentStats::coveredArea)
       .field("coverage", &coverageOf, &ignore<double>)

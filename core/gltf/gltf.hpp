@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -19,6 +20,9 @@ struct [[nodiscard]] Result {
   std::string error;  ///< Empty if nothing went wrong.
   [[nodiscard]] bool ok() const noexcept { return error.empty(); }
 };
+
+/// A place in a scene.
+using Place = std::array<double, 3>;
 
 /// One primitive of one node, as a range of the whole.
 struct Part {
@@ -44,15 +48,20 @@ struct Model {
 /// Takes sparse and quantised accessors (KHR_mesh_quantization) and buffers that are embedded, data URIs or regular
 /// files in its folder, links followed. A mirrored node has its triangles turned round, so that they still face
 /// outward. Skinned meshes are placed by their skeleton, in the bind pose; as the format demands, the transform of
-/// their node is ignored. UVs are of the set that the base colour texture names, moved by its KHR_texture_transform; of
-/// TEXCOORD_0 without a texture. A mesh with instances (EXT_mesh_gpu_instancing) is taken once, where its first
-/// instance is; overlays of an earlier transfer are left out. Not understood: Draco and meshopt compression.
-Result read(const std::string& path, Model& out);
+/// their node is ignored. Morph targets shape a mesh by the weights of its node, or else of itself. UVs are of the set
+/// that the base colour texture names, moved by its KHR_texture_transform; of TEXCOORD_0 without a texture. A mesh with
+/// instances (EXT_mesh_gpu_instancing) is taken once, where its first instance is; overlays of an earlier transfer are
+/// left out. Not understood: Draco and meshopt compression.
+/// @param origin  Subtracted from all positions before they are rounded to floats. For a scene far from its origin,
+/// give target and cage the same one, such as a vertex of the target as it was first read.
+Result read(const std::string& path, Model& out, const Place& origin = {});
 
 /// Reads a .glb or .gltf file out of memory.
 /// @param name    What to call the file in errors.
 /// @param folder  Where the files that it refers to must be; empty if it may refer to none.
-Result readMemory(std::span<const std::uint8_t> bytes, const std::string& name, const std::string& folder, Model& out);
+/// @param origin  As for `read`.
+Result readMemory(std::span<const std::uint8_t> bytes, const std::string& name, const std::string& folder, Model& out,
+                  const Place& origin = {});
 
 /// What to write: one mesh.
 struct Content {

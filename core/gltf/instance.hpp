@@ -27,6 +27,21 @@ struct Transform {
     return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
            m[2] * (m[4] * m[9] - m[5] * m[8]);
   }
+
+  /// The determinant must not be 0.
+  Transform inverse() const {
+    const double whole = determinant();
+    const auto minor = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
+      return (m[a] * m[d] - m[b] * m[c]) / whole;
+    };
+    Transform out;
+    out.m = {minor(5, 6, 9, 10), minor(2, 1, 10, 9), minor(1, 2, 5, 6), 0,
+             minor(6, 4, 10, 8), minor(0, 2, 8, 10), minor(2, 0, 6, 4), 0,
+             minor(4, 5, 8, 9),  minor(1, 0, 9, 8),  minor(0, 1, 4, 5), 0};
+    for (std::size_t row = 0; row < 12; row += 4)
+      out.m[row + 3] = -(out.m[row] * m[3] + out.m[row + 1] * m[7] + out.m[row + 2] * m[11]);
+    return out;
+  }
 };
 
 /// The transform that 16 numbers of glTF are, column by column.
@@ -43,7 +58,8 @@ struct Instance {
   std::string where, name;  ///< In the file, and for people.
   Transform world;
   int node;
-  int skin;  ///< −1: none.
+  int skin;                            ///< −1: none.
+  const std::vector<double>& weights;  ///< Of its morph targets; others are 0.
 };
 
 }  // namespace cagecast::gltf

@@ -125,11 +125,36 @@ void appendUvs(const std::vector<double>& uvs, const UvLayout& layout, std::vect
   }
 }
 
+/// The accessor of a morph target's positions, if it is applied; else −1.
+int shownTarget(const Instance& instance, std::size_t target) {
+  const auto& targets = instance.primitive.targets;
+  if (target >= std::min(targets.size(), instance.weights.size()) || instance.weights[target] == 0) return -1;
+  const auto found = targets[target].find("POSITION");
+  return found == targets[target].end() ? -1 : found->second;
+}
+
+/// The positions of an instance in its own space, in the shape that its morph targets give it.
+std::vector<double> shownPositions(const tinygltf::Model& model, const Instance& instance) {
+  const std::string where = instance.where + ".POSITION";
+  std::vector<double> positions =
+      decode(model, attributeOf(instance.primitive, "POSITION"), TINYGLTF_TYPE_VEC3, 3, where);
+  for (std::size_t target = 0; target < instance.weights.size(); ++target) {
+    const int accessor = shownTarget(instance, target);
+    if (accessor < 0) continue;
+    const std::string place = instance.where + ".targets[" + std::to_string(target) + "]";
+    const std::vector<double> deltas = decode(model, accessor, TINYGLTF_TYPE_VEC3, 3, place);
+    if (deltas.size() < positions.size())
+      fail(place, " has ", deltas.size() / 3, " elements for ", positions.size() / 3, " vertices");
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] += instance.weights[target] * deltas[i];
+  }
+  return positions;
+}
+
 void append(const tinygltf::Model& model, const Instance& instance, Model& out, bool& haveUvs) {
-  const auto& [primitive, where, name, world, node, skin] = instance;
+  const auto& [primitive, where, name, world, node, skin, weights] = instance;
   const UvLayout layout = uvLayoutOf(model, primitive);
-  const int position = attributeOf(primitive, "POSITION"), texcoord = attributeOf(primitive, layout.set);
-  const std::vector<double> local = decode(model, position, TINYGLTF_TYPE_VEC3, 3, where + ".POSITION");
+  const int texcoord = attributeOf(primitive, layout.set);
+  const std::vector<double> local = shownPositions(model, instance);
   const std::size_t vertexCount = local.size() / 3;
   std::vector<std::uint32_t> corners;
   if (primitive.indices >= 0) {
@@ -273,7 +298,8 @@ std::vector<Instance> instancesIn(const tinygltf::Model& model) {
         if (!material.name.empty()) name += "/" + material.name;
       }
       const std::string where = "meshes[" + std::to_string(node.mesh) + "].primitives[" + std::to_string(p) + "]";
-      instances.push_back({primitive, where, name, world, number, node.skin});
+      instances.push_back(
+          {primitive, where, name, world, number, node.skin, node.weights.empty() ? mesh.weights : node.weights});
     }
   });
   return instances;
@@ -301,6 +327,9 @@ void checkElements(const tinygltf::Model& model, const std::vector<Instance>& in
     const tinygltf::Primitive& primitive = instance.primitive;
     const int position = attributeOf(primitive, "POSITION");
     for (const int index : {position, primitive.indices}) addAccessor(index, instance.where);
+    add(instance.weights.size());
+    for (std::size_t target = 0; target < instance.weights.size(); ++target)
+      addAccessor(shownTarget(instance, target), instance.where);
     if (primitive.extensions.count(kCompressions[0].first) != 0 &&
         model.accessors[static_cast<std::size_t>(position)].bufferView < 0)
       failCompressed(kCompressions[0].first, kCompressions[0].second);
@@ -314,7 +343,7 @@ void checkElements(const tinygltf::Model& model, const std::vector<Instance>& in
   }
 }
 
-Model flatten(const tinygltf::Model& model) {
+Model flatten(const tinygltf::Model& model, const Place& origin) {
   std::vector<Instance> instances = instancesIn(model);
   checkElements(model, instances);
   for (Instance& instance : instances) {
@@ -323,7 +352,9 @@ Model flatten(const tinygltf::Model& model) {
       instance.world = instance.world * firstInstance(model, node, nodeAt(instance.node));
   }
   if (std::any_of(instances.begin(), instances.end(), [](const Instance& instance) { return instance.skin >= 0; }))
-    placeSkinned(model, worldsOf(model), instances);
+    placeMeshes(model, worldsOf(model), instances);
+  for (Instance& instance : instances)
+    for (std::size_t row = 0; row < 3; ++row) instance.world.m[row * 4 + 3] -= origin[row];
   Model out;
   bool haveUvs = true;
   for (const Instance& instance : instances) append(model, instance, out, haveUvs);
@@ -334,11 +365,12 @@ Model flatten(const tinygltf::Model& model) {
 
 }  // namespace
 
-Result readMemory(std::span<const std::uint8_t> bytes, const std::string& name, const std::string& folder, Model& out) {
-  return guarded(name, kNotValid, [&] { out = flatten(parse(bytes, folder)); });
+Result readMemory(std::span<const std::uint8_t> bytes, const std::string& name, const std::string& folder, Model& out,
+                  const Place& origin) {
+  return guarded(name, kNotValid, [&] { out = flatten(parse(bytes, folder), origin); });
 }
 
-Result read(const std::string& path, Model& out) {
+Result read(const std::string& path, Model& out, const Place& origin) {
   std::vector<std::uint8_t> bytes;
   Result result = guarded(path, kNotValid, [&] {
     std::error_code error;
@@ -351,7 +383,7 @@ Result read(const std::string& path, Model& out) {
   });
   if (!result.ok()) return result;
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  return readMemory(bytes, path, folder.empty() ? "." : folder, out);
+  return readMemory(bytes, path, folder.empty() ? "." : folder, out, origin);
 }
 
 }  // namespace cagecast::gltf

@@ -6,12 +6,14 @@
 #include "base/timer.hpp"
 #include "input/validate.hpp"
 #include "seams/corner_uvs.hpp"
-#include "steps/holes.hpp"
+#include "steps/holes/holes.hpp"
+#include "steps/holes/region.hpp"
 #include "steps/interior_samples.hpp"
 #include "steps/masks.hpp"
 #include "steps/occluded.hpp"
 #include "steps/point_data.hpp"
 #include "steps/project.hpp"
+#include "steps/project_part.hpp"
 #include "steps/recheck/recheck_occluded.hpp"
 #include "steps/scene.hpp"
 #include "steps/segments.hpp"
@@ -29,7 +31,8 @@ void projectAndMark(const Scene& scene, PointData& data, Timings& times) {
 }
 
 /// Steps 4 and 7: the segments and their areas.
-void measureSegments(const Scene& scene, PointData& data, Array<SegmentStats>& stats) {
+/// @param isOuter  1 per boundary loop, with step 10; else null.
+void measureSegments(const Scene& scene, PointData& data, const bool* isOuter, Array<SegmentStats>& stats) {
   const Steps& steps = scene.options.steps;
   const bool isFiltered = steps.projection == ProjectionMode::nearestPoint;
   findSegments(scene, data, stats);
@@ -37,6 +40,7 @@ void measureSegments(const Scene& scene, PointData& data, Array<SegmentStats>& s
   if (isFiltered && steps.interiorSamples) placeInteriorSamples(scene, data, stats, samples);
   Timings ofSamples;  // Counted as a part of step 4.
   if (samples.triangleCount > 0) projectAndMark(scene, samples.data, ofSamples);
+  if (samples.triangleCount > 0 && isOuter != nullptr) markSamplesBeyond(scene, samples.data, isOuter);
   sumAreas(scene, samples, data, stats);
 }
 
@@ -92,10 +96,9 @@ std::uint64_t bytesOf(const Array<T>&... arrays) {
   return ((arrays.size() * sizeof(T)) + ...);
 }
 
-}  // namespace
-
-Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
-               Projection& out) noexcept {
+/// @param findsBorders  Whether to look for outer borders of the cage, and for what lies beyond them.
+Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, bool findsBorders,
+               Workspace& workspace, Projection& out) noexcept {
   Timings& times = out.timings = {};
   const Timer timer(times.total);
   if (const Status status = checkOptions(options, Stage::project); !status.ok()) return status;
@@ -105,13 +108,18 @@ Status project(const MeshView& cage, const MeshView& target, const TransferOptio
   Scene scene(cage, target, options, *arena);
   if (const Status status = timed(times.weld, [&] { return scene.load(); }); !status.ok()) return status;
   PointData points(scene.points, options, *arena);
+  bool* isOuter = nullptr;
   if (options.steps.projection == ProjectionMode::nearestPoint) {
     timed(times.build, [&] { scene.buildTrees(); });
     projectAndMark(scene, points, times);
+    if (findsBorders) {
+      isOuter = arena->allocate<bool>(scene.loops.count);
+      if (!arena->failed()) timed(times.holes, [&] { markBeyond(scene, points, isOuter); });
+    }
   } else {
     timed(times.project, [&] { projectToVertices(scene, points); });
   }
-  timed(times.segments, [&] { measureSegments(scene, points, out.segmentStats); });
+  timed(times.segments, [&] { measureSegments(scene, points, isOuter, out.segmentStats); });
   HiderRecords hiders(*arena);
   findRecovery(scene, points, hiders, out);
   timed(times.segments, [&] { writeProjection(scene, points, hiders, out); });
@@ -126,6 +134,18 @@ Status project(const MeshView& cage, const MeshView& target, const TransferOptio
       arena->peak() + bytesOf(out.uvs, out.cornerUvs, out.visibility, out.triangles, out.distances, out.segments,
                               out.segmentStats, out.recovery, out.hiddenBy, out.hiders, out.holeShares);
   return arena->failed() ? Status{Code::outOfMemory} : Status{};
+}
+
+}  // namespace
+
+Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
+               Projection& out) noexcept {
+  return project(cage, target, options, options.steps.holes, workspace, out);
+}
+
+Status projectPart(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
+                   Projection& out) noexcept {
+  return project(cage, target, options, false, workspace, out);
 }
 
 Status transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,

@@ -210,7 +210,7 @@ describe('project and classify', () => {
   test('a projection has what can be decided later', () => {
     for (const { cage, target } of [head(8), soup(9)]) {
       const projection = project(cage, target);
-      assert.ok(projection.visibility.every((found) => found <= Visibility.Uncovered));
+      assert.ok(projection.visibility.every((found) => found <= Visibility.Beyond));
       assert.ok(projection.segmentStats.every(({ culled }) => !culled));
       assert.deepEqual(projection.indices, new Uint32Array(target.indices));
       assert.deepEqual(classify(projection).zones, transfer(cage, target).zones);

@@ -35,7 +35,7 @@ describe('errors', () => {
     const script = `
       import { transfer, project, classify } from 'cagecast';
       const mesh = { positions: new Float32Array(9), indices: new Uint32Array(3), uvs: new Float32Array(6) };
-      const projection = { visibility: new Uint8Array(1), segments: new Uint32Array(1), indices: new Uint32Array(0), preset: 'paper', recovery: new Uint32Array(0), hiddenBy: new Uint32Array(0), hiders: new Uint32Array(0), holeShares: [], segmentStats: [{ points: 1, area: 0, exposedArea: 0, coveredArea: 0, depth: 0, group: 0 }] };
+      const projection = { visibility: new Uint8Array(1), segments: new Uint32Array(1), indices: new Uint32Array(0), preset: 'paper', recovery: new Uint32Array(0), hiddenBy: new Uint32Array(0), hiders: new Uint32Array(0), holeShares: [], segmentStats: [{ points: 1, area: 0, beyondArea: 0, exposedArea: 0, coveredArea: 0, depth: 0, group: 0 }] };
       for (const call of [() => transfer(mesh, mesh), () => project(mesh, mesh), () => classify(projection)]) {
         try { call(); } catch (error) { console.log(error.code, error.message); }
       }`;

@@ -209,6 +209,35 @@ test('new vertices of cut borders have all attributes of those around them, in p
 });
 
 describe('document.transform(cagecast(…))', () => {
+  test('a note says why nothing may be painted, and so does the logger', async () => {
+    const document = await documentOf(glbOf(target));
+    const heard: string[] = [];
+    document.setLogger({ ...document.getLogger(), warn: (text) => void heard.push(text) });
+    const away = { ...cage, positions: cage.positions.map((x) => x + 9) };
+    let told: string | undefined;
+    await document.transform(cagecast({ cage: away, onResult: (_, __, note) => void (told = note) }));
+    assert.match(told!, /^nothing may be painted: the cage lies over next to none of the target; put /);
+    assert.deepEqual(heard, [`cagecast: ${told}`]);
+  });
+
+  test('far from the origin', async () => {
+    const translation = [1e7, -1e7, 3e6];
+    const place = (mesh: Mesh) => {
+      const maker = new GlbMaker();
+      maker.node({ mesh: maker.mesh(mesh), translation });
+      return documentOf(maker.finish());
+    };
+    const painted = async (document: Document, around: Document | Mesh) => {
+      let count = 0;
+      const onResult = ({ cosmeticTriangles }: TransferResult) =>
+        void (count = cosmeticTriangles.filter(Boolean).length);
+      await document.transform(cagecast({ cage: around, onResult }));
+      return count;
+    };
+    const expected = await painted(await documentOf(glbOf(target)), cage);
+    assert.equal(await painted(await place(target), await place(cage)), expected);
+  });
+
   test('writes the UVs and zones of the package, by its options, and keeps the rest', async () => {
     for (const options of [{}, { threshold: 1, seams: 'vertex' }] as const) {
       const document = await documentOf(glbOf(target));
@@ -234,7 +263,7 @@ describe('document.transform(cagecast(…))', () => {
         cage,
         texture,
         parts: (_, node, isDrawn) => isDrawn && node.getName() !== 'Visor',
-        onResult: (_, parts, leftOut) => void left.push(...[...parts, ...leftOut].map(({ name }) => name)),
+        onResult: (_, parts, __, leftOut) => void left.push(...[...parts, ...leftOut].map(({ name }) => name)),
       }),
     );
     assert.deepEqual(left, ['head', 'Visor', 'Head_Att']);

@@ -205,21 +205,27 @@ describe('a cage for a part of the target', () => {
     assert.equal(codes(inspect(thin, body))[0], 'cageTooSmall');
   });
 
-  test('half a cage: the segment does not pass, and the reason', () => {
+  test('a cap: what lies beyond its border does not count', () => {
     const cap = within(cage, (_, __, z) => z > 0.6);
-    const inspection = inspect(cap, target, { parts });
+    assert.notEqual(inspect(cap, target, { parts }).verdict, 'unfit');
+    // If it does: the segment does not pass, and the reason.
+    const steps = { holes: false };
+    const inspection = inspect(cap, target, { parts, steps });
     assert.match(
       find(inspection, 'nothingToPaint').sentence,
       /covers \d+\.\d % of the exposed area of "skin", less than the threshold of 0\.5/,
     );
     // At a lower threshold it is the floor that it misses.
     assert.match(
-      find(inspect(cap, target, { parts, threshold: 0.05 }), 'nothingToPaint').sentence,
+      find(inspect(cap, target, { parts, threshold: 0.05, steps }), 'nothingToPaint').sentence,
       /and it has 0\.\d+ times the required covered area/,
     );
-    assert.notEqual(inspect(cap, target, { parts, threshold: 0.05, steps: { floor: false } }).verdict, 'unfit');
+    assert.notEqual(
+      inspect(cap, target, { parts, threshold: 0.05, steps: { ...steps, floor: false } }).verdict,
+      'unfit',
+    );
     const { locks } = find(inspection, 'nothingToPaint');
-    assert.notEqual(inspect(cap, target, { parts, locks }).verdict, 'unfit', 'as the advice says');
+    assert.notEqual(inspect(cap, target, { parts, steps, locks }).verdict, 'unfit', 'as the advice says');
   });
 });
 

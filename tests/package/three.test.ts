@@ -54,7 +54,7 @@ const meshOf = (mesh: Mesh): ThreeMesh<BufferGeometry, MeshStandardMaterial> =>
 const unpaintable = () => new ThreeMesh(geometryOf(scene.target), new MeshNormalMaterial());
 const cage = () => meshOf(scene.cage);
 const attribute = (geometry: BufferGeometry, name: string) => geometry.getAttribute(name).array as Float32Array;
-const arraysOf = ({ geometry }: ThreeMesh) => ({
+const arraysOf = ({ geometry }: ThreeMesh): Record<string, object> => ({
   ...Object.fromEntries(Object.entries(geometry.attributes).map(([name, { array }]) => [name, array])),
   index: geometry.index!.array,
 });
@@ -315,6 +315,22 @@ function assertSplit(geometry: BufferGeometry, before: BufferGeometry, result: T
 }
 
 describe('applyTransfer', () => {
+  test('a note says why nothing may be painted, and what helps', () => {
+    assert.equal(applyTransfer(meshOf(ungrouped), cage()).note, undefined);
+    const target = Object.assign(meshOf(ungrouped), { name: 'head' });
+    const { note } = applyTransfer(target, cage(), { locks: { groups: { 0: 'exclude' } } });
+    assert.equal(note, 'nothing may be painted: "head" is excluded by choice; lift the lock');
+  });
+
+  test('far from the origin', () => {
+    const painted = (x: number) => {
+      const [object, around] = [meshOf(ungrouped), cage()];
+      for (const one of [object, around]) one.position.set(x, -x, 0);
+      return applyTransfer(object, around).result.cosmeticTriangles.filter(Boolean).length;
+    };
+    assert.equal(painted(1e7), painted(0));
+  });
+
   test('splits vertices with all their attributes at the seams of the texture', () => {
     const target = meshOf(scene.target);
     const { geometry } = target;

@@ -79,7 +79,6 @@ const mirrors = [
   [-1, -1, -1],
   [-1, -1, 1],
 ] as const;
-const kTurn = Math.sin(0.2);
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 /** The inverse of a joint at a place, for a mesh that is stored so much larger than it is shown. */
 const inverseOf = ([x, y, z]: readonly number[], scale = 1): number[] =>
@@ -100,25 +99,57 @@ const scaled = (maker: GlbMaker, by: number): number =>
     'VEC3',
   );
 
-/** A tetrahedron on two joints, of which the second has moved if `isPosed`; and a second one on that joint alone. */
-function figure(isPosed: boolean, scale = 1): Uint8Array {
+/** A quarter turn from z to y: (x, y, z) comes to (x, z, -y). */
+const kUpright = [-Math.SQRT1_2, 0, 0, Math.SQRT1_2];
+
+interface Figure {
+  /** By how much the second joint has turned. */
+  posed?: number;
+  /** How many times larger it is stored. */
+  scale?: number;
+  /** What turns it upright if it is stored lying: a node above its joints, the first of them, or, as FBX2glTF has it, its own node. */
+  turned?: 'above' | 'root' | 'mesh';
+  /** A third tetrahedron, which is on no skin but hangs on the second joint. */
+  rigid?: boolean;
+}
+
+/** A tetrahedron on two joints, of which the second may have turned; and a second one on that joint alone. */
+function figure({ posed = 0, scale = 1, turned, rigid }: Figure): Uint8Array {
   return file((maker, primitive, node) => {
-    const pose = isPosed ? { rotation: [0, kTurn, 0, Math.sqrt(1 - kTurn * kTurn)] } : {};
-    const head = maker.node({ name: 'head', translation: [0, 0, 0.5], ...pose }, false);
-    const hips = maker.node({ name: 'hips', children: [head] });
+    const rotation = kUpright;
+    const head = maker.node(
+      { name: 'head', translation: [0, 0, 0.5], rotation: [0, Math.sin(posed), 0, Math.cos(posed)] },
+      false,
+    );
+    if (rigid) maker.json.nodes[head]!.children = [maker.node({ mesh: maker.mesh(solid) }, false)];
+    const hips = maker.node({ name: 'hips', children: [head], ...(turned === 'root' && { rotation }) }, false);
+    maker.node({ children: [hips], ...(turned === 'above' && { rotation }) });
     const second = maker.mesh(solid);
     for (const [one, joints] of [
-      [primitive, [0, 1, 0, 1]],
-      [maker.json.meshes[second]!.primitives[0]!, [1, 1, 1, 1]],
+      [primitive, [1, 0, 1, 0]],
+      [maker.json.meshes[second]!.primitives[0]!, [0, 0, 0, 0]],
     ] as const) {
-      one.attributes['POSITION'] = scaled(maker, scale);
+      const stored = solid.positions.map((_, i, p) => (turned ? [p[i]!, -p[i + 1]!, p[i - 1]!][i % 3]! : p[i]!));
+      one.attributes['POSITION'] = maker.accessor(
+        stored.map((x) => scale * x),
+        'VEC3',
+      );
       held(maker, one, joints);
     }
-    const inverses = [...inverseOf([0, 0, 0], scale), ...inverseOf([0, 0, 0.5], scale)];
+    const inverse = (place: number[]) => {
+      const all = inverseOf(place, scale);
+      return turned === 'mesh'
+        ? all.map((_, i) => (i < 12 && i % 4 > 0 && i % 4 < 3 ? [all[i + 1]!, -all[i - 1]!][(i % 4) - 1]! : all[i]!))
+        : all;
+    };
+    const inverses = [...inverse([0, 0, 0.5]), ...inverse([0, 0, 0])];
     const inverseBindMatrices = maker.accessor(Float32Array.from(inverses), 'MAT4');
-    maker.json.skins = [{ joints: [hips, head], inverseBindMatrices }];
-    Object.assign(node, { skin: 0, translation: [9, 9, 9] }); // which a skin ignores
-    maker.node({ name: 'second', mesh: second, skin: 0 });
+    maker.json.skins = [{ joints: [head, hips], inverseBindMatrices }];
+    // Which a skin ignores.
+    const own =
+      turned === 'mesh' ? { rotation, scale: [1, 1, 1].map((one) => one / scale) } : { translation: [9, 9, 9] };
+    Object.assign(node, { skin: 0, ...own });
+    maker.node({ name: 'second', mesh: second, skin: 0, ...(turned === 'mesh' && own) });
   });
 }
 
@@ -235,10 +266,17 @@ const cases: Record<string, Omit<GltfFile, 'name'>> = {
   },
   'morph-targets': {
     bytes: file((maker, primitive) => {
-      primitive.targets = [{ POSITION: scaled(maker, 0.5) }];
-      maker.json.meshes[0]!.weights = [1];
+      const quantised = Int8Array.from(solid.positions, (x) => 127 * Math.sign(x));
+      primitive.targets = [
+        { POSITION: scaled(maker, 0.5) },
+        { POSITION: maker.accessor(quantised, 'VEC3', { normalized: true }) },
+      ];
+      maker.json.meshes[0]!.weights = [1, 0];
+      maker.node({ mesh: 0, weights: [-1, Math.sqrt(3)] });
+      maker.json.extensionsUsed = maker.json.extensionsRequired = ['KHR_mesh_quantization'];
     }),
-    expected: plain,
+    // As they are shown: by the weights of the node, or else of the mesh.
+    expected: joined(...[1.5, 3.5].map((by) => ({ ...plain, positions: plain.positions.map((x) => by * x) }))),
   },
   meshopt: {
     bytes: await compressed(),
@@ -434,10 +472,22 @@ const cases: Record<string, Omit<GltfFile, 'name'>> = {
   },
 
   // Skins
-  'skin-at-rest': { bytes: figure(false), expected: all },
-  'skin-in-another-unit': { bytes: figure(false, 64), expected: all },
-  'skin-that-is-posed': { bytes: figure(true), expected: all },
-  'skin-in-another-unit-that-is-posed': { bytes: figure(true, 64), expected: all },
+  'skin-at-rest': { bytes: figure({}), expected: all },
+  'skin-in-another-unit': { bytes: figure({ scale: 64 }), expected: all },
+  'skin-that-is-posed': { bytes: figure({ posed: 0.2 }), expected: all },
+  'skin-in-another-unit-that-is-posed': { bytes: figure({ posed: 0.2, scale: 64 }), expected: all },
+  ...Object.fromEntries(
+    (['above', 'root', 'mesh'] as const).flatMap((turned) =>
+      [0, 0.001, 0.2].map((posed) => [
+        `skin-turned-by-${turned}-posed-by-${posed}`,
+        { bytes: figure({ posed, turned, scale: turned === 'mesh' ? 64 : 1 }), expected: all },
+      ]),
+    ),
+  ),
+  'a-rigid-part-of-a-figure-that-is-posed': {
+    bytes: figure({ posed: 0.2, rigid: true }),
+    expected: joined(plain, { ...plain, positions: moved([0, 0, 0.5]) }, plain),
+  },
   'skin-that-stands-elsewhere': {
     bytes: file((maker, primitive, node) => {
       held(maker, primitive, [0, 0, 0, 0]);

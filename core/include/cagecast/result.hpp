@@ -16,6 +16,7 @@ enum class Visibility : std::uint8_t {
   covered = 0,    ///< The cage covers it.
   occluded = 1,   ///< Another surface of the target lies over it.
   uncovered = 2,  ///< The cage has a hole over it, or it lies outside the cage.
+  beyond = 3,     ///< It lies beyond an outer border of the cage, which says nothing of it: its zone is uncovered.
 };
 
 /// Why a vertex may, or may not, be painted. All but `cosmetic` are Non-Cosmetic Zones (NCZ).
@@ -72,7 +73,8 @@ struct SegmentStats {
   CulledBy culledBy = CulledBy::none;  ///< Set by `transfer`; `project` leaves `none`.
   Ratios ratios;                       ///< Set by `transfer`.
   double area = 0;                     ///< A: its whole area.
-  double exposedArea = 0;              ///< E: the area that is not occluded.
+  double beyondArea = 0;               ///< The part of A beyond outer borders of the cage, occluded or not.
+  double exposedArea = 0;              ///< E: the area that is neither occluded nor beyond.
   double coveredArea = 0;              ///< C: the part of E that the cage covers.
   /// The mean distance of its covered area from the cage, as a share of the target's diagonal; a distance of more than
   /// one diagonal counts as one. 0 if nothing is covered, and with `ProjectionMode::nearestVertex`.

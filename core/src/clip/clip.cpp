@@ -8,6 +8,7 @@
 #include "input/validate.hpp"
 #include "steps/classify.hpp"
 #include "steps/masks.hpp"
+#include "steps/project_part.hpp"
 #include "steps/scene.hpp"
 
 namespace cagecast {
@@ -91,6 +92,18 @@ std::uint32_t heaviestSource(const ClippedMesh& cut, std::size_t newVertex) {
   return cut.sources[3 * newVertex + static_cast<std::size_t>(std::max_element(weights, weights + 3) - weights)];
 }
 
+/// What lies beyond an outer border of the cage, on no loop, and so was left uncovered, still does.
+void keepBeyond(const DecidedTarget& decided, const ClippedMesh& cut, std::span<const Visibility> visibility,
+                Zones& zones) {
+  const std::size_t vertexCount = decided.zones.size();
+  for (std::size_t v = 0; v < zones.zones.size(); ++v) {
+    if (zones.zones[v] != Zone::cosmetic || visibility[v] != Visibility::uncovered) continue;
+    if (cut.loopSides[v] != LoopSide::covered) continue;
+    const std::size_t source = v < vertexCount ? v : heaviestSource(cut, v - vertexCount);
+    if (decided.zones[source] == Zone::uncovered) zones.zones[v] = Zone::uncovered;
+  }
+}
+
 /// Decides the pieces of masked triangles, and their vertices, as the whole triangles were.
 /// @return false if memory ran out.
 bool applyMasks(const DecidedTarget& decided, const TransferOptions& options, const ClippedMesh& cut, Zones& zones) {
@@ -161,7 +174,7 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
   locked.weldTolerance = 0;
   locked.masks = {};
   Projection again;
-  if (const Status status = project(cage, {cut.positions, cut.indices, {}, groups}, locked, workspace, again);
+  if (const Status status = projectPart(cage, {cut.positions, cut.indices, {}, groups}, locked, workspace, again);
       !status.ok())
     return status;
   locked.locks = {locks, {}};
@@ -169,6 +182,7 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
   if (!renumberHiders(again, segments)) return kOutOfMemory;
   const ProjectionView view{again.visibility, segments, stats, again.recovery, {}, {again.hiddenBy, again.hiders}};
   if (const Status status = classify(view, cut.indices, locked, zones); !status.ok()) return status;
+  keepBeyond(decided, cut, again.visibility, zones);
   applyCuts(cut, options, zones);
   if (!applyMasks(decided, options, cut, zones)) return kOutOfMemory;
   out = {

@@ -63,7 +63,9 @@ void sumAreas(const Scene& scene, const InteriorSamples& samples, PointData& dat
   for (std::size_t s = 0; s < stats.size(); ++s) {
     const std::int64_t covered = sums[s].of(Visibility::covered);
     const std::int64_t exposed = covered + sums[s].of(Visibility::uncovered);
-    stats[s].area = unit.area(exposed + sums[s].of(Visibility::occluded) + sums[s].rounding) * toInput;
+    const std::int64_t beyond = sums[s].of(Visibility::beyond);
+    stats[s].area = unit.area(exposed + sums[s].of(Visibility::occluded) + beyond + sums[s].rounding) * toInput;
+    stats[s].beyondArea = unit.area(beyond) * toInput;
     stats[s].exposedArea = unit.area(exposed) * toInput;
     stats[s].coveredArea = unit.area(covered) * toInput;
     stats[s].depth = covered > 0 ? static_cast<double>(sums[s].depth) / static_cast<double>(covered) : 0;

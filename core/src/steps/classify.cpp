@@ -56,7 +56,8 @@ class Rules {
     ratios.floor = 0;
     if (!(s.coveredArea > 0)) return;
     // What is meant to be painted is covered almost wherever it is exposed; an eye or a lamp in its hole is not.
-    ratios.floor = ratio(s.coveredArea * s.coverage(), static_cast<double>(options_.minCovered) * s.area);
+    ratios.floor =
+        ratio(s.coveredArea * s.coverage(), static_cast<double>(options_.minCovered) * (s.area - s.beyondArea));
     if (isSmall(s)) {
       // Teeth and tongues lie several times as deep under the cage as the lips around them.
       ratios.depth = ratio(typical_.most(), s.depth);
@@ -115,7 +116,7 @@ Zone zoneOf(Visibility visibility) {
   const auto areAlike = [](Visibility a, Zone b) { return static_cast<int>(a) == static_cast<int>(b); };
   static_assert(areAlike(Visibility::covered, Zone::cosmetic) && areAlike(Visibility::occluded, Zone::occluded) &&
                 areAlike(Visibility::uncovered, Zone::uncovered));
-  return static_cast<Zone>(visibility);
+  return visibility == Visibility::beyond ? Zone::uncovered : static_cast<Zone>(visibility);
 }
 
 /// Step 9: whether enough rays of a vertex hit nothing but culled segments.

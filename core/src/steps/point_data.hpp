@@ -24,7 +24,7 @@ struct PointData {
         meetsCage(arena.allocate<bool>(at.count)),
         segments(arena.allocate<std::uint32_t>(at.count)) {
     if (options.steps.recheck) occluders = arena.allocate<std::uint32_t>(at.count);
-    if (std::isfinite(options.occlusionReach) || options.steps.recheck)
+    if (std::isfinite(options.occlusionReach) || options.steps.recheck || options.steps.holes)
       cageDistances = arena.allocate<double>(at.count);
   }
 
@@ -37,7 +37,7 @@ struct PointData {
   Visibility* visibility = nullptr;
   bool* meetsCage = nullptr;  ///< Whether the ray of step 3 hits the cage; false if step 1 left that open.
   double* cageDistances =
-      nullptr;  ///< How far along its ray the cage is; infinity: nowhere. With steps 6 and 9, else null.
+      nullptr;  ///< How far along its ray the cage is; infinity: nowhere. With steps 6, 9 and 10, else null.
   std::uint32_t* occluders =
       nullptr;  ///< For occluded points: a corner of a triangle that hides it. With step 9, else null.
 

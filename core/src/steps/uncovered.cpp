@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "base/tolerances.hpp"
-#include "geometry/closest_point.hpp"
 #include "search/ray_search.hpp"
+#include "steps/cage_place.hpp"
 #include "steps/normal_ray.hpp"
 
 namespace cagecast {
@@ -40,11 +40,9 @@ void sendToCage(const Scene& scene, const PointData& data, RaySearch::Find find,
 
 /// Step 6: whether a point is a little outside the cage, and not at a boundary loop.
 bool pokesThrough(const Scene& scene, const PointData& data, std::uint32_t point) {
-  const std::uint32_t t = data.cageTriangles[point];
-  const CageTriangle& triangle = scene.cage.triangles[t];
-  const ClosestPoint place = closestPointOnTriangle(triangle, data.points.exactly(point));
-  return place.distance <= scene.length(static_cast<double>(scene.options.pokeThrough)) && place.height > 0 &&
-         scene.loops.at(triangle, t, positionOf(triangle, place), scene.units.diagonal) == BoundaryLoops::kNone;
+  const CagePlace place(scene, data, point);
+  return place.closest.distance <= scene.length(static_cast<double>(scene.options.pokeThrough)) &&
+         place.closest.height > 0 && place.loop == BoundaryLoops::kNone;
 }
 
 }  // namespace

@@ -124,6 +124,7 @@ Differences compare(const Result& reference, const TransferResult& product, cons
     if (firm[s] != 0) {
       check("culledBy", got.culledBy != expected.culledBy, static_cast<double>(got.culledBy),
             static_cast<double>(expected.culledBy));
+      checkArea("area beyond", got.beyondArea, expected.beyondArea);
       checkArea("exposed area", got.exposedArea, expected.exposedArea);
       checkArea("covered area", got.coveredArea, expected.coveredArea);
       check("depth", differsAsRatio(got.depth, expected.depth), got.depth, expected.depth);

@@ -201,8 +201,120 @@ struct State {
   std::uint32_t segmentCount = 0;
   std::vector<Verdict> passes;   // Per segment.
   std::vector<Verdict> covered;  // Per segment: whether any of it is.
+  std::vector<Verdict> outer;    // Per loop: whether it is an outer border of the cage.
+  std::vector<Verdict> beyond;   // Per point: whether it lies beyond one.
   Range deepest;                 // How deep, in diagonals, what is to be painted may lie.
 };
+
+/// Whether a point is surely or perhaps so, given whether each of its outcomes is.
+template <typename IsSo>
+Verdict overOutcomes(const Finding& finding, IsSo isSo) {
+  Verdict result{isSo(finding.outcomes[0]), false, true};
+  for (const Outcome& outcome : finding.outcomes) {
+    result.might = result.might || isSo(outcome);
+    result.must = result.must && isSo(outcome);
+  }
+  return result;
+}
+
+// -------------------- 10 Outer borders
+
+/// An overhang this near to its limit, in diagonals, may as well be on its other side.
+constexpr double kUnsureOverhang = 1e-7;
+
+/// How far a point lies sideways from its place on the cage, against what hardly counts at the loop there.
+struct Overhang {
+  double is, slight;
+  Overhang(const Scene& scene, Vec p, const ClosestPoint& place, std::int32_t loop) {
+    constexpr double kOverhang = 0.005, kOverhangOfLoop = 0.05;
+    const Vec n = place.triangle->normal, offset = p - place.position();
+    is = length(offset - n * dot(offset, n));
+    const Box& box = scene.loops.loops[static_cast<std::size_t>(loop)].box;
+    slight = std::min(kOverhang * scene.diag, kOverhangOfLoop * box.diagonal());
+  }
+};
+
+/// Whether a place on the target lies sideways from an outer border.
+Verdict isBesideBorder(const Scene& scene, const State& state, Vec p, const ClosestPoint& place, std::int32_t loop) {
+  if (loop < 0) return {};
+  const Overhang overhang(scene, p, place, loop);
+  const double unsure = kUnsureOverhang * scene.diag;
+  return state.outer[static_cast<std::size_t>(loop)] &&
+         Verdict{overhang.is > overhang.slight, overhang.is + unsure > overhang.slight,
+                 overhang.is - unsure > overhang.slight};
+}
+
+/// Finds the loops that have much of the target on their outer side, past the cage.
+void findOuterBorders(const Scene& scene, State& state) {
+  constexpr double kMuch = 3, kUnsureSide = 1e-9;
+  struct Plane {
+    Vec centre, area;
+    double perimeter = 0;
+  };
+  std::vector<Plane> planes(scene.loops.loops.size());
+  const auto eachEdge = [&](auto call) {
+    for (std::size_t t = 0; t < scene.loops.loopOfEdge.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t loop = scene.loops.loopOfEdge[t][k];
+        const auto& corners = scene.cage.triangles()[t].corners;
+        if (loop >= 0) call(planes[static_cast<std::size_t>(loop)], corners[k], corners[(k + 1) % 3]);
+      }
+  };
+  eachEdge([](Plane& plane, Vec a, Vec b) {
+    plane.centre = plane.centre + (a + b) * (length(b - a) / 2);
+    plane.perimeter += length(b - a);
+  });
+  for (Plane& plane : planes) plane.centre = plane.centre * (1 / plane.perimeter);
+  eachEdge(
+      [](Plane& plane, Vec a, Vec b) { plane.area = plane.area - cross(a - plane.centre, b - plane.centre) * 0.5; });
+  std::vector<Range> beyond(planes.size());
+  for (std::size_t p = 0; p < state.loops.size(); ++p) {
+    if (state.loops[p] < 0) continue;
+    const auto loop = static_cast<std::size_t>(state.loops[p]);
+    const double side = dot(scene.points.positions[p] - planes[loop].centre, planes[loop].area);
+    const double unsure = kUnsureSide * scene.diag * length(planes[loop].area);
+    const Verdict isOut = overOutcomes(state.findings[p], [](const Outcome& o) { return !o.isUnderCage; }) &&
+                          Verdict{side > 0, side > -unsure, side > unsure};
+    beyond[loop].is += isOut.is ? state.areas[p] : 0;
+    beyond[loop].least += isOut.must ? state.areas[p] : 0;
+    beyond[loop].most += isOut.might ? state.areas[p] : 0;
+  }
+  for (std::size_t l = 0; l < planes.size(); ++l) {
+    const double much = kMuch * length(planes[l].area);
+    state.outer.push_back(
+        {beyond[l].is > much, beyond[l].most > much * (1 - kSumNoise), beyond[l].least > much * (1 + kSumNoise)});
+  }
+}
+
+/// Finds what lies beyond the outer borders of the cage: beside them, and what is joined to that outside the cage.
+void findBeyond(const Scene& scene, State& state) {
+  const std::size_t count = scene.points.count();
+  std::vector<Verdict> beside, isOut;
+  for (std::size_t p = 0; p < count; ++p) {
+    beside.push_back(isBesideBorder(scene, state, scene.points.positions[p], state.places[p], state.loops[p]));
+    const Verdict misses = overOutcomes(state.findings[p], [](const Outcome& o) { return !o.isUnderCage; });
+    isOut.push_back(state.loops[p] < 0 ? misses : beside[p]);
+  }
+  for (const auto how : {&Verdict::is, &Verdict::might, &Verdict::must}) {
+    Sets sets(count);
+    for (const auto& corners : scene.corners)
+      for (std::size_t c = 0; c < 3; ++c)
+        if (isOut[corners[c]].*how && isOut[corners[(c + 1) % 3]].*how) sets.join(corners[c], corners[(c + 1) % 3]);
+    std::vector<bool> isBeyond(count, false);
+    for (std::uint32_t p = 0; p < count; ++p)
+      if (beside[p].*how) isBeyond[sets.find(p)] = true;
+    for (std::uint32_t p = 0; p < count; ++p) state.beyond[p].*how = isOut[p].*how && isBeyond[sets.find(p)];
+  }
+  for (std::size_t p = 0; p < count; ++p) {
+    Finding& finding = state.findings[p];
+    if (!state.beyond[p].might) continue;
+    if (state.beyond[p].must) finding.outcomes.clear(), finding.nearby = 0, finding.hidden = {};
+    const Outcome beyond{Zone::uncovered, false, {}};
+    finding.outcomes.insert(state.beyond[p].is ? finding.outcomes.begin() : finding.outcomes.end(), beyond);
+    finding.zone = finding.outcomes[0].zone;
+    finding.nearby |= bit(Zone::uncovered);
+  }
+}
 
 // -------------------- 7 Interior samples
 
@@ -212,6 +324,7 @@ struct Sample {
   double area;
   Finding finding;
   ClosestPoint place;
+  Verdict beyond;
 };
 
 /// Step 7: whether the triangles of each segment have interior samples: if it is small, and near a hole.
@@ -241,7 +354,7 @@ std::vector<Sample> findInteriorSamples(const Scene& scene, const Options& optio
   constexpr double kBigTriangle = 0.06;
   std::vector<Sample> samples;
   for (std::size_t p = 0; p < state.segments.size(); ++p)
-    samples.push_back({state.segments[p], 0, state.findings[p], state.places[p]});
+    samples.push_back({state.segments[p], 0, state.findings[p], state.places[p], state.beyond[p]});
   std::vector<bool> within(state.segmentCount, false);
   if (options.steps.interiorSamples) within = haveInteriorSamples(scene, state);
   for (std::size_t t = 0; t < scene.corners.size(); ++t) {
@@ -257,7 +370,10 @@ std::vector<Sample> findInteriorSamples(const Scene& scene, const Options& optio
                                 (a + b + c) * (1.0 / 3)}) {
       const ClosestPoint place = project(scene, centroid);
       const Sight sight = look(scene, options, centroid, place, [&](std::size_t other) { return other == t; });
-      samples.push_back({segment, triangle.area / 4, judge(scene, state.segments, options, sight, place), place});
+      const Verdict beyond =
+          state.outer.empty() ? Verdict{} : isBesideBorder(scene, state, centroid, place, loopAt(scene, place));
+      samples.push_back(
+          {segment, triangle.area / 4, judge(scene, state.segments, options, sight, place), place, beyond});
     }
   }
   return samples;
@@ -273,7 +389,7 @@ struct Tally {
 
 /// Everything that the rules on a segment compare.
 struct Sums {
-  double area = 0;
+  Range area;  // That is not beyond an outer border.
   Tally is, worst, best;
   Range covered, depth;  // Of covered samples: area, and area times depth in diagonals.
   Range hole;            // The greatest ratio of what lies in a hole to what may.
@@ -291,11 +407,12 @@ void judgeContents(const State& state, std::vector<Sums>& sums) {
     if (state.loops[p] < 0) continue;
     auto& [bare, hidden] = shares[{state.loops[p], state.segments[p]}];
     const Finding& finding = state.findings[p];
-    if (finding.zone == Zone::uncovered) bare.is += state.areas[p];
-    if (finding.nearby == bit(Zone::uncovered)) bare.least += state.areas[p];
-    if ((finding.nearby & bit(Zone::uncovered)) != 0) bare.most += state.areas[p];
-    if (finding.hidden.is) hidden.is += state.areas[p];
-    if (finding.hidden.must) hidden.least += state.areas[p];
+    const Verdict& beyond = state.beyond[p];
+    if (finding.zone == Zone::uncovered && !beyond.is) bare.is += state.areas[p];
+    if (finding.nearby == bit(Zone::uncovered) && !beyond.might) bare.least += state.areas[p];
+    if ((finding.nearby & bit(Zone::uncovered)) != 0 && !beyond.must) bare.most += state.areas[p];
+    if (finding.hidden.is && !beyond.is) hidden.is += state.areas[p];
+    if (finding.hidden.must && !beyond.might) hidden.least += state.areas[p];
     if (finding.hidden.might) hidden.most += state.areas[p];
   }
   for (const auto& [where, share] : shares) {
@@ -346,7 +463,10 @@ void decide(const Scene& scene, const Options& options, const std::vector<Sample
   constexpr double kMaxDeeper = 0.015;
   std::vector<Sums> sums(state.segmentCount);
   Range covered, depth;  // Of all segments.
-  for (std::uint32_t s = 0; s < state.segmentCount; ++s) sums[s].area = result.segmentStats[s].area;
+  for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
+    const double area = result.segmentStats[s].area;
+    sums[s].area = {area, area, area};
+  }
   for (const Sample& sample : samples) {
     Sums& sum = sums[sample.segment];
     const auto count = [&](Tally& tally, Zone zone) {
@@ -354,12 +474,19 @@ void decide(const Scene& scene, const Options& options, const std::vector<Sample
       if (zone == Zone::cosmetic) tally.covered += sample.area;
     };
     const auto might = [&](Zone zone) { return (sample.finding.nearby & bit(zone)) != 0; };
-    if (!single(sample.finding.nearby)) result.firmAreas[sample.segment] = 0;
-    count(sum.is, sample.finding.zone);
+    if (!single(sample.finding.nearby) || sample.beyond.might != sample.beyond.must)
+      result.firmAreas[sample.segment] = 0;
+    if (sample.beyond.is) sum.area.is -= sample.area, result.segmentStats[sample.segment].beyondArea += sample.area;
+    if (sample.beyond.might) sum.area.least -= sample.area;
+    if (sample.beyond.must) {
+      sum.area.most -= sample.area;
+      continue;
+    }
+    if (!sample.beyond.is) count(sum.is, sample.finding.zone);
     const Zone hidden = might(Zone::occluded) ? Zone::occluded : Zone::cosmetic;
     count(sum.worst, might(Zone::uncovered) ? Zone::uncovered : hidden);
     const Zone bare = might(Zone::occluded) ? Zone::occluded : Zone::uncovered;
-    count(sum.best, might(Zone::cosmetic) ? Zone::cosmetic : bare);
+    if (might(Zone::cosmetic) || !sample.beyond.might) count(sum.best, might(Zone::cosmetic) ? Zone::cosmetic : bare);
     const double deep = sample.area * std::min(1.0, sample.place.nearest.distance / scene.diag);
     const auto cover = [&](double Range::*which) {
       for (Range* range : {&sum.covered, &covered}) range->*which += sample.area;
@@ -386,14 +513,14 @@ void decide(const Scene& scene, const Options& options, const std::vector<Sample
     stats.exposedArea = sum.is.exposed;
     stats.coveredArea = sum.is.covered;
     stats.depth = over(sum.depth.is, sum.covered.is);
-    stats.ratios = ratiosOf(options, sum.is, sum.area, isSmall, stats.depth, state.deepest.is, sum.hole.is);
+    stats.ratios = ratiosOf(options, sum.is, sum.area.is, isSmall, stats.depth, state.deepest.is, sum.hole.is);
     const double worst =
-        ratiosOf(options, sum.worst, sum.area, mightBeSmall,
+        ratiosOf(options, sum.worst, sum.area.most, mightBeSmall,
                  over(sum.depth.most, sum.covered.least) * (1 + kDepthNoise), state.deepest.least, sum.hole.most)
             .least();
     const double best =
-        ratiosOf(options, sum.best, sum.area, mustBeSmall, over(sum.depth.least, sum.covered.most) * (1 - kDepthNoise),
-                 state.deepest.most, sum.hole.least)
+        ratiosOf(options, sum.best, sum.area.least, mustBeSmall,
+                 over(sum.depth.least, sum.covered.most) * (1 - kDepthNoise), state.deepest.most, sum.hole.least)
             .least();
     const bool passes = stats.ratios.least() >= 1;
     state.passes.push_back({passes, passes || best >= 1 - noise, passes && worst >= 1 + noise});
@@ -504,17 +631,6 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, Vec normal, co
 /// Whether other segments alone hide a point, given one of its outcomes.
 bool isHiddenByOthers(const Outcome& outcome, std::uint32_t segment) {
   return outcome.zone == Zone::occluded && outcome.hiders.count(segment) == 0;
-}
-
-/// Whether a point is surely or perhaps so, given whether each of its outcomes is.
-template <typename IsSo>
-Verdict overOutcomes(const Finding& finding, IsSo isSo) {
-  Verdict result{isSo(finding.outcomes[0]), false, true};
-  for (const Outcome& outcome : finding.outcomes) {
-    result.might = result.might || isSo(outcome);
-    result.must = result.must && isSo(outcome);
-  }
-  return result;
 }
 
 /// Step 9: whether a point lies no deeper than what is to be painted.
@@ -666,15 +782,20 @@ std::vector<Hole> judgeHoles(const Scene& scene, const State& state) {
     if (state.loops[p] < 0) continue;
     const auto loop = static_cast<std::size_t>(state.loops[p]);
     const Verdict& pass = state.passes[state.segments[p]];
+    const Verdict counts = !state.beyond[p];
     const Finding& finding = state.findings[p];
     const double area = state.areas[p];
-    if (!pass.is && finding.zone != Zone::occluded) failing[loop].is += area;
-    if (!pass.might && (finding.nearby & bit(Zone::occluded)) == 0) failing[loop].least += area;
-    if (!pass.must && (finding.nearby & ~bit(Zone::occluded)) != 0) failing[loop].most += area;
-    Range& uncovered = holes[loop].uncovered;
-    if (pass.is && finding.zone == Zone::uncovered) uncovered.is += area;
-    if (pass.must && finding.nearby == bit(Zone::uncovered)) uncovered.least += area;
-    if (pass.might && (finding.nearby & bit(Zone::uncovered)) != 0) uncovered.most += area;
+    const auto add = [&](Range& range, const Verdict& isPart) {
+      const Verdict isAdded = isPart && counts;
+      range.is += isAdded.is ? area : 0;
+      range.least += isAdded.must ? area : 0;
+      range.most += isAdded.might ? area : 0;
+    };
+    const auto isFound = [&](Zone zone) {
+      return Verdict{finding.zone == zone, (finding.nearby & bit(zone)) != 0, finding.nearby == bit(zone)};
+    };
+    add(failing[loop], !pass && !isFound(Zone::occluded));
+    add(holes[loop].uncovered, pass && isFound(Zone::uncovered));
   }
   for (std::size_t l = 0; l < holes.size(); ++l) {
     const auto explains = [](double some, double all) { return some > 0 && some >= kExplaining * all; };
@@ -689,8 +810,7 @@ std::vector<Hole> judgeHoles(const Scene& scene, const State& state) {
 /// Step 10: the uncovered points whose hole is not meant for them: those that lie under the cage, hardly beside it, or
 /// beside a hole that something else explains.
 std::vector<Verdict> underHoles(const Scene& scene, const State& state) {
-  constexpr double kOverhang = 0.005, kOverhangOfLoop = 0.05, kExplainedOverhang = 0.03;
-  constexpr double kUnsure = 1e-7;  // An overhang this near to its limit may as well be on its other side.
+  constexpr double kExplainedOverhang = 0.03;
   const std::vector<Hole> holes = judgeHoles(scene, state);
   std::vector<Verdict> result;
   for (std::size_t p = 0; p < state.loops.size(); ++p) {
@@ -699,16 +819,14 @@ std::vector<Verdict> underHoles(const Scene& scene, const State& state) {
       continue;
     }
     const auto loop = static_cast<std::size_t>(state.loops[p]);
-    const Vec n = state.places[p].triangle->normal, offset = scene.points.positions[p] - state.places[p].position();
-    const double overhang = length(offset - n * dot(offset, n));
-    const double little = std::min(kOverhang * scene.diag, kOverhangOfLoop * scene.loops.loops[loop].box.diagonal());
+    const Overhang overhang(scene, scene.points.positions[p], state.places[p], state.loops[p]);
     const auto allowed = [&](double h, bool isExplained) {
-      return h <= little || (isExplained && h <= kExplainedOverhang * scene.diag);
+      return h <= overhang.slight || (isExplained && h <= kExplainedOverhang * scene.diag);
     };
-    const double unsure = kUnsure * scene.diag;
-    result.push_back({allowed(overhang, holes[loop].explained.is),
-                      allowed(overhang - unsure, holes[loop].explained.might),
-                      allowed(overhang + unsure, holes[loop].explained.must)});
+    const double unsure = kUnsureOverhang * scene.diag;
+    result.push_back({allowed(overhang.is, holes[loop].explained.is),
+                      allowed(overhang.is - unsure, holes[loop].explained.might),
+                      allowed(overhang.is + unsure, holes[loop].explained.must)});
   }
   return result;
 }
@@ -833,6 +951,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
   state.places.resize(pointCount);
   state.findings.resize(pointCount);
   state.loops.assign(pointCount, -1);
+  state.beyond.resize(pointCount);
   if (filtered) {
     state.places = last.places();
     state.findings = last.findings(options);
@@ -844,6 +963,10 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
   state.areas.assign(pointCount, 0.0);
   for (std::size_t t = 0; t < scene.corners.size(); ++t)
     for (const std::uint32_t p : scene.corners[t]) state.areas[p] += scene.target.triangles()[t].area / 3;
+  if (filtered && options.steps.holes) {
+    findOuterBorders(scene, state);
+    findBeyond(scene, state);
+  }
   result.segmentStats.resize(state.segmentCount);
   result.firmAreas.assign(state.segmentCount, 1);
   for (std::size_t p = 0; p < pointCount; ++p) {
@@ -873,6 +996,11 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
     for (std::size_t p = 0; p < pointCount; ++p)
       seen[p] = seen[p] || past[p] ||
                 (isShallow(scene, state, p) && isFree(state, state.findings[p], state.segments[p], underHole[p]));
+  }
+
+  for (std::size_t p = 0; p < pointCount; ++p) {
+    seen[p] = seen[p] && !state.beyond[p];
+    underHole[p] = underHole[p] && !state.beyond[p];
   }
 
   result.uvs.resize(vertexCount * 2);

@@ -21,6 +21,7 @@ interface Line {
   status: 'done' | 'failed' | 'skipped';
   error?: string;
   verdict?: string;
+  note?: string;
 }
 
 const linesOf = (text: string): Line[] =>
@@ -68,7 +69,27 @@ test('jobs, some of them broken, killed in the middle and resumed: every good jo
   rmSync('out/6.glb');
   const again = await run(`${line} --resume --json`);
   const { seconds: _, ...summary } = JSON.parse(again.stderr) as { seconds: number };
-  assert.deepEqual(summary, { jobs: count, done: 2, failed: 3, skipped: 35, misfits: 0, configs: [] });
+  assert.deepEqual(summary, { jobs: count, done: 2, failed: 3, skipped: 35, bare: 0, misfits: 0, configs: [] });
+});
+
+test('the cage is left out of the targets that a pattern names; a target of which nothing may be painted has a note', async () => {
+  mkdirSync('mixed');
+  write('mixed/head.glb', glb);
+  write('mixed/copy.glb', readFileSync('cage.glb'));
+  symlinkSync(at('cage.glb'), 'mixed/link.glb');
+  const { stdout, stderr } = await run('batch mixed/*.glb --cage cage.glb');
+  assert.deepEqual(
+    linesOf(stdout).map(({ target, note }) => [target, note]),
+    [['mixed/head.glb', undefined]],
+  );
+  assert.match(
+    stderr,
+    /^1 job: 1 done, 0 failed; [\d.]+ s; left out, as they are cages: mixed\/copy.glb, mixed\/link.glb$/m,
+  );
+  await fails(1, 'mixed/c*.glb: no file but a cage has such a name', 'batch mixed/c*.glb --cage cage.glb');
+  const away = await run('batch mixed/head.glb --cage away.glb');
+  assert.match(linesOf(away.stdout)[0]!.note!, /^nothing may be painted: the cage lies over next to none/);
+  assert.match(away.stderr, / s; next to nothing may be painted of 1, as notes in the lines say$/m);
 });
 
 test('patterns reach into folders, follow links to them, and ** does not go round in circles', async () => {

@@ -7,7 +7,7 @@ import { presetOptions, transfer } from 'cagecast';
 import { PNG } from 'pngjs';
 import { fails, json, ok, run } from '../../support/command.js';
 import { type GlbMaker, glbOf } from '../../support/gltf.js';
-import { ball, cagedFigure, head, isOfCage, kCagedParts } from '../scenes.js';
+import { ball, cagedFigure, head, isOfCage, kCagedParts, within } from '../scenes.js';
 import { io, modelsLike, workplace, write, writeChanged, writeMade } from './workplace.js';
 
 const models = modelsLike(/lizard|misaligned/);
@@ -62,6 +62,19 @@ test('reports the result of the package', async () => {
   assert.ok(timings.total > 0);
 });
 
+test('a model far from the origin is read, inspected and given a cage as one at it', async () => {
+  const translation = [3e6, -1e5, 1e7];
+  for (const [name, mesh] of Object.entries({ target, cage }))
+    writeMade(`far-${name}.glb`, (maker) => maker.node({ mesh: maker.mesh(mesh), translation }));
+  const far = 'far-target.glb --cage far-cage.glb';
+  const [near, away] = [await json<Report>(plain), await json<Report>(`transfer ${far}`)];
+  const shares = ({ areas }: Report) => Object.values(areas).map((area) => (area / areas.total).toFixed(4));
+  assert.deepEqual(shares(away), shares(near));
+  assert.equal((await json<{ verdict: string }>(`inspect ${far}`)).verdict, 'good');
+  await ok('make far-target.glb --triangles 300 -o far-made.glb');
+  assert.match(await ok('inspect far-target.glb --cage far-made.glb'), /^(GOOD|USABLE)/m);
+});
+
 test('the preset and single options are obeyed', async () => {
   const painted = (options: object) => transfer(cage, target, options).cosmeticTriangles.filter(Boolean).length;
   for (const [flags, options] of [
@@ -88,6 +101,73 @@ const culledIn = async (line: string, names: readonly string[], by?: string) => 
   const isCulled = (one: Report['segments'][number]) => (by ? one.culledBy === by : one.culled);
   return names.map((name) => segments.filter((one) => one.part === name && one.points > 1).every(isCulled));
 };
+
+test('a cage that faces the other way is turned, and a line says so; one that fits either way stays', async () => {
+  const bust = (turn: 1 | -1) => {
+    const nose = (phi: number, theta: number) => Math.exp(-6 * ((phi - Math.PI / 2) ** 2 + (theta - 1.5) ** 2));
+    // Its nose is at y, of which the node makes z; and it is farther back than its axis.
+    const mesh = (size: number) => ball([0, 0.4, 0], (phi, theta) => size + nose(phi, theta), 24, 36);
+    return (maker: GlbMaker, size: number) => {
+      const rotation = turn > 0 ? [Math.SQRT1_2, 0, 0, Math.SQRT1_2] : [0, Math.SQRT1_2, -Math.SQRT1_2, 0];
+      maker.node({ name: 'bust', mesh: maker.mesh(mesh(size)), rotation });
+    };
+  };
+  for (const turn of [1, -1] as const) writeMade(`bust${turn}.glb`, (maker) => bust(turn)(maker, 1));
+  writeMade('bust-cage.glb', (maker) => bust(1)(maker, 1.1));
+  const said =
+    /^the cage faced the other way; turned by half about the vertical axis, it fits clearly better, so it was$/m;
+  for (const command of ['transfer', 'inspect']) {
+    assert.doesNotMatch(await ok(`${command} bust1.glb --cage bust-cage.glb`), said);
+    const turned = await run(`${command} bust-1.glb --cage bust-cage.glb`);
+    assert.equal(turned.status, 0);
+    assert.match(turned.stdout, said);
+  }
+  const [right, back] = await Promise.all(
+    ['bust1', 'bust-1'].map((name) => json<Report>(`transfer ${name}.glb --cage bust-cage.glb`)),
+  );
+  assert.deepEqual(back!.counts, right!.counts);
+  assert.ok((back as unknown as { cage: { isTurned: boolean } }).cage.isTurned);
+  for (const off of [0, 0.3]) {
+    write('off.glb', glbOf({ ...cage, positions: cage.positions.map((x) => x + off) }));
+    assert.doesNotMatch((await run('transfer target.glb --cage off.glb')).stdout, said);
+  }
+});
+
+test('a line says why next to nothing may be painted, and what helps', async () => {
+  const away = (by: number) => glbOf({ ...cage, positions: cage.positions.map((x) => x + by) });
+  write('away.glb', away(9));
+  writeMade('hidden.glb', (maker) => {
+    maker.node({ name: 'body', mesh: maker.mesh(target) });
+    const shell = ball([0, 0, 0], () => 1.12, 12, 18);
+    const inward = shell.indices.map((_, i, all) => all[i % 3 === 0 ? i : i % 3 === 1 ? i + 1 : i - 1]!);
+    maker.json.materials = [{ doubleSided: true }];
+    maker.node({ name: 'shell', mesh: maker.mesh({ ...shell, indices: inward }, { material: 0 }) });
+  });
+  writeMade('half.glb', (maker) => {
+    const front = within(cage, (x) => x > 0.9);
+    maker.node({ name: 'cap', mesh: maker.mesh(front) });
+  });
+  for (const [line, note] of [
+    [
+      'transfer target.glb --cage away.glb',
+      /^nothing may be painted: the cage lies over next to none of the target; put /m,
+    ],
+    [
+      'transfer hidden.glb --cage cage.glb --exclude shell',
+      /^nothing .*: most of "body" is hidden by "shell"; take out /m,
+    ],
+    ['transfer target.glb --cage half.glb', /^nothing .* covers only [\d.]+ % of .* "only"; try --keep "only" or a /m],
+    [
+      'transfer target.glb --cage cage.glb --exclude only',
+      /^nothing .*: "only" is excluded by choice; leave out --exc/m,
+    ],
+  ] as const) {
+    assert.match(await ok(line), note, line);
+    const { note: told } = await json<{ note?: string }>(line);
+    assert.match(told!, note);
+  }
+  assert.equal((await json<{ note?: string }>(plain)).note, undefined);
+});
 
 test('--keep and --exclude lock parts by the names of nodes and materials', async () => {
   writeMade('named.glb', (maker) => {

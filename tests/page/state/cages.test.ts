@@ -86,7 +86,7 @@ test('a cage is made for the model, fitted to it, moved, and turned; the page kn
   const { fitting } = madeOf(file())!;
   assert.deepEqual([fitting!.given, fitting!.template, fitting], [{ a: [1, 2, 3] }, 'human-head', page.fitting]);
   assert.equal(maker.isMade, false);
-  session.reportInspection({ verdict: 'usable' } as never);
+  session.reportInspection({ verdict: 'usable', findings: [] } as never);
   assert.equal(page.notes.missing, 'Landmarks that were not found: nose tip, left ear lobe.');
   const changed = await maker.change({ positions: session.shown!.cage.mesh.positions.map((x) => 2 * x) });
   await page.ready();
@@ -95,6 +95,25 @@ test('a cage is made for the model, fitted to it, moved, and turned; the page kn
   page.open('b.glb');
   await page.ready();
   assert.deepEqual([maker.isOthers, page.fitting], [true, undefined]);
+});
+
+test('a cage that faces the other way is turned, once', async () => {
+  const { session, ready, notes } = await workshop();
+  const { cage } = session.shown!;
+  const find = () => session.reportInspection({ verdict: 'unfit', findings: [{ code: 'cageBackward' }] } as never);
+  find();
+  await ready();
+  const turned = session.shown!.cage.mesh.positions;
+  assert.deepEqual(
+    [...turned],
+    [...cage.mesh.positions].map((x, i) => (i % 3 === 1 ? x : 0 - x)),
+  );
+  assert.match(notes.note, /^The cage faced the other way, so it was turned by half\./);
+  session.request({ cage: Promise.resolve(cage) });
+  await ready();
+  find();
+  await ready();
+  assert.equal(session.shown!.cage, cage);
 });
 
 test('a cage that was made for one model never reaches another that is loading, or that waits for its own cage', async () => {

@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { BufferAttribute, Mesh, MeshStandardMaterial, PlaneGeometry, Texture } from 'three';
 import { extractMesh } from '../../../web/src/loading/extract-mesh';
+import { Pose, type Shape } from '../../../web/src/tools/live/pose';
 
 test('UVs are of the channel of the base colour texture, the first ones without a texture', () => {
   const geometry = new PlaneGeometry();
@@ -26,4 +27,28 @@ test('UVs are where the transform of the base colour texture puts them, as in th
   const own = geometry.getAttribute('uv').array;
   const expected = own.map((_, i) => (i % 2 === 0 ? 0.5 + 0.25 * own[i + 1]! : 0.75 - 0.5 * own[i - 1]!));
   uvs!.forEach((value, i) => assert.ok(Math.abs(value - expected[i]!) < 1e-6, `${uvs} is not ${expected}`));
+});
+
+test('morph targets shape a model as its file says; other weights move it from there, and so does a deformation', () => {
+  const geometry = new PlaneGeometry();
+  const base = [...geometry.getAttribute('position').array];
+  geometry.morphAttributes.position = [new BufferAttribute(Float32Array.from(base), 3)];
+  geometry.morphTargetsRelative = true;
+  const mesh = new Mesh(geometry, new MeshStandardMaterial());
+  mesh.morphTargetInfluences = [0.5];
+  const extracted = extractMesh(mesh);
+  assert.deepEqual(
+    [...extracted.positions],
+    base.map((x) => 1.5 * x),
+  );
+  const pose = new Pose(extracted);
+  const shape: Shape = { how: 'bend', amount: 0, extent: pose.extent, morphs: new Map([['Morph 1', 2]]) };
+  assert.deepEqual(
+    [...pose.positions(shape)],
+    base.map((x) => 3 * x),
+  );
+  const bent = { ...shape, amount: 1e-9, morphs: undefined };
+  pose.set(pose.positions(bent), bent);
+  // To these the renderer adds the morph.
+  assert.deepEqual([...mesh.geometry.getAttribute('position').array], base);
 });

@@ -78,7 +78,7 @@ function checkProjection(projection: Projection): CoreProjection {
   outOfRange('segments', segments, stats.length, `${stats.length} segments`);
   outOfRange('recovery', recovery, throughHole + holes, `${holes} holes`);
   outOfRange('indices', indices, vertices, count(vertices, 'vertex'));
-  outOfRange('visibility', visibility, Visibility.Uncovered + 1, `0..${Visibility.Uncovered}`);
+  outOfRange('visibility', visibility, Visibility.Beyond + 1, `0..${Visibility.Beyond}`);
   checkHiders(hiddenBy, hiders, stats.length);
   return { visibility, segments, segmentStats: stats, recovery, hiddenBy, hiders, holeShares: shares, indices };
 }
@@ -87,13 +87,13 @@ const isBelow = (value: unknown, limit: number) =>
   Number.isInteger(value) && (value as number) >= 0 && (value as number) < limit;
 
 function checkSegment(segment: SegmentStats, s: number): SegmentStats {
-  const { points, area, exposedArea, coveredArea, depth, group } = segment ?? {};
-  if (![points, area, exposedArea, coveredArea, depth, group].every(Number.isFinite))
+  const { points, area, beyondArea, exposedArea, coveredArea, depth, group } = segment ?? {};
+  if (![points, area, beyondArea, exposedArea, coveredArea, depth, group].every(Number.isFinite))
     throw wrong(`.segmentStats[${s}] is not { points, area, exposedArea, coveredArea, … }`, s);
   // Fields that `classify` computes may be missing.
   const ratios = { threshold: Infinity, floor: Infinity, depth: Infinity, hole: Infinity };
   const computed = { ratios, coverage: 0, score: Infinity, culled: false, culledBy: 'none' as const };
-  return { points, area, exposedArea, coveredArea, depth, group, ...computed };
+  return { points, area, beyondArea, exposedArea, coveredArea, depth, group, ...computed };
 }
 
 /** Checks that each vertex has 0 or a whole record. */

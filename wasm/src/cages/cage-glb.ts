@@ -1,6 +1,6 @@
 import { show } from '../core/error.js';
 import { CagecastError } from '../index.js';
-import { boxOf } from '../inspect/geometry.js';
+import { boxOf, type Vector } from '../inspect/geometry.js';
 import { packGlb } from '../parts/glb.js';
 import type { Cage, Template } from './types.js';
 
@@ -9,13 +9,13 @@ type CageExtras = Pick<Cage, 'landmarks' | 'holes' | 'kind'>;
 
 /**
  * Writes a cage as a GLB file: one node named `cage`, with landmarks, holes and kind in its `extras`. So it is a template for fits.
- * @param cage  `landmarks`, `holes` and `kind` may be missing.
+ * @param cage  `landmarks`, `holes` and `kind` may be missing. `origin` is where its origin is in the scene of its model, if elsewhere.
  * @throws {CagecastError} `badArgument` if positions, UVs or indices are not of the right type.
  */
 export function cageGlb(
-  cage: Pick<Template, 'positions' | 'uvs' | 'indices'> & Partial<CageExtras>,
+  cage: Pick<Template, 'positions' | 'uvs' | 'indices'> & Partial<CageExtras> & { origin?: Vector },
 ): Uint8Array<ArrayBuffer> {
-  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
+  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', origin } = cage;
   const types = {
     positions: ['Float32Array'],
     uvs: ['Float32Array'],
@@ -38,7 +38,14 @@ export function cageGlb(
     asset: { version: '2.0', generator: `Cagecast ${CAGECAST_VERSION}` },
     scene: 0,
     scenes: [{ nodes: [0] }],
-    nodes: [{ name: 'cage', mesh: 0, extras: { landmarks, holes, kind } satisfies CageExtras }],
+    nodes: [
+      {
+        name: 'cage',
+        mesh: 0,
+        ...(origin?.some((x) => x !== 0) && { translation: origin }),
+        extras: { landmarks, holes, kind } satisfies CageExtras,
+      },
+    ],
     meshes: [{ name: 'cage', primitives: [{ attributes: { POSITION: 0, TEXCOORD_0: 1 }, indices: 2 }] }],
     accessors: [
       { bufferView: 0, componentType: 5126, count: positions.length / 3, type: 'VEC3', min, max },

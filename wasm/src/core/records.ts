@@ -48,7 +48,9 @@ export interface SegmentStats {
   points: number;
   /** A: its whole area. */
   area: number;
-  /** E: the area that is not occluded. */
+  /** The part of A beyond outer borders of the cage, occluded or not. */
+  beyondArea: number;
+  /** E: the area that is neither occluded nor beyond. */
   exposedArea: number;
   /** C: the exposed area that the cage covers. */
   coveredArea: number;

@@ -8,6 +8,8 @@ export const Visibility = {
   Occluded: 1,
   /** The cage has a hole over it, or it lies outside the cage. */
   Uncovered: 2,
+  /** It lies beyond an outer border of the cage, which says nothing of it: its zone is uncovered. */
+  Beyond: 3,
 } as const;
 
 /** A value of {@link Visibility}. */

@@ -1,19 +1,20 @@
 import type { CageModel, Template } from '../cages/types.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
+import { fromOrigin } from '../parts/origin.js';
 import { readExtras } from '../parts/template-extras.js';
-import { type Extracted, type Part, worldMatrices } from './extract-file.js';
+import { type Extracted, parentsOf, worldMatrices } from './extract-file.js';
 import { InputError } from './input-error.js';
 import type { GltfFile } from './read-gltf.js';
 
 /** What `cagecast/cages` needs of a file: its mesh, the names of its parts, and its joints. */
-export function cageModelOf(file: GltfFile, { mesh, parts }: Extracted): CageModel {
+export function cageModelOf(file: GltfFile, { mesh, parts, origin }: Extracted): CageModel {
   const { positions, indices, groups } = mesh;
   return {
     positions,
     indices,
     groups,
     parts: parts.map(({ aliases, name }) => (aliases.length > 0 ? aliases : [name])),
-    joints: jointsOf(file, parts),
+    joints: jointsOf(file, { parts, origin }),
   };
 }
 
@@ -27,16 +28,16 @@ export function templateOf({ json, path }: GltfFile, { mesh, parts }: Extracted)
   return { positions: mesh.positions, indices: mesh.indices, uvs: mesh.uvs!, ...extras };
 }
 
-function jointsOf(file: GltfFile, parts: readonly Part[]) {
+function jointsOf(file: GltfFile, { parts, origin }: Pick<Extracted, 'parts' | 'origin'>) {
   const { nodes = [], extensions } = file.json;
-  const parents = new Map(nodes.flatMap((node, n) => (node.children ?? []).map((child) => [child, n])));
+  const parents = parentsOf(nodes);
   const bones = vrmBones(extensions as VrmExtensions | undefined);
   const matrices = worldMatrices(file.json);
   const nameOf = (node: number) => bones.get(node) ?? nodes[node]!.name ?? `nodes[${node}]`;
   const atNode = (node: number): ReadJoint<number> => ({
     node,
     name: nameOf(node),
-    position: matrices[node]!.slice(12, 15) as [number, number, number],
+    position: fromOrigin(matrices[node]!, origin).slice(12, 15) as [number, number, number],
   });
   const joints = parts.flatMap((part) => {
     const skin = nodes[part.node]!.skin;

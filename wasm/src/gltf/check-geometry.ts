@@ -60,11 +60,15 @@ export function checkLists(json: GLTF.IGLTF): void {
   }
   json.meshes?.forEach((mesh, m) => {
     requireList(`meshes[${m}].primitives`, mesh.primitives ?? null, isObject, 'objects');
+    requireList(`meshes[${m}].weights`, mesh.weights, Number.isFinite, 'finite numbers');
     mesh.primitives.forEach(({ targets }, p) =>
       requireList(`meshes[${m}].primitives[${p}].targets`, targets, isObject, 'objects'),
     );
   });
-  json.nodes?.forEach((node, n) => requireList(`nodes[${n}].children`, node.children, Number.isInteger, 'numbers'));
+  json.nodes?.forEach((node, n) => {
+    requireList(`nodes[${n}].children`, node.children, Number.isInteger, 'numbers');
+    requireList(`nodes[${n}].weights`, node.weights, Number.isFinite, 'finite numbers');
+  });
   json.skins?.forEach((skin, s) => requireList(`skins[${s}].joints`, skin.joints, Number.isInteger, 'numbers'));
   json.scenes?.forEach((scene, s) => requireList(`scenes[${s}].nodes`, scene.nodes, Number.isInteger, 'numbers'));
 }

@@ -1,6 +1,8 @@
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
+import type { Vector } from '../inspect/geometry.js';
+import { identity, type Matrix, multiply } from '../parts/affine.js';
 import {
   type Chosen,
   chooseParts,
@@ -10,11 +12,12 @@ import {
   type Look,
   visibilityExtension,
 } from '../parts/drawn.js';
-import { type Skinned, skinMatrices } from '../parts/skin.js';
+import { kSceneOrigin, type Origin } from '../parts/origin.js';
+import { placeMeshes, type Skin } from '../parts/skin.js';
 import { topNodes } from './check-geometry.js';
 import { InputError, naming } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';
-import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
+import { localMatrix } from './matrix.js';
 import { isOverlay } from './overlay.js';
 import {
   decodePositions,
@@ -22,6 +25,7 @@ import {
   decodeUvs,
   hasTriangles,
   joinPieces,
+  moveTo,
   nextPiece,
   type Piece,
   renumber,
@@ -47,6 +51,8 @@ export interface Extracted extends Pick<Chosen<Part>, 'accessories'> {
   /** In the order of their vertices. */
   parts: Part[];
   leftOut: LeftOut[];
+  /** What was subtracted from their places in the scene. */
+  origin: Vector;
 }
 
 /** Says which parts of a file count. */
@@ -58,24 +64,23 @@ export type WhichCount = 'cage' | ((parts: readonly Part[], file: GltfFile) => I
  * Vertices keep their order and number; each primitive of each node is a group of its own. Transforms are applied in
  * double precision and rounded once; the winding of mirrored parts is reversed. Skinned meshes are placed by their skeleton, in the
  * bind pose; as the format demands, the transform of their node is ignored. Points, lines and overlays that were added before are
- * left out, and morph targets are not applied.
+ * left out. Morph targets shape a mesh by the weights of its node, or else of itself.
+ * @param origin      What is subtracted from positions. Target and cage need the same one.
  * @param whichCount  Default: the parts that are drawn; of a `cage`, its outer cages, or all if there are none
  * @throws {InputError} that names the file, the primitive and the element.
  */
-export function extract(file: GltfFile, whichCount?: WhichCount): Extracted {
+export function extract(file: GltfFile, origin: Origin = kSceneOrigin, whichCount?: WhichCount): Extracted {
   return naming(file.path, () => {
     const all = listParts(file);
     const fail = (text: string) => new InputError(`${text}; --ignore '' takes what is not drawn, too`);
-    const {
-      parts,
-      leftOut: others,
-      accessories,
-    } = chooseParts(all, looksOf(file), typeof whichCount === 'function' ? whichCount(all, file) : whichCount, fail);
+    const chosen = typeof whichCount === 'function' ? whichCount(all, file) : whichCount;
+    const { parts, leftOut: others, accessories } = chooseParts(all, looksOf(file), chosen, fail);
     renumber(parts);
     const leftOut = others.map(({ name, why }) => ({ name, why }));
+    const near = moveTo(parts, origin);
     const mesh = joinPieces(parts);
     const uvs = readUvs(file, parts, mesh.positions.length / 3);
-    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts, leftOut, accessories };
+    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts, leftOut, accessories, origin: near };
   });
 }
 
@@ -145,7 +150,8 @@ function listParts(file: GltfFile): Part[] {
       const ref = { mesh: nodeDef.mesh!, primitive: p };
       const accessor = accessorOf(file, ref, 'POSITION');
       if (accessor === undefined) return;
-      const positions = decodePositions(primitivePath(ref), accessor);
+      const deltas = (t: number) => file.accessors[primitive.targets?.[t]?.['POSITION'] ?? -1];
+      const positions = decodePositions(primitivePath(ref), accessor, nodeDef.weights ?? meshDef.weights ?? [], deltas);
       const indices = readTriangles(file, ref, positions.length / 3);
       if (indices === undefined) return;
       const piece = nextPiece(parts, {
@@ -161,11 +167,18 @@ function listParts(file: GltfFile): Part[] {
       parts.push({ ...piece, node, ...ref });
     });
   }
-  const skinned = parts.filter(({ node }) => nodes[node]!.skin !== undefined);
-  const skins = skinned.map((part) => skinOf(file, part, matrices));
-  skinMatrices(skins).forEach((matrix, s) => (skinned[s]!.matrix = matrix));
+  const parents = parentsOf(nodes);
+  const placed = placeMeshes(
+    parts.map((part) => ({ ...part, skin: skinOf(file, part) })),
+    { parentOf: (node) => parents.get(node), worldOf: (node) => matrices[node]! },
+  );
+  parts.forEach((part, p) => (part.matrix = placed[p]!));
   return parts;
 }
+
+/** The node above each node that is below one. */
+export const parentsOf = (nodes: readonly GLTF.INode[]): Map<number, number> =>
+  new Map(nodes.flatMap((node, n) => (node.children ?? []).map((child) => [child, n])));
 
 /** The matrix of the first instance of a node. */
 function instanceOf(file: GltfFile, path: string, attributes: Record<string, unknown> = {}): Matrix {
@@ -182,19 +195,20 @@ function instanceOf(file: GltfFile, path: string, attributes: Record<string, unk
 }
 
 /** How its skin holds a part. */
-function skinOf(file: GltfFile, part: Part, matrices: readonly Matrix[]): Skinned<Matrix> {
-  const { joints = [], inverseBindMatrices } = file.json.skins![file.json.nodes![part.node]!.skin!]!;
+function skinOf(file: GltfFile, part: Part): Skin<number> | undefined {
+  const { skin } = file.json.nodes![part.node]!;
+  if (skin === undefined) return undefined;
+  const { joints = [], inverseBindMatrices } = file.json.skins![skin]!;
   const inverses = file.accessors[inverseBindMatrices ?? -1]?.getArray();
   const arrayOf = (semantic: string) => accessorOf(file, part, semantic)?.getArray() ?? [];
   return {
-    matrices: joints.map((joint, j) =>
-      inverses ? multiply(matrices[joint]!, inverses.subarray(16 * j)) : matrices[joint]!,
-    ),
+    joints,
+    inverseOf: (j) => inverses?.subarray(16 * j, 16 * j + 16),
+    bind: identity,
     held: arrayOf('JOINTS_0'),
     weights: arrayOf('WEIGHTS_0'),
     positions: part.localPositions,
     isFloat: arrayOf('POSITION') instanceof Float32Array,
-    stored: [identity],
   };
 }
 

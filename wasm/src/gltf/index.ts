@@ -5,6 +5,7 @@
  */
 import type { Document, Transform } from '@gltf-transform/core';
 import type { Mesh, TransferOptions, TransferResult } from '../index.js';
+import { noteOf } from '../inspect/bare.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import type { LeftOut } from '../parts/drawn.js';
 import type { MaskSources } from './bake/mask-sources.js';
@@ -53,10 +54,13 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
    */
   parts?: PartsOption | undefined;
   /**
-   * Called with a copy of the result, with the parts of the document in the order of the result's arrays, and with those that are left
-   * out, before the document is changed: if it throws, the document stays as it was.
+   * Called with a copy of the result, and with the parts of the document in the order of the result's arrays, before the document is changed:
+   * if it throws, the document stays as it was. `note` says why nothing, or less than 5 % of what the cage covers, may be painted, and
+   * what helps; the document's logger warns of it, too. `leftOut` are the parts that do not count.
    */
-  onResult?: ((result: TransferResult, parts: PartRange[], leftOut: LeftOut[]) => void) | undefined;
+  onResult?:
+    | ((result: TransferResult, parts: PartRange[], note: string | undefined, leftOut: LeftOut[]) => void)
+    | undefined;
 }
 
 /**
@@ -87,6 +91,8 @@ export function cagecast(options: CagecastOptions): Transform {
   return async function cagecast(document: Document): Promise<void> {
     const cuts = isCut('cagecast', borders);
     const { target, result, cut, paint } = await transferDocument('cagecast', document, own, cuts);
+    const note = noteOf(target.mesh, result, target.parts);
+    if (note) document.getLogger().warn(`cagecast: ${note}`);
     onResult?.(
       structuredClone(result),
       target.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({
@@ -96,6 +102,7 @@ export function cagecast(options: CagecastOptions): Transform {
         firstTriangle,
         triangleCount,
       })),
+      note,
       target.leftOut,
     );
     addTransfer(document, target, result, { paint, cut });

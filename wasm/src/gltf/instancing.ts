@@ -1,6 +1,7 @@
 import type { Accessor } from '@gltf-transform/core';
+import type { Matrix } from '../parts/affine.js';
 import { InputError } from './input-error.js';
-import { localMatrix, type Matrix } from './matrix.js';
+import { localMatrix } from './matrix.js';
 
 /** The extension by which a node draws many instances of its mesh. */
 export const instancing = 'EXT_mesh_gpu_instancing';

@@ -1,9 +1,4 @@
-import { determinant } from '../parts/affine.js';
-
-/** A 4×4 matrix, column by column, in double precision. */
-export type Matrix = readonly number[];
-
-export const identity: Matrix = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+import { determinant, type Matrix } from '../parts/affine.js';
 
 /** Where a node is: its matrix, or translation · rotation · scale. */
 type NodePlace = { readonly [Name in 'matrix' | 'translation' | 'rotation' | 'scale']?: number[] | undefined };
@@ -33,19 +28,6 @@ export function localMatrix(node: NodePlace): Matrix {
     tz,
     1,
   ];
-}
-
-/** a · b. */
-export function multiply(a: Matrix, b: ArrayLike<number>): Matrix {
-  const out = new Array<number>(16);
-  for (let column = 0; column < 4; ++column) {
-    for (let row = 0; row < 4; ++row) {
-      let sum = 0;
-      for (let k = 0; k < 4; ++k) sum += a[4 * k + row]! * b[4 * column + k]!;
-      out[4 * column + row] = sum;
-    }
-  }
-  return out;
 }
 
 /** Whether a matrix mirrors, so that the winding of triangles must be reversed. */

@@ -1,8 +1,11 @@
 import type { Accessor } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
-import { movePoints } from '../parts/points.js';
+import type { Vector } from '../inspect/geometry.js';
+import { isIdentity, type Matrix } from '../parts/affine.js';
+import { fromOrigin, type Origin, originOf } from '../parts/origin.js';
+import { morphed, movePoints } from '../parts/points.js';
 import { InputError } from './input-error.js';
-import { identity, isMirrored, type Matrix } from './matrix.js';
+import { isMirrored } from './matrix.js';
 import { layUvs, type UvLayout } from './uv-layout.js';
 
 /** One primitive of one node, and the ranges of its elements in the joined arrays. */
@@ -11,13 +14,13 @@ export interface Piece {
   name: string;
   /** The names that select it: of its node, its mesh and its material, and `name`. */
   aliases: string[];
-  /** The matrix from its own space to the scene's, column-major; of a skinned mesh, in the bind pose. */
+  /** The matrix from its own space to that of the arrays, column-major; of a skinned mesh, in the bind pose. */
   matrix: Matrix;
   firstVertex: number;
   vertexCount: number;
   firstTriangle: number;
   triangleCount: number;
-  /** Its positions as stored, decoded, 3 per vertex. */
+  /** Its positions as stored, decoded, in the shape that its morph targets give it, 3 per vertex. */
   localPositions: Float32Array;
   /** Its triangles among its own vertices, with the winding that they have in the file. */
   localIndices: Uint32Array;
@@ -73,8 +76,16 @@ const kTriangleFan = 6;
 /** Whether a primitive of this mode consists of triangles: a list, a strip or a fan. */
 export const hasTriangles = (mode: number): boolean => mode >= kTriangles && mode <= kTriangleFan;
 
+/** Places pieces around an origin. @returns where that is in the scene. */
+export function moveTo(pieces: readonly Piece[], origin: Origin): Vector {
+  const place =
+    origin === 'own' ? originOf(pieces.map(({ localPositions: points, matrix }) => ({ points, matrix }))) : origin;
+  for (const piece of pieces) piece.matrix = fromOrigin(piece.matrix, place);
+  return place;
+}
+
 /**
- * Joins pieces into arrays in the scene's space, with a group for each. Vertices keep their order, transforms are applied in double
+ * Joins pieces into arrays, with a group for each. Vertices keep their order, transforms are applied in double
  * precision and rounded once, and the winding of mirrored pieces is reversed.
  */
 export function joinPieces(pieces: readonly Piece[]): Mesh & { indices: Uint32Array } {
@@ -100,14 +111,27 @@ export function requireFinite(place: string, semantic: string, values: Float32Ar
 }
 
 /**
- * The positions of an accessor.
- * @param place  Its primitive, for messages.
+ * The positions of an accessor, in the shape that is shown.
+ * @param place    Its primitive, for messages.
+ * @param weights  Of its morph targets; those beyond are 0.
+ * @param deltas   The positions of a morph target.
  * @throws {InputError} that names the vertex.
  */
-export function decodePositions(place: string, accessor: Accessor): Float32Array {
-  if (accessor.getElementSize() !== 3)
-    throw new InputError(`${place}.attributes.POSITION is ${accessor.getType()}, not VEC3`);
-  const positions = decodeFloats(accessor);
+export function decodePositions(
+  place: string,
+  accessor: Accessor,
+  weights: readonly number[],
+  deltas: (target: number) => Accessor | null | undefined,
+): Float32Array {
+  const decode = (path: string, one: Accessor) => {
+    if (one.getElementSize() !== 3) throw new InputError(`${place}.${path}.POSITION is ${one.getType()}, not VEC3`);
+    return decodeFloats(one);
+  };
+  const morphs = weights.flatMap((weight, t) => {
+    const found = weight === 0 ? undefined : deltas(t);
+    return found ? [{ weight, deltas: decode(`targets[${t}]`, found) }] : [];
+  });
+  const positions = morphed(decode('attributes', accessor), morphs);
   requireFinite(place, 'POSITION', positions, 3);
   return positions;
 }
@@ -172,7 +196,7 @@ export function decodeFloats(accessor: Accessor): Float32Array {
 }
 
 function placePositions({ matrix: m, localPositions, firstVertex }: Piece, out: Float32Array): void {
-  if (m === identity || m.every((value, i) => value === identity[i])) {
+  if (isIdentity(m)) {
     out.set(localPositions, 3 * firstVertex);
     return;
   }

@@ -34,6 +34,7 @@ export interface Finding {
 export type FindingCode =
   // Where the cage is.
   | 'cageElsewhere'
+  | 'cageBackward'
   | 'cageMisplaced'
   | 'cageTooSmall'
   | 'targetPokesOut'

@@ -5,6 +5,7 @@
 
 import { show } from '../core/error.js';
 import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../index.js';
+import { checkBackward } from './backward.js';
 import {
   type Finding,
   type FindingCode,
@@ -129,6 +130,7 @@ function outcomeOf(fn: string, cage: Mesh, target: Mesh, given: InspectOptions =
   const segments = segmentsOf(scene);
   const findings = [
     ...checkNormals(orientation),
+    ...checkBackward(upright.cage, target, upright.result),
     ...checkPlacement(upright, placement),
     ...checkInside(inside),
     ...checkHoles(holes, segments),

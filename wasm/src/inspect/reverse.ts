@@ -19,7 +19,10 @@ export interface Reverse {
  * @param points  3 per point, the cage's vertices first.
  * @returns nothing if the target has no triangle with an area.
  */
-export function reverse({ target, targetBox, cage, areas }: Scene, points: Float32Array): Reverse | undefined {
+export function reverse(
+  { target, targetBox, cage, areas }: Pick<Scene, 'target' | 'targetBox' | 'cage' | 'areas'>,
+  points: Float32Array,
+): Reverse | undefined {
   if (!areas.some((area) => area > 0)) return undefined;
   // The core requires UVs on the mesh that it projects onto; they are not used here.
   const uvs = new Float32Array((target.positions.length / 3) * 2);

@@ -26,11 +26,12 @@ export function segmentsOf({ parts, result }: Pick<Scene, 'parts' | 'result'>): 
   const partOfSegment = new Uint32Array(result.segmentStats.length);
   for (let v = result.segments.length - 1; v >= 0; --v) partOfSegment[result.segments[v]!] = partOf[v]!;
   return result.segmentStats.map(
-    ({ points, group, area, exposedArea, coveredArea, coverage, score, culled, culledBy }, s) => ({
+    ({ points, group, area, beyondArea, exposedArea, coveredArea, coverage, score, culled, culledBy }, s) => ({
       part: parts[partOfSegment[s]!]?.name ?? '',
       group,
       points,
       area,
+      beyondArea,
       exposedArea,
       coveredArea,
       coverage,

@@ -24,6 +24,15 @@ export function jointPlace(
   return point.every(Number.isFinite) ? movePoints(matrix, point, [0, 0, 0]) : undefined;
 }
 
+/** A node, and those above it, up to the top. In a damaged file a node may be below itself: it comes once. */
+export function* upFrom<Node>(node: Node, parentOf: (node: Node) => Node | null | undefined): Generator<Node> {
+  const passed = new Set<Node>();
+  for (let at: Node | null | undefined = node; at != null && !passed.has(at); at = parentOf(at)) {
+    passed.add(at);
+    yield at;
+  }
+}
+
 /**
  * Numbers joints and finds their parents: the nearest joint above each.
  * @param joints  The first of those with the same node counts.
@@ -36,14 +45,9 @@ export function listJoints<Node>(
   for (const joint of joints) if (!first.has(joint.node)) first.set(joint.node, joint);
   const numbers = new Map([...first.keys()].map((node, j) => [node, j]));
   return [...first.values()].map(({ node, name, position }) => {
-    // In a damaged file a node may be below itself.
-    const passed = new Set([node]);
-    let above = parentOf(node) ?? undefined;
-    while (above !== undefined && !numbers.has(above) && !passed.has(above)) {
-      passed.add(above);
-      above = parentOf(above) ?? undefined;
-    }
-    return { name, position, parent: above === undefined || passed.has(above) ? -1 : numbers.get(above)! };
+    const [, ...above] = upFrom(node, parentOf);
+    const parent = above.find((one) => numbers.has(one));
+    return { name, position, parent: parent === undefined ? -1 : numbers.get(parent)! };
   });
 }
 

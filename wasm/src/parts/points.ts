@@ -1,3 +1,16 @@
+/** Deltas of a morph target, 3 numbers per point, and how far they are applied. */
+export interface Morph {
+  weight: number;
+  deltas: ArrayLike<number>;
+}
+
+/** Returns points as morph targets shape them, added in double precision; `points` itself if none does. */
+export function morphed(points: Float32Array, morphs: readonly Morph[]): Float32Array {
+  const active = morphs.filter(({ weight }) => weight !== 0);
+  if (active.length === 0) return points;
+  return points.map((value, i) => active.reduce((sum, { weight, deltas }) => sum + weight * deltas[i]!, value));
+}
+
 /**
  * Takes points to another space, in double precision.
  * @param m       A matrix, column by column.

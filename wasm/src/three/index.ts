@@ -22,7 +22,7 @@ import {
   transferOptions,
 } from './apply/apply-options.js';
 import { cutGeometry } from './apply/cut-geometry.js';
-import { type Extracted, extract, type Part, type PartsOption } from './apply/extract-scene.js';
+import { type Extracted, extract, extractNear, type Part, type PartsOption } from './apply/extract-scene.js';
 import { atOnce } from './apply/remake.js';
 import { checkSaved, deserialize, keyOf, remember, serialize } from './apply/saved-transfer.js';
 import { zoneAttribute } from './apply/shown-parts.js';
@@ -165,11 +165,11 @@ function read(
 ): Call {
   const cuts = isCut(fn, options.borders);
   const { saved, result, parts } = options;
-  const extracted = extract(target, 'target', parts);
+  const extracted = extractNear(target, 'target', 'own', parts);
   const own = transferOptions(options);
   const rules = { ...own, locks: withBare(extracted.accessories, own.locks) };
   const needsCage = !saved && (cuts || !result);
-  const outer = needsCage ? extract(cage ?? ownCage(target), 'cage') : undefined;
+  const outer = needsCage ? extractNear(cage ?? ownCage(target), 'cage', extracted.origin) : undefined;
   const apart = outer && moveApart(extracted, outer);
   const around = apart?.cage ?? outer?.mesh;
   if (result) checkResult(result, extracted);

@@ -5,7 +5,7 @@ import type { ExtractedMesh, Model, Primitive } from '../state/model';
 /**
  * Reads all triangle meshes below `root`, depth first, into one set of arrays, as `extract` of `cagecast/three`: those that are drawn,
  * or of a cage its outer cages, or all if there are none.
- * @param root   A scene that has not been moved since it was loaded.
+ * @param root   A scene as it was loaded, perhaps moved as a whole.
  * @param nameOf The name of a mesh in its file, if any.
  * @throws Error that names the primitive and the element that cannot be read; or if there are no triangles.
  */
@@ -19,7 +19,8 @@ export function extractMesh(
   const primitives = parts.map(({ geometry, ...part }): Primitive => {
     const mesh = part.mesh as Mesh;
     const name = nameOf(mesh) || part.name;
-    return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0 };
+    const weights = [...(mesh.morphTargetInfluences ?? [])];
+    return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0, weights };
   });
   // They would hide the model on the stage.
   if (slot === 'target') for (const { mesh, why } of leftOut) if (why === 'name') mesh.visible = false;

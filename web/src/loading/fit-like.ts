@@ -2,7 +2,7 @@ import type { Cage, CageModel, Template, TemplateName } from 'cagecast/cages';
 import { cageModel } from 'cagecast/three';
 import { placeAround } from '../state/cage-maker';
 import { type Fitting, noteMade } from '../state/made-cages';
-import type { Model } from '../state/model';
+import { type Model, originOf } from '../state/model';
 import { haveSameUvs } from '../state/same-uvs';
 import type { FitProgress } from '../state/wardrobe/surroundings';
 
@@ -19,7 +19,7 @@ export async function fitLike(cage: Model, model: Model, progress: FitProgress):
   const target = cageModel(model.loaded);
   const found = await templateOf(cage, engine);
   const fileOf = (fitted: Cage): File =>
-    new File([engine.cageGlb(fitted)], model.name.replace(/(\.\w+)?$/, '-cage.glb'));
+    new File([engine.cageGlb({ ...fitted, origin: originOf(model) })], model.name.replace(/(\.\w+)?$/, '-cage.glb'));
   if (!found) return fileOf(await bend(cage, target, engine, progress));
   const { cage: fitted, ...fit } = await engine.fitCage(found.template, target, undefined, progress);
   const fitting: Fitting = { ...fit, template: found.name, given: {} };

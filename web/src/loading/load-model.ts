@@ -4,6 +4,7 @@ import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { disposeAfterFrame } from '../platform/programs';
 import type { Loader, Model } from '../state/model';
 import { reasonOf } from '../state/wording';
+import { bringNear } from './bring-near';
 import { meshesOf } from './extract-mesh';
 import { paths } from './file-paths';
 import { readGltfHead } from './gltf-file';
@@ -42,6 +43,7 @@ export async function loadModel(
     try {
       const gltf = await loader.parseAsync(bytes, '');
       const scene = await sceneOf(gltf);
+      bringNear(scene);
       const { associations, json } = gltf.parser;
       const meshes = meshesOf(scene, (mesh) => nameOf(mesh, gltf));
       const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer());

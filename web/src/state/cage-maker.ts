@@ -3,7 +3,7 @@ import { cageModel } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/paint';
 import { likelyTemplate } from './likely-template';
 import { type Fitting, kMinLandmarks, lacksLandmarks, madeOf, noteMade, readable, sampleOf } from './made-cages';
-import type { Loader, Model } from './model';
+import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
 import { type Box, boxOf, diagonalOfBox } from './surface';
 import { reasonOf } from './wording';
@@ -56,6 +56,7 @@ export class CageMaker extends Emitter<{
   readonly #workshop: Workshop;
   readonly #session: Session;
   readonly #unmoved = new WeakSet<Model>();
+  readonly #turned = new WeakSet<Model>();
   /** What the user chose for cages that are made: options, and parts that are not painted. */
   choices: ((model: CageModel) => { options: MakeOptions; marks?: Uint8Array }) | undefined;
   /** What the last fit that was asked for here came to. */
@@ -79,7 +80,8 @@ export class CageMaker extends Emitter<{
       this.emit('fitting', this.isOthers ? undefined : madeOf(cage.files[0]!)?.fitting);
     });
     // Of a good cage, nobody needs to know what was not found.
-    session.on('inspected', ({ verdict }) => {
+    session.on('inspected', ({ verdict, findings }) => {
+      if (findings.some(({ code }) => code === 'cageBackward')) void this.#turnBack();
       const missing = (verdict !== 'good' && madeOf(session.shown!.cage.files[0]!)?.fitting?.missing) || [];
       const names = missing.map(readable).join(', ');
       this.emit('notes', { missing: names && `Landmarks that were not found: ${names}.` });
@@ -150,7 +152,11 @@ export class CageMaker extends Emitter<{
     const { positions, rest = positions, indices, uvs = new Float32Array() } = current.mesh;
     const extras: Partial<Cage> = {};
     current.scene.traverse(({ userData }) => void (userData.landmarks && Object.assign(extras, userData)));
-    const bytes = cageGlb({ ...extras, ...({ positions: rest, indices, uvs, ...change } as Cage) });
+    const bytes = cageGlb({
+      ...extras,
+      ...({ positions: rest, indices, uvs, ...change } as Cage),
+      origin: originOf(current),
+    });
     const file = new File([bytes], cageNameFrom(current.name));
     const fitting = madeOf(current.files[0]!)?.fitting;
     const note = 'The cage was changed. Save it if it is right.';
@@ -166,6 +172,20 @@ export class CageMaker extends Emitter<{
       const indices = old.indices.slice();
       for (const t of triangles) [indices[3 * t + 1], indices[3 * t + 2]] = [indices[3 * t + 2]!, indices[3 * t + 1]!];
       return { cage: { ...old, indices }, note: `${triangles.length} triangles of the cage were turned.` };
+    });
+  }
+
+  /** Turns the current cage by half, as it faces the other way than the target; once, as it may be turned back by hand. */
+  #turnBack(): Promise<void> | undefined {
+    const { cage } = this.#session.shown!;
+    if (this.#turned.has(cage)) return undefined;
+    this.#turned.add(cage);
+    return this.#run('Turning the cage', async ({ old }) => {
+      const positions = old.positions.map((x, i) => (i % 3 === 1 ? x : 0 - x));
+      return {
+        cage: { ...old, positions },
+        note: 'The cage faced the other way, so it was turned by half. Save it so.',
+      };
     });
   }
 
@@ -193,7 +213,10 @@ export class CageMaker extends Emitter<{
       if (!result) return done();
       const { cage, note, fitting, isNew } = result;
       const isChanged = cage.uvs === old.uvs;
-      const file = new File([engine.cageGlb(cage)], cageNameFrom((isChanged ? current : target).name));
+      const file = new File(
+        [engine.cageGlb({ ...cage, origin: originOf(target) })],
+        cageNameFrom((isChanged ? current : target).name),
+      );
       const sample = isChanged ? sampleOf(current) : undefined;
       noteMade(file, { target: target.files[0]!, fitting, sample, note, isNew });
       this.latest = fitting;

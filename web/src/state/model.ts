@@ -7,6 +7,8 @@ export interface Primitive extends Omit<Part, 'geometry'> {
   mesh: Mesh;
   /** Whether its matrix mirrors it; its winding is reversed then. */
   mirrored: boolean;
+  /** The weights of its morph targets in the file, which have shaped its positions. */
+  weights: readonly number[];
 }
 
 /** All triangles of a scene as arrays in world space, as the transfer takes them. */
@@ -69,6 +71,13 @@ export function asTarget(cage: Model): Model {
   if (model.mesh.primitives.length > 0) return model;
   throw new Error(`${model.name}: nothing of it is drawn but cages, markers and collision shapes; open it as a cage`);
 }
+
+/** Where the origin of a model that was moved is in the scene of its file. */
+export const originOf = ({ scene: { position } }: Model): [number, number, number] => [
+  0 - position.x,
+  0 - position.y,
+  0 - position.z,
+];
 
 /** Reads models. The page's own is `loadModel`; tests hand in others. */
 export interface Loader {

@@ -29,8 +29,10 @@ A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
 Its members: target, cage, referenceCage, uvBounds, texture, regions, output, report, and any setting of cagecast.config.json.
 A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
-failed or skipped), ms, counts, triangles, and error, verdict and findings (codes) if there are. After the lines, a summary goes
+failed or skipped), ms, counts, triangles, and error, verdict, findings (codes), note (why next to nothing may be painted) and
+isTurned (the cage faced the other way, so it was turned by half) if there are. After the lines, a summary goes
 to the standard error; with --quiet, only the errors of jobs go there.
+The cages of a batch are left out of the files that a pattern names.
 A job that fails does not stop the others. Files are complete or not there, even if the batch is killed. Missing folders are made.
 With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure or another batch.
 Exit codes: 0 all done, 1 a job failed, 2 wrong usage, 3 no job failed, but --fail-on found a cage that does not fit as demanded.
@@ -103,11 +105,15 @@ async function runBatch(targets: string[], flags: BatchFlags, io: Io): Promise<v
     layersFor: common.layersFor(flags),
     reading: common.readingOf(flags),
   };
-  const jobs = await (manifest === undefined ? jobsOfPatterns(targets, defaults) : jobsOfManifest(manifest, defaults));
+  const { jobs, leftOut = [] } =
+    manifest === undefined
+      ? await jobsOfPatterns(targets, defaults)
+      : { jobs: await jobsOfManifest(manifest, defaults) };
   const summary = await runJobs({ jobs, results, resume, failOn, workers, quiet }, io);
   const savesNothing = !failOn && !results && summary.done > 0 && jobs.every((job) => writtenBy(job).length === 0);
-  const text = `${describe(summary)}${savesNothing ? kNothingSaved : ''}\n`;
-  if (!quiet) io.err(json ? jsonText(summary) : text);
+  const without = leftOut.length > 0 ? `; left out, as they are cages: ${leftOut.join(', ')}` : '';
+  const text = `${oneLine(describe(summary) + without)}${savesNothing ? kNothingSaved : ''}\n`;
+  if (!quiet) io.err(json ? jsonText({ ...summary, ...(without && { leftOut }) }) : text);
   io.exitCode = summary.failed > 0 ? kExit.unusable : summary.misfits > 0 ? kExit.unfit : 0;
 }
 
@@ -127,7 +133,7 @@ function faultOf(targets: readonly string[], flags: BatchFlags): string | undefi
 }
 
 /** A summary for people. */
-function describe({ jobs, done, failed, skipped, misfits, configs, seconds }: BatchSummary): string {
+function describe({ jobs, done, failed, skipped, bare, misfits, configs, seconds }: BatchSummary): string {
   const parts = [
     `${done} done`,
     `${failed} failed`,
@@ -135,5 +141,6 @@ function describe({ jobs, done, failed, skipped, misfits, configs, seconds }: Ba
     ...(misfits > 0 ? [`${misfits} with a cage that does not fit as demanded`] : []),
   ];
   const from = configs.length > 0 ? `; settings from ${configs.join(', ')}` : '';
-  return oneLine(`${counted(jobs, 'job')}: ${parts.join(', ')}; ${seconds.toFixed(1)} s${from}`);
+  const notes = bare > 0 ? `; next to nothing may be painted of ${bare}, as notes in the lines say` : '';
+  return `${counted(jobs, 'job')}: ${parts.join(', ')}; ${seconds.toFixed(1)} s${from}${notes}`;
 }

@@ -1,5 +1,5 @@
 import { createHash } from 'node:crypto';
-import { existsSync, statSync } from 'node:fs';
+import { existsSync, readFileSync, statSync } from 'node:fs';
 import { basename, dirname, extname } from 'node:path';
 import { readBytes, standard } from '../../gltf/files.js';
 import { firstLine, InputError, naming } from '../../gltf/input-error.js';
@@ -34,17 +34,43 @@ interface JobDefaults extends Omit<TransferCommand, 'target' | 'cage' | keyof Re
   layersFor: (target: string) => Promise<Layer[]>;
 }
 
-/** The jobs for the files that patterns name. @throws {InputError} for a pattern without files, or if two jobs write the same file. */
-export async function jobsOfPatterns(patterns: readonly string[], defaults: JobDefaults): Promise<Job[]> {
+/**
+ * The jobs for the files that patterns name, without the cages among them.
+ * @throws {InputError} for a pattern without files, or if two jobs write the same file.
+ */
+export async function jobsOfPatterns(
+  patterns: readonly string[],
+  defaults: JobDefaults,
+): Promise<{ jobs: Job[]; leftOut: string[] }> {
+  const leftOut = new Set<string>();
+  const cages = [defaults.cage, defaults.referenceCage, ...(defaults.regions ?? []).map(({ cage }) => cage)];
+  const isCage = (target: string) => cages.some((cage) => cage !== undefined && isSameFile(target, cage));
   const targets = patterns.flatMap((pattern) => {
     const found = filesOf(pattern);
-    if (found.length === 0) throw new InputError('no file has such a name').in(pattern);
-    return found;
+    // One that is named itself is meant.
+    const [own, others] = pattern.includes('*')
+      ? [found.filter((one) => !isCage(one)), found.filter(isCage)]
+      : [found, []];
+    for (const cage of others) leftOut.add(cage);
+    if (own.length === 0)
+      throw new InputError(`no file${others.length > 0 ? ' but a cage' : ''} has such a name`).in(pattern);
+    return own;
   });
   const jobs = [...new Set(targets)].map((target) =>
     orFailed(target, target, defaults, async () => jobOf({ ...defaults, target }, await defaults.layersFor(target))),
   );
-  return refuseClashes(await Promise.all(jobs), defaults);
+  return { jobs: refuseClashes(await Promise.all(jobs), defaults), leftOut: [...leftOut] };
+}
+
+/** Whether two paths lead to one file, or to files of the same content. */
+function isSameFile(a: string, b: string): boolean {
+  if (canonicalPath(a) === canonicalPath(b)) return true;
+  const size = sizeAndTime(a)[0];
+  try {
+    return !!size && size === sizeAndTime(b)[0] && readFileSync(a).equals(readFileSync(b));
+  } catch {
+    return false; // The job that reads it says what is wrong.
+  }
 }
 
 /**

@@ -32,6 +32,8 @@ export interface BatchSummary {
   done: number;
   failed: number;
   skipped: number;
+  /** Of how many targets next to nothing may be painted. */
+  bare: number;
   /** How many cages got a verdict that `failOn` names, or a worse one. */
   misfits: number;
   /** The configuration files that settings come from. */
@@ -49,7 +51,16 @@ export async function runJobs(batch: Batch, io: Io): Promise<BatchSummary> {
   if (results !== undefined) openResults(results);
   const before = resume ? readResults(results!) : noResults();
   const configs = [...new Set(jobs.flatMap(({ command }) => command.rules.config ?? []))];
-  const summary: BatchSummary = { jobs: jobs.length, done: 0, failed: 0, skipped: 0, misfits: 0, configs, seconds: 0 };
+  const summary: BatchSummary = {
+    jobs: jobs.length,
+    done: 0,
+    failed: 0,
+    skipped: 0,
+    bare: 0,
+    misfits: 0,
+    configs,
+    seconds: 0,
+  };
   const keys = new Set(jobs.map(({ key }) => key));
   /** Whether the last line about the target of a job that was done is of this job, or of another one of this batch. */
   const isLast = ({ key, command }: Job) => {
@@ -61,6 +72,7 @@ export async function runJobs(batch: Batch, io: Io): Promise<BatchSummary> {
     const line: ResultLine = { target, output, ...(report && { report }), key: job.key, ...outcome };
     ++summary[line.status];
     if (line.status === 'failed' && quiet) io.err(`cagecast: ${oneLine(line.error)}\n`);
+    if ('note' in line) ++summary.bare;
     if (failOn && 'verdict' in line && !isWorse(failOn, line.verdict!)) ++summary.misfits;
     if (results === undefined) {
       if (!quiet) io.out(jsonText(line));

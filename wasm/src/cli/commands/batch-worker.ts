@@ -16,6 +16,8 @@ export type Outcome =
       ms: number;
       counts: Report['counts'];
       triangles: Report['triangles'];
+      note?: string;
+      isTurned?: boolean;
       verdict?: Verdict;
       findings?: string[];
     }
@@ -32,9 +34,10 @@ export function serveBatch(): void {
     try {
       makeFolders(command);
       const { report } = await transferToFile(command, io, readCage);
-      const { counts, triangles, verdict, findings } = report;
+      const { cage, counts, triangles, note, verdict, findings } = report;
       const inspected = verdict && { verdict, findings: findings!.map(({ code }) => code) };
-      answer({ status: 'done', counts, triangles, ...inspected });
+      const told = { ...(note && { note }), ...(cage.isTurned && { isTurned: true }) };
+      answer({ status: 'done', counts, triangles, ...told, ...inspected });
     } catch (error) {
       answer({ status: 'failed', error: messageOf(error) });
     }

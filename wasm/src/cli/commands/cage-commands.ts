@@ -135,12 +135,24 @@ async function makeFor(target: string, flags: MakeFlags, io: Io): Promise<Found>
 async function fitTo(path: string, target: string, flags: FitFlags, io: Io): Promise<Found> {
   const { exclude } = flags;
   const template = await readTemplate(path, flags, io);
-  const landmarks = flags.landmarks === undefined ? undefined : await readLandmarks(flags.landmarks);
+  const given = flags.landmarks === undefined ? undefined : await readLandmarks(flags.landmarks);
   const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags).ignored);
+  const { origin } = model.extracted;
+  const landmarks = given && movedBy(given, origin, -1);
   const files = { template: path, landmarks: flags.landmarks };
   const fit = await fitCageTo(model, { template, landmarks, files, options: { exclude } }, io);
-  return finish(fit.cage, model, flags, io, describeFit(fit, landmarks ?? {}));
+  const used = movedBy(fit.used, origin, 1);
+  return finish(fit.cage, model, flags, io, describeFit({ ...fit, used }, landmarks ?? {}));
 }
+
+/** Landmarks moved by an origin, so many times. */
+const movedBy = (landmarks: Landmarks, origin: readonly number[], times: 1 | -1): Landmarks =>
+  Object.fromEntries(
+    Object.entries(landmarks).map(([name, point]) => [
+      name,
+      point.map((x, k) => x + times * origin[k]!) as [number, number, number],
+    ]),
+  );
 
 /** How many landmarks `fitCage` needs of a template. */
 const kMinLandmarks = 4;
@@ -230,11 +242,11 @@ async function finish(
   const { output, html } = flags;
   const rules = rulesOf(flags);
   const locks = withBare(model.extracted.accessories, undefined);
-  const run = await transferModels(model, await readBack(cage, output), { preset: rules.preset, locks }, io);
+  const run = await transferModels(model, await readBack(cage, output, model), { preset: rules.preset, locks }, io);
   io.step('inspecting');
   const report = inspectionReport({ target: model.file.path, cage: output, rules }, run, []);
   const page = html === undefined ? [] : [{ path: html, data: inspectionPage(report, run) }];
-  writeFiles([{ path: output, data: cageGlb(cage) }, ...page], io);
+  writeFiles([{ path: output, data: cageGlb({ ...cage, origin: model.extracted.origin }) }, ...page], io);
   const conclusion = conclusionOf(report);
   const { verdict, uv, holes } = report;
   const lines = [

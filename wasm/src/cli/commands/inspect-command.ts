@@ -13,7 +13,7 @@ import {
   segmentTable,
 } from '../transfer/inspection.js';
 import { inspectionPage } from '../transfer/inspection-page.js';
-import { leftOutLines, zoneTable } from '../transfer/report-parts.js';
+import { leftOutLines, turnedLine, zoneTable } from '../transfer/report-parts.js';
 import { runTransfer } from '../transfer/run-transfer.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
@@ -97,6 +97,7 @@ function describe(report: InspectionReport, html: string | undefined): Line[] {
     '',
     ...conclusionOf(report),
     html && `wrote ${html}`,
+    turnedLine(cage),
     ...leftOutLines(target),
     configLine(report.options.config),
   ];

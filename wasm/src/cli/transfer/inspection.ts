@@ -61,7 +61,7 @@ export function inspectionReport(
       ...targetReport(command.target, run),
       points: result.segmentStats.reduce((sum, { points }) => sum + points, 0),
     },
-    cage: cageReport(command.cage, cage),
+    cage: cageReport(command.cage, cage, run),
     options: effectiveOptions(command),
     counts: perZone(result.zones),
     coverage: {

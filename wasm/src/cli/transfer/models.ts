@@ -40,7 +40,7 @@ export async function readModel(
 ): Promise<ReadModel> {
   io.step(`reading ${path}`);
   const file = await readGltf(path, reading, bytes);
-  const extracted = extract(file, whichCount);
+  const extracted = extract(file, 'own', whichCount);
   if (extracted.mesh.indices.length > 0) return { file, extracted };
   const what = (file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene';
   throw new InputError(`has no ${what}; at least one triangle is needed`).in(path);
@@ -77,17 +77,23 @@ export function withUvs(model: ReadModel): ReadModel {
 
 /** The cage that a target has with it. @throws {InputError} that names the file, if it has none. */
 export function cageIn({ file }: ReadModel): ReadModel {
-  const extracted = extract(file, 'cage');
+  const extracted = extract(file, 'own', 'cage');
   if (hasCages(extracted.parts)) return { file, extracted };
   throw new InputError(
     'has no cage: no mesh in it is named as an outer cage, as Head_OuterCage of Head_Geo; give one with --cage, or let --cage auto make one',
   ).in(file.path);
 }
 
-/** A cage as if it was read from a file. */
-export async function readBack(cage: Cage, path: string): Promise<ReadModel> {
-  const file = await readGltf(path, undefined, cageGlb(cage));
-  return { file, extracted: extract(file, 'cage') };
+/** A cage around a model, as if it was read from a file. */
+export async function readBack(cage: Cage, path: string, { extracted: { origin } }: ReadModel): Promise<ReadModel> {
+  const file = await readGltf(path, undefined, cageGlb({ ...cage, origin }));
+  return { file, extracted: extract(file, origin, 'cage') };
+}
+
+/** A cage around the origin of its target. */
+export function besideOf({ extracted: { origin } }: ReadModel, cage: ReadModel): ReadModel {
+  const isBeside = cage.extracted.origin.every((x, k) => x === origin[k]);
+  return isBeside ? cage : { ...cage, extracted: extract(cage.file, origin, 'cage') };
 }
 
 /** Calls the core for two models. @throws {InputError} that names the file at fault and the place in it. */

@@ -1,10 +1,11 @@
 // What the reports of `transfer` and `inspect` have in common.
 import { presetOptions, type TransferResult } from '../../index.js';
+import { type Bare, bareOf, bareText } from '../../inspect/bare.js';
 import { percent } from '../../inspect/finding.js';
 import { boxOf } from '../../inspect/geometry.js';
 import { leftOutText } from '../../parts/drawn.js';
 import type { Sources } from '../model/sources.js';
-import { integer, type Line, listed, table } from '../model/text.js';
+import { integer, type Line, listed, quoted, table } from '../model/text.js';
 import { kZoneNames, type PerZone } from '../model/zones.js';
 import type { ReadModel } from './models.js';
 import type { Run } from './run-transfer.js';
@@ -23,14 +24,34 @@ export const targetReport = (file: string, { target: { extracted }, diagonal, ba
 
 export type TargetReport = ReturnType<typeof targetReport>;
 
-/** What a report says of a cage. */
-export const cageReport = (file: string, { extracted: { mesh } }: ReadModel) => ({
+/** What a report says of a cage, and whether it was turned. */
+export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { isTurned }: Run) => ({
   file,
   vertices: mesh.positions.length / 3,
   triangles: mesh.indices.length / 3,
+  ...(isTurned && { isTurned }),
 });
 
 export type CageReport = ReturnType<typeof cageReport>;
+
+/** Why next to nothing may be painted, if so, and what helps. */
+export function bareNote({ target: { extracted }, result }: Run): string | undefined {
+  const bare = bareOf(extracted.mesh, result, extracted.parts);
+  if (!bare) return undefined;
+  const keep = `--keep ${quoted(bare.part)}`;
+  const advice: Record<Bare['cause'], string> = {
+    elsewhere: 'put both in the same place and unit; cagecast inspect says more',
+    uncovered: 'fit the cage around it; cagecast inspect says more',
+    hidden: 'take out of the file what hides it, or try --occlusion-reach 0 if that lies outside the cage',
+    threshold: `try ${keep} or a lower --threshold`,
+    floor: `try ${keep} or a lower --min-covered`,
+    depth: `fit the cage more closely, or try ${keep}`,
+    hole: `try ${keep}`,
+    lock: 'leave out --exclude',
+    mask: 'change the masks',
+  };
+  return bareText(bare, advice[bare.cause]);
+}
 
 /** Vertices and shares of the area in each zone, for people. */
 export const zoneTable = (counts: PerZone, areas: PerZone, total = 1): string[] =>
@@ -38,6 +59,10 @@ export const zoneTable = (counts: PerZone, areas: PerZone, total = 1): string[] 
     ['', 'vertices', 'area'],
     ...kZoneNames.map((zone) => [zone, integer(counts[zone]), percent(areas[zone] / (total || 1))]),
   ]);
+
+/** Says that a cage was turned, if it was. */
+export const turnedLine = ({ isTurned }: { isTurned?: boolean }): Line =>
+  isTurned && 'the cage faced the other way; turned by half about the vertical axis, it fits clearly better, so it was';
 
 /** How many names a line has at most. */
 const kMaxNames = 12;

@@ -9,6 +9,7 @@ import type { Region, TransferCommand } from '../model/sources.js';
 import type { PerZone } from '../model/zones.js';
 import { countOf, type RegionRun } from './region.js';
 import {
+  bareNote,
   type CageReport,
   cageReport,
   effectiveOptions,
@@ -71,7 +72,11 @@ export interface Report {
     zones: string;
     counts: PerZone;
     triangles: { total: number; cosmetic: number };
+    /** Whether the cage faced the other way, and was turned by half. */
+    isTurned?: boolean;
   }[];
+  /** Why next to nothing may be painted, if so, and what helps. */
+  note?: string;
   /** Whether all of the cages fit, and why not; if they were inspected. */
   verdict?: Verdict;
   findings?: Finding[];
@@ -103,10 +108,11 @@ export function makeReport(command: TransferCommand, { run, shown, cut, ...rest 
   const written = command.output === undefined ? undefined : rest.written;
   const isBounded = command.uvBounds !== undefined;
   const areas = vertexAreas(mesh);
+  const note = bareNote(run);
   return {
     versions: versions(),
     target: targetReport(command.target, run),
-    cage: cageReport(command.cage, run.cage),
+    cage: cageReport(command.cage, run.cage, run),
     texture: command.texture ?? null,
     output: command.output ?? null,
     borders: command.borders,
@@ -125,6 +131,7 @@ export function makeReport(command: TransferCommand, { run, shown, cut, ...rest 
     segments: segmentReports(parts, result),
     parts: parts.map((part, p) => partReport(part, result, written?.added[p])),
     replacedOverlays: written?.replaced ?? 0,
+    ...(note && { note }),
     regions: [],
     timings: result.timings,
     peakBytes: result.peakBytes,
@@ -170,5 +177,6 @@ export function regionReport(
     zones,
     counts: perZone(run.result.zones),
     triangles: { total: painted.length, cosmetic: countOf(painted) - paintedBefore },
+    ...(run.isTurned && { isTurned: true }),
   };
 }

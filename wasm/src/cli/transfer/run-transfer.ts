@@ -11,6 +11,7 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
+import { isBackward, turnedBack } from '../../inspect/backward.js';
 import { boxOf } from '../../inspect/geometry.js';
 import { moveApart } from '../../parts/own-cages.js';
 import { readImage } from '../io/images.js';
@@ -19,7 +20,7 @@ import type { Rules } from '../model/settings.js';
 import { kAutoCage, type Sources } from '../model/sources.js';
 import { withinBounds, withoutLacking } from './cage-area.js';
 import { makeCageFor, partsLeftOut } from './made-cage.js';
-import { cageIn, inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
+import { besideOf, cageIn, inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
 import { transferOptions } from './part-names.js';
 import { readTarget } from './read-target.js';
 
@@ -33,6 +34,8 @@ export interface Run {
   diagonal?: number;
   /** The names of the parts that stay bare because of their names. */
   bare?: readonly string[] | undefined;
+  /** Whether the cage faced the other way, and was turned by half about the vertical axis. */
+  isTurned?: boolean;
   /** What `transfer` was called with. */
   options: TransferOptions;
   result: TransferResult;
@@ -58,15 +61,22 @@ export async function runTransfer(
   const isBare = parts.map((_, p) => named[p] === true || accessories.includes(p));
   const options = { ...transferOptions(rules, target, isBare), ...(masks && { masks }) };
   const cageOf = async (file: string) =>
-    withUvs(isOwnCage && file === cage ? cageIn(target) : await readCage(file, reading, io));
-  const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage) : await cageOf(cage);
+    besideOf(target, withUvs(isOwnCage && file === cage ? cageIn(target) : await readCage(file, reading, io)));
+  const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage, target) : await cageOf(cage);
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
   const apart = movedApart(target, withoutLacking(whole, reference));
   const { wholeCage } = apart;
-  const run = await transferModels(apart.target, withinBounds(wholeCage, uvBounds), options, io);
+  const first = await transferModels(apart.target, withinBounds(wholeCage, uvBounds), options, io);
+  // Cages that have names know which way they face.
+  const run = apart.target === target ? await faceForward(first, io) : first;
   const names = parts.filter((_, p) => isBare[p] && options.locks?.groups?.[p] !== 'keep').map(({ name }) => name);
   const { diagonal } = boxOf(target.extracted.mesh.positions);
-  return { ...run, wholeCage, diagonal, bare: [...new Set(names)] };
+  return {
+    ...run,
+    wholeCage: run.isTurned ? turned(wholeCage) : wholeCage,
+    diagonal,
+    bare: [...new Set(names)],
+  };
 }
 
 /** The parts of a target apart, each with the cage of its name, if there are such. @throws {InputError} that names one without. */
@@ -82,6 +92,18 @@ function movedApart(target: ReadModel, wholeCage: ReadModel): { target: ReadMode
     target: withMesh(target, apart.target),
     wholeCage: withMesh(wholeCage, apart.cage),
   };
+}
+
+const turned = ({ file, extracted }: ReadModel): ReadModel => ({
+  file,
+  extracted: { ...extracted, mesh: turnedBack(extracted.mesh) },
+});
+
+/** A run as it is, or with its cage turned by half, if that faces the other way. */
+async function faceForward(run: Run, io: Io): Promise<Run> {
+  const { target, cage, options, result } = run;
+  if (!isBackward(cage.extracted.mesh, target.extracted.mesh, result)) return run;
+  return { ...(await transferModels(target, turned(cage), options, io)), isTurned: true };
 }
 
 /** The masks of a target. @throws {InputError} that names the file at fault. */

@@ -11,7 +11,7 @@ import { inspectionReport, isWorse } from './inspection.js';
 import type { readModel } from './models.js';
 import { compressionOf, transferRegion } from './region.js';
 import { makeReport, type Report, regionReport } from './report.js';
-import { leftOutLines, zoneTable } from './report-parts.js';
+import { leftOutLines, turnedLine, zoneTable } from './report-parts.js';
 
 /**
  * Runs the transfer and writes the requested files.
@@ -65,7 +65,7 @@ export async function transferToFile(
 
 /** The report for people. */
 function summary(command: TransferCommand, report: Report): Line[] {
-  const { target, counts, areas, triangles, cut, segments, regions, timings, output } = report;
+  const { target, cage, counts, areas, triangles, cut, segments, regions, timings, output, note } = report;
   const culled = segments.filter((segment) => segment.culled).length;
   const { outOfBounds = 0 } = cut?.triangles ?? triangles;
   const cutText = cut ? `; cut along borders, ${shareOf(cut.triangles)}` : '';
@@ -73,10 +73,15 @@ function summary(command: TransferCommand, report: Report): Line[] {
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${counted(segments.length, 'segment')} (${integer(culled)} culled)`,
     ...zoneTable(counts, areas, areas.total),
     `${shareOf(triangles)} triangles may be painted${cutText}; ${timings.total.toFixed(1)} ms`,
+    turnedLine(cage),
+    note,
     outOfBounds > 0 &&
       `${integer(outOfBounds)} more could be painted, but lie outside of --uv-bounds; zones do not depend on the bounds`,
     ...(output === null ? [] : outputLines(output, report)),
-    ...regions.map((one) => `${one.cage}: ${shareOf(one.triangles)} triangles more may be painted, by ${one.texture}`),
+    ...regions.flatMap((one) => [
+      `${one.cage}: ${shareOf(one.triangles)} triangles more may be painted, by ${one.texture}`,
+      turnedLine(one),
+    ]),
     command.report !== undefined && `wrote ${command.report}`,
     ...leftOutLines(target),
     configLine(command.rules.config),

@@ -8,11 +8,14 @@ import type {
   TextureInfo,
 } from '@gltf-transform/core';
 import type { Mesh } from '../../index.js';
+import type { Vector } from '../../inspect/geometry.js';
+import { identity, type Matrix, multiply } from '../../parts/affine.js';
 import { chooseParts, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
-import { type Skinned, skinMatrices } from '../../parts/skin.js';
+import { upFrom } from '../../parts/joints.js';
+import { kSceneOrigin, type Origin } from '../../parts/origin.js';
+import { placeMeshes, type Skin } from '../../parts/skin.js';
 import { InputError } from '../input-error.js';
 import { firstInstance, instancing } from '../instancing.js';
-import { identity, type Matrix, multiply } from '../matrix.js';
 import { isMarked } from '../overlay.js';
 import {
   decodePositions,
@@ -20,6 +23,7 @@ import {
   decodeUvs,
   hasTriangles,
   joinPieces,
+  moveTo,
   nextPiece,
   type Piece,
   renumber,
@@ -48,15 +52,22 @@ export interface ExtractedDocument {
   leftOut: LeftOut[];
   /** The numbers of parts that a figure wears or carries. */
   accessories: number[];
+  /** What was subtracted from their places in the scene. */
+  origin: Vector;
 }
 
 /**
  * Collects the triangles of a document's default scene (else its first), depth first, in the scene's space, by the same
- * rules as the command: vertices keep their order, every primitive of every node is a group of its own, and skinned meshes are placed
- * by their skeletons, in the bind pose.
+ * rules as the command: vertices keep their order, every primitive of every node is a group of its own, skinned meshes are placed
+ * by their skeletons, in the bind pose, and morph targets shape meshes by their weights.
+ * @param origin  What is subtracted from positions. Target and cage need the same one.
  * @throws {InputError} that names the primitive and the element.
  */
-export function extractDocument(document: Document, isMeant?: PartsOption | 'cage'): ExtractedDocument {
+export function extractDocument(
+  document: Document,
+  origin: Origin = kSceneOrigin,
+  isMeant?: PartsOption | 'cage',
+): ExtractedDocument {
   const all = listParts(document);
   const asked =
     typeof isMeant === 'function'
@@ -65,7 +76,11 @@ export function extractDocument(document: Document, isMeant?: PartsOption | 'cag
   const fail = (text: string) => new InputError(`${text}; the option parts says which count`);
   const { parts, leftOut, accessories } = chooseParts(all, lookOf, asked, fail);
   renumber(parts);
-  const others = { leftOut: leftOut.map(({ name, why }) => ({ name, why })), accessories };
+  const others = {
+    leftOut: leftOut.map(({ name, why }) => ({ name, why })),
+    accessories,
+    origin: moveTo(parts, origin),
+  };
   const mesh = joinPieces(parts);
   const layouts = parts.map(({ primitive }) => uvLayoutOf(primitive.getMaterial()?.getBaseColorTextureInfo()));
   const sets = parts.map(({ primitive }, p) => primitive.getAttribute(layouts[p]!.set));
@@ -143,6 +158,7 @@ function listParts(document: Document): DocumentPart[] {
         matrix,
         firstInstance(`"${node.getName() || mesh.getName()}"`, (semantic) => instances.getAttribute(semantic)),
       );
+    const weights = node.getWeights().length > 0 ? node.getWeights() : mesh.getWeights();
     mesh.listPrimitives().forEach((primitive, p) => {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');
@@ -152,7 +168,9 @@ function listParts(document: Document): DocumentPart[] {
       );
       const short = all.find(([, count]) => count < position.getCount());
       if (short) throw new InputError(`${place} has ${short[1]} ${short[0]} for ${position.getCount()} vertices`);
-      const positions = decodePositions(place, position);
+      const targets = primitive.listTargets();
+      const deltas = (t: number) => targets[t]?.getAttribute('POSITION');
+      const positions = decodePositions(place, position, weights, deltas);
       const piece = nextPiece(parts, {
         node: node.getName(),
         mesh: mesh.getName(),
@@ -171,35 +189,35 @@ function listParts(document: Document): DocumentPart[] {
       parts.push({ ...piece, node, mesh, primitive });
     });
   }
-  const skinned = parts.filter(({ node }) => node.getSkin());
-  skinMatrices(skinned.map(skinOf)).forEach((matrix, s) => (skinned[s]!.matrix = matrix));
+  const placed = placeMeshes(
+    parts.map((part) => ({ ...part, skin: skinOf(part) })),
+    { parentOf, worldOf: jointMatrix },
+  );
+  parts.forEach((part, p) => (part.matrix = placed[p]!));
   return parts;
 }
 
+const parentOf = (node: Node): Node | null => node.getParentNode();
+
 /** The matrix of a joint to the scene; the identity if it is below itself, which no node of a scene is. */
 export function jointMatrix(joint: Node): Matrix {
-  const above = new Set<Node>();
-  for (let node: Node | null = joint; node; node = node.getParentNode()) {
-    if (above.has(node)) return identity;
-    above.add(node);
-  }
-  return joint.getWorldMatrix();
+  const top = [...upFrom(joint, parentOf)].at(-1)!;
+  return parentOf(top) === null ? joint.getWorldMatrix() : identity;
 }
 
 /** How its skin holds a part. */
-function skinOf({ node, primitive, localPositions: positions }: DocumentPart): Skinned<Matrix> {
-  const skin = node.getSkin()!;
+function skinOf({ node, primitive, localPositions: positions }: DocumentPart): Skin<Node> | undefined {
+  const skin = node.getSkin();
+  if (!skin) return undefined;
   const inverses = skin.getInverseBindMatrices()?.getArray();
   const arrayOf = (semantic: string) => primitive.getAttribute(semantic)?.getArray() ?? [];
   return {
-    matrices: skin.listJoints().map((joint, j) => {
-      const matrix = jointMatrix(joint);
-      return inverses ? multiply(matrix, inverses.subarray(16 * j)) : matrix;
-    }),
+    joints: skin.listJoints(),
+    inverseOf: (j) => inverses?.subarray(16 * j, 16 * j + 16),
+    bind: identity,
     held: arrayOf('JOINTS_0'),
     weights: arrayOf('WEIGHTS_0'),
     positions,
     isFloat: arrayOf('POSITION') instanceof Float32Array,
-    stored: [identity],
   };
 }

@@ -11,6 +11,7 @@ import {
   transfer,
 } from '../../index.js';
 import { withBare } from '../../parts/drawn.js';
+import { moved } from '../../parts/origin.js';
 import { hasCages, moveApart } from '../../parts/own-cages.js';
 import { type MaskSources, masksOf } from '../bake/mask-sources.js';
 import { InputError } from '../input-error.js';
@@ -56,11 +57,12 @@ export async function transferDocument(
     throw wrong(caller, 'maskImages', maskImages, '{ never, always }');
   await init();
   const paint = texture && within(caller, 'texture', () => paintOf(texture));
+  const target = read(caller, 'target', document, () => extractDocument(document, 'own', parts));
+  const { origin } = target;
   const around = isDocument(cage ?? document)
-    ? within(caller, 'cage', () => extractDocument((cage ?? document) as Document, 'cage'))
-    : { mesh: cage as Mesh, parts: [] };
+    ? within(caller, 'cage', () => extractDocument((cage ?? document) as Document, origin, 'cage'))
+    : { mesh: moved(cage as Mesh, origin), parts: [] };
   if (cage === undefined && !hasCages(around.parts)) throw wrong(caller, 'cage', cage, kNoCage);
-  const target = read(caller, 'target', document, () => extractDocument(document, parts));
   const apart = within(caller, 'target', () => moveApart(target, around, (text) => new InputError(text)));
   const [source, own] = [apart?.cage ?? around.mesh, apart?.target ?? target.mesh];
   const model = new DocumentModel(document, target.parts);

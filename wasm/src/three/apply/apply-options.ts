@@ -65,6 +65,11 @@ export interface Applied {
   /** The result for the original vertices of the target. */
   result: TransferResult;
   /**
+   * Why nothing, or less than 5 % of what the cage covers, may be painted by the result, and what helps: a line for people. `undefined`
+   * if more may. Cost, each time: some milliseconds per 100,000 triangles; up to a second if other parts hide the target.
+   */
+  readonly note: string | undefined;
+  /**
    * The number of vertices added because triangles at the same vertex need different UVs, or because not all of them are painted.
    * Without a texture it is 0 with `seams: 'vertex'`.
    */

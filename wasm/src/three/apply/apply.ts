@@ -1,6 +1,7 @@
 import { Box3, BufferAttribute, BufferGeometry, type Material, Matrix3, type Mesh, type Texture, Vector3 } from 'three';
 import { show } from '../../core/error.js';
 import type { Classification } from '../../index.js';
+import { noteOf } from '../../inspect/bare.js';
 import type { PartRange, Prepared } from '../../parts/prepare.js';
 import { notA, wrong } from '../errors.js';
 import { removeOverlay, removeOverlays } from '../materials/overlay-mesh.js';
@@ -191,6 +192,10 @@ class Shown implements Applied {
     this.#material = display.material;
     this.#culled = this.result.segmentStats.map(({ culled }) => culled);
     this.#decide(this.result);
+  }
+
+  get note(): string | undefined {
+    return noteOf(this.#target, this.result, this.parts);
   }
 
   get overlays(): Mesh[] {

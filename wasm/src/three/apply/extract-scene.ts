@@ -15,9 +15,11 @@ import {
 } from 'three';
 import { show } from '../../core/error.js';
 import type { CagecastError, Mesh } from '../../index.js';
+import type { Vector } from '../../inspect/geometry.js';
 import { chooseParts, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
-import { movePoints } from '../../parts/points.js';
-import { type Skinned, skinMatrices } from '../../parts/skin.js';
+import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/origin.js';
+import { morphed, movePoints } from '../../parts/points.js';
+import { placeMeshes, type Skin } from '../../parts/skin.js';
 import { transformUvs } from '../../parts/uv-transform.js';
 import { wrong } from '../errors.js';
 
@@ -63,14 +65,29 @@ const identity = new Matrix4();
  *
  * Vertices keep their order and number. Positions are in the scene's space: world matrices are applied in double precision and
  * rounded once, and the winding of mirrored meshes is reversed. Skinned meshes are placed by their skeleton, in the bind pose;
- * morph targets are not applied. An instanced mesh is taken once, where its first instance is. Each mesh, or each of its material
+ * morph targets shape them as they do now (`morphTargetInfluences`). An instanced mesh is taken once, where its first instance is. Each mesh, or each of its material
  * groups, is a group.
  * @param argument  The name of the argument, for messages.
  * @param isMeant   Which meshes count. Default: what is drawn; of a `cage` or `template`, its outer cages, or all if there are none
  * @throws {CagecastError} that names the part and the element.
  */
-export function extract(object: Object3D | BufferGeometry, argument = 'target', isMeant?: PartsOption): Extracted {
+export const extract = (object: Object3D | BufferGeometry, argument = 'target', isMeant?: PartsOption): Extracted =>
+  extractNear(object, argument, kSceneOrigin, isMeant);
+
+/** The same with positions around an origin, which target and cage need in common; and that origin. */
+export function extractNear(
+  object: Object3D | BufferGeometry,
+  argument: string,
+  origin: Origin,
+  isMeant?: PartsOption,
+): Extracted & { origin: Vector } {
   const { parts, leftOut, accessories } = listParts(object, argument, isMeant);
+  const placed = ({ geometry, matrix }: Part) => ({
+    points: valuesOf(geometry.getAttribute('position') as Attribute),
+    matrix: matrix.elements,
+  });
+  const near = origin === 'own' ? originOf(parts.map(placed)) : origin;
+  for (const part of parts) part.matrix = new Matrix4().fromArray(fromOrigin(part.matrix.elements, near));
   const [vertices, triangles] = endOf(parts);
   const positions = new Float32Array(3 * vertices);
   const indices = new Uint32Array(3 * triangles);
@@ -86,7 +103,8 @@ export function extract(object: Object3D | BufferGeometry, argument = 'target', 
     const { firstVertex, vertexCount } = parts[p]!;
     return [...new Set(groups.subarray(firstVertex, firstVertex + vertexCount))];
   });
-  return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts, leftOut, accessories: bare };
+  const mesh = { positions, indices, groups, ...(uvs && { uvs }) };
+  return { mesh, parts, leftOut, accessories: bare, origin: near };
 }
 
 /** Where the next part begins: how many vertices and triangles there are before it. */
@@ -235,34 +253,32 @@ function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
  * moved follows from all meshes that it holds, so give them together. Cost: linear in the vertices of skinned meshes.
  */
 export function placesOf(meshes: readonly ThreeMesh[]): Matrix4[] {
-  const held = skinMatrices(meshes.filter(isAttached).map(skinOf));
-  return meshes.map((mesh) => {
+  const all = meshes.map((mesh) => {
     const place = new Matrix4();
-    if (isAttached(mesh)) return place.fromArray(held.shift()!);
     if (isInstanced(mesh)) mesh.getMatrixAt(0, place);
-    return place.premultiply(mesh.matrixWorld);
+    const skin = isAttached(mesh) ? skinOf(mesh) : undefined;
+    return { node: mesh as Object3D, matrix: place.premultiply(mesh.matrixWorld).elements, skin };
   });
+  const nodes = {
+    parentOf: ({ parent }: Object3D) => parent,
+    worldOf: ({ matrixWorld }: Object3D) => matrixWorld.elements,
+  };
+  return placeMeshes(all, nodes).map((place) => new Matrix4().fromArray(place));
 }
 
 /** Whether a mesh is where its skeleton is. A detached one is where it is itself. */
 const isAttached = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).bindMode === 'attached';
 
-function skinOf(mesh: SkinnedMesh): Skinned<ArrayLike<number>> {
+function skinOf(mesh: SkinnedMesh): Skin<Object3D> {
   const { skeleton, bindMatrix, geometry } = mesh;
   const values = (name: string) => {
     const attribute = geometry.getAttribute(name) as Attribute | undefined;
     return attribute ? valuesOf(attribute) : new Float32Array();
   };
-  const bones = skeleton?.bones ?? [];
-  // Three applies the bind matrix to the vertices first.
-  const placedBy = (matrix: Matrix4) => matrix.clone().multiply(bindMatrix).elements;
-  // The model may have been moved since the mesh was bound, with all that is in it.
-  const moved: number[][] = [];
-  for (let above: Object3D | null | undefined = bones[0]; above; above = above.parent)
-    if (!('isBone' in above)) moved.push(placedBy(above.matrixWorld));
   return {
-    matrices: bones.map((bone, b) => placedBy(bone.matrixWorld.clone().multiply(skeleton!.boneInverses[b]!))),
-    stored: [bindMatrix.elements, ...moved],
+    joints: skeleton?.bones ?? [],
+    inverseOf: (b) => skeleton!.boneInverses[b]!.elements,
+    bind: bindMatrix.elements,
     held: values('skinIndex'),
     weights: values('skinWeight'),
     positions: values('position'),
@@ -306,13 +322,28 @@ const wrongPart = (argument: string, name: string, text: string, at?: number): C
 /** Whether a matrix mirrors, so that the winding of triangles must be reversed. */
 export const isMirrored = (matrix: Matrix4): boolean => matrix.determinant() < 0;
 
-/** Writes the positions of a part in the scene's space. */
+/** Writes the positions of a part in the scene's space; without a mesh, as morph targets do not shape it. */
 export function placePositions(
-  { geometry, matrix, firstVertex, vertexCount }: Pick<Part, 'geometry' | 'matrix' | 'firstVertex' | 'vertexCount'>,
+  {
+    mesh,
+    geometry,
+    matrix,
+    firstVertex,
+    vertexCount,
+  }: Omit<Part, 'name' | 'aliases' | 'firstTriangle' | 'triangleCount'>,
   out: Float32Array,
 ): void {
   // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
-  const values = valuesOf(geometry.getAttribute('position') as Attribute).subarray(0, 3 * vertexCount);
+  const stored = valuesOf(geometry.getAttribute('position') as Attribute).subarray(0, 3 * vertexCount);
+  const targets = (geometry.morphAttributes.position ?? []) as Attribute[];
+  const values = morphed(
+    stored,
+    (mesh?.morphTargetInfluences ?? []).flatMap((weight, t) => {
+      if (weight === 0 || !targets[t]) return [];
+      const shape = valuesOf(targets[t]);
+      return [{ weight, deltas: geometry.morphTargetsRelative ? shape : stored.map((x, i) => shape[i]! - x) }];
+    }),
+  );
   if (matrix.equals(identity)) out.set(values, 3 * firstVertex);
   else movePoints(matrix.elements, values, out, 3 * firstVertex);
 }

@@ -107,7 +107,7 @@ function distancesOf(parts: readonly ShownPart[], reach: number): Float32Array[]
   let corner = 0;
   parts.forEach((shown, p) => {
     const { part, split } = shown;
-    const range = { firstVertex: firsts[p]!, vertexCount: split.sources.length };
+    const range = { mesh: undefined, firstVertex: firsts[p]!, vertexCount: split.sources.length };
     placePositions({ geometry: geometryOf(shown), matrix: part.matrix, ...range }, positions);
     cosmetic.set(shown.cosmetic, corner / 3);
     for (const vertex of split.indices) indices[corner++] = firsts[p]! + vertex;

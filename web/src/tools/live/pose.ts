@@ -86,11 +86,11 @@ class PrimitivePose {
     this.#morphs = morphAttributes;
   }
 
-  /** Adds the morphs to the mesh's vertices. @param positions Of the whole model, in the scene's space. */
+  /** Moves the mesh's vertices from the file's morphs to others. @param positions Of the whole model, in the scene's space. */
   morph(positions: Float32Array, morphs: Weights): void {
-    const { firstVertex, vertexCount } = this.#primitive;
+    const { firstVertex, vertexCount, weights } = this.#primitive;
     const [change, delta] = [new Vector3(), new Vector3()];
-    const active = this.#active('position', morphs);
+    const active = this.#active('position', (name, place) => (morphs.get(name) ?? 0) - (weights[place] ?? 0));
     if (active.length === 0) return;
     for (let vertex = 0; vertex < vertexCount; vertex++) {
       change.set(0, 0, 0);
@@ -103,16 +103,19 @@ class PrimitivePose {
   }
 
   /** The morphs of non-zero weight; their attributes are offsets, as in glTF. */
-  #active(name: Name, morphs: Weights | undefined): { weight: number; attribute: BufferAttribute }[] {
+  #active(
+    name: Name,
+    weightOf: (morph: string, place: number) => number,
+  ): { weight: number; attribute: BufferAttribute }[] {
     return morphNames(this.#primitive.mesh).flatMap((morph, place) => {
-      const [weight, attribute] = [morphs?.get(morph) ?? 0, this.#morphs[name]?.[place]];
+      const [weight, attribute] = [weightOf(morph, place), this.#morphs[name]?.[place]];
       return weight !== 0 && attribute ? [{ weight, attribute: attribute as BufferAttribute }] : [];
     });
   }
 
   set(positions: Float32Array, shape: Shape): void {
     const { geometry } = this.#primitive.mesh;
-    // The positions include the morphs already: do not let the renderer add them again.
+    // The vertices include chosen morphs already: do not let the renderer add them again.
     geometry.morphAttributes = shape.morphs ? {} : this.#morphs;
     if (isAtRest(shape)) {
       if (this.#moved) for (const { name, attribute } of this.#atRest) geometry.setAttribute(name, attribute);
@@ -125,18 +128,22 @@ class PrimitivePose {
   }
 
   #write(name: Name, rest: BufferAttribute, positions: Float32Array, shape: Shape): void {
-    const { mesh, firstVertex, vertexCount } = this.#primitive;
+    const { mesh, firstVertex, vertexCount, weights } = this.#primitive;
     // Quantised or interleaved attributes cannot hold moved vertices: use a float copy.
     if (!this.#moved) mesh.geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * vertexCount), 3));
     const attribute = mesh.geometry.getAttribute(name) as BufferAttribute;
-    const active = this.#active('normal', shape.morphs);
+    const active = this.#active(name, (morph, place) => {
+      if (name === 'normal') return shape.morphs?.get(morph) ?? 0;
+      // The renderer adds those of the file, which the positions include.
+      return shape.morphs ? 0 : -(weights[place] ?? 0);
+    });
     const [vector, delta] = [new Vector3(), new Vector3()];
     for (let vertex = 0; vertex < vertexCount; vertex++) {
       if (name === 'position') vector.fromArray(positions, 3 * (firstVertex + vertex)).applyMatrix4(this.#inverse);
-      else {
-        vector.fromBufferAttribute(rest, vertex);
-        for (const { weight, attribute } of active)
-          vector.addScaledVector(delta.fromBufferAttribute(attribute, vertex), weight);
+      else vector.fromBufferAttribute(rest, vertex);
+      for (const { weight, attribute } of active)
+        vector.addScaledVector(delta.fromBufferAttribute(attribute, vertex), weight);
+      if (name === 'normal') {
         if (shape.amount === 0) vector.normalize();
         else this.#turnNormal(vector, vertex, shape);
       }

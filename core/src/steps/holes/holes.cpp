@@ -1,4 +1,4 @@
-#include "steps/holes.hpp"
+#include "steps/holes/holes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,15 +6,12 @@
 #include <utility>
 
 #include "base/area_unit.hpp"
-#include "geometry/closest_point.hpp"
+#include "steps/cage_place.hpp"
 
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 10: an uncovered point becomes cosmetic if its overhang is at most the lesser of these two: a
-/// share of the target's diagonal, and a share of the diagonal of the loop's box.
-constexpr double kOverhang = 0.005;
-constexpr double kOverhangOfHole = 0.05;
+/// docs/method.md, step 10.
 /// At an explained hole, its overhang may be this share of the target's diagonal.
 constexpr double kExplainedOverhang = 0.03;
 
@@ -34,7 +31,7 @@ bool missesCage(const PointData& data, std::uint32_t point) {
 /// Whether a point takes part in the areas at holes. Exposed points take part. Occluded ones only if their ray misses
 /// the cage and their segment has C > 0.
 bool takesPart(const Scene& scene, const PointData& data, const Array<SegmentStats>& stats, std::uint32_t point) {
-  if (data.visibility[point] != Visibility::occluded) return true;
+  if (data.visibility[point] != Visibility::occluded) return data.visibility[point] != Visibility::beyond;
   return std::isfinite(scene.options.occlusionReach) && missesCage(data, point) &&
          stats[data.segments[point]].coveredArea > 0;
 }
@@ -48,21 +45,13 @@ bool isUncoveredIfFree(const PointData& data, std::uint32_t point) {
 /// point at a loop is recovered.
 /// @param[in,out] recovery  `always` before, else it stays as it is.
 std::uint32_t loopOfPoint(const Scene& scene, const PointData& data, std::uint32_t point, std::uint32_t& recovery) {
-  const BoundaryLoops& loops = scene.loops;
-  const std::uint32_t t = data.cageTriangles[point];
-  if (!loops.touches(t)) return kNone;
-  const CageTriangle& triangle = scene.cage.triangles[t];
-  const Vec3 p = data.points.exactly(point);
-  const Vec3 q = positionOf(triangle, closestPointOnTriangle(triangle, p));
-  const std::uint32_t loop = loops.at(triangle, t, q, scene.units.diagonal);
-  if (loop == kNone || recovery != Recovery::always) return loop;
-  const Vec3 offset = p - q;
-  const Vec3 normal = triangle.normal.exact;
-  const double overhang = length(offset - dot(offset, normal) * normal);
-  if (overhang > std::min(scene.length(kOverhang), kOverhangOfHole * loops.boxes[loop].diagonal())) {
-    recovery = overhang <= scene.length(kExplainedOverhang) ? Recovery::throughHole + loop : Recovery::never;
+  if (!scene.loops.touches(data.cageTriangles[point])) return kNone;
+  const CagePlace place(scene, data, point);
+  if (place.loop != kNone && recovery == Recovery::always && !place.isSlight(scene)) {
+    recovery =
+        place.overhang <= scene.length(kExplainedOverhang) ? Recovery::throughHole + place.loop : Recovery::never;
   }
-  return loop;
+  return place.loop;
 }
 
 /// Adds up, loop by loop, the areas that each segment has there.
