@@ -156,7 +156,10 @@ test('a line says why next to nothing may be painted, and what helps', async () 
       'transfer hidden.glb --cage cage.glb --exclude shell',
       /^nothing .*: most of "body" is hidden by "shell"; take out /m,
     ],
-    ['transfer target.glb --cage half.glb', /^nothing .* covers only [\d.]+ % of .* "only"; try --keep "only" or a /m],
+    [
+      'transfer target.glb --cage half.glb --preset paper',
+      /^nothing .* covers only [\d.]+ % of .* "only"; try --keep "only" or a /m,
+    ],
     [
       'transfer target.glb --cage cage.glb --exclude only',
       /^nothing .*: "only" is excluded by choice; leave out --exc/m,

@@ -1,3 +1,4 @@
+import type { SegmentStats } from '../index.js';
 import { type Finding, percent } from './finding.js';
 import { type Box, boxOf, cross, doubleAreaNormal, minus, pointAt, quantiles, type Vector } from './geometry.js';
 import { partsOf, type Scene } from './scene.js';
@@ -50,6 +51,11 @@ export interface Placement {
 /** Measures how the target lies relative to the cage. */
 export function placementOf(scene: Scene): Placement {
   const { areas, diagonal, sides, result } = scene;
+  // Hair and glasses lie outside the cage of a head: what is culled is no part of what the cage is for, if that is little.
+  const areaOf = (isOf: (segment: SegmentStats) => boolean) =>
+    result.segmentStats.reduce((sum, segment) => sum + (isOf(segment) ? segment.exposedArea : 0), 0);
+  const isMostPainted = areaOf(({ culled }) => !culled) > areaOf(({ culled }) => culled);
+  const isAside = (segment: number) => isMostPainted && result.segmentStats[segment]!.culled;
   let [vertices, area, total, exposed, beneath, exposedOutside] = [0, 0, 0, 0, 0, 0];
   const candidates: number[] = [];
   // Per triangle of the cage: how much of the target lies close beneath it, hidden or not.
@@ -65,8 +71,7 @@ export function placementOf(scene: Scene): Placement {
       within[result.triangles[v]!]! += areas[v]!;
     if (result.zones[v] === 1 || areas[v] === 0) continue;
     exposed += areas[v]!;
-    if (!over) continue;
-    candidates.push(v);
+    if (over && !isAside(result.segments[v]!)) candidates.push(v);
   }
   const [there, needed] = [overNeighbours(scene, within), overNeighbours(scene, scene.surface.areas)];
   const served = (t: number) => there[t]! >= kMinServed * needed[t]!;
