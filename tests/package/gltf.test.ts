@@ -7,7 +7,7 @@ import { Document, NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { join as joinMeshes } from '@gltf-transform/functions';
 import { CagecastError, type CutTarget, cutBorders, init, type Mesh, type TransferResult, transfer } from 'cagecast';
-import { type CagecastOptions, cagecast } from 'cagecast/gltf';
+import { type CagecastOptions, cagecast, type PartRange } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { Vector3 } from 'three';
 import { loadFileLayer } from '../support/file-layer.js';
@@ -22,7 +22,7 @@ import {
   validate,
 } from '../support/gltf.js';
 import { richFile } from '../support/rich-files.js';
-import { ball, head, modelFolders } from './scenes.js';
+import { ball, cagedFigure, head, isOfCage, modelFolders } from './scenes.js';
 
 const files = await loadFileLayer();
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
@@ -253,6 +253,50 @@ describe('document.transform(cagecast(…))', () => {
     }
   });
 
+  test('the option parts says what counts; what is left out gets nothing', async () => {
+    const maker = new GlbMaker();
+    for (const name of ['head', 'Visor', 'Head_Att']) maker.node({ name, mesh: maker.mesh(target) });
+    const document = await documentOf(maker.finish());
+    const left: string[] = [];
+    await document.transform(
+      cagecast({
+        cage,
+        texture,
+        parts: (_, node, isDrawn) => isDrawn && node.getName() !== 'Visor',
+        onResult: (_, parts, __, leftOut) => void left.push(...[...parts, ...leftOut].map(({ name }) => name)),
+      }),
+    );
+    assert.deepEqual(left, ['head', 'Visor', 'Head_Att']);
+    assert.deepEqual(
+      document
+        .getRoot()
+        .listMeshes()
+        .map((mesh) => mesh.listPrimitives().map((one) => one.getAttribute('_NCZ') !== null)),
+      [[true, false], [false], [false]],
+    );
+  });
+
+  test('without a cage, the cages in the document are taken, each for the part of its name', async () => {
+    const document = await documentOf(cagedFigure());
+    const onResult = ({ uvs, zones }: TransferResult, parts: PartRange[]) =>
+      parts.forEach(({ firstVertex, vertexCount }, p) => {
+        const own = zones.subarray(firstVertex, firstVertex + vertexCount);
+        assert.ok(own.includes(0));
+        own.forEach((_, v) => assert.ok(isOfCage(uvs[2 * (firstVertex + v)]!, p)));
+      });
+    await document.transform(cagecast({ texture, onResult }));
+    assert.deepEqual(await validate(await io.writeBinary(document)), []);
+    const none = {
+      message: /^cagecast: cage is undefined, not a document or a mesh, and no mesh of the target is named/,
+    };
+    await assert.rejects((await documentOf(glbOf(target))).transform(cagecast({ texture })), none);
+    const lost = await documentOf(cagedFigure());
+    lost.getRoot().listNodes()[3]!.setName('Hand_OuterCage');
+    await assert.rejects(lost.transform(cagecast({ texture })), {
+      message: /^cagecast: target: "Left_Geo" has no cage: none is named/,
+    });
+  });
+
   test('a mesh that two nodes show, one of them mirrored, becomes one for each; what another scene shows stays', async () => {
     const document = await documentOf(shared());
     const [left, right] = document.getRoot().listNodes();
@@ -261,7 +305,7 @@ describe('document.transform(cagecast(…))', () => {
     document.createScene('other').addChild(other);
     let names: string[] = [];
     const onResult = (_: TransferResult, parts: { name: string }[]) => (names = parts.map(({ name }) => name));
-    await document.transform(cagecast({ cage, texture, onResult: (...all) => void onResult(all[0], all[1]) }));
+    await document.transform(cagecast({ cage, texture, onResult: (result, parts) => void onResult(result, parts) }));
     assert.deepEqual(names, ['left', 'right', 'upper']);
     const all = [left!, right!].map((node) => node.getMesh()!.listPrimitives());
     assert.deepEqual(
@@ -372,6 +416,8 @@ describe('document.transform(cagecast(…))', () => {
       [{ texture: new Uint8Array(100) }, /^cagecast: texture: is neither a PNG nor a JPEG image/],
       [{ texture: texture.subarray(0, 50) }, /^cagecast: texture: is truncated/],
       [{ texture: texture.buffer }, /^cagecast: texture is of type ArrayBuffer, not a Uint8Array$/],
+      [{ parts: 'head' }, /^cagecast: parts is "head", not a function$/],
+      [{ parts: () => false }, /^cagecast: target: all parts are left out: "only" \(ignored\); the option parts says/],
       [{ maskImages: { nevr: 1 } }, /^cagecast: maskImages is .*, not \{ never, always \}/],
       [{ threshold: 2 }, /threshold = 2/, 'badOption'],
       [

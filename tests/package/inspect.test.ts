@@ -31,6 +31,19 @@ const diagonal = (() => {
 })();
 
 describe('inspect', () => {
+  test('a part that hides more than a third of the rest is named, with what leaves it out', () => {
+    const visor = ball([0, 0, 0], () => 1.12, 12, 24);
+    const on = join3d(target, visor);
+    const names = [{ name: 'head', firstVertex: 0, vertexCount: target.positions.length / 3 }];
+    names.push({ name: 'Visor', firstVertex: names[0]!.vertexCount, vertexCount: visor.positions.length / 3 });
+    const { findings } = inspect(cage, on, { parts: names });
+    const { sentence, ignore } = findings.find(({ code }) => code === 'muchHidden')!;
+    assert.deepEqual(
+      [sentence.replace(/[\d.]+ %/, 'n %'), ignore],
+      ['"Visor" hides n % of the rest, which could be painted without it', ['Visor']],
+    );
+  });
+
   test('a cage that fits is good, and is described', () => {
     const inspection = look({});
     assert.equal(inspection.verdict, 'good', JSON.stringify(inspection.findings));

@@ -2,6 +2,7 @@ import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { NodeIO } from '@gltf-transform/core';
 import type { Mesh } from 'cagecast';
+import { GlbMaker } from '../support/glb.js';
 
 /** A cage and its target. */
 export interface Scene {
@@ -120,6 +121,45 @@ export function head(seed: number, detail = 20): Scene {
     cage: { ...cage, indices: new Uint32Array(open) },
     target: join3d(skin, eye, tongue),
   };
+}
+
+/** The parts of `cagedFigure`; each has UVs of its own, further to the right, on its cage. */
+export const kCagedParts = ['Left_Geo', 'Upper_Geo', 'Lower'];
+
+/** Whether a UV is one of the cage of a part of `cagedFigure`. */
+export const isOfCage = (u: number, part: number): boolean => u > part - 1e-3 && u < part + 1.001;
+
+/**
+ * A ball, and two halves of one, so close to it that their cages reach into each other; with their cages beside them, under nodes of
+ * their own, and a marker. The cages of the halves are open where they meet.
+ */
+export function cagedFigure(): Uint8Array {
+  const maker = new GlbMaker();
+  const kRound = 1e-6;
+  const halves = (size: number): Mesh[] => {
+    const mesh = ball([0.53, 0, 0], () => size, 12, 24);
+    return [
+      ball([-0.53, 0, 0], () => size, 12, 24),
+      within(mesh, (_, __, z) => z > -kRound),
+      within(mesh, (_, __, z) => z < kRound),
+    ];
+  };
+  halves(0.5).forEach((mesh, p) => maker.node({ name: kCagedParts[p]!, mesh: maker.mesh(mesh) }));
+  halves(0.58).forEach(({ positions, indices, uvs }, p) => {
+    const half = {
+      positions: positions.map((x) => x / 2),
+      indices,
+      uvs: uvs!.map((x, i) => (i % 2 === 0 ? x + p : x)),
+    };
+    const name = `${kCagedParts[p]!.replace('_Geo', '')}_OuterCage`;
+    const node = maker.node(
+      { name: p === 0 ? `TransferTarget_${name}` : name, mesh: maker.mesh(half), rotation: [0, 0, -1, 0] },
+      false,
+    );
+    maker.node({ children: [node], scale: [2, 2, 2], rotation: [0, 0, 1, 0] });
+  });
+  maker.node({ name: 'Hat_Att', mesh: maker.mesh(ball([0, 0, 0], () => 2, 6, 9)) });
+  return maker.finish();
 }
 
 /** A ball of skin with an eye on it, under a cage whose hole leaves a part of the eye bare: too little to fail by the threshold. */

@@ -5,6 +5,8 @@ import { classify, init, type Mesh, project, type TransferResult, transfer, Zone
 import { type ApplyOptions, applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
 import { terminate } from 'cagecast/worker';
 import {
+  ArrowHelper,
+  BackSide,
   BatchedMesh,
   Bone,
   BoxGeometry,
@@ -33,7 +35,7 @@ import {
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { gltfFiles } from '../support/gltf-files.js';
 import { allocatedBy, frame, renderer } from '../support/no-renderer.js';
-import { ball, head, join3d } from './scenes.js';
+import { ball, cagedFigure, head, isOfCage, join3d, kCagedParts } from './scenes.js';
 
 before(init);
 Object.assign(globalThis, { self: globalThis }); // which GLTFLoader expects
@@ -88,6 +90,82 @@ describe('extract', () => {
     assert.deepEqual([...new Set(box(6).mesh.groups)], [0, 1, 2, 3, 4, 5]);
     const one = extract(new ThreeMesh(new BoxGeometry(), new MeshStandardMaterial()));
     assert.deepEqual([...new Set(one.mesh.groups)], [0]);
+  });
+
+  test('what three.js does not draw is left out, unless the option parts says otherwise', () => {
+    const skin = meshOf(scene.target);
+    const part = (change: (mesh: typeof skin) => void, around?: Object3D) => {
+      const mesh = meshOf(scene.target);
+      change(mesh);
+      return around?.add(mesh) ?? mesh;
+    };
+    const root = new Group().add(
+      skin,
+      part((mesh) => void (mesh.visible = false)),
+      part(() => {}, Object.assign(new Group(), { visible: false })),
+      part(({ material }) => void (material.visible = false)),
+      part(({ material }) => void Object.assign(material, { transparent: true, opacity: 0 })),
+      part(({ material }) => void Object.assign(material, { alphaTest: 0.5, opacity: 0.4 })),
+      part((mesh) => void Object.assign(mesh.scale.setScalar(1.01) && mesh.material, { side: BackSide })),
+      part((mesh) => void (mesh.name = 'Head_OuterCage')),
+      part(() => {}, new ArrowHelper()),
+    );
+    // Who gives a root means it.
+    root.visible = false;
+    const { mesh, leftOut } = extract(root);
+    assert.deepEqual(mesh, extract(skin).mesh);
+    const reasons = [...new Set(leftOut.map(({ why }) => why))];
+    const counts = reasons.map((reason) => [reason, leftOut.filter(({ why }) => why === reason).length]);
+    assert.deepEqual(counts, [
+      ['hidden', 3],
+      ['transparent', 2],
+      ['outline', 1],
+      ['name', 1],
+    ]);
+    const all = applyTransfer(root, cage(), { parts: () => true });
+    assert.equal(all.parts.length, 8);
+    const { parts, leftOut: others } = applyTransfer(root, cage(), {
+      parts: (one, isDrawn) => (isDrawn && one !== skin) || !one.visible,
+    });
+    assert.deepEqual([parts.length, others[0]!.why, others[0]!.mesh === skin], [1, 'ignored', true]);
+    assert.equal(
+      extract(
+        part((one) => void (one.name = 'Head_OuterCage')),
+        'cage',
+      ).parts.length,
+      1,
+    );
+  });
+
+  test('accessories stay bare, unless all is such or locks say otherwise', () => {
+    const [skin, hat] = [meshOf(scene.target), meshOf(ball([0, 0.9, 0], () => 0.05, 8, 12))];
+    hat.name = 'Wolf3D_Headwear';
+    const painted = (target: Object3D, options = {}) => {
+      const { result, parts } = applyTransfer(target, cage(), options);
+      return parts.map(({ firstVertex }) => result.segmentStats[result.segments[firstVertex]!]!.culledBy);
+    };
+    const both = () => new Group().add(skin.clone(), hat.clone());
+    assert.deepEqual(painted(both()).at(-1), 'lock');
+    assert.notEqual(painted(both(), { locks: { groups: { 1: 'keep' } } }).at(-1), 'lock');
+    assert.notEqual(painted(hat.clone())[0], 'lock');
+  });
+
+  test('without a cage, the cages in a model are taken, each for the part of its name', async () => {
+    const { scene: model } = await new GLTFLoader().parseAsync(Uint8Array.from(cagedFigure()).buffer, '');
+    const { result, parts } = applyTransfer(model, undefined);
+    assert.deepEqual(
+      parts.map(({ name }) => name),
+      kCagedParts,
+    );
+    for (const [p, { firstVertex, vertexCount }] of parts.entries())
+      for (let v = firstVertex; v < firstVertex + vertexCount; ++v) assert.ok(isOfCage(result.uvs[2 * v]!, p));
+    assert.ok(result.cosmeticTriangles.every((one) => one === 1));
+    assert.equal(extract(model, 'cage').parts.length, 3);
+    model.children[0]!.name = model.children[0]!.userData['name'] = 'Foot_Geo';
+    assert.throws(
+      () => applyTransfer(model, undefined),
+      /target: "Foot_Geo" has no cage: none is named Foot_OuterCage/,
+    );
   });
 
   test('posed and placed figures are taken in their bind pose, wherever they stand', async () => {
@@ -164,6 +242,11 @@ test('arguments that are none, and models that cannot be read, are errors that n
     [() => apply(new Group(), cage()), /has no vertices/, 'emptyMesh'],
     [() => extract(flat), /target: "geometry" has positions of 2 numbers, not 3/],
     [() => extract(few), /target: "long name [^"]*…" has 5 heat for \d+ vertices/],
+    [
+      () => extract(new Group().add(Object.assign(meshOf(scene.target), { visible: false, name: 'head' }))),
+      /^cagecast\/three: target: all parts are left out: "head" \(hidden\); the option parts says which count$/,
+    ],
+    [() => apply(target, cage(), { parts: 'head' }), /options\.parts is "head", not a function/, 'badOption'],
     [() => extract(new Group().add(new BatchedMesh(2, 99, 99, target.material))), whole],
     [() => extract(new ThreeMesh(instanced, target.material)), whole],
     [() => applied.setOpacity(2), /^setOpacity: opacity is 2, not a number from 0 to 1/],

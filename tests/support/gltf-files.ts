@@ -153,6 +153,7 @@ function figure({ posed = 0, scale = 1, turned, rigid }: Figure): Uint8Array {
   });
 }
 
+const kAll = 'it reads all that is there, drawn or not';
 const all = joined(plain, plain);
 const cases: Record<string, Omit<GltfFile, 'name'>> = {
   tetrahedron: { bytes: file(), expected: plain },
@@ -389,6 +390,55 @@ const cases: Record<string, Omit<GltfFile, 'name'>> = {
       marked.push({ ...primitive, material: 0 });
     }),
     expected: plain,
+  },
+
+  // What is not drawn
+  'parts-that-are-not-drawn': {
+    bytes: file((maker, primitive) => {
+      const off = { extensions: { KHR_node_visibility: { visible: false } } };
+      maker.json.extensionsUsed = ['KHR_node_visibility'];
+      maker.node({ name: 'outfit', mesh: 0, ...off });
+      maker.node({ children: [maker.node({ mesh: 0 }, false)], ...off });
+      maker.json.materials = [
+        { alphaMode: 'BLEND', pbrMetallicRoughness: { baseColorFactor: [1, 1, 1, 0] } },
+        { alphaMode: 'MASK', pbrMetallicRoughness: { baseColorFactor: [1, 1, 1, 0.4] } },
+        { alphaMode: 'OPAQUE', pbrMetallicRoughness: { baseColorFactor: [1, 1, 1, 0] } },
+      ];
+      for (const material of [0, 1]) maker.node({ mesh: maker.mesh(solid, { material }) });
+      primitive.material = 2;
+      delete primitive.attributes['TEXCOORD_0'];
+      for (const name of ['Head_OuterCage', 'Head_InnerCage', 'Hat_Att', 'UCX_Head_01', 'head_collider.001'])
+        maker.node({ name, mesh: 0 });
+    }),
+    expected: { ...plain, uvs: null },
+    not: { native: kAll },
+  },
+  // The larger one shows its inside alone, at the edge of the other; the third is seen from both sides, the last holds nothing.
+  'an-outline': {
+    bytes: file((maker, primitive) => {
+      delete primitive.attributes['TEXCOORD_0'];
+      const inward = Uint16Array.from(reversed([...solid.indices]));
+      maker.json.materials = [{ doubleSided: true }];
+      for (const [size, material, x] of [
+        [1.1, {}, 0],
+        [1.2, { material: 0 }, 0],
+        [1, {}, 9],
+      ] as const) {
+        const positions = solid.positions.map((value) => size * value);
+        const mesh = maker.mesh({ ...solid, positions, indices: inward }, material);
+        maker.node({ mesh, translation: [x, 0, 0] });
+      }
+    }),
+    expected: (({ indices, ...rest }: Read): Read => {
+      return { ...rest, uvs: null, indices: indices.map((v, i) => (i < 12 ? v : reversed(indices)[i]!)) };
+    })(
+      joined(
+        plain,
+        { ...plain, positions: plain.positions.map((x) => Math.fround(1.2) * x) },
+        { ...plain, positions: moved([9, 0, 0]) },
+      ),
+    ),
+    not: { native: kAll },
   },
 
   // UVs

@@ -159,7 +159,7 @@ describe('masks of loaded models', () => {
       [() => maskTriangles(mesh, null as never), /^maskTriangles: images is null, not an object$/],
       [
         () => modelMasks(plane(), { nevr: texture(image) } as object),
-        /^modelMasks: options\.nevr is not an option; there are: never, always, attribute$/,
+        /^modelMasks: options\.nevr is not an option; there are: never, always, attribute, parts$/,
       ],
       [() => modelMasks(plane(), texture(image) as object), /^modelMasks: options\.\w+ is not an option/],
       [() => modelMasks(plane(), undefined as never), /^modelMasks: options is undefined, not an object$/],

@@ -151,7 +151,6 @@ test('a manifest has a job per line, with settings of its own; a wrong line is a
   const wrong: [line: object | string, message: RegExp][] = [
     ['no JSON', /^is not JSON/],
     [{ cage: 'cage.glb' }, /^has no "target"$/],
-    [{ target: 'gone.glb' }, /^has no cage; give one with --cage, or as "cage" in the manifest$/],
     [{ ...job, treshold: 1 }, /^"treshold" is unknown; there are: target, cage, /],
     [{ ...job, threshold: 2 }, /^"threshold" is 2, not a number within 0\.\.1$/],
     ...['target', 'cage', 'report', 'neverMask'].map((name): [object, RegExp] => [

@@ -54,10 +54,9 @@ test('make: --exclude replaces the list of names, and --closing, --kind and --tr
 
 test('transfer and inspect --cage auto: they say which parts the cage is made without, unless those are kept', async () => {
   const stdout = await ok('transfer head.glb --cage auto --keep EyeWhite -o auto.glb --report auto.json');
-  assert.match(stdout, /^excluded from the cage by their names: Eye\.L$/m);
-  const { parts, cage } = JSON.parse(readFileSync('auto.json', 'utf8')) as {
+  assert.match(stdout, /^bare by their names, unless --keep names them: Eye\.L$/m);
+  const { parts } = JSON.parse(readFileSync('auto.json', 'utf8')) as {
     parts: { name: string; counts: { cosmetic: number }; uvSet: string }[];
-    cage: object;
   };
   assert.deepEqual(
     parts.map(({ name, counts, uvSet }) => [name, counts.cosmetic > 0, uvSet]),
@@ -68,17 +67,11 @@ test('transfer and inspect --cage auto: they say which parts the cage is made wi
     ],
   );
   const inspected = await run('inspect head.glb --cage auto');
-  assert.match(inspected.stdout, /^excluded from the cage by their names: Eye\.L, ball$/m);
+  assert.match(inspected.stdout, /^bare by their names, unless --keep names them: Eye\.L, ball$/m);
   // A file named auto is read if its path says so, and is not said to be made without anything.
   copyFileSync('cage.glb', 'auto');
-  const { cage: read } = await json<{ cage: object }>('transfer head.glb --cage ./auto');
-  assert.deepEqual(
-    [Object.keys(cage), Object.keys(read)],
-    [
-      [...Object.keys(read), 'excluded'],
-      ['file', 'vertices', 'triangles'],
-    ],
-  );
+  const { target } = await json<{ target: { bare: string[] } }>('transfer head.glb --cage ./auto');
+  assert.deepEqual(target.bare, []);
 });
 
 test('fit writes the template moved onto the model, and says what it was moved by', async () => {

@@ -71,6 +71,14 @@ test('--config names another file, --no-config none; the output says which file 
   );
 });
 
+test('a list of names to ignore; --ignore replaces it', async () => {
+  set({ ignore: ['no such part', 'only'] });
+  await fails(1, /^cagecast: heads\/ada\.glb: all parts are left out: "only" \(ignored\);/, transfer);
+  assert.ok((await painted(' --ignore ')) > 0);
+  set({ ignore: 'only' });
+  await fails(1, `${config}: "ignore" is "only", not an array of names`, transfer);
+});
+
 test('where a part is both kept and excluded, what is said later counts', async () => {
   set({ keep: ['only'] });
   assert.ok((await painted()) > 0);
@@ -152,7 +160,7 @@ test('what is wrong in the file is one line that names file, member and value', 
     ['[]', /is not a JSON object/],
     [
       '{"treshold": 1}',
-      /"treshold" is unknown; there are: preset, borders, compress, keep, exclude, neverMask, alwaysMask, maskColors, .*threshold/,
+      /"treshold" is unknown; there are: preset, borders, compress, keep, exclude, ignore, neverMask, alwaysMask, maskColors, .*threshold/,
     ],
     ['{"threshold": 3}', /"threshold" is 3, not a number within 0\.\.1/],
     ['{"threshold": 1e999}', /"threshold" is Infinity, not a number within 0\.\.1/],

@@ -7,8 +7,8 @@ import { presetOptions, transfer } from 'cagecast';
 import { PNG } from 'pngjs';
 import { fails, json, ok, run } from '../../support/command.js';
 import { type GlbMaker, glbOf } from '../../support/gltf.js';
-import { ball, head, within } from '../scenes.js';
-import { modelsLike, workplace, write, writeMade } from './workplace.js';
+import { ball, cagedFigure, head, isOfCage, kCagedParts, within } from '../scenes.js';
+import { io, modelsLike, workplace, write, writeChanged, writeMade } from './workplace.js';
 
 const models = modelsLike(/lizard|misaligned/);
 const { groups } = head(1, 10).target;
@@ -20,7 +20,7 @@ interface Report {
   areas: Record<'total' | 'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
   segments: (Record<'points' | 'vertices', number> & { culled: boolean; culledBy: string; part: string })[];
   parts: { name: string; place: string; vertices: number; uvSet: string | null; splitVertices: number | null }[];
-  target: { vertices: number; triangles: number };
+  target: { vertices: number; triangles: number; leftOut: { name: string; why: string }[]; bare: string[] };
   triangles: { total: number; cosmetic: number };
   stretch: Record<'median' | 'p95' | 'overTwice', number>;
   options: { occlusionReach: unknown; keep: string[]; exclude: string[] };
@@ -57,7 +57,7 @@ test('reports the result of the package', async () => {
   assert.ok(Math.abs(sum - areas.total) < 1e-9 * areas.total);
   const [part, ...others] = parts.map((one) => [one.name, one.place, one.vertices, one.uvSet, one.splitVertices]);
   assert.deepEqual([part, others], [['only', 'meshes[0].primitives[0]', found.vertices, null, null], []]);
-  assert.deepEqual(options, { preset: 'default', ...presetOptions(), keep: [], exclude: [], config: null });
+  assert.deepEqual(options, { preset: 'default', ...presetOptions(), keep: [], exclude: [], ignore: [], config: null });
   assert.match(versions.cagecast, /^\d+\.\d+\.\d+/);
   assert.ok(timings.total > 0);
 });
@@ -152,7 +152,8 @@ test('a line says why next to nothing may be painted, and what helps', async () 
     maker.node({ name: 'body', mesh: maker.mesh(target) });
     const shell = ball([0, 0, 0], () => 1.12, 12, 18);
     const inward = shell.indices.map((_, i, all) => all[i % 3 === 0 ? i : i % 3 === 1 ? i + 1 : i - 1]!);
-    maker.node({ name: 'shell', mesh: maker.mesh({ ...shell, indices: inward }) });
+    maker.json.materials = [{ doubleSided: true }];
+    maker.node({ name: 'shell', mesh: maker.mesh({ ...shell, indices: inward }, { material: 0 }) });
   });
   writeMade('half.glb', (maker) => {
     const front = within(cage, (x) => x > 0.9);
@@ -223,6 +224,107 @@ test('--keep and --exclude take a node that holds others for all below it, unles
     assert.deepEqual(await culledIn(`${holding} --exclude ${name}`, ['head', 'eye', 'tongue'], 'lock'), culled, name);
   const both = 'holding.glb: --keep tongue and --exclude Face both match "tongue"';
   await fails(1, both, `${holding} --exclude Face --keep tongue`);
+});
+
+/** A head under a visor, with an outfit that is hidden, a hat and a cage for it. */
+function dressed(maker: GlbMaker): void {
+  const off = { extensions: { KHR_node_visibility: { visible: false } } };
+  maker.node({ name: 'head', mesh: meshOf(maker, 0) });
+  maker.node({ name: 'Visor', mesh: maker.mesh(ball([0, 0, 0], () => 1.12, 12, 24)) });
+  maker.node({ name: 'Outfit', mesh: maker.mesh(ball([0, 0, 0], () => 1.13, 12, 24)), ...off });
+  maker.node({ name: 'StrawHat', mesh: maker.mesh(ball([0, 0, 1.05], () => 0.04, 6, 9)) });
+  maker.node({ name: 'head_OuterCage', mesh: maker.mesh(cage) });
+  maker.json.extensionsUsed = ['KHR_node_visibility'];
+}
+
+test('what is not drawn is left out, and what --ignore names; hats stay bare', async () => {
+  writeMade('dressed.glb', dressed);
+  const line = 'transfer dressed.glb --cage cage.glb';
+  const partsOf = async (flags = '') => {
+    const { target, parts } = await json<Report>(`${line} --keep head${flags}`);
+    return [parts.map(({ name }) => name), target.leftOut.map(({ name, why }) => `${name}: ${why}`), target.bare];
+  };
+  const [cage, outfit] = ['head_OuterCage: name', 'Outfit: hidden'];
+  assert.deepEqual(await partsOf(), [['head', 'Visor', 'StrawHat'], [outfit, cage], ['StrawHat']]);
+  assert.deepEqual(await partsOf(' --ignore Vis* --keep *Hat'), [
+    ['head', 'StrawHat'],
+    ['Visor: ignored', outfit, cage],
+    [],
+  ]);
+  assert.deepEqual(await partsOf(' --ignore head_* --ignore '), [
+    ['head', 'Visor', 'Outfit', 'StrawHat'],
+    [cage],
+    ['StrawHat'],
+  ]);
+  const painted = async (flags: string) => (await json<Report>(`${line}${flags}`)).areas.cosmetic;
+  assert.ok((await painted(' --ignore Visor')) > 2 * (await painted(' --exclude Visor --preset paper')));
+  assert.match(
+    await ok(`inspect dressed.glb --cage cage.glb --ignore Visor`),
+    /^left out: "Visor" \(ignored\), "Outfit" \(hidden\), "head_OuterCage" \(by name a cage, [^)]+\)\nbare by their names, unless --keep names them: StrawHat$/m,
+  );
+  await fails(
+    1,
+    /dressed\.glb: --ignore Hat: no node or material has this name; there are: head, Visor/,
+    `${line} --ignore Hat`,
+  );
+  await fails(
+    1,
+    /--keep Outfit: no node or material has this name; .*; left out: "Outfit" \(hidden\)/,
+    `${line} --keep Outfit`,
+  );
+  await fails(
+    1,
+    /^cagecast: dressed\.glb: all parts are left out: "head", .* \(ignored\), .*; --ignore '' takes what is not drawn, too$/m,
+    `${line} --ignore *`,
+  );
+});
+
+test('without --cage, the cages in the file are taken, each for the part of its name', async () => {
+  write('figure.glb', cagedFigure());
+  await ok('transfer figure.glb -o out.glb --borders cut --report figure.json');
+  const { parts, triangles } = JSON.parse(readFileSync('figure.json', 'utf8')) as Report;
+  assert.equal(triangles.cosmetic, triangles.total);
+  assert.deepEqual(
+    parts.map(({ name }) => name),
+    kCagedParts,
+  );
+  const document = await io.read('out.glb');
+  for (const [p, name] of kCagedParts.entries()) {
+    const [primitive] = document
+      .getRoot()
+      .listNodes()
+      .find((node) => node.getName() === name)!
+      .getMesh()!
+      .listPrimitives();
+    const uvs = primitive!.getAttribute('TEXCOORD_1')!;
+    for (let v = 0; v < uvs.getCount(); ++v) {
+      const u = uvs.getElement(v, [])[0]!;
+      assert.ok(isOfCage(u, p), `${name}: ${u}`);
+    }
+  }
+  // It says that the tiles of the parts are outside of 0..1.
+  const { verdict, holes, findings } = await json<Inspection>('inspect figure.glb');
+  assert.deepEqual([verdict, holes, findings.map(({ code }) => code)], ['usable', [], ['uvsOverlap', 'uvsOutside']]);
+  // The cages of a file fit others, too; a part without one is named.
+  assert.equal(
+    (await json<Report & { cage: { triangles: number } }>(`${plain.replace('cage.glb', 'figure.glb')}`)).cage.triangles,
+    triangles.total,
+  );
+  await fails(
+    1,
+    /^cagecast: target\.glb: has no cage: no mesh in it is named as an outer cage, as Head_OuterCage/,
+    'transfer target.glb',
+  );
+  writeChanged('lost.glb', cagedFigure(), ({ nodes }) => (nodes![3]!.name = 'Hand_OuterCage'));
+  await fails(
+    1,
+    'lost.glb: "Left_Geo" has no cage: none is named Left_OuterCage; --ignore leaves the part out',
+    'transfer lost.glb',
+  );
+  writeChanged('bare.glb', cagedFigure(), ({ nodes }) => {
+    for (const [p, name] of kCagedParts.entries()) Object.assign(nodes![p]!, { name: `${name}_OuterCage` });
+  });
+  await fails(1, /bare\.glb: all parts are left out: "Left_Geo_OuterCage", .* \(by name a cage, /, 'transfer bare.glb');
 });
 
 interface Inspection {

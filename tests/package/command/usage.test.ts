@@ -39,7 +39,6 @@ const batch = 'batch target.glb --cage cage.glb';
 const wrong: [line: string, message: RegExp][] = [
   ['transmogrify', /unknown command 'transmogrify'/],
   ['transfer', /missing required argument 'TARGET'|required option/],
-  ['transfer target.glb', /required option '--cage/],
   [`${transfer} extra.glb -o out.glb`, /too many arguments/],
   [`${transfer} --colour red`, /unknown option '--colour'/],
   [`${transfer} --threshold 2`, /--threshold.*'2' is invalid.*not a number within 0\.\.1/],
@@ -97,7 +96,6 @@ const wrong: [line: string, message: RegExp][] = [
   ['fit human-head target.glb', /required option '-o, --output <CAGE\.glb>' not specified/],
   ['fit cage.glb target.glb -o cage.glb', /would overwrite cage\.glb, which this command reads/],
   ['batch', /give either TARGETS or --manifest/],
-  ['batch target.glb', /TARGETS need --cage/],
   ['batch  --cage cage.glb', /TARGETS is empty/],
   ['batch target.glb --cage - -o {name}.glb', /its jobs have no standard input/],
   [`${batch} --region -=p.png`, /its jobs have no standard input/],

@@ -83,7 +83,9 @@ test('an overlay is lit as its base is, and as transparent; where it fills what 
     assert.ok(material.getExtension('KHR_materials_unlit'));
     assert.equal(material.getAlpha(), 0.25);
   }
-  writeChanged('hair.glb', readFileSync('unlit.glb'), (json) => (json.materials![0]!.alphaMode = 'MASK'));
+  writeChanged('hair.glb', readFileSync('unlit.glb'), (json) => {
+    Object.assign(json.materials![0]!, { alphaMode: 'MASK', alphaCutoff: 0.2 });
+  });
   const line = 'transfer hair.glb --cage cage.glb --texture paint.png -o hair-out.glb';
   assert.ok((await json<Report>(line)).parts[0]!.fillsCutOuts);
   assert.match(await ok(line), /\nthe overlay fills what the material cuts out of “only”; cagecast bake paints/);

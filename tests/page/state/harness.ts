@@ -2,7 +2,8 @@ import assert from 'node:assert/strict';
 import { CagecastError, init, type ProjectOptions, project } from 'cagecast';
 import type { Cage } from 'cagecast/cages';
 import { BufferAttribute, BufferGeometry, Group, Mesh, Texture } from 'three';
-import { extractMesh } from '../../../web/src/loading/extract-mesh';
+import { meshesOf } from '../../../web/src/loading/extract-mesh';
+import { arraysOf } from '../../../web/src/state/arrays';
 import type { Loader, Model } from '../../../web/src/state/model';
 import type { Paint } from '../../../web/src/state/paint';
 import { Session } from '../../../web/src/state/session';
@@ -77,19 +78,36 @@ export function fileOf(name: string, size = 1, uv = 0): File {
   return file;
 }
 
-function modelOf(file: File, { positions, indices, uvs }: Arrays, others: readonly File[] = []): Model {
+const scenes = new WeakMap<File, Group>();
+
+/** A file of several tetrahedra, by their names and sizes; those of names in brackets are hidden. */
+export function sceneOf(name: string, parts: Record<string, number>): File {
+  const file = new File([name], name);
+  const scene = new Group();
+  for (const [part, size] of Object.entries(parts)) {
+    const mesh = meshOf(tetrahedron(size));
+    scene.add(Object.assign(mesh, { name: part, visible: !part.startsWith('(') }));
+  }
+  scenes.set(file, scene);
+  return file;
+}
+
+function meshOf({ positions, indices, uvs }: Arrays): Mesh {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(positions, 3));
   if (uvs) geometry.setAttribute('uv', new BufferAttribute(uvs, 2));
   geometry.setIndex([...(indices as number[])]);
-  const scene = new Group().add(new Mesh(geometry));
+  return new Mesh(geometry);
+}
+
+function modelOf(file: File, scene: Group, others: readonly File[] = []): Model {
   return {
     name: file.name,
     files: [file, ...others],
     scene,
     loaded: { scene, userData: {} },
     animations: [],
-    mesh: extractMesh(scene),
+    ...meshesOf(scene),
   };
 }
 
@@ -101,8 +119,10 @@ export class FakeLoader implements Loader {
   async load(file: File, others: readonly File[] = []): Promise<Model> {
     await this.gate.wait();
     if (file.name.startsWith('broken')) throw new Error(`${file.name}: it is broken`);
+    const scene = scenes.get(file);
+    if (scene) return modelOf(file, scene, others);
     const { uvs, ...mesh } = meshes.get(file) ?? made[Number(await file.text())]!;
-    return modelOf(file, { ...mesh, uvs }, others);
+    return modelOf(file, new Group().add(meshOf({ ...mesh, uvs })), others);
   }
 
   dispose({ name }: Model): void {
@@ -137,9 +157,8 @@ export class FakeTransferer implements Transferer {
         if (failure) return reject(failure);
         if (task === 'inspect') return resolve({ verdict: 'good', findings: [] } as never);
         try {
-          const [from, { positions, indices, groups }] = [cage.mesh, target.mesh];
-          const mesh = { positions: from.positions, indices: from.indices, uvs: from.uvs };
-          resolve({ ...project(mesh, { positions, indices, groups }, options as ProjectOptions), split: {} } as never);
+          const arrays = arraysOf(cage, target);
+          resolve({ ...project(arrays.cage, arrays.target, options as ProjectOptions), split: {} } as never);
         } catch (error) {
           reject(error);
         }

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { begin, paintOf, quiet, refusal } from './harness';
+import { begin, paintOf, quiet, refusal, sceneOf } from './harness';
 
 test('of several requests the last one comes, and the first gives way at once', async () => {
   const page = await begin();
@@ -184,6 +184,60 @@ test('a sample’s paint does not lie on the cage of another; it stays on one wi
   page.session.request({ cage: page.load('own.glb', 4, 1) });
   await page.ready();
   assert.equal(page.shown[2], 'UV checker');
+});
+
+test('what is not drawn is part of a cage alone; accessories stay bare until the user decides', async () => {
+  const page = await begin();
+  const file = sceneOf('figure.glb', { head: 1, '(outfit)': 2, StrawHat: 0.2, Head_InnerCage: 3 });
+  page.session.request({ target: page.loader.load(file), cage: page.load('cage.glb', 4) });
+  await page.ready();
+  const { mesh } = page.session.shown!.target;
+  assert.deepEqual(
+    mesh.primitives.map(({ name }) => name),
+    ['head', 'StrawHat'],
+  );
+  assert.deepEqual(mesh.leftOut, ['(outfit)', 'Head_InnerCage']);
+  const fate = () => page.session.classification!.segmentStats[1]!.culledBy;
+  assert.equal(fate(), 'lock');
+  page.session.lock([1], 'keep');
+  assert.notEqual(fate(), 'lock');
+  page.session.swap();
+  await page.ready();
+  assert.equal(page.session.shown!.cage.mesh.primitives.length, 4);
+  page.session.swap();
+  await page.ready();
+  assert.equal(page.session.shown!.target.mesh.primitives.length, 2);
+  page.session.request({ target: page.loader.load(sceneOf('hidden.glb', { '(outfit)': 1 })) });
+  assert.match(await page.failed(), /^hidden\.glb: nothing of it is drawn but cages, markers and collision shapes;/);
+});
+
+test('a model that is opened alone brings its own cage, each of the part of its name', async () => {
+  const page = await begin();
+  page.open('a.glb', 'cage.glb');
+  await page.ready();
+  const figure = (cages: Record<string, number>) =>
+    page.loader.load(sceneOf('figure.glb', { Head_Geo: 1, Hand_Geo: 0.5, ...cages }));
+  page.session.request({ target: figure({ Head_OuterCage: 4, Hand_OuterCage: 3 }) });
+  await page.ready();
+  assert.deepEqual(page.shown.slice(0, 2), ['figure.glb', 'figure.glb']);
+  const { target, cage, projection } = page.session.shown!;
+  const names = [target, cage].map(({ mesh }) => mesh.primitives.map(({ name }) => name));
+  assert.deepEqual(names, [
+    ['Head_Geo', 'Hand_Geo'],
+    ['Head_OuterCage', 'Hand_OuterCage'],
+  ]);
+  // The smaller cage is the nearer one to both.
+  assert.deepEqual(
+    [...projection.triangles].map((t) => Math.floor(t / 4)),
+    [0, 0, 0, 0, 1, 1, 1, 1],
+  );
+  page.session.request({ target: figure({ Head_OuterCage: 4, Foot_OuterCage: 3 }) });
+  assert.match(await page.failed(), /"Hand_Geo" has no cage: none is named Hand_OuterCage/);
+  page.open('b.glb', 'other.glb');
+  await page.ready();
+  page.session.request({ cage: figure({ Head_OuterCage: 4 }) });
+  await page.ready();
+  assert.deepEqual(page.shown.slice(0, 2), ['b.glb', 'figure.glb']);
 });
 
 test('work ends once: done, cancelled, superseded by other work or by a request', async () => {

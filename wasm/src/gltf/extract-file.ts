@@ -3,6 +3,15 @@ import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
 import type { Vector } from '../inspect/geometry.js';
 import { identity, type Matrix, multiply } from '../parts/affine.js';
+import {
+  type Chosen,
+  chooseParts,
+  type IsMeant,
+  isClear,
+  type LeftOut,
+  type Look,
+  visibilityExtension,
+} from '../parts/drawn.js';
 import { kSceneOrigin, type Origin } from '../parts/origin.js';
 import { placeMeshes, type Skin } from '../parts/skin.js';
 import { topNodes } from './check-geometry.js';
@@ -19,6 +28,7 @@ import {
   moveTo,
   nextPiece,
   type Piece,
+  renumber,
 } from './pieces.js';
 import type { GltfFile } from './read-gltf.js';
 import { type UvLayout, uvLayoutOf } from './uv-layout.js';
@@ -34,15 +44,19 @@ export interface Part extends Piece, PrimitiveRef {
   node: number;
 }
 
-/** All triangles of a glTF's scene as arrays, and the parts that they come from. */
-export interface Extracted {
+/** The triangles of a glTF's scene as arrays, and the parts that they come from. */
+export interface Extracted extends Pick<Chosen<Part>, 'accessories'> {
   /** With one group per part; with UVs if every primitive has the set of its base colour texture, or the first without one. */
   mesh: Mesh & { indices: Uint32Array };
   /** In the order of their vertices. */
   parts: Part[];
+  leftOut: LeftOut[];
   /** What was subtracted from their places in the scene. */
   origin: Vector;
 }
+
+/** Says which parts of a file count. */
+export type WhichCount = 'cage' | ((parts: readonly Part[], file: GltfFile) => IsMeant);
 
 /**
  * Collects the triangles of a glTF's default scene (else its first), depth first, in the scene's space.
@@ -51,17 +65,49 @@ export interface Extracted {
  * double precision and rounded once; the winding of mirrored parts is reversed. Skinned meshes are placed by their skeleton, in the
  * bind pose; as the format demands, the transform of their node is ignored. Points, lines and overlays that were added before are
  * left out. Morph targets shape a mesh by the weights of its node, or else of itself.
- * @param origin  What is subtracted from positions. Target and cage need the same one.
+ * @param origin      What is subtracted from positions. Target and cage need the same one.
+ * @param whichCount  Default: the parts that are drawn; of a `cage`, its outer cages, or all if there are none
  * @throws {InputError} that names the file, the primitive and the element.
  */
-export function extract(file: GltfFile, origin: Origin = kSceneOrigin): Extracted {
+export function extract(file: GltfFile, origin: Origin = kSceneOrigin, whichCount?: WhichCount): Extracted {
   return naming(file.path, () => {
-    const parts = listParts(file);
+    const all = listParts(file);
+    const fail = (text: string) => new InputError(`${text}; --ignore '' takes what is not drawn, too`);
+    const chosen = typeof whichCount === 'function' ? whichCount(all, file) : whichCount;
+    const { parts, leftOut: others, accessories } = chooseParts(all, looksOf(file), chosen, fail);
+    renumber(parts);
+    const leftOut = others.map(({ name, why }) => ({ name, why }));
     const near = moveTo(parts, origin);
     const mesh = joinPieces(parts);
     const uvs = readUvs(file, parts, mesh.positions.length / 3);
-    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts, origin: near };
+    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts, leftOut, accessories, origin: near };
   });
+}
+
+/** Returns what tells whether a part is drawn. */
+function looksOf({ json }: GltfFile): (part: Part) => Look {
+  const { meshes = [], nodes = [], materials = [] } = json;
+  const hidden = new Set<number>();
+  const isOff = ({ extensions }: GLTF.INode) =>
+    (extensions?.[visibilityExtension] as { visible?: boolean } | undefined)?.visible === false;
+  const stack = nodes.flatMap((node, n) => (isOff(node) ? [n] : []));
+  for (let node = stack.pop(); node !== undefined; node = stack.pop()) {
+    if (!hidden.has(node)) stack.push(...(nodes[node]!.children ?? []));
+    hidden.add(node);
+  }
+  return ({ node, mesh, primitive, aliases, matrix, localPositions, localIndices }) => {
+    const material = materials[meshes[mesh]!.primitives[primitive]!.material ?? -1];
+    const alpha = material?.pbrMetallicRoughness?.baseColorFactor?.[3];
+    return {
+      names: aliases,
+      isHidden: hidden.has(node),
+      isClear: isClear(material?.alphaMode, alpha, material?.alphaCutoff),
+      sides: material?.doubleSided ? 'both' : 'front',
+      positions: localPositions,
+      indices: localIndices,
+      matrix,
+    };
+  };
 }
 
 /** The path of a primitive in the file's JSON: "meshes[0].primitives[1]". */

@@ -7,8 +7,10 @@ import type { Document, Transform } from '@gltf-transform/core';
 import type { Mesh, TransferOptions, TransferResult } from '../index.js';
 import { noteOf } from '../inspect/bare.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
+import type { LeftOut } from '../parts/drawn.js';
 import type { MaskSources } from './bake/mask-sources.js';
 import { addTransfer } from './document/add-transfer.js';
+import type { PartsOption } from './document/extract-document.js';
 import { transferDocument, wrong } from './document/transfer-document.js';
 import type { Piece } from './pieces.js';
 
@@ -27,14 +29,18 @@ export {
   refineCage,
 } from './document/document-cages.js';
 export type { ReadLimits } from './limits.js';
+export type { LeftOut, PartsOption };
 
 /** The ranges of a part of a document in the arrays of a result, and its name. */
 export type PartRange = Pick<Piece, 'name' | 'firstVertex' | 'vertexCount' | 'firstTriangle' | 'triangleCount'>;
 
 /** Options of `cagecast`: those of `transfer`, and what to transfer. */
 export interface CagecastOptions extends TransferOptions, MaskSources {
-  /** The cage that the texture was drawn for: a mesh, or a document, of which the default scene is used. It must have UVs. */
-  cage: Document | Mesh;
+  /**
+   * The cage that the texture was drawn for: a mesh, or a document, of which the default scene is used. It must have UVs.
+   * Default: the meshes of the document that are named as the outer cages of others, as `Head_OuterCage` of `Head_Geo`.
+   */
+  cage?: Document | Mesh | undefined;
   /** The bytes of a PNG or JPEG file in the cage's UV space, shown as an overlay on the cosmetic triangles. Default: no overlay. */
   texture?: Uint8Array | undefined;
   /**
@@ -43,17 +49,24 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
    */
   borders?: Borders | undefined;
   /**
+   * Which primitives are transferred to. Default: what a viewer draws, without cages, markers and collision shapes, by their names.
+   * What is left out hides nothing. Glasses, hats and weapons stay bare, by their names, unless locks say otherwise.
+   */
+  parts?: PartsOption | undefined;
+  /**
    * Called with a copy of the result, and with the parts of the document in the order of the result's arrays, before the document is changed:
    * if it throws, the document stays as it was. `note` says why nothing, or less than 5 % of what the cage covers, may be painted, and
-   * what helps; the document's logger warns of it, too.
+   * what helps; the document's logger warns of it, too. `leftOut` are the parts that do not count.
    */
-  onResult?: ((result: TransferResult, parts: PartRange[], note: string | undefined) => void) | undefined;
+  onResult?:
+    | ((result: TransferResult, parts: PartRange[], note: string | undefined, leftOut: LeftOut[]) => void)
+    | undefined;
 }
 
 /**
  * Makes a transform that adds a cage's UVs to the meshes of a document, as `cagecast transfer` does for a file.
  *
- * Every triangle primitive in the document's default scene gets a new `TEXCOORD` set and `_NCZ` (the `Zone`: 0 may be painted) and,
+ * Every triangle primitive that is drawn of the document's default scene gets a new `TEXCOORD` set and `_NCZ` (the `Zone`: 0 may be painted) and,
  * with a texture, an overlay primitive of its cosmetic triangles. Everything else stays unchanged; if several nodes share a mesh,
  * each gets a copy. An earlier transfer to the document is replaced. Cut borders add vertices that blend existing ones, in all
  * attributes, skin weights and morph deltas. If the transform throws, the document is unchanged.
@@ -90,6 +103,7 @@ export function cagecast(options: CagecastOptions): Transform {
         triangleCount,
       })),
       note,
+      target.leftOut,
     );
     addTransfer(document, target, result, { paint, cut });
   };

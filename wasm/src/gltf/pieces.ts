@@ -58,6 +58,11 @@ export function nextPiece(pieces: readonly Piece[], { node, mesh, material, ...f
   };
 }
 
+/** Numbers the elements of pieces anew, as some were left out. */
+export function renumber(pieces: readonly Piece[]): void {
+  pieces.forEach((piece, p) => ([piece.firstVertex, piece.firstTriangle] = endOf(pieces.slice(p - 1, p))));
+}
+
 /** How many vertices and triangles there are in pieces. */
 export function endOf(pieces: readonly Piece[]): [vertices: number, triangles: number] {
   const last = pieces.at(-1);

@@ -26,6 +26,8 @@ export interface Finding {
   places?: Place[];
   /** Locks that reverse the verdicts on these segments: an option of `transfer` and `classify`. */
   locks?: Locks;
+  /** The names of parts to leave out: by `--ignore`, or the option `parts` of `cagecast/gltf` and `cagecast/three`. */
+  ignore?: string[];
 }
 
 /** The codes of all findings, by topic. */
@@ -54,7 +56,8 @@ export type FindingCode =
   | 'nothingToPaint'
   | 'holeUnexplained'
   | 'segmentInDoubt'
-  | 'muchCulled';
+  | 'muchCulled'
+  | 'muchHidden';
 
 /** Whether a cage fits its target: well, with reservations, or not at all. */
 export type Verdict = 'good' | 'usable' | 'unfit';

@@ -16,6 +16,7 @@ import {
   verdictOf,
 } from './finding.js';
 import { joined } from './geometry.js';
+import { checkHiding } from './hiding.js';
 import { checkHoles, type Hole, holesOf, spanPoints } from './holes.js';
 import { checkInside, type Inside, insideOf } from './inside.js';
 import { checkNormals, facingOutward, orientationOf } from './normals.js';
@@ -134,6 +135,7 @@ function outcomeOf(fn: string, cage: Mesh, target: Mesh, given: InspectOptions =
     ...checkInside(inside),
     ...checkHoles(holes, segments),
     ...checkSegments(scene, segments, options.locks),
+    ...checkHiding(scene, options),
   ];
   return { scene, orientation, findings, placement, inside, holes, segments: segments.filter(hasArea) };
 

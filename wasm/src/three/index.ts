@@ -4,9 +4,11 @@
  * @module cagecast/three
  */
 import type { BufferGeometry, Object3D } from 'three';
-import type { TransferResult } from '../index.js';
+import type { Mesh, TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import type { CutPart } from '../parts/cut-part.js';
+import { type LeftOut, withBare } from '../parts/drawn.js';
+import { type Apart, type Caged, hasCages, moveApart as partsApart } from '../parts/own-cages.js';
 import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
@@ -20,11 +22,12 @@ import {
   transferOptions,
 } from './apply/apply-options.js';
 import { cutGeometry } from './apply/cut-geometry.js';
-import { type Extracted, extract, extractNear, type Part } from './apply/extract-scene.js';
+import { type Extracted, extract, extractNear, type Part, type PartsOption } from './apply/extract-scene.js';
 import { atOnce } from './apply/remake.js';
 import { checkSaved, deserialize, keyOf, remember, serialize } from './apply/saved-transfer.js';
 import { zoneAttribute } from './apply/shown-parts.js';
 import { type Calling, nextTask, runInTasks } from './apply/tasks.js';
+import { wrong } from './errors.js';
 
 export {
   cageGeometry,
@@ -39,6 +42,7 @@ export {
 } from './apply/loaded-cages.js';
 export { type ModelMasks, modelMasks } from './model-masks.js';
 export {
+  type Apart,
   type Applied,
   type ApplyOptions,
   type Borders,
@@ -47,8 +51,10 @@ export {
   deserialize,
   type Extracted,
   extract,
+  type LeftOut,
   type Part,
   type PartRange,
+  type PartsOption,
   type Prepared,
   type Saved,
   type SplitPart,
@@ -75,7 +81,8 @@ export {
  * Call `await init()` once before. `applyTransferAsync` keeps the main thread free.
  *
  * @param target  A loaded scene, a mesh, or a geometry (which gets the attributes; `Applied.paint` paints its material).
- * @param cage    Of the same types, with the attribute `uv`, and in the same space as the target; not needed with `saved`.
+ * @param cage    Of the same types, with the attribute `uv`, and in the same space as the target; not needed with `saved`, or if the target
+ * has meshes that are named as outer cages of others, as `Head_OuterCage` of `Head_Geo`.
  * @param options `texture` or `material` show something; without them, geometries only get the attributes.
  * @throws {CagecastError} as `transfer` does; `badOption` that names an option and its value; `badArgument` if a part cannot be read or
  * no channel of UVs is free. Then nothing is changed.
@@ -130,6 +137,18 @@ export async function applyTransferAsync(
   return applied;
 }
 
+/**
+ * Moves the parts of a target apart, each with the cage of its name, as `applyTransfer` does: for those who call `transfer`. Limbs that
+ * are near each other keep to their own cages. A result holds for the parts where they were.
+ * @param target  What `extract` returned; or its arrays, with parts that have its ranges.
+ * @param cage    What it returned for a cage.
+ * @returns both as `transfer` takes them, and `mend`, which makes the `triangles` of a result those of the cage; undefined if the cage is
+ * one, or has other names.
+ * @throws {CagecastError} `badArgument` that names a part without a cage.
+ */
+export const moveApart = <T extends Mesh, C extends Mesh>(target: Caged<T>, cage: Caged<C>): Apart<T, C> | undefined =>
+  partsApart(target, cage, (text) => wrong(`target: ${text}`));
+
 interface Call {
   /** What was prepared earlier. */
   saved: Prepared | undefined;
@@ -145,18 +164,21 @@ function read(
   options: ApplyOptions,
 ): Call {
   const cuts = isCut(fn, options.borders);
-  const extracted = extractNear(target, 'target', 'own');
-  const { saved, result } = options;
-  const rules = transferOptions(options);
+  const { saved, result, parts } = options;
+  const extracted = extractNear(target, 'target', 'own', parts);
+  const own = transferOptions(options);
+  const rules = { ...own, locks: withBare(extracted.accessories, own.locks) };
   const needsCage = !saved && (cuts || !result);
-  const around = needsCage ? extractNear(cage!, 'cage', extracted.origin).mesh : undefined;
+  const outer = needsCage ? extractNear(cage ?? ownCage(target), 'cage', extracted.origin) : undefined;
+  const apart = outer && moveApart(extracted, outer);
+  const around = apart?.cage ?? outer?.mesh;
   if (result) checkResult(result, extracted);
   const states = statesOf(extracted);
   return {
     saved: saved && checkSaved(saved, extracted),
     input: {
       cage: around,
-      target: extracted.mesh,
+      target: apart?.target ?? extracted.mesh,
       parts: rangesOf(extracted),
       options: rules,
       result,
@@ -164,10 +186,17 @@ function read(
       paints: !!options.texture && !options.material,
     },
     *finish(prepared) {
+      if (!saved) apart?.mend(prepared.result);
       const applied = yield* apply(extracted, states, prepared, options);
       return remember(applied, () => ({ key: saved?.key ?? keyOf(extracted, around, rules, cuts), prepared }));
     },
   };
+}
+
+/** A target that has its cage with it; nothing if it has none. */
+function ownCage(target: Object3D | BufferGeometry): Object3D {
+  const has = (target as Object3D).isObject3D && hasCages(extract(target, 'cage').parts);
+  return has ? (target as Object3D) : (undefined as never);
 }
 
 function checkResult(result: TransferResult, { mesh }: Extracted): void {

@@ -3,7 +3,7 @@ import { type Image, maskTriangles, maskVertices } from '../bake/index.js';
 import type { Masks } from '../index.js';
 import { localIndices } from '../parts/prepare.js';
 import { checkObject } from './apply/apply-options.js';
-import { extract, valuesOf } from './apply/extract-scene.js';
+import { extract, type PartsOption, valuesOf } from './apply/extract-scene.js';
 import { wrong } from './errors.js';
 
 /** Where the masks of a model come from. */
@@ -14,6 +14,8 @@ export interface ModelMasks {
   always?: Texture | Image | undefined;
   /** An attribute of colours, 3 or 4 numbers each, such as "color": red vertices are never painted, green ones always. */
   attribute?: string | undefined;
+  /** The same as of `applyTransfer`. */
+  parts?: PartsOption | undefined;
 }
 
 /**
@@ -27,10 +29,14 @@ export interface ModelMasks {
  */
 export function modelMasks(target: Object3D | BufferGeometry, options: ModelMasks): Masks {
   checkObject('modelMasks', options);
-  const { never, always, attribute, ...others } = options;
+  const { never, always, attribute, parts: isMeant, ...others } = options;
   for (const name in others)
-    throw wrong(`options.${name} is not an option; there are: never, always, attribute`, 'modelMasks', 'badOption');
-  const { mesh, parts } = extract(target);
+    throw wrong(
+      `options.${name} is not an option; there are: never, always, attribute, parts`,
+      'modelMasks',
+      'badOption',
+    );
+  const { mesh, parts } = extract(target, 'target', isMeant);
   const images = { never: never && imageOf('never', never), always: always && imageOf('always', always) };
   const vertices = new Int8Array(mesh.positions.length / 3);
   const triangles = new Int8Array(mesh.indices.length / 3);

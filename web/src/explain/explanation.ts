@@ -253,6 +253,8 @@ function brief(
       return outside > 0 ? 'it lies outside the cage' : 'the cage has a hole over it';
     default:
       if (locks[part.segment] === 'exclude') return `you excluded ${part.name}`;
+      if (classification.segmentStats[part.segment]!.culledBy === 'lock')
+        return `${part.name} is worn or carried, by its name; choose “keep” to paint it`;
       if (classification.segmentStats[part.segment]!.culledBy === 'hole')
         return `a hole of the cage seems to be meant for ${part.name}`;
       return part.coverage < part.threshold

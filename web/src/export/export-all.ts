@@ -35,7 +35,12 @@ export async function exportAll(
         choices:
           avatar === active
             ? choices
-            : choicesOf(avatar.locks, avatar.standing?.projection, session.bareOf(avatar.files)),
+            : choicesOf(
+                avatar.locks,
+                avatar.standing?.model,
+                avatar.standing?.projection,
+                session.bareOf(avatar.files),
+              ),
       };
       const { glb } = await exportGlb(scene, png, into);
       const { name } = avatar.files[0]!;

@@ -8,7 +8,7 @@ import type { Baked, ExportAnswer, ExportRequest, PaintInto } from './export-mes
 /** What is exported. */
 interface Exported {
   target: Pick<Model, 'name' | 'files'>;
-  cage: Pick<Model, 'mesh'>;
+  cage: Pick<Model, 'mesh' | 'files'>;
   rules: Readonly<Rules>;
   choices: Session['choices'];
 }
@@ -29,7 +29,7 @@ export async function exportGlb(
   const files = await Promise.all(target.files.map(async (file) => ({ name: file.name, bytes: await read(file) })));
   const request: ExportRequest = {
     files,
-    cage: cageOf(cage.mesh),
+    cage: cage.files[0] === target.files[0] ? undefined : cageOf(cage.mesh),
     texture: new Uint8Array(await texture.arrayBuffer()),
     into,
     options: { ...rules, ...choices },

@@ -5,7 +5,8 @@ import type { CagecastOptions } from 'cagecast/gltf';
 export interface ExportRequest {
   /** The target's file, then those it may refer to. */
   files: { name: string; bytes: ArrayBuffer }[];
-  cage: Mesh;
+  /** Undefined if it is in the target's file. */
+  cage: Mesh | undefined;
   /** A PNG in the cage's UVs. */
   texture: Uint8Array<ArrayBuffer>;
   /** Paint as an overlay, or in the model's own textures where it has some. */

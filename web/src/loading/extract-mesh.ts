@@ -1,9 +1,10 @@
 import { extract } from 'cagecast/three';
 import type { Mesh, Object3D } from 'three';
-import type { ExtractedMesh, Primitive } from '../state/model';
+import type { ExtractedMesh, Model, Primitive } from '../state/model';
 
 /**
- * Reads all triangle meshes below `root`, depth first, into one set of arrays, as `extract` of `cagecast/three`.
+ * Reads all triangle meshes below `root`, depth first, into one set of arrays, as `extract` of `cagecast/three`: those that are drawn,
+ * or of a cage its outer cages, or all if there are none.
  * @param root   A scene as it was loaded, perhaps moved as a whole.
  * @param nameOf The name of a mesh in its file, if any.
  * @throws Error that names the primitive and the element that cannot be read; or if there are no triangles.
@@ -11,8 +12,9 @@ import type { ExtractedMesh, Primitive } from '../state/model';
 export function extractMesh(
   root: Object3D,
   nameOf: (mesh: Mesh) => string | undefined = () => undefined,
+  slot: 'target' | 'cage' = 'target',
 ): ExtractedMesh {
-  const { mesh, parts } = extract(root, 'the scene');
+  const { mesh, parts, accessories, leftOut } = extract(root, slot === 'cage' ? 'cage' : 'the scene');
   if (parts.length === 0) throw new Error('the file contains no triangles, only points, lines or an empty scene');
   const primitives = parts.map(({ geometry, ...part }): Primitive => {
     const mesh = part.mesh as Mesh;
@@ -20,7 +22,32 @@ export function extractMesh(
     const weights = [...(mesh.morphTargetInfluences ?? [])];
     return { ...part, mesh, name, mirrored: part.matrix.determinant() < 0, weights };
   });
-  return { ...mesh, primitives };
+  // They would hide the model on the stage.
+  if (slot === 'target') for (const { mesh, why } of leftOut) if (why === 'name') mesh.visible = false;
+  const names = leftOut.map(({ mesh, name }) => nameOf(mesh) || name);
+  return { ...mesh, primitives, accessories, leftOut: names };
+}
+
+/** The meshes of a model, as a target and as a cage. @throws Error as `extractMesh`. */
+export function meshesOf(
+  root: Object3D,
+  nameOf?: (mesh: Mesh) => string | undefined,
+): Pick<Model, 'mesh' | 'cageMesh'> {
+  let mesh: ExtractedMesh | undefined;
+  let fault: unknown;
+  try {
+    mesh = extractMesh(root, nameOf);
+    if (mesh.leftOut.length === 0) return { mesh, cageMesh: mesh };
+  } catch (error) {
+    fault = error;
+  }
+  try {
+    const cageMesh = extractMesh(root, nameOf, 'cage');
+    const leftOut = cageMesh.primitives.map(({ name }) => name);
+    return { mesh: mesh ?? { ...cageMesh, primitives: [], accessories: [], leftOut }, cageMesh };
+  } catch (error) {
+    throw fault ?? error;
+  }
 }
 
 /** Swaps the last two corners of every triangle. */

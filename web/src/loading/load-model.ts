@@ -5,7 +5,7 @@ import { disposeAfterFrame } from '../platform/programs';
 import type { Loader, Model } from '../state/model';
 import { reasonOf } from '../state/wording';
 import { bringNear } from './bring-near';
-import { extractMesh } from './extract-mesh';
+import { meshesOf } from './extract-mesh';
 import { paths } from './file-paths';
 import { readGltfHead } from './gltf-file';
 import { damageOf } from './image-damage';
@@ -45,7 +45,7 @@ export async function loadModel(
       const scene = await sceneOf(gltf);
       bringNear(scene);
       const { associations, json } = gltf.parser;
-      const mesh = extractMesh(scene, (mesh) => nameOf(mesh, gltf));
+      const meshes = meshesOf(scene, (mesh) => nameOf(mesh, gltf));
       const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer());
       return {
         name: file.name,
@@ -53,7 +53,7 @@ export async function loadModel(
         scene,
         loaded: { scene, userData: gltf.userData, parser: { associations, json: { extensions: json.extensions } } },
         animations: gltf.animations,
-        mesh,
+        ...meshes,
         ...(damage && { damage: `${file.name}: ${damage}` }),
       };
     } finally {
@@ -67,8 +67,8 @@ export async function loadModel(
 }
 
 /** Frees the GPU memory of a model. */
-export function disposeModel({ mesh }: Model): void {
-  for (const primitive of mesh.primitives) {
+export function disposeModel({ cageMesh }: Model): void {
+  for (const primitive of cageMesh.primitives) {
     primitive.mesh.geometry.dispose();
     const materials = [primitive.mesh.material].flat();
     for (const material of materials)
@@ -88,6 +88,8 @@ async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
   const nodes: Object3D[] = scene ? [] : await parser.getDependencies('node');
   const root = scene ?? new Group().add(...nodes.filter((node) => !node.parent));
   root.traverse((object) => {
+    // An extension that the loader does not know.
+    if (object.userData['gltfExtensions']?.KHR_node_visibility?.visible === false) object.visible = false;
     const matrix: number[] | undefined = parser.json.nodes?.[parser.associations.get(object)?.nodes ?? -1]?.matrix;
     if (!matrix) return;
     // The loader decomposes matrices, which rounds them and loses shear.

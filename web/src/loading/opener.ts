@@ -159,7 +159,9 @@ export class Opener implements Samples {
       label.textContent = label.title = name;
     }
     const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`;
-    element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.`;
+    const { leftOut } = target.mesh;
+    const others = leftOut.length > 0 ? ` Not drawn, so left out: ${leftOut.join(', ')}.` : '';
+    element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.${others}`;
     this.#describeOrigin({ target, cage });
     this.#offerPaints({ cage });
   }

@@ -1,4 +1,5 @@
-import { CagecastError, type Mesh, type Timings } from 'cagecast';
+import { CagecastError, type Timings } from 'cagecast';
+import { arraysOf } from '../state/arrays';
 import type { Model } from '../state/model';
 import { type Reply, type Request, Superseded, type Tasks, type Transferer } from '../state/transfers';
 
@@ -34,9 +35,14 @@ export class TransferClient implements Transferer {
     this.cancel();
     return new Promise((resolve, reject) => {
       const id = ++this.#lastId;
-      this.#pending = { id, onProjected, resolve, reject };
+      const { mend, ...arrays } = arraysOf(cage, target);
+      const answer = (answer: Tasks[Task]['answer']): void => {
+        if (task === 'project') mend?.(answer as Tasks['project']['answer']);
+        resolve(answer);
+      };
+      this.#pending = { id, onProjected, resolve: answer as (answer: Tasks[keyof Tasks]['answer']) => void, reject };
       this.#worker ??= this.#start();
-      this.#worker.postMessage({ id, task, cage: cageArrays(cage), target: targetArrays(target), options } as Request);
+      this.#worker.postMessage({ id, task, ...arrays, options } as Request);
     });
   }
 
@@ -73,12 +79,4 @@ export class TransferClient implements Transferer {
     this.#pending?.reject(error);
     this.#pending = undefined;
   }
-}
-
-function cageArrays({ mesh: { positions, indices, uvs } }: Model): Mesh {
-  return { positions, indices, uvs };
-}
-
-function targetArrays({ mesh: { positions, indices, groups } }: Model): Mesh {
-  return { positions, indices, groups };
 }

@@ -1,8 +1,7 @@
 import type { Classification, SegmentStats } from 'cagecast';
 import { make, swatch } from '../platform/make';
 import { element, showNotice } from '../platform/page';
-import type { Choice, Locks } from '../state/choices';
-import type { Primitive } from '../state/model';
+import { type Choice, choiceFor, type Locks } from '../state/choices';
 import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
 import { cssColor, type Rgb } from '../view/colors';
@@ -57,9 +56,11 @@ export class PartsTable {
     card.addEventListener('toggle', () => card.open || this.#highlight([]));
     session.on('transfer', (shown) => this.#list(shown, session.locks));
     session.on('zones', ({ classification }) => {
+      const { target, projection } = session.shown!;
+      const chosen = (s: number) => choiceFor(s, projection.segmentStats[s]!.group, session.locks, target);
       // Locks may have been set elsewhere, even for some segments of a row only.
       const upToDate = this.#rows.every(({ segments, choice }) =>
-        segments.every((segment) => (session.locks[segment] ?? 'auto') === choice.value),
+        segments.every((segment) => chosen(segment) === choice.value),
       );
       if (!upToDate) this.#list(session.shown!, session.locks);
       this.#showVerdicts(classification);
@@ -68,7 +69,7 @@ export class PartsTable {
 
   /** Lists the largest segments of a projection, the least covered first. */
   #list(shown: Shown, locks: Locks): void {
-    const entries = entriesOf(shown.projection.segmentStats, shown.target.mesh.primitives, locks);
+    const entries = entriesOf(shown, locks);
     const colors = segmentColors(shown);
     const largest = named(entries.toSorted((a, b) => b.area - a.area).slice(0, kMaxRows));
     // Sorting is stable: of two with equal coverage the larger comes first.
@@ -132,14 +133,14 @@ export class PartsTable {
 }
 
 /** The segments with area, grouped into rows. */
-function entriesOf(stats: readonly SegmentStats[], primitives: readonly Primitive[], locks: Locks): Entry[] {
+function entriesOf(shown: Shown, locks: Locks): Entry[] {
   const entries = new Map<string, Entry>();
-  stats.forEach(({ points, area, exposedArea, coveredArea, group }, segment) => {
+  shown.projection.segmentStats.forEach(({ points, area, exposedArea, coveredArea, group }, segment) => {
     if (area === 0) return;
-    const lock = locks[segment] ?? 'auto';
+    const lock = choiceFor(segment, group, locks, shown.target);
     const key = coveredArea > 0 ? `segment ${segment}` : `group ${group} ${exposedArea > 0} ${lock}`;
     const entry = entries.get(key) ?? {
-      name: primitives[group]!.name,
+      name: shown.target.mesh.primitives[group]!.name,
       segments: [],
       points: 0,
       area: 0,

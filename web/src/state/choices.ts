@@ -1,6 +1,6 @@
 import type { ClassifyOptions, Lock, Preset } from 'cagecast';
 import type { Borders } from 'cagecast/three';
-import type { Model } from './model';
+import type { ExtractedMesh, Model } from './model';
 import type { SplitProjection } from './transfers';
 
 /** Options of the transfer. */
@@ -26,19 +26,31 @@ export const asLock = (choice: Choice): Lock => (choice === 'always' ? 'keep' : 
 export const knownLocks = (locks: Locks, { segmentStats }: Pick<SplitProjection, 'segmentStats'>): Locks =>
   Object.fromEntries(Object.entries(locks).filter(([segment]) => Number(segment) < segmentStats.length));
 
+/** What a model is, as far as it decides without the user: accessories stay bare. */
+type Worn = { mesh: Pick<ExtractedMesh, 'accessories'> };
+
+/** The choice for a segment of a group: the user's, if there is one. */
+export const choiceFor = (segment: number, group: number, chosen: Locks, { mesh }: Worn): Choice =>
+  chosen[segment] ?? (mesh.accessories.includes(group) ? 'exclude' : 'auto');
+
 /**
  * The locks and masks that choices come to.
- * @param projection Of the model that they are for.
+ * @param model      The model that they are for.
+ * @param projection Of it.
  * @param bare       Its triangles that stay bare, as `BareMarks` gives them.
  */
 export function choicesOf(
   chosen: Locks,
+  model: Worn | undefined,
   projection: Pick<SplitProjection, 'segments'> | undefined,
   bare?: Uint8Array,
 ): Pick<ClassifyOptions, 'locks' | 'masks'> {
   const entries = Object.entries(chosen);
   const always = new Set(entries.flatMap(([segment, choice]) => (choice === 'always' ? [Number(segment)] : [])));
-  const locks = { segments: Object.fromEntries(entries.map(([s, choice]) => [s, asLock(choice)])) };
+  const locks = {
+    segments: Object.fromEntries(entries.map(([s, choice]) => [s, asLock(choice)])),
+    groups: Object.fromEntries(model?.mesh.accessories.map((group) => [group, 'exclude' as const]) ?? []),
+  };
   const vertices =
     always.size > 0 && projection && Int8Array.from(projection.segments, (segment) => (always.has(segment) ? 1 : 0));
   const triangles = bare && Int8Array.from(bare, (mark) => -mark);

@@ -24,6 +24,10 @@ export interface ExtractedMesh {
   /** 1 per vertex: the index of its primitive. Only vertices of the same primitive are welded. */
   groups: Uint32Array;
   primitives: Primitive[];
+  /** The groups of what a figure wears or carries: it stays bare unless the user decides otherwise. */
+  accessories: readonly number[];
+  /** The names of what is left out, as it is not drawn, or is a cage, a marker or a collision shape. */
+  leftOut: readonly string[];
 }
 
 /** A loaded model: the scene to show, and its triangles for the transfer. */
@@ -37,10 +41,35 @@ export interface Model {
   loaded: LoadedGltf;
   animations: readonly AnimationClip[];
   mesh: ExtractedMesh;
+  /** The same as a cage: its outer cages if there are any, else all, drawn or not. */
+  cageMesh: ExtractedMesh;
   /** A message about images that cannot be shown; the model is usable all the same. */
   damage?: string;
   /** The sample it belongs to; undefined for the user's own files. */
   sample?: Sample;
+}
+
+const cages = new WeakMap<Model, Model>();
+const targets = new WeakMap<Model, Model>();
+
+/** A model as it is a cage. */
+export function asCage(model: Model): Model {
+  if (model.mesh === model.cageMesh) return model;
+  const cage = cages.get(model) ?? { ...model, mesh: model.cageMesh };
+  cages.set(model, cage);
+  targets.set(cage, model);
+  return cage;
+}
+
+/** The cage that a model has with it: the meshes that are named so. */
+export const ownCage = (model: Model): Model | undefined =>
+  model.cageMesh.leftOut.length > 0 && model.mesh.primitives.length > 0 ? asCage(model) : undefined;
+
+/** A model as it is a target. @throws Error that begins with the file's name, if nothing of it is drawn. */
+export function asTarget(cage: Model): Model {
+  const model = targets.get(cage) ?? cage;
+  if (model.mesh.primitives.length > 0) return model;
+  throw new Error(`${model.name}: nothing of it is drawn but cages, markers and collision shapes; open it as a cage`);
 }
 
 /** Where the origin of a model that was moved is in the scene of its file. */

@@ -1,4 +1,5 @@
 import type { Locks } from './choices';
+import { asCage, asTarget, ownCage } from './model';
 import { kSlots, type Requested, type Scene, type Shown, type Slot } from './scene';
 
 /** The files that were requested for the next scene. */
@@ -7,6 +8,8 @@ export class Requests {
   #files: Requested = {};
   /** Those of the requested files that are useless without each other. */
   #together: Requested = {};
+  /** Whether the cage was there before the target. */
+  #isOlderCage = false;
   #locks: Locks = {};
   #isOtherTarget = false;
 
@@ -42,6 +45,7 @@ export class Requests {
       this.#locks = locks;
       this.#isOtherTarget = true;
     }
+    if (change.target || change.cage) this.#isOlderCage = !change.cage;
     if (together) this.#together = change;
     for (const slot of Object.values(change)) slot.catch(() => {}); // reported where it is awaited
     this.#files = { ...this.#files, ...change };
@@ -67,7 +71,9 @@ export class Requests {
    * @returns Undefined if some are missing.
    */
   async read(isSuperseded: () => boolean): Promise<Scene | undefined> {
-    const { target, cage, paint } = this.#files;
+    const { paint } = this.#files;
+    const target = this.#files.target?.then(asTarget);
+    const cage = this.#files.cage?.then(asCage);
     const results = await Promise.allSettled([target, cage, paint]);
     const failed = results.find((result) => result.status === 'rejected');
     if (failed && !isSuperseded()) {
@@ -78,7 +84,11 @@ export class Requests {
       throw failed.reason;
     }
     if (failed) return undefined; // nobody waits for it any more
-    const [t, c, p] = await Promise.all([target, cage, paint]);
+    const [t, given, p] = await Promise.all([target, cage, paint]);
+    // A model that is opened alone brings its own cage.
+    const own = this.#isOlderCage && t ? ownCage(t) : undefined;
+    const c = own ?? given;
+    if (own && !isSuperseded()) this.#files = { ...this.#files, cage: Promise.resolve(own) };
     return t && c && p ? { target: t, cage: c, paint: p } : undefined;
   }
 

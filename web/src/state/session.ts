@@ -220,7 +220,7 @@ export class Session extends Emitter<SessionEvents> {
 
   /** The locks and masks that the choices come to. */
   get choices(): Pick<ClassifyOptions, 'locks' | 'masks'> {
-    return choicesOf(this.#locks, this.#shown?.projection, this.bare);
+    return choicesOf(this.#locks, this.#shown?.target, this.#shown?.projection, this.bare);
   }
 
   /** Changes the view. */

@@ -48,7 +48,10 @@ export function addBatchCommand(program: Command, io: Io): void {
     .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders but linked ones')
     .description('transfer to many files, in threads; print a line of JSON for each')
     .option('--manifest <JOBS.jsonl>', 'a JSON object per line, for a job each; - for the standard input')
-    .option('--cage <CAGE>', 'the cage of jobs that name none; auto makes one for each target')
+    .option(
+      '--cage <CAGE>',
+      'the cage of jobs that name none; auto makes one for each target (default: as of transfer)',
+    )
     .option('--texture <PAINT>', 'the texture of jobs that name none')
     .addOption(
       common.parsed(
@@ -118,10 +121,9 @@ const kNothingSaved = '\nno model or report written; for these, add -o OUT.glb o
 
 /** What is wrong with the arguments together, if anything is. */
 function faultOf(targets: readonly string[], flags: BatchFlags): string | undefined {
-  const { manifest, results, resume, cage, uvBounds, texture, output, report } = flags;
+  const { manifest, results, resume, uvBounds, texture, output, report } = flags;
   if (targets.length > 0 === (manifest !== undefined)) return 'give either TARGETS or --manifest';
   if (resume && results === undefined) return '--resume needs --results, which says what is done';
-  if (manifest === undefined && cage === undefined) return 'TARGETS need --cage';
   if ([output, report, results].includes(standard)) return 'a batch writes files; the standard output has its lines';
   if ([...common.inputsOf({ ...flags, config: false }), ...targets].includes(standard))
     return 'a batch reads files; its jobs have no standard input';

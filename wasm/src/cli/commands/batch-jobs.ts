@@ -163,8 +163,7 @@ export function placeholderFault(...written: readonly (string | undefined)[]): s
 
 /** @throws {InputError} if something is missing or wrong. */
 function jobOf({ layersFor: _, results: __, ...given }: JobDefaults & { target: string }, layers: Layer[]): Job {
-  const { target, cage, texture, regions = [], output, report } = given;
-  if (cage === undefined) throw new InputError('has no cage; give one with --cage, or as "cage" in the manifest');
+  const { target, cage = target, texture, regions = [], output, report } = given;
   // A configuration may say so for other commands.
   const cuts = resolveSettings(layers.filter(({ config }) => config === undefined)).borders === 'cut';
   if (output === undefined && (cuts || texture !== undefined || regions.length > 0))
@@ -178,7 +177,14 @@ function jobOf({ layersFor: _, results: __, ...given }: JobDefaults & { target: 
     path?.replace(/\{name\}|\{dir\}/g, (found) =>
       found === '{dir}' ? dirname(target) : basename(target, extname(target)),
     );
-  const command = { ...given, cage, output: fill(output), report: fill(report), ...resolveSettings(layers) };
+  const command = {
+    ...given,
+    cage,
+    isOwnCage: given.cage === undefined,
+    output: fill(output),
+    report: fill(report),
+    ...resolveSettings(layers),
+  };
   const reads = filesReadBy(command);
   const identity = JSON.stringify([command, reads.map(sizeAndTime)]);
   const key = createHash('sha256').update(identity).digest('hex').slice(0, 16);

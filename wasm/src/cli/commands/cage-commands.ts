@@ -8,17 +8,20 @@ import { templateOf } from '../../gltf/cage-file.js';
 import { readBytes, standard } from '../../gltf/files.js';
 import { InputError, naming } from '../../gltf/input-error.js';
 import { counted } from '../../inspect/finding.js';
+import { withBare } from '../../parts/drawn.js';
 import { isPosition } from '../../parts/template-extras.js';
 import type { Io } from '../io/io.js';
 import { writeFiles } from '../io/output.js';
 import { kExit } from '../model/failures.js';
 import { parseObject } from '../model/json.js';
-import { resolveSettings } from '../model/settings.js';
+import { type Rules, resolveSettings } from '../model/settings.js';
 import { integer, type Line, listed, shown } from '../model/text.js';
 import { conclusionOf, inspectionReport } from '../transfer/inspection.js';
 import { inspectionPage } from '../transfer/inspection-page.js';
 import { fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
 import { type ReadModel, readBack, readModel, withUvs } from '../transfer/models.js';
+import { readTarget } from '../transfer/read-target.js';
+import { leftOutLines } from '../transfer/report-parts.js';
 import { transferModels } from '../transfer/run-transfer.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
@@ -46,6 +49,9 @@ interface FitFlags extends CageFileFlags {
   templateLandmarks?: string;
   landmarks?: string;
 }
+
+/** The rules of a transfer with no other flags. */
+const rulesOf = ({ ignore = [] }: CageFileFlags): Rules => resolveSettings([{ settings: { ignore } }]).rules;
 
 const kExitCodes = '\nExit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.';
 
@@ -120,7 +126,7 @@ Examples:
 /** Makes a cage for a model and inspects it. @throws {InputError} that names the file at fault; then no file is written. */
 async function makeFor(target: string, flags: MakeFlags, io: Io): Promise<Found> {
   const { exclude, triangles, kind, closing } = flags;
-  const model = await readModel(target, common.readingOf(flags), io);
+  const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags).ignored);
   const cage = await makeCageFor(model, { exclude, triangles, kind, closing }, io);
   return finish({ ...cage, landmarks: await landmarksOf(model, io) }, model, flags, io);
 }
@@ -130,7 +136,7 @@ async function fitTo(path: string, target: string, flags: FitFlags, io: Io): Pro
   const { exclude } = flags;
   const template = await readTemplate(path, flags, io);
   const given = flags.landmarks === undefined ? undefined : await readLandmarks(flags.landmarks);
-  const model = await readModel(target, common.readingOf(flags), io);
+  const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags).ignored);
   const { origin } = model.extracted;
   const landmarks = given && movedBy(given, origin, -1);
   const files = { template: path, landmarks: flags.landmarks };
@@ -229,12 +235,14 @@ const kOtherFlags = '--keep and --exclude, as advised here, are flags of cagecas
 async function finish(
   cage: Cage,
   model: ReadModel,
-  { output, html }: CageFileFlags,
+  flags: CageFileFlags,
   io: Io,
   notes: FitNotes = { lines: [], report: {} },
 ): Promise<Found> {
-  const { rules } = resolveSettings([]);
-  const run = await transferModels(model, await readBack(cage, output, model), { preset: rules.preset }, io);
+  const { output, html } = flags;
+  const rules = rulesOf(flags);
+  const locks = withBare(model.extracted.accessories, undefined);
+  const run = await transferModels(model, await readBack(cage, output, model), { preset: rules.preset, locks }, io);
   io.step('inspecting');
   const report = inspectionReport({ target: model.file.path, cage: output, rules }, run, []);
   const page = html === undefined ? [] : [{ path: html, data: inspectionPage(report, run) }];
@@ -244,6 +252,7 @@ async function finish(
   const lines = [
     `wrote ${output}: ${integer(report.cage.vertices)} vertices, ${integer(report.cage.triangles)} triangles, ${counted(uv.charts, 'chart')}, ${counted(holes.length, 'hole')}`,
     ...notes.lines,
+    ...leftOutLines(report.target),
     verdict !== 'good' && notes.advice,
     ...conclusion,
     conclusion.some((line) => /--(keep|exclude) "/.test(line)) && kOtherFlags,

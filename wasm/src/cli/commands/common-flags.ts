@@ -22,6 +22,8 @@ export interface CageFlags {
 /** The flags that say how files are read. */
 export interface ReadFlags {
   allowOutside?: boolean;
+  /** Names of parts of the target that are left out. */
+  ignore?: string[];
   limit?: Partial<ReadLimits>;
 }
 
@@ -129,6 +131,11 @@ const kCageFlags = [
 ];
 
 const kReadFlags = [
+  parsed(
+    '--ignore <NAME>',
+    'leave parts of TARGET out, as if they were not there: nodes, meshes or materials of this name; as --keep. What a viewer does not draw is left out, too, as are cages, markers and collision shapes, by their names; an empty name takes these in',
+    oneMore,
+  ),
   new Option(
     '--allow-outside',
     `read also files outside the folder of the glTF, or found ${configName}, that names them`,

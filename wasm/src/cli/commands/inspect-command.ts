@@ -13,7 +13,7 @@ import {
   segmentTable,
 } from '../transfer/inspection.js';
 import { inspectionPage } from '../transfer/inspection-page.js';
-import { excludedLine, turnedLine, zoneTable } from '../transfer/report-parts.js';
+import { leftOutLines, turnedLine, zoneTable } from '../transfer/report-parts.js';
 import { runTransfer } from '../transfer/run-transfer.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
@@ -46,9 +46,17 @@ Example: cagecast inspect head.glb --cage cage.glb --html report.html`,
 
 /** Checks whether a cage fits a target. @throws {InputError} that names the file at fault. */
 async function inspectTarget(target: string, flags: InspectFlags, io: Io): Promise<Found> {
-  const { cage, uvBounds, referenceCage, html } = flags;
+  const { cage = target, uvBounds, referenceCage, html } = flags;
   const { rules } = resolveSettings(await common.layersFor(flags)(target));
-  const sources = { target, cage, uvBounds, referenceCage, rules, reading: common.readingOf(flags) };
+  const sources = {
+    target,
+    cage,
+    isOwnCage: !flags.cage,
+    uvBounds,
+    referenceCage,
+    rules,
+    reading: common.readingOf(flags),
+  };
   const run = await runTransfer(sources, io);
   io.step('inspecting');
   const report = inspectionReport(sources, run, uvBounds ? [uvBounds] : []);
@@ -90,7 +98,7 @@ function describe(report: InspectionReport, html: string | undefined): Line[] {
     ...conclusionOf(report),
     html && `wrote ${html}`,
     turnedLine(cage),
-    excludedLine(cage),
+    ...leftOutLines(target),
     configLine(report.options.config),
   ];
 }

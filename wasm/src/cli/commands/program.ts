@@ -38,10 +38,11 @@ Examples:
 Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make, fit or batch finds a cage unfit,
 4 diff finds a change over the limit.`,
     );
-  // An empty path would be the current folder, and nothing has an empty name.
+  // An empty path would be the current folder, and nothing has an empty name. To --ignore, it says something of its own.
   program.hook('preAction', (_, command) => {
     const hasEmpty = (value: unknown) => [value].flat().includes('');
-    const flag = command.options.find((option) => hasEmpty(command.getOptionValue(option.attributeName())))?.long;
+    const names = command.options.filter((option) => option.long !== '--ignore');
+    const flag = names.find((option) => hasEmpty(command.getOptionValue(option.attributeName())))?.long;
     const argument = command.registeredArguments.find((_, i) => hasEmpty(command.processedArgs[i]))?.name();
     if (flag ?? argument) throw new UsageError(`${flag ?? argument} is empty`);
   });

@@ -10,7 +10,7 @@ import { perform } from './perform.js';
 
 /** The flags of the commands that transfer to one target. */
 export interface TargetFlags extends common.SettingFlags, common.CageFlags, common.ReadFlags, common.PrintFlags {
-  cage: string;
+  cage?: string;
 }
 
 interface TransferFlags extends TargetFlags {
@@ -24,7 +24,10 @@ interface TransferFlags extends TargetFlags {
 export const addTarget = (command: Command): Command =>
   command
     .argument('<TARGET>', 'GLB, glTF or VRM')
-    .requiredOption('--cage <CAGE>', 'GLB or glTF with UVs that the texture was drawn for; auto makes one');
+    .option(
+      '--cage <CAGE>',
+      'GLB or glTF with UVs that the texture was drawn for; auto makes one (default: the meshes of TARGET that are named as outer cages of others)',
+    );
 
 /** What its help says after the flags. */
 const kHelp = `
@@ -35,6 +38,7 @@ The attribute _NCZ (Non-Cosmetic Zone) of a vertex is 0 where it may be painted.
 A cage that faces the other way, as on a model of VRM 0, is turned by half if it then fits clearly better; the summary says so.
 What an earlier transfer added is replaced. Where triangles need different UVs, copies of vertices are added after the others (not
 with --seams vertex); --borders cut adds some, too; Draco changes their order. --region adds UVs and zones of its own (_NCZ_1, …).
+Of a file with meshes that are named as outer cages (Head_OuterCage of Head_Geo), these are the cage, each of the part of its name.
 --cage auto makes a cage as cagecast make does, and excludes the parts that make leaves out, unless --keep names them. For a file
 named auto, write ./auto.
 --uv-bounds and --reference-cage are about --cage alone. Within the bounds, the UVs in OUT are 0..1. A triangle across them is
@@ -76,12 +80,12 @@ export function addTransferCommand(program: Command, io: Io): void {
     'What is printed',
   );
   command.addHelpText('after', kHelp).action((target: string, flags: TransferFlags) => {
-    const { cage, texture, output, report, uvBounds, referenceCage, region: regions } = flags;
+    const { cage = target, texture, output, report, uvBounds, referenceCage, region: regions } = flags;
     const fault = common.outputFault(flags) ?? boundsFault(texture, uvBounds);
     if (fault !== undefined) throw new UsageError(fault);
     return perform(io, flags, { inputs: [target, ...common.inputsOf(flags)], outputs: [output, report] }, async () => {
       const settings = resolveSettings(await common.layersFor(flags)(target));
-      const files = { target, cage, uvBounds, referenceCage, texture, regions, output, report };
+      const files = { target, cage, isOwnCage: !flags.cage, uvBounds, referenceCage, texture, regions, output, report };
       return transferToFile({ ...files, ...settings, reading: common.readingOf(flags) }, io);
     });
   });

@@ -18,6 +18,8 @@ export interface Settings extends GivenOptions {
   keep?: string[];
   /** The same for parts that are never painted. */
   exclude?: string[];
+  /** The same for parts that are left out: neither painted nor in the way. An empty name adds what is not drawn. */
+  ignore?: string[];
   /** Images in the target's own UVs that are white where it is never, or always, painted. */
   neverMask?: string;
   alwaysMask?: string;
@@ -37,7 +39,7 @@ const kMaskNames = ['neverMask', 'alwaysMask', 'maskColors'] as const;
 /** The names of settings, in JSON and of flags. */
 export const kSettingNames: readonly string[] = [
   ...Object.keys(kChoices),
-  ...['keep', 'exclude'],
+  ...['keep', 'exclude', 'ignore'],
   ...kMaskNames,
   ...optionFlags.map(({ name }) => name),
 ];
@@ -67,6 +69,8 @@ export function settingsOf(given: Json, folder: string): Settings {
   const isName = (value: unknown) => typeof value === 'string' && value !== '';
   for (const name of ['keep', 'exclude'])
     take(name, (value) => Array.isArray(value) && value.every(isName), 'an array of names');
+  const isText = (value: unknown) => typeof value === 'string';
+  take('ignore', (value) => Array.isArray(value) && value.every(isText), 'an array of names');
   for (const name of ['neverMask', 'alwaysMask']) {
     const path = pathOf(given, name, folder);
     if (path !== undefined) settings[name] = path;
@@ -99,14 +103,18 @@ export interface Layer {
 
 type Lock = 'keep' | 'exclude';
 
-/** A name of parts, and whether they are kept or excluded. */
-interface NameRule {
-  lock: Lock;
+/** A name of parts. */
+interface NamedParts {
   pattern: string;
   /** How late it is said, which decides where several match. */
   rank: number;
   /** Whether it may match nothing: a configuration file speaks of many models, and not each of them has every part. */
   isOptional: boolean;
+}
+
+/** A name of parts, and whether they are kept or excluded. */
+interface NameRule extends NamedParts {
+  lock: Lock;
 }
 
 /** An image, and the configuration file that names it. */
@@ -120,6 +128,7 @@ export interface Rules {
   preset: Preset;
   single: GivenOptions;
   names: NameRule[];
+  ignored: NamedParts[];
   masks: { never?: MaskFile; always?: MaskFile; colors?: string };
   /** The configuration file that some of it comes from. */
   config?: string;
@@ -147,7 +156,10 @@ export function resolveSettings(layers: readonly Layer[]): ResolvedSettings {
     rules: {
       preset,
       single: Object.fromEntries(given),
-      names: (['keep', 'exclude'] as const).flatMap((lock) => namesOf(layers, lock)),
+      names: (['keep', 'exclude'] as const).flatMap((lock) =>
+        namesOf(layers, lock).map((named) => ({ ...named, lock })),
+      ),
+      ignored: namesOf(layers, 'ignore'),
       masks: masksOf(layers),
       ...(config !== undefined && { config }),
     },
@@ -156,11 +168,11 @@ export function resolveSettings(layers: readonly Layer[]): ResolvedSettings {
   };
 }
 
-function namesOf(layers: readonly Layer[], lock: Lock): NameRule[] {
-  const saying = layers.map((layer, rank) => ({ ...layer, rank })).filter(({ settings }) => settings[lock]);
+function namesOf(layers: readonly Layer[], list: Lock | 'ignore'): NamedParts[] {
+  const saying = layers.map((layer, rank) => ({ ...layer, rank })).filter(({ settings }) => settings[list]);
   const counting = saying.at(-1)?.config ? saying : saying.slice(-1);
   return counting.flatMap(({ settings, config, rank }) =>
-    settings[lock]!.map((pattern) => ({ lock, pattern, rank, isOptional: config !== undefined })),
+    settings[list]!.map((pattern) => ({ pattern, rank, isOptional: config !== undefined })),
   );
 }
 

@@ -6,6 +6,8 @@ import type { UvBounds } from './uv-bounds.js';
 export interface Sources {
   target: string;
   cage: string;
+  /** Whether the cage has to be named as such, as none was given but the target. */
+  isOwnCage?: boolean | undefined;
   /** The part of the cage's UVs that the texture covers; by default 0..1. */
   uvBounds?: UvBounds | undefined;
   /** A cage with the UVs of all triangles that count; others count as cut away. */

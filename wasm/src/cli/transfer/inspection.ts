@@ -15,7 +15,15 @@ import { integer, short } from '../model/text.js';
 import { boundsAround, type UvBounds } from '../model/uv-bounds.js';
 import type { PerZone } from '../model/zones.js';
 import { withinBounds } from './cage-area.js';
-import { type CageReport, cageReport, effectiveOptions, perZone, targetReport, versions } from './report-parts.js';
+import {
+  type CageReport,
+  cageReport,
+  effectiveOptions,
+  perZone,
+  type TargetReport,
+  targetReport,
+  versions,
+} from './report-parts.js';
 import type { Run } from './run-transfer.js';
 
 export const kVerdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
@@ -26,7 +34,7 @@ export const isWorse = (a: Verdict, b: Verdict): boolean => kVerdicts.indexOf(a)
 /** The JSON output of `inspect`: the inspection, and its inputs. */
 export interface InspectionReport extends Inspection {
   versions: ReturnType<typeof versions>;
-  target: ReturnType<typeof targetReport> & { points: number };
+  target: TargetReport & { points: number };
   cage: CageReport;
   options: ReturnType<typeof effectiveOptions>;
   /** Vertices of the target in each zone. */
@@ -50,7 +58,7 @@ export function inspectionReport(
     ...inspect(cage.extracted.mesh, mesh, { ...options, result, parts }),
     versions: versions(),
     target: {
-      ...targetReport(command.target, target),
+      ...targetReport(command.target, run),
       points: result.segmentStats.reduce((sum, { points }) => sum + points, 0),
     },
     cage: cageReport(command.cage, cage, run),
@@ -83,7 +91,8 @@ export function conclusionOf({ verdict, findings }: Inspection): string[] {
 }
 
 /** What to do about a finding, with the flags that reverse its verdicts, if there are any. */
-export function adviceOn({ advice, places = [], locks }: Finding): string {
+export function adviceOn({ advice, places = [], locks, ignore = [] }: Finding): string {
+  if (ignore.length > 0) return `${advice} By: ${ignore.map((name) => `--ignore "${name}"`).join(' ')}`;
   const locked = places.filter(({ segment }) => locks?.segments?.[segment] !== undefined);
   const flags = new Set(locked.map(({ segment, part }) => `--${locks!.segments![segment]} "${part}"`));
   return flags.size === 0 ? advice : `${advice} To override: ${[...flags].join(' ')}`;

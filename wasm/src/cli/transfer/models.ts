@@ -1,10 +1,19 @@
 import { cageGlb } from '../../cages/cage-glb.js';
 import type { Cage } from '../../cages/types.js';
-import { type Extracted, extract, type Part, partOf, primitivePath, uvLayout } from '../../gltf/extract-file.js';
+import {
+  type Extracted,
+  extract,
+  type Part,
+  partOf,
+  primitivePath,
+  uvLayout,
+  type WhichCount,
+} from '../../gltf/extract-file.js';
 import type { ReadOptions } from '../../gltf/files.js';
 import { InputError } from '../../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../../gltf/read-gltf.js';
 import { CagecastError } from '../../index.js';
+import { hasCages } from '../../parts/own-cages.js';
 import type { Io } from '../io/io.js';
 import { quoted } from '../model/text.js';
 
@@ -14,11 +23,24 @@ export interface ReadModel {
   extracted: Extracted;
 }
 
-/** Reads a model. @param bytes  Its content, if it is known already. @throws {InputError} that names the file. */
-export async function readModel(path: string, reading: ReadOptions, io: Io, bytes?: Uint8Array): Promise<ReadModel> {
+/** How a model is read. */
+interface ModelOptions {
+  /** Its content, if it is known already. */
+  bytes?: Uint8Array | undefined;
+  /** Default: as of a cage. */
+  whichCount?: WhichCount;
+}
+
+/** Reads a model. @throws {InputError} that names the file. */
+export async function readModel(
+  path: string,
+  reading: ReadOptions,
+  io: Io,
+  { bytes, whichCount = 'cage' }: ModelOptions = {},
+): Promise<ReadModel> {
   io.step(`reading ${path}`);
   const file = await readGltf(path, reading, bytes);
-  const extracted = extract(file, 'own');
+  const extracted = extract(file, 'own', whichCount);
   if (extracted.mesh.indices.length > 0) return { file, extracted };
   const what = (file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene';
   throw new InputError(`has no ${what}; at least one triangle is needed`).in(path);
@@ -53,16 +75,25 @@ export function withUvs(model: ReadModel): ReadModel {
   ).in(file.path);
 }
 
+/** The cage that a target has with it. @throws {InputError} that names the file, if it has none. */
+export function cageIn({ file }: ReadModel): ReadModel {
+  const extracted = extract(file, 'own', 'cage');
+  if (hasCages(extracted.parts)) return { file, extracted };
+  throw new InputError(
+    'has no cage: no mesh in it is named as an outer cage, as Head_OuterCage of Head_Geo; give one with --cage, or let --cage auto make one',
+  ).in(file.path);
+}
+
 /** A cage around a model, as if it was read from a file. */
 export async function readBack(cage: Cage, path: string, { extracted: { origin } }: ReadModel): Promise<ReadModel> {
   const file = await readGltf(path, undefined, cageGlb({ ...cage, origin }));
-  return { file, extracted: extract(file, origin) };
+  return { file, extracted: extract(file, origin, 'cage') };
 }
 
-/** A model around the origin of another one. */
-export function besideOf({ extracted: { origin } }: ReadModel, model: ReadModel): ReadModel {
-  const isBeside = model.extracted.origin.every((x, k) => x === origin[k]);
-  return isBeside ? model : { ...model, extracted: extract(model.file, origin) };
+/** A cage around the origin of its target. */
+export function besideOf({ extracted: { origin } }: ReadModel, cage: ReadModel): ReadModel {
+  const isBeside = cage.extracted.origin.every((x, k) => x === origin[k]);
+  return isBeside ? cage : { ...cage, extracted: extract(cage.file, origin, 'cage') };
 }
 
 /** Calls the core for two models. @throws {InputError} that names the file at fault and the place in it. */

@@ -1,13 +1,20 @@
 import { partsBelow } from '../../gltf/extract-file.js';
 import { InputError } from '../../gltf/input-error.js';
 import type { TransferOptions } from '../../index.js';
+import { leftOutText } from '../../parts/drawn.js';
 import { matcher } from '../model/patterns.js';
 import type { Rules } from '../model/settings.js';
 import { cut, kMaxCharacters, listed, quoted } from '../model/text.js';
 import type { ReadModel } from './models.js';
 
+/** A model whose parts have names. */
+interface Named {
+  file: ReadModel['file'];
+  extracted: Pick<ReadModel['extracted'], 'parts'> & Partial<ReadModel['extracted']>;
+}
+
 /** The numbers of the parts that a pattern names. The name of a node that no part has stands for all parts below it. */
-export function partsNamed(pattern: string, { file: { json }, extracted: { parts } }: ReadModel): number[] {
+export function partsNamed(pattern: string, { file: { json }, extracted: { parts } }: Named): number[] {
   const matches = matcher(pattern);
   const own = [...parts.keys()].filter((p) => parts[p]!.aliases.some(matches));
   if (own.length > 0) return own;
@@ -19,7 +26,8 @@ export function partsNamed(pattern: string, { file: { json }, extracted: { parts
 const kMaxNames = 20;
 
 /** No part has the name that a flag gives. */
-export function noSuchName(flag: string, { file: { json }, extracted: { parts } }: ReadModel): InputError {
+export function noSuchName(flag: string, { file: { json }, extracted }: Named): InputError {
+  const { parts, leftOut = [] } = extracted;
   const nodes = json.nodes ?? [];
   const parents = new Map(nodes.flatMap(({ children = [] }, n) => children.map((child) => [child, n])));
   const above = new Set<number>();
@@ -28,7 +36,8 @@ export function noSuchName(flag: string, { file: { json }, extracted: { parts } 
   const holding = [...above].sort((a, b) => a - b).flatMap((n) => nodes[n]!.name ?? []);
   const names = new Set([...parts.flatMap(({ aliases }) => aliases), ...holding]);
   const shown = [...names].map((name) => cut(name, kMaxCharacters));
-  return new InputError(`${flag}: no node or material has this name; there are: ${listed(shown, kMaxNames)}`);
+  const others = leftOut.length > 0 ? `; left out: ${leftOutText(leftOut)}` : '';
+  return new InputError(`${flag}: no node or material has this name; there are: ${listed(shown, kMaxNames)}${others}`);
 }
 
 /**

@@ -8,7 +8,8 @@ import type { CutTarget, TransferResult } from '../../index.js';
 import type { Io } from '../io/io.js';
 import type { TransferCommand } from '../model/sources.js';
 import { boundsOfTile, isTiled, type UvBounds } from '../model/uv-bounds.js';
-import { readModel } from './models.js';
+import type { readModel } from './models.js';
+import { readTarget } from './read-target.js';
 import { cutTarget, type Run, runTransfer } from './run-transfer.js';
 import { readPaint, readTiles } from './textures.js';
 
@@ -52,7 +53,7 @@ export async function transferRegion(
 ): Promise<RegionRun> {
   const { target, output, reading, uvBounds } = command;
   const paint = texture === undefined || isTiled(texture) ? undefined : await readPaint(texture, reading.limits);
-  const model = before && (await readModel(target, reading, io, before.bytes));
+  const model = before && (await readTarget(target, reading, io, command.rules.ignored, before.bytes));
   const run = await runTransfer(command, io, readCage, model);
   const tiles = texture !== undefined && isTiled(texture) ? await readTiles(texture, run.cage, reading.limits) : [];
   const areas: PaintArea[] = uvBounds ? ['bounded'] : tiles.map(({ tile }) => ({ tile }));

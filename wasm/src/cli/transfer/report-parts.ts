@@ -3,6 +3,7 @@ import { presetOptions, type TransferResult } from '../../index.js';
 import { type Bare, bareOf, bareText } from '../../inspect/bare.js';
 import { percent } from '../../inspect/finding.js';
 import { boxOf } from '../../inspect/geometry.js';
+import { leftOutText } from '../../parts/drawn.js';
 import type { Sources } from '../model/sources.js';
 import { integer, type Line, listed, quoted, table } from '../model/text.js';
 import { kZoneNames, type PerZone } from '../model/zones.js';
@@ -11,23 +12,23 @@ import type { Run } from './run-transfer.js';
 
 export const versions = () => ({ cagecast: CAGECAST_VERSION, node: process.versions.node });
 
-/** What a report says of a target. */
-export const targetReport = (file: string, { extracted: { mesh } }: ReadModel) => ({
+/** What a report says of a target; with the parts that are left out, and those that stay bare by their names. */
+export const targetReport = (file: string, { target: { extracted }, diagonal, bare = [] }: Run) => ({
   file,
-  vertices: mesh.positions.length / 3,
-  triangles: mesh.indices.length / 3,
-  diagonal: boxOf(mesh.positions).diagonal,
+  vertices: extracted.mesh.positions.length / 3,
+  triangles: extracted.mesh.indices.length / 3,
+  diagonal: diagonal ?? boxOf(extracted.mesh.positions).diagonal,
+  leftOut: extracted.leftOut,
+  bare,
 });
 
-/**
- * What a report says of a cage; of one that was made on the way, also the names of the parts that are not painted because of them; and
- * whether it was turned.
- */
-export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { excluded, isTurned }: Run) => ({
+export type TargetReport = ReturnType<typeof targetReport>;
+
+/** What a report says of a cage, and whether it was turned. */
+export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { isTurned }: Run) => ({
   file,
   vertices: mesh.positions.length / 3,
   triangles: mesh.indices.length / 3,
-  ...(excluded && { excluded }),
   ...(isTurned && { isTurned }),
 });
 
@@ -66,13 +67,15 @@ export const turnedLine = ({ isTurned }: { isTurned?: boolean }): Line =>
 /** How many names a line has at most. */
 const kMaxNames = 12;
 
-/** Says which parts a cage was made without, if there are any. */
-export const excludedLine = ({ excluded = [] }: CageReport): Line =>
-  excluded.length > 0 && `excluded from the cage by their names: ${listed(excluded, kMaxNames)}`;
+/** Says which parts are left out or stay bare without a flag that says so, if there are any. */
+export const leftOutLines = ({ leftOut, bare }: TargetReport): Line[] => [
+  leftOut.length > 0 && `left out: ${leftOutText(leftOut)}`,
+  bare.length > 0 && `bare by their names, unless --keep names them: ${listed(bare, kMaxNames)}`,
+];
 
 /** All options that a transfer was made with; needs `init`. */
 export function effectiveOptions({
-  rules: { preset, single, names, masks, config },
+  rules: { preset, single, names, ignored, masks, config },
   uvBounds,
   referenceCage,
 }: Pick<Sources, 'rules' | 'uvBounds' | 'referenceCage'>) {
@@ -89,6 +92,7 @@ export function effectiveOptions({
     ...Object.fromEntries(infinite),
     keep: patterns('keep'),
     exclude: patterns('exclude'),
+    ignore: ignored.map(({ pattern }) => pattern),
     masks: (never ?? always ?? colors) ? { never: never?.path, always: always?.path, colors } : undefined,
     uvBounds,
     referenceCage,

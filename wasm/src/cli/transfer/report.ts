@@ -14,6 +14,7 @@ import {
   cageReport,
   effectiveOptions,
   perZone,
+  type TargetReport,
   targetReport,
   versions,
 } from './report-parts.js';
@@ -22,7 +23,7 @@ import { type Stretch, stretchOf } from './stretch.js';
 /** The JSON report of a transfer. Areas are in squared units of the target; lengths in its units. */
 export interface Report {
   versions: ReturnType<typeof versions>;
-  target: ReturnType<typeof targetReport>;
+  target: TargetReport;
   cage: CageReport;
   texture: string | null;
   output: string | null;
@@ -110,7 +111,7 @@ export function makeReport(command: TransferCommand, { run, shown, cut, ...rest 
   const note = bareNote(run);
   return {
     versions: versions(),
-    target: targetReport(command.target, target),
+    target: targetReport(command.target, run),
     cage: cageReport(command.cage, run.cage, run),
     texture: command.texture ?? null,
     output: command.output ?? null,

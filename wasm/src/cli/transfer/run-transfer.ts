@@ -1,7 +1,7 @@
 import { FileModel } from '../../gltf/bake/bake-file.js';
 import { masksOf } from '../../gltf/bake/mask-sources.js';
 import type { ReadOptions } from '../../gltf/files.js';
-import { naming } from '../../gltf/input-error.js';
+import { InputError, naming } from '../../gltf/input-error.js';
 import {
   type CutTarget,
   cutBorders,
@@ -12,14 +12,17 @@ import {
   transfer,
 } from '../../index.js';
 import { isBackward, turnedBack } from '../../inspect/backward.js';
+import { boxOf } from '../../inspect/geometry.js';
+import { moveApart } from '../../parts/own-cages.js';
 import { readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import type { Rules } from '../model/settings.js';
 import { kAutoCage, type Sources } from '../model/sources.js';
 import { withinBounds, withoutLacking } from './cage-area.js';
 import { makeCageFor, partsLeftOut } from './made-cage.js';
-import { besideOf, inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
+import { besideOf, cageIn, inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
 import { transferOptions } from './part-names.js';
+import { readTarget } from './read-target.js';
 
 /** Two models, and what was transferred. */
 export interface Run {
@@ -27,8 +30,10 @@ export interface Run {
   cage: ReadModel;
   /** The cage before its UVs were moved to those of the texture. */
   wholeCage: ReadModel;
-  /** The names of the parts that the cage was made without, if it was made on the way. */
-  excluded?: readonly string[] | undefined;
+  /** Of the target before its parts were moved apart, if they were. */
+  diagonal?: number;
+  /** The names of the parts that stay bare because of their names. */
+  bare?: readonly string[] | undefined;
   /** Whether the cage faced the other way, and was turned by half about the vertical axis. */
   isTurned?: boolean;
   /** What `transfer` was called with. */
@@ -43,27 +48,49 @@ export interface Run {
  * @throws {InputError} that names the file at fault.
  */
 export async function runTransfer(
-  { target: path, cage, uvBounds, referenceCage, rules, reading }: Sources,
+  { target: path, cage, isOwnCage, uvBounds, referenceCage, rules, reading }: Sources,
   io: Io,
   readCage: typeof readModel = readModel,
   read?: ReadModel,
 ): Promise<Run> {
-  const target = read ?? (await readModel(path, reading, io));
+  const target = read ?? (await readTarget(path, reading, io, rules.ignored));
   const masks = await readMasks(target, rules.masks, reading);
   const isMade = cage === kAutoCage;
-  const leftOut = isMade ? await partsLeftOut(target) : [];
-  const options = { ...transferOptions(rules, target, leftOut), ...(masks && { masks }) };
-  const cageOf = async (file: string) => besideOf(target, withUvs(await readCage(file, reading, io)));
+  const { parts, accessories } = target.extracted;
+  const named = isMade ? await partsLeftOut(target) : [];
+  const isBare = parts.map((_, p) => named[p] === true || accessories.includes(p));
+  const options = { ...transferOptions(rules, target, isBare), ...(masks && { masks }) };
+  const cageOf = async (file: string) =>
+    besideOf(target, withUvs(isOwnCage && file === cage ? cageIn(target) : await readCage(file, reading, io)));
   const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage, target) : await cageOf(cage);
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
-  const wholeCage = withoutLacking(whole, reference);
-  const run = await faceForward(await transferModels(target, withinBounds(wholeCage, uvBounds), options, io), io);
-  const isLeftOut = (p: number) => leftOut[p] && options.locks?.groups?.[p] !== 'keep';
-  const names = target.extracted.parts.filter((_, p) => isLeftOut(p)).map(({ name }) => name);
+  const apart = movedApart(target, withoutLacking(whole, reference));
+  const { wholeCage } = apart;
+  const first = await transferModels(apart.target, withinBounds(wholeCage, uvBounds), options, io);
+  // Cages that have names know which way they face.
+  const run = apart.target === target ? await faceForward(first, io) : first;
+  const names = parts.filter((_, p) => isBare[p] && options.locks?.groups?.[p] !== 'keep').map(({ name }) => name);
+  const { diagonal } = boxOf(target.extracted.mesh.positions);
   return {
     ...run,
     wholeCage: run.isTurned ? turned(wholeCage) : wholeCage,
-    excluded: isMade ? [...new Set(names)] : undefined,
+    diagonal,
+    bare: [...new Set(names)],
+  };
+}
+
+/** The parts of a target apart, each with the cage of its name, if there are such. @throws {InputError} that names one without. */
+function movedApart(target: ReadModel, wholeCage: ReadModel): { target: ReadModel; wholeCage: ReadModel } {
+  const fail = (text: string) => new InputError(`${text}; --ignore leaves the part out`).in(target.file.path);
+  const apart = moveApart(target.extracted, wholeCage.extracted, fail);
+  if (!apart) return { target, wholeCage };
+  const withMesh = (model: ReadModel, mesh: ReadModel['extracted']['mesh']) => ({
+    ...model,
+    extracted: { ...model.extracted, mesh },
+  });
+  return {
+    target: withMesh(target, apart.target),
+    wholeCage: withMesh(wholeCage, apart.cage),
   };
 }
 

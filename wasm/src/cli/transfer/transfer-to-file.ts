@@ -11,7 +11,7 @@ import { inspectionReport, isWorse } from './inspection.js';
 import type { readModel } from './models.js';
 import { compressionOf, transferRegion } from './region.js';
 import { makeReport, type Report, regionReport } from './report.js';
-import { excludedLine, turnedLine, zoneTable } from './report-parts.js';
+import { leftOutLines, turnedLine, zoneTable } from './report-parts.js';
 
 /**
  * Runs the transfer and writes the requested files.
@@ -35,7 +35,7 @@ export async function transferToFile(
   }
   let last = first;
   for (const [r, { cage, texture }] of regions.entries()) {
-    const own = { ...command, cage, uvBounds: undefined, referenceCage: undefined };
+    const own = { ...command, cage, isOwnCage: false, uvBounds: undefined, referenceCage: undefined };
     last = await transferRegion(own, texture, io, {
       readCage,
       isLast: r === regions.length - 1,
@@ -83,7 +83,7 @@ function summary(command: TransferCommand, report: Report): Line[] {
       turnedLine(one),
     ]),
     command.report !== undefined && `wrote ${command.report}`,
-    excludedLine(cage),
+    ...leftOutLines(target),
     configLine(command.rules.config),
     output === null &&
       command.report === undefined &&

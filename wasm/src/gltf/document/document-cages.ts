@@ -37,7 +37,7 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
  */
 export function cageTemplate(document: Document): cages.Template {
   return read('cageTemplate', 'template', document, () => {
-    const { mesh, parts } = extractDocument(document);
+    const { mesh, parts } = extractDocument(document, undefined, 'cage');
     if (mesh.uvs === undefined)
       throw new CagecastError('missingUvs', 'cageTemplate', 'template has a primitive without UVs', {
         argument: 'template',

@@ -10,6 +10,7 @@ import type {
 import type { Mesh } from '../../index.js';
 import type { Vector } from '../../inspect/geometry.js';
 import { identity, type Matrix, multiply } from '../../parts/affine.js';
+import { chooseParts, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
 import { upFrom } from '../../parts/joints.js';
 import { kSceneOrigin, type Origin } from '../../parts/origin.js';
 import { placeMeshes, type Skin } from '../../parts/skin.js';
@@ -25,6 +26,7 @@ import {
   moveTo,
   nextPiece,
   type Piece,
+  renumber,
 } from '../pieces.js';
 import type { UvLayout } from '../uv-layout.js';
 
@@ -35,12 +37,21 @@ export interface DocumentPart extends Piece {
   primitive: Primitive;
 }
 
-/** All triangles of a document's scene as arrays, and the parts that they come from. */
+/**
+ * Says which primitives of nodes are transferred to; the others stay as they are, and hide nothing.
+ * @param isDrawn  Whether a viewer draws it, and its name is not that of a cage, a marker or a collision shape.
+ */
+export type PartsOption = (primitive: Primitive, node: Node, isDrawn: boolean) => boolean;
+
+/** The triangles of a document's scene as arrays, and the parts that they come from. */
 export interface ExtractedDocument {
   /** With one group per part; with UVs if every primitive has the set of its base colour texture, or the first without one. */
   mesh: Mesh & { indices: Uint32Array };
   /** In the order of their vertices. */
   parts: DocumentPart[];
+  leftOut: LeftOut[];
+  /** The numbers of parts that a figure wears or carries. */
+  accessories: number[];
   /** What was subtracted from their places in the scene. */
   origin: Vector;
 }
@@ -52,18 +63,49 @@ export interface ExtractedDocument {
  * @param origin  What is subtracted from positions. Target and cage need the same one.
  * @throws {InputError} that names the primitive and the element.
  */
-export function extractDocument(document: Document, origin: Origin = kSceneOrigin): ExtractedDocument {
-  const parts = listParts(document);
-  const near = moveTo(parts, origin);
+export function extractDocument(
+  document: Document,
+  origin: Origin = kSceneOrigin,
+  isMeant?: PartsOption | 'cage',
+): ExtractedDocument {
+  const all = listParts(document);
+  const asked =
+    typeof isMeant === 'function'
+      ? (p: number, isDrawn: boolean) => isMeant(all[p]!.primitive, all[p]!.node, isDrawn)
+      : isMeant;
+  const fail = (text: string) => new InputError(`${text}; the option parts says which count`);
+  const { parts, leftOut, accessories } = chooseParts(all, lookOf, asked, fail);
+  renumber(parts);
+  const others = {
+    leftOut: leftOut.map(({ name, why }) => ({ name, why })),
+    accessories,
+    origin: moveTo(parts, origin),
+  };
   const mesh = joinPieces(parts);
   const layouts = parts.map(({ primitive }) => uvLayoutOf(primitive.getMaterial()?.getBaseColorTextureInfo()));
   const sets = parts.map(({ primitive }, p) => primitive.getAttribute(layouts[p]!.set));
-  if (parts.length === 0 || sets.some((set) => set === null)) return { mesh, parts, origin: near };
+  if (parts.length === 0 || sets.some((set) => set === null)) return { mesh, parts, ...others };
   const uvs = new Float32Array((mesh.positions.length / 3) * 2);
   parts.forEach(({ name, firstVertex, vertexCount }, p) =>
     uvs.set(decodeUvs(`"${name}"`, layouts[p]!, sets[p]!, vertexCount), 2 * firstVertex),
   );
-  return { mesh: { ...mesh, uvs }, parts, origin: near };
+  return { mesh: { ...mesh, uvs }, parts, ...others };
+}
+
+function lookOf({ node, primitive, aliases, matrix, localPositions, localIndices }: DocumentPart): Look {
+  const material = primitive.getMaterial();
+  const isOff = (of: Node) => (of.getExtension(visibilityExtension) as Visibility | null)?.getVisible() === false;
+  let above: Node | null = node;
+  while (above && !isOff(above)) above = above.getParentNode();
+  return {
+    names: aliases,
+    isHidden: above !== null,
+    isClear: isClear(material?.getAlphaMode(), material?.getAlpha(), material?.getAlphaCutoff()),
+    sides: material?.getDoubleSided() ? 'both' : 'front',
+    positions: localPositions,
+    indices: localIndices,
+    matrix,
+  };
 }
 
 export function uvLayoutOf(info: TextureInfo | null | undefined): UvLayout {
@@ -86,6 +128,11 @@ interface KHRTransform extends ExtensionProperty {
   getRotation(): number;
   getScale(): number[];
   getTexCoord(): number | null;
+}
+
+/** KHR_node_visibility, as glTF-Transform has it. */
+interface Visibility extends ExtensionProperty {
+  getVisible(): boolean;
 }
 
 /** EXT_mesh_gpu_instancing, as glTF-Transform has it. */

@@ -10,17 +10,20 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
+import { withBare } from '../../parts/drawn.js';
 import { moved } from '../../parts/origin.js';
+import { hasCages, moveApart } from '../../parts/own-cages.js';
 import { type MaskSources, masksOf } from '../bake/mask-sources.js';
 import { InputError } from '../input-error.js';
 import { type Paint, paintOf } from '../overlay.js';
 import { DocumentModel } from './document-model.js';
-import { type ExtractedDocument, extractDocument } from './extract-document.js';
+import { type ExtractedDocument, extractDocument, type PartsOption } from './extract-document.js';
 
 /** Options of a transfer from a cage to a document. */
 interface DocumentTransferOptions extends TransferOptions, MaskSources {
-  cage: Document | Mesh;
+  cage?: Document | Mesh | undefined;
   texture?: Uint8Array | undefined;
+  parts?: PartsOption | undefined;
 }
 
 /** A transfer to a document, which is not changed by it. */
@@ -41,28 +44,40 @@ interface DocumentTransfer {
 export async function transferDocument(
   caller: string,
   document: Document,
-  options: DocumentTransferOptions,
+  given: DocumentTransferOptions,
   cuts: boolean,
 ): Promise<DocumentTransfer> {
-  const { cage, texture, maskImages, maskColors, ...own } = options;
-  if (typeof cage !== 'object' || cage === null) throw wrong(caller, 'cage', cage, 'a document or a mesh');
+  const { cage, texture, parts, maskImages, maskColors, ...options } = given;
+  if (cage !== undefined && (typeof cage !== 'object' || cage === null))
+    throw wrong(caller, 'cage', cage, 'a document or a mesh');
   if (texture !== undefined && !(texture instanceof Uint8Array))
     throw wrong(caller, 'texture', texture, 'a Uint8Array');
+  if (parts !== undefined && typeof parts !== 'function') throw wrong(caller, 'parts', parts, 'a function');
   if (Object.keys(maskImages ?? {}).some((name) => name !== 'never' && name !== 'always'))
     throw wrong(caller, 'maskImages', maskImages, '{ never, always }');
   await init();
   const paint = texture && within(caller, 'texture', () => paintOf(texture));
-  const target = read(caller, 'target', document, () => extractDocument(document, 'own'));
+  const target = read(caller, 'target', document, () => extractDocument(document, 'own', parts));
   const { origin } = target;
-  const source = isDocument(cage)
-    ? within(caller, 'cage', () => extractDocument(cage, origin).mesh)
-    : moved(cage, origin);
+  const around = isDocument(cage ?? document)
+    ? within(caller, 'cage', () => extractDocument((cage ?? document) as Document, origin, 'cage'))
+    : { mesh: moved(cage as Mesh, origin), parts: [] };
+  if (cage === undefined && !hasCages(around.parts)) throw wrong(caller, 'cage', cage, kNoCage);
+  const apart = within(caller, 'target', () => moveApart(target, around, (text) => new InputError(text)));
+  const [source, own] = [apart?.cage ?? around.mesh, apart?.target ?? target.mesh];
   const model = new DocumentModel(document, target.parts);
-  const masks = within(caller, 'target', () => masksOf(model, own.masks, { images: maskImages, colors: maskColors }));
-  const rules = { ...own, masks };
-  const result = transfer(source, target.mesh, rules);
-  return { target, model, result, cut: cuts ? cutBorders(source, target.mesh, result, rules) : undefined, paint };
+  const masks = within(caller, 'target', () =>
+    masksOf(model, options.masks, { images: maskImages, colors: maskColors }),
+  );
+  const rules = { ...options, masks, locks: withBare(target.accessories, options.locks) };
+  const result = transfer(source, own, rules);
+  const cut = cuts ? cutBorders(source, own, result, rules) : undefined;
+  apart?.mend(result);
+  return { target, model, result, cut, paint };
 }
+
+/** What a cage has to be. */
+const kNoCage = 'a document or a mesh, and no mesh of the target is named as its outer cage: Head_OuterCage';
 
 /** The error of an argument, or of a member of one, of the wrong type. @param name  As in "cage.positions". */
 export const wrong = (caller: string, name: string, value: unknown, type: string) =>

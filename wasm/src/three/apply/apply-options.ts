@@ -3,7 +3,7 @@ import type { Classification, TransferOptions, TransferResult } from '../../inde
 import type { Borders } from '../../parts/borders-option.js';
 import type { Prepared } from '../../parts/prepare.js';
 import { notA, wrong } from '../errors.js';
-import type { Part } from './extract-scene.js';
+import type { Extracted, Part, PartsOption } from './extract-scene.js';
 import type { Calling } from './tasks.js';
 
 /** A transfer that was made earlier, for `applyTransfer`. */
@@ -50,6 +50,11 @@ export interface ApplyOptions extends TransferOptions {
    * then cut (`cut`): smooth borders, but more triangles.
    */
   borders?: Borders | undefined;
+  /**
+   * Which meshes are painted. Default: what three.js draws, without cages, markers and collision shapes, by their names. What is left
+   * out hides nothing. Glasses, hats and weapons stay bare, by their names, unless locks say otherwise.
+   */
+  parts?: PartsOption | undefined;
 }
 
 /**
@@ -74,6 +79,8 @@ export interface Applied {
   /** The channel of the new UVs. */
   channel: 1 | 2 | 3;
   parts: Part[];
+  /** The meshes that are left out, and why. */
+  leftOut: Extracted['leftOut'];
   /**
    * With a texture: one for each part with a material that cannot be painted. With a material: one for each part. They are children
    * of the meshes below, and follow them; those without triangles are in no scene.
@@ -120,7 +127,7 @@ export function checkOptions(fn: string, options: ApplyOptions & Calling): void 
   const check = (name: keyof typeof options, fits: unknown, what: string): void => {
     if (!fits) throw notA(what, `options.${name}`, options[name], fn, 'badOption');
   };
-  const { texture, material, channel = 1, saved, signal, onProgress } = options;
+  const { texture, material, channel = 1, saved, parts, signal, onProgress } = options;
   check('texture', !texture || texture.isTexture, 'a Texture');
   check('material', !material || material.isMaterial, 'a Material');
   check('channel', [1, 2, 3].includes(channel), '1, 2 or 3');
@@ -129,13 +136,14 @@ export function checkOptions(fn: string, options: ApplyOptions & Calling): void 
     check(name, share >= 0 && share <= 1, 'a number from 0 to 1');
   }
   check('saved', !saved || typeof saved.key === 'string', 'what deserialize returned');
+  check('parts', parts == null || typeof parts === 'function', 'a function');
   check('signal', signal == null || signal.throwIfAborted, 'an AbortSignal');
   check('onProgress', onProgress == null || typeof onProgress === 'function', 'a function');
 }
 
 /** The options of `transfer` among those of `applyTransfer`. */
 export function transferOptions(options: ApplyOptions): TransferOptions {
-  const { result, saved, texture, opacity, feather, material, channel, borders, ...rest } = options;
+  const { result, saved, texture, opacity, feather, material, channel, borders, parts, ...rest } = options;
   return rest;
 }
 

@@ -105,11 +105,12 @@ function checkMaterials(parts: readonly Part[]): void {
  * attribute that was extended, for callers that share the thread.
  */
 export function* apply(
-  { mesh: arrays, parts }: Extracted,
+  target: Extracted,
   extracted: readonly BufferGeometry[],
   prepared: Prepared,
   options: ApplyOptions,
 ): Generator<void, Applied> {
+  const { parts } = target;
   const channel = options.channel ?? freeChannel(parts);
   if (options.texture && !options.material) checkMaterials(parts);
   const states = parts.map(({ geometry }, p) =>
@@ -148,7 +149,7 @@ export function* apply(
     paintings.set(geometry, painting);
   });
   const shown = parts.map((part, p): ShownPart => ({ ...prepared.parts[p]!, part, cosmetic: new Uint8Array(0) }));
-  return new Shown(arrays, prepared, shown, { painting, material: options.material, channel });
+  return new Shown(target, prepared, shown, { painting, material: options.material, channel });
 }
 
 interface Display {
@@ -164,6 +165,7 @@ class Shown implements Applied {
   readonly cutTriangles;
   readonly channel;
   readonly parts;
+  readonly leftOut;
   readonly #target: Extracted['mesh'];
   readonly #shown: ShownPart[];
   readonly #painting: Painting;
@@ -177,13 +179,14 @@ class Shown implements Applied {
   #isDisposed = false;
   #hasPaint = false;
 
-  constructor(target: Extracted['mesh'], prepared: Prepared, shown: ShownPart[], display: Display) {
+  constructor({ mesh, leftOut }: Extracted, prepared: Prepared, shown: ShownPart[], display: Display) {
     this.result = prepared.result;
     this.splitVertices = prepared.parts.reduce((sum, { split }) => sum + split.copies, 0);
     this.cutTriangles = prepared.cutTriangles ?? 0;
     this.channel = display.channel;
     this.parts = shown.map(({ part }) => part);
-    this.#target = target;
+    this.leftOut = leftOut;
+    this.#target = mesh;
     this.#shown = shown;
     this.#painting = display.painting;
     this.#material = display.material;

@@ -1,9 +1,12 @@
 import {
+  BackSide,
   type BufferAttribute,
   type BufferGeometry,
+  FrontSide,
   type InstancedBufferAttribute,
   type InstancedMesh,
   type InterleavedBufferAttribute,
+  type Material,
   Matrix4,
   type Object3D,
   type SkinnedMesh,
@@ -13,6 +16,7 @@ import {
 import { show } from '../../core/error.js';
 import type { CagecastError, Mesh } from '../../index.js';
 import type { Vector } from '../../inspect/geometry.js';
+import { chooseParts, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
 import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/origin.js';
 import { morphed, movePoints } from '../../parts/points.js';
 import { placeMeshes, type Skin } from '../../parts/skin.js';
@@ -23,6 +27,8 @@ import { wrong } from '../errors.js';
 export interface Part {
   /** The name of the mesh, or of its parent if it has none. */
   name: string;
+  /** All that it is called: with the names in its file, of its geometry and its materials. */
+  aliases: readonly string[];
   /** The mesh; `undefined` if a geometry was given. */
   mesh: ThreeMesh | undefined;
   geometry: BufferGeometry;
@@ -40,7 +46,17 @@ export interface Extracted {
   mesh: Mesh & { indices: Uint32Array; groups: Uint32Array };
   /** In the order of their vertices. */
   parts: Part[];
+  /** The meshes that are left out, and why. */
+  leftOut: (LeftOut & { mesh: ThreeMesh })[];
+  /** The numbers in `groups` of what a figure wears or carries, by its name. `applyTransfer` leaves it bare. */
+  accessories: number[];
 }
+
+/**
+ * Says which meshes are painted; the others hide nothing.
+ * @param isDrawn  Whether three.js draws it, and its name is not that of a cage, a marker or a collision shape.
+ */
+export type PartsOption = (mesh: ThreeMesh, isDrawn: boolean) => boolean;
 
 const identity = new Matrix4();
 
@@ -52,18 +68,20 @@ const identity = new Matrix4();
  * morph targets shape them as they do now (`morphTargetInfluences`). An instanced mesh is taken once, where its first instance is. Each mesh, or each of its material
  * groups, is a group.
  * @param argument  The name of the argument, for messages.
+ * @param isMeant   Which meshes count. Default: what is drawn; of a `cage` or `template`, its outer cages, or all if there are none
  * @throws {CagecastError} that names the part and the element.
  */
-export const extract = (object: Object3D | BufferGeometry, argument = 'target'): Extracted =>
-  extractNear(object, argument, kSceneOrigin);
+export const extract = (object: Object3D | BufferGeometry, argument = 'target', isMeant?: PartsOption): Extracted =>
+  extractNear(object, argument, kSceneOrigin, isMeant);
 
 /** The same with positions around an origin, which target and cage need in common; and that origin. */
 export function extractNear(
   object: Object3D | BufferGeometry,
   argument: string,
   origin: Origin,
+  isMeant?: PartsOption,
 ): Extracted & { origin: Vector } {
-  const parts = listParts(object, argument);
+  const { parts, leftOut, accessories } = listParts(object, argument, isMeant);
   const placed = ({ geometry, matrix }: Part) => ({
     points: valuesOf(geometry.getAttribute('position') as Attribute),
     matrix: matrix.elements,
@@ -81,7 +99,12 @@ export function extractNear(
     group = placeGroups(part, groups, group);
   }
   const uvs = readUvs(parts, vertices, argument);
-  return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts, origin: near };
+  const bare = accessories.flatMap((p) => {
+    const { firstVertex, vertexCount } = parts[p]!;
+    return [...new Set(groups.subarray(firstVertex, firstVertex + vertexCount))];
+  });
+  const mesh = { positions, indices, groups, ...(uvs && { uvs }) };
+  return { mesh, parts, leftOut, accessories: bare, origin: near };
 }
 
 /** Where the next part begins: how many vertices and triangles there are before it. */
@@ -92,7 +115,11 @@ function endOf(parts: readonly Part[]): [vertices: number, triangles: number] {
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
-function listParts(object: Object3D | BufferGeometry, argument: string): Part[] {
+function listParts(
+  object: Object3D | BufferGeometry,
+  argument: string,
+  isMeant: PartsOption | undefined,
+): Pick<Extracted, 'parts' | 'leftOut' | 'accessories'> {
   if (!isGeometry(object) && !isObject(object)) {
     throw wrong(
       `${argument} is ${show(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
@@ -101,8 +128,15 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
       { argument },
     );
   }
+  const isCage = argument === 'cage' || argument === 'template';
   const parts: Part[] = [];
-  const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
+  const add = (
+    aliases: readonly string[],
+    name: string,
+    mesh: ThreeMesh | undefined,
+    geometry: BufferGeometry,
+    matrix: Matrix4,
+  ) => {
     if ((mesh && 'isBatchedMesh' in mesh) || 'isInstancedBufferGeometry' in geometry)
       throw wrongPart(argument, name, 'is a batch or an instanced geometry; make each instance a mesh of its own');
     const position = geometry.getAttribute('position') as Attribute | undefined;
@@ -122,6 +156,7 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
     const [firstVertex, firstTriangle] = endOf(parts);
     parts.push({
       name,
+      aliases,
       mesh,
       geometry,
       matrix,
@@ -132,8 +167,8 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
     });
   };
   if (isGeometry(object)) {
-    add(object.name || 'geometry', undefined, object, identity);
-    return parts;
+    add([], object.name || 'geometry', undefined, object, identity);
+    return { parts, leftOut: [], accessories: [] };
   }
   object.updateWorldMatrix(true, true);
   const meshes: ThreeMesh[] = [];
@@ -141,13 +176,75 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
     // Its bones may be elsewhere in the scene.
     for (const bone of (child as SkinnedMesh).skeleton?.bones ?? []) bone.updateWorldMatrix(true, false);
     if (!isMesh(child) || [child, child.geometry, child.material].flat().some(isMarked)) return;
+    if (isAid(child, object)) return;
     if (!isInstanced(child) || child.count > 0) meshes.push(child);
   });
-  placesOf(meshes).forEach((matrix, m) => {
+  const found = placesOf(meshes).map((matrix, m) => {
     const mesh = meshes[m]!;
-    add(mesh.name || mesh.parent?.name || `mesh ${parts.length}`, mesh, mesh.geometry, matrix);
+    return { mesh, matrix, name: mesh.name || mesh.parent?.name || `mesh ${m}` };
   });
-  return parts;
+  const chosen = chooseParts(
+    found,
+    ({ mesh, matrix }) => lookOf(mesh, matrix, object),
+    isMeant ? (p, isDrawn) => isMeant(meshes[p]!, isDrawn) : isCage ? 'cage' : undefined,
+    (text) => wrong(`${argument}: ${text}; the option parts says which count`, undefined, undefined, { argument }),
+  );
+  for (const { name, mesh, matrix } of chosen.parts) add(namesOf(mesh, object), name, mesh, mesh.geometry, matrix);
+  const accessories = new Set(chosen.accessories.map((p) => chosen.parts[p]!.mesh));
+  return {
+    parts,
+    leftOut: chosen.leftOut.map(({ part, name, why }) => ({ name, why, mesh: part.mesh })),
+    accessories: [...parts.keys()].filter((p) => accessories.has(parts[p]!.mesh!)),
+  };
+}
+
+/** An object and all above it, below a root: whoever gives a root means it, even while it is hidden. */
+function below(root: Object3D, object: Object3D): Object3D[] {
+  const path: Object3D[] = [];
+  for (let one: Object3D | null = object; one && one !== root; one = one.parent) path.push(one);
+  return path;
+}
+
+/** Whether a mesh only shows something else: a thick line, or a part of a helper. */
+const isAid = (mesh: ThreeMesh, root: Object3D): boolean =>
+  'isLineSegments2' in mesh || below(root, mesh).some(({ type }) => type.endsWith('Helper'));
+
+/** The object that holds the meshes of one glTF mesh, if it has several. */
+export function holderOf(mesh: ThreeMesh | undefined, root: object): Object3D | undefined {
+  const holder = mesh?.parent;
+  const isHolder = holder && holder !== root && holder.children.length > 1 && holder.children.every(isMesh);
+  return isHolder ? holder : undefined;
+}
+
+/** The materials of a mesh. Three.js draws nothing where a list of them has a gap. */
+const materialsOf = ({ material }: ThreeMesh): Material[] =>
+  ([material].flat() as (Material | undefined)[]).filter((one) => one !== undefined);
+
+function namesOf(mesh: ThreeMesh, root: Object3D): string[] {
+  const holder = holderOf(mesh, root);
+  // Of a glTF, `userData` has the name as it is in the file.
+  const own = [mesh, holder].flatMap((one) => [one?.name, one?.userData['name']]);
+  return [...own, mesh.geometry.name, ...materialsOf(mesh).map(({ name }) => name)].filter((name) => name);
+}
+
+function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
+  const { geometry } = mesh;
+  const position = geometry.getAttribute('position') as Attribute | undefined;
+  const materials = materialsOf(mesh);
+  const all = (fits: (material: Material) => boolean) => materials.length > 0 && materials.every(fits);
+  const isOff = ({ visible, userData: { gltfExtensions } }: Object3D) =>
+    !visible || gltfExtensions?.[visibilityExtension]?.visible === false;
+  return {
+    names: namesOf(mesh, root),
+    isHidden: below(root, mesh).some(isOff) || all(({ visible }) => !visible),
+    isClear: all(({ transparent, alphaTest, opacity }) =>
+      isClear(transparent ? 'BLEND' : alphaTest > 0 ? 'MASK' : 'OPAQUE', opacity, alphaTest),
+    ),
+    sides: all(({ side }) => side === FrontSide) ? 'front' : all(({ side }) => side === BackSide) ? 'back' : 'both',
+    positions: position ? valuesOf(position) : [],
+    indices: geometry.index?.array,
+    matrix: matrix.elements,
+  };
 }
 
 /**
@@ -227,7 +324,13 @@ export const isMirrored = (matrix: Matrix4): boolean => matrix.determinant() < 0
 
 /** Writes the positions of a part in the scene's space; without a mesh, as morph targets do not shape it. */
 export function placePositions(
-  { mesh, geometry, matrix, firstVertex, vertexCount }: Omit<Part, 'name' | 'firstTriangle' | 'triangleCount'>,
+  {
+    mesh,
+    geometry,
+    matrix,
+    firstVertex,
+    vertexCount,
+  }: Omit<Part, 'name' | 'aliases' | 'firstTriangle' | 'triangleCount'>,
   out: Float32Array,
 ): void {
   // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.

@@ -4,7 +4,7 @@ import type { Mesh } from '../../index.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { readExtras } from '../../parts/template-extras.js';
 import { wrong } from '../errors.js';
-import { extract, isMesh, isSkinned, type Part } from './extract-scene.js';
+import { extract, holderOf, isSkinned, type Part } from './extract-scene.js';
 
 /**
  * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones; else
@@ -122,9 +122,7 @@ const isTemplate = <T extends Mesh>(cage: Loaded | T): cage is T => (cage as Mes
 /** The names of each group: of its mesh, of the object that holds the meshes of one glTF mesh, and of its material. */
 function namesOf(parts: readonly Part[], root: object): string[][] {
   return parts.flatMap(({ name, mesh, geometry }) => {
-    const holder = mesh?.parent;
-    const isWhole = holder && holder !== root && holder.children.length > 1 && holder.children.every(isMesh);
-    const own = [...new Set([name, geometry.name, isWhole ? holder.name : ''].filter((text) => text !== ''))];
+    const own = [...new Set([name, geometry.name, holderOf(mesh, root)?.name].filter((text) => text))] as string[];
     const materials = [mesh?.material ?? []].flat();
     // As `extract` numbers groups: by the first of each material's groups.
     const order = Array.isArray(mesh?.material)

@@ -49,7 +49,7 @@ export class AvatarTransfers {
       firstVertex,
       vertexCount,
     }));
-    const options = { preset, threshold, locks: choicesOf(locks, undefined).locks, parts };
+    const options = { preset, threshold, locks: choicesOf(locks, standing.model, undefined).locks, parts };
     const { verdict } = await this.#around.transferer.ask('inspect', cage, standing.model, options);
     this.#list.update(avatar, { verdict });
   }
@@ -77,7 +77,7 @@ export class AvatarTransfers {
     const { standing, locks, files } = avatar;
     if (!standing?.projection) return;
     const { threshold } = this.#around.session.rules;
-    const choices = choicesOf(locks, standing.projection, this.#around.session.bareOf(files));
+    const choices = choicesOf(locks, standing.model, standing.projection, this.#around.session.bareOf(files));
     const classification = classify(standing.projection, { threshold, ...choices });
     standing.classify(classification);
     avatar.paintable = paintableShare(classification.segmentStats);

@@ -1,4 +1,4 @@
-import type { Model } from '../model';
+import { asCage, asTarget, type Model, ownCage } from '../model';
 import { haveSameUvs } from '../same-uvs';
 import type { Shown } from '../scene';
 import type { Session } from '../session';
@@ -255,10 +255,10 @@ export class Wardrobe {
   /** Reads a new avatar and its cage. @param common A cage that is fitted to it if it has none. */
   async #read(avatar: Avatar, { target, cage }: Entry, common: Model | undefined): Promise<void> {
     this.list.update(avatar, { doing: 'Reading' });
-    const model = await target();
+    const model = asTarget(await target());
     if (!this.list.has(avatar)) return this.#around.loader.dispose(model);
     try {
-      avatar.cage = await cage?.();
+      avatar.cage = cage ? asCage(await cage()) : ownCage(model);
       this.#session.keepBare(model, avatar.kept?.bare ?? this.#session.bareOf(model.files));
       avatar.files = model.files;
       avatar.kept = undefined;

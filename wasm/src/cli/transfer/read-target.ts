@@ -1,0 +1,33 @@
+import type { ReadOptions } from '../../gltf/files.js';
+import type { Io } from '../io/io.js';
+import type { Rules } from '../model/settings.js';
+import { type ReadModel, readModel } from './models.js';
+import { noSuchName, partsNamed } from './part-names.js';
+
+/**
+ * Reads a target: what is drawn of it, without the parts that are ignored.
+ * @param ignored  Patterns of names. An empty one stands for itself: then also what is not drawn counts.
+ * @throws {InputError} that names the file; if a pattern matches nothing, or all is left out, too.
+ */
+export function readTarget(
+  path: string,
+  reading: ReadOptions,
+  io: Io,
+  ignored: Rules['ignored'],
+  bytes?: Uint8Array,
+): Promise<ReadModel> {
+  const patterns = ignored.filter(({ pattern }) => pattern !== '');
+  return readModel(path, reading, io, {
+    bytes,
+    whichCount: (parts, file) => {
+      const out = new Set<number>();
+      for (const { pattern, isOptional } of patterns) {
+        const found = partsNamed(pattern, { file, extracted: { parts: [...parts] } });
+        if (found.length === 0 && !isOptional)
+          throw noSuchName(`--ignore ${pattern}`, { file, extracted: { parts: [...parts] } });
+        for (const p of found) out.add(p);
+      }
+      return (p, isDrawn) => (isDrawn || patterns.length < ignored.length) && !out.has(p);
+    },
+  });
+}

@@ -1,0 +1,175 @@
+// Which parts of a model count. What a viewer does not draw is neither painted nor in the way.
+import type { Locks } from '../api/options.js';
+import { show } from '../core/error.js';
+import { determinant } from './affine.js';
+import { cageParts } from './own-cages.js';
+import { movePoints } from './points.js';
+
+/** What decides whether a viewer draws a part. */
+export interface Look {
+  /** The names of its node, its mesh and its materials. */
+  names: readonly (string | undefined)[];
+  /** Whether it, or something above it, is switched off. */
+  isHidden: boolean;
+  /** Whether the alpha of its material leaves nothing of it. */
+  isClear: boolean;
+  /** The sides of its triangles that are drawn. */
+  sides: 'front' | 'back' | 'both';
+  /** Its own positions, 3 per vertex. */
+  positions: ArrayLike<number>;
+  /** Its own triangles. Default: all vertices in their order */
+  indices: ArrayLike<number> | undefined;
+  /** From its own space to the scene's. */
+  matrix: ArrayLike<number>;
+}
+
+/** Why a part does not count, for people. */
+const kReasons = {
+  name: 'by name a cage, marker or collision shape',
+  hidden: 'hidden',
+  transparent: 'fully transparent',
+  outline: 'only its back is drawn, around others',
+  ignored: 'ignored',
+};
+
+/** A part that is left out, and why. */
+export interface LeftOut {
+  name: string;
+  why: keyof typeof kReasons;
+}
+
+/** The extension of glTF that switches nodes off, with all below them. */
+export const visibilityExtension = 'KHR_node_visibility';
+
+/** Names of cages, markers and collision shapes: of Roblox, of Unreal, and usual ones. Programs add numbers to them. */
+const kTechnical = /^(UCX|UBX|USP|UCP)_|_(OuterCage|InnerCage|Att|Collider)([._]?\d+)?$/i;
+
+/** Words that name what a figure wears or carries. */
+const kAccessories =
+  /^((eye|sun)?glasses|goggles|spectacles|hats?|beanie|headwear|facewear|earrings?|necklace|weapons?|swords?|daggers?|kni(fe|ves)|axes?|spears?|shields?|bows?|crossbows?|guns?|pistols?|rifles?)$/;
+
+/** Which parts of a target count. */
+export interface Chosen<Part> {
+  parts: Part[];
+  leftOut: (LeftOut & { part: Part })[];
+  /** The numbers of those that a figure wears or carries, by their names; none if all are such. */
+  accessories: number[];
+}
+
+/** Whether a part of a target counts. @param isDrawn  Whether a viewer draws it, and it is no cage, marker or collision shape. */
+export type IsMeant = (part: number, isDrawn: boolean) => boolean;
+
+/**
+ * Chooses the parts of a target, or of a cage, that count.
+ * @param lookOf   What is known of a part.
+ * @param isMeant  Default: what is drawn. `cage`: the outer cages, or all if there are none.
+ * @param fail     Makes the error if parts are there, but none counts.
+ */
+export function chooseParts<Part extends { name: string }>(
+  parts: readonly Part[],
+  lookOf: (part: Part) => Look,
+  isMeant: IsMeant | 'cage' = (_, isDrawn) => isDrawn,
+  fail: (text: string) => Error,
+): Chosen<Part> {
+  const looks = parts.map(lookOf);
+  const reasons = whyNotDrawn(looks);
+  const counts = isMeant === 'cage' ? cageParts(looks.map(({ names }) => names)) : isMeant;
+  const isLeftOut = reasons.map((reason, p) => !counts(p, reason === undefined));
+  const leftOut = parts.flatMap((part, p) =>
+    isLeftOut[p] ? [{ part, name: part.name, why: reasons[p] ?? ('ignored' as const) }] : [],
+  );
+  const kept = parts.filter((_, p) => !isLeftOut[p]);
+  if (parts.length > 0 && kept.length === 0) throw fail(`all parts are left out: ${leftOutText(leftOut)}`);
+  const own = looks.filter((_, p) => !isLeftOut[p]).map(({ names }) => names.some(isAccessory));
+  const accessories = own.flatMap((is, p) => (is ? [p] : []));
+  return { parts: kept, leftOut, accessories: accessories.length < kept.length ? accessories : [] };
+}
+
+/** How many parts a message names. */
+const kMaxNamed = 8;
+
+/** Says which parts are left out, and why. */
+export function leftOutText(leftOut: readonly LeftOut[]): string {
+  const more = leftOut.length - kMaxNamed;
+  const named = leftOut.slice(0, kMaxNamed);
+  const reasons = [...new Set(named.map(({ why }) => why))].map((reason) => {
+    const names = named.flatMap(({ name, why }) => (why === reason ? show(name) : []));
+    return `${names.join(', ')} (${kReasons[reason]})`;
+  });
+  return `${reasons.join(', ')}${more > 0 ? ` and ${more} more` : ''}`;
+}
+
+/** Locks that leave groups bare, under those that are given. */
+export function withBare(groups: readonly number[], locks: Locks | undefined): Locks | undefined {
+  if (groups.length === 0) return locks;
+  const bare = Object.fromEntries(groups.map((group) => [group, 'exclude' as const]));
+  return { ...locks, groups: { ...bare, ...locks?.groups } };
+}
+
+/** Whether the alpha of a material leaves nothing of a part, by the modes of glTF. */
+export const isClear = (mode = 'OPAQUE', alpha = 1, cutoff = 0.5): boolean =>
+  mode === 'BLEND' ? alpha <= 0 : mode === 'MASK' && alpha < cutoff;
+
+function isAccessory(name: string | undefined): boolean {
+  const words = name?.replace(/([a-z])([A-Z])/g, '$1 $2').match(/[a-z]+/gi) ?? [];
+  return words.some((word) => kAccessories.test(word.toLowerCase()));
+}
+
+/** Why each part is not drawn, if it is not. */
+function whyNotDrawn(looks: readonly Look[]): (LeftOut['why'] | undefined)[] {
+  const reasons = looks.map(({ names, isHidden, isClear }): LeftOut['why'] | undefined => {
+    if (names.some((name) => name !== undefined && kTechnical.test(name))) return 'name';
+    return isHidden ? 'hidden' : isClear ? 'transparent' : undefined;
+  });
+  const shapes = looks.map((look, p) => (reasons[p] === undefined ? shapeOf(look) : undefined));
+  const seen = shapes.filter((shape) => shape !== undefined && !shape.isInward);
+  shapes.forEach((shape, p) => {
+    if (!shape?.isInward) return;
+    // A lining of a car, or the inside of a mouth, is drawn: the inside of a shell is filled by what it is the outline of.
+    const inside = seen.filter((one) => isWithin(one!.box, shape.box));
+    const filled = inside.reduce((sum, one) => sum + one!.volume, 0);
+    if (inside.length > 0 && filled >= kFilled * shape.volume) reasons[p] = 'outline';
+  });
+  return reasons;
+}
+
+/** The share of its volume from which a shell is an outline of what is in it. */
+const kFilled = 0.5;
+
+type Box = readonly [low: number[], high: number[]];
+
+const isWithin = ([low, high]: Box, [outerLow, outerHigh]: Box): boolean =>
+  low.every((x, k) => x >= outerLow[k]!) && high.every((x, k) => x <= outerHigh[k]!);
+
+/** What a part encloses, in the scene's space, and whether only its inside is drawn. */
+function shapeOf({ positions, indices, sides, matrix }: Look): { volume: number; isInward: boolean; box: Box } {
+  const volume = enclosed(positions, indices);
+  const box: Box = [
+    [Infinity, Infinity, Infinity],
+    [-Infinity, -Infinity, -Infinity],
+  ];
+  const points = movePoints(matrix, positions, new Float32Array(positions.length));
+  points.forEach((x, i) => {
+    box[0][i % 3] = Math.min(box[0][i % 3]!, x);
+    box[1][i % 3] = Math.max(box[1][i % 3]!, x);
+  });
+  const isInward = sides === 'front' ? volume < 0 : sides === 'back' && volume > 0;
+  return { volume: Math.abs(volume * determinant(matrix)), isInward, box };
+}
+
+/** The volume that triangles enclose, negative if they are wound inward; of open ones, as seen from the mean of their vertices. */
+function enclosed(positions: ArrayLike<number>, indices: ArrayLike<number> | undefined): number {
+  const count = positions.length / 3;
+  const mean = [0, 0, 0];
+  for (let i = 0; i < positions.length; ++i) mean[i % 3]! += positions[i]! / count;
+  let volume = 0;
+  const corners = indices?.length ?? count;
+  const at = (corner: number, k: number) => positions[3 * (indices?.[corner] ?? corner) + k]! - mean[k]!;
+  for (let i = 0; i + 2 < corners; i += 3) {
+    const [ax, ay, az] = [at(i, 0), at(i, 1), at(i, 2)];
+    const [bx, by, bz] = [at(i + 1, 0), at(i + 1, 1), at(i + 1, 2)];
+    const [cx, cy, cz] = [at(i + 2, 0), at(i + 2, 1), at(i + 2, 2)];
+    volume += (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6;
+  }
+  return volume;
+}

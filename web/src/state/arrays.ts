@@ -1,0 +1,18 @@
+import type { Mesh } from 'cagecast';
+import { moveApart } from 'cagecast/three';
+import type { ExtractedMesh, Model } from './model';
+
+/** What a transfer takes of a cage and a target: of parts that have cages of their own, each with its own. */
+export function arraysOf(cage: Model, target: Model): { cage: Mesh; target: Mesh; mend?: Mend } {
+  const apart = moveApart(rangesOf(target.mesh), rangesOf(cage.mesh));
+  const [outer, inner] = [apart?.cage ?? cage.mesh, apart?.target ?? target.mesh];
+  return {
+    cage: { positions: outer.positions, indices: outer.indices, uvs: outer.uvs },
+    target: { positions: inner.positions, indices: inner.indices, groups: inner.groups },
+    ...(apart && { mend: apart.mend }),
+  };
+}
+
+type Mend = NonNullable<ReturnType<typeof moveApart>>['mend'];
+
+const rangesOf = (mesh: ExtractedMesh) => ({ mesh: mesh as Mesh, parts: mesh.primitives });
