@@ -166,7 +166,7 @@ test('a line says why next to nothing may be painted, and what helps', async () 
     ],
     [
       'transfer hidden.glb --cage cage.glb --exclude shell',
-      /^nothing .*: most of "body" is hidden by "shell"; take out /m,
+      /^nothing .*: most of "body" is hidden by "shell"; try --ignore "shell", or /m,
     ],
     [
       'transfer target.glb --cage half.glb --preset paper',

@@ -134,7 +134,7 @@ function hitAt(from: Vector, way: Vector, a: Vector, b: Vector, c: Vector): numb
 const kAdvice: Record<Cause, string> = {
   elsewhere: 'put both in the same place and unit',
   uncovered: 'fit the cage around it',
-  hidden: 'take out what hides it, or set a smaller occlusionReach if that lies outside the cage',
+  hidden: 'leave out what hides it, or set a smaller occlusionReach if that lies outside the cage',
   threshold: 'set a lower threshold, or a lock that keeps it',
   floor: 'set a lower minCovered, or a lock that keeps it',
   depth: 'fit the cage more closely, or set a lock that keeps it',

@@ -42,7 +42,7 @@ export function bareNote({ target: { extracted }, result }: Run): string | undef
   const advice: Record<Bare['cause'], string> = {
     elsewhere: 'put both in the same place and unit; cagecast inspect says more',
     uncovered: 'fit the cage around it; cagecast inspect says more',
-    hidden: 'take out of the file what hides it, or try --occlusion-reach 0 if that lies outside the cage',
+    hidden: `${bare.hider ? `try --ignore ${quoted(bare.hider)}` : 'leave out what hides it by --ignore'}, or --occlusion-reach 0 if that lies outside the cage`,
     threshold: `try ${keep} or a lower --threshold`,
     floor: `try ${keep} or a lower --min-covered`,
     depth: `fit the cage more closely, or try ${keep}`,
