@@ -292,15 +292,22 @@ void findBeyond(const Scene& scene, State& state) {
   std::vector<Verdict> beside, isOut;
   for (std::size_t p = 0; p < count; ++p) {
     beside.push_back(isBesideBorder(scene, state, scene.points.positions[p], state.places[p], state.loops[p]));
-    const Verdict misses = overOutcomes(state.findings[p], [](const Outcome& o) { return !o.isUnderCage; });
+    const Verdict misses =
+        overOutcomes(state.findings[p], [](const Outcome& o) { return !o.isUnderCage && o.zone != Zone::cosmetic; });
     isOut.push_back(state.loops[p] < 0 ? misses : beside[p]);
   }
+  Verdict isAny;  // Whether the cage has any outer border.
+  for (const Verdict& outer : state.outer) isAny = isAny || outer;
   for (const auto how : {&Verdict::is, &Verdict::might, &Verdict::must}) {
     Sets sets(count);
     for (const auto& corners : scene.corners)
       for (std::size_t c = 0; c < 3; ++c)
         if (isOut[corners[c]].*how && isOut[corners[(c + 1) % 3]].*how) sets.join(corners[c], corners[(c + 1) % 3]);
-    std::vector<bool> isBeyond(count, false);
+    // Nothing else is joined to it, or any of it is beside a border.
+    std::vector<bool> isBeyond(count, isAny.*how);
+    for (const auto& corners : scene.corners)
+      if (std::any_of(corners.begin(), corners.end(), [&](std::uint32_t p) { return !(isOut[p].*how); }))
+        for (const std::uint32_t p : corners) isBeyond[sets.find(p)] = false;
     for (std::uint32_t p = 0; p < count; ++p)
       if (beside[p].*how) isBeyond[sets.find(p)] = true;
     for (std::uint32_t p = 0; p < count; ++p) state.beyond[p].*how = isOut[p].*how && isBeyond[sets.find(p)];

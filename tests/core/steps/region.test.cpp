@@ -68,7 +68,7 @@ TEST_CASE("what lies beyond an outer border is not painted, and counts for nothi
   CHECK(transferred(cage.view(), target.view(), options).projection.segmentStats[0].beyondArea == 0);
 }
 
-TEST_CASE("a hand beside the face lies beyond the neck that joins it to the head", "[region]") {
+TEST_CASE("a hand beside the face lies beyond the neck that joins it to the head, and so does its glove", "[region]") {
   // An arm that leaves the body and rises beside the head: its closest points are on no loop.
   Mesh target = figure(3);
   const std::uint32_t first = static_cast<std::uint32_t>(target.vertexCount());
@@ -86,6 +86,7 @@ TEST_CASE("a hand beside the face lies beyond the neck that joins it to the head
     target.addTriangle(v + 1, v + 3, v + 2);
   }
   target.addTriangle(shoulder[0], shoulder[1], first);
+  append(target, box({1.6f, 0, 1.9f}, {0.1f, 0.3f, 0.2f}, 3));  // A glove.
   const Mesh cage = headCage();
   const Projection projection = transferred(cage.view(), target.view(), {}).projection;
   for (std::size_t v = first; v < target.vertexCount(); ++v) CHECK(projection.visibility[v] == Visibility::beyond);

@@ -29,6 +29,9 @@ const kTooLarge = 10;
 /** A cage is unfit if the target is so many times as large. */
 const kFarTooLarge = 100;
 
+/** If at least this share of the exposed area passes, the cage is judged by it. */
+const kMuchPainted = 0.2;
+
 /** How the target lies relative to the cage. Lengths are shares of the target's diagonal. */
 export interface Placement {
   /**
@@ -51,11 +54,11 @@ export interface Placement {
 /** Measures how the target lies relative to the cage. */
 export function placementOf(scene: Scene): Placement {
   const { areas, diagonal, sides, result } = scene;
-  // Hair and glasses lie outside the cage of a head: what is culled is no part of what the cage is for, if that is little.
+  // Hair and glasses lie outside the cage of a head: what is culled is no part of what the cage is for, if anything is painted.
   const areaOf = (isOf: (segment: SegmentStats) => boolean) =>
     result.segmentStats.reduce((sum, segment) => sum + (isOf(segment) ? segment.exposedArea : 0), 0);
-  const isMostPainted = areaOf(({ culled }) => !culled) > areaOf(({ culled }) => culled);
-  const isAside = (segment: number) => isMostPainted && result.segmentStats[segment]!.culled;
+  const isPainted = areaOf(({ culled }) => !culled) > kMuchPainted * areaOf(() => true);
+  const isAside = (segment: number) => isPainted && result.segmentStats[segment]!.culled;
   let [vertices, area, total, exposed, beneath, exposedOutside] = [0, 0, 0, 0, 0, 0];
   const candidates: number[] = [];
   // Per triangle of the cage: how much of the target lies close beneath it, hidden or not.

@@ -96,7 +96,9 @@ void markBeyond(const Scene& scene, PointData& data, bool* isOuter) noexcept {
   const Points& points = data.points;
   std::fill(isOuter, isOuter + scene.loops.count, false);
   auto* loopOf = arena.allocate<std::uint32_t>(points.count);
-  auto* isOut = arena.allocate<bool>(points.count);  // Beside an outer border, or where the cage has no loop.
+  auto* isOut =
+      arena.allocate<bool>(points.count);  // Beside an outer border, or outside the cage where it has no loop.
+  auto* isBeyond = arena.allocate<bool>(points.count);
   auto* parents = arena.allocate<std::uint32_t>(points.count);
   if (arena.failed()) return;
   for (std::uint32_t p = 0; p < points.count; ++p) {
@@ -105,8 +107,9 @@ void markBeyond(const Scene& scene, PointData& data, bool* isOuter) noexcept {
   if (!findOuterBorders(scene, data, loopOf, isOuter)) return;
 
   for (std::uint32_t p = 0; p < points.count; ++p) {
+    const bool misses = data.visibility[p] != Visibility::covered && !meetsCage(data, p);
     if (isBesideBorder(scene, data, p, isOuter)) data.visibility[p] = Visibility::beyond;
-    isOut[p] = data.visibility[p] == Visibility::beyond || (loopOf[p] == BoundaryLoops::kNone && !meetsCage(data, p));
+    isOut[p] = data.visibility[p] == Visibility::beyond || (loopOf[p] == BoundaryLoops::kNone && misses);
   }
   UnionFind sets(parents, points.count);
   for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
@@ -117,12 +120,18 @@ void markBeyond(const Scene& scene, PointData& data, bool* isOuter) noexcept {
     }
   }
   sets.flatten(points.count);
-  // What is out is beyond the border if it is joined to something that is beside it: its set's root tells.
-  for (std::uint32_t p = 0; p < points.count; ++p) {
-    if (data.visibility[p] == Visibility::beyond) data.visibility[parents[p]] = Visibility::beyond;
+  // A set is beyond if any of it is beside a border, or if nothing of the target is joined to it.
+  std::fill(isBeyond, isBeyond + points.count, true);  // By the sets' roots.
+  for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
+    const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
+    if (isOut[corner[0]] && isOut[corner[1]] && isOut[corner[2]]) continue;
+    for (int k = 0; k < 3; ++k) isBeyond[parents[corner[k]]] = false;
   }
   for (std::uint32_t p = 0; p < points.count; ++p) {
-    if (isOut[p] && data.visibility[parents[p]] == Visibility::beyond) data.visibility[p] = Visibility::beyond;
+    if (data.visibility[p] == Visibility::beyond) isBeyond[parents[p]] = true;
+  }
+  for (std::uint32_t p = 0; p < points.count; ++p) {
+    if (isOut[p] && isBeyond[parents[p]]) data.visibility[p] = Visibility::beyond;
   }
 }
 
