@@ -43,7 +43,8 @@ TEST_CASE("the default exclusions know eyes, teeth and wheels, not skin", "[cage
     CAPTURE(name);
     CHECK(matchingParts({name}, defaultExclusions())[0]);
   }
-  for (const char* name : {"skin", "eyelid", "body.007/paintRed", "head", "Chair", "Wolf3D_Outfit_Top", "bumpers"}) {
+  for (const char* name : {"skin", "eyelid", "body.007/paintRed", "head", "Chair", "Wolf3D_Outfit_Top", "bumpers",
+                           "King_Legs/DarkBrown"}) {
     CAPTURE(name);
     CHECK_FALSE(matchingParts({name}, defaultExclusions())[0]);
   }
