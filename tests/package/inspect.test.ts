@@ -44,6 +44,24 @@ describe('inspect', () => {
     );
   });
 
+  test('pieces that almost touch are found, with the tolerance that joins them', () => {
+    // Each triangle has corners of its own, off by noise.
+    const torn: Mesh = {
+      positions: Float32Array.from({ length: 3 * target.indices.length }, (_, i) => {
+        const value = target.positions[3 * target.indices[Math.floor(i / 3)]! + (i % 3)]!;
+        return value + 2e-7 * diagonal * Math.sin(i * i);
+      }),
+      indices: target.indices.map((_, i) => i),
+      groups: target.indices.map((vertex) => target.groups[vertex]!),
+    };
+    const { sentence, numbers } = find(inspect(cage, torn), 'piecesApart');
+    assert.match(sentence, /^The target is in [\d,]+ pieces that almost touch, .* 3 are left$/);
+    assert.equal(numbers['weldTolerance'], 1e-6);
+    const { weldTolerance } = numbers as { weldTolerance: number };
+    assert.ok(!codes(inspect(cage, torn, { weldTolerance })).includes('piecesApart'));
+    assert.equal(inspect(cage, torn, { weldTolerance }).verdict, 'good');
+  });
+
   test('a cage that fits is good, and is described', () => {
     const inspection = look({});
     assert.equal(inspection.verdict, 'good', JSON.stringify(inspection.findings));

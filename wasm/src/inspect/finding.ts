@@ -57,7 +57,8 @@ export type FindingCode =
   | 'holeUnexplained'
   | 'segmentInDoubt'
   | 'muchCulled'
-  | 'muchHidden';
+  | 'muchHidden'
+  | 'piecesApart';
 
 /** Whether a cage fits its target: well, with reservations, or not at all. */
 export type Verdict = 'good' | 'usable' | 'unfit';

@@ -20,6 +20,7 @@ import { checkHiding } from './hiding.js';
 import { checkHoles, type Hole, holesOf, spanPoints } from './holes.js';
 import { checkInside, type Inside, insideOf } from './inside.js';
 import { checkNormals, facingOutward, orientationOf } from './normals.js';
+import { checkPieces } from './pieces.js';
 import { checkPlacement, type Placement, placementOf } from './placement.js';
 import { reverse } from './reverse.js';
 import { type PartName, sceneOf } from './scene.js';
@@ -136,6 +137,7 @@ function outcomeOf(fn: string, cage: Mesh, target: Mesh, given: InspectOptions =
     ...checkHoles(holes, segments),
     ...checkSegments(scene, segments, options.locks),
     ...checkHiding(scene, options),
+    ...checkPieces(scene, options),
   ];
   return { scene, orientation, findings, placement, inside, holes, segments: segments.filter(hasArea) };
 

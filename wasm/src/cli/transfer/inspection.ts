@@ -91,7 +91,8 @@ export function conclusionOf({ verdict, findings }: Inspection): string[] {
 }
 
 /** What to do about a finding, with the flags that reverse its verdicts, if there are any. */
-export function adviceOn({ advice, places = [], locks, ignore = [] }: Finding): string {
+export function adviceOn({ advice, places = [], locks, ignore = [], numbers: { weldTolerance } }: Finding): string {
+  if (weldTolerance !== undefined) return `${advice} By: --weld-tolerance ${weldTolerance}`;
   if (ignore.length > 0) return `${advice} By: ${ignore.map((name) => `--ignore "${name}"`).join(' ')}`;
   const locked = places.filter(({ segment }) => locks?.segments?.[segment] !== undefined);
   const flags = new Set(locked.map(({ segment, part }) => `--${locks!.segments![segment]} "${part}"`));
