@@ -52,7 +52,7 @@ describe('inspect', () => {
         return value + 2e-7 * diagonal * Math.sin(i * i);
       }),
       indices: target.indices.map((_, i) => i),
-      groups: target.indices.map((vertex) => target.groups[vertex]!),
+      groups: Uint32Array.from(target.indices, (vertex) => target.groups[vertex]!),
     };
     const { sentence, numbers } = find(inspect(cage, torn), 'piecesApart');
     assert.match(sentence, /^The target is in [\d,]+ pieces that almost touch, .* 3 are left$/);
