@@ -46,7 +46,7 @@ export interface Apart<T extends Mesh, C extends Mesh> {
 
 /**
  * Moves the parts of a target apart, each with the cage of its name: arms that hang down are nearer to the cage of the body than to their own.
- * Where a cage is open towards another, it gets a lid. What is computed holds for the parts where they were; only the diagonal is longer.
+ * Where a cage is open towards another, it gets a lid. What is computed holds for the parts where they were; only the diagonal is another.
  * @returns both as `transfer` takes them; `undefined` if the cage is one, or has other names.
  * @throws {Error} of `fail` that names a part without a cage.
  */
@@ -65,12 +65,8 @@ export function moveApart<T extends Mesh, C extends Mesh>(
     target.parts.forEach((other, p) => own[p] === c && extend(box, target.mesh.positions, other));
     return box;
   });
-  const [width, height] = [0, 1].map((k) => kRoom * Math.max(...boxes.map(({ low, high }) => high[k]! - low[k]!)));
-  const columns = Math.ceil(Math.sqrt(boxes.length));
-  const moves = boxes.map(({ low, high }, c) => {
-    const place = [width! * (c % columns), height! * Math.floor(c / columns), 0];
-    return place.map((x, k) => x - (low[k]! + high[k]!) / 2);
-  });
+  const places = sideBySide(boxes);
+  const moves = boxes.map(({ low, high }, c) => places[c]!.map((x, k) => x - (low[k]! + high[k]!) / 2));
   const positions = target.mesh.positions.slice();
   target.parts.forEach((part, p) => move(positions, moves[own[p]!]!, part));
   const around = cage.mesh.positions.slice();
@@ -105,8 +101,28 @@ function joined({ indices, uvs }: Mesh, positions: Float32Array, lids: readonly 
   };
 }
 
-/** How much room a part has, as a multiple of the largest. */
-const kRoom = 1.25;
+/** How far a part is from others, as a share of its size. */
+const kRoom = 0.25;
+
+/** Where the middles of boxes go so that they lie in rows, close together: tolerances are shares of the diagonal of all. */
+function sideBySide(boxes: readonly Box[]): number[][] {
+  const sizes = boxes.map(({ low, high }) => {
+    const size = high.map((x, k) => x - low[k]!);
+    const room = kRoom * Math.max(...size);
+    return { width: size[0]! + room, height: size[1]! + room };
+  });
+  const places: number[][] = [];
+  const most = Math.sqrt(sizes.reduce((sum, { width, height }) => sum + width * height, 0));
+  let [x, y, row] = [0, 0, 0];
+  for (const c of [...boxes.keys()].sort((a, b) => sizes[b]!.height - sizes[a]!.height)) {
+    const { width, height } = sizes[c]!;
+    if (x > 0 && x + width > most) [x, y, row] = [0, y + row, 0];
+    places[c] = [x + width / 2, y + height / 2, 0];
+    x += width;
+    row = Math.max(row, height);
+  }
+  return places;
+}
 
 /** The number of the cage of each part. */
 function cagesOf(parts: readonly Range[], cages: readonly Range[], fail: (text: string) => Error) {
