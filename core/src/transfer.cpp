@@ -96,23 +96,27 @@ std::uint64_t bytesOf(const Array<T>&... arrays) {
   return ((arrays.size() * sizeof(T)) + ...);
 }
 
-/// @param findsBorders  Whether to look for outer borders of the cage, and for what lies beyond them.
-Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, bool findsBorders,
-               Workspace& workspace, Projection& out) noexcept {
+struct Meshes {
+  const MeshView& cage;
+  const MeshView& target;
+  bool isPart;  ///< Whether the target is a part of another: outer borders of the cage are not looked for.
+};
+
+Status project(const Meshes& meshes, const TransferOptions& options, Workspace& workspace, Projection& out) noexcept {
   Timings& times = out.timings = {};
   const Timer timer(times.total);
   if (const Status status = checkOptions(options, Stage::project); !status.ok()) return status;
   Arena* const arena = workspace.restart();
   if (arena == nullptr || !out.holeShares.reset(0)) return {Code::outOfMemory};
 
-  Scene scene(cage, target, options, *arena);
+  Scene scene(meshes.cage, meshes.target, options, *arena);
   if (const Status status = timed(times.weld, [&] { return scene.load(); }); !status.ok()) return status;
   PointData points(scene.points, options, *arena);
   bool* isOuter = nullptr;
   if (options.steps.projection == ProjectionMode::nearestPoint) {
     timed(times.build, [&] { scene.buildTrees(); });
     projectAndMark(scene, points, times);
-    if (findsBorders) {
+    if (options.steps.holes && !meshes.isPart) {
       isOuter = arena->allocate<bool>(scene.loops.count);
       if (!arena->failed()) timed(times.holes, [&] { markBeyond(scene, points, isOuter); });
     }
@@ -140,12 +144,12 @@ Status project(const MeshView& cage, const MeshView& target, const TransferOptio
 
 Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
                Projection& out) noexcept {
-  return project(cage, target, options, options.steps.holes, workspace, out);
+  return project({cage, target, false}, options, workspace, out);
 }
 
 Status projectPart(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
                    Projection& out) noexcept {
-  return project(cage, target, options, false, workspace, out);
+  return project({cage, target, true}, options, workspace, out);
 }
 
 Status transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,

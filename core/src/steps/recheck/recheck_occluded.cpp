@@ -9,11 +9,17 @@
 namespace cagecast {
 namespace {
 
+/// What the first rays found.
+struct FirstRays {
+  const Facing& facing;
+  const std::uint16_t* blocked;  ///< 1 per point: a bit for each ray that needs not be sent again.
+};
+
 /// Tests points that their own segment hides, whose rays may pass other segments.
-/// @param blocked  1 per point: a bit for each ray that needs not be sent.
-/// @param queue    Room for all points.
-void lookPastOthers(const Scene& scene, PointData& data, const Array<SegmentStats>& stats, const Facing& facing,
-                    const std::uint16_t* blocked, std::uint32_t* queue, HiderRecords& records) {
+void lookPastOthers(const Scene& scene, PointData& data, const Array<SegmentStats>& stats, const FirstRays& first,
+                    HiderRecords& records) {
+  const auto& [facing, blocked] = first;
+  auto* queue = scene.arena.allocate<std::uint32_t>(data.points.count);
   OccludedPoints occluded(scene, data, stats, true);
   VisibilityTest test(scene, facing);
   SegmentHits hits(data.segments, RaySearch::kMaxRays, scene.arena);
@@ -77,7 +83,7 @@ void recheckOccluded(const Scene& scene, PointData& data, const Array<SegmentSta
       test.advance(data.segments, onSeen, [&](std::uint32_t p, std::uint16_t rays) { blocked[p] = rays; });
     }
   }
-  if (stats.size() > 1) lookPastOthers(scene, data, stats, facing, blocked, queue, records);
+  if (stats.size() > 1) lookPastOthers(scene, data, stats, {facing, blocked}, records);
 }
 
 }  // namespace cagecast
