@@ -47,7 +47,7 @@ function tidy(root, build, file) {
 export async function checkTidy(root) {
   const build = join(root, 'build/lint');
   const settings = ['-Wno-dev', '--log-level=WARNING', '-DCAGECAST_TESTS=OFF', '-DCAGECAST_BENCH=OFF'];
-  execFileSync('cmake', ['--preset', 'release', '-B', build, ...settings], { cwd: root, stdio: ['ignore', 'ignore', 'inherit'] });
+  execFileSync('cmake', ['--preset', 'release', '-B', build, ...settings], { cwd: root });
   const commands = JSON.parse(readFileSync(join(build, 'compile_commands.json'), 'utf8'));
   const memory = join(root, 'build/lint/tidy.json');
   const passed = existsSync(memory) ? JSON.parse(readFileSync(memory, 'utf8')) : {};
