@@ -1,13 +1,7 @@
 import { element } from '../platform/page';
 import type { Session } from '../state/session';
-import { type KnownVerdict, paintableShare } from '../state/verdict';
+import { type KnownVerdict, paintableShare, type Remedy, regionOf } from '../state/verdict';
 import { goTo } from './section-nav';
-
-/** Something that can be done about a cage that does not fit. */
-export interface Remedy {
-  title: string;
-  run(): void;
-}
 
 /** Shows the verdict on the cage on the stage and on the model's card: first, how much of the model can be painted. */
 export class StageVerdict {
@@ -37,19 +31,24 @@ export class StageVerdict {
     const verdict = this.#verdict;
     const { shown, classification } = this.#session;
     if (!shown || !classification) return;
-    const share = `${Math.round(100 * paintableShare(classification.segmentStats))} % paintable`;
+    const { segmentStats } = classification;
+    const region = regionOf(shown, segmentStats);
+    const share = `${Math.round(100 * paintableShare(segmentStats))} % paintable`;
+    const of = region && `${region[0]!.toUpperCase()}${region.slice(1)}`;
+    const onStage = of ? `${of} of the model: ${share}` : share;
     const foreign = shown.cage.sample && shown.cage.sample !== shown.target.sample;
     const unknown = this.#remedy ? 'The cage is not checked yet' : 'Checking the cage…';
     const texts: Record<KnownVerdict, string> = {
       '': foreign ? 'The cage is another model’s' : unknown,
-      good: share,
-      usable: `${share}, with reservations`,
+      good: onStage,
+      usable: `${onStage}, with reservations`,
       unfit: 'The cage does not fit',
     };
     this.#box.hidden = this.#card.hidden = false;
     this.#text.textContent = texts[verdict];
     const unchecked = this.#remedy ? 'not checked yet' : 'checking…';
-    this.#card.textContent = verdict === 'unfit' ? 'does not fit' : verdict === '' ? unchecked : share;
+    this.#card.textContent =
+      verdict === 'unfit' ? 'does not fit' : verdict === '' ? unchecked : of ? `${of}: ${share}` : share;
     this.#box.dataset.verdict = this.#card.dataset.verdict = verdict;
     const leaves = !this.#remedy && document.activeElement === this.#button;
     this.#button.hidden = !this.#remedy;
