@@ -33,22 +33,21 @@ export class StageVerdict {
     if (!shown || !classification) return;
     const { segmentStats } = classification;
     const region = regionOf(shown, segmentStats);
-    const share = `${Math.round(100 * paintableShare(segmentStats))} % paintable`;
+    const painted = `${Math.round(100 * paintableShare(segmentStats))} % paintable`;
     const of = region && `${region[0]!.toUpperCase()}${region.slice(1)}`;
-    const onStage = of ? `${of} of the model: ${share}` : share;
+    const share = of ? `${of}: ${painted}` : painted;
     const foreign = shown.cage.sample && shown.cage.sample !== shown.target.sample;
     const unknown = this.#remedy ? 'The cage is not checked yet' : 'Checking the cage…';
     const texts: Record<KnownVerdict, string> = {
       '': foreign ? 'The cage is another model’s' : unknown,
-      good: onStage,
-      usable: `${onStage}, with reservations`,
+      good: of ? `${of} of the model: ${painted}` : painted,
+      usable: `${share}, with reservations`,
       unfit: 'The cage does not fit',
     };
     this.#box.hidden = this.#card.hidden = false;
     this.#text.textContent = texts[verdict];
     const unchecked = this.#remedy ? 'not checked yet' : 'checking…';
-    this.#card.textContent =
-      verdict === 'unfit' ? 'does not fit' : verdict === '' ? unchecked : of ? `${of}: ${share}` : share;
+    this.#card.textContent = verdict === 'unfit' ? 'does not fit' : verdict === '' ? unchecked : share;
     this.#box.dataset.verdict = this.#card.dataset.verdict = verdict;
     const leaves = !this.#remedy && document.activeElement === this.#button;
     this.#button.hidden = !this.#remedy;
