@@ -1,10 +1,11 @@
 // What a visitor does first, in one browser and three visits: most of it needs no picture, and is done without WebGL.
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
+import type { Primitive } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
 import { faults } from '../support/axe';
 import { asset } from '../support/cages';
-import { glbOf, tetrahedron } from '../support/glb';
+import { GlbMaker, glbOf, tetrahedron } from '../support/glb';
 import { filled, image, names, savedTexture } from '../support/layers';
 import { type Area, columns, difference, look, modelArea, shareOfHue } from '../support/picture';
 import { primitivesOf, saved, validModel } from '../support/saved';
@@ -39,6 +40,7 @@ async function choose(list: string, value: string): Promise<void> {
   await ready();
 }
 
+const isPainted = (primitive: Primitive): boolean => primitive.listSemantics().includes('_NCZ');
 const check = (what: string): Promise<void> => page.locator(what).check({ force: true });
 const undoTitle = () => page.getByTestId('undo').getAttribute('title');
 const bust = () => [glb('bust.glb', asset('human', 'target.glb')), glb('bust-cage.glb', asset('human', 'cage.glb'))];
@@ -191,6 +193,41 @@ describe('without a picture', () => {
     const { name, bytes } = await saved(page, 'save-cage');
     assert.equal(name, 'bust-cage.glb');
     await validModel(bytes);
+  });
+
+  test('a part that hides the rest is left out with a click, in what is saved too, and taken back with another', async () => {
+    const maker = new GlbMaker();
+    for (const [name, size] of [
+      ['Head', 1],
+      ['Visor', 1.2],
+    ] as const)
+      maker.node({ mesh: maker.mesh(tetrahedron(size)), name });
+    await drop(page, [glb('knight.glb', maker.finish()), glb('knight-cage.glb', glbOf(tetrahedron(1.5), 'Cage'))]);
+    await ready();
+    const before = await shownCounts(page);
+    await page.getByRole('button', { name: 'Do it: leave out “Visor”' }).press('Enter');
+    const back = page.getByRole('button', { name: 'Take back “Visor”' });
+    await back.and(page.locator(':focus')).waitFor();
+    await ready();
+    const leftOut = await shownCounts(page);
+    assert.notDeepEqual(leftOut, before);
+    const { bytes } = await saved(page, 'export-glb');
+    const nodes = (await validModel(bytes)).getRoot().listNodes();
+    const painted = nodes.filter((node) => node.getMesh()?.listPrimitives().some(isPainted));
+    assert.deepEqual(
+      painted.map((node) => node.getName()),
+      ['Head'],
+    );
+    assert.deepEqual(await faults(page), []);
+    await page.getByTestId('undo').click();
+    await back.waitFor({ state: 'detached' });
+    await ready();
+    assert.deepEqual(await shownCounts(page), before);
+    await page.getByTestId('redo').click();
+    await back.press('Enter');
+    await back.waitFor({ state: 'detached' });
+    await ready();
+    assert.deepEqual(await shownCounts(page), before);
   });
 
   test('the cage is inspected, and findings offer what can be done', async () => {

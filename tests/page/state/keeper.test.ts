@@ -162,7 +162,7 @@ test('work is back after a reload, with its files and settings; starting over ca
   await first.keeper.restore();
   await first.work('bust');
   first.stack.add('stripes', { ...paintOf('stripes.png'), file: new File(['x'], 'stripes.png') } as never);
-  first.session.setRules({ threshold: 0.7, preset: 'paper' });
+  first.session.setRules({ threshold: 0.7, preset: 'paper', weldTolerance: 1e-4 });
   first.session.setView({ mode: 'zones' });
   await first.ready();
   first.session.setLocks({ 0: 'exclude' });
@@ -176,7 +176,7 @@ test('work is back after a reload, with its files and settings; starting over ca
   assert.deepEqual(second.shown.slice(0, 2), ['bust.glb', 'bust-cage.glb']);
   assert.equal(second.offer, 'Your last work is back.');
   assert.equal(second.project.snapshot()!.work, before);
-  assert.deepEqual(second.session.rules, { threshold: 0.7, preset: 'paper', borders: 'triangle' });
+  assert.deepEqual(second.session.rules, { threshold: 0.7, preset: 'paper', weldTolerance: 1e-4, borders: 'triangle' });
   assert.deepEqual([second.session.locks, second.session.bare], [{ 0: 'exclude' }, Uint8Array.of(0, 1, 1, 0)]);
   assert.deepEqual([second.session.view.mode, second.stack.layers.map(({ name }) => name)], ['zones', ['stripes']]);
 
@@ -408,9 +408,12 @@ test('a project that somebody has damaged or changed by hand is refused in one s
     await assert.rejects(opening, says);
     assert.equal(page.shown[0], 'bust.glb');
   }
-  const values = { rules: { preset: 'x', threshold: 7, borders: 1 }, overrides: { 0: 'x', '-1': 'keep', 99: 'keep' } };
+  const values = {
+    rules: { preset: 'x', threshold: 7, weldTolerance: 1, borders: 1 },
+    overrides: { 0: 'x', '-1': 'keep', 99: 'keep' },
+  };
   assert.ok(await page.keeper.open({ ...structuredClone(parts), ...values }, () => file));
-  assert.deepEqual(page.session.rules, { preset: 'default', threshold: 0.5, borders: 'triangle' });
+  assert.deepEqual(page.session.rules, { preset: 'default', threshold: 0.5, weldTolerance: 0, borders: 'triangle' });
   assert.deepEqual(page.session.locks, { 0: 'auto' });
   assert.ok(work.length > 0);
 });

@@ -268,7 +268,7 @@ test('a sample that is loading comes, though the avatar on the stage is removed 
   assert.equal(page.names, '[car] two');
 });
 
-test('one that leaves the stage, and one that is just being painted, follow the preset', async () => {
+test('one that leaves the stage, and one that is just being painted, follow the rules', async () => {
   const page = await wardrobe();
   await page.add('two');
   const asked = async (...expected: string[]): Promise<void> => {
@@ -293,6 +293,8 @@ test('one that leaves the stage, and one that is just being painted, follow the 
   page.session.setRules({ preset: 'default' });
   page.transferer.gate.open();
   await asked('default one.glb', 'default two.glb', 'paper three.glb', 'default three.glb');
+  page.session.setRules({ weldTolerance: 1e-5 });
+  await asked('default one.glb', 'default two.glb', 'default three.glb');
 });
 
 test('overrides are remembered while another is on the stage; the kept wardrobe has all, those too that still wait', async () => {

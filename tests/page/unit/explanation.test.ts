@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict';
 import path from 'node:path';
 import { before, test } from 'node:test';
-import { classify, init, type Mesh, type Projection, project } from 'cagecast';
+import { classify, init, type Mesh, type Projection, project, Visibility } from 'cagecast';
 import { BoundaryLoops } from '../../../web/src/explain/boundary-loops';
 import { explain } from '../../../web/src/explain/explanation';
 import type { Shown } from '../../../web/src/state/scene';
-import { modelFolders, readPlain, smallHole } from '../../package/scenes';
+import { head, modelFolders, readPlain, smallHole, within } from '../../package/scenes';
 
 before(() => init());
 
@@ -27,6 +27,14 @@ function withPrimitives(mesh: Mesh) {
   };
 }
 
+/** What is shown of a projection; of the models only their meshes are asked for. */
+const shownOf = (cage: Mesh, target: Mesh, projection: Projection): Shown =>
+  ({
+    target: { mesh: withPrimitives(target) },
+    cage: { mesh: cage },
+    projection: { ...projection, leftOut: [] },
+  }) as unknown as Shown;
+
 for (const folder of modelFolders()) {
   test(`${path.basename(folder)}: explanations agree with the zones and the verdicts`, async () => {
     const [target, cage] = await Promise.all(
@@ -35,8 +43,7 @@ for (const folder of modelFolders()) {
     const loops = new BoundaryLoops(cage!);
     for (const preset of ['default', 'paper'] as const) {
       const projection = project(cage!, target!, { preset });
-      // Of the models only their meshes are asked for.
-      const shown = { target: { mesh: withPrimitives(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
+      const shown = shownOf(cage!, target!, projection);
       const segmentOf = (triangle: number): number => projection.segments[target!.indices[3 * triangle]!]!;
       // One triangle of each segment.
       const triangles = new Map(
@@ -73,7 +80,7 @@ test('a vertex that was recovered is explained by what recovered it: a recheck, 
       ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),
     );
     const projection = project(cage!, target!);
-    const shown = { target: { mesh: withPrimitives(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
+    const shown = shownOf(cage!, target!, projection);
     const classification = classify(projection);
     const loops = new BoundaryLoops(cage!);
     for (const zone of [1, 2]) {
@@ -100,7 +107,7 @@ test('a vertex that was recovered is explained by what recovered it: a recheck, 
 test('a part that a hole is meant for is explained so, and is painted without that rule', () => {
   const { cage, target } = smallHole();
   const projection = project(cage, target);
-  const shown = { target: { mesh: withPrimitives(target) }, cage: { mesh: cage }, projection } as unknown as Shown;
+  const shown = shownOf(cage, target, projection);
   const isEyes = (triangle: number): boolean => projection.segments[target.indices[3 * triangle]!] === 1;
   const covered = Array.from({ length: target.indices.length / 3 }, (_, triangle) => triangle).find(
     (triangle) => isEyes(triangle) && projection.visibility[target.indices[3 * triangle]!] === 0,
@@ -136,7 +143,7 @@ test('a locked part is explained by its lock only', async () => {
   for (const lock of ['keep', 'exclude'] as const) {
     const locks = { [segment]: lock };
     const classification = classify(projection, { locks: { segments: locks } });
-    const shown = { target: { mesh: withPrimitives(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
+    const shown = shownOf(cage!, target!, projection);
     const { steps } = explain(
       { shown, classification, rules: { preset: 'default', threshold: 0.5 }, locks, loops: new BoundaryLoops(cage!) },
       0,
@@ -147,4 +154,25 @@ test('a locked part is explained by its lock only', async () => {
       new RegExp(`You chose to ${lock} it.*${lock === 'keep' ? 'it passes' : 'it is culled'}`),
     );
   }
+});
+
+test('what lies beyond the border of an open cage is explained so, and not as a hole', () => {
+  const { cage: whole, target } = head(1);
+  const cage = within(whole, (_, __, z) => z > 0.6);
+  const projection = project(cage, target);
+  const shown = shownOf(cage, target, projection);
+  const classification = classify(projection);
+  const facts = { shown, classification, rules: { preset: 'default', threshold: 0.5 } as const, locks: {} };
+  const isBeyond = (corner: number): boolean => projection.visibility[target.indices[corner]!] === Visibility.Beyond;
+  const beyond = Array.from({ length: target.indices.length / 3 }, (_, triangle) => triangle).find((triangle) =>
+    [0, 1, 2].every((corner) => isBeyond(3 * triangle + corner)),
+  )!;
+  const { verdict, because, steps } = explain({ ...facts, loops: new BoundaryLoops(cage) }, beyond, [1, 0, 0]);
+  assert.equal(verdict, 'Not painted: beyond the cage');
+  assert.equal(because, 'it lies beyond the border of the cage, which says nothing of it');
+  assert.deepEqual(
+    steps.map(({ title }) => title),
+    ['Closest', 'Border', 'Part'],
+  );
+  assert.doesNotMatch(steps.map(({ sentence }) => sentence).join(' '), /hole/);
 });

@@ -9,8 +9,8 @@ const state: LinkState = {
     { paint: 'human/war paint.png', opacity: 0.25, tint: '#ff8020', blend: 'multiply', visible: false },
     { paint: 'checker', opacity: 1, tint: '#ffffff', blend: 'normal', visible: true },
   ],
-  rules: { preset: 'paper', threshold: 0.35, borders: 'cut' },
-  locks: { 0: 'exclude', 7: 'keep', 8: 'keep', 12: 'always' },
+  rules: { preset: 'paper', threshold: 0.35, weldTolerance: 1e-6, borders: 'cut' },
+  locks: { 0: 'exclude', 7: 'keep', 8: 'keep', 12: 'always', 13: 'out' },
   view: { mode: 'zones', split: 0.5, paint: false, cage: true, light: 'evening', background: '#204060' },
   shape: { deform: 'twist', amount: -0.5, cage: false, morphs: new Map([['smile, wide', 0.75]]) },
   angle: { turn: -4, tilt: 74, near: 1.331 },
@@ -23,7 +23,7 @@ test('a link restores what it was written from', () => {
   assert.deepEqual(readLink(writeLink({ ...plain, layers: [] }))!.layers, []);
   assert.equal(
     writeLink({ ...plain, shape: { deform: 'bend', amount: 0, cage: true, morphs: new Map() } }),
-    'sample=human&rules=paper&threshold=0.35&borders=cut&view=compare&split=0.500',
+    'sample=human&rules=paper&threshold=0.35&borders=cut&weld=0.000001&view=compare&split=0.500',
   );
 });
 
@@ -32,12 +32,12 @@ test('of a link that is old, cut short or edited by hand, what is wrong has its 
   assert.equal(readLink('#rules=paper'), undefined);
   assert.deepEqual(
     readLink(
-      '#sample=lizard&layer=a.png,7,red&rules=none&threshold=9&keep=1,x,99999&view=none&split=-3&angle=1,x,-3&deform=bend,7&morph=x,y&morph=2&light=sun&background=red&paint',
+      '#sample=lizard&layer=a.png,7,red&rules=none&threshold=9&weld=1&keep=1,x,99999&view=none&split=-3&angle=1,x,-3&deform=bend,7&morph=x,y&morph=2&light=sun&background=red&paint',
     ),
     {
       sample: 'lizard',
       layers: [{ paint: 'a.png', opacity: 1, tint: '#ffffff', blend: 'normal', visible: true }],
-      rules: { preset: 'default', threshold: 0.5, borders: 'triangle' },
+      rules: { preset: 'default', threshold: 0.5, weldTolerance: 0, borders: 'triangle' },
       locks: { 1: 'keep', 99999: 'keep' },
       view: kFirstView,
       shape: undefined,

@@ -15,7 +15,7 @@ test('the page begins without the cage module', () => {
   assert.ok(!names.some((name) => name.startsWith('cages-')), names.join(', '));
 });
 
-test('all scripts of the page are at most 420 KB gzipped, without the cage module, which loads when a cage is asked for', () => {
+test('all scripts of the page are at most 430 KB gzipped, without the cage module, which loads when a cage is asked for', () => {
   const sizes = readdirSync(kPage, { recursive: true, withFileTypes: true })
     .filter(({ name }) => name.endsWith('.js'))
     .map(
@@ -28,5 +28,5 @@ test('all scripts of the page are at most 420 KB gzipped, without the cage modul
   // More than its worker and what calls that would be shared scripts, under its name.
   assert.ok(sum(sizes.filter(isCageModule)) < 16_000, 'nothing else is called like the cage module');
   assert.ok(total > 100_000, 'they were found');
-  assert.ok(total <= 420_000, `${total} bytes: ${sizes.map((size) => size.join(' ')).join(', ')}`);
+  assert.ok(total <= 430_000, `${total} bytes: ${sizes.map((size) => size.join(' ')).join(', ')}`);
 });

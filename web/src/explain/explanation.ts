@@ -1,5 +1,6 @@
 import { type Classification, type Projection, presetOptions, Visibility, Zone } from 'cagecast';
 import type { Locks, Rules } from '../state/choices';
+import { withoutParts } from '../state/left-out';
 import type { Shown } from '../state/scene';
 import { diagonalOf } from '../state/surface';
 import type { BoundaryLoops } from './boundary-loops';
@@ -49,6 +50,8 @@ interface Facts {
   loops: BoundaryLoops;
 }
 
+const kBeyond = 'it lies beyond the border of the cage, which says nothing of it';
+
 const kVerdicts = ['Painted', 'Not painted: occluded', 'Not painted: uncovered', 'Not painted: culled'];
 
 /**
@@ -63,19 +66,27 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
   const diagonal = diagonalOf(target.mesh) || 1;
   const options = presetOptions(facts.rules.preset);
   const path = pathOf(
-    { target: target.mesh, cage: cage.mesh, loops: facts.loops },
+    { target: withoutParts(target, projection).mesh, cage: cage.mesh, loops: facts.loops },
     { vertex, triangle: cageTriangle, diagonal },
     options,
   );
   const part = segmentOf(facts, vertex);
+  const isBeyond = projection.visibility[vertex] === Visibility.Beyond;
   const isMarked = facts.bare?.[triangle] === 1;
   const steps = [
     ...(isMarked
       ? [{ title: 'Marked', sentence: 'You marked this spot: it stays bare, whatever the rules say.' }]
       : []),
     { title: 'Closest', sentence: closestStep(path, cageTriangle, diagonal) },
-    { title: 'Ray', sentence: rayStep(facts, path, diagonal) },
-    ...recoveryStep(facts, vertex),
+    ...(isBeyond
+      ? [
+          {
+            title: 'Border',
+            sentence:
+              'The cage covers a part of the model only. The spot lies beyond its border, and it says nothing of that.',
+          },
+        ]
+      : [{ title: 'Ray', sentence: rayStep(facts, path, diagonal) }, ...recoveryStep(facts, vertex)]),
     { title: 'Part', sentence: partStep(facts, part) },
   ];
   return {
@@ -85,7 +96,11 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
     cageTriangle,
     diagonal,
     part,
-    verdict: isMarked ? 'Not painted: marked' : kVerdicts[zone]!,
+    verdict: isMarked
+      ? 'Not painted: marked'
+      : isBeyond && zone === Zone.Uncovered
+        ? 'Not painted: beyond the cage'
+        : kVerdicts[zone]!,
     because: isMarked ? 'you marked this spot to stay bare' : brief(facts, zone, vertex, path, part),
     steps,
   };
@@ -208,12 +223,13 @@ function recoveryStep(facts: Facts, vertex: number): Explanation['steps'] {
 
 function partStep({ classification, locks }: Facts, part: SegmentFacts): string {
   const { name, segment, coverage, threshold, passes } = part;
-  const { area, exposedArea, coveredArea, depth, ratios } = classification.segmentStats[segment]!;
+  const { area, beyondArea, exposedArea, coveredArea, depth, ratios } = classification.segmentStats[segment]!;
   const lock = locks[segment] ?? 'auto';
   const whole = `It belongs to ${name}.`;
   if (lock === 'always') return `${whole} You chose to paint all of it anyway.`;
   if (lock !== 'auto')
     return `${whole} You chose to ${lock} it, regardless of its areas: it ${passes ? 'passes' : 'is culled'}.`;
+  if (exposedArea === 0 && beyondArea > 0) return `${whole} Nothing of it is exposed but what lies beyond the cage.`;
   if (exposedArea === 0) return `${whole} Nothing of it is exposed${passes ? '.' : ', so it is culled as a whole.'}`;
   const share = `${whole} The cage covers ${percent(coverage)} of its exposed area`;
   if (passes) return `${share}, at least the threshold of ${percent(threshold)}: it passes.`;
@@ -250,6 +266,7 @@ function brief(
     case Zone.Occluded:
       return model ? `${nameAt(shown, model.triangle)} lies over it` : 'the model lies over it';
     case Zone.Uncovered:
+      if (shown.projection.visibility[vertex] === Visibility.Beyond) return kBeyond;
       return outside > 0 ? 'it lies outside the cage' : 'the cage has a hole over it';
     default:
       if (locks[part.segment] === 'exclude') return `you excluded ${part.name}`;

@@ -1,5 +1,6 @@
 import { type Lock, presetOptions } from 'cagecast';
 import { asLock, type Locks, type Rules } from '../state/choices';
+import { namesLeftOut, numbersWithout } from '../state/left-out';
 import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
 
@@ -20,16 +21,23 @@ export function codeFor({ shown, rules, locks, bare }: Session): Code {
 
 const kMarked = 'What you marked to stay bare is not in it: give masks, too.';
 
-function threeCode({ target, cage }: Shown, rules: Rules, locks: Readonly<Locks>): string {
-  const { preset, threshold, borders } = nonDefault(rules);
-  const segments = Object.entries(locks).flatMap(([segment, lock]) =>
-    lock === 'auto' ? [] : [`${segment}: '${asLock(lock)}'`],
+function threeCode({ target, cage, projection }: Shown, rules: Rules, locks: Readonly<Locks>): string {
+  const { preset, threshold, weldTolerance, borders } = nonDefault(rules);
+  const numbers = numbersWithout(projection);
+  const segments = Object.entries(locks).flatMap(([segment, lock]) => {
+    const number = numbers[Number(segment)];
+    return lock === 'auto' || number === undefined ? [] : [`${number}: '${asLock(lock)}'`];
+  });
+  const leftOut = projection.leftOut.map(
+    (group) => ` && mesh.name !== ${JSON.stringify(target.mesh.primitives[group]!.mesh.name)}`,
   );
   const options = [
     'texture',
     ...(preset ? [`preset: '${preset}'`] : []),
     ...(threshold === undefined ? [] : [`threshold: ${threshold}`]),
+    ...(weldTolerance ? [`weldTolerance: ${weldTolerance}`] : []),
     ...(borders ? [`borders: '${borders}'`] : []),
+    ...(leftOut.length > 0 ? [`parts: (mesh, isDrawn) => isDrawn${leftOut.join('')}`] : []),
     ...(segments.length > 0 ? [`locks: { segments: { ${segments.join(', ')} } }`] : []),
   ];
   return `${noteOn(locks, '//')}import { init } from 'cagecast'
@@ -49,7 +57,7 @@ scene.add(target.scene)`;
 }
 
 function commandLine(shown: Shown, rules: Rules, locks: Readonly<Locks>): string {
-  const { preset, threshold, borders } = nonDefault(rules);
+  const { preset, threshold, weldTolerance, borders } = nonDefault(rules);
   const words = [
     'npx cagecast transfer',
     shell(shown.target.name),
@@ -59,7 +67,9 @@ function commandLine(shown: Shown, rules: Rules, locks: Readonly<Locks>): string
   ];
   if (preset) words.push(`--preset ${preset}`);
   if (threshold !== undefined) words.push(`--threshold ${threshold}`);
+  if (weldTolerance) words.push(`--weld-tolerance ${weldTolerance}`);
   if (borders) words.push(`--borders ${borders}`);
+  for (const name of new Set(namesLeftOut(shown))) words.push(`--ignore ${shell(name)}`);
   const partly: string[] = [];
   for (const lock of ['keep', 'exclude'] as const) {
     const { whole, some } = partsLocked(shown, locks, lock);
@@ -85,6 +95,7 @@ function partsLocked(
 ): { whole: string[]; some: string[] } {
   const [locked, others] = [new Set<string>(), new Set<string>()];
   projection.segmentStats.forEach(({ group, area }, segment) => {
+    // What is left out has no area.
     if (area > 0)
       (asLock(locks[segment] ?? 'auto') === lock ? locked : others).add(target.mesh.primitives[group]!.name);
   });
@@ -95,10 +106,11 @@ function partsLocked(
 }
 
 /** The options that differ from the defaults. */
-function nonDefault({ preset, threshold, borders }: Rules): Partial<Rules> {
+function nonDefault({ preset, threshold, weldTolerance, borders }: Rules): Partial<Rules> {
   return {
     ...(preset !== 'default' && { preset }),
     ...(threshold !== presetOptions(preset).threshold && { threshold }),
+    ...(weldTolerance > 0 && { weldTolerance }),
     ...(borders !== 'triangle' && { borders }),
   };
 }

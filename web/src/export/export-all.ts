@@ -27,20 +27,15 @@ export async function exportAll(
   for (const [done, avatar] of avatars.entries()) {
     report(done);
     try {
-      const target = { name: avatar.name, files: avatar.files };
+      const { shown } = session;
+      const { model, projection } = avatar === active ? { ...shown, model: shown?.target } : (avatar.standing ?? {});
+      const target = { name: avatar.name, files: avatar.files, ...(model && { mesh: model.mesh }) };
       const scene = {
         target,
         cage: avatar.cage!,
         rules,
-        choices:
-          avatar === active
-            ? choices
-            : choicesOf(
-                avatar.locks,
-                avatar.standing?.model,
-                avatar.standing?.projection,
-                session.bareOf(avatar.files),
-              ),
+        projection,
+        choices: avatar === active ? choices : choicesOf(avatar.locks, model, projection, session.bareOf(avatar.files)),
       };
       const { glb } = await exportGlb(scene, png, into);
       const { name } = avatar.files[0]!;

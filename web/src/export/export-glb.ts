@@ -1,16 +1,20 @@
 import type { Mesh } from 'cagecast';
 import { askWorker } from '../platform/ask-worker';
 import type { Rules } from '../state/choices';
+import { choicesWithout } from '../state/left-out';
 import type { ExtractedMesh, Model } from '../state/model';
 import type { Session } from '../state/session';
+import type { SplitProjection } from '../state/transfers';
 import type { Baked, ExportAnswer, ExportRequest, PaintInto } from './export-messages';
 
 /** What is exported. */
 interface Exported {
-  target: Pick<Model, 'name' | 'files'>;
+  target: Pick<Model, 'name' | 'files'> & Partial<Pick<Model, 'mesh'>>;
   cage: Pick<Model, 'mesh' | 'files'>;
   rules: Readonly<Rules>;
   choices: Session['choices'];
+  /** Says which parts are left out. */
+  projection?: SplitProjection | undefined;
 }
 
 /**
@@ -22,7 +26,7 @@ interface Exported {
  * @throws Error that begins with the file's name.
  */
 export async function exportGlb(
-  { target, cage, rules, choices }: Exported,
+  { target, cage, rules, choices, projection }: Exported,
   texture: Blob,
   into: PaintInto,
 ): Promise<{ glb: Blob; baked?: Baked }> {
@@ -32,7 +36,8 @@ export async function exportGlb(
     cage: cage.files[0] === target.files[0] ? undefined : cageOf(cage.mesh),
     texture: new Uint8Array(await texture.arrayBuffer()),
     into,
-    options: { ...rules, ...choices },
+    leftOut: projection?.leftOut ?? [],
+    options: { ...rules, ...(target.mesh && projection ? choicesWithout(choices, target.mesh, projection) : choices) },
   };
   const worker = new Worker(new URL('./export-worker.ts', import.meta.url), { type: 'module' });
   const transfer = files.map(({ bytes }) => bytes);

@@ -11,6 +11,8 @@ export interface ExportRequest {
   texture: Uint8Array<ArrayBuffer>;
   /** Paint as an overlay, or in the model's own textures where it has some. */
   into: PaintInto;
+  /** The numbers of the parts that are left out, among those that are drawn. */
+  leftOut: readonly number[];
   options: TransferOptions & Pick<CagecastOptions, 'borders'>;
 }
 

@@ -1,7 +1,9 @@
-import type { Choice, Locks, Rules } from '../state/choices';
+import { type Choice, kMaxWeld, type Locks, type Rules } from '../state/choices';
 import { type ChosenShape, kDeforms } from '../state/deform';
 import type { Angle } from '../state/view-state';
 import { kLightNames, kModes, type Mode, type View } from '../state/view-state';
+
+const kChoices = ['keep', 'exclude', 'always', 'out'] as const;
 
 /** A layer in a link. */
 export interface LinkedLayer {
@@ -42,7 +44,8 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
   words.set('rules', rules.preset);
   words.set('threshold', String(rules.threshold));
   if (rules.borders !== 'triangle') words.set('borders', rules.borders);
-  for (const lock of ['keep', 'exclude', 'always'] as const) {
+  if (rules.weldTolerance > 0) words.set('weld', String(rules.weldTolerance));
+  for (const lock of kChoices) {
     const segments = Object.keys(locks).filter((segment) => locks[Number(segment)] === lock);
     if (segments.length > 0) words.set(lock, segments.join(','));
   }
@@ -76,9 +79,10 @@ export function readLink(fragment: string): LinkState | undefined {
     rules: {
       preset: words.get('rules') === 'paper' ? 'paper' : 'default',
       threshold: share(words.get('threshold'), 0.5),
+      weldTolerance: share(words.get('weld'), 0, kMaxWeld),
       borders: words.get('borders') === 'cut' ? 'cut' : 'triangle',
     },
-    locks: { ...readLocks(words, 'keep'), ...readLocks(words, 'exclude'), ...readLocks(words, 'always') },
+    locks: Object.assign({}, ...kChoices.map((choice) => readLocks(words, choice))),
     view: {
       mode: kModes.includes(mode) ? mode : 'compare',
       split: share(words.get('split'), 0.5),
@@ -130,8 +134,8 @@ function readAngle(word: string | null): Angle | undefined {
 
 const readColor = (word: string): string | undefined => (/^[0-9a-f]{6}$/i.test(word) ? `#${word}` : undefined);
 
-/** A number from 0 to 1, or the default. */
-function share(word: string | null, otherwise: number): number {
+/** A number from 0 to `most`, or the default. */
+function share(word: string | null, otherwise: number, most = 1): number {
   const number = word === null || word === '' ? NaN : Number(word);
-  return number >= 0 && number <= 1 ? number : otherwise;
+  return number >= 0 && number <= most ? number : otherwise;
 }

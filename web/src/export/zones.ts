@@ -2,14 +2,19 @@ import type { Session } from '../state/session';
 import { countZones } from '../state/zones';
 
 /** The result as JSON, for tools: options, zones per vertex, and segments. */
-export function zonesJson({ shown, classification, rules: { preset, threshold }, locks }: Session): string {
+export function zonesJson({
+  shown,
+  classification,
+  rules: { preset, threshold, weldTolerance },
+  locks,
+}: Session): string {
   const { target, cage, projection } = shown!;
   const { zones, segmentStats } = classification!;
   const [cosmetic, occluded, uncovered, culled] = countZones(zones);
   return JSON.stringify({
     target: target.name,
     cage: cage.name,
-    options: { preset, threshold, locks: { segments: locks } },
+    options: { preset, threshold, weldTolerance, locks: { segments: locks } },
     counts: { cosmetic, occluded, uncovered, culled },
     parts: target.mesh.primitives.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({
       name,

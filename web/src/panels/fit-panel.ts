@@ -4,13 +4,14 @@ import { TransferClient } from '../loading/transfer-client';
 import { make } from '../platform/make';
 import { element } from '../platform/page';
 import type { CageMaker } from '../state/cage-maker';
+import { namesLeftOut, withoutParts } from '../state/left-out';
 import type { Session } from '../state/session';
 import { Superseded } from '../state/transfers';
-import { type KnownVerdict, paintableShare } from '../state/verdict';
+import { type KnownVerdict, paintableShare, type Remedy, regionOf, remedyFor, takeBacks } from '../state/verdict';
 import { forPeople, reasonOf } from '../state/wording';
 import { marksOf } from '../view/segments';
 import type { Stage } from '../view/stage';
-import { type Remedy, StageVerdict } from './stage-verdict';
+import { StageVerdict } from './stage-verdict';
 
 const kInspectDelay = 800; // milliseconds without a change before the cage is inspected
 const kMax = 60_000; // triangles that are inspected automatically; the time grows with their number
@@ -20,15 +21,6 @@ const kVerdicts: Record<Inspection['verdict'], string> = {
   usable: 'The cage is usable, with reservations.',
   unfit: 'The cage does not fit this model.',
 };
-/** Findings that moving, turning, scaling and bending the cage may mend. */
-const kMovable: readonly Finding['code'][] = [
-  'cageElsewhere',
-  'cageMisplaced',
-  'cageTooSmall',
-  'cageTooFar',
-  'targetPokesOut',
-  'cageInsideTarget',
-];
 
 /**
  * Shows whether the cage fits the target, and what to do if not: the findings of `cagecast inspect`, computed in a worker of
@@ -39,6 +31,7 @@ export class FitPanel {
   readonly #stage: Stage | undefined;
   readonly #verdict = element('fit-verdict', HTMLElement);
   readonly #findings = element('fit-findings', HTMLElement);
+  readonly #leftOut = element('fit-left-out', HTMLElement);
   readonly #button = element('fit-inspect', HTMLButtonElement);
   readonly #maker: CageMaker;
   readonly #stageVerdict: StageVerdict;
@@ -52,6 +45,7 @@ export class FitPanel {
     this.#stage = stage;
     session.on('transfer', () => {
       this.#forget();
+      this.#offerBack();
       this.#show('', [make('p', {}, kSoon)]);
     });
     session.on('zones', () => this.#onChange());
@@ -86,7 +80,7 @@ export class FitPanel {
   async #inspect(): Promise<void> {
     const {
       shown,
-      rules: { preset, threshold },
+      rules: { preset, threshold, weldTolerance },
       choices: { locks },
     } = this.#session;
     if (!shown) return;
@@ -94,13 +88,14 @@ export class FitPanel {
     this.#show('', [make('p', {}, 'The cage is being inspected.')]);
     this.#client ??= new TransferClient();
     try {
-      const { target, cage } = shown;
+      const { target, cage, projection } = shown;
       const parts = target.mesh.primitives.map(({ name, firstVertex, vertexCount }) => ({
         name,
         firstVertex,
         vertexCount,
       }));
-      this.#write(await this.#client.ask('inspect', cage, target, { preset, threshold, locks, parts }));
+      const options = { preset, threshold, weldTolerance, locks, parts };
+      this.#write(await this.#client.ask('inspect', cage, withoutParts(target, projection), options));
     } catch (error) {
       if (error instanceof Superseded) return;
       this.#show('', [make('p', {}, `The cage could not be inspected: ${reasonOf(error)}`)], this.#next);
@@ -110,8 +105,12 @@ export class FitPanel {
   #write(inspection: Inspection): void {
     const { verdict, findings, segments } = inspection;
     const list = make('ul', {}, ...findings.map((finding) => this.#item(finding, inspection)));
-    const share = `${Math.round(100 * paintableShare(segments))} % of the visible surface can be painted.`;
-    const remedies = findings.flatMap((finding) => this.#remedyFor(finding, inspection) ?? []);
+    const share = `${Math.round(100 * paintableShare(segments))} % of`;
+    const region = regionOf(this.#session.shown!, segments);
+    const painted = region
+      ? `The cage covers ${region} of the model only: ${share} its visible surface can be painted.`
+      : `${share} the visible surface can be painted.`;
+    const remedies = findings.flatMap((finding) => remedyFor(finding, inspection, this.#session, this.#maker) ?? []);
     const { isFresh, isOthers } = this.#maker;
     const reasons = findings.filter(({ weight }) => weight >= unfitFrom);
     // Where keeping a part is enough, another cage would be judged by the same rules.
@@ -121,7 +120,7 @@ export class FitPanel {
     // The cage of another model is not meant for this one.
     if (isOthers) remedies.unshift(...making);
     const content: HTMLElement[] = [
-      make('p', {}, `${share} ${kVerdicts[verdict]}`),
+      make('p', {}, `${painted} ${kVerdicts[verdict]}`),
       ...(findings.length > 0 ? [list] : []),
     ];
     content.push(...making.map(buttonFor));
@@ -136,21 +135,25 @@ export class FitPanel {
     this.#stageVerdict.show(verdict, remedy);
   }
 
-  /** What can be done about a finding with one click. */
-  #remedyFor({ code }: Finding, { inward }: Inspection): Remedy | undefined {
-    // A cage that was moved in vain would be moved in vain again.
-    if (kMovable.includes(code) && !this.#maker.refusedToMove && !this.#maker.isFresh)
-      return { title: 'Move the cage', run: () => this.#maker.move() };
-    return code === 'normalsInward'
-      ? { title: 'Turn its triangles', run: () => this.#maker.flip(inward.triangles) }
-      : undefined;
+  /** Offers to take back what is left out; a click that has left something out gets to undo it. */
+  #offerBack(): void {
+    const hadFocus = [this.#findings, this.#leftOut].some((box) => box.contains(document.activeElement));
+    const buttons = takeBacks(this.#session).map(buttonFor);
+    const names = namesLeftOut(this.#session.shown!).map((name) => `“${name}”`);
+    const text =
+      names.length > 0 ? [make('p', {}, `Left out, neither painted nor in the way: ${names.join(', ')}.`)] : [];
+    this.#leftOut.replaceChildren(...text, ...buttons);
+    if (hadFocus) buttons.at(-1)?.focus();
   }
 
   #item(finding: Finding, inspection: Inspection): HTMLElement {
     const { sentence, advice, places = [], locks } = finding;
     const item = make('li', {}, make('p', {}, `${forPeople(sentence)}.`), make('p', {}, forPeople(advice)));
-    const remedy = this.#remedyFor(finding, inspection);
-    if (remedy) item.append(buttonFor({ ...remedy, title: `Do it: ${remedy.title.toLowerCase()}` }));
+    const remedy = remedyFor(finding, inspection, this.#session, this.#maker);
+    if (remedy) {
+      const title = `Do it: ${remedy.title[0]!.toLowerCase()}${remedy.title.slice(1)}`;
+      item.append(buttonFor({ ...remedy, title }));
+    }
     const segments = places.map(({ segment }) => segment);
     if (segments.length > 0) {
       for (const begin of ['pointerenter', 'focusin']) item.addEventListener(begin, () => this.#highlight(segments));

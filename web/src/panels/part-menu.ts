@@ -1,3 +1,4 @@
+import { Visibility, Zone } from 'cagecast';
 import { element } from '../platform/page';
 import type { Choice } from '../state/choices';
 import type { Shown } from '../state/scene';
@@ -88,15 +89,17 @@ export function nameOfPart({ target, projection }: Shown, segment: number): stri
 
 /** How many points of a part are painted, why the others are not, and what would paint these. */
 export function paintedPoints({ projection }: Shown, zones: Uint8Array, segment: number, lock: Choice): string {
-  const counts = [0, 0, 0, 0];
+  const counts = [0, 0, 0, 0, 0];
   projection.segments.forEach((other, vertex) => {
-    if (other === segment) counts[zones[vertex]!]!++;
+    const isBeyond = zones[vertex] === Zone.Uncovered && projection.visibility[vertex] === Visibility.Beyond;
+    if (other === segment) counts[isBeyond ? 4 : zones[vertex]!]!++;
   });
-  const [painted = 0, hidden = 0, uncovered = 0, culled = 0] = counts;
-  const all = painted + hidden + uncovered + culled;
+  const [painted = 0, hidden = 0, uncovered = 0, culled = 0, beyond = 0] = counts;
+  const all = painted + hidden + uncovered + culled + beyond;
   const reasons = [
     hidden > 0 ? `${hidden} hidden by the model itself` : '',
     uncovered > 0 ? `${uncovered} under a hole of the cage` : '',
+    beyond > 0 ? `${beyond} beyond the border of the cage` : '',
     culled > 0 ? `${culled} because the whole part is not painted` : '',
   ].filter(Boolean);
   const bare = reasons.length > 0 ? ` The rest stays bare: ${reasons.join(', ')}.` : '';

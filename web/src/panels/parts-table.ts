@@ -13,7 +13,13 @@ import { nameOfPart, paintedPoints } from './part-menu';
 const kMaxRows = 50;
 const kMaxColors = 3; // per row
 const kMaxNotes = 3; // about parts that are kept
-const kLocks: Record<Choice, string> = { auto: 'auto', keep: 'keep', always: 'paint anyway', exclude: 'exclude' };
+const kLocks: Record<Choice, string> = {
+  auto: 'auto',
+  keep: 'keep',
+  always: 'paint anyway',
+  exclude: 'exclude',
+  out: 'leave out',
+};
 
 /** Segments that share a row, and their sums. */
 interface Entry {
@@ -84,15 +90,17 @@ export class PartsTable {
 
   /** Shows the verdict of each row. */
   #showVerdicts({ segmentStats, zones }: Classification): void {
-    for (const { segments, cover, verdict } of this.#rows) {
-      // It changes with every frame of a moving model.
-      cover.textContent = coverOf(segments.map((segment) => segmentStats[segment]!));
-      // Segments that share a row are all uncovered and have the same lock, hence the same verdict.
-      const { culled } = segmentStats[segments[0]!]!;
-      verdict.textContent = culled ? 'culled' : 'passes';
-      verdict.dataset.verdict = verdict.textContent;
-    }
     const shown = this.#session.shown!;
+    const { leftOut } = shown.projection;
+    for (const { segments, cover, verdict } of this.#rows) {
+      // Segments that share a row are all uncovered and have the same lock, hence the same verdict.
+      const { culled, group } = segmentStats[segments[0]!]!;
+      const isOut = leftOut.includes(group);
+      // It changes with every frame of a moving model.
+      cover.textContent = isOut ? '–' : coverOf(segments.map((segment) => segmentStats[segment]!));
+      verdict.dataset.verdict = culled ? 'culled' : 'passes';
+      verdict.textContent = isOut ? 'left out' : verdict.dataset.verdict;
+    }
     const kept = Object.entries(this.#session.locks).filter(([, lock]) => lock === 'keep');
     const notes = kept.slice(0, kMaxNotes).map(([key]) => {
       const segment = Number(key);
@@ -106,12 +114,12 @@ export class PartsTable {
   }
 
   #row(entry: Entry, colors: readonly Rgb[]): Row {
-    const { name, segments, points } = entry;
+    const { name, segments, points, lock } = entry;
     const head = make('th', { scope: 'row' }, name);
     head.prepend(swatchOf(segments.slice(0, kMaxColors).map((segment) => colors[segment]!)));
     const choice = this.#select(entry);
     const [cover, verdict] = [make('td'), make('td')];
-    const count = make('td', {}, points.toLocaleString('en'));
+    const count = make('td', {}, lock === 'out' ? '–' : points.toLocaleString('en'));
     const row = make('tr', {}, head, count, cover, verdict, make('td', {}, choice));
     row.addEventListener('pointerenter', () => this.#highlight(segments));
     row.addEventListener('focusin', () => this.#highlight(segments));
@@ -136,8 +144,9 @@ export class PartsTable {
 function entriesOf(shown: Shown, locks: Locks): Entry[] {
   const entries = new Map<string, Entry>();
   shown.projection.segmentStats.forEach(({ points, area, exposedArea, coveredArea, group }, segment) => {
-    if (area === 0) return;
     const lock = choiceFor(segment, group, locks, shown.target);
+    // What is left out has no area, but can be taken back.
+    if (area === 0 && lock !== 'out') return;
     const key = coveredArea > 0 ? `segment ${segment}` : `group ${group} ${exposedArea > 0} ${lock}`;
     const entry = entries.get(key) ?? {
       name: shown.target.mesh.primitives[group]!.name,
@@ -170,10 +179,11 @@ function named(entries: Entry[]): Entry[] {
 
 /** The covered share of the exposed area of segments, as text. */
 function coverOf(stats: readonly SegmentStats[]): string {
-  const sum = (area: 'exposedArea' | 'coveredArea'): number =>
+  const sum = (area: 'exposedArea' | 'coveredArea' | 'beyondArea'): number =>
     stats.reduce((total, segment) => total + segment[area], 0);
   const exposedArea = sum('exposedArea');
-  return exposedArea > 0 ? percent(sum('coveredArea') / exposedArea) : 'hidden';
+  if (exposedArea > 0) return percent(sum('coveredArea') / exposedArea);
+  return sum('beyondArea') > 0 ? 'beyond' : 'hidden';
 }
 
 function coverageOf({ exposedArea, coveredArea }: Entry): number {

@@ -1,6 +1,7 @@
 import type { Classification, Timings } from 'cagecast';
 import { make } from '../platform/make';
 import { announce, element } from '../platform/page';
+import { namesLeftOut } from '../state/left-out';
 import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
 import { countZones, kZones } from '../state/zones';
@@ -30,7 +31,7 @@ export function showResults(session: Session): void {
   let latest = 0;
   session.on('transfer', () => (first.hidden = true));
   session.on('zones', ({ classification, spent }) => {
-    showCounts(classification);
+    showCounts(classification, namesLeftOut(session.shown!));
     latest = showTimings(session.shown!, spent);
   });
   session.on('retimed', ({ spent }) => {
@@ -42,7 +43,7 @@ export function showResults(session: Session): void {
 }
 
 /** Shows the number of vertices per zone. */
-function showCounts({ zones, segmentStats }: Classification): void {
+function showCounts({ zones, segmentStats }: Classification, leftOut: readonly string[]): void {
   const counts = countZones(zones);
   element('count-total', HTMLElement).textContent = zones.length.toLocaleString('en');
   kZones.forEach(({ name }, number) => {
@@ -53,7 +54,8 @@ function showCounts({ zones, segmentStats }: Classification): void {
   const culled = segmentStats.filter((segment) => segment.culled).length;
   announce(
     `Done: ${counts[0]} of ${zones.length} vertices are cosmetic, ${counts[1]} are occluded, ${counts[2]} uncovered, ` +
-      `${counts[3]} culled; ${culled} of ${segmentStats.length} parts are culled.`,
+      `${counts[3]} culled; ${culled} of ${segmentStats.length} parts are culled.` +
+      (leftOut.length > 0 ? ` Left out: ${leftOut.join(', ')}.` : ''),
   );
 }
 

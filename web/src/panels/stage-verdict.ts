@@ -1,13 +1,7 @@
 import { element } from '../platform/page';
 import type { Session } from '../state/session';
-import { type KnownVerdict, paintableShare } from '../state/verdict';
+import { type KnownVerdict, paintableShare, type Remedy, regionOf } from '../state/verdict';
 import { goTo } from './section-nav';
-
-/** Something that can be done about a cage that does not fit. */
-export interface Remedy {
-  title: string;
-  run(): void;
-}
 
 /** Shows the verdict on the cage on the stage and on the model's card: first, how much of the model can be painted. */
 export class StageVerdict {
@@ -37,12 +31,16 @@ export class StageVerdict {
     const verdict = this.#verdict;
     const { shown, classification } = this.#session;
     if (!shown || !classification) return;
-    const share = `${Math.round(100 * paintableShare(classification.segmentStats))} % paintable`;
+    const { segmentStats } = classification;
+    const region = regionOf(shown, segmentStats);
+    const painted = `${Math.round(100 * paintableShare(segmentStats))} % paintable`;
+    const of = region && `${region[0]!.toUpperCase()}${region.slice(1)}`;
+    const share = of ? `${of}: ${painted}` : painted;
     const foreign = shown.cage.sample && shown.cage.sample !== shown.target.sample;
     const unknown = this.#remedy ? 'The cage is not checked yet' : 'Checking the cage…';
     const texts: Record<KnownVerdict, string> = {
       '': foreign ? 'The cage is another model’s' : unknown,
-      good: share,
+      good: of ? `${of} of the model: ${painted}` : painted,
       usable: `${share}, with reservations`,
       unfit: 'The cage does not fit',
     };

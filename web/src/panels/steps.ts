@@ -6,7 +6,13 @@ import type { Session } from '../state/session';
 import type { Live } from '../tools/live/live-panel';
 import { nameOfPart } from './part-menu';
 
-const kDone = { keep: 'keeping', always: 'painting anyway', exclude: 'excluding', auto: 'no override of' } as const;
+const kDone = {
+  keep: 'keeping',
+  always: 'painting anyway',
+  exclude: 'excluding',
+  out: 'leaving out',
+  auto: 'no override of',
+} as const;
 
 /** Makes changes of rules, overrides of parts and the shape steps of the undo history. */
 export function recordControls(session: Session, live: Live, history: History): void {
@@ -18,7 +24,9 @@ export function recordControls(session: Session, live: Live, history: History): 
         ? 'changing the threshold'
         : before.preset !== after.preset
           ? 'choosing rules'
-          : 'exact borders',
+          : before.weldTolerance !== after.weldTolerance
+            ? 'joining pieces'
+            : 'exact borders',
   };
   const locks: Controlled<Locks> = {
     get: () => ({ ...session.locks }),
@@ -45,6 +53,8 @@ export function recordControls(session: Session, live: Live, history: History): 
     last = target;
     // Steps on another model do not apply any more.
     if (isOpening) steps.reset();
+    // Segments that were joined have other numbers.
+    else steps.take();
   });
   session.on('progress', ({ state }) => {
     if (state === 'working' || !isOpening) return;

@@ -7,20 +7,25 @@ import type { SplitProjection } from './transfers';
 export interface Rules {
   preset: Preset;
   threshold: number;
+  /** How close vertices of one mesh are that count as one: a share of the model's diagonal. */
+  weldTolerance: number;
   /** Whether triangles are cut where the paint ends. */
   borders: Borders;
 }
 
-export const kFirstRules: Rules = { preset: 'default', threshold: 0.5, borders: 'triangle' };
+/** The largest weld tolerance. */
+export const kMaxWeld = 0.01;
 
-/** A lock, or all of a part painted, whatever hides it. */
-export type Choice = Lock | 'always';
+export const kFirstRules: Rules = { preset: 'default', threshold: 0.5, weldTolerance: 0, borders: 'triangle' };
+
+/** A lock; or all of a part painted, whatever hides it; or the part left out: neither painted nor in the way. */
+export type Choice = Lock | 'always' | 'out';
 
 /** Choices by segment; all others are `auto`. */
 export type Locks = Record<number, Choice>;
 
-/** The nearest to a choice that methods without masks know. */
-export const asLock = (choice: Choice): Lock => (choice === 'always' ? 'keep' : choice);
+/** The nearest to a choice that is a lock. */
+export const asLock = (choice: Choice): Lock => (choice === 'always' ? 'keep' : choice === 'out' ? 'exclude' : choice);
 
 /** Those of the choices that are for segments that a model has. */
 export const knownLocks = (locks: Locks, { segmentStats }: Pick<SplitProjection, 'segmentStats'>): Locks =>

@@ -23,9 +23,14 @@ export class ControlSteps {
     this.reset();
   }
 
+  /** Takes the current states as given. */
+  take(): void {
+    for (const state of this.#states) this.#known.set(state, state.get());
+  }
+
   /** Takes the current states as given, such as those of another model, and drops the steps. */
   reset(): void {
-    for (const state of this.#states) this.#known.set(state, state.get());
+    this.take();
     this.#history.forget((command) => command instanceof Step);
   }
 

@@ -4,12 +4,13 @@ import {
   type ClassifyOptions,
   classify,
   init,
-  type Preset,
+  type Projection,
   type Timings,
 } from 'cagecast';
 import type { Inspection } from 'cagecast/inspect';
 import { Emitter } from 'cagecast/three/paint';
 import { BareMarks, type Choice, choicesOf, kFirstRules, knownLocks, type Locks, type Rules } from './choices';
+import { choose, isUpToDate, leavingOut, leftOutBy, moveChoices, projectBy } from './left-out';
 import type { Model } from './model';
 import { Pace } from './pace';
 import type { Paint } from './paint';
@@ -160,28 +161,36 @@ export class Session extends Emitter<SessionEvents> {
     if (target && cage) this.request({ target: cage, cage: target });
   }
 
-  /** Changes options. A threshold takes effect at once, another preset with the next transfer, which waits for a cage that is being made. */
+  /** Changes options. A threshold takes effect at once, others with the next transfer, which waits for a cage that is being made. */
   setRules(change: Partial<Rules>): void {
     const before = this.#rules;
     this.#rules = { ...before, ...change };
     this.emit('rules', this.#rules);
-    if (this.#rules.preset !== before.preset) {
-      this.#abortRest();
-      // Before the first request there is nothing to repeat.
-      if (this.begun && !this.isMakingCage) void this.#run();
-    } else if (this.#shown) this.#classify();
+    if (this.#rules.preset !== before.preset || this.#rules.weldTolerance !== before.weldTolerance) this.#repeat();
+    else if (this.#shown) this.#classify();
   }
 
-  /** Locks segments; takes effect at once. */
+  /** Locks segments; takes effect at once. What is left out, or comes back, needs another transfer. */
   lock(segments: readonly number[], lock: Choice): void {
-    for (const segment of segments) this.#locks[segment] = lock;
-    if (this.#shown) this.#classify();
+    this.setLocks(choose(this.#locks, segments, lock, this.#shown?.projection.segmentStats ?? []));
   }
 
-  /** Sets the locks of all segments; takes effect at once. */
+  /** Sets the locks of all segments, as `lock`. */
   setLocks(locks: Locks): void {
+    const before = this.#locks;
     this.#locks = { ...locks };
-    if (this.#shown) this.#classify();
+    if (!this.#shown) return;
+    const { projection } = this.#shown;
+    const outBefore = String(leftOutBy(before, projection));
+    this.#classify();
+    if (String(leftOutBy(this.#locks, projection)) !== outBefore) this.#repeat();
+  }
+
+  /** Transfers again, by other rules. */
+  #repeat(): void {
+    this.#abortRest();
+    // Before the first request there is nothing to repeat.
+    if (this.begun && !this.isMakingCage) void this.#run();
   }
 
   /** 1 for each triangle of the shown target that the user marked to stay bare; undefined if there are none. */
@@ -247,7 +256,7 @@ export class Session extends Emitter<SessionEvents> {
 
   /** Reports an error; the current scene stays. */
   fail(error: unknown): void {
-    if (this.isMakingCage) this.#abortPreset();
+    if (this.isMakingCage) this.#abortRules();
     this.emit('progress', { state: 'failed', error: error instanceof Error ? error : new Error(String(error)) });
   }
 
@@ -258,7 +267,7 @@ export class Session extends Emitter<SessionEvents> {
     this.#transferer.cancel();
     this.#endWork('cancelled');
     this.#requests.abort(...kSlots);
-    this.#abortPreset();
+    this.#abortRules();
     this.emit('progress', this.#shown ? { state: 'ready' } : { state: 'waiting', missing: ['target', 'cage'] });
   }
 
@@ -273,9 +282,13 @@ export class Session extends Emitter<SessionEvents> {
     return () => {
       if (this.#work !== work) return;
       this.#work = undefined;
-      if (work.makesCage && this.#rules.preset !== this.#shown?.projection.preset) void this.#run();
+      if (work.makesCage && !this.#isUpToDate) void this.#run();
       else this.emit('progress', { state: 'ready' });
     };
+  }
+
+  get #isUpToDate(): boolean {
+    return this.#shown !== undefined && isUpToDate(this.#shown.projection, this.#rules, this.#locks);
   }
 
   #endWork(why: Parameters<Work['abort']>[0]): void {
@@ -302,17 +315,11 @@ export class Session extends Emitter<SessionEvents> {
       // A sample's paint does not fit another cage's UVs: show the checker instead.
       const stays = before?.paint === scene.paint && haveSameUvs(before.cage, scene.cage);
       if (scene.paint.sample && scene.paint.sample !== scene.cage.sample && !stays) scene.paint = this.checker;
-      const { preset } = this.#rules;
-      const same = scene.target === before?.target && scene.cage === before.cage && preset === before.projection.preset;
+      const same = scene.target === before?.target && scene.cage === before.cage && this.#isUpToDate;
       if (!same) this.#report('Transferring', 0.3);
       const pace = new Pace(); // receiving the worker's answer blocks the page too
-      const projection = same ? before.projection : await this.#project(scene, preset, superseded);
+      const projection = same ? before.projection : await this.#project(scene, superseded);
       if (superseded()) return;
-      // Segments depend on the target only: locks stay valid for another cage or preset.
-      if (scene.target !== before?.target) {
-        this.#locks = knownLocks(this.#requests.locks, projection);
-        this.#moved = false;
-      }
       if (!same) {
         this.#report('Applying the paint', 0.9);
         await pace.rest();
@@ -320,6 +327,8 @@ export class Session extends Emitter<SessionEvents> {
       }
       // Too late to cancel from here on.
       this.#working = false;
+      this.#locks = this.#locksFor(scene, projection);
+      if (scene.target !== before?.target) this.#moved = false;
       this.#shown = { ...scene, projection };
       this.#requests.settle();
       if (!same) {
@@ -339,16 +348,31 @@ export class Session extends Emitter<SessionEvents> {
       this.emit('progress', { state: 'ready' });
     } catch (error) {
       if (superseded() || error instanceof Superseded) return;
-      this.#abortPreset();
+      this.#abortRules();
       this.fail(error);
     }
   }
 
-  async #project({ target, cage }: Scene, preset: Preset, superseded: () => boolean): Promise<SplitProjection> {
+  /** The locks of a scene, by the segments of its projection, which depend on target and weld tolerance. */
+  #locksFor({ target }: Scene, projection: Projection): Locks {
+    const { shown } = this;
+    return target === shown?.target
+      ? moveChoices(this.#locks, shown.projection.segments, projection.segments)
+      : knownLocks(this.#requests.locks, projection);
+  }
+
+  async #project(scene: Scene, superseded: () => boolean): Promise<SplitProjection> {
+    const { target, cage } = scene;
     try {
       // `classify` runs on the page, the rest in the worker: start both.
       const [projection] = await Promise.all([
-        this.#transferer.ask('project', cage, target, { preset }, () => this.#report('Splitting seams', 0.7)),
+        projectBy(
+          this.#transferer,
+          scene,
+          this.#rules,
+          (projection) => this.#locksFor(scene, projection),
+          () => this.#report('Splitting seams', 0.7),
+        ),
         init(),
       ]);
       this.#projected = projection;
@@ -371,12 +395,15 @@ export class Session extends Emitter<SessionEvents> {
     if (this.#shown && !this.#working) this.#requests.abort(...kSlots);
   }
 
-  /** Falls back to the preset of the current scene. */
-  #abortPreset(): void {
-    const { preset } = this.#shown?.projection ?? this.#rules;
-    if (preset === this.#rules.preset) return;
-    this.#rules = { ...this.#rules, preset };
+  /** Falls back to the rules of the current scene, and to what is left out of it. */
+  #abortRules(): void {
+    if (!this.#shown || this.#isUpToDate) return;
+    const { preset, weldTolerance, leftOut, segmentStats } = this.#shown.projection;
+    const isLeftOut = String(leftOutBy(this.#locks, { segmentStats })) === String(leftOut);
+    this.#locks = leavingOut(this.#locks, leftOut, segmentStats);
+    this.#rules = { ...this.#rules, preset, weldTolerance };
     this.emit('rules', this.#rules);
+    if (!isLeftOut) this.#classify();
   }
 
   /** Computes the zones from the current threshold and locks. */

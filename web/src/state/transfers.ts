@@ -13,9 +13,16 @@ import type { Inspection, InspectOptions } from 'cagecast/inspect';
 import type { Model } from './model';
 
 /** A projection, and the split vertices that the view needs. */
-export interface SplitProjection extends Projection {
+export interface WorkerProjection extends Projection {
   /** The target's vertices, split at UV seams; not split if there are no UVs per corner. */
   split: SplitVertices;
+}
+
+/** The same, and what it was made with besides the preset. */
+export interface SplitProjection extends WorkerProjection {
+  weldTolerance: number;
+  /** The groups that were left out. */
+  leftOut: readonly number[];
 }
 
 /** A request was replaced by a later one: not a failure to report. */
@@ -29,7 +36,7 @@ interface CutOptions {
 
 /** Tasks of the worker, with their options and answers. */
 export interface Tasks {
-  project: { options: ProjectOptions; answer: SplitProjection };
+  project: { options: ProjectOptions; answer: WorkerProjection };
   cut: { options: CutOptions; answer: CutTarget };
   inspect: { options: InspectOptions; answer: Inspection };
 }

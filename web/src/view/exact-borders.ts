@@ -1,6 +1,7 @@
 import type { Classification } from 'cagecast';
 import { TransferClient } from '../loading/transfer-client';
 import { element } from '../platform/page';
+import { withoutParts } from '../state/left-out';
 import type { Session } from '../state/session';
 import type { SplitProjection } from '../state/transfers';
 import { Superseded } from '../state/transfers';
@@ -91,10 +92,10 @@ export class ExactBorders {
     this.#cutting = false;
     try {
       this.#client ??= new TransferClient();
-      const { preset, threshold } = rules;
-      const cut = await this.#client.ask('cut', cage, target, {
+      const { preset, threshold, weldTolerance } = rules;
+      const cut = await this.#client.ask('cut', cage, withoutParts(target, projection), {
         result: { zones, segments: projection.segments, segmentStats },
-        rules: { preset, threshold, ...choices },
+        rules: { preset, threshold, weldTolerance, ...choices },
       });
       await this.#stage.setCut(cut);
       const more = (cut.indices.length - target.mesh.indices.length) / 3;

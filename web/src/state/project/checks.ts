@@ -31,6 +31,6 @@ export const oneOf = <T>(value: unknown, all: readonly T[]): T => (all.includes(
 export const locksOf = (value: unknown): Locks =>
   Object.fromEntries(
     Object.entries(objectOf(value, 'overrides')).flatMap(([key, lock]) =>
-      /^\d{1,9}$/.test(key) ? [[key, oneOf(lock, ['auto', 'keep', 'exclude', 'always'])]] : [],
+      /^\d{1,9}$/.test(key) ? [[key, oneOf(lock, ['auto', 'keep', 'exclude', 'always', 'out'])]] : [],
     ),
   );

@@ -1,4 +1,4 @@
-import { knownLocks } from '../choices';
+import { kMaxWeld, knownLocks } from '../choices';
 import { type ChosenShape, type Deform, kDeforms } from '../deform';
 import type { Session } from '../session';
 import { type Angle, kLightNames, kModes } from '../view-state';
@@ -26,9 +26,13 @@ export function settingsParts(session: Session, live: Shaped, controls: Camera |
       isWork: true,
       save: () => session.rules,
       read(saved) {
-        const { preset, threshold, borders } = objectOf(saved, 'rules');
+        const { preset, threshold, weldTolerance, borders } = objectOf(saved, 'rules');
         return {
-          before: () => session.setRules({ preset: oneOf(preset, ['default', 'paper']) }),
+          before: () =>
+            session.setRules({
+              preset: oneOf(preset, ['default', 'paper']),
+              weldTolerance: numberOf(weldTolerance, 0, kMaxWeld, 0),
+            }),
           shown: () =>
             session.setRules({
               threshold: numberOf(threshold, 0, 1, 0.5),

@@ -1,5 +1,6 @@
 import { classify } from 'cagecast';
 import { choicesOf } from '../choices';
+import { isUpToDate, moveChoices, projectBy, withoutParts } from '../left-out';
 import type { Model } from '../model';
 import { haveSameUvs } from '../same-uvs';
 import { paintableShare } from '../verdict';
@@ -27,9 +28,9 @@ export class AvatarTransfers {
     const { session, loader, transferer } = this.#around;
     if (!this.#list.has(avatar)) return loader.dispose(model);
     const { cage } = avatar;
-    const { preset } = session.rules;
     this.#list.update(avatar, { doing: 'Painting' });
-    const projection = cage && (await transferer.ask('project', cage, model, { preset }));
+    const projection =
+      cage && (await projectBy(transferer, { cage, target: model }, session.rules, () => avatar.locks));
     if (!this.#list.has(avatar)) return loader.dispose(model);
     const standing = this.#around.view.stand(model, projection);
     avatar.takesPaint = cage !== undefined && haveSameUvs(cage, session.shown!.cage);
@@ -43,31 +44,43 @@ export class AvatarTransfers {
   async #inspect(avatar: Avatar): Promise<void> {
     const { standing, cage, locks } = avatar;
     if (!standing || !cage || standing.model.mesh.indices.length + cage.mesh.indices.length > 3 * kMaxInspected) return;
-    const { preset, threshold } = this.#around.session.rules;
+    const { preset, threshold, weldTolerance } = this.#around.session.rules;
     const parts = standing.model.mesh.primitives.map(({ name, firstVertex, vertexCount }) => ({
       name,
       firstVertex,
       vertexCount,
     }));
-    const options = { preset, threshold, locks: choicesOf(locks, standing.model, undefined).locks, parts };
-    const { verdict } = await this.#around.transferer.ask('inspect', cage, standing.model, options);
+    const options = {
+      preset,
+      threshold,
+      weldTolerance,
+      locks: choicesOf(locks, standing.model, undefined).locks,
+      parts,
+    };
+    const target = standing.projection ? withoutParts(standing.model, standing.projection) : standing.model;
+    const { verdict } = await this.#around.transferer.ask('inspect', cage, target, options);
     this.#list.update(avatar, { verdict });
   }
 
-  /** Makes what stands beside the stage follow the rules: the threshold at once, another preset by another transfer. */
+  /** Makes what stands beside the stage follow the rules: the threshold at once, others by another transfer. */
   update(avatar: Avatar): void {
     const isOutdated = (): boolean => {
       const { projection } = avatar.standing ?? {};
-      return projection !== undefined && projection.preset !== this.#around.session.rules.preset;
+      return projection !== undefined && !isUpToDate(projection, this.#around.session.rules, avatar.locks);
     };
     this.#classify(avatar);
     if (!isOutdated()) return;
     this.#list.queue(avatar, async () => {
       const { cage, standing } = avatar;
       if (!cage || !standing || avatar === this.#list.active || !isOutdated()) return;
-      const { preset } = this.#around.session.rules;
-      const projection = await this.#around.transferer.ask('project', cage, standing.model, { preset });
+      const { session, transferer } = this.#around;
+      const scene = { cage, target: standing.model };
+      const { segments } = standing.projection!;
+      const projection = await projectBy(transferer, scene, session.rules, (made) =>
+        moveChoices(avatar.locks, segments, made.segments),
+      );
       if (avatar.standing !== standing) return;
+      avatar.locks = moveChoices(avatar.locks, segments, projection.segments);
       standing.setProjection(projection);
       this.update(avatar);
     });

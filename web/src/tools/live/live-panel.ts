@@ -1,6 +1,7 @@
 import { TransferClient } from '../../loading/transfer-client';
 import { announce, element } from '../../platform/page';
 import { type ChosenShape, type Deform, kDeforms } from '../../state/deform';
+import { withoutParts } from '../../state/left-out';
 import type { ExtractedMesh } from '../../state/model';
 import type { Shown } from '../../state/scene';
 import type { Session } from '../../state/session';
@@ -78,7 +79,7 @@ export class Live {
   #onTransfer(shown: Shown): void {
     const before = this.#shown;
     this.#shown = shown;
-    if (shown.target === before?.target && shown.cage === before.cage) return; // only the preset changed
+    if (shown.target === before?.target && shown.cage === before.cage) return; // only the rules changed
     if (shown.target !== before?.target) {
       this.#stop();
       this.#amount.value = '0';
@@ -151,19 +152,21 @@ export class Live {
       mesh: { ...model.mesh, positions },
     });
     this.#client ??= new TransferClient();
-    const { preset } = this.#session.rules;
+    const { preset, weldTolerance } = this.#session.rules;
+    const { leftOut } = shown.projection;
     const projection = await this.#client.ask(
       'project',
       moved(shown.cage, cagePositions),
-      moved(shown.target, targetPositions),
-      { preset },
+      withoutParts(moved(shown.target, targetPositions), shown.projection),
+      { preset, weldTolerance },
     );
-    // Another model or preset may have been chosen meanwhile.
-    if (this.#shown !== shown || preset !== this.#session.rules.preset) return;
+    // Another model or other rules may have been chosen meanwhile.
+    const { rules } = this.#session;
+    if (this.#shown !== shown || preset !== rules.preset || weldTolerance !== rules.weldTolerance) return;
     target.set(targetPositions, shape);
     cage.set(cagePositions, cageShape);
     this.#moved = !isAtRest(shape);
-    this.#session.showFrame(projection, this.#moved);
+    this.#session.showFrame({ ...projection, weldTolerance, leftOut }, this.#moved);
     this.#showFrame(amount, projection.timings.total);
   }
 

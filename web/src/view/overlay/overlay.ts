@@ -7,6 +7,9 @@ import { Highlight } from './highlight';
 import type { Highlighted, Look } from './looks';
 import { PrimitiveOverlay } from './primitive-overlay';
 
+/** A layer that no camera draws and no ray meets. */
+const kNoLayer = 31;
+
 /**
  * The paint over a target: overlay meshes for each of its meshes, which share its skin and morphs. The naive one shares its
  * vertices. The filtered one splits them at UV seams. The colored one, made on demand, has separate vertices for each
@@ -29,7 +32,12 @@ export class Overlay {
       parts: new Highlight(target, '#22d3ff', 0.5, 0.35),
       bare: new Highlight(target, '#d81b60', 0.55),
     };
-    const filled = target.primitives.filter(({ triangleCount }) => triangleCount > 0);
+    const { leftOut } = projection;
+    // Its visibility would hide what hangs on it, too.
+    target.primitives.forEach(({ mesh }, group) => mesh.layers.set(leftOut.includes(group) ? kNoLayer : 0));
+    const filled = target.primitives.filter(
+      ({ triangleCount }, group) => triangleCount > 0 && !leftOut.includes(group),
+    );
     this.#primitives = filled.map((primitive) => new PrimitiveOverlay(primitive, target.indices, paint));
     this.setProjection(projection);
   }
