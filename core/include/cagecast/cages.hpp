@@ -42,6 +42,10 @@ struct Model {
   std::vector<std::string> parts = {};       ///< Name of each part, or several: "node/mesh/material". May be empty.
   std::vector<Joint> joints = {};            ///< May be empty.
   std::span<const std::uint8_t> marks = {};  ///< 1 per triangle or none: 1 must not be painted, as by a brush.
+  /// Where names say that the face is, such as those of morph targets: `eye_inner`, `eye_outer` and `mouth_corner` of
+  /// both sides (which is left, its shape says), and `mouth`, the middle between the lips. Given landmarks count more,
+  /// found ones less. May be empty.
+  std::vector<Landmark> hints = {};
 };
 
 /// What a model is, which decides resolution, tightness and seams.
