@@ -45,7 +45,8 @@ bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const au
   if (hinted) {
     const MirrorPlane plane{hinted->left, dot(hinted->left, hinted->middle())};
     if (makeHeadOf(findLooseEyes(figure, plane)) || makeHeadOf(hinted)) return true;
-    hinted.reset();
+    hinted.reset();  // No head is there.
+    if (makeHeadOf(findNamedEyes(figure))) return true;
   }
   const std::vector<MirrorPlane> planes = findMirrorPlanes(figure.mesh);
   float share = 0.2f;

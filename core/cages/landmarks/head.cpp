@@ -82,12 +82,19 @@ std::vector<Spot> localHints(const std::vector<Landmark>& hints, const HeadFrame
   return out;
 }
 
-/// The corners of lids by hints: beside the balls' front halves, farther behind than what lids pass over.
+/// The corners of lids by hints: on the skin, or, where there is none, beside the balls' front halves.
 void addHintedEyeCorners(Head& head) {
-  constexpr double kBehind = 0.55;  ///< In radii.
-  for (const char* name : {"eye_inner_left", "eye_outer_left", "eye_inner_right", "eye_outer_right"})
-    if (const Spot* hint = head.hint(name))
-      head.add(name, hint->position - Vec3{0, 0, kBehind * head.eyes.radius}, hint->confidence);
+  constexpr double kBehind = 0.55;  ///< Behind what lids pass over, in radii.
+  for (const char* name : {"eye_inner_left", "eye_outer_left", "eye_inner_right", "eye_outer_right"}) {
+    const Spot* hint = head.hint(name);
+    if (hint == nullptr) continue;
+    Vec3 place = hint->position;
+    const SurfaceRay ray{{place.x, place.y, 0.6}, {0, 0, -1}};
+    const double skin = ray.origin.z - head.surface.trace({&ray, 1})[0].distance;
+    const bool isSkin = std::abs(skin - place.z) < 2 * head.eyes.radius;
+    place.z = isSkin ? skin : place.z - kBehind * head.eyes.radius;
+    head.add(name, place, hint->confidence);
+  }
 }
 
 /// What hints alone say of a mouth.

@@ -31,9 +31,9 @@ struct MouthLine {
 /// A head in its own space, and what has been found on it. All lengths are in units of the frame.
 struct Head {
   HeadFrame frame;
-  TriangleMesh skin;  ///< Without eyes, teeth and hair, as far as they are known.
-  Surface surface;    ///< Of the skin.
-  Eyes eyes;          ///< In this space.
+  TriangleMesh skin;             ///< Without eyes, teeth and hair, as far as they are known.
+  Surface surface;               ///< Of the skin.
+  Eyes eyes;                     ///< In this space.
   std::vector<Spot> hints = {};  ///< Of the model.
   std::vector<Spot> spots = {};
   std::optional<MouthLine> mouth = {};

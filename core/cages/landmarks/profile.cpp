@@ -96,11 +96,12 @@ double firstFold(const Profile& profile, double top, double bottom) {
   return profile.fine.greatest(0.5 * (top + bottom), top, hollow).value_or(0.5 * (top + bottom));
 }
 
-/// The first sharp crease of a range below the fold under the nose; the fold above the chin may be deeper, but is wider.
+/// The first sharp crease of a range below the fold under the nose; the fold above the chin may be deeper, but is
+/// wider.
 std::optional<MouthLine> mouth(const Profile& profile, double subnasale, const Range& range) {
-  constexpr double kHalfCrease = 0.006;        ///< Half its width.
-  constexpr double kMin = 0.0012;              ///< Its depth.
-  constexpr double kOpen = 0.02;               ///< Deeper ones are gaps.
+  constexpr double kHalfCrease = 0.006;  ///< Half its width.
+  constexpr double kMin = 0.0012;        ///< Its depth.
+  constexpr double kOpen = 0.02;         ///< Deeper ones are gaps.
   const auto depth = [&](double y) {
     const double value = profile.sharp.hollow(y, kHalfCrease);
     return std::isnan(value) || value > kOpen ? kOpen : value;

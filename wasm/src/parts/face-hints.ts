@@ -66,7 +66,8 @@ export function faceHints(parts: readonly MorphedPart[]): Record<string, Vector>
       found[motion].set(name, [...(found[motion].get(name) ?? []), movingOf(part, deltas)]);
     }
   const [blinks, openings, narrowings] = Object.values(found).map((motions) => [...motions.values()]);
-  return { ...eyesOf(blinks!), ...(mouthOf(openings!) ?? narrowMouthOf(narrowings!)) };
+  const hints = { ...eyesOf(blinks!), ...(mouthOf(openings!) ?? narrowMouthOf(narrowings!)) };
+  return Object.fromEntries(Object.entries(hints).filter(([, place]) => place.every(Number.isFinite)));
 }
 
 function movingOf({ positions, matrix: m }: MorphedPart, deltas: ArrayLike<number>): Moving {
@@ -105,6 +106,7 @@ function eyesOf(blinks: readonly Motion[]): Record<string, Vector> {
       return { place: add(at, by, 0.5), weight: share < kClearly ? 0 : share };
     });
   });
+  if (lids.length === 0) return {};
   const across = headingOf(lids);
   const along = ({ place }: Weighted) => dot(place, across);
   const [low, high] = rangeOf(lids.map(along));
@@ -133,7 +135,7 @@ function mouthOf(motions: readonly Motion[]): Record<string, Vector> | undefined
     .sort((a, b) => b.opening - a.opening);
   if (!widest || !(widest.opening > 0)) return undefined;
   const { motion, opening } = widest;
-  const lower = moved(motion, kClearly * opening);
+  const lower = moved(motion, kLipsPart * opening);
   const near = kLipsNear * opening;
   const neighbours = new Neighbours(motion, lower, near);
   const parting: Weighted[] = [];
@@ -148,12 +150,16 @@ function mouthOf(motions: readonly Motion[]): Record<string, Vector> | undefined
     }
     if (best) parting.push(best);
   }
-  if (parting.length === 0) return undefined;
-  const across = headingOf(parting);
+  const most = parting.reduce((sum, { weight }) => Math.max(sum, weight), 0);
+  const lips = parting.filter(({ weight }) => weight > kClearly * most);
+  if (lips.length === 0) return undefined;
+  const middle = meanOf(lips);
+  const across = headingOf(lips);
   const along = ({ place }: Weighted) => dot(place, across);
-  const [from, to] = rangeOf(parting.map(along));
-  const corner = (end: number) => meanOf(parting.filter((one) => Math.abs(along(one) - end) <= kEnd * (to - from)));
-  return { mouth: meanOf(parting), mouth_corner_left: corner(to), mouth_corner_right: corner(from) };
+  const line = parting.filter(({ place }) => Math.abs(place[1] - middle[1]) < near);
+  const [from, to] = rangeOf(line.map(along));
+  const corner = (end: number) => meanOf(line.filter((one) => Math.abs(along(one) - end) <= kEnd * (to - from)));
+  return { mouth: middle, mouth_corner_left: corner(to), mouth_corner_right: corner(from) };
 }
 
 /** Finds what lies near to a vertex. */

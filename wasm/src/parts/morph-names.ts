@@ -3,30 +3,14 @@ import type { VrmExtensions } from './joints.js';
 /** What a morph target does to a face, as far as its name says. */
 export type FaceMotion = 'closesEyes' | 'opensMouth' | 'narrowsMouth';
 
-interface Naming {
-  motion: FaceMotion;
-  /** Texts of which a name contains one. */
-  has: readonly string[];
-  /** Texts of which a name is one. */
-  is: readonly string[];
-}
-
 /**
  * The names, as `plain` makes them: of ARKit (`eyeBlinkLeft`), Oculus (`viseme_aa`), VRM 0 and 1 (`blink_l`, `ou`), VRoid
- * (`Fcl_EYE_Close_L`, `Fcl_MTH_A`) and MMD. The first that fits counts.
+ * (`Fcl_EYE_Close_L`, `Fcl_MTH_A`) and MMD, and what contains such words. The first that fits counts.
  */
-const kNamings: readonly Naming[] = [
-  {
-    motion: 'closesEyes',
-    has: ['blink', 'wink', 'eyeclose', 'eyesclose', 'closeeye', 'まばたき', '瞬き', 'ウィンク', 'ウインク'],
-    is: [],
-  },
-  { motion: 'narrowsMouth', has: ['pucker', 'funnel', 'whistle'], is: [] },
-  {
-    motion: 'opensMouth',
-    has: ['jawopen', 'mouthopen', 'openmouth', 'viseme', 'vrcv', 'fclmtha', 'fclmthi', 'fclmthu', 'fclmthe', 'fclmtho'],
-    is: ['aa', 'ih', 'ou', 'ee', 'oh', 'a', 'i', 'u', 'e', 'o', 'あ', 'い', 'う', 'え', 'お', 'ワ'],
-  },
+const kNames: readonly (readonly [FaceMotion, RegExp])[] = [
+  ['closesEyes', /blink|wink|eyes?close|closeeye|まばたき|瞬き|ウィンク|ウインク/],
+  ['narrowsMouth', /pucker|funnel|whistle/],
+  ['opensMouth', /jawopen|mouthopen|openmouth|viseme|vrcv|fclmth[aiueo]$|^(aa|ih|ou|ee|oh|[aiueoあいうえお])$/],
 ];
 
 /** Parts by whose motion no mouth is found: what is in it, or hangs over it. */
@@ -42,9 +26,7 @@ const plain = (name: string): string =>
 /** What a morph target of one of some names does to a face; `undefined` if none says so. */
 export function motionOf(names: readonly unknown[]): FaceMotion | undefined {
   const all = names.filter((name) => typeof name === 'string').map(plain);
-  return kNamings.find(({ has, is }) =>
-    all.some((name) => is.includes(name) || has.some((text) => name.includes(text))),
-  )?.motion;
+  return kNames.find(([, pattern]) => all.some((name) => pattern.test(name)))?.[0];
 }
 
 /** Whether a part with these names may have lips. */
