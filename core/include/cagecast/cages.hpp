@@ -98,8 +98,8 @@ using Progress = std::function<bool(float share, const char* stage)>;
 struct FoundLandmarks {
   std::vector<Landmark> landmarks;
   std::vector<std::string> missing;  ///< Names that were looked for in vain, or that are too uncertain: ask for these.
-  std::string rig;                   ///< "VRM", "Mixamo", "Ready Player Me", "Roblox R15"; "unknown" or empty.
-  Kind kind = Kind::prop;            ///< What the model seems to be.
+  std::string rig;         ///< "VRM", "Mixamo", "Ready Player Me", "Roblox R15", "VRoid", "Rigify"; "unknown" or empty.
+  Kind kind = Kind::prop;  ///< What the model seems to be.
 };
 
 /// Finds the landmarks of a head or a figure by part names, joint names and shape.

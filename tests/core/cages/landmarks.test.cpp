@@ -57,6 +57,11 @@ TEST_CASE("rigs are recognised by the names of their joints", "[cages][landmarks
   CHECK(roblox.name == "Roblox R15");
   CHECK_FALSE(placeOf(roblox.joints, "joint_head"));
   CHECK(placeOf(roblox.joints, "joint_hips"));
+  CHECK(rig("J_Bip_", {"C_Hips", "C_Neck", "C_Head", "L_UpperArm", "R_LowerArm", "R_Foot"}).name == "VRoid");
+  const Rig rigify = rig("DEF-", {"spine", "spine.004", "spine.006", "upper_arm.L", "forearm.R", "shin.R"});
+  CHECK(rigify.name == "Rigify");
+  CHECK(placeOf(rigify.joints, "joint_head")->x == 2);
+  CHECK(placeOf(rigify.joints, "joint_knee_right")->x == 5);
   CHECK(rig("", {"Bone", "Bone.001", "Head"}).name == "unknown");
   CHECK(rig("", {}).name.empty());
 }

@@ -87,7 +87,7 @@ export interface FoundLandmarks {
   confidence: Record<string, number>;
   /** Landmarks that were not found, or are too uncertain. */
   missing: string[];
-  /** `VRM`, `Mixamo`, `Ready Player Me`, `Roblox R15`, `unknown`; empty without a skeleton. */
+  /** `VRM`, `Mixamo`, `Ready Player Me`, `Roblox R15`, `VRoid`, `Rigify`, `unknown`; empty without a skeleton. */
   rig: string;
   /** What the model seems to be. */
   kind: Kind;
