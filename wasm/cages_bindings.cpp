@@ -43,7 +43,8 @@ struct ModelArrays {
 
   bool copy(const val& source) {
     if (!mesh.copy(source["mesh"]) || !copyArray(source["marks"], marks)) return false;
-    model = {mesh.view(), listOf<std::string>(source["parts"]), listOf<Joint>(source["joints"]), marks};
+    model = {mesh.view(), listOf<std::string>(source["parts"]), listOf<Joint>(source["joints"]), marks,
+             listOf<Landmark>(source["hints"])};
     return true;
   }
 };

@@ -1,5 +1,6 @@
 // cagecast/cages, for arrays and for models that glTF-Transform or three.js has loaded.
 import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { Document, NodeIO } from '@gltf-transform/core';
 import { type Code, init, type Mesh } from 'cagecast';
@@ -26,12 +27,16 @@ import { inspect } from 'cagecast/inspect';
 import * as three from 'cagecast/three';
 import type { Bone } from 'three';
 import { GLTFLoader, type GLTF as Loaded } from 'three/addons/loaders/GLTFLoader.js';
+import { cagecast } from '../support/command.js';
 import { countingEnds } from '../support/ended-workers.js';
 import { GlbMaker, glbOf, validate } from '../support/gltf.js';
 import { printed } from '../support/script.js';
+import { temporaryFolder } from '../support/temporary.js';
+import { faceAvatar, kFace } from './face-avatars.js';
 import { ball, join3d } from './scenes.js';
 
 before(() => Promise.all([init(), sync.init()]));
+const { at } = temporaryFolder('cages');
 Object.assign(globalThis, { self: globalThis }); // which GLTFLoader expects
 
 const read = (bytes: Uint8Array): Promise<Document> => new NodeIO().readBinary(new Uint8Array(bytes));
@@ -268,6 +273,32 @@ describe('fitCage', () => {
     assert.deepEqual(sync.findLandmarks(model), { landmarks, confidence, kind, rig, missing });
   });
 
+  test('puts the holes where morph targets say that eyes and mouth are, unless other landmarks are given', async () => {
+    const targets = { eyeBlinkLeft: 'left eye', eyeBlinkRight: 'right eye', jawOpen: 'jaw' } as const;
+    const [file, cageFile] = [at('avatar.glb'), at('cage.glb')];
+    writeFileSync(file, faceAvatar(targets));
+    await cagecast('fit', 'human-head', file, '-o', cageFile);
+    const { positions, holes } = gltf.cageTemplate(await new NodeIO().read(cageFile));
+    const share = kFace.eye[1] - kFace.mouth[1];
+    const [x, y] = kFace.eye;
+    for (const [name, [left, up]] of Object.entries({ eye_left: [x, y], eye_right: [-x, y], mouth: kFace.mouth })) {
+      const loop = holes![name]!;
+      const middle = [0, 1].map((k) => loop.reduce((sum, v) => sum + positions[3 * v + k]! / loop.length, 0));
+      assert.ok(Math.hypot(middle[0]! - left!, middle[1]! - up!) < 0.15 * share, `${name}: ${middle}`);
+    }
+    const avatar = gltf.cageModel(await new NodeIO().read(file));
+    assert.throws(() => sync.fitCage(template, { ...avatar, hints: {} }), { code: 'badLandmarks' });
+    const corner = [0.25, -0.5, 0.68] as const;
+    near(
+      sync.fitCage(template, avatar, { mouth_corner_left: corner }).used['mouth_corner_left']!,
+      corner,
+      'the corner',
+    );
+    assert.throws(() => sync.fitCage(template, { ...avatar, hints: { mouth: [0] } } as never), {
+      message: 'fitCage: model.hints.mouth is of type Array, not 3 finite numbers [x, y, z]',
+    });
+  });
+
   test('says in a sentence what is wrong with its arguments', async () => {
     const { uvs: _, ...bare } = template;
     const call =
@@ -423,6 +454,49 @@ describe('cageModel', () => {
           joints!.map(({ name }) => name),
           names,
         );
+    }
+  });
+
+  test('has hints where the face is, by what morph targets do, whatever naming they follow', async () => {
+    const vrm0 = [
+      { presetName: 'blink', binds: [{ mesh: 0, index: 0, weight: 100 }] },
+      { presetName: 'a', binds: [{ mesh: 0, index: 1, weight: 100 }] },
+    ];
+    const vrm1 = {
+      blink: { morphTargetBinds: [{ node: 0, index: 0, weight: 1 }] },
+      aa: { morphTargetBinds: [{ node: 0, index: 1, weight: 1 }] },
+    };
+    const bare = { t0: 'both eyes', t1: 'jaw' } as const;
+    const cases: [targets: Parameters<typeof faceAvatar>[0], extensions?: object][] = [
+      [{ eyeBlinkLeft: 'left eye', eyeBlinkRight: 'right eye', browInnerUp: 'lips', jawOpen: 'jaw' }],
+      [{ eyeBlink_L: 'left eye', eyeBlink_R: 'right eye', viseme_aa: 'jaw' }],
+      [{ 'Face.Fcl_EYE_Close_L': 'left eye', 'Face.Fcl_EYE_Close_R': 'right eye', 'Face.Fcl_MTH_A': 'jaw' }],
+      [{ まばたき: 'both eyes', ｳｨﾝｸ: 'left eye', あ: 'jaw' }],
+      [{ blink: 'both eyes', mouthPucker: 'lips' }],
+      [bare, { VRM: { blendShapeMaster: { blendShapeGroups: vrm0 } } }],
+      [bare, { VRMC_vrm: { expressions: { preset: vrm1 } } }],
+    ];
+    const off = (place: readonly number[] | undefined, [x, y]: readonly [number, number]) =>
+      Math.hypot(Math.abs(place![0]!) - x, place![1]! - y) / (kFace.eye[1] - kFace.mouth[1]);
+    for (const [targets, extensions = {}] of cases) {
+      const bytes = faceAvatar(targets, extensions);
+      const models = [gltf.cageModel(await read(bytes), { extensions }), three.cageModel(await load(bytes))];
+      assert.deepEqual(models[1]!.hints, models[0]!.hints);
+      const hints = models[0]!.hints!;
+      const what = `${Object.keys(targets)} ${JSON.stringify(hints)}`;
+      for (const side of ['left', 'right']) {
+        const [inner, outer] = [hints[`eye_inner_${side}`]!, hints[`eye_outer_${side}`]!];
+        assert.ok(off([(inner[0] + outer[0]) / 2, inner[1]], kFace.eye) < 0.05, what);
+      }
+      assert.ok(off(hints['mouth'], kFace.mouth) < 0.05, what);
+    }
+    for (const [targets, extensions = {}] of [
+      [bare, { VRM: { blendShapeMaster: { blendShapeGroups: [null, { binds: [null, { mesh: 9 }] }] } } }],
+      [{ Fcl_MTH_Angry: 'jaw', eyeLookUpLeft: 'left eye' }],
+    ] as typeof cases) {
+      const bytes = faceAvatar(targets, extensions);
+      for (const { hints } of [gltf.cageModel(await read(bytes), { extensions }), three.cageModel(await load(bytes))])
+        assert.deepEqual(hints, {});
     }
   });
 

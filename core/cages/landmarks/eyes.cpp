@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "landmarks/landmark_list.hpp"
 #include "linear/dense.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/samples.hpp"
@@ -186,9 +187,32 @@ std::optional<Eyes> findNamedEyes(const Figure& figure) {
   if (!(length(apart) > 1.2 * eyes.radius) || std::abs(apart.y) > 0.5 * length(apart)) return std::nullopt;
   const bool alike = std::max(one.radius, other.radius) < 1.3 * eyes.radius;
   eyes.confidence = alike ? 0.95 : 0.6;
+  eyes.isNamed = true;
   eyes.triangles.resize(figure.roles.size());
   for (std::size_t t = 0; t < figure.roles.size(); ++t) eyes.triangles[t] = figure.roles[t] == Role::eye;
   orient(figure, eyes);
+  return eyes;
+}
+
+std::optional<Eyes> findHintedEyes(const Figure& figure, const std::vector<Landmark>& hints) {
+  constexpr double kRadius = 0.55;  ///< Of an eyeball, as a share of the distance of the corners of its lids.
+  std::array<Vec3, 4> corners{};
+  std::size_t count = 0;
+  for (const char* name : {"eye_inner_left", "eye_outer_left", "eye_inner_right", "eye_outer_right"})
+    if (const auto place = placeOf(hints, name)) corners[count++] = *place;
+  const auto [inner, outer, otherInner, otherOuter] = corners;
+  Eyes eyes;
+  eyes.centres = {0.5 * (inner + outer), 0.5 * (otherInner + otherOuter)};
+  eyes.radius = 0.5 * kRadius * (length(outer - inner) + length(otherOuter - otherInner));
+  const Vec3 apart = eyes.centres[0] - eyes.centres[1];
+  // False, too, if it is not finite.
+  const bool areApart = eyes.radius > 0 && length(apart) > 1.2 * eyes.radius && length(apart) < diagonalOf(figure.mesh);
+  if (count < corners.size() || !areApart || std::abs(apart.y) > 0.5 * length(apart)) return std::nullopt;
+  eyes.confidence = 0.9;
+  eyes.isNamed = true;
+  orient(figure, eyes);
+  // Lids are in front of the eyeballs.
+  for (Vec3& centre : eyes.centres) centre = centre - eyes.radius * eyes.front;
   return eyes;
 }
 

@@ -16,6 +16,7 @@ struct Eyes {
   Vec3 front{0, 0, 1};
   double radius = 0;
   double confidence = 0;
+  bool isNamed = false;              ///< Whether a name says so: of parts, or of what closes them.
   std::vector<bool> triangles = {};  ///< Of the figure: which belong to an eye. Empty if they are part of the skin.
 
   [[nodiscard]] Vec3 middle() const { return 0.5 * (centres[0] + centres[1]); }
@@ -31,6 +32,9 @@ Sphere fitSphere(const std::vector<Vec3>& points);
 
 /// The eyes by the names of parts.
 std::optional<Eyes> findNamedEyes(const Figure& figure);
+
+/// The eyes by a model's hints: where lids close.
+std::optional<Eyes> findHintedEyes(const Figure& figure, const std::vector<Landmark>& hints);
 
 /// The eyes as two connected components that mirror each other, are round, and are seen from the front only.
 /// @param plane  Of the figure, or of its head.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 
 #include "landmarks/head.hpp"
@@ -18,18 +19,35 @@ constexpr const char* kPaired[] = {"eye_centre", "eye_inner", "eye_outer",   "ea
 /// Less sure ones are left out, and asked for.
 constexpr double kSure = 0.5;
 
+/// Whether eyes are where others are, seen from the front.
+bool areAt(const Eyes& eyes, const Eyes& others) {
+  constexpr double kSameEye = 0.25;  ///< Of the distance of the eyes.
+  const double apart = length(others.centres[0] - others.centres[1]);
+  const auto off = [&](std::size_t i) { return length(cross(eyes.centres[i] - others.centres[i], others.front)); };
+  return std::max(off(0), off(1)) < kSameEye * apart;
+}
+
 /// Finds a figure's head: around the first eyes, named, loose or fused with the skin, that are as far apart as eyes
-/// are.
+/// are, and where hints say, if there are any.
 /// @param goOn  Told shares from 0 to 1 on the way.
 /// @return false if `goOn` cancelled it.
-bool findHead(const Figure& figure, const auto& goOn, std::optional<Head>& head) {
-  const auto makeHeadOf = [&](const std::optional<Eyes>& eyes) {
-    if (eyes) head = makeHead(figure, *eyes);
+bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const auto& goOn, std::optional<Head>& head) {
+  std::optional<Eyes> hinted = findHintedEyes(figure, hints);
+  const auto makeHeadOf = [&](std::optional<Eyes> eyes) {
+    if (!eyes || (hinted && !areAt(*eyes, *hinted))) return false;
+    eyes->isNamed = eyes->isNamed || hinted;
+    head = makeHead(figure, *eyes, hints);
     if (head) findHeadLandmarks(figure, *eyes, *head);
     return head.has_value();
   };
   if (makeHeadOf(findNamedEyes(figure))) return true;
   if (!goOn(0.1f)) return false;
+  if (hinted) {
+    const MirrorPlane plane{hinted->left, dot(hinted->left, hinted->middle())};
+    if (makeHeadOf(findLooseEyes(figure, plane)) || makeHeadOf(hinted)) return true;
+    hinted.reset();  // No head is there.
+    if (makeHeadOf(findNamedEyes(figure))) return true;
+  }
   const std::vector<MirrorPlane> planes = findMirrorPlanes(figure.mesh);
   float share = 0.2f;
   const float step = 0.8f / static_cast<float>(2 * planes.size());
@@ -59,7 +77,7 @@ Status find(const Model& model, const Progress& progress, FoundLandmarks& out) {
   out.rig = rig.name;
   std::optional<Head> head;
   if (!findHead(
-          figure, [&](float share) { return goOn(0.9f * share); }, head) ||
+          figure, model.hints, [&](float share) { return goOn(0.9f * share); }, head) ||
       !goOn(0.9f))
     return kAborted;
   if (head)

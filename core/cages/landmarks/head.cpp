@@ -1,4 +1,5 @@
 #include "landmarks/head.hpp"
+#include "landmarks/landmark_list.hpp"
 #include "mesh/samples.hpp"
 
 #include <algorithm>
@@ -69,9 +70,47 @@ std::vector<bool> insideMouth(const Figure& figure, const Eyes& eyes) {
   return out;
 }
 
+/// Hints in the space of a head, named by the side that they are on.
+std::vector<Spot> localHints(const std::vector<Landmark>& hints, const HeadFrame& frame) {
+  std::vector<Spot> out;
+  for (const Landmark& hint : hints) {
+    const Vec3 place = frame.toLocal(positionOf(hint));
+    const bool isLeft = place.x > 0, isCalledLeft = hint.name.ends_with("_left");
+    const std::string mirror = mirrorName(hint.name);
+    out.push_back({mirror.empty() || isLeft == isCalledLeft ? hint.name : mirror, place, 0.85});
+  }
+  return out;
+}
+
+/// The corners of lids by hints: on the skin, or, where there is none, beside the balls' front halves.
+void addHintedEyeCorners(Head& head) {
+  constexpr double kBehind = 0.55;  ///< Behind what lids pass over, in radii.
+  for (const char* name : {"eye_inner_left", "eye_outer_left", "eye_inner_right", "eye_outer_right"}) {
+    const Spot* hint = head.hint(name);
+    if (hint == nullptr) continue;
+    Vec3 place = hint->position;
+    const SurfaceRay ray{{place.x, place.y, 0.6}, {0, 0, -1}};
+    const double skin = ray.origin.z - head.surface.trace({&ray, 1})[0].distance;
+    const bool isSkin = std::abs(skin - place.z) < 2 * head.eyes.radius;
+    place.z = isSkin ? skin : place.z - kBehind * head.eyes.radius;
+    head.add(name, place, hint->confidence);
+  }
+}
+
+/// What hints alone say of a mouth.
+void addHintedMouth(Head& head) {
+  constexpr double kLip = 0.015;  ///< Half the height of both lips.
+  const Spot* mouth = head.hint("mouth");
+  if (mouth == nullptr) return;
+  head.add("lip_upper", mouth->position + Vec3{0, kLip, 0}, mouth->confidence);
+  head.add("lip_lower", mouth->position - Vec3{0, kLip, 0}, mouth->confidence);
+  for (const char* name : {"mouth_corner_left", "mouth_corner_right"})
+    if (const Spot* corner = head.hint(name)) head.add(name, corner->position, corner->confidence);
+}
+
 }  // namespace
 
-std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes) {
+std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes, const std::vector<Landmark>& hints) {
   const double eyeDistance = length(eyes.centres[0] - eyes.centres[1]);
   HeadFrame frame;
   frame.unit = eyeDistance / kEyeDistance;
@@ -95,7 +134,8 @@ std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes) {
   frame.origin = frame.origin + (plane.offset - dot(plane.left, frame.origin)) * plane.left;
   frame.unit = headLength(skin, eyeDistance, frame);
   const double share = eyeDistance / (kEyeDistance * frame.unit);
-  if (!figure.has(Role::eye) && (share < kNearest || share > kFarthest || heightShare(figure, eyes) < kLowestEyes))
+  const bool isNamed = eyes.isNamed || figure.has(Role::eye);
+  if (!isNamed && (share < kNearest || share > kFarthest || heightShare(figure, eyes) < kLowestEyes))
     return std::nullopt;
 
   TriangleMesh local = frame.toLocal(within(skin, frame.origin, kHeadReach * frame.unit));
@@ -104,7 +144,7 @@ std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes) {
   Eyes inside = eyes;
   for (Vec3& centre : inside.centres) centre = frame.toLocal(centre);
   inside.radius = eyes.radius / frame.unit;
-  return Head{frame, std::move(local), std::move(surface), std::move(inside)};
+  return Head{frame, std::move(local), std::move(surface), std::move(inside), localHints(hints, frame)};
 }
 
 void findHeadLandmarks(const Figure& figure, const Eyes& eyes, Head& head) {
@@ -123,13 +163,17 @@ void findHeadLandmarks(const Figure& figure, const Eyes& eyes, Head& head) {
     }
     if (!face.empty()) findEyeCorners(head, Surface(head.frame.toLocal(std::move(face))), isEye);
   }
-  if (!findProfile(head)) return;
+  if (head.find("eye_inner_left") == nullptr || head.find("eye_inner_right") == nullptr) {
+    std::erase_if(head.spots, [](const Spot& spot) { return !spot.name.starts_with("eye_centre"); });
+    addHintedEyeCorners(head);
+  }
+  if (!findProfile(head)) return addHintedMouth(head);
   // A human face's landmarks mean nothing on a muzzle.
   constexpr double kSnout = 0.2;  ///< Human noses end at 0.1 to 0.14 before the eyes' centres.
-  if (head.find("nose_tip")->position.z > kSnout) {
+  if (const Spot* nose = head.find("nose_tip"); nose != nullptr && nose->position.z > kSnout) {
     std::erase_if(head.spots,
                   [](const Spot& spot) { return spot.name != "nose_tip" && !spot.name.starts_with("eye_centre"); });
-    return;
+    return addHintedMouth(head);
   }
   findMouthCorners(head);
   findEars(head);

@@ -31,9 +31,10 @@ struct MouthLine {
 /// A head in its own space, and what has been found on it. All lengths are in units of the frame.
 struct Head {
   HeadFrame frame;
-  TriangleMesh skin;  ///< Without eyes, teeth and hair, as far as they are known.
-  Surface surface;    ///< Of the skin.
-  Eyes eyes;          ///< In this space.
+  TriangleMesh skin;             ///< Without eyes, teeth and hair, as far as they are known.
+  Surface surface;               ///< Of the skin.
+  Eyes eyes;                     ///< In this space.
+  std::vector<Spot> hints = {};  ///< Of the model.
   std::vector<Spot> spots = {};
   std::optional<MouthLine> mouth = {};
 
@@ -42,7 +43,11 @@ struct Head {
     if (!std::isfinite(position.x + position.y + position.z)) return;
     spots.push_back({std::move(name), position, confidence});
   }
-  [[nodiscard]] const Spot* find(std::string_view name) const {
+  [[nodiscard]] const Spot* find(std::string_view name) const { return find(spots, name); }
+  [[nodiscard]] const Spot* hint(std::string_view name) const { return find(hints, name); }
+
+ private:
+  static const Spot* find(const std::vector<Spot>& spots, std::string_view name) {
     for (const Spot& spot : spots)
       if (spot.name == name) return &spot;
     return nullptr;
@@ -51,13 +56,13 @@ struct Head {
 
 /// A head around two eyes, in a space of its own, without any landmark yet.
 /// @return Nothing if the eyes are too close or too far apart for the skin around them.
-std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes);
+std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes, const std::vector<Landmark>& hints = {});
 
 /// Finds all landmarks of a head that can be found.
 void findHeadLandmarks(const Figure& figure, const Eyes& eyes, Head& head);
 
 /// The midline of a face: nose, brow, lips and chin, from the curve of its profile. Needs the eyes' height.
-/// @return false if there is no human face's profile.
+/// @return false if there is no human face's profile, and no hint where its mouth is.
 bool findProfile(Head& head);
 
 /// Crown, forehead and back of the head. Needs the profile.

@@ -86,7 +86,10 @@ void findMouthCorners(Head& head) {
   const Grid grid = Grid::over(-0.18, 0.18, line.bottom - kAround, line.top + kAround, kMouthStep);
   const HeightMap map = heightMapOf(head.surface, kFrontView, grid, 0.6);
   std::array<std::optional<Vec3>, 2> ends;
-  if (line.top - line.bottom > kGaping) {
+  const Spot *left = head.hint("mouth_corner_left"), *right = head.hint("mouth_corner_right");
+  if (left != nullptr && right != nullptr) {
+    ends = {left->position, right->position};
+  } else if (line.top - line.bottom > kGaping) {
     ends = gapEnds(map, line.top, line.bottom, 0.5 * (line.top + line.bottom));
   } else {
     const HeightMap smooth = blurred(map, kBlur);

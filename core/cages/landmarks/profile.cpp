@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "landmarks/head.hpp"
+#include "mesh/bounds.hpp"
 
 namespace cagecast::cages {
 
@@ -42,6 +44,14 @@ std::optional<double> noseTip(const Profile& profile) {
     if (height(y) < height(best) - kFall) return best;
   }
   return std::nullopt;
+}
+
+/// The foremost place between the eyes and a mouth that is known; nothing if the face is flat there.
+std::optional<double> noseTipAbove(const Profile& profile, double mouth) {
+  constexpr double kLowest = 0.85;  ///< Of the mouth's height: upper lips may be farther in front.
+  const double low = kLowest * mouth;
+  const auto tip = profile.medium.highest(low, 0, profile.tilt);
+  return tip && *tip > low + 2 * kProfileStep && *tip < -2 * kProfileStep ? tip : std::nullopt;
 }
 
 /// The hollow between brow and nose; the farthest behind the line from one to the other if there is no hollow.
@@ -86,21 +96,21 @@ double firstFold(const Profile& profile, double top, double bottom) {
   return profile.fine.greatest(0.5 * (top + bottom), top, hollow).value_or(0.5 * (top + bottom));
 }
 
-/// The first sharp crease below the fold under the nose; the fold above the chin may be deeper, but is wider.
-std::optional<MouthLine> mouth(const Profile& profile, double subnasale) {
-  constexpr double kNear = 0.01, kFar = 0.13;  ///< Below the fold.
-  constexpr double kHalfCrease = 0.006;        ///< Half its width.
-  constexpr double kMin = 0.0012;              ///< Its depth.
-  constexpr double kOpen = 0.02;               ///< Deeper ones are gaps.
+/// The first sharp crease of a range below the fold under the nose; the fold above the chin may be deeper, but is
+/// wider.
+std::optional<MouthLine> mouth(const Profile& profile, double subnasale, const Range& range) {
+  constexpr double kHalfCrease = 0.006;  ///< Half its width.
+  constexpr double kMin = 0.0012;        ///< Its depth.
+  constexpr double kOpen = 0.02;         ///< Deeper ones are gaps.
   const auto depth = [&](double y) {
     const double value = profile.sharp.hollow(y, kHalfCrease);
     return std::isnan(value) || value > kOpen ? kOpen : value;
   };
   double deepest = 0;
-  for (double y = subnasale - kNear; y > subnasale - kFar; y -= kProfileStep) deepest = std::max(deepest, depth(y));
+  for (double y = range.high; y > range.low; y -= kProfileStep) deepest = std::max(deepest, depth(y));
   MouthLine out;
   const double enough = std::max(kMin, 0.4 * deepest);
-  for (double y = subnasale - kNear; y > subnasale - kFar; y -= kProfileStep) {
+  for (double y = range.high; y > range.low; y -= kProfileStep) {
     if (depth(y) > out.depth) out = {y, y, y, depth(y)};
     if (out.depth > enough && depth(y) < 0.5 * out.depth) break;
   }
@@ -167,41 +177,65 @@ std::optional<Vec3> menton(const Head& head, const Vec3& chin, double noseToChin
   return std::nullopt;
 }
 
-}  // namespace
-
-bool findProfile(Head& head) {
-  const Grid grid = Grid::over(-2 * kProfileStep, 2 * kProfileStep, -0.5, 0.32, kProfileStep);
-  const Curve sharp = Curve::along(heightMapOf(head.surface, kFrontView, grid, 0.6));
-  Profile profile{sharp, sharp.blurred(kFine), sharp.blurred(kMedium)};
-  auto nose = noseTip(profile);
-  if (!nose) return false;
+/// Finds nose, root of the nose and brow, and how the face is tilted.
+/// @param mouth  Its height, if it is known.
+/// @return the height of the nose's tip.
+std::optional<double> findNose(Head& head, Profile& profile, const std::optional<double>& mouth) {
+  const auto tip = [&] { return mouth ? noseTipAbove(profile, *mouth) : noseTip(profile); };
+  auto nose = tip();
+  if (!nose) return nose;
   double nasionTrust = 0;
   double nasionY = nasion(profile, *nose, nasionTrust);
   // The front of the face is across the line from nasion to chin. Its own direction finds the nose's tip again.
   for (int round = 0; round < 2; ++round) {
-    const auto low = profile.medium.highest(*nose - 0.2, *nose - 0.13, profile.tilt);
+    const auto low = mouth ? profile.medium.highest(*mouth - 0.09, *mouth - 0.04, profile.tilt)
+                           : profile.medium.highest(*nose - 0.2, *nose - 0.13, profile.tilt);
     if (!low) break;
     const Vec3 a = profile.point(nasionY), b = profile.point(*low);
     constexpr double kMaxTilt = 0.45;
     const double tilt = std::atan2(b.z - a.z, a.y - b.y);
     if (std::abs(tilt) > kMaxTilt) break;
     profile.tilt = tilt;
-    if (const auto again = noseTip(profile)) nose = again;
+    if (const auto again = tip()) nose = again;
     nasionY = nasion(profile, *nose, nasionTrust);
   }
   head.add("nose_tip", profile.point(*nose), 0.9);
   head.add("nasion", profile.point(nasionY), nasionTrust);
   double trust = 0;
   if (const auto brow = glabella(profile, nasionY, trust)) head.add("glabella", profile.point(*brow), trust);
-  const double subnasale = firstFold(profile, *nose - 0.012, *nose - 0.07);
-  const auto gap = mouth(profile, subnasale);
-  if (!gap) return true;
-  head.mouth = gap;
-  const double fold = lips(head, profile, subnasale, *gap);
+  return nose;
+}
+
+}  // namespace
+
+bool findProfile(Head& head) {
+  constexpr double kNear = 0.01, kFar = 0.13;            ///< Of a mouth, below the fold under the nose.
+  constexpr double kKnown = 0.012;                       ///< A mouth that is known is at most this far off.
+  constexpr double kMinMouth = -0.04, kMaxMouth = -0.4;  ///< Its height: other hints mean nothing.
+  const Grid grid = Grid::over(-2 * kProfileStep, 2 * kProfileStep, -0.5, 0.32, kProfileStep);
+  const Curve sharp = Curve::along(heightMapOf(head.surface, kFrontView, grid, 0.6));
+  Profile profile{sharp, sharp.blurred(kFine), sharp.blurred(kMedium)};
+  std::optional<double> known;
+  if (const Spot* hint = head.hint("mouth"))
+    if (hint->position.y < kMinMouth && hint->position.y > kMaxMouth) known = hint->position.y;
+  const auto nose = findNose(head, profile, known);
+  if (!nose && !known) return false;
+  double subnasale = nose ? firstFold(profile, *nose - 0.012, *nose - 0.07) : 0;
+  if (known) {
+    const double lowest = nose ? std::midpoint(*nose, *known) : 0.75 * *known;
+    subnasale = nose ? std::max(subnasale, lowest) : lowest;
+    const Range about{*known - kKnown, *known + kKnown};
+    head.mouth = mouth(profile, subnasale, about).value_or(MouthLine{*known, *known, *known, 0});
+  } else {
+    head.mouth = mouth(profile, subnasale, {subnasale - kFar, subnasale - kNear});
+  }
+  if (!head.mouth) return true;
+  const double fold = lips(head, profile, subnasale, *head.mouth);
   const double chinY = chin(profile, fold);
   const Vec3 at = profile.point(chinY);
   if (!std::isfinite(at.z)) return true;
   head.add("chin", at, 0.7);
+  if (!nose) return true;
   if (const auto bottom = menton(head, at, *nose - chinY)) head.add("menton", *bottom, 0.55);
   return true;
 }

@@ -9,7 +9,7 @@ namespace cagecast::cages {
 
 namespace {
 
-enum Naming : std::size_t { kVrm, kMixamo, kRoblox, kNamings };
+enum Naming : std::size_t { kVrm, kMixamo, kRoblox, kVroid, kRigify, kNamings };
 
 struct RigBone {
   std::string_view landmark;
@@ -17,7 +17,7 @@ struct RigBone {
 };
 
 constexpr RigBone kBones[] = {
-#define BONE(landmark, vrm, mixamo, roblox) {landmark, {vrm, mixamo, roblox}},
+#define BONE(landmark, vrm, mixamo, roblox, vroid, rigify) {landmark, {vrm, mixamo, roblox, vroid, rigify}},
 #include "landmarks/bones.def"
 #undef BONE
 };
@@ -36,11 +36,13 @@ std::string plain(std::string_view name) {
 
 constexpr std::string_view kMixamoPrefix = "mixamorig";
 
-/// The joint's own name: without the names of an armature or a namespace, and without Mixamo's prefix, which may have a
-/// number.
+/// The joint's own name: without the names of an armature or a namespace, without Rigify's prefixes, and without
+/// Mixamo's, which may have a number.
 std::string bareName(std::string_view name, bool& mixamo) {
   const std::size_t last = name.find_last_of("|:");
-  std::string out = plain(last == std::string_view::npos ? name : name.substr(last + 1));
+  std::string_view own = last == std::string_view::npos ? name : name.substr(last + 1);
+  if (own.starts_with("DEF-") || own.starts_with("ORG-")) own.remove_prefix(4);
+  std::string out = plain(own);
   mixamo = plain(name).find(kMixamoPrefix) != std::string::npos;
   if (out.starts_with(kMixamoPrefix)) {
     std::size_t length = kMixamoPrefix.size();
@@ -93,7 +95,7 @@ Rig recogniseRig(const std::vector<Joint>& joints) {
   std::array<std::vector<Landmark>, kNamings> found;
   forEachJoint([&](const std::string& landmark, const RigBone& bone, std::string_view side) {
     for (std::size_t naming = 0; naming < kNamings; ++naming) {
-      const std::string wanted = plain(replaced(bone.names[naming], '#', side));
+      const std::string wanted = plain(replaced(replaced(bone.names[naming], '#', side), '%', side.substr(0, 1)));
       const auto at = std::find(names.begin(), names.end(), wanted);
       if (wanted.empty() || at == names.end()) continue;
       found[naming].push_back({landmark, joints[static_cast<std::size_t>(at - names.begin())].position, 1});
@@ -103,7 +105,7 @@ Rig recogniseRig(const std::vector<Joint>& joints) {
       std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
   if (most->size() < kMinNamed) return {"unknown"};
   const auto naming = static_cast<std::size_t>(most - found.begin());
-  const char* kNames[] = {"VRM", anyMixamo ? "Mixamo" : "Ready Player Me", "Roblox R15"};
+  const char* kNames[] = {"VRM", anyMixamo ? "Mixamo" : "Ready Player Me", "Roblox R15", "VRoid", "Rigify"};
   return {kNames[naming], std::move(*most)};
 }
 

@@ -42,6 +42,10 @@ struct Model {
   std::vector<std::string> parts = {};       ///< Name of each part, or several: "node/mesh/material". May be empty.
   std::vector<Joint> joints = {};            ///< May be empty.
   std::span<const std::uint8_t> marks = {};  ///< 1 per triangle or none: 1 must not be painted, as by a brush.
+  /// Where names say that the face is, such as those of morph targets: `eye_inner`, `eye_outer` and `mouth_corner` of
+  /// both sides (which is left, its shape says), and `mouth`, the middle between the lips. Given landmarks count more,
+  /// found ones less. May be empty.
+  std::vector<Landmark> hints = {};
 };
 
 /// What a model is, which decides resolution, tightness and seams.
@@ -94,8 +98,8 @@ using Progress = std::function<bool(float share, const char* stage)>;
 struct FoundLandmarks {
   std::vector<Landmark> landmarks;
   std::vector<std::string> missing;  ///< Names that were looked for in vain, or that are too uncertain: ask for these.
-  std::string rig;                   ///< "VRM", "Mixamo", "Ready Player Me", "Roblox R15"; "unknown" or empty.
-  Kind kind = Kind::prop;            ///< What the model seems to be.
+  std::string rig;         ///< "VRM", "Mixamo", "Ready Player Me", "Roblox R15", "VRoid", "Rigify"; "unknown" or empty.
+  Kind kind = Kind::prop;  ///< What the model seems to be.
 };
 
 /// Finds the landmarks of a head or a figure by part names, joint names and shape.

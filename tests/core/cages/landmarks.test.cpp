@@ -57,6 +57,11 @@ TEST_CASE("rigs are recognised by the names of their joints", "[cages][landmarks
   CHECK(roblox.name == "Roblox R15");
   CHECK_FALSE(placeOf(roblox.joints, "joint_head"));
   CHECK(placeOf(roblox.joints, "joint_hips"));
+  CHECK(rig("J_Bip_", {"C_Hips", "C_Neck", "C_Head", "L_UpperArm", "R_LowerArm", "R_Foot"}).name == "VRoid");
+  const Rig rigify = rig("DEF-", {"spine", "spine.004", "spine.006", "upper_arm.L", "forearm.R", "shin.R"});
+  CHECK(rigify.name == "Rigify");
+  CHECK(placeOf(rigify.joints, "joint_head")->x == 2);
+  CHECK(placeOf(rigify.joints, "joint_knee_right")->x == 5);
   CHECK(rig("", {"Bone", "Bone.001", "Head"}).name == "unknown");
   CHECK(rig("", {}).name.empty());
 }
@@ -73,6 +78,49 @@ TEST_CASE("eyes are found by name and by shape, whatever way the head faces", "[
   for (const auto& [name, x] : {std::pair{"eye_centre_left", 0.25}, {"eye_centre_right", -0.25}}) {
     REQUIRE(placeOf(of.landmarks, name));
     CHECK(length(*placeOf(of.landmarks, name) - turned({x, 0.1, 0.72})) < 0.02);
+  }
+}
+
+TEST_CASE("hints say where a face is, against its shape and the names of its parts", "[cages][landmarks]") {
+  OwnedModel egg;
+  egg.add("skin", ellipsoid({0, 0, 0}, {0.7, 1, 0.85}, 24));
+  // On its shoulders, as badges.
+  for (const double side : {0.5, -0.5}) egg.add("eye", sphere({side, -0.6, 0.3}, 0.13, 12));
+  // The sides are named the wrong way round.
+  const std::vector<Landmark> hints = {{"eye_inner_right", {0.1f, 0.1f, 0.85f}},
+                                       {"eye_outer_right", {0.4f, 0.1f, 0.85f}},
+                                       {"eye_inner_left", {-0.1f, 0.1f, 0.85f}},
+                                       {"eye_outer_left", {-0.4f, 0.1f, 0.85f}},
+                                       {"mouth_corner_right", {0.2f, -0.4f, 0.75f}},
+                                       {"mouth_corner_left", {-0.2f, -0.4f, 0.75f}},
+                                       {"mouth", {0, -0.4f, 0.78f}}};
+  const auto findWith = [&](const std::vector<Landmark>& given) {
+    Model model = egg.model();
+    model.hints = given;
+    FoundLandmarks out;
+    REQUIRE(findLandmarks(model, nullptr, out).ok());
+    return out.landmarks;
+  };
+  const std::vector<Landmark> landmarks = findWith(hints);
+  const auto place = [&](const char* name) {
+    CAPTURE(name);
+    REQUIRE(placeOf(landmarks, name));
+    return *placeOf(landmarks, name);
+  };
+  for (const auto& [suffix, side] : {std::pair{"_left", 1.0}, {"_right", -1.0}}) {
+    const std::string of = suffix;
+    CHECK(place(("eye_centre" + of).c_str()).x == Approx(0.25 * side).margin(0.02));
+    CHECK(place(("eye_outer" + of).c_str()).x == Approx(0.4 * side).margin(0.02));
+    CHECK(place(("mouth_corner" + of).c_str()).x == Approx(0.2 * side).margin(0.02));
+  }
+  CHECK(place("lip_upper").y > -0.41);
+  CHECK(place("lip_lower").y < -0.39);
+  CHECK(place("lip_lower").y > -0.55);
+  // Hints that cannot be are no hints.
+  for (const float far : {std::numeric_limits<float>::quiet_NaN(), 1e30f}) {
+    std::vector<Landmark> odd = hints;
+    for (Landmark& hint : odd) hint.position[1] *= far;
+    CHECK(findWith(odd).size() == findWith({}).size());
   }
 }
 

@@ -29,6 +29,7 @@ export interface CoreModel {
   parts: string[];
   joints: { name: string; position: number[]; parent: number }[];
   marks: Uint8Array;
+  hints: CoreLandmark[];
 }
 
 /** A template, as C++ takes it. */

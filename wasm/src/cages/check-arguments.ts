@@ -16,7 +16,7 @@ const wrong = (fn: string, place: string, text: string) =>
  */
 export function checkModel(fn: string, model: unknown): CoreModel {
   const mesh = checkMesh(fn, 'model', model);
-  const { parts = [], joints = [], marks } = model as CageModel;
+  const { parts = [], joints = [], marks, hints } = model as CageModel;
   const bad = (field: string, value: unknown, type: string) =>
     wrong(fn, `model.${field}`, ` is ${show(value)}, not ${type}`);
   if (!Array.isArray(joints)) throw bad('joints', joints, 'an array of joints { name, position, parent }');
@@ -30,6 +30,7 @@ export function checkModel(fn: string, model: unknown): CoreModel {
     mesh,
     marks: plainMarks ?? new Uint8Array(0),
     parts: checkParts(fn, 'model.parts', parts),
+    hints: checkLandmarks(fn, 'model.hints', hints),
     joints: joints.map((joint, j) => {
       if (typeof joint?.name !== 'string') throw bad(`joints[${j}].name`, joint?.name, 'a name');
       if (!isPosition(joint.position)) throw bad(`joints[${j}].position`, joint.position, '3 finite numbers');

@@ -32,6 +32,11 @@ export interface CageModel extends Mesh {
   joints?: readonly Joint[] | undefined;
   /** 1 per triangle: 1 must not be painted. Default: none of them; for that leave it out, as an empty array is an error. */
   marks?: Uint8Array | undefined;
+  /**
+   * Where names say that the face is, such as those of morph targets: `eye_inner`, `eye_outer` and `mouth_corner` of both sides, and
+   * `mouth`, the middle between the lips. Given landmarks count more, found ones less. Default: none.
+   */
+  hints?: Landmarks | undefined;
 }
 
 /** What a model is: it decides resolution, tightness and seams of a cage. */
@@ -82,7 +87,7 @@ export interface FoundLandmarks {
   confidence: Record<string, number>;
   /** Landmarks that were not found, or are too uncertain. */
   missing: string[];
-  /** `VRM`, `Mixamo`, `Ready Player Me`, `Roblox R15`, `unknown`; empty without a skeleton. */
+  /** `VRM`, `Mixamo`, `Ready Player Me`, `Roblox R15`, `VRoid`, `Rigify`, `unknown`; empty without a skeleton. */
   rig: string;
   /** What the model seems to be. */
   kind: Kind;

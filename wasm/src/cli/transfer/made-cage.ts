@@ -1,6 +1,6 @@
 import { defaultExclusions, findLandmarks, fitCage, init, makeCage, matchingParts } from '../../cages/sync.js';
 import type { Cage, CageModel, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../../cages/types.js';
-import { cageModelOf } from '../../gltf/cage-file.js';
+import { cageModelOf, partNamesOf } from '../../gltf/cage-file.js';
 import { partsBelow } from '../../gltf/extract-file.js';
 import { InputError } from '../../gltf/input-error.js';
 import { CagecastError } from '../../index.js';
@@ -25,9 +25,9 @@ export function landmarksOf(model: ReadModel, io: Io): Promise<Landmarks> {
 }
 
 /** Whether each part of a model is one that a cage is made without, unless other names are given. */
-export async function partsLeftOut({ file, extracted }: ReadModel): Promise<boolean[]> {
+export async function partsLeftOut({ extracted }: ReadModel): Promise<boolean[]> {
   await init();
-  return matchingParts(cageModelOf(file, extracted).parts ?? [], defaultExclusions());
+  return matchingParts(partNamesOf(extracted.parts), defaultExclusions());
 }
 
 /**

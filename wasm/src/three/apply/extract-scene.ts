@@ -335,17 +335,24 @@ export function placePositions(
 ): void {
   // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
   const stored = valuesOf(geometry.getAttribute('position') as Attribute).subarray(0, 3 * vertexCount);
-  const targets = (geometry.morphAttributes.position ?? []) as Attribute[];
   const values = morphed(
     stored,
     (mesh?.morphTargetInfluences ?? []).flatMap((weight, t) => {
-      if (weight === 0 || !targets[t]) return [];
-      const shape = valuesOf(targets[t]);
-      return [{ weight, deltas: geometry.morphTargetsRelative ? shape : stored.map((x, i) => shape[i]! - x) }];
+      const deltas = weight === 0 ? undefined : targetDeltas(geometry, t);
+      return deltas ? [{ weight, deltas }] : [];
     }),
   );
   if (matrix.equals(identity)) out.set(values, 3 * firstVertex);
   else movePoints(matrix.elements, values, out, 3 * firstVertex);
+}
+
+/** How a morph target moves the positions of a geometry; `undefined` if there is none. */
+export function targetDeltas(geometry: BufferGeometry, target: number): Float32Array | undefined {
+  const shape = geometry.morphAttributes.position?.[target];
+  if (!shape) return undefined;
+  const values = valuesOf(shape as Attribute);
+  if (geometry.morphTargetsRelative) return values;
+  return valuesOf(geometry.getAttribute('position') as Attribute).map((x, i) => values[i]! - x);
 }
 
 function placeIndices(

@@ -1,14 +1,16 @@
 import { BufferAttribute, BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
 import * as cages from '../../cages/index.js';
 import type { Mesh } from '../../index.js';
+import { faceHints, type MorphTarget } from '../../parts/face-hints.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../../parts/joints.js';
+import { type Expressions, vrmExpressions } from '../../parts/morph-names.js';
 import { readExtras } from '../../parts/template-extras.js';
 import { wrong } from '../errors.js';
-import { extract, holderOf, isSkinned, type Part } from './extract-scene.js';
+import { extract, holderOf, isSkinned, type Part, targetDeltas } from './extract-scene.js';
 
 /**
- * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones; else
- * bones are known by the names of objects.
+ * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones, and
+ * its face by its expressions; else the names of objects and morph targets count.
  */
 export type Loaded = Object3D | BufferGeometry | LoadedGltf;
 
@@ -16,7 +18,10 @@ export type Loaded = Object3D | BufferGeometry | LoadedGltf;
 export interface LoadedGltf {
   scene: Object3D;
   userData?: Record<string, unknown>;
-  parser?: { associations?: Map<object, { nodes?: number } | undefined>; json?: { extensions?: VrmExtensions } };
+  parser?: {
+    associations?: Map<object, { nodes?: number; meshes?: number } | undefined>;
+    json?: { extensions?: VrmExtensions };
+  };
 }
 
 const isLoadedGltf = (model: Loaded): model is LoadedGltf =>
@@ -24,8 +29,8 @@ const isLoadedGltf = (model: Loaded): model is LoadedGltf =>
 const objectOf = (model: Loaded): Object3D | BufferGeometry => (isLoadedGltf(model) ? model.scene : model);
 
 /**
- * What `cagecast/cages` needs of a model: its triangles, a part for each mesh or material group, and the joints of its skeletons,
- * in the bind pose.
+ * What `cagecast/cages` needs of a model: its triangles, a part for each mesh or material group, the joints of its skeletons, in the
+ * bind pose, and where its morph targets say that its face is.
  * @throws {CagecastError} `badArgument` that names the mesh.
  */
 export function cageModel(model: Loaded): cages.CageModel {
@@ -39,7 +44,27 @@ export function cageModel(model: Loaded): cages.CageModel {
     groups,
     parts: namesOf(parts, object),
     joints: jointsOf(parts, bones),
+    hints: faceHints(
+      parts.map((part) => ({
+        names: part.aliases,
+        matrix: part.matrix.elements,
+        positions: positions.subarray(3 * part.firstVertex, 3 * (part.firstVertex + part.vertexCount)),
+        targets: targetsOf(part, isLoadedGltf(model) ? model : undefined),
+      })),
+    ),
   };
+}
+
+function targetsOf({ mesh, geometry }: Part, loaded: LoadedGltf | undefined): MorphTarget[] {
+  const expressions: Expressions = loaded ? vrmExpressions(extensionsOf(loaded)) : () => [];
+  const placeOf = (object: Object3D | null | undefined) => loaded?.parser?.associations?.get(object as object);
+  const node = placeOf(mesh)?.nodes ?? placeOf(mesh?.parent)?.nodes;
+  const names: string[] = [];
+  for (const [name, t] of Object.entries(mesh?.morphTargetDictionary ?? {})) names[t] = name;
+  return (geometry.morphAttributes.position ?? []).map((_, t) => ({
+    names: [names[t], ...expressions(node, placeOf(mesh)?.meshes, t)],
+    deltas: () => targetDeltas(geometry, t),
+  }));
 }
 
 /**
@@ -135,12 +160,16 @@ function namesOf(parts: readonly Part[], root: object): string[][] {
   });
 }
 
-function bonesOf({ userData, parser }: LoadedGltf): Map<Object3D, string> {
+function extensionsOf({ userData, parser }: LoadedGltf): VrmExtensions | undefined {
   // GLTFLoader keeps extensions that it does not know here.
   const kept = userData?.['gltfExtensions'] as VrmExtensions | undefined;
-  const bones = vrmBones(kept?.VRM || kept?.VRMC_vrm ? kept : parser?.json?.extensions);
+  return kept?.VRM || kept?.VRMC_vrm ? kept : parser?.json?.extensions;
+}
+
+function bonesOf(loaded: LoadedGltf): Map<Object3D, string> {
+  const bones = vrmBones(extensionsOf(loaded));
   const found = new Map<Object3D, string>();
-  for (const [object, place] of parser?.associations ?? []) {
+  for (const [object, place] of loaded.parser?.associations ?? []) {
     const bone = place?.nodes === undefined ? undefined : bones.get(place.nodes);
     if (bone !== undefined && (object as Object3D).isObject3D) found.set(object as Object3D, bone);
   }
