@@ -34,9 +34,7 @@ class RaySearch {
 
   /// @param rays         At most `kMaxRays`.
   /// @param[out] hit     1 per ray.
-  /// @param[out] hitsAt  If not null, with `Find::any`: 1 per ray that hits anything, the first corner of a triangle
-  /// that
-  ///                     it hits.
+  /// @param[out] hitsAt  If not null, with `Find::any`: 1 per ray that hits anything, a corner of what it hits.
   void search(Ray* rays, std::uint32_t count, bool* hit, Find find = Find::any,
               std::uint32_t* hitsAt = nullptr) noexcept;
   /// Finds which segments rays hit.

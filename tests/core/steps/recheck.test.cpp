@@ -139,6 +139,28 @@ TEST_CASE("what stays unpainted hides nothing, also by a lock that is set later,
   CHECK(copied(zones.zones) == copied(transferred(cage.view(), target.view(), options).zones.zones));
 }
 
+TEST_CASE("what is seen past others is recovered, wherever the ray along its normal goes", "[recheck]") {
+  // Skin under a small hole of the cage. A flap of its own hides the middle from the hole, and a sheet that stays bare
+  // hides it from the cage on all sides.
+  const Mesh cage = scenes::without(sheet({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 40),
+                                    [](Point p) { return std::abs(p[0]) < 0.1f && std::abs(p[1]) < 0.1f; });
+  Mesh target = sheet({-2, -2, 0.97f}, {4, 0, 0}, {0, 4, 0}, 20);
+  const auto at = [&](float x, float y) {
+    std::uint32_t v = 0;
+    while (scenes::distance(target.vertex(v), {x, y, 0.97f}) > 0.01f) ++v;
+    return v;
+  };
+  const std::uint32_t middle = at(0, 0);
+  const std::uint32_t tip = target.addVertex({0.02f, -0.02f, 0.98f});
+  target.addVertex({0.02f, 0.02f, 0.98f});
+  target.addTriangle(at(-0.2f, 0), tip, tip + 1);
+  append(target, sheet({-0.9f, -0.9f, 1.03f}, {1.8f, 0, 0}, {0, 1.8f, 0}));
+  const TransferResult result = transferred(cage.view(), target.view(), {});
+  CHECK(result.projection.visibility[middle] == Visibility::occluded);
+  CHECK(result.zones.zones[middle] == Zone::cosmetic);
+  requireSameAsReference("under a flap", cage.view(), target.view(), {});
+}
+
 TEST_CASE("a point overhangs a small hole by a share of the hole, not of the model", "[holes]") {
   // A hole whose loop measures 0.0417 of the diagonal: points in it may be 0.0071 from its edge, not 0.017.
   const Mesh cage = scenes::without(scenes::box({}, {1, 1, 1}, 20), [](Point p) {

@@ -36,9 +36,9 @@ bool takesPart(const Scene& scene, const PointData& data, const Array<SegmentSta
          stats[data.segments[point]].coveredArea > 0;
 }
 
-/// Whether a point would be uncovered if what hides it were culled.
+/// Whether a point would be uncovered if what hides it were culled. One that step 9 recovers is seen under the cage.
 bool isUncoveredIfFree(const PointData& data, std::uint32_t point) {
-  return data.hiddenBy != nullptr && data.hiddenBy[point] != 0 && missesCage(data, point);
+  return data.hiddenBy != nullptr && data.hiddenBy[point] != 0 && data.recovery[point] == Recovery::never;
 }
 
 /// Finds the boundary loop that a point's closest point on the cage lies on, and decides by the overhang whether a

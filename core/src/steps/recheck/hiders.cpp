@@ -27,12 +27,13 @@ std::uint32_t HiderRecords::add(std::uint32_t enough, std::span<const std::uint3
   const std::size_t start = words_.size();
   words_.add(enough);
   words_.add(0);
-  // Rays that hit the fewest come first.
-  std::uint32_t counts[32] = {};
+  // Rays that hit the fewest come first; of equals the first, on every platform.
+  std::uint32_t counts[kMostRays] = {};
   for (std::size_t i = 0; i < rays.size(); ++i) hits.each(rays[i], [&](std::uint32_t) { ++counts[i]; });
-  std::uint32_t order[32];
+  std::uint32_t order[kMostRays];
   for (std::uint32_t i = 0; i < rays.size(); ++i) order[i] = i;
-  std::sort(order, order + rays.size(), [&](std::uint32_t a, std::uint32_t b) { return counts[a] < counts[b]; });
+  std::sort(order, order + rays.size(),
+            [&](std::uint32_t a, std::uint32_t b) { return counts[a] != counts[b] ? counts[a] < counts[b] : a < b; });
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::size_t at = words_.size();
     words_.add(counts[order[i]]);
