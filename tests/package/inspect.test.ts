@@ -216,7 +216,7 @@ describe('a cage for a part of the target', () => {
     const around = tube(0.75, 0.8, 0.16);
     const sleeve = within(around, (_, __, z) => Math.abs(z) < 0.6);
     const inspection = inspect(sleeve, body);
-    assert.ok(inspection.placement.outside.area > 0.1, 'the flank is on the outer side');
+    assert.ok(inspection.placement.outside.area < 0.1, 'the flank is beyond');
     assert.notEqual(inspection.verdict, 'unfit', JSON.stringify(inspection.findings));
     // The same sleeve, too thin.
     const thin = { ...sleeve, positions: tube(0.75, 0.8, 0.09).positions };

@@ -52,7 +52,7 @@ const kSpanWeights = [0.4, 0.85];
  * @param firstPoint  The number of the first point of `spanPoints`.
  */
 export function holesOf(
-  { surface, cage, target, parts, areas, diagonal, sides, result }: Scene,
+  { surface, cage, target, parts, areas, diagonal, sides, result, isInRegion }: Scene,
   reversed: Reverse | undefined,
   firstPoint: number,
 ): Hole[] {
@@ -62,6 +62,7 @@ export function holesOf(
   const cuts = loops.map(() => new Map<number, number>());
   let exposed = 0;
   for (let v = 0; v < areas.length; ++v) {
+    if (!isInRegion(v)) continue;
     const l = sides.loops[v]!;
     if (result.zones[v] !== 1) exposed += areas[v]!;
     if (l < 0) continue;

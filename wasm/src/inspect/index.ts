@@ -119,7 +119,7 @@ function outcomeOf(fn: string, cage: Mesh, target: Mesh, given: InspectOptions =
     cage,
     target,
     result ?? transfer(cage, target, options),
-    options.threshold ?? 0.5,
+    options,
     parts ?? partsByGroup(target),
   );
   const orientation = orientationOf(scene);
@@ -144,7 +144,7 @@ function outcomeOf(fn: string, cage: Mesh, target: Mesh, given: InspectOptions =
   // One cause, one finding: everything else is judged as if inward-facing triangles were flipped.
   function uprightScene() {
     const outward = facingOutward(cage, orientation);
-    return sceneOf(outward, target, transfer(outward, target, options), scene.threshold, scene.parts);
+    return sceneOf(outward, target, transfer(outward, target, options), options, scene.parts);
   }
 }
 

@@ -13,17 +13,6 @@ const kUnevenFrom = 0.02;
 const kFarCage = 0.15;
 /** A cage must lie over at least this share of the exposed area; a face is a hundredth of a body. */
 const kMinBeneath = 0.002;
-/**
- * A point that is farther outside than this share of the diagonal does not poke out, but belongs to another part of the target, if
- * the nearest triangle of the cage has some target close beneath it: the flank beside a sleeve, one leg beside the other.
- */
-const kElsewhere = 0.02;
-/** A triangle has target beneath it if that has at least this share of the triangle's own area. */
-const kMinServed = 0.3;
-/** At least this share of the cage must have target beneath it; otherwise the cage is misplaced. */
-const kAllServed = 0.95;
-/** How close the target must be beneath such a triangle, as a share of the diagonal. */
-const kClose = 0.04;
 /** A target that is so many times as large as what is painted of it has something in it that is not part of the model. */
 const kTooLarge = 10;
 /** A cage is unfit if the target is so many times as large. */
@@ -32,7 +21,7 @@ const kFarTooLarge = 100;
 /** If at least this share of the exposed area passes, the cage is judged by it. */
 const kMuchPainted = 0.2;
 
-/** How the target lies relative to the cage. Lengths are shares of the target's diagonal. */
+/** How the region of the target that the cage covers lies relative to it. Lengths are shares of the target's diagonal. */
 export interface Placement {
   /**
    * Share of the target on the outer side of the cage: of its vertices, of its area, and of the exposed area under the cage (not
@@ -53,47 +42,40 @@ export interface Placement {
 
 /** Measures how the target lies relative to the cage. */
 export function placementOf(scene: Scene): Placement {
-  const { areas, diagonal, sides, result } = scene;
+  const { areas, diagonal, sides, result, isInRegion } = scene;
   // Hair and glasses lie outside the cage of a head: what is culled is no part of what the cage is for, if anything is painted.
   const areaOf = (isOf: (segment: SegmentStats) => boolean) =>
     result.segmentStats.reduce((sum, segment) => sum + (isOf(segment) ? segment.exposedArea : 0), 0);
   const isPainted = areaOf(({ culled }) => !culled) > kMuchPainted * areaOf(() => true);
   const isAside = (segment: number) => isPainted && result.segmentStats[segment]!.culled;
   let [vertices, area, total, exposed, beneath, exposedOutside] = [0, 0, 0, 0, 0, 0];
-  const candidates: number[] = [];
-  // Per triangle of the cage: how much of the target lies close beneath it, hidden or not.
-  const within = new Float64Array(scene.surface.areas.length);
+  const judged: number[] = [];
+  const region: number[] = [];
   for (let v = 0; v < areas.length; ++v) {
+    if (!isInRegion(v)) continue;
+    region.push(v);
     total += areas[v]!;
     if (sides.signed[v]! > 0) {
       ++vertices;
       area += areas[v]!;
     }
     const over = sides.areUnder[v] === 1;
-    if (over && sides.signed[v]! <= 0 && sides.signed[v]! > -kClose * diagonal)
-      within[result.triangles[v]!]! += areas[v]!;
     if (result.zones[v] === 1 || areas[v] === 0) continue;
     exposed += areas[v]!;
-    if (over && !isAside(result.segments[v]!)) candidates.push(v);
+    if (over && !isAside(result.segments[v]!)) judged.push(v);
   }
-  const [there, needed] = [overNeighbours(scene, within), overNeighbours(scene, scene.surface.areas)];
-  const served = (t: number) => there[t]! >= kMinServed * needed[t]!;
-  const servedShare =
-    scene.surface.areas.reduce((sum, size, t) => sum + (served(t) ? size : 0), 0) / scene.surface.area;
-  const beside = (v: number) =>
-    servedShare >= kAllServed && sides.signed[v]! > kElsewhere * diagonal && served(result.triangles[v]!);
-  const judged = candidates.filter((v) => !beside(v));
   for (const v of judged) {
     beneath += areas[v]!;
     if (sides.signed[v]! > kPokeThrough * diagonal) exposedOutside += areas[v]!;
   }
   const { correction, remaining } = correct(scene, judged);
-  const [p50 = 0, p90 = 0, p99 = 0, max = 0] = quantiles(result.distances, [0.5, 0.9, 0.99, 1]).map(
-    (d) => d / diagonal,
-  );
+  const [p50 = 0, p90 = 0, p99 = 0, max = 0] = quantiles(
+    region.map((v) => result.distances[v]!),
+    [0.5, 0.9, 0.99, 1],
+  ).map((d) => d / diagonal);
   return {
     outside: {
-      vertices: areas.length > 0 ? vertices / areas.length : 0,
+      vertices: region.length > 0 ? vertices / region.length : 0,
       area: total > 0 ? area / total : 0,
       exposedArea: beneath > 0 ? exposedOutside / beneath : 0,
     },
@@ -110,16 +92,6 @@ export function placementOf(scene: Scene): Placement {
     outsideOnceMoved: beneath > 0 ? remaining / beneath : 0,
     room: roomOf(boxOf(scene.cage.positions, scene.cage.indices), boxOf(scene.target.positions, judged), diagonal),
   };
-}
-
-/** For each triangle of the cage, the sum of a value over it and its neighbours, weighted by the corners they share. */
-function overNeighbours({ cage: { indices }, surface: { place } }: Scene, values: Float64Array): Float64Array {
-  const atPlace = new Float64Array(place.length);
-  for (let i = 0; i < indices.length; ++i) atPlace[place[indices[i]!]!]! += values[Math.floor(i / 3)]!;
-  return values.map(
-    (_, t) =>
-      atPlace[place[indices[3 * t]!]!]! + atPlace[place[indices[3 * t + 1]!]!]! + atPlace[place[indices[3 * t + 2]!]!]!,
-  );
 }
 
 function roomOf(cage: Box, judged: Box, diagonal: number): Vector {

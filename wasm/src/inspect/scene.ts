@@ -1,5 +1,6 @@
 import type { Mesh } from '../api/mesh.js';
-import type { TransferResult } from '../index.js';
+import { optionTable } from '../generated/options.js';
+import { project, type TransferOptions, type TransferResult, Visibility } from '../index.js';
 import { type Box, boxOf, dot, doubleAreaNormal, minus, nearestPoint, pointAt, vertexAreas } from './geometry.js';
 import { type Surface, surfaceOf } from './surface.js';
 
@@ -25,6 +26,8 @@ export interface Scene {
   /** The result of the transfer. */
   result: TransferResult;
   sides: Sides;
+  /** Whether a vertex is in the region that the cage covers, not beyond an outer border of it. */
+  isInRegion(vertex: number): boolean;
 }
 
 /** On which side of the cage each target vertex lies. */
@@ -42,10 +45,11 @@ export function sceneOf(
   cage: Mesh,
   target: Mesh,
   result: TransferResult,
-  threshold: number,
+  options: TransferOptions,
   parts: readonly PartName[],
 ): Scene {
   const surface = surfaceOf(cage);
+  let isIn: Scene['isInRegion'] | undefined;
   const targetBox = boxOf(target.positions);
   return {
     cage,
@@ -55,10 +59,29 @@ export function sceneOf(
     areas: vertexAreas(target),
     targetBox,
     diagonal: targetBox.diagonal || 1,
-    threshold,
+    threshold: options.threshold ?? 0.5,
     result,
     sides: sidesOf(surface, target, result),
+    isInRegion: (vertex) => (isIn ??= regionOf(cage, target, result, options))(vertex),
   };
+}
+
+/** Costs a projection if anything is beyond: a result does not tell which vertices are. */
+function regionOf(
+  cage: Mesh,
+  target: Mesh,
+  { segmentStats }: TransferResult,
+  { preset, steps, ...others }: TransferOptions,
+) {
+  // Of a cage that is too small all may be beyond; then all is judged.
+  const hasRegion = segmentStats.some(({ beyondArea }) => beyondArea > 0) && segmentStats.some(({ culled }) => !culled);
+  if (!hasRegion) return () => true;
+  const ofProject = <T extends object>(options: T): Partial<T> =>
+    Object.fromEntries(
+      Object.entries(options).filter(([name]) => optionTable[name as keyof typeof optionTable]?.stage === 'project'),
+    ) as Partial<T>;
+  const { visibility } = project(cage, target, { preset, ...ofProject(others), steps: ofProject(steps ?? {}) });
+  return (vertex: number) => visibility[vertex] !== Visibility.Beyond;
 }
 
 function sidesOf(

@@ -38,7 +38,7 @@ const views: readonly { name: string; view: View }[] = [
 export function inspectionPage(report: InspectionReport, { target, cage, result }: Run): string {
   const { verdict, findings, holes, segments, placement, uv, options } = report;
   const { mesh, parts } = target.extracted;
-  const scene = sceneOf(cage.extracted.mesh, mesh, result, options.threshold, parts);
+  const scene = sceneOf(cage.extracted.mesh, mesh, result, { threshold: options.threshold }, parts);
   const title = text(`${report.cage.file} on ${report.target.file}`);
   return `<!doctype html>
 <html lang="en">
