@@ -46,8 +46,8 @@ struct ModelArrays {
     if (!mesh.copy(source["mesh"]) || !copyArray(source["marks"], marks) ||
         !copyArray(source["vertexJoints"], vertexJoints))
       return false;
-    model = {mesh.view(), listOf<std::string>(source["parts"]), listOf<Joint>(source["joints"]), marks,
-             listOf<Landmark>(source["hints"]), vertexJoints};
+    model = {mesh.view(), listOf<std::string>(source["parts"]), listOf<Joint>(source["joints"]),
+             marks,       listOf<Landmark>(source["hints"]),    vertexJoints};
     return true;
   }
 };

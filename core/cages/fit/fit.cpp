@@ -174,7 +174,8 @@ class Fit {
     pairs_ = pairLandmarks(from_, given, found.landmarks, out.missing);
     if (isTooLittle(pairs_.to)) {
       out.guessed = mostHelpfulFirst(out.missing);
-      for (Landmark& guess : guessLandmarks(from_, cage, model_, pairs_.to)) found.landmarks.push_back(std::move(guess));
+      for (Landmark& guess : guessLandmarks(from_, cage, model_, pairs_.to))
+        found.landmarks.push_back(std::move(guess));
       pairs_ = pairLandmarks(from_, given, found.landmarks, out.missing);
     }
     out.landmarks = pairs_.to;

@@ -15,7 +15,7 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr float kGuessed = 0.25f;  ///< Confidence.
+constexpr float kGuessed = 0.25f;       ///< Confidence.
 constexpr double kProfileStep = 0.004;  ///< In diagonals.
 
 /// A model or a template in a space of its own, whose axes are its left, up and front; lengths in diagonals.
@@ -45,7 +45,7 @@ struct Upright {
 /// How a figure looks from the front, by rows from its top down.
 struct Silhouette {
   HeightMap map;
-  std::vector<int> widths;   ///< Connected to the middle, in steps; from the first row that is hit.
+  std::vector<int> widths;     ///< Connected to the middle, in steps; from the first row that is hit.
   std::vector<double> fronts;  ///< How far the middle is in front.
   int top = 0;                 ///< The row of the first.
 
@@ -75,8 +75,8 @@ struct Silhouette {
 /// @param eyes  The height of its eyes, if it is known.
 double chinOf(const Upright& figure, const std::optional<double>& eyes) {
   constexpr double kNarrower = 0.75, kWider = 1.25;
-  constexpr double kShortest = 0.6;  ///< Heads are at least this high, in widths of theirs.
-  constexpr double kFallen = 0.85;   ///< Of the way from the face to the neck.
+  constexpr double kShortest = 0.6;   ///< Heads are at least this high, in widths of theirs.
+  constexpr double kFallen = 0.85;    ///< Of the way from the face to the neck.
   constexpr std::size_t kSudden = 5;  ///< Rows.
   const Silhouette seen(figure);
   const std::vector<int>& widths = seen.widths;
@@ -98,7 +98,8 @@ double chinOf(const Upright& figure, const std::optional<double>& eyes) {
     if (widths[i] < widths[neck]) neck = i;
   const auto begin = seen.fronts.begin();
   const double face = *std::max_element(begin, begin + static_cast<std::ptrdiff_t>(neck));
-  const double throat = *std::min_element(begin + static_cast<std::ptrdiff_t>(neck), begin + static_cast<std::ptrdiff_t>(i));
+  const double throat =
+      *std::min_element(begin + static_cast<std::ptrdiff_t>(neck), begin + static_cast<std::ptrdiff_t>(i));
   const double level = face + kFallen * (throat - face);
   std::size_t chin = i - 1;
   while (chin > 0 && seen.fronts[chin] < level) --chin;

@@ -218,7 +218,7 @@ std::optional<Eyes> findHintedEyes(const Figure& figure, const std::vector<Landm
 }
 
 std::optional<Eyes> findJointedEyes(const Figure& figure, const std::vector<Landmark>& joints) {
-  constexpr double kRadius = 0.2;   ///< Of an eyeball, as a share of the distance of the eyes.
+  constexpr double kRadius = 0.2;    ///< Of an eyeball, as a share of the distance of the eyes.
   constexpr double kNearest = 0.02;  ///< Eyes are farther apart than this share of the diagonal of a head.
   const auto left = placeOf(joints, "joint_eye_left"), right = placeOf(joints, "joint_eye_right");
   if (!left || !right) return std::nullopt;

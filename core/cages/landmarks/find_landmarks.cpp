@@ -94,7 +94,8 @@ Status find(const Model& model, const Progress& progress, FoundLandmarks& out) {
   std::optional<Head> head;
   const Figure ofBones = headOf(figure, model, rig.isHead);
   if (!findHead(
-          ofBones.mesh.empty() ? figure : ofBones, model.hints, rig, [&](float share) { return goOn(0.9f * share); }, head) ||
+          ofBones.mesh.empty() ? figure : ofBones, model.hints, rig, [&](float share) { return goOn(0.9f * share); },
+          head) ||
       !goOn(0.9f))
     return kAborted;
   if (head)

@@ -20,7 +20,8 @@ struct RigBone {
 };
 
 constexpr RigBone kBones[] = {
-#define BONE(landmark, vrm, mixamo, roblox, vroid, rigify, words) {landmark, {vrm, mixamo, roblox, vroid, rigify}, words},
+#define BONE(landmark, vrm, mixamo, roblox, vroid, rigify, words) \
+  {landmark, {vrm, mixamo, roblox, vroid, rigify}, words},
 #include "landmarks/bones.def"
 #undef BONE
 };
@@ -99,7 +100,8 @@ std::vector<std::string> wordsOf(std::string_view name) {
   for (const char c : name) {
     const auto code = static_cast<unsigned char>(c);
     const bool isLetter = code >= 0x80 || std::isalnum(code) != 0;
-    if (!isLetter || (std::isupper(code) != 0 && std::islower(static_cast<unsigned char>(last)) != 0)) out.emplace_back();
+    if (!isLetter || (std::isupper(code) != 0 && std::islower(static_cast<unsigned char>(last)) != 0))
+      out.emplace_back();
     if (isLetter) out.back() += static_cast<char>(code < 0x80 ? std::tolower(code) : code);
     last = c;
   }

@@ -103,7 +103,8 @@ using Progress = std::function<bool(float share, const char* stage)>;
 struct FoundLandmarks {
   std::vector<Landmark> landmarks;
   std::vector<std::string> missing;  ///< Names that were looked for in vain, or that are too uncertain: ask for these.
-  std::string rig;         ///< "VRM", "Mixamo", "Ready Player Me", "Roblox R15", "VRoid", "Rigify", "other"; "unknown" or empty.
+  std::string
+      rig;  ///< "VRM", "Mixamo", "Ready Player Me", "Roblox R15", "VRoid", "Rigify", "other"; "unknown" or empty.
   Kind kind = Kind::prop;  ///< What the model seems to be.
 };
 

@@ -217,8 +217,8 @@ TEST_CASE("where too little is known, a cage is placed by size and symmetry", "[
   if (known == 0) CHECK(heads.out.guessed[0] == "eye_centre_left");
   for (const Landmark& landmark : heads.out.landmarks) {
     CAPTURE(landmark.name);
-    const bool isGuessed = std::find(heads.out.guessed.begin(), heads.out.guessed.end(), landmark.name) !=
-                           heads.out.guessed.end();
+    const bool isGuessed =
+        std::find(heads.out.guessed.begin(), heads.out.guessed.end(), landmark.name) != heads.out.guessed.end();
     CHECK(landmark.confidence == (isGuessed ? 0.25f : 1));
     CHECK(length(positionOf(landmark) - moved(*placeOf(truth, landmark.name))) < 0.3);
   }

@@ -65,12 +65,12 @@ TEST_CASE("rigs are recognised by the names of their joints", "[cages][landmarks
   CHECK(rig("", {"Bone", "Bone.001", "Head"}).name == "unknown");
   // Rigs with names of their own: the words say what is what, and which side.
   const std::vector<std::vector<std::string>> others = {
-      {"pelvis", "neck_01", "head", "clavicle_l", "upperarm_l", "upperarm_twist_01_l", "lowerarm_l", "hand_l", "thigh_r",
-       "calf_r", "foot_r"},
+      {"pelvis", "neck_01", "head", "clavicle_l", "upperarm_l", "upperarm_twist_01_l", "lowerarm_l", "hand_l",
+       "thigh_r", "calf_r", "foot_r"},
       {"Bip01 Pelvis", "Bip01 Neck", "Bip01 Head", "Bip01 L Clavicle", "Bip01 L UpperArm", "Bip01 L UpArmTwist",
        "Bip01 L Forearm", "Bip01 L Hand", "Bip01 R Thigh", "Bip01 R Calf", "Bip01 R Foot"},
-      {"hip", "neckLower", "head", "lCollar", "lShldrBend", "lShldrTwist", "lForearmBend", "lHand", "rThighBend", "rShin",
-       "rFoot"},
+      {"hip", "neckLower", "head", "lCollar", "lShldrBend", "lShldrTwist", "lForearmBend", "lHand", "rThighBend",
+       "rShin", "rFoot"},
       {"C_hips", "C_neck", "C_head", "L_clavicle", "L_armUpper", "L_armTwist", "L_armLower", "L_hand", "R_legUpper",
        "R_legLower", "R_foot"},
       {"下半身", "首", "頭", "左肩", "左腕", "左腕捩", "左ひじ", "左手首", "右足", "右ひざ", "右足首"},
@@ -115,9 +115,9 @@ TEST_CASE("a face is looked for in what the joints of a head hold", "[cages][lan
   // Buttons look like eyes; the eyes are painted on.
   for (const double side : {0.3, -0.3}) figure.add("coat", sphere({side, -2.8, 0.75}, 0.13, 12));
   Model model = figure.model();
-  model.joints = {{"Hips", {0, -4, 0}},           {"Spine2", {0, -2, 0}, 0},      {"Neck", {0, -1, 0}, 1},
-                  {"Head", {0, -0.8f, 0}, 2},     {"LeftEye", {0.2f, 0.1f, 0}, 3}, {"RightEye", {-0.2f, 0.1f, 0}, 3},
-                  {"LeftArm", {1, -2, 0}, 1},     {"RightArm", {-1, -2, 0}, 1}};
+  model.joints = {{"Hips", {0, -4, 0}},       {"Spine2", {0, -2, 0}, 0},       {"Neck", {0, -1, 0}, 1},
+                  {"Head", {0, -0.8f, 0}, 2}, {"LeftEye", {0.2f, 0.1f, 0}, 3}, {"RightEye", {-0.2f, 0.1f, 0}, 3},
+                  {"LeftArm", {1, -2, 0}, 1}, {"RightArm", {-1, -2, 0}, 1}};
   FoundLandmarks out;
   REQUIRE(findLandmarks(model, nullptr, out).ok());
   std::vector<std::uint16_t> holders(figure.positions.size() / 3, 1);

@@ -1,7 +1,5 @@
-import type { CageModel } from '../cages/types.js';
 import { column, type Vector, volume } from './affine.js';
 import { movePoints } from './points.js';
-import type { Skin } from './skin.js';
 
 /** A joint, as it is read from a model. */
 export interface ReadJoint<Node> {
@@ -35,11 +33,18 @@ export function* upFrom<Node>(node: Node, parentOf: (node: Node) => Node | null 
   }
 }
 
+/** A skeleton, as `CageModel` has it. */
+export interface Skeleton {
+  joints: { name: string; position: [number, number, number]; parent: number }[];
+  vertexJoints: Uint16Array;
+}
+
 /** A part, and what holds it. */
 export interface HeldPart<Node> {
   node: Node;
   vertexCount: number;
-  skin: Pick<Skin<Node>, 'joints' | 'held' | 'weights'> | undefined;
+  /** Its joints, and 4 per vertex: numbers of joints, and their weights. */
+  skin: { joints: readonly Node[]; held: ArrayLike<number>; weights: ArrayLike<number> } | undefined;
 }
 
 /** No joint: `kNoJoint` in C++. */
@@ -55,7 +60,7 @@ export function readSkeleton<Node>(
   joints: Iterable<ReadJoint<Node>>,
   parts: readonly HeldPart<Node>[],
   parentOf: (node: Node) => Node | null | undefined,
-): Required<Pick<CageModel, 'joints' | 'vertexJoints'>> {
+): Skeleton {
   const first = new Map<Node, ReadJoint<Node>>();
   for (const joint of joints) if (!first.has(joint.node)) first.set(joint.node, joint);
   const numbers = new Map([...first.keys()].map((node, j) => [node, j]));

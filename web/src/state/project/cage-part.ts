@@ -1,5 +1,4 @@
 import type { Landmarks, TemplateName } from 'cagecast/cages';
-import type { CageMaker } from '../cage-maker';
 import { type Fitting, madeOf, noteMade } from '../made-cages';
 import type { Samples } from '../sample';
 import type { Session } from '../session';

@@ -151,7 +151,9 @@ export class LandmarkEditor {
   /** Writes which landmarks there are, in the panel and as buttons on the stage. */
   #write(): void {
     const { missing = [], used = {} } = this.#fitting!;
-    const unknown = [...Object.keys(used), ...missing].filter((name) => !this.spots[name] || this.#fitting!.guessed.includes(name));
+    const unknown = [...Object.keys(used), ...missing].filter(
+      (name) => !this.spots[name] || this.#fitting!.guessed.includes(name),
+    );
     unknown.sort((a, b) => Number(kFirst.test(b)) - Number(kFirst.test(a)));
     const own = Object.keys(this.given).length;
     const known = Object.keys(this.spots);
