@@ -7,6 +7,7 @@
 #include "hull/hull.hpp"
 #include "landmarks/parts.hpp"
 #include "mesh/check_model.hpp"
+#include "mesh/foreground.hpp"
 #include "mesh/limits.hpp"
 #include "mesh/part_names.hpp"
 #include "mesh/progress.hpp"
@@ -274,7 +275,8 @@ Status fitCage(const Template& from, const Model& model, const FitOptions& optio
           std::tuple{Argument::landmarks, &options.landmarks, boundsOf(model.mesh)}})
       if (const Status status = checkLandmarkList(*list, argument, box); !status.ok()) return status;
     FittedCage fitted;  // `out` may own the template.
-    const Status status = Fit(from, model, options, progress).run(fitted);
+    const Foreground foreground(model);
+    const Status status = Fit(from, foreground.model(), options, progress).run(fitted);
     out = std::move(fitted);
     return status;
   });

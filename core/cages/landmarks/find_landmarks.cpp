@@ -7,6 +7,7 @@
 #include "landmarks/rig.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/check_model.hpp"
+#include "mesh/foreground.hpp"
 #include "mesh/progress.hpp"
 
 namespace cagecast::cages {
@@ -82,9 +83,11 @@ std::vector<std::string> faceLandmarks() {
   return out;
 }
 
-Status find(const Model& model, const Progress& progress, FoundLandmarks& out) {
+Status find(const Model& given, const Progress& progress, FoundLandmarks& out) {
   out = {};
-  if (const Status status = checkModel(model); !status.ok()) return status;
+  if (const Status status = checkModel(given); !status.ok()) return status;
+  const Foreground foreground(given);
+  const Model& model = foreground.model();
   const auto goOn = [&](float share) { return report(progress, share, "landmarks"); };
   if (!goOn(0)) return kAborted;
   Figure figure = readFigure(model);

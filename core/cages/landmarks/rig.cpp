@@ -94,7 +94,7 @@ struct SidedName {
 };
 
 /// The words of a name: they end at separators and before capitals; numbers belong to the word before them.
-std::vector<std::string> wordsOf(std::string_view name) {
+std::vector<std::string> lowerWords(std::string_view name) {
   std::vector<std::string> out(1);
   char last = 0;
   for (const char c : name) {
@@ -119,7 +119,7 @@ std::string_view sideOf(std::string_view word) {
 std::vector<SidedName> sidedNames(const std::vector<Joint>& joints) {
   constexpr std::size_t kNearlyAll = 80;  ///< Per cent.
   std::vector<std::vector<std::string>> all;
-  for (const Joint& joint : joints) all.push_back(wordsOf(joint.name));
+  for (const Joint& joint : joints) all.push_back(lowerWords(joint.name));
   std::map<std::string, std::size_t> counts;
   for (const auto& words : all)
     for (const std::string& word : std::set<std::string>(words.begin(), words.end())) ++counts[word];

@@ -120,14 +120,6 @@ std::vector<bool> borderOf(const Neighbours& neighbours, const std::vector<bool>
   return border;
 }
 
-/// Marks what lies between marks that are close together: widens all of them, and takes the margin away again.
-void closeGaps(const Neighbours& neighbours, std::vector<bool>& marks) {
-  grow(neighbours, marks, kGapEdges);
-  marks.flip();
-  grow(neighbours, marks, kGapEdges);
-  marks.flip();
-}
-
 void smooth(const Neighbours& neighbours, std::vector<double>& field) {
   std::vector<double> next(field.size());
   for (std::size_t v = 0; v < field.size(); ++v) {
@@ -155,6 +147,25 @@ void restoreVanished(const Neighbours& neighbours, const std::vector<bool>& mark
 }
 
 }  // namespace
+
+std::vector<bool> FaceSkin::isBelow(std::span<const Vec3> points) const {
+  std::vector<bool> out(points.size());
+  if (!others) return out;
+  const std::vector<SurfacePoint> nearest = others->closest(points);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = isSkin[triangleOf[nearest[i].triangle]];
+  return out;
+}
+
+void HoleMarker::closeGaps(const Neighbours& neighbours, std::vector<bool>& marks) const {
+  // Widens all of them, and takes the margin away again.
+  std::vector<bool> closed = marks;
+  grow(neighbours, closed, kGapEdges);
+  closed.flip();
+  grow(neighbours, closed, kGapEdges);
+  closed.flip();
+  const std::vector<bool> isFace = model_.face.isBelow(hull_.positions);
+  for (std::size_t v = 0; v < marks.size(); ++v) marks[v] = marks[v] || (closed[v] && !isFace[v]);
+}
 
 HoleMarker::HoleMarker(const MarkedMesh& model, double depth, TriangleMesh& hull)
     : model_(model), depth_(depth), hull_(hull), parents_(hull.triangles.size()) {
@@ -184,8 +195,13 @@ bool HoleMarker::findSamples(const Progress& progress) {
       rays.push_back({point.position, 1 / point.distance * (position - point.position)});
     }
     const std::vector<RayHit> hits = model_.surface->trace(rays);
-    for (std::size_t i = 0; i < hits.size(); ++i)
-      if (std::isfinite(hits[i].distance) && model_.isMarked[hits[i].triangle]) samples_.push_back(candidates[i]);
+    std::vector<Vec3> places;
+    for (const Sample& candidate : candidates) places.push_back(candidate.position);
+    const std::vector<bool> isFace = model_.face.isBelow(places);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const bool isSeen = std::isfinite(hits[i].distance) && model_.isMarked[hits[i].triangle];
+      if (isSeen && !(isFace[i] && model_.face.isCover[hits[i].triangle])) samples_.push_back(candidates[i]);
+    }
   }
   return true;
 }
@@ -201,9 +217,11 @@ bool HoleMarker::markBelow(std::size_t begin, const Progress& progress) {
     for (std::size_t i = 0; i < count; ++i) rays[i] = {hull_.positions[first + i], -1 * normals[first + i]};
     const std::vector<RayHit> hits = model_.surface->trace(rays);
     const std::vector<SurfacePoint> nearest = model_.surface->closest({hull_.positions.data() + first, count});
+    const std::vector<bool> isFace = model_.face.isBelow({hull_.positions.data() + first, count});
     for (std::size_t i = 0; i < count; ++i) {
       const bool isBelow = hits[i].distance < kStraightBelow * nearest[i].distance;
-      below_[first + i] = model_.isMarked[isBelow ? hits[i].triangle : nearest[i].triangle];
+      const std::uint32_t t = isBelow ? hits[i].triangle : nearest[i].triangle;
+      below_[first + i] = model_.isMarked[t] && !(isFace[i] && model_.face.isCover[t]);
     }
   }
   return true;

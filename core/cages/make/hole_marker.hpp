@@ -1,19 +1,34 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "cagecast/cages.hpp"
+#include "mesh/neighbours.hpp"
 #include "mesh/surface.hpp"
 #include "mesh/triangle_mesh.hpp"
 
 namespace cagecast::cages {
+
+/// The skin of a face, which is to be painted even where hair, a beard or glasses lie in front of it.
+struct FaceSkin {
+  std::vector<bool> isSkin = {};               ///< Per triangle of a mesh. Empty if it is not known where the face is.
+  std::vector<bool> isCover = {};              ///< Per triangle: marked, and lies over skin.
+  std::optional<Surface> others = {};          ///< All triangles that are no such covers.
+  std::vector<std::uint32_t> triangleOf = {};  ///< Of the mesh, for each of `others`.
+
+  /// Whether what is nearest to each point, but for covers, is the face's skin.
+  [[nodiscard]] std::vector<bool> isBelow(std::span<const Vec3> points) const;
+};
 
 /// A model, and which of its triangles must not be painted.
 struct MarkedMesh {
   const TriangleMesh* mesh = nullptr;
   const Surface* surface = nullptr;  ///< Of `mesh`.
   std::vector<bool> isMarked;        ///< Per triangle of `mesh`.
+  FaceSkin face = {};
 };
 
 /// Finds where a hull around a model is to have holes.
@@ -56,6 +71,8 @@ class HoleMarker {
   bool markBelow(std::size_t begin, const Progress& progress);
   /// Sets `sampled_`.
   void markSamples();
+  /// Marks what lies between marks that are close together, but no face.
+  void closeGaps(const Neighbours& neighbours, std::vector<bool>& marks) const;
   [[nodiscard]] std::vector<bool> marks() const;
   /// The vertex of the hull that is nearest to each sample.
   [[nodiscard]] std::vector<std::uint32_t> verticesAbove() const;

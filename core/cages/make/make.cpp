@@ -12,6 +12,7 @@
 #include "make/hole_marker.hpp"
 #include "make/steps.hpp"
 #include "mesh/check_model.hpp"
+#include "mesh/foreground.hpp"
 #include "mesh/part_names.hpp"
 #include "mesh/progress.hpp"
 #include "mesh/surface.hpp"
@@ -178,9 +179,11 @@ void store(const Layout& layout, Kind kind, Cage& out) {
   for (const Triangle3& t : layout.mesh.triangles) out.indices.insert(out.indices.end(), t.begin(), t.end());
 }
 
-Status make(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out) {
-  if (const Status status = checkModel(model); !status.ok()) return status;
+Status make(const Model& given, const MakeOptions& options, const Progress& progress, Cage& out) {
+  if (const Status status = checkModel(given); !status.ok()) return status;
   if (const Status status = checkOptions(options); !status.ok()) return status;
+  const Foreground foreground(given);
+  const Model& model = foreground.model();
   float reached = 0;  // A repeated stage does not go back.
   const Progress rising = [&progress, &reached](float share, const char* stage) {
     reached = std::max(reached, share);
@@ -193,6 +196,7 @@ Status make(const Model& model, const MakeOptions& options, const Progress& prog
   const double offset = settings.hull.offset;
   std::vector<bool> isMarked = marksOf(model, options, triangleOf);
   if (!lookForEyes(model, options, rising, settings.kind, isMarked)) return kAborted;
+  FaceSkin face = faceSkinOf(model, mesh, isMarked);
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
   if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return kNothingToPaint;
@@ -202,7 +206,8 @@ Status make(const Model& model, const MakeOptions& options, const Progress& prog
   if (const Status status = wrap(mesh, isMarked, wrapping, part(0, kHullEnd), hull); !status.ok()) return status;
 
   const Surface surface(mesh);
-  const MarkedMesh marked{&mesh, &surface, std::move(isMarked)};
+  face.isCover.resize(face.others ? mesh.triangles.size() : 0, false);
+  const MarkedMesh marked{&mesh, &surface, std::move(isMarked), std::move(face)};
   HoleMarker marker(marked, kVisibleDepth * offset, hull);
   if (!marker.mark(settings.kind == Kind::body ? 2 : 1, part(kHullEnd, kHolesEnd))) return kAborted;
   TriangleMesh cage;

@@ -6,6 +6,7 @@
 #include "cagecast/cages.hpp"
 #include "geometry/vec3.hpp"
 #include "hull/hull.hpp"
+#include "make/hole_marker.hpp"
 #include "mesh/outer_points.hpp"
 #include "mesh/triangle_mesh.hpp"
 
@@ -46,6 +47,11 @@ std::vector<Neck> extendNecks(double by, TriangleMesh& head);
 /// Opens the hull of a head at the planes of its necks.
 /// @param[in,out] field  See `HoleMarker::field`.
 void openNecks(const TriangleMesh& hull, const std::vector<Neck>& necks, std::vector<double>& field);
+
+/// The skin of a model's face, if names, morph targets or joints say where its eyes are.
+/// @param mesh  The model's triangles with an area, then others.
+/// @param isMarked  Per triangle of `mesh`.
+FaceSkin faceSkinOf(const Model& model, const TriangleMesh& mesh, const std::vector<bool>& isMarked);
 
 struct WrapOptions {
   HullOptions hull;

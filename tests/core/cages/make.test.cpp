@@ -108,6 +108,48 @@ TEST_CASE("patterns decide what is excluded", "[cages][make]") {
   CHECK(hasHoleAt(mesh, {-0.35, 0.2, 1}, 0.2));
 }
 
+TEST_CASE("grounds and backdrops are left out", "[cages][make]") {
+  const OwnedModel model = head();
+  const Cage alone = made(model.model());
+  OwnedModel onGround = model;
+  const auto plate = [](const Vec3& corner, const Vec3& a, const Vec3& b) {
+    return TriangleMesh{{corner, corner + a, corner + a + b, corner + b}, {{0, 1, 2}, {0, 2, 3}}};
+  };
+  onGround.add("plane", plate({-5, -1.1, 5}, {10, 0, 0}, {0, 0, -10}));
+  onGround.add("wall", plate({-5, -1.1, -3}, {10, 0, 0}, {0, 9, 0}));
+  const Cage cage = made(onGround.model());
+  CHECK(cage.positions == alone.positions);
+  CHECK(cage.kind == alone.kind);
+  // What is as wide as the rest is part of it.
+  OwnedModel sole = model;
+  sole.add("sole", plate({-1, -1.1, 1}, {2, 0, 0}, {0, 0, -2}));
+  CHECK(made(sole.model()).positions != alone.positions);
+}
+
+TEST_CASE("hair, a beard and brows leave no face bare", "[cages][make]") {
+  OwnedModel model = head();
+  const auto shell = [](double low, double high, double z) {
+    TriangleMesh out = sphere({0, 0, 0}, 1.12, 24);
+    std::erase_if(out.triangles, [&](const Triangle3& t) {
+      const Vec3 c = centroid(out, t);
+      return c.y < low || c.y > high || c.z < z;
+    });
+    return out;
+  };
+  model.add("fringe_hair", shell(0.5, 2, -2));
+  model.add("beard", shell(-0.9, -0.1, 0.2));
+  const TriangleMesh cage = meshOf(made(model.model()));
+  const Surface surface(cage);
+  // In front of the forehead and the chin; the back of the head has a hole, as hair is not to be painted.
+  for (const Vec3& spot : {Vec3{0, 0.65, 0.9}, Vec3{0.2, 0.6, 0.95}, Vec3{0, -0.5, 1}, Vec3{-0.3, -0.5, 0.95}}) {
+    const SurfaceRay ray{spot, Vec3{0, 0, 1}};
+    CHECK(std::isfinite(surface.trace({&ray, 1})[0].distance));
+  }
+  for (const double x : {-0.35, 0.35}) CHECK(hasHoleAt(cage, {x, 0.2, 1}, 0.25));
+  const SurfaceRay behind{{0, 0.8, -0.6}, {0, 0, -1}};
+  CHECK(std::isinf(surface.trace({&behind, 1})[0].distance));
+}
+
 TEST_CASE("a mark, as by a brush, gets its hole", "[cages][make]") {
   OwnedModel model;
   model.add("ball", sphere({2, 0, 0}, 1, 32));

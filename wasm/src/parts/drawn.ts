@@ -29,6 +29,7 @@ const kReasons = {
   hidden: 'hidden',
   transparent: 'fully transparent',
   outline: 'only its back is drawn, around others',
+  backdrop: 'a ground or backdrop that reaches beyond all others',
   ignored: 'ignored',
 };
 
@@ -56,7 +57,7 @@ export interface Chosen<Part> {
   accessories: number[];
 }
 
-/** Whether a part of a target counts. @param isDrawn  Whether a viewer draws it, and it is no cage, marker or collision shape. */
+/** Whether a part of a target counts. @param isDrawn  Whether a viewer draws it, and it is no cage, marker, collision shape or backdrop. */
 export type IsMeant = (part: number, isDrawn: boolean) => boolean;
 
 /**
@@ -130,7 +131,47 @@ function whyNotDrawn(looks: readonly Look[]): (LeftOut['why'] | undefined)[] {
     const filled = inside.reduce((sum, one) => sum + one!.volume, 0);
     if (inside.length > 0 && filled >= kFilled * shape.volume) reasons[p] = 'outline';
   });
+  const boxes = shapes.map((shape, p) => (reasons[p] === undefined ? shape?.box : undefined));
+  const all = boxes.filter((box) => box !== undefined);
+  const others = all.filter((box) => !isSheet(box, all.reduce(around)));
+  boxes.forEach((box, p) => {
+    if (box && others.length > 0 && !others.includes(box) && isBackdrop(box, others.reduce(around)))
+      reasons[p] = 'backdrop';
+  });
   return reasons;
+}
+
+/** How thick a ground or backdrop is at most, as a share of what stands before it, and by how much more it extends to the sides. */
+const kThick = 0.1;
+const kBeyond = 1.15;
+
+/** The size of a box, and its diagonal. */
+function sizeOf([low, high]: Box): { size: number[]; diagonal: number } {
+  const size = low.map((x, k) => high[k]! - x);
+  return { size, diagonal: Math.hypot(...size) };
+}
+
+/** Whether a part is flat, and large beside the whole. */
+function isSheet(box: Box, whole: Box): boolean {
+  const { size, diagonal } = sizeOf(box);
+  return Math.min(...size) <= kThick * diagonal && 2 * diagonal > sizeOf(whole).diagonal;
+}
+
+const around = ([low, high]: Box, [otherLow, otherHigh]: Box): Box => [
+  low.map((x, k) => Math.min(x, otherLow[k]!)),
+  high.map((x, k) => Math.max(x, otherHigh[k]!)),
+];
+
+/** Whether a part is a ground under, or a wall beside, what the others are: flat, outside, and wider. As `Foreground` in C++. */
+function isBackdrop(box: Box, others: Box): boolean {
+  const [[low, high], [otherLow, otherHigh]] = [box, others];
+  const [{ size }, { size: otherSize }] = [sizeOf(box), sizeOf(others)];
+  return [0, 1, 2].some((axis) => {
+    const thick = kThick * otherSize[axis]!;
+    const isOutside = high[axis]! <= otherLow[axis]! + thick || (axis !== 1 && low[axis]! >= otherHigh[axis]! - thick);
+    const isWider = [0, 1, 2].every((k) => k === axis || size[k]! > kBeyond * otherSize[k]!);
+    return size[axis]! <= thick && isOutside && isWider;
+  });
 }
 
 /** The share of its volume from which a shell is an outline of what is in it. */

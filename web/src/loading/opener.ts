@@ -160,7 +160,7 @@ export class Opener implements Samples {
     }
     const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`;
     const { leftOut } = target.mesh;
-    const others = leftOut.length > 0 ? ` Not drawn, so left out: ${leftOut.join(', ')}.` : '';
+    const others = leftOut.length > 0 ? ` Left out: ${leftOut.join(', ')}.` : '';
     element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.${others}`;
     this.#describeOrigin({ target, cage });
     this.#offerPaints({ cage });
