@@ -137,6 +137,25 @@ describe('extract', () => {
     );
   });
 
+  test('grounds and backdrops are left out', () => {
+    const skin = meshOf(scene.target);
+    const { positions } = extract(skin).mesh;
+    const low = (k: number) => positions.reduce((least, x, i) => (i % 3 === k ? Math.min(least, x) : least), Infinity);
+    const sheet = (x: number, y: number, z: number) =>
+      new ThreeMesh(new BoxGeometry(x, y, z), new MeshStandardMaterial());
+    const size = 100 * Math.max(...positions.map(Math.abs));
+    const [ground, wall] = [sheet(size, 1e-3, size), sheet(size, size, 1e-3)];
+    ground.position.y = low(1);
+    wall.position.z = low(2) - 1;
+    const root = new Group().add(skin, ground, wall);
+    const { mesh, leftOut } = extract(root);
+    assert.deepEqual(mesh, extract(skin).mesh);
+    assert.deepEqual(
+      leftOut.map(({ why }) => why),
+      ['backdrop', 'backdrop'],
+    );
+  });
+
   test('accessories stay bare, unless all is such or locks say otherwise', () => {
     const [skin, hat] = [meshOf(scene.target), meshOf(ball([0, 0.9, 0], () => 0.05, 8, 12))];
     hat.name = 'Wolf3D_Headwear';

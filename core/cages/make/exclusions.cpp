@@ -9,7 +9,7 @@ const std::vector<std::string>& defaultExclusions() {
       "cornea*", "sclera*", "teeth*", "tooth*", "tongue*", "gum", "gums", "mouth*", "hair*", "beard*", "moustache*",
       "mustache*", "glass*", "goggles*",
       // Vehicles.
-      "window*", "windscreen*", "windshield*", "wheel*", "tyre*", "tire*", "rim", "rims", "light*", "headlight*",
+      "window*", "windscreen*", "windshield*", "wheel*", "tyre*", "tire*", "rim", "rims", "light", "lights", "headlight*",
       "taillight*", "lamp*", "grille*", "seat*", "dashboard*", "steering*", "interior*", "lining*", "floor*"};
   return patterns;
 }

@@ -119,6 +119,17 @@ bool lookForEyes(const Model& model, const MakeOptions& options, const Progress&
   return true;
 }
 
+/// Marks the wheels of a vehicle by their shape, unless names say what its wheels are.
+void lookForWheels(const Model& model, const MakeOptions& options, Kind kind, const TriangleMesh& mesh,
+                   std::vector<bool>& isMarked) {
+  static const std::vector<std::string> kNames = {"*wheel*", "tyre*", "tire*", "rim", "rims"};
+  const std::vector<bool> named = matchingParts(model.parts, kNames);
+  const bool isNamed = std::find(named.begin(), named.end(), true) != named.end();
+  if (kind != Kind::prop || options.exclude.empty() || isNamed) return;
+  const std::vector<bool> wheels = wheelsOf(mesh);
+  for (std::size_t t = 0; t < wheels.size(); ++t) isMarked[t] = isMarked[t] || wheels[t];
+}
+
 /// Points below the hull, but in front of the model, which the cage must not fall behind.
 OuterPoints pointsToEnclose(const TriangleMesh& hull, const std::vector<double>& field, double depth) {
   const std::vector<Vec3> normals = vertexNormals(hull);
@@ -196,6 +207,7 @@ Status make(const Model& given, const MakeOptions& options, const Progress& prog
   const double offset = settings.hull.offset;
   std::vector<bool> isMarked = marksOf(model, options, triangleOf);
   if (!lookForEyes(model, options, rising, settings.kind, isMarked)) return kAborted;
+  lookForWheels(model, options, settings.kind, mesh, isMarked);
   FaceSkin face = faceSkinOf(model, mesh, isMarked);
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);

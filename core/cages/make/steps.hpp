@@ -53,6 +53,10 @@ void openNecks(const TriangleMesh& hull, const std::vector<Neck>& necks, std::ve
 /// @param isMarked  Per triangle of `mesh`.
 FaceSkin faceSkinOf(const Model& model, const TriangleMesh& mesh, const std::vector<bool>& isMarked);
 
+/// Whether each triangle is of a wheel, by shape: connected pieces that are equally large round discs, two or more, on
+/// the ground, and what lies within them.
+std::vector<bool> wheelsOf(const TriangleMesh& mesh);
+
 struct WrapOptions {
   HullOptions hull;
   bool mayWiden = false;  ///< Whether wider gaps may be bridged if pieces are left out.

@@ -34,6 +34,14 @@ bool matches(std::string_view text, std::string_view pattern) noexcept {
   return p == pattern.size();
 }
 
+/// Whether "light" before a word is no lamp: "LightBlue".
+bool isColour(std::string_view word) {
+  static constexpr const char* kColours[] = {"blue",   "brown", "red",   "green", "gr?y",   "yellow", "orange",
+                                             "purple", "pink",  "beige", "wood",  "metal",  "skin",   "white",
+                                             "black",  "cyan",  "stone", "teal",  "violet", "tan"};
+  return std::any_of(std::begin(kColours), std::end(kColours), [&](const char* one) { return matches(word, one); });
+}
+
 std::vector<std::string_view> wordsOf(std::string_view name) {
   std::vector<std::string_view> words;
   std::size_t start = 0;
@@ -55,7 +63,11 @@ bool matchesName(std::string_view name, std::string_view pattern) {
     begin = end + 1;
   }
   const std::vector<std::string_view> words = wordsOf(name);
-  return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return matches(word, pattern); });
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool isShade = i + 1 < words.size() && matches(words[i], "light") && isColour(words[i + 1]);
+    if (!isShade && matches(words[i], pattern)) return true;
+  }
+  return false;
 }
 
 std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std::vector<std::string>& patterns) {

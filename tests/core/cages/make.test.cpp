@@ -108,6 +108,38 @@ TEST_CASE("patterns decide what is excluded", "[cages][make]") {
   CHECK(hasHoleAt(mesh, {-0.35, 0.2, 1}, 0.2));
 }
 
+TEST_CASE("wheels without a name are known by their shape", "[cages][make]") {
+  OwnedModel car;
+  const auto box = [](const Vec3& low, const Vec3& high) {
+    return mapped(sphere({0, 0, 0}, 1, 24), [&](const Vec3& p) {
+      const double r = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+      const Vec3 half = 0.5 * (high - low);
+      return 0.5 * (low + high) + Vec3{half.x * p.x / r, half.y * p.y / r, half.z * p.z / r};
+    });
+  };
+  car.add("mesh", box({-0.8, 0.25, -2}, {0.8, 1.3, 2}));
+  const auto disc = [](double x, double z, double radius, double thick) {
+    return mapped(sphere({0, 0, 0}, 1, 24), [&](const Vec3& p) {
+      return Vec3{x + 0.5 * thick * std::clamp(3 * p.x, -1.0, 1.0), radius * p.y + 0.35, z + radius * p.z};
+    });
+  };
+  for (const double x : {-0.85, 0.85})
+    for (const double z : {-1.2, 1.2}) {
+      car.add("mesh", disc(x, z, 0.35, 0.25));
+      car.add("mesh", disc(x * 1.1, z, 0.2, 0.12));  // The rim.
+    }
+  car.add("mesh", box({-0.3, 0, -2.1}, {0.3, 0.3, -1.8}));  // Something else on the ground.
+  Model model = car.model();
+  std::vector<std::uint32_t> triangleOf;
+  const std::vector<bool> wheels = wheelsOf(weldExactly(model.mesh, nullptr, &triangleOf));
+  for (std::size_t t = 0; t < wheels.size(); ++t) {
+    const std::uint32_t part = car.groups[car.indices[std::size_t{3} * triangleOf[t]]];
+    if (wheels[t] != (part >= 1 && part <= 8)) FAIL_CHECK("triangle " << t << " of part " << part);
+  }
+  const TriangleMesh cage = meshOf(made(model));
+  for (const double z : {-1.2, 1.2}) CHECK(hasHoleAt(cage, {1, 0.35, z}, 0.35));
+}
+
 TEST_CASE("grounds and backdrops are left out", "[cages][make]") {
   const OwnedModel model = head();
   const Cage alone = made(model.model());

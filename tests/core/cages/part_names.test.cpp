@@ -44,7 +44,7 @@ TEST_CASE("the default exclusions know eyes, teeth and wheels, not skin", "[cage
     CHECK(matchingParts({name}, defaultExclusions())[0]);
   }
   for (const char* name : {"skin", "eyelid", "body.007/paintRed", "head", "Chair", "Wolf3D_Outfit_Top", "bumpers",
-                           "King_Legs/DarkBrown"}) {
+                           "King_Legs/DarkBrown", "Shirt/LightBlue"}) {
     CAPTURE(name);
     CHECK_FALSE(matchingParts({name}, defaultExclusions())[0]);
   }
