@@ -37,11 +37,10 @@ TriangleMesh Figure::only(Role first, Role second) const {
 
 Figure readFigure(const Model& model) {
   Figure out;
-  std::vector<std::uint32_t> triangleOf;
-  out.mesh = weldExactly(model.mesh, nullptr, &triangleOf);
+  out.mesh = weldExactly(model.mesh, nullptr, &out.triangleOf);
   std::vector<Role> partRoles;
   for (const std::string& part : model.parts) partRoles.push_back(roleOf(part));
-  for (const std::uint32_t t : triangleOf) {
+  for (const std::uint32_t t : out.triangleOf) {
     Role role = Role::surface;
     if (!model.mesh.groups.empty()) {
       const std::uint32_t part = model.mesh.groups[model.mesh.indices[3 * std::size_t{t}]];

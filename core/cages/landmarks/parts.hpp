@@ -23,6 +23,7 @@ Role roleOf(std::string_view partName);
 /// A model whose equal positions are welded, with the role and the connected component of each triangle.
 struct Figure {
   TriangleMesh mesh;
+  std::vector<std::uint32_t> triangleOf;  ///< Of the model, per triangle.
   std::vector<Role> roles;                ///< Per triangle.
   std::vector<std::uint32_t> components;  ///< Per triangle.
   std::uint32_t componentCount = 0;
