@@ -32,8 +32,8 @@ const kReach = 0.05;
  * Carries a paint from one cage to another on the same model: `to` with the result paints the model as `from` with the image does.
  *
  * It goes by the model. Each of its triangles has a place in both layouts; the one in `to` shows what the one in `from` has. Where
- * several share a place in `to`, the one nearest to `to` is seen. Where `to` paints and `from` has a hole, the nearest paint goes on,
- * as far as 5 % of the diagonal of `from` or the model; what `from` does not paint otherwise, such as parts of their own, stays transparent.
+ * several share a place in `to`, the one nearest to `to` is seen. Where `to` goes on and `from` has a hole or ends, the nearest paint
+ * goes on, as far as 5 % of the diagonal of `from` or the model; what else `from` does not paint, such as eyes, stays transparent.
  *
  * Needs `init`. Cost: of two transfers, and as of `bake`: about a second for 1024². Memory: 32 bytes a texel.
  *
@@ -78,7 +78,9 @@ export function relay(
   if (!order.some(isPainted))
     throw new CagecastError('badArgument', fn, nothingShared(from, to), { argument: 'model' });
   // The first to take a place has it.
-  nearestFirst(order, model, to.distances, { firstTriangle: 0 }).sort((a, b) => +isPainted(b) - +isPainted(a));
+  nearestFirst(order, model, to.distances, { firstTriangle: 0 }).sort(
+    (a, b) => Number(isPainted(b)) - Number(isPainted(a)),
+  );
   const corners = Uint32Array.from({ length: 3 * order.length }, (_, i) => 3 * order[Math.floor(i / 3)]! + (i % 3));
   const uvsOf = ({ uvs, cornerUvs }: TransferResult) =>
     cornersOf(cornerUvs.length > 0 ? cornerUvs : cornersOf(uvs, indices, 2), corners, 2);
@@ -87,7 +89,7 @@ export function relay(
     to: uvsOf(to),
     from: uvsOf(from),
     painted: Uint8Array.from(order, (t) => Number(isPainted(t) || goesOn(t))),
-    positions: cornersOf(cornersOf(positions, indices, 3), corners, 3),
+    positions: options.kind === 'normal' ? cornersOf(cornersOf(positions, indices, 3), corners, 3) : undefined,
   };
   const { width = image.width, height = options.width ?? image.height } = options;
   return fill(fn, [layout], image, { ...options, width, height });
@@ -96,7 +98,7 @@ export function relay(
 /** Why there is nothing to carry over. */
 function nothingShared(from: TransferResult, to: TransferResult): string {
   const [own, other] = [from, to].map(({ cosmeticTriangles }) => cosmeticTriangles.filter((one) => one === 1).length);
-  return `model has no triangle that both cages paint: of its ${from.cosmeticTriangles.length}, from paints ${own}, to paints ${other}; both have to be around it, as inspect says`;
+  return `model has no triangle that both cages paint: of its ${from.cosmeticTriangles.length}, from paints ${own}, to paints ${other}; inspect says why, fitCage or makeCage gives it another cage`;
 }
 
 /** A transfer whose errors name the arguments of `relayPaint`. */

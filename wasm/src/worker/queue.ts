@@ -120,7 +120,7 @@ export class WorkerQueue {
   #next(): void {
     while (this.#waiting.length > 0 && this.#hasRoom) {
       const job = this.#waiting.shift()!;
-      let slot = this.#slots.find((one) => !one.job);
+      let slot = this.#slots.find(({ job, thread }) => !job && thread) ?? this.#slots.find((one) => !one.job);
       if (!slot) this.#slots.push((slot = {}));
       const error = this.#send(slot, job);
       if (error) job.reject(error);

@@ -4,6 +4,7 @@ import { kinds } from '../../bake/layout.js';
 import type { Kind } from '../../bake/raster.js';
 import { reachOf, relay } from '../../bake/relay.js';
 import { scaledTo } from '../../gltf/bake/plan.js';
+import { percent } from '../../inspect/finding.js';
 import { encodePng, readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import { refuseOverwriting, writeFiles } from '../io/output.js';
@@ -38,6 +39,9 @@ paint beside them; what it does not paint otherwise stays transparent.
 
 Example:
   cagecast relay head.glb cage.glb paint.png --to fitted.glb -o paint-for-template.png`;
+
+/** More of the paint than this is lost where a cage's UVs overlap, or where it does not tell limbs apart. */
+const kMuchLost = 0.1;
 
 /** Adds the command that carries a paint from one cage to another. */
 export function addRelayCommand(program: Command, io: Io): void {
@@ -105,6 +109,8 @@ async function relayCommand(command: RelayCommand, io: Io): Promise<Found> {
   return {
     lines: [
       `wrote ${output}: ${width} × ${height}; of the ${integer(painted)} triangles that ${other} paints, ${cage} paints ${integer(shared)}`,
+      overlap.lost > kMuchLost &&
+        `${percent(overlap.lost)} of the paint found its place in the UVs of ${other} taken, by what is nearer to it`,
       configLine(rules.config),
     ],
     report: { output, width, height, triangles: { painted, shared }, overlap, config: rules.config ?? null },
