@@ -2,13 +2,13 @@ import type { Document, Node } from '@gltf-transform/core';
 import * as cages from '../../cages/index.js';
 import { CagecastError, type Mesh } from '../../index.js';
 import { faceHints, type MorphTarget } from '../../parts/face-hints.js';
-import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../../parts/joints.js';
+import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { type Expressions, vrmExpressions } from '../../parts/morph-names.js';
 import { readExtras } from '../../parts/template-extras.js';
 import { InputError } from '../input-error.js';
 import { decodeFloats } from '../pieces.js';
 import { createAccessor } from './add-transfer.js';
-import { type DocumentPart, extractDocument, jointMatrix } from './extract-document.js';
+import { type DocumentPart, extractDocument, jointMatrix, skinOf } from './extract-document.js';
 import { isDocument, read, wrong } from './transfer-document.js';
 
 /** What glTF-Transform does not keep of a file. */
@@ -30,7 +30,7 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
     indices,
     groups,
     parts: parts.map(({ aliases, name }) => (aliases.length > 0 ? aliases : [name])),
-    joints: jointsOf(document, parts, vrmBones(extensions)),
+    ...skeletonOf(document, parts, vrmBones(extensions)),
     hints: faceHints(
       parts.map((part) => ({
         names: part.aliases,
@@ -153,7 +153,7 @@ function targetsOf(document: Document, { node, mesh, primitive }: DocumentPart, 
   });
 }
 
-function jointsOf(document: Document, parts: readonly DocumentPart[], bones: Map<number, string>) {
+function skeletonOf(document: Document, parts: readonly DocumentPart[], bones: Map<number, string>) {
   const nodes = document.getRoot().listNodes();
   const boneOf = new Map([...bones].flatMap(([n, bone]) => (nodes[n] ? [[nodes[n], bone] as const] : [])));
   const nameOf = (node: Node) => boneOf.get(node) ?? (node.getName() || `nodes[${nodes.indexOf(node)}]`);
@@ -170,5 +170,6 @@ function jointsOf(document: Document, parts: readonly DocumentPart[], bones: Map
       return position ? { node, name: nameOf(node), position } : atNode(node);
     });
   });
-  return listJoints([...joints, ...[...boneOf.keys()].map(atNode)], (node) => node.getParentNode());
+  const held = parts.map((part) => ({ ...part, skin: skinOf(part) }));
+  return readSkeleton([...joints, ...[...boneOf.keys()].map(atNode)], held, (node) => node.getParentNode());
 }
