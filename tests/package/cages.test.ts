@@ -245,6 +245,20 @@ describe('fitCage', () => {
     model = { ...own, positions: own.positions.map((x, i) => 2 * x + (i % 3 === 1 ? 5 : 0)) };
   });
 
+  test('does not wait for another call that is running, and comes to the same', async () => {
+    const controller = new AbortController();
+    let isRunning = true;
+    const fine = { voxels: 400, triangles: 20_000, signal: controller.signal } as const; // half a minute
+    const other = makeCage(head(60), fine).catch((error: unknown) => error);
+    void other.finally(() => (isRunning = false));
+    const fits = await Promise.all([fitCage(template, model), fitCage(template, model)]);
+    assert.ok(isRunning);
+    controller.abort('enough');
+    assert.equal(await other, 'enough');
+    const alone = sync.fitCage(template, model);
+    for (const fit of fits) assert.deepEqual(fit, alone);
+  });
+
   test('moves a template onto a model, by the landmarks that are given; triangles, UVs and holes stay', async () => {
     const shares: number[] = [];
     const [x, y, z] = template.landmarks['nose_tip']!;

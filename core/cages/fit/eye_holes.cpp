@@ -304,17 +304,28 @@ std::optional<Vec3> centreOf(const std::vector<Landmark>& landmarks, const std::
 
 }  // namespace
 
-std::vector<Vec3> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
-                              const std::vector<Landmark>& to, std::vector<Vec3>& positions) {
-  std::vector<Vec3> tracks(positions.size(), Vec3{0, 0, 0});
-  const std::optional<Vec3> own[2] = {centreOf(from, "left"), centreOf(from, "right")};
-  const std::optional<Vec3> there[2] = {centreOf(to, "left"), centreOf(to, "right")};
-  if (!own[0] || !own[1] || !there[0] || !there[1]) return tracks;
+std::vector<EyePair> eyePairs(const std::vector<Landmark>& from, const std::vector<Landmark>& to) {
+  std::vector<EyePair> out;
+  for (const char* side : {"left", "right"}) {
+    const auto own = centreOf(from, side), there = centreOf(to, side);
+    if (own && there) out.push_back({*own, *there});
+  }
+  if (out.size() < 2) out.clear();
+  return out;
+}
+
+bool fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const StepCallback& step,
+                 std::vector<Vec3>& tracks, std::vector<Vec3>& positions) {
+  constexpr double kTreeShare = 0.4;  ///< Of the time.
+  tracks.assign(positions.size(), Vec3{0, 0, 0});
+  if (figure.eyes.empty()) return true;
   const Surface surface(figure.mesh);
   for (std::size_t side = 0; side < 2; ++side) {
-    const int hole = holeAt(cage, *own[side], *own[1 - side]);
+    if (!step(kTreeShare + static_cast<double>(side) * (1 - kTreeShare) / 2)) return false;
+    const EyePair &eye = figure.eyes[side], &other = figure.eyes[1 - side];
+    const int hole = holeAt(cage, eye.from, other.from);
     if (hole < 0) continue;
-    const std::vector<bool> isEye = eyeAt(figure, *there[side], *there[1 - side], cage.diagonal);
+    const std::vector<bool> isEye = eyeAt(figure, eye.to, other.to, cage.diagonal);
     if (std::find(isEye.begin(), isEye.end(), true) == isEye.end()) continue;
     const Vec3 axis = axisOf(figure.mesh, isEye, surface, cage.diagonal);
     if (!(length(axis) > 0)) continue;
@@ -325,7 +336,7 @@ std::vector<Vec3> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure
     drawTo(cage, cage.loops[static_cast<std::size_t>(hole)], *opening, surface, positions);
     for (const std::uint32_t v : cage.loops[static_cast<std::size_t>(hole)]) tracks[v] = opening->axis;
   }
-  return tracks;
+  return true;
 }
 
 }  // namespace cagecast::cages

@@ -51,7 +51,7 @@ void undoFolds(const TemplateCage& cage, const std::vector<Vec3>& old, const std
 }  // namespace
 
 bool pushOut(const TemplateCage& cage, const Enclosed& inside, const std::vector<Vec3>& tracks,
-             const std::function<bool(double)>& step, std::vector<Vec3>& positions) {
+             const StepCallback& step, std::vector<Vec3>& positions) {
   const OuterPoints skin = visibleSkin(inside, cage.offset);
   const OuterRules rules{0.5, kClearance * cage.offset, kPushReach * cage.offset};
   const OpenBorder border(cage.mesh);

@@ -31,8 +31,8 @@ constexpr FitSettings kBody{0.010, 200, 2, {.reach = 0.02, .sliding = 0.05, .sti
 constexpr double kMinOffset = 0.003;
 /// A fitted cage that is farther than this from the figure's box, in diagonals, is no cage of it.
 constexpr double kMaxBeyond = 1;
-/// Shares of the work, for progress.
-constexpr float kLandmarksEnd = 0.3f, kTightenStart = 0.6f, kTightenEnd = 0.85f;
+/// Shares of the time, for progress: about those of heads and figures of 10,000 to 30,000 triangles.
+constexpr float kLandmarksEnd = 0.2f, kHullEnd = 0.4f, kTightenEnd = 0.8f, kEyesEnd = 0.9f, kRelaxEnd = 0.92f;
 
 /// What is known of both models.
 struct Pairs {
@@ -100,6 +100,7 @@ class Fit {
   Status run(FittedCage& out) {
     TemplateCage cage = prepareTemplate(from_);
     if (const Status status = pair(cage, out); !status.ok()) return status;
+    if (!report(progress_, kLandmarksEnd, "hull")) return kAborted;
     align();
     const FitSettings& settings = bones_.empty() ? kHead : kBody;
     cage.offset = std::max(cage.offset, kMinOffset * cage.diagonal);
@@ -108,11 +109,10 @@ class Fit {
     const std::vector<Anchor> anchors = anchorsOf(cage);
     if (anchors.empty())
       return {Code::tooFewJoints, Argument::landmarks, static_cast<std::uint32_t>(pairs_.from.size())};
-    if (!report(progress_, kLandmarksEnd, "hull")) return kAborted;
     TriangleMesh hull;
     const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels,
                              meanOf(positionsOf(pairs_.to))};
-    if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kTightenStart), hull)) return kAborted;
+    if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kHullEnd), hull)) return kAborted;
     if (hull.empty()) return {Code::noVolume, Argument::model};
     std::vector<Vec3> positions = start(cage, anchors);
     if (!draw(cage, hull, settings, positions)) return kAborted;
@@ -193,24 +193,26 @@ class Fit {
     bones_ = bonesOf(pairs_.from, pairs_.to);
   }
 
+  /// Reports the steps of something that takes the time from one share to another.
+  [[nodiscard]] StepCallback stepsOf(float from, float to, const char* stage) const {
+    return [this, from, to, stage](double share) { return report(progress_, from + share * (to - from), stage); };
+  }
+
   /// Draws the cage onto the hull, and pushes it out until the target is inside. @return false if cancelled.
   [[nodiscard]] bool draw(const TemplateCage& cage, const TriangleMesh& hull, const FitSettings& settings,
                           std::vector<Vec3>& positions) const {
     for (int pass = 0; pass < settings.passes; ++pass) {
-      if (pass > 0) relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
-      positions = tighten(cage, positions, hull, settings.tighten, [&](double share) {
-        return report(progress_, kTightenStart + (pass + share) / settings.passes * (kTightenEnd - kTightenStart),
-                      "fit");
-      });
+      const float each = (kTightenEnd - kHullEnd) / static_cast<float>(settings.passes);
+      const float from = kHullEnd + static_cast<float>(pass) * each;
+      const std::vector<Vec3> free(positions.size(), Vec3{0, 0, 0});
+      if (pass > 0 && !relax(cage, free, stepsOf(from, from, "fit"), positions)) return false;
+      positions = tighten(cage, positions, hull, settings.tighten, stepsOf(from, from + each, "fit"));
       if (positions.empty()) return false;
     }
-    const std::vector<Vec3> tracks = fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
-    if (!report(progress_, kTightenEnd, "fit")) return false;
-    relax(cage, tracks, positions);
-    return pushOut(
-        cage, {skin_, hull}, tracks,
-        [&](double share) { return report(progress_, kTightenEnd + share * (1 - kTightenEnd), "push out"); },
-        positions);
+    std::vector<Vec3> tracks;
+    return fitEyeHoles(cage, figure_, stepsOf(kTightenEnd, kEyesEnd, "fit"), tracks, positions) &&
+           relax(cage, tracks, stepsOf(kEyesEnd, kRelaxEnd, "fit"), positions) &&
+           pushOut(cage, {skin_, hull}, tracks, stepsOf(kRelaxEnd, 1, "push out"), positions);
   }
 
   /// Writes the cage in the target's space.
@@ -224,17 +226,17 @@ class Fit {
 
   /// Reads the target in the space of the template.
   void readTarget() {
-    std::vector<std::uint32_t> triangleOf;
-    TriangleMesh mesh = weldExactly(model_.mesh, nullptr, &triangleOf);
+    Figure parts = readFigure(model_);
+    TriangleMesh& mesh = parts.mesh;
     for (Vec3& p : mesh.positions) p = map_.inverse(p);
     const std::vector<bool> kept = keptTriangles(model_, options_.exclude);
-    const Figure parts = readFigure(model_);
     std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size()), isCover(mesh.triangles.size());
     figure_ = {};
     figure_.componentCount = parts.componentCount;
+    figure_.eyes = eyePairs(pairs_.from, pairs_.to);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const bool isEye = parts.roles[t] == Role::eye;
-      isSkin[t] = kept[triangleOf[t]];
+      isSkin[t] = kept[parts.triangleOf[t]];
       isFigure[t] = isSkin[t] || isEye;
       isCover[t] = !isFigure[t];
       if (isCover[t]) {

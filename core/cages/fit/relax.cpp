@@ -156,7 +156,8 @@ std::vector<bool> foldedTriangles(const TriangleMesh& mesh) {
   return folded;
 }
 
-void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vector<Vec3>& positions) {
+bool relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, const StepCallback& step,
+           std::vector<Vec3>& positions) {
   const std::vector<bool> foldedBefore = foldedTriangles(cage.mesh);
   const std::vector<double> own = smallestAngles(cage.mesh);
   std::vector<bool> corners;
@@ -170,9 +171,11 @@ void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vecto
         for (const std::uint32_t v : mesh.triangles[t]) corners[v] = true;
     return std::find(corners.begin(), corners.end(), true) != corners.end();
   };
+  constexpr double kRounds = kStages * kRoundsPerStage + kSearchRounds;
   for (int round = 0; round < kStages * kRoundsPerStage; ++round) {
     const int stage = round / kRoundsPerStage;
-    if (!findCorners(stage == 0)) return;
+    if (!step(round / kRounds)) return false;
+    if (!findCorners(stage == 0)) return true;
     std::vector<bool> moves = corners;
     grow(cage.neighbours, moves, kRings[stage]);
     // Off the track only where nothing else has helped.
@@ -181,10 +184,14 @@ void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vecto
       if (stage + 1 == kStages && corners[v]) current[v] = {0, 0, 0};
     restoreShape(cage, moves, current, positions);
   }
-  for (int round = 0; round < kSearchRounds && findCorners(false); ++round)
-    for (std::uint32_t v = 0; v < positions.size(); ++v)
-      if (corners[v])
-        searchAround(cage, foldedBefore, v, 2 * round < kSearchRounds ? tracks[v] : Vec3{0, 0, 0}, positions);
+  for (int round = 0; round < kSearchRounds && findCorners(false); ++round) {
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+      if (!corners[v]) continue;
+      if (!step((kStages * kRoundsPerStage + round) / kRounds)) return false;
+      searchAround(cage, foldedBefore, v, 2 * round < kSearchRounds ? tracks[v] : Vec3{0, 0, 0}, positions);
+    }
+  }
+  return true;
 }
 
 }  // namespace cagecast::cages

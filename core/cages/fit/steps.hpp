@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "cagecast/cages.hpp"
 #include "fit/warp.hpp"
 #include "landmarks/landmark_list.hpp"
+#include "linear/sparse_system.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/neighbours.hpp"
 
@@ -113,10 +113,17 @@ struct TightenOptions {
 
 /// Draws a cage onto the hull of the target, smoothly and with little sliding.
 /// @param rest  Positions of the cage to start from; what they are is kept as far as the hull lets them.
-/// @param step  Called before each of the iterations, with its share; false cancels.
 /// @return The positions; empty if cancelled.
 std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& rest, const TriangleMesh& hull,
-                          const TightenOptions& options, const std::function<bool(double)>& step);
+                          const TightenOptions& options, const StepCallback& step);
+
+/// The centre of an eye of the template and of that of the target, both in the template's space.
+struct EyePair {
+  Vec3 from, to;
+};
+
+/// The pairs of both eyes by landmarks; empty if one is not known.
+std::vector<EyePair> eyePairs(const std::vector<Landmark>& from, const std::vector<Landmark>& to);
 
 /// The target in the template's space.
 struct EyedFigure {
@@ -126,20 +133,24 @@ struct EyedFigure {
   TriangleMesh covers;                    ///< What is excluded and no eye: lashes, brows, hair.
   std::vector<std::uint32_t> coverComponents;
   std::uint32_t componentCount = 0;
+  std::vector<EyePair> eyes;  ///< Left and right; empty if not both are known of both.
 };
 
 /// Draws the borders of eye holes to the contours of what is visible of the eyes, seen along the direction in which
 /// they look, with lashes as far as there is room. Where a model has no eyes of their own, holes stay where they are.
-/// @param from,to  Landmarks of the template and of the target, both in the template's space.
-/// @return Per vertex of the cage: the direction in which its eye looks if it is on the border of a hole that was
-///   drawn, else zero.
-std::vector<Vec3> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
-                              const std::vector<Landmark>& to, std::vector<Vec3>& positions);
+/// @param[out] tracks  Per vertex of the cage: the direction in which its eye looks if it is on the border of a hole
+/// that
+///   was drawn, else zero.
+/// @return false if cancelled.
+bool fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const StepCallback& step,
+                 std::vector<Vec3>& tracks, std::vector<Vec3>& positions);
 
 /// Restores the template's shape at triangles that are folded over or thin, but are not so in the template.
 /// @param tracks  Per vertex: the only direction in which it moves, unless a triangle at it cannot be unfolded
 ///   otherwise; zero if it is free.
-void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vector<Vec3>& positions);
+/// @return false if cancelled.
+bool relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, const StepCallback& step,
+           std::vector<Vec3>& positions);
 
 /// Whether each triangle faces away from those around it, or turns by more than 120 degrees at an edge.
 std::vector<bool> foldedTriangles(const TriangleMesh& mesh);
@@ -153,8 +164,8 @@ struct Enclosed {
 /// Moves a cage outward where skin sticks out of it, by at most four times the offset and only where both face the same
 /// way and no triangle folds over.
 /// @param tracks  Per vertex: the only direction in which it moves; zero if it is free.
-/// @param step  Called before each of the iterations, with its share; false cancels.
+/// @return false if cancelled.
 bool pushOut(const TemplateCage& cage, const Enclosed& inside, const std::vector<Vec3>& tracks,
-             const std::function<bool(double)>& step, std::vector<Vec3>& positions);
+             const StepCallback& step, std::vector<Vec3>& positions);
 
 }  // namespace cagecast::cages

@@ -45,7 +45,8 @@ std::vector<SurfaceSample> verticesAndCentres(const TriangleMesh& mesh) {
 }  // namespace
 
 std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& rest, const TriangleMesh& hull,
-                          const TightenOptions& options, const std::function<bool(double)>& step) {
+                          const TightenOptions& options, const StepCallback& step) {
+  if (!step(0)) return {};
   const Surface surface(hull);
   const std::vector<Vec3> hullNormals = vertexNormals(hull);
   const std::vector<SurfaceSample> samples = verticesAndCentres(cage.mesh);
@@ -53,7 +54,9 @@ std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& res
   TriangleMesh current{rest, cage.mesh.triangles};
   for (int round = 0; round < kTightenRounds; ++round) {
     const double share = static_cast<double>(round) / (kTightenRounds - 1);
-    if (!step(share)) return {};
+    bool goesOn = true;
+    const StepCallback stepOfRound = [&](double done) { return goesOn = step((round + done) / kTightenRounds); };
+    if (!stepOfRound(0)) return {};
     const double reach = options.reach * cage.diagonal * std::pow(3.0, -share);
     const std::vector<SurfacePoint> closest = surface.closest(positionsOf(current, samples));
     const std::vector<Vec3> normals = vertexNormals(current);
@@ -68,7 +71,8 @@ std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& res
       planes.push_back({corners, samples[i].weights, closest[i].position, 1 / size * normal, 1});
     }
     const double bending = options.stiffest * std::pow(options.softest / options.stiffest, share);
-    current.positions = plate.solve(rest, planes, {bending, options.sliding, kMinHold});
+    current.positions = plate.solve(rest, planes, {bending, options.sliding, kMinHold}, {}, stepOfRound);
+    if (!goesOn) return {};
     if (current.positions.empty()) current.positions = rest;
   }
   return current.positions;

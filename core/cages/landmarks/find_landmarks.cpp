@@ -40,37 +40,44 @@ std::vector<MirrorPlane> planesOf(const Figure& figure, const Rig& rig) {
   return {plane};
 }
 
+/// The share of the search that is done when a head is found, but not yet its landmarks.
+constexpr float kHeadMade = 0.6f;
+
 /// Finds a figure's head: around the first eyes, named, jointed, loose or fused with the skin, that are as far apart as
 /// eyes are, and where hints say, if there are any.
-/// @param goOn  Told shares from 0 to 1 on the way.
+/// @param goOn  Gets shares from 0 to 1 on the way.
 /// @return false if `goOn` cancelled it.
 bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const Rig& rig, const auto& goOn,
               std::optional<Head>& head) {
   std::optional<Eyes> hinted = findHintedEyes(figure, hints);
+  bool isCancelled = false;
+  /// @return whether the search has ended.
   const auto makeHeadOf = [&](std::optional<Eyes> eyes) {
     if (!eyes || (hinted && !areAt(*eyes, *hinted))) return false;
     eyes->isNamed = eyes->isNamed || hinted;
     head = makeHead(figure, *eyes, hints);
-    if (head) findHeadLandmarks(figure, *eyes, *head);
-    return head.has_value();
+    if (!head) return false;
+    isCancelled = !goOn(kHeadMade);
+    if (!isCancelled) findHeadLandmarks(figure, *eyes, *head);
+    return true;
   };
-  if (makeHeadOf(findNamedEyes(figure))) return true;
   if (!goOn(0.1f)) return false;
+  if (makeHeadOf(findNamedEyes(figure))) return !isCancelled;
   for (const bool byMorphs : {true, false}) {
     if (!byMorphs) hinted = findJointedEyes(figure, rig.joints);
     if (!hinted) continue;
     const MirrorPlane plane{hinted->left, dot(hinted->left, hinted->middle())};
-    if (makeHeadOf(findLooseEyes(figure, plane)) || makeHeadOf(hinted)) return true;
+    if (makeHeadOf(findLooseEyes(figure, plane)) || makeHeadOf(hinted)) return !isCancelled;
     hinted.reset();  // No head is there.
-    if (makeHeadOf(findNamedEyes(figure))) return true;
+    if (makeHeadOf(findNamedEyes(figure))) return !isCancelled;
   }
   const std::vector<MirrorPlane> planes = planesOf(figure, rig);
   float share = 0.2f;
-  const float step = 0.8f / static_cast<float>(2 * planes.size());
+  const float step = (kHeadMade - share) / static_cast<float>(2 * planes.size());
   for (const auto find : {findLooseEyes, findFusedEyes})
     for (const MirrorPlane& plane : planes) {
       if (!goOn(share)) return false;
-      if (makeHeadOf(find(figure, plane))) return true;
+      if (makeHeadOf(find(figure, plane))) return !isCancelled;
       share += step;
     }
   return true;

@@ -3,10 +3,94 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 namespace cagecast::cages {
 
-struct SparseSystem::Factors : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> {};
+namespace {
+
+/// Multiply-adds between two calls of the callback: a few milliseconds.
+constexpr std::size_t kWorkPerStep = 1 << 22;
+
+}  // namespace
+
+/// Eigen's order of elimination and its solver, with a factorisation that can be followed: the same, row by row (LDL,
+/// Davis 2005), to the bit.
+struct SparseSystem::Factors : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> {
+  using Matrix = Eigen::SparseMatrix<double>;
+
+  bool factorizeInSteps(const Eigen::Map<const Matrix>& matrix, const StepCallback& step) {
+    Matrix upper(matrix.rows(), matrix.cols());
+    upper.selfadjointView<Eigen::Upper>() = matrix.selfadjointView<Eigen::Lower>().twistedBy(m_P);
+    const auto size = static_cast<int>(matrix.rows());
+    // Each number of a column costs one operation for each that came before it.
+    double all = 0;
+    for (int k = 0; k < size; ++k) {
+      const double count = m_matrix.outerIndexPtr()[k + 1] - m_matrix.outerIndexPtr()[k];
+      all += 0.5 * count * (count + 1);
+    }
+    m_diag.resize(size);
+    m_nonZerosPerCol.setZero();
+    m_info = Eigen::NumericalIssue;
+    m_factorizationIsOk = true;
+    row_.assign(static_cast<std::size_t>(size), 0);
+    visited_.assign(static_cast<std::size_t>(size), -1);
+    std::size_t done = 0, reported = 0;
+    for (int k = 0; k < size; ++k) {
+      findPattern(upper, k);
+      done += eliminate(k);
+      if (m_diag[k] == 0) return false;
+      if (!step || done - reported < kWorkPerStep) continue;
+      reported = done;
+      if (!step(static_cast<double>(done) / all)) return false;
+    }
+    m_info = Eigen::Success;
+    return true;
+  }
+
+ private:
+  std::vector<double> row_;          ///< Of the matrix, being eliminated; zero between rows.
+  std::vector<int> visited_;         ///< Per column: the last row that has a number in it.
+  std::vector<int> pattern_, path_;  ///< The columns in which a row has a number, in reverse order of elimination.
+
+  /// Reads a row of the matrix, and finds in which columns it will have numbers: the paths from those that it has up
+  /// the elimination tree.
+  void findPattern(const Matrix& upper, int k) {
+    pattern_.clear();
+    visited_[static_cast<std::size_t>(k)] = k;
+    for (Matrix::InnerIterator entry(upper, k); entry; ++entry) {
+      auto i = static_cast<int>(entry.index());
+      if (i > k) continue;
+      row_[static_cast<std::size_t>(i)] += entry.value();
+      path_.clear();
+      for (; visited_[static_cast<std::size_t>(i)] != k; i = m_parent[i]) {
+        path_.push_back(i);
+        visited_[static_cast<std::size_t>(i)] = k;
+      }
+      pattern_.insert(pattern_.end(), path_.rbegin(), path_.rend());
+    }
+  }
+
+  /// Solves for a row of L, and for its number of D. @return the multiply-adds.
+  std::size_t eliminate(int k) {
+    int* rows = m_matrix.innerIndexPtr();
+    double* values = m_matrix.valuePtr();
+    double diagonal = std::exchange(row_[static_cast<std::size_t>(k)], 0.0);
+    std::size_t work = 0;
+    for (auto at = pattern_.rbegin(); at != pattern_.rend(); ++at) {
+      const int i = *at, begin = m_matrix.outerIndexPtr()[i], end = begin + m_nonZerosPerCol[i]++;
+      const double value = std::exchange(row_[static_cast<std::size_t>(i)], 0.0);
+      const double share = value / m_diag[i];
+      for (int p = begin; p < end; ++p) row_[static_cast<std::size_t>(rows[p])] -= values[p] * value;
+      diagonal -= share * value;
+      rows[end] = k;
+      values[end] = share;
+      work += static_cast<std::size_t>(end - begin) + 1;
+    }
+    m_diag[k] = diagonal;
+    return work;
+  }
+};
 
 std::vector<SparseEntry> collapsed(std::vector<SparseEntry> entries) {
   const auto placeOf = [](const SparseEntry& entry) { return std::tie(entry.row, entry.column); };
@@ -59,13 +143,13 @@ double& SparseSystem::valueAt(std::uint32_t row, std::uint32_t column) {
   return values_[static_cast<std::size_t>(std::lower_bound(first, last, static_cast<int>(row)) - rows_.begin())];
 }
 
-bool SparseSystem::factorize() {
+bool SparseSystem::factorize(const StepCallback& step) {
   const auto size = static_cast<Eigen::Index>(starts_.size() - 1);
   const Eigen::Map<const Eigen::SparseMatrix<double>> matrix(size, size, static_cast<Eigen::Index>(values_.size()),
                                                              starts_.data(), rows_.data(), values_.data());
   if (factors_->rows() != size) factors_->analyzePattern(matrix);
-  factors_->factorize(matrix);
-  return factors_->info() == Eigen::Success;
+  if (step && !step(0)) return false;
+  return factors_->factorizeInSteps(matrix, step);
 }
 
 std::vector<double> SparseSystem::solve(std::span<const double> right) const {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,6 +23,9 @@ std::vector<SparseEntry> collapsed(std::vector<SparseEntry> entries);
 /// @param weights  W: one per row of A.
 std::vector<SparseEntry> squared(std::span<const SparseEntry> matrix, std::span<const double> weights);
 
+/// Gets the share of some work that is done; returns false to cancel it.
+using StepCallback = std::function<bool(double share)>;
+
 /// A system of equations with a symmetric, positive definite matrix, whose pattern stays: sparse Cholesky (LDL'), by
 /// Eigen. No other file includes Eigen, which takes seconds to compile.
 class SparseSystem {
@@ -39,8 +43,9 @@ class SparseSystem {
   void add(std::uint32_t row, std::uint32_t column, double value) {
     if (row >= column) valueAt(row, column) += value;
   }
-  /// @return false if the matrix is not positive definite.
-  bool factorize();
+  /// @param step  Called every few milliseconds with the share of the work that is done; false cancels.
+  /// @return false if the matrix is not positive definite, or if it was cancelled.
+  bool factorize(const StepCallback& step = {});
   /// @param right  The right side. @return The unknowns.
   [[nodiscard]] std::vector<double> solve(std::span<const double> right) const;
 

@@ -35,7 +35,7 @@ ThinPlate::ThinPlate(const TriangleMesh& mesh, std::vector<SparseEntry> bending)
       system_(3 * mesh.positions.size(), couplingOf(mesh, bending_)) {}
 
 std::vector<Vec3> ThinPlate::solve(const std::vector<Vec3>& rest, std::span<const PlaneTerm> planes,
-                                   const Weights& weights, std::span<const Vec3> before) {
+                                   const Weights& weights, std::span<const Vec3> before, const StepCallback& step) {
   const std::vector<Vec3> normals = vertexNormals({rest, triangles_});
   std::vector<double> right(3 * rest.size());
   system_.clear();
@@ -66,7 +66,7 @@ std::vector<Vec3> ThinPlate::solve(const std::vector<Vec3>& rest, std::span<cons
   for (const SparseEntry& entry : bending_)
     for (std::uint32_t a = 0; a < 3; ++a)
       system_.add(3 * entry.row + a, 3 * entry.column + a, weights.bending * entry.value);
-  if (!system_.factorize()) return {};
+  if (!system_.factorize(step)) return {};
   const std::vector<double> moved = system_.solve(right);
   if (!std::all_of(moved.begin(), moved.end(), [](double x) { return std::isfinite(x); })) return {};
   std::vector<Vec3> out = rest;

@@ -36,9 +36,10 @@ class ThinPlate {
   ThinPlate(const TriangleMesh& mesh, std::vector<SparseEntry> bending);
 
   /// @param before  Is needed for damping.
-  /// @return The positions; empty if rounding lets there be none.
+  /// @param step  As of `SparseSystem::factorize`, which takes most of the time.
+  /// @return The positions; empty if rounding lets there be none, or if it was cancelled.
   std::vector<Vec3> solve(const std::vector<Vec3>& rest, std::span<const PlaneTerm> planes, const Weights& weights,
-                          std::span<const Vec3> before = {});
+                          std::span<const Vec3> before = {}, const StepCallback& step = {});
 
  private:
   const std::vector<Triangle3>& triangles_;

@@ -60,8 +60,10 @@ class Bending {
     share_ = area / static_cast<double>(spots.size());
   }
 
-  /// @return The most that a vertex moved; 0 if there is no solution.
-  double step(std::span<const Gap> gaps, const RobustScale& scale, double offset, TriangleMesh& cage) {
+  /// @param goOn  As of `SparseSystem::factorize`.
+  /// @return The most that a vertex moved; 0 if there is no solution, or if it was cancelled.
+  double step(std::span<const Gap> gaps, const RobustScale& scale, double offset, const StepCallback& goOn,
+              TriangleMesh& cage) {
     std::vector<PlaneTerm> planes;
     for (std::size_t i = 0; i < gaps.size(); ++i) {
       if (!gaps[i].facing) continue;
@@ -69,7 +71,7 @@ class Bending {
       planes.push_back({cage.triangles[spots_[i].triangle], spots_[i].weights,
                         gaps[i].spot + wanted * gaps[i].direction, gaps[i].direction, share_ * scale.weight(wanted)});
     }
-    std::vector<Vec3> positions = plate_.solve(start_, planes, weights_, cage.positions);
+    std::vector<Vec3> positions = plate_.solve(start_, planes, weights_, cage.positions, goOn);
     double most = 0;
     for (std::size_t v = 0; v < positions.size(); ++v) most = std::max(most, length(positions[v] - cage.positions[v]));
     if (!positions.empty()) cage.positions = std::move(positions);
@@ -110,7 +112,11 @@ bool bendCage(const Target& target, const std::vector<SurfaceSample>& spots, dou
   double least = INFINITY;
   std::vector<Vec3> best = cage.positions;
   for (int step = 0; step < kBendSteps; ++step) {
-    if (!report(progress, step / static_cast<double>(kBendSteps), "bend")) return false;
+    bool goesOn = true;
+    const StepCallback stepOf = [&](double done) {
+      return goesOn = report(progress, (step + done) / static_cast<double>(kBendSteps), "bend");
+    };
+    if (!stepOf(0)) return false;
     const std::vector<Gap> gaps = measureGaps(target, cage, spots);
     const Placement placement = placementOf(target, gaps);
     scale.tighten(placement.spread, kBendTightening);
@@ -120,7 +126,9 @@ bool bendCage(const Target& target, const std::vector<SurfaceSample>& spots, dou
     } else if (scale.settled()) {
       break;
     }
-    if (bending.step(gaps, scale, placement.offset, cage) < kBendSettled * target.diagonal) break;
+    const double moved = bending.step(gaps, scale, placement.offset, stepOf, cage);
+    if (!goesOn) return false;
+    if (moved < kBendSettled * target.diagonal) break;
   }
   cage.positions = best;
   bending.unfold(cage);

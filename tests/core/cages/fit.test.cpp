@@ -225,8 +225,16 @@ TEST_CASE("where too little is known, a cage is placed by size and symmetry", "[
   CHECK(heads.fit().ok());
 }
 
-TEST_CASE("a fit can be cancelled", "[cages][fit]") {
+TEST_CASE("a fit reports its progress in small shares, and can be cancelled", "[cages][fit]") {
   Heads heads;
+  float before = -1, widest = 0;
+  const auto measure = [&](float share, const char*) {
+    if (before >= 0) widest = std::max(widest, share - before);
+    before = share;
+    return true;
+  };
+  REQUIRE(heads.fit(measure).ok());
+  CHECK(widest < 0.1f);
   checkProgress([&](const Progress& progress) { return heads.fit(progress).ok(); }, {-1, 0.4f, 0.7f, 0.95f, 2});
 }
 
@@ -368,7 +376,9 @@ TEST_CASE("relaxing unfolds what was moved over its neighbours, and leaves the r
   std::swap(positions[vertex], positions[cage.neighbours[vertex][random() % cage.neighbours[vertex].size()]]);
   grow(cage.neighbours, near, 5);
   REQUIRE(foldCount(cage, positions) > 0);
-  relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
+  const std::vector<Vec3> free(positions.size(), Vec3{0, 0, 0});
+  CHECK(relax(
+      cage, free, [](double) { return true; }, positions));
   CHECK(foldCount(cage, positions) == 0);
   for (std::size_t v = 0; v < positions.size(); ++v)
     if (!near[v]) CHECK(length(positions[v] - cage.mesh.positions[v]) == 0);

@@ -79,6 +79,42 @@ TEST_CASE("systems of equations are solved, dense and sparse", "[cages][linear]"
   CHECK_FALSE(system.factorize());
 }
 
+TEST_CASE("a factorisation reports its progress by work, and can be cancelled", "[cages][linear]") {
+  // The Laplacian of a square, plus 1.
+  constexpr std::uint32_t kSide = 200, kSize = kSide * kSide;
+  std::vector<SparseEntry> entries;
+  for (std::uint32_t i = 0; i < kSize; ++i) {
+    entries.push_back({i, i, 5});
+    if (i % kSide > 0) entries.push_back({i, i - 1, -1});
+    if (i >= kSide) entries.push_back({i, i - kSide, -1});
+  }
+  SparseSystem system(kSize, entries);
+  for (const SparseEntry& entry : entries) system.add(entry.row, entry.column, entry.value);
+  std::vector<double> shares;
+  REQUIRE(system.factorize([&](double share) {
+    shares.push_back(share);
+    return true;
+  }));
+  REQUIRE(shares.size() > 3);
+  CHECK(shares.front() == 0);
+  for (std::size_t i = 1; i < shares.size(); ++i) {
+    CHECK(shares[i] > shares[i - 1]);
+    // As much work between any two, but for the last row.
+    CHECK(shares[i] - shares[i - 1] < 1.1 * shares[1]);
+  }
+  CHECK(shares.back() <= 1);
+  CHECK(shares.back() > 1 - 1.1 * shares[1]);
+  const std::vector<double> right(kSize, 1.0);
+  const std::vector<double> whole = system.solve(right);
+  for (const std::size_t last : {std::size_t{1}, std::size_t{3}}) {
+    std::size_t calls = 0;
+    CHECK_FALSE(system.factorize([&](double) { return ++calls < last; }));
+    CHECK(calls == last);
+  }
+  REQUIRE(system.factorize());
+  CHECK(system.solve(right) == whole);
+}
+
 TEST_CASE("a similarity is found again from points, and a rotation from two directions", "[cages][linear]") {
   INFO("CAGECAST_SEED=" << firstSeed());
   Random random;

@@ -29,7 +29,7 @@ test('without a command it shows its help and exits 2', async () => {
 
 test('every command has --json and --quiet', async () => {
   const names = await commands();
-  assert.deepEqual(names, ['transfer', 'inspect', 'bake', 'make', 'fit', 'batch', 'diff']);
+  assert.deepEqual(names, ['transfer', 'inspect', 'bake', 'relay', 'make', 'fit', 'batch', 'diff']);
   for (const name of names) assert.match(await ok(`help ${name}`), /--json .*\n +--quiet /, name);
 });
 

@@ -204,8 +204,8 @@ async function layered() {
   const page = await workshop();
   const [stack, history] = [new LayerStack(), new History()];
   const edits = new Edits(stack, history);
-  followPaints(page.session, stack, edits);
   const away = new PutAwayLayers(page.session, stack, edits);
+  followPaints(page.session, stack, edits);
   page.session.request({ cage: page.load('first.glb', 4) });
   await page.ready();
   page.session.request({ paint: Promise.resolve(page.session.checker) });
@@ -254,6 +254,45 @@ test('layers for earlier cages are put away, however often a cage is made; undo 
   away.bringBack();
   assert.deepEqual([stack.layers.length, away.layers.length], [maxLayers, 1]);
   assert.throws(() => away.bringBack(), /layers/);
+});
+
+test('the paint of the cage before can be carried over, as long as nothing is drawn for this one and the model is the same', async () => {
+  const { page, history, away, state, add, cage } = await layered();
+  const earlier = () => away.earlier?.layers.map(({ name }) => name);
+  const first = page.session.shown!.cage.mesh;
+  assert.equal(earlier(), undefined);
+  await add('one');
+  await add('two');
+  assert.equal(earlier(), undefined);
+  await cage(1);
+  assert.deepEqual(earlier(), ['one', 'two']);
+  await cage(2);
+  assert.deepEqual([earlier(), away.earlier!.cage === first], [['one', 'two'], true], 'nothing was drawn in between');
+  away.carryOver('carried over', paintOf('new'));
+  assert.deepEqual([state(), earlier()], [['carried over', '(UV checker)', 0], undefined]);
+  history.undo();
+  assert.deepEqual(state(), ['UV checker', 0]);
+  history.redo();
+  await cage(3);
+  assert.deepEqual(earlier(), ['carried over']);
+  await add('three');
+  assert.equal(earlier(), undefined);
+  await cage(4);
+  assert.deepEqual(earlier(), ['three']);
+  page.open('other.glb', 'other-cage.glb');
+  await page.ready();
+  assert.equal(earlier(), undefined);
+});
+
+test('the paint of a sample can be carried over, too', async () => {
+  const { away, stack, cage } = await layered();
+  const paint = paintOf('of the sample', { name: 'sample', paints: [] } as never);
+  stack.setBase('of the sample', paint);
+  await cage(1);
+  assert.deepEqual(
+    [stack.base!.name, away.earlier!.layers.map(({ sheet }) => sheet === paint), away.layers.length],
+    ['UV checker', [true], 0],
+  );
 });
 
 test('layers stay where a cage has the same UVs', async () => {

@@ -1,8 +1,9 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { faults } from '../../support/axe';
-import { head, ready, worked } from '../../support/cages';
+import { asset, head, ready, worked } from '../../support/cages';
 import { GlbMaker, tetrahedron } from '../../support/glb';
+import { difference, look, modelArea } from '../../support/picture';
 import { drop, glb, Site, shownError, shownParts } from '../../support/site';
 
 let site: Site;
@@ -45,6 +46,33 @@ test('a cage is made with the chosen number of triangles and parts, again when t
   assert.ok(first < 300, `${first} triangles`);
   const now = await cover();
   assert.ok(before < 50 && now > 90, `the eye was covered to ${before} %, and is to ${now} %`);
+  assert.deepEqual(complaints, []);
+});
+
+test('the paint of the cage before is carried over to a made cage, by one click', async () => {
+  const { page, complaints } = await site.visit();
+  const paint = { name: 'paint.png', mimeType: 'image/png', buffer: asset('human', 'paint-harlequin.png') };
+  await drop(page, [head(), glb('cage.glb', asset('human', 'cage.glb')), paint]);
+  await ready(page);
+  const seen = async () => {
+    await page.mouse.move(5, 5);
+    return look(page, await modelArea(page));
+  };
+  const before = await seen();
+  await page.getByTestId('make-cage').click();
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  await ready(page);
+  const checker = difference(before, await seen());
+  const offer = page.getByTestId('carry-over');
+  await offer.click();
+  await page.locator('#layer-list', { hasText: 'carried over' }).waitFor();
+  await ready(page);
+  const carried = difference(before, await seen());
+  assert.ok(
+    carried < 0.2 * checker,
+    `${carried} of the picture is other than before; with the checker, ${checker} was`,
+  );
+  assert.equal(await offer.isVisible(), false);
   assert.deepEqual(complaints, []);
 });
 

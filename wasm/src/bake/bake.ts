@@ -68,9 +68,14 @@ export function cageTexture(target: BakeTarget, result: BakeResult, atlas: Image
 }
 
 /** Triangles of a part by their mean distance from the cage; as they were, where it is the same. */
-function nearestFirst(order: number[], { indices }: BakeTarget, distances: Float32Array, part: BakePart): number[] {
+export function nearestFirst(
+  order: number[],
+  { indices }: Pick<BakeTarget, 'indices'>,
+  distances: Float32Array,
+  { firstTriangle }: Pick<BakePart, 'firstTriangle'>,
+): number[] {
   const distance = (t: number) => {
-    const at = 3 * (part.firstTriangle + t);
+    const at = 3 * (firstTriangle + t);
     return distances[indices[at]!]! + distances[indices[at + 1]!]! + distances[indices[at + 2]!]!;
   };
   return order.sort((a, b) => distance(a) - distance(b));

@@ -56,7 +56,8 @@ const kGutter = 1 / 64; // of the longer side
 const kBorder = 2;
 /** UVs beyond this are those of a pattern, too. */
 const kFarthest = 32;
-const kinds: readonly Kind[] = ['color', 'data', 'normal'];
+/** What an image may hold; the first is the default. */
+export const kinds: readonly Kind[] = ['color', 'data', 'normal'];
 const wraps: readonly Wrap[] = ['repeat', 'mirror', 'clamp'];
 
 /** The options of a fill, complete. */

@@ -1,8 +1,9 @@
 /**
  * Cages for models that have none: made afresh for one model, fitted from a template, or moved into place.
  *
- * Each call takes seconds and runs in a worker, which starts with the first call; calls run in order. The worker loads its
- * WebAssembly, `cagecast-cages.wasm`, then: until a function is called, nothing of it is loaded.
+ * Each call takes seconds and runs in a worker. The first call starts one, others at the same time start more, up to the number of
+ * cores, at least two and at most four; further calls wait. One worker stays when nothing is left to do. A worker loads its
+ * WebAssembly, `cagecast-cages.wasm`, when it starts: until a function is called, nothing of it is loaded.
  * @module cagecast/cages
  */
 import type { Mesh } from '../api/mesh.js';
@@ -36,7 +37,11 @@ export interface CageCallOptions extends CallOptions {
   onProgress?: OnProgress | undefined;
 }
 
-const queue = new WorkerQueue(spawn);
+/** Workers at most: each has a memory of its own, and more of them than cores gain nothing. */
+const kMaxWorkers = 4;
+const cores = globalThis.navigator?.hardwareConcurrency ?? kMaxWorkers;
+
+const queue = new WorkerQueue(spawn, Math.max(2, Math.min(kMaxWorkers, cores)));
 
 /** A rejection if a document or a scene is given instead of a model: it cannot be sent to the worker. */
 function unreadOf(fn: string, model: Partial<CageModel> | undefined): Promise<never> | undefined {
@@ -126,7 +131,7 @@ export function init(): Promise<void> {
   return queue.call('init', [], {});
 }
 
-/** Ends the worker and frees its memory. Pending calls reject with code `aborted`; the next call starts a new worker. */
+/** Ends the workers and frees their memory. Pending calls reject with code `aborted`; the next call starts a new worker. */
 export function terminate(): void {
   queue.terminate();
 }

@@ -27,16 +27,26 @@ interface Job {
   reject(error: unknown): void;
 }
 
-/** Calls that share one worker, which starts with the first call and carries them out in order. */
+/** A worker, once it is started, and what it is doing. */
+interface Slot {
+  thread?: Thread | undefined;
+  job?: Job | undefined;
+}
+
+/**
+ * Calls that share workers. The first call starts one; each takes the first that is idle, starts another up to the limit, or waits.
+ * They are begun in order. One worker stays when it is idle.
+ */
 export class WorkerQueue {
   readonly #spawn: Spawn;
-  #thread: Thread | undefined;
+  readonly #mostWorkers: number;
   #lastId = 0;
-  /** The first job is running. */
-  readonly #jobs: Job[] = [];
+  #slots: Slot[] = [];
+  readonly #waiting: Job[] = [];
 
-  constructor(spawn: Spawn) {
+  constructor(spawn: Spawn, mostWorkers = 1) {
     this.#spawn = spawn;
+    this.#mostWorkers = mostWorkers;
   }
 
   /** Calls a function with the options of a call among its own. @param args  Its other arguments. */
@@ -65,7 +75,7 @@ export class WorkerQueue {
       } catch (cause) {
         failure = unsendable(fn, cause);
       }
-      if (!failure && this.#jobs.length > 0) {
+      if (!failure && (this.#waiting.length > 0 || !this.#hasRoom)) {
         // It waits; what is sent later is what the arguments are now.
         try {
           args = structuredClone(args, { transfer: move ? buffersOf(args) : [] });
@@ -74,7 +84,7 @@ export class WorkerQueue {
           failure = unsendable(fn, cause);
         }
       }
-      this.#jobs.push({
+      this.#waiting.push({
         request: { id: ++this.#lastId, fn, args },
         move,
         failure,
@@ -84,40 +94,57 @@ export class WorkerQueue {
         reject,
       });
       signal?.addEventListener('abort', this.#onAbort);
-      if (this.#jobs.length === 1) this.#next();
+      this.#next();
     });
   }
 
-  /** Ends the worker and frees its memory. Pending calls reject with code `aborted`; the next call starts a new worker. */
+  /** Ends the workers and frees their memory. Pending calls reject with code `aborted`; the next call starts a new worker. */
   terminate(): void {
-    this.#stop();
-    for (const job of this.#jobs.splice(0))
-      job.reject(new CagecastError('aborted', job.request.fn, 'the worker was terminated'));
+    const jobs = this.#jobs;
+    for (const slot of this.#slots) stop(slot);
+    this.#waiting.length = 0;
+    for (const job of jobs) job.reject(new CagecastError('aborted', job.request.fn, 'the worker was terminated'));
   }
 
-  /** Hands the first job that can be sent to the worker. */
+  /** All jobs, those that are running first. */
+  get #jobs(): Job[] {
+    return [...this.#slots.flatMap(({ job }) => job ?? []), ...this.#waiting];
+  }
+
+  /** Whether a worker is idle or may be started. */
+  get #hasRoom(): boolean {
+    return this.#slots.length < this.#mostWorkers || this.#slots.some(({ job }) => !job);
+  }
+
+  /** Hands jobs that wait to workers, as long as there is room. */
   #next(): void {
-    for (let job = this.#jobs[0]; job; job = this.#jobs[0]) {
-      const error = this.#send(job);
-      if (!error) return;
-      this.#jobs.shift();
-      job.reject(error);
+    while (this.#waiting.length > 0 && this.#hasRoom) {
+      const job = this.#waiting.shift()!;
+      let slot = this.#slots.find(({ job, thread }) => !job && thread) ?? this.#slots.find((one) => !one.job);
+      if (!slot) this.#slots.push((slot = {}));
+      const error = this.#send(slot, job);
+      if (error) job.reject(error);
     }
-    this.#thread?.setBusy(false);
+    const idle = this.#slots.filter(({ job }) => !job);
+    for (const slot of idle.filter(({ thread }) => thread).slice(1)) stop(slot);
+    for (const { thread } of idle) thread?.setBusy(false);
+    this.#slots = this.#slots.filter(({ job, thread }) => job || thread);
   }
 
-  /** Hands a job to the worker. @returns why that cannot be, if so. */
-  #send({ request, move, failure }: Job): CagecastError | undefined {
+  /** Hands a job to a worker. @returns why that cannot be, if so. */
+  #send(slot: Slot, job: Job): CagecastError | undefined {
+    const { request, move, failure } = job;
     if (failure) return failure;
     try {
-      this.#thread ??= this.#start();
+      slot.thread ??= this.#start(slot);
     } catch (cause) {
       const reason = `this host cannot start the worker (${String(cause)})`;
       return new CagecastError('unsupported', request.fn, reason, { cause });
     }
     try {
-      this.#thread.setBusy(true);
-      this.#thread.post(request, move ? buffersOf(request.args) : []);
+      slot.thread.setBusy(true);
+      slot.thread.post(request, move ? buffersOf(request.args) : []);
+      slot.job = job;
       return undefined;
     } catch (cause) {
       return unsendable(request.fn, cause);
@@ -126,28 +153,34 @@ export class WorkerQueue {
 
   /** The only listener of a signal, however many calls have it. */
   readonly #onAbort = (): void => {
-    for (const job of [...this.#jobs]) if (job.signal?.aborted) this.#abort(job, job.signal.reason);
+    for (const job of this.#jobs) if (job.signal?.aborted) this.#abort(job, job.signal.reason);
   };
 
-  #start(): Thread {
+  #start(slot: Slot): Thread {
     const thread = this.#spawn(
-      (reply) => this.#onReply(reply),
+      (reply) => this.#onReply(slot, reply),
       (message) => {
-        if (this.#thread !== thread) return; // It was ended, and another one works now.
-        this.#stop();
-        const job = this.#jobs[0];
-        if (job) this.#finish(job, new CagecastError('unsupported', job.request.fn, `the worker failed (${message})`));
+        if (slot.thread !== thread) return; // It was ended, and another one works now.
+        const { job } = slot;
+        stop(slot);
+        job?.reject(new CagecastError('unsupported', job.request.fn, `the worker failed (${message})`));
+        this.#next();
       },
     );
     return thread;
   }
 
-  #onReply(reply: Reply): void {
-    const job = this.#jobs[0];
+  #onReply(slot: Slot, reply: Reply): void {
+    const { job } = slot;
     if (job?.request.id !== reply.id) return;
-    if ('progress' in reply) this.#tell(job, reply.progress);
-    else if ('error' in reply) this.#finish(job, new CagecastError(...reply.error));
-    else this.#finish(job, undefined, reply.result);
+    if ('progress' in reply) {
+      this.#tell(job, reply.progress);
+      return;
+    }
+    slot.job = undefined;
+    if ('error' in reply) job.reject(new CagecastError(...reply.error));
+    else job.resolve(reply.result);
+    this.#next();
   }
 
   /** Tells a caller how far its call is. What the caller's function throws ends the call. */
@@ -161,30 +194,23 @@ export class WorkerQueue {
 
   /** Ends a call that is still waiting or running. */
   #abort(job: Job, reason: unknown): void {
-    const place = this.#jobs.indexOf(job);
-    if (place < 0) return;
-    this.#jobs.splice(place, 1);
+    const slot = this.#slots.find((one) => one.job === job);
+    const place = this.#waiting.indexOf(job);
+    if (place >= 0) this.#waiting.splice(place, 1);
+    else if (!slot) return;
     job.reject(reason);
-    if (place > 0) return;
+    if (!slot) return;
     // A call into WebAssembly cannot be interrupted, but its worker can be ended.
-    this.#stop();
+    stop(slot);
     // One signal may cancel those that wait as well, one after the other.
-    queueMicrotask(() => {
-      if (!this.#thread) this.#next();
-    });
+    queueMicrotask(() => this.#next());
   }
+}
 
-  #finish(job: Job, error: CagecastError | undefined, result?: unknown): void {
-    this.#jobs.shift();
-    if (error) job.reject(error);
-    else job.resolve(result);
-    this.#next();
-  }
-
-  #stop(): void {
-    this.#thread?.terminate();
-    this.#thread = undefined;
-  }
+/** Ends a worker, whatever it does. */
+function stop(slot: Slot): void {
+  slot.thread?.terminate();
+  slot.thread = slot.job = undefined;
 }
 
 /** The error for an argument that cannot be sent, such as a function or an array that was transferred before. */

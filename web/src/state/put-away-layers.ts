@@ -1,17 +1,26 @@
 import { type Edits, Emitter, type Layer, type LayerStack, maxLayers, type Sheet } from 'cagecast/three/paint';
 import type { Model } from './model';
 import { haveSameUvs } from './same-uvs';
+import type { Scene } from './scene';
 import type { Session } from './session';
+
+/** The paint of an earlier cage around the current target. */
+export interface EarlierPaint {
+  /** Also what came with a sample. */
+  layers: readonly Layer[];
+  cage: Model['mesh'];
+}
 
 /**
  * Puts the layers away that were painted for another cage, and offers them again until they are brought back: those for the
- * current cage, or else all. They stay where a cage has the same UVs.
+ * current cage, or else all. They stay where a cage has the same UVs. `earlier` can be carried over to the current cage.
  */
 export class PutAwayLayers extends Emitter<{ change: undefined }> {
   readonly #session: Session;
   readonly #stack: LayerStack;
   readonly #edits: Edits;
-  #last: Model | undefined;
+  #last: Pick<Scene, 'target' | 'cage'> | undefined;
+  #earlier: (EarlierPaint & { target: Model }) | undefined;
   #away: readonly Layer[] = [];
   /** The mesh of the cage that each layer was painted for; not known of those from before the page was opened. */
   readonly #meshes = new WeakMap<Sheet, Model['mesh']>();
@@ -21,13 +30,31 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
     this.#session = session;
     this.#stack = stack;
     this.#edits = edits;
-    session.on('transfer', ({ cage }) => this.#onCage(cage));
+    session.on('transfer', ({ target, cage }) => this.#onCage({ target, cage }));
     stack.on('change', () => this.emit('change', undefined));
   }
 
   /** Those that are offered. Undoing brings them back too, and redoing puts them away again. */
   get layers(): readonly Layer[] {
     return this.#away.filter(({ id }) => this.#stack.layers.every((layer) => layer.id !== id));
+  }
+
+  /** The paint that was put away last, if the current target is the one that it was drawn on, and nothing is drawn since. */
+  get earlier(): EarlierPaint | undefined {
+    const { layers } = this.#stack;
+    const isBare = layers.every(({ sheet }) => sheet === this.#session.checker);
+    return isBare && this.#earlier?.target === this.#last?.target ? this.#earlier : undefined;
+  }
+
+  /** Adds what `earlier` has become for the current cage. @throws Error if there is no room. */
+  carryOver(name: string, sheet: Sheet): void {
+    const carried = this.#earlier?.layers ?? [];
+    this.#edits.do('carrying the paint over', () => {
+      this.#stack.add(name, sheet);
+      this.#restyleChecker(false);
+    });
+    this.#earlier = undefined;
+    this.show(this.#away.filter(({ id }) => carried.every((layer) => layer.id !== id)));
   }
 
   /** Offers others instead. */
@@ -41,7 +68,7 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
     const all = this.layers;
     const own = all.filter(({ sheet }) => {
       const mesh = this.#meshes.get(sheet);
-      return mesh && haveSameUvs({ mesh }, this.#last!);
+      return mesh && haveSameUvs({ mesh }, this.#last!.cage);
     });
     // Without any room, the stack says so.
     const room = Math.max(1, maxLayers - this.#stack.layers.length);
@@ -57,18 +84,22 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
     if (base?.sheet === this.#session.checker) this.#stack.restyle(base, { visible });
   }
 
-  #onCage(cage: Model): void {
+  #onCage(now: Pick<Scene, 'target' | 'cage'>): void {
     const before = this.#last;
-    this.#last = cage;
-    if (!before || haveSameUvs(before, cage)) return;
+    this.#last = now;
+    if (!before || haveSameUvs(before.cage, now.cage)) return;
     this.#edits.cancel(); // a stroke in progress is of the cage before
+    const shown = this.#stack.layers.filter(({ visible, sheet }) => visible && sheet !== this.#session.checker);
+    if (shown.length > 0) this.#earlier = { layers: shown, cage: before.cage.mesh, target: before.target };
+    if (this.#earlier && haveSameUvs({ mesh: this.#earlier.cage }, now.cage)) this.#earlier = undefined;
     const old = this.#stack.layers.filter(({ id }) => id !== this.#stack.base?.id);
     // Nothing else is to be seen now.
     if (old.length === 0) {
       this.#restyleChecker(true);
+      this.emit('change', undefined);
       return;
     }
-    for (const { sheet } of old) this.#meshes.set(sheet, before.mesh);
+    for (const { sheet } of old) this.#meshes.set(sheet, before.cage.mesh);
     const kept = [...this.layers, ...old].slice(-maxLayers);
     this.#edits.do('putting layers away', () => {
       for (const { id } of old) this.#stack.remove(id);

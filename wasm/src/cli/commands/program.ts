@@ -7,6 +7,7 @@ import { addBatchCommand } from './batch-command.js';
 import { addCageCommands } from './cage-commands.js';
 import { addDiffCommand } from './diff-command.js';
 import { addInspectCommand } from './inspect-command.js';
+import { addRelayCommand } from './relay-command.js';
 import { addTransferCommand } from './transfer-command.js';
 
 /** The command with all of its commands; it runs nothing yet. */
@@ -49,6 +50,7 @@ Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make
   addTransferCommand(program, io);
   addInspectCommand(program, io);
   addBakeCommand(program, io);
+  addRelayCommand(program, io);
   addCageCommands(program, io);
   addBatchCommand(program, io);
   addDiffCommand(program, io);
