@@ -8,6 +8,18 @@ namespace {
 
 /// Length of a rim around, at least, in diagonals: necks have 1 to 2, eyes at most 0.4.
 constexpr double kMinRim = 0.7;
+/// Area within a rim, at most, as a share of the mesh's: necks have less than 0.15, the outlines of face masks more than
+/// 0.5.
+constexpr double kMaxWithin = 0.3;
+
+/// Twice the area of a flat figure within a loop; of its shadow on the plane where it is largest if it is not flat.
+double areaWithin(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop) {
+  Vec3 area{0, 0, 0};
+  const Vec3 first = mesh.positions[loop.front()];
+  for (std::size_t k = 0; k + 1 < loop.size(); ++k)
+    area = area + cross(mesh.positions[loop[k]] - first, mesh.positions[loop[k + 1]] - first);
+  return length(area);
+}
 
 }  // namespace
 
@@ -24,7 +36,11 @@ int rimOf(const TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>
     most = around;
     best = static_cast<int>(i);
   }
-  return best;
+  if (best < 0) return best;
+  double area = 0;
+  for (const Triangle3& t : mesh.triangles)
+    area += length(cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]));
+  return areaWithin(mesh, loops[static_cast<std::size_t>(best)]) < kMaxWithin * area ? best : -1;
 }
 
 Axes axesOf(const std::vector<Landmark>& landmarks) {

@@ -23,6 +23,7 @@ import type {
 } from './types.js';
 
 export { cageGlb } from './cage-glb.js';
+export { objTemplate } from './obj-template.js';
 export { type TemplateName, templateNames } from './template-names.js';
 export { loadTemplate } from './templates.js';
 export type * from './types.js';

@@ -1,7 +1,7 @@
 import { show } from '../core/error.js';
 import { readFile } from '../core/read-file.js';
 import { CagecastError } from '../index.js';
-import { readExtras } from '../parts/template-extras.js';
+import { readTemplate as withExtras } from '../parts/template-extras.js';
 import { type TemplateName, templateNames } from './template-names.js';
 import type { Cage } from './types.js';
 
@@ -75,10 +75,10 @@ function readTemplate(bytes: Uint8Array<ArrayBuffer>): Cage {
   const { attributes, indices } = primitives[0];
   const positions = Float32Array.from(numbersOf(attributes.POSITION, 3));
   const source = { extras, place: 'meshes[0]', matrix: identity, firstVertex: 0, vertexCount: positions.length / 3 };
-  return {
+  const mesh = {
     positions,
     uvs: Float32Array.from(numbersOf(attributes.TEXCOORD_0, 2)),
     indices: Uint32Array.from(numbersOf(indices, 1)),
-    ...readExtras([source], (text) => new Error(text)),
   };
+  return withExtras(mesh, [source], (text) => new Error(text));
 }

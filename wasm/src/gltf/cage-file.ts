@@ -3,7 +3,7 @@ import { faceHints, type MorphTarget } from '../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../parts/joints.js';
 import { type Expressions, vrmExpressions } from '../parts/morph-names.js';
 import { fromOrigin } from '../parts/origin.js';
-import { readExtras } from '../parts/template-extras.js';
+import { readTemplate } from '../parts/template-extras.js';
 import { type Extracted, type Part, parentsOf, skinOf, worldMatrices } from './extract-file.js';
 import { InputError } from './input-error.js';
 import { decodeFloats } from './pieces.js';
@@ -49,8 +49,8 @@ export function templateOf({ json, path }: GltfFile, { mesh, parts }: Extracted)
     { ...part, extras: json.meshes![part.mesh]!.extras, place: `meshes[${part.mesh}]` },
     { ...part, extras: json.nodes![part.node]!.extras, place: `nodes[${part.node}]` },
   ]);
-  const extras = readExtras(sources, (text) => new InputError(text).in(path));
-  return { positions: mesh.positions, indices: mesh.indices, uvs: mesh.uvs!, ...extras };
+  const { positions, indices, uvs } = mesh;
+  return readTemplate({ positions, indices, uvs: uvs! }, sources, (text) => new InputError(text).in(path));
 }
 
 function skeletonOf(file: GltfFile, { parts, origin }: Pick<Extracted, 'parts' | 'origin'>) {

@@ -1,11 +1,6 @@
+import { faceMesh } from './face-mesh.js';
 import { movePoints } from './points.js';
-
-/** What a cage's node or mesh has in its extras: docs/cages.md describes the format. */
-interface ReadExtras {
-  landmarks: Record<string, [number, number, number]>;
-  holes: Record<string, number[]>;
-  kind: 'automatic' | 'head' | 'body' | 'prop';
-}
+import type { CageExtras, TemplateMesh } from './template.js';
 
 /** The extras of a node or mesh. */
 interface ExtrasSource {
@@ -19,14 +14,28 @@ interface ExtrasSource {
   vertexCount: number;
 }
 
-const kinds: readonly unknown[] = ['automatic', 'head', 'body', 'prop'] satisfies ReadExtras['kind'][];
+const kinds: readonly unknown[] = ['automatic', 'head', 'body', 'prop'] satisfies CageExtras['kind'][];
+
+/**
+ * A mesh as a template, with what extras say about it. A mesh without landmarks that is MediaPipe's face gets those that are known of it.
+ * @param wrong  Makes the error.
+ */
+export function readTemplate<Of extends TemplateMesh>(
+  mesh: Of,
+  sources: Iterable<ExtrasSource>,
+  wrong: (text: string) => Error,
+): Of & CageExtras {
+  const extras = readExtras(sources, wrong);
+  const face = Object.keys(extras.landmarks).length === 0 ? faceMesh(mesh) : undefined;
+  return { ...mesh, ...(face ?? extras) } as Of & CageExtras;
+}
 
 /**
  * Reads what extras say about a cage, and moves it to the space and the numbers of the arrays.
  * @param wrong  Makes the error.
  */
-export function readExtras(sources: Iterable<ExtrasSource>, wrong: (text: string) => Error): ReadExtras {
-  const out: ReadExtras = { landmarks: {}, holes: {}, kind: 'automatic' };
+function readExtras(sources: Iterable<ExtrasSource>, wrong: (text: string) => Error): CageExtras {
+  const out: CageExtras = { landmarks: {}, holes: {}, kind: 'automatic' };
   for (const { extras, place, matrix, firstVertex, vertexCount } of sources) {
     const { landmarks, holes, kind } = (extras ?? {}) as Record<string, unknown>;
     for (const [name, point] of entriesOf(landmarks, `${place}.extras.landmarks`, wrong)) {
@@ -39,7 +48,7 @@ export function readExtras(sources: Iterable<ExtrasSource>, wrong: (text: string
         throw wrong(`${place}.extras.holes.${name} is not a list of vertices (0..${vertexCount - 1})`);
       out.holes[name] = loop.map((v) => firstVertex + v);
     }
-    if (kinds.includes(kind)) out.kind = kind as ReadExtras['kind'];
+    if (kinds.includes(kind)) out.kind = kind as CageExtras['kind'];
   }
   return out;
 }

@@ -9,7 +9,8 @@ import { readBytes, standard } from '../../gltf/files.js';
 import { InputError, naming } from '../../gltf/input-error.js';
 import { counted } from '../../inspect/finding.js';
 import { withBare } from '../../parts/drawn.js';
-import { isPosition } from '../../parts/template-extras.js';
+import { readObj } from '../../parts/obj.js';
+import { isPosition, readTemplate as withExtras } from '../../parts/template-extras.js';
 import type { Io } from '../io/io.js';
 import { writeFiles } from '../io/output.js';
 import { kExit } from '../model/failures.js';
@@ -96,7 +97,7 @@ Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o
 
   const fit = program
     .command('fit')
-    .argument('<TEMPLATE>', `GLB or glTF of a cage for another model; or ${templateNames.join(', ')}`)
+    .argument('<TEMPLATE>', `GLB, glTF or OBJ of a cage for another model; or ${templateNames.join(', ')}`)
     .argument('<TARGET>', 'GLB or glTF of the model that gets the cage')
     .description('move a template cage onto TARGET, so that one texture fits both; print a verdict')
     .option(
@@ -160,8 +161,7 @@ const kMinLandmarks = 4;
 /** Reads a template with its landmarks. @throws {InputError} that names the file at fault. */
 async function readTemplate(path: string, flags: FitFlags, io: Io): Promise<Template> {
   const { templateLandmarks } = flags;
-  const { file, extracted } = withUvs(await readModel(templateFile(path), common.readingOf(flags), io));
-  const own = templateOf(file, extracted);
+  const own = /\.obj$/i.test(path) ? await readObjTemplate(path, io) : await readGltfTemplate(path, flags, io);
   const landmarks = templateLandmarks === undefined ? own.landmarks : await readLandmarks(templateLandmarks);
   const count = Object.keys(landmarks).length;
   if (count >= kMinLandmarks) return { ...own, landmarks };
@@ -171,6 +171,17 @@ async function readTemplate(path: string, flags: FitFlags, io: Io): Promise<Temp
   throw new InputError(
     `${has} in the extras of its nodes and meshes; give at least ${kMinLandmarks} of the model that it was made for: --template-landmarks T.json`,
   ).in(path);
+}
+
+async function readGltfTemplate(path: string, flags: FitFlags, io: Io): Promise<Template> {
+  const { file, extracted } = withUvs(await readModel(templateFile(path), common.readingOf(flags), io));
+  return templateOf(file, extracted);
+}
+
+async function readObjTemplate(path: string, io: Io): Promise<Template> {
+  io.step(`reading ${path}`);
+  const wrong = (text: string) => new InputError(text).in(path);
+  return withExtras(readObj(new TextDecoder().decode(await readBytes(path)), wrong), [], wrong);
 }
 
 /** The file of a template: of one that comes with the package if its name is given, and no file is called so. */

@@ -4,7 +4,7 @@ import { CagecastError, type Mesh } from '../../index.js';
 import { faceHints, type MorphTarget } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { type Expressions, vrmExpressions } from '../../parts/morph-names.js';
-import { readExtras } from '../../parts/template-extras.js';
+import { readTemplate } from '../../parts/template-extras.js';
 import { InputError } from '../input-error.js';
 import { decodeFloats } from '../pieces.js';
 import { createAccessor } from './add-transfer.js';
@@ -58,7 +58,7 @@ export function cageTemplate(document: Document): cages.Template {
       { ...part, extras: part.node.getExtras(), place: `"${part.name}"` },
     ]);
     const { positions, indices, uvs } = mesh;
-    return { positions, indices, uvs, ...readExtras(sources, (text) => new InputError(text)) };
+    return readTemplate({ positions, indices, uvs }, sources, (text) => new InputError(text));
   });
 }
 

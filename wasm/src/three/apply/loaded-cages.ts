@@ -4,7 +4,7 @@ import type { Mesh } from '../../index.js';
 import { faceHints, type MorphTarget } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { type Expressions, vrmExpressions } from '../../parts/morph-names.js';
-import { readExtras } from '../../parts/template-extras.js';
+import { readTemplate } from '../../parts/template-extras.js';
 import { wrong } from '../errors.js';
 import { extract, holderOf, isSkinned, type Part, skinOf, targetDeltas } from './extract-scene.js';
 
@@ -89,8 +89,8 @@ export function cageTemplate(model: Loaded): cages.Template {
       vertexCount,
     })),
   );
-  const extras = readExtras(sources, (text) => wrong(text, 'cageTemplate'));
-  return { positions: mesh.positions, indices: mesh.indices, uvs: mesh.uvs, ...extras };
+  const { positions, indices, uvs } = mesh;
+  return readTemplate({ positions, indices, uvs }, sources, (text) => wrong(text, 'cageTemplate'));
 }
 
 /** As `makeCage` of `cagecast/cages`, for a loaded model. @throws {CagecastError} */

@@ -1,0 +1,141 @@
+import type { CageExtras, TemplateMesh } from './template.js';
+
+type Uv = readonly [u: number, v: number];
+
+/** Of MediaPipe's canonical face: its points, and its triangles at most, which is with those that fill eyes and mouth. */
+const kPoints = 468;
+const kMaxTriangles = 898;
+
+/**
+ * Where spots of the model are in its UVs, v from the top; numbers are those of its points. Left is the mirror image of right.
+ * Source: "canonical_face_model.obj" and the face mesh's connections, https://github.com/google-ai-edge/mediapipe.
+ */
+const kMiddle: Record<string, Uv> = {
+  nose_tip: [0.5002, 0.5272], // 4, the furthest in front
+  nasion: [0.4999, 0.3515], // 168
+  glabella: [0.5, 0.2699], // 9
+  lip_upper: [0.5, 0.6525], // 0
+  lip_lower: [0.5, 0.7194], // 16
+  chin: [0.4999, 0.8669], // 199
+  menton: [0.5, 0.9545], // 152
+};
+const kRight: Record<string, Uv> = {
+  eye_inner: [0.4191, 0.3872], // 133
+  eye_outer: [0.2801, 0.3756], // 33
+  mouth_corner: [0.382, 0.6947], // 61
+};
+/** The edges of the lids: 33, then along the lower one, 7, 163 … 155, to 133, and back along the upper one, 173, 157 … 246. */
+const kEye: Uv[] = [
+  [0.2801, 0.3756],
+  [0.2897, 0.3808],
+  [0.3014, 0.3874],
+  [0.3188, 0.3962],
+  [0.3434, 0.4006],
+  [0.3662, 0.3988],
+  [0.3932, 0.3955],
+  [0.4104, 0.3911],
+  [0.4191, 0.3872],
+  [0.4088, 0.3739],
+  [0.3887, 0.3623],
+  [0.366, 0.356],
+  [0.3434, 0.3554],
+  [0.3188, 0.3583],
+  [0.3014, 0.3632],
+  [0.2897, 0.3683],
+];
+/** The right half of the line between the lips: 78, along the lower one, 95, 88 … 14, then along the upper one, 13, 82 … 191. */
+const kMouth: Uv[] = [
+  [0.4036, 0.694],
+  [0.403, 0.7065],
+  [0.4265, 0.7035],
+  [0.4487, 0.6953],
+  [0.473, 0.6953],
+  [0.5, 0.6953],
+  [0.5, 0.6923],
+  [0.4754, 0.6924],
+  [0.4522, 0.6924],
+  [0.4312, 0.6924],
+  [0.4134, 0.6924],
+];
+
+/** Points are at least 0.0029 apart, and at most 0.0012 off the mirror images of others. */
+const kMaxOff = 0.0014;
+
+/** The centre of an eye lies this far behind the middle of its corners, in widths between them. */
+const kEyeDepth = 0.4;
+
+const mirrored = ([u, v]: Uv): Uv => [1 - u, v];
+
+/**
+ * MediaPipe's canonical face, in which face paint for augmented reality is drawn: recognised by its UVs and the count of its points,
+ * in any order, place and size, with or without vertices split at seams.
+ * @returns its landmarks and holes, and its triangles without those that fill eyes and mouth; undefined for other meshes.
+ */
+export function faceMesh({
+  positions,
+  uvs,
+  indices,
+}: TemplateMesh): (CageExtras & Pick<TemplateMesh, 'indices'>) | undefined {
+  if (indices.length > 3 * kMaxTriangles) return;
+  const used = [...new Set(indices)];
+  const placeOf = (v: number) => positions.subarray(3 * v, 3 * v + 3).join();
+  if (new Set(used.map(placeOf)).size !== kPoints) return;
+
+  let isFace = true;
+  /** The vertices at a spot: several if they are split. */
+  const verticesAt = ([u, v]: Uv): number[] => {
+    const distance = (i: number) => Math.hypot(uvs[2 * i]! - u, uvs[2 * i + 1]! - v);
+    const nearest = used.reduce((best, i) => (distance(i) < distance(best) ? i : best));
+    isFace &&= distance(nearest) < kMaxOff;
+    return used.filter((i) => placeOf(i) === placeOf(nearest));
+  };
+  const positionAt = (spot: Uv) => {
+    const [x, y, z] = positions.subarray(3 * verticesAt(spot)[0]!);
+    return [x!, y!, z!] as [number, number, number];
+  };
+
+  const landmarks: CageExtras['landmarks'] = {};
+  for (const [name, spot] of Object.entries(kMiddle)) landmarks[name] = positionAt(spot);
+  for (const [name, spot] of Object.entries(kRight)) {
+    landmarks[`${name}_left`] = positionAt(mirrored(spot));
+    landmarks[`${name}_right`] = positionAt(spot);
+  }
+  const holes = {
+    eye_left: kEye.map(mirrored).flatMap(verticesAt),
+    eye_right: kEye.flatMap(verticesAt),
+    mouth: [...kMouth, ...kMouth.map(mirrored)].flatMap(verticesAt),
+  };
+  if (!isFace) return;
+  addEyeCentres(landmarks);
+  return { landmarks, holes, kind: 'head', indices: withoutFills(indices, Object.values(holes)) };
+}
+
+/** Adds the centres of the eyes, which are behind the face: against the direction that it looks in. */
+function addEyeCentres(landmarks: CageExtras['landmarks']): void {
+  const at = (name: string) => landmarks[name]!;
+  const minus = (a: readonly number[], b: readonly number[]) => a.map((x, k) => x - b[k]!);
+  const [lx, ly, lz] = minus(at('eye_outer_left'), at('eye_outer_right'));
+  const [ux, uy, uz] = minus(at('nasion'), at('chin'));
+  const front = [ly! * uz! - lz! * uy!, lz! * ux! - lx! * uz!, lx! * uy! - ly! * ux!];
+  for (const side of ['left', 'right']) {
+    const inner = at(`eye_inner_${side}`);
+    const outer = at(`eye_outer_${side}`);
+    const depth = (kEyeDepth * Math.hypot(...minus(outer, inner))) / Math.hypot(...front);
+    landmarks[`eye_centre_${side}`] = inner.map((x, k) => (x + outer[k]!) / 2 - depth * front[k]!) as [
+      number,
+      number,
+      number,
+    ];
+  }
+}
+
+/** The triangles that do not have all corners on the border of one hole. */
+function withoutFills(indices: Uint32Array, holes: readonly number[][]): Uint32Array {
+  const borders = holes.map((border) => new Set(border));
+  const kept: number[] = [];
+  for (let i = 0; i < indices.length; i += 3) {
+    const corners = indices.subarray(i, i + 3);
+    if (!borders.some((border) => corners.every((v) => border.has(v)))) kept.push(...corners);
+  }
+  return Uint32Array.from(kept);
+}
