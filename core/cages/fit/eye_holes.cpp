@@ -27,6 +27,8 @@ constexpr double kCoverReach = 1.6, kCoverDepth = 4;
 constexpr double kBoxSlack = 0.2;
 /// What is this near to the middle of an eyeball, in its radii, belongs to the eye: pupils and corneas, not lashes.
 constexpr double kBallSlack = 1.15;
+/// What is next to a hole makes room for it up to this distance, in the largest move of its border.
+constexpr double kRoom = 1.6;
 /// An eye that is seen at fewer places of the grid is hidden.
 constexpr std::size_t kMinSeen = 32;
 
@@ -255,6 +257,56 @@ HoleContent contentOf(const TemplateCage& cage, const std::vector<std::uint32_t>
   return content;
 }
 
+/// The place of a border in front of the skin: as far as the cage is elsewhere.
+/// @param from  Where it was, for places that are not in front of skin.
+Vec3 inFrontOf(const Surface& skin, const EyeOpening& opening, const Flat& p, const Vec3& from, double offset) {
+  const Vec3 at = opening.place(p);
+  const double far = 8 * *std::max_element(opening.contour.begin(), opening.contour.end());
+  const SurfaceRay ray{at + far * opening.axis, -1.0 * opening.axis};
+  const RayHit hit = skin.trace(std::span(&ray, 1))[0];
+  if (std::isinf(hit.distance)) return at + dot(from - at, opening.axis) * opening.axis;
+  return at + (far - hit.distance + offset) * opening.axis;
+}
+
+/// Moves what is next to a hole out of the way of its border: as far as the border moves, less and less up to a
+/// distance of `kRoom` moves, so that nothing folds over.
+/// @param border,wanted  Where its corners are and should be.
+void makeRoom(const TemplateCage& cage, const std::vector<std::uint32_t>& loop, const std::vector<Flat>& border,
+              const std::vector<Flat>& wanted, const EyeOpening& opening, const Surface& skin,
+              std::vector<Vec3>& positions) {
+  double most = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    most = std::max(most, std::hypot(wanted[i].x - border[i].x, wanted[i].y - border[i].y));
+  std::vector<bool> done(positions.size());
+  for (const std::uint32_t v : loop) done[v] = true;
+  std::vector<std::uint32_t> next = loop;
+  // Along edges, so that the back of a head stays where it is.
+  while (!next.empty()) {
+    const std::uint32_t from = next.back();
+    next.pop_back();
+    for (const std::uint32_t v : cage.neighbours[from]) {
+      if (done[v]) continue;
+      done[v] = true;
+      const Flat p = opening.flat(positions[v]);
+      double total = 0, nearest = kRoom * most;
+      Flat move;
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const double distance = std::hypot(p.x - border[i].x, p.y - border[i].y);
+        const double weight = 1 / (1e-12 + distance * distance * distance * distance);
+        nearest = std::min(nearest, distance);
+        total += weight;
+        move = {move.x + weight * (wanted[i].x - border[i].x), move.y + weight * (wanted[i].y - border[i].y)};
+      }
+      const double share = (1 - nearest / (kRoom * most)) / total;
+      if (!(share > 0)) continue;
+      next.push_back(v);
+      const Flat there{p.x + share * move.x, p.y + share * move.y};
+      const double offset = dot(positions[v] - inFrontOf(skin, opening, p, positions[v], 0), opening.axis);
+      positions[v] = inFrontOf(skin, opening, there, positions[v], offset);
+    }
+  }
+}
+
 /// Moves the border of a hole to where it shows an eye.
 void drawTo(const TemplateCage& cage, std::vector<std::uint32_t> loop, const EyeOpening& opening,
             const Surface& surface, std::vector<Vec3>& positions) {
@@ -279,20 +331,14 @@ void drawTo(const TemplateCage& cage, std::vector<std::uint32_t> loop, const Eye
   Flat borderMiddle, contourMiddle;
   const Flat borderSpread = spreadOf(border, borderMiddle), contourSpread = spreadOf(contour, contourMiddle);
   if (!(borderSpread.x > 0 && borderSpread.y > 0 && contourSpread.x > 0 && contourSpread.y > 0)) return;
+  const std::vector<Flat> before = border;
   for (Flat& p : border)
     p = {(p.x - borderMiddle.x) / borderSpread.x * contourSpread.x,
          (p.y - borderMiddle.y) / borderSpread.y * contourSpread.y};
+  makeRoom(cage, loop, before, fitOutline(border, {opening.contour, {}, {}}), opening, surface, positions);
   const std::vector<Flat> outline = fitOutline(border, contentOf(cage, loop, opening, positions));
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vec3 at = opening.place(outline[i]);
-    // As far in front of the skin as the cage is elsewhere.
-    const SurfaceRay ray{at + 4 * (contourSpread.x + contourSpread.y) * opening.axis, -1.0 * opening.axis};
-    const RayHit hit = surface.trace(std::span(&ray, 1))[0];
-    const Vec3 height = std::isinf(hit.distance)
-                            ? dot(positions[loop[i]] - at, opening.axis) * opening.axis
-                            : ray.origin + hit.distance * ray.direction - at + cage.offset * opening.axis;
-    positions[loop[i]] = at + height;
-  }
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    positions[loop[i]] = inFrontOf(surface, opening, outline[i], positions[loop[i]], cage.offset);
 }
 
 std::optional<Vec3> centreOf(const std::vector<Landmark>& landmarks, const std::string& side) {

@@ -31,6 +31,8 @@ constexpr FitSettings kBody{0.010, 200, 2, {.reach = 0.02, .sliding = 0.05, .sti
 constexpr double kMinOffset = 0.003;
 /// A fitted cage that is farther than this from the figure's box, in diagonals, is no cage of it.
 constexpr double kMaxBeyond = 1;
+/// What is farther than this from a cage without bones, in diagonals, has no part in its hull.
+constexpr double kHullReach = 0.5;
 /// Shares of the time, for progress: about those of heads and figures of 10,000 to 30,000 triangles.
 constexpr float kLandmarksEnd = 0.2f, kHullEnd = 0.4f, kTightenEnd = 0.8f, kEyesEnd = 0.9f, kRelaxEnd = 0.92f;
 
@@ -109,12 +111,14 @@ class Fit {
     const std::vector<Anchor> anchors = anchorsOf(cage);
     if (anchors.empty())
       return {Code::tooFewJoints, Argument::landmarks, static_cast<std::uint32_t>(pairs_.from.size())};
+    std::vector<Vec3> positions = start(cage, anchors);
     TriangleMesh hull;
     const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels,
                              meanOf(positionsOf(pairs_.to))};
-    if (!makeHull(figure_.mesh, around, partOf(progress_, kLandmarksEnd, kHullEnd), hull)) return kAborted;
+    if (!makeHull(bones_.empty() ? nearTo(positions, cage) : figure_.mesh, around,
+                  partOf(progress_, kLandmarksEnd, kHullEnd), hull))
+      return kAborted;
     if (hull.empty()) return {Code::noVolume, Argument::model};
-    std::vector<Vec3> positions = start(cage, anchors);
     if (!draw(cage, hull, settings, positions)) return kAborted;
     if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMaxBeyond * cage.diagonal))
       return {Code::noFit, Argument::model};
@@ -148,6 +152,19 @@ class Fit {
     const Warp warp(anchors, cage.diagonal);
     for (Vec3& p : positions) p = warp(p);
     return positions;
+  }
+
+  /// What of the figure is near a cage: the hull of a head is as fine where there is a body.
+  [[nodiscard]] TriangleMesh nearTo(const std::vector<Vec3>& positions, const TemplateCage& cage) const {
+    Bounds box;
+    for (const Triangle3& t : cage.mesh.triangles)
+      for (const std::uint32_t v : t) box.add(positions[v]);
+    std::vector<bool> isNear;
+    for (const Triangle3& t : figure_.mesh.triangles)
+      isNear.push_back(std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
+        return box.distance(figure_.mesh.positions[v]) < kHullReach * cage.diagonal;
+      }));
+    return subset(figure_.mesh, isNear);
   }
 
   /// Whether known landmarks leave open where the cage belongs, or where the lower half of a head's face is.

@@ -39,8 +39,8 @@ bool isOnSkin(const std::string& name);
 
 Axes axesOf(const std::vector<Landmark>& landmarks);
 
-/// The boundary loop that is a rim: the longest one, if it is longer than `kMinRim` diagonals and less lies within it than
-/// within the outline of a mask, which may end anywhere on a figure; -1 if there is none.
+/// The boundary loop that is a rim: the longest one, if it is longer than `kMinRim` diagonals and less lies within it
+/// than within the outline of a mask, which may end anywhere on a figure; -1 if there is none.
 int rimOf(const TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& loops, double diagonal);
 
 /// Whether a template is for heads, by its landmarks: it has a face and no legs.

@@ -8,8 +8,8 @@ namespace {
 
 /// Length of a rim around, at least, in diagonals: necks have 1 to 2, eyes at most 0.4.
 constexpr double kMinRim = 0.7;
-/// Area within a rim, at most, as a share of the mesh's: necks have less than 0.15, the outlines of face masks more than
-/// 0.5.
+/// Area within a rim, at most, as a share of the mesh's: necks have less than 0.15, the outlines of face masks more
+/// than 0.5.
 constexpr double kMaxWithin = 0.3;
 
 /// Twice the area of a flat figure within a loop; of its shadow on the plane where it is largest if it is not flat.

@@ -404,6 +404,31 @@ TEST_CASE("an eye of which only one corner is known is held by its centre, too",
   CHECK(landmarkAnchors(eye, eye, false).size() == 2);
 }
 
+TEST_CASE("the outline of a mask is no neck, and may end anywhere on a head", "[cages][fit]") {
+  Heads heads;
+  heads.cage = OwnedModel{};
+  heads.cage.roll(
+      24, 12, [](double u, double v) { return headPoint(kOwn, 2 * kPi * u + kPi, -0.9 + 2.4 * v, 0.04); },
+      [](double u, double v) { return std::abs(u - 0.5) < 0.2 && v < 0.8; });
+  heads.cage.groups.clear();
+  const auto isBehind = [](const Landmark& landmark) {
+    return landmark.name == "crown" || landmark.name == "occiput" || landmark.name.starts_with("ear");
+  };
+  std::erase_if(heads.own, isBehind);
+  std::erase_if(heads.given, isBehind);
+  const TemplateCage mask = prepareTemplate(heads.from());
+  CHECK(mask.rim == -1);
+  const std::vector<float> fitted = heads.fitted();
+  double off = 0;
+  for (const std::uint32_t v : heads.cage.indices) {
+    const double latitude = -0.9 + 2.4 * static_cast<double>(v / 25) / 12;
+    const double longitude = 2 * kPi * static_cast<double>(v % 25) / 24 + kPi;
+    const Vec3 wanted = headPoint(kOther, longitude, latitude, 0.04);
+    off = std::max(off, length(Vec3::from(&fitted[std::size_t{3} * v]) - wanted));
+  }
+  CHECK(off < 0.15);
+}
+
 TEST_CASE("a rim that is huge beside the template's has its anchors", "[cages][fit]") {
   const OwnedModel cageMesh = headMesh(kOwn, 20, 12, 0.04), model = headMesh(kOwn, 60, 40, 0);
   const TemplateCage cage = prepareTemplate({cageMesh.view(), headLandmarks(kOwn)});
