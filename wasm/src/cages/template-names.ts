@@ -1,5 +1,5 @@
 /** The names of the templates that come with the package. */
-export const templateNames = ['human-head', 'human-body', 'animal-head', 'car'] as const;
+export const templateNames = ['human-head', 'human-body', 'animal-head', 'car', 'face-mask'] as const;
 
 /** The name of a template that comes with the package. */
 export type TemplateName = (typeof templateNames)[number];

@@ -11,6 +11,7 @@ const files: Record<TemplateName, () => URL> = {
   'human-body': () => new URL('./templates/human-body.glb', import.meta.url),
   'animal-head': () => new URL('./templates/animal-head.glb', import.meta.url),
   car: () => new URL('./templates/car.glb', import.meta.url),
+  'face-mask': () => new URL('./templates/face-mask.glb', import.meta.url),
 };
 
 /**
