@@ -2,9 +2,10 @@ import { checkMesh, count } from '../api/mesh.js';
 import { CagecastError, isRecord, show } from '../core/error.js';
 import { type EnumValue, namesOf } from '../core/module.js';
 import { plainArray, showArray } from '../core/typed-arrays.js';
+import { isRegion } from '../parts/template.js';
 import { isPosition } from '../parts/template-extras.js';
 import type { CagesModule, CoreLandmark, CoreModel, CoreOptions, CoreTemplate } from './cages-module.js';
-import type { CageModel, Holes, Landmarks, Template } from './types.js';
+import type { CageModel, Holes, Landmarks, Regions, Template } from './types.js';
 
 /** The error for a part of an argument. @param place  Where it is, such as `template.landmarks`. */
 const wrong = (fn: string, place: string, text: string) =>
@@ -101,6 +102,16 @@ export function checkHoles(fn: string, argument: string, holes: unknown): Holes 
       return [name, Array.from(vertices as Uint32Array)];
     }),
   );
+}
+
+/** Checks the types of a cage's regions. @returns copies; undefined if there are none. @throws {CagecastError} `badArgument` */
+export function checkRegions(fn: string, argument: string, regions: unknown): Regions | undefined {
+  if (regions === undefined || regions === null) return undefined;
+  if (!isRecord(regions)) throw wrong(fn, argument, ` is ${show(regions)}, not an object of names and outlines`);
+  for (const [name, outlines] of Object.entries(regions))
+    if (!isRegion(outlines))
+      throw wrong(fn, argument, `.${name} is ${show(outlines)}, not outlines, each of at least 3 corners [u, v]`);
+  return structuredClone(regions as Regions);
 }
 
 /** The value in C++ of a kind. @param bad  Makes the error from the names that there are. */

@@ -19,6 +19,7 @@ import {
   checkOptions,
   checkParts,
   checkPatterns,
+  checkRegions,
   checkTemplate,
 } from './check-arguments.js';
 import type {
@@ -27,7 +28,6 @@ import type {
   Fit,
   FitOptions,
   FoundLandmarks,
-  Holes,
   Kind,
   Landmarks,
   MakeOptions,
@@ -82,7 +82,10 @@ export function fitCage(
   landmarks?: Landmarks,
   options: FitOptions & SyncOptions = {},
 ): Fit {
-  const holes = checkHoles('fitCage', 'template.holes', template?.holes);
+  const kept = {
+    holes: checkHoles('fitCage', 'template.holes', template?.holes),
+    regions: checkRegions('fitCage', 'template.regions', template?.regions),
+  };
   return call(options, {
     fn: 'fitCage',
     defaults: 'fitOptions',
@@ -95,7 +98,7 @@ export function fitCage(
         report,
       ),
     result: (answer, module) => ({
-      cage: cageOf(module, answer, holes),
+      cage: cageOf(module, answer, kept),
       used: landmarksOf(answer.landmarks),
       confidence: confidenceOf(answer.landmarks),
       missing: answer.missing,
@@ -125,7 +128,11 @@ export function refineCage(
   model: CageModel,
   options: RefineOptions & SyncOptions = {},
 ): Cage {
-  const holes = checkHoles('refineCage', 'cage.holes', (cage as Partial<Template> | undefined)?.holes);
+  const from = cage as Partial<Template> | undefined;
+  const kept = {
+    holes: checkHoles('refineCage', 'cage.holes', from?.holes),
+    regions: checkRegions('refineCage', 'cage.regions', from?.regions),
+  };
   let given: CoreTemplate;
   return call(options, {
     fn: 'refineCage',
@@ -136,7 +143,7 @@ export function refineCage(
     },
     // Landmarks are spots of the model, which does not move.
     result: (answer, module) => ({
-      ...cageOf(module, answer, holes),
+      ...cageOf(module, answer, kept),
       landmarks: landmarksOf(given.landmarks),
       kind: kindOf(module, given.kind),
     }),
@@ -254,8 +261,12 @@ const landmarksOf = (landmarks: readonly CoreLandmark[]): Landmarks =>
 const confidenceOf = (landmarks: readonly CoreLandmark[]): Record<string, number> =>
   Object.fromEntries(landmarks.map(({ name, confidence }) => [name, confidence]));
 
-/** @param holes  Of the cage that was moved, if one was: vertices keep their numbers. */
-function cageOf(module: CagesModule, answer: CageAnswer, holes: Holes = {}): Cage {
+/** @param kept  Of the cage that was moved, if one was: vertices keep their numbers and UVs. */
+function cageOf(module: CagesModule, answer: CageAnswer, kept: Pick<Cage, 'holes' | 'regions'> = { holes: {} }): Cage {
   const { positions, uvs, indices, landmarks, kind } = answer;
-  return { positions, uvs, indices, landmarks: landmarksOf(landmarks), holes, kind: kindOf(module, kind) };
+  const { holes, regions } = kept;
+  return {
+    ...{ positions, uvs, indices, landmarks: landmarksOf(landmarks), holes, kind: kindOf(module, kind) },
+    ...(regions && { regions }),
+  };
 }

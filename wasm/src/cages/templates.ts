@@ -18,7 +18,7 @@ const files: Record<TemplateName, () => URL> = {
  * Loads a template that comes with the package: a cage with landmarks and named holes, to be fitted to a model of its kind.
  * Left is +x, up +y, front +z; the UVs are mirror images of each other, u becoming 1 - u.
  *
- * Cost: a file of up to 35 KB, loaded each time.
+ * Cost: a file of up to 40 KB, loaded each time.
  * @throws {CagecastError} `badArgument` if there is no such template; `unsupported` if its file cannot be loaded.
  *
  * @example

@@ -9,6 +9,15 @@ export type Landmarks = Record<string, Position>;
 /** The vertices along the border of each hole of a cage that has a name. */
 export type Holes = Record<string, readonly number[]>;
 
+/** A closed outline in the UVs of a cage: its corners, at least 3. */
+export type Outline = readonly (readonly [u: number, v: number])[];
+
+/**
+ * Regions of a cage by name, such as `lips`, in its UVs: what an odd number of a region's outlines surrounds. They are known wherever
+ * the cage is fitted to; `regionMask` of `cagecast/bake` makes images of them.
+ */
+export type Regions = Record<string, readonly Outline[]>;
+
 /** A joint of a skeleton, in the pose in which the mesh is given. */
 export interface Joint {
   /** As in the file, or, in a VRM, the name of its bone (`leftUpperArm`). */
@@ -61,6 +70,8 @@ export interface Cage {
   holes: Holes;
   /** What it was made for; `automatic` if that is not known. */
   kind: Kind;
+  /** Those of its template. Default: none. */
+  regions?: Regions | undefined;
 }
 
 /** A cage that is to be fitted to other models. A `Cage` is one. */
@@ -72,6 +83,8 @@ export interface Template extends Mesh {
   holes?: Holes | undefined;
   /** The fitted cage gets it, too. Default: `automatic`. */
   kind?: Kind | undefined;
+  /** The fitted cage gets them, too. Default: none. */
+  regions?: Regions | undefined;
 }
 
 /** What a fit found. */

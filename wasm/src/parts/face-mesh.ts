@@ -58,6 +58,53 @@ const kMouth: Uv[] = [
   [0.4134, 0.6924],
 ];
 
+/** Around the right eye: the fold of its lids. 130, along the lower one, 25, 110 … 243, and back along the upper one, 190 … 247. */
+const kLids: Uv[] = [
+  [0.2665, 0.377],
+  [0.2747, 0.3891],
+  [0.289, 0.399],
+  [0.3111, 0.4095],
+  [0.3388, 0.413],
+  [0.3659, 0.4096],
+  [0.3934, 0.4037],
+  [0.4128, 0.399],
+  [0.4265, 0.3898],
+  [0.4162, 0.3687],
+  [0.3924, 0.3539],
+  [0.3701, 0.3461],
+  [0.3452, 0.344],
+  [0.3193, 0.3473],
+  [0.2979, 0.3536],
+  [0.2767, 0.3634],
+];
+/** The right brow: 46, along its lower edge, 53, 52, 65, 55, and back, 107, 66, 105, 63, 70. */
+const kBrow: Uv[] = [
+  [0.2578, 0.3145],
+  [0.2964, 0.2932],
+  [0.3372, 0.2829],
+  [0.3859, 0.2814],
+  [0.4476, 0.3026],
+  [0.4417, 0.2617],
+  [0.3831, 0.2558],
+  [0.3273, 0.2565],
+  [0.2771, 0.2719],
+  [0.2296, 0.2995],
+];
+/** The right half of the outline of the lips: 0, 37, 39, 40, 185, 61, 146, 91, 181, 84, 17. */
+const kLips: Uv[] = [
+  [0.5, 0.6525],
+  [0.4718, 0.6504],
+  [0.4398, 0.6572],
+  [0.4146, 0.6665],
+  [0.3924, 0.6777],
+  [0.382, 0.6947],
+  [0.3961, 0.7102],
+  [0.4183, 0.7201],
+  [0.4448, 0.7308],
+  [0.4723, 0.7362],
+  [0.5, 0.737],
+];
+
 /** Points are at least 0.0029 apart, and at most 0.0012 off the mirror images of others. */
 const kMaxOff = 0.0014;
 
@@ -69,7 +116,7 @@ const mirrored = ([u, v]: Uv): Uv => [1 - u, v];
 /**
  * MediaPipe's canonical face, in which face paint for augmented reality is drawn: recognised by its UVs and the count of its points,
  * in any order, place and size, with or without vertices split at seams.
- * @returns its landmarks and holes, and its triangles without those that fill eyes and mouth; undefined for other meshes.
+ * @returns its landmarks, holes and regions, and its triangles without those that fill eyes and mouth; undefined for other meshes.
  */
 export function faceMesh({
   positions,
@@ -107,7 +154,12 @@ export function faceMesh({
   };
   if (!isFace) return;
   addEyeCentres(landmarks);
-  return { landmarks, holes, kind: 'head', indices: withoutFills(indices, Object.values(holes)) };
+  const regions = {
+    lips: [[...kLips, ...kLips.slice(1, -1).reverse().map(mirrored)]],
+    eyelids: [kLids, kLids.map(mirrored)],
+    brows: [kBrow, kBrow.map(mirrored)],
+  };
+  return { landmarks, holes, kind: 'head', regions, indices: withoutFills(indices, Object.values(holes)) };
 }
 
 /** Adds the centres of the eyes, which are behind the face: against the direction that it looks in. */

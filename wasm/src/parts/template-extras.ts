@@ -1,6 +1,6 @@
 import { faceMesh } from './face-mesh.js';
 import { movePoints } from './points.js';
-import type { CageExtras, TemplateMesh } from './template.js';
+import { type CageExtras, isRegion, type TemplateMesh } from './template.js';
 
 /** The extras of a node or mesh. */
 interface ExtrasSource {
@@ -37,7 +37,7 @@ export function readTemplate<Of extends TemplateMesh>(
 function readExtras(sources: Iterable<ExtrasSource>, wrong: (text: string) => Error): CageExtras {
   const out: CageExtras = { landmarks: {}, holes: {}, kind: 'automatic' };
   for (const { extras, place, matrix, firstVertex, vertexCount } of sources) {
-    const { landmarks, holes, kind } = (extras ?? {}) as Record<string, unknown>;
+    const { landmarks, holes, kind, regions } = (extras ?? {}) as Record<string, unknown>;
     for (const [name, point] of entriesOf(landmarks, `${place}.extras.landmarks`, wrong)) {
       if (!isPosition(point)) throw wrong(`${place}.extras.landmarks.${name} is not 3 finite numbers [x, y, z]`);
       out.landmarks[name] = movePoints(matrix, point, [0, 0, 0]);
@@ -47,6 +47,11 @@ function readExtras(sources: Iterable<ExtrasSource>, wrong: (text: string) => Er
       if (!Array.isArray(loop) || !loop.every(isVertex))
         throw wrong(`${place}.extras.holes.${name} is not a list of vertices (0..${vertexCount - 1})`);
       out.holes[name] = loop.map((v) => firstVertex + v);
+    }
+    for (const [name, outlines] of entriesOf(regions, `${place}.extras.regions`, wrong)) {
+      if (!isRegion(outlines))
+        throw wrong(`${place}.extras.regions.${name} is not a list of outlines, each of at least 3 corners [u, v]`);
+      out.regions = { ...out.regions, [name]: outlines };
     }
     if (kinds.includes(kind)) out.kind = kind as CageExtras['kind'];
   }

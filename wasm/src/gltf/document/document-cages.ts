@@ -123,7 +123,7 @@ export function addCage<D extends Document>(
   document: D,
   cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
 ): { document: D; node: Node } {
-  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
+  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', regions } = cage;
   const root = read('addCage', 'document', document, () => document.getRoot());
   for (const [name, array] of Object.entries({ positions, uvs, indices }))
     if (!ArrayBuffer.isView(array)) throw wrong('addCage', `cage.${name}`, array, 'an array');
@@ -135,7 +135,7 @@ export function addCage<D extends Document>(
   const node = document
     .createNode('cage')
     .setMesh(document.createMesh('cage').addPrimitive(primitive))
-    .setExtras({ landmarks, holes, kind } as object as Record<string, unknown>);
+    .setExtras({ landmarks, holes, kind, ...(regions && { regions }) } as object as Record<string, unknown>);
   (root.getDefaultScene() ?? root.listScenes()[0] ?? document.createScene()).addChild(node);
   return { document, node };
 }

@@ -132,13 +132,13 @@ export async function refineCage(
 export function cageGeometry(
   cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
 ): BufferGeometry {
-  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
+  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', regions } = cage;
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(positions, 3));
   geometry.setAttribute('uv', new BufferAttribute(uvs, 2));
   geometry.setIndex(new BufferAttribute(indices, 1));
   geometry.computeVertexNormals();
-  geometry.userData = { landmarks, holes, kind };
+  geometry.userData = { landmarks, holes, kind, ...(regions && { regions }) };
   return geometry;
 }
 
