@@ -1,4 +1,5 @@
 import type { CageModel, Template } from '../cages/types.js';
+import { nameOfGlass, transmissionExtension } from '../parts/drawn.js';
 import { faceHints, type MorphTarget } from '../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../parts/joints.js';
 import { type Expressions, vrmExpressions } from '../parts/morph-names.js';
@@ -17,7 +18,7 @@ export function cageModelOf(file: GltfFile, { mesh, parts, origin }: Extracted):
     positions,
     indices,
     groups,
-    parts: partNamesOf(parts),
+    parts: partNamesOf(file, parts),
     ...skeletonOf(file, { parts, origin }),
     hints: faceHints(
       parts.map((part) => ({
@@ -31,8 +32,14 @@ export function cageModelOf(file: GltfFile, { mesh, parts, origin }: Extracted):
 }
 
 /** The names of each part. */
-export const partNamesOf = (parts: readonly Part[]): string[][] =>
-  parts.map(({ aliases, name }) => (aliases.length > 0 ? aliases : [name]));
+export const partNamesOf = ({ json: { meshes = [], materials = [] } }: GltfFile, parts: readonly Part[]): string[][] =>
+  parts.map(({ aliases, name, mesh, primitive }) => {
+    const material = materials[meshes[mesh]!.primitives[primitive]!.material ?? -1];
+    const alpha = material?.pbrMetallicRoughness?.baseColorFactor?.[3];
+    const transmission = material?.extensions?.[transmissionExtension] as { transmissionFactor?: number } | undefined;
+    const names = aliases.length > 0 ? aliases : [name];
+    return [...names, ...nameOfGlass(material?.alphaMode, alpha, transmission?.transmissionFactor)];
+  });
 
 function targetsOf({ json, accessors }: GltfFile, { node, mesh, primitive }: Part, expressions: Expressions) {
   const { extras, primitives } = json.meshes![mesh]!;

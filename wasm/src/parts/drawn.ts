@@ -41,6 +41,8 @@ export interface LeftOut {
 
 /** The extension of glTF that switches nodes off, with all below them. */
 export const visibilityExtension = 'KHR_node_visibility';
+/** The extension of glTF for materials that light goes through. */
+export const transmissionExtension = 'KHR_materials_transmission';
 
 /** Names of cages, markers and collision shapes: of Roblox, of Unreal, and usual ones. Programs add numbers to them. */
 const kTechnical = /^(UCX|UBX|USP|UCP)_|_(OuterCage|InnerCage|Att|Collider)([._]?\d+)?$/i;
@@ -106,6 +108,14 @@ export function withBare(groups: readonly number[], locks: Locks | undefined): L
   const bare = Object.fromEntries(groups.map((group) => [group, 'exclude' as const]));
   return { ...locks, groups: { ...bare, ...locks?.groups } };
 }
+
+/** Alpha less than this, or transmission more than that, can be looked through. */
+const kAlpha = 0.85;
+const kTransmission = 0.3;
+
+/** What a part is called besides if its material can be looked through: corneas, visors, windows. Cages get holes over it. */
+export const nameOfGlass = (mode = 'OPAQUE', alpha = 1, transmission = 0): string[] =>
+  (mode === 'BLEND' && alpha < kAlpha) || transmission > kTransmission ? ['glass'] : [];
 
 /** Whether the alpha of a material leaves nothing of a part, by the modes of glTF. */
 export const isClear = (mode = 'OPAQUE', alpha = 1, cutoff = 0.5): boolean =>

@@ -1,6 +1,7 @@
-import type { Document, Node } from '@gltf-transform/core';
+import type { Document, ExtensionProperty, Node } from '@gltf-transform/core';
 import * as cages from '../../cages/index.js';
 import { CagecastError, type Mesh } from '../../index.js';
+import { nameOfGlass, transmissionExtension } from '../../parts/drawn.js';
 import { faceHints, type MorphTarget } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { type Expressions, vrmExpressions } from '../../parts/morph-names.js';
@@ -10,6 +11,11 @@ import { decodeFloats } from '../pieces.js';
 import { createAccessor } from './add-transfer.js';
 import { type DocumentPart, extractDocument, jointMatrix, skinOf } from './extract-document.js';
 import { isDocument, read, wrong } from './transfer-document.js';
+
+/** KHR_materials_transmission, as glTF-Transform has it, whose extensions are no dependency. */
+interface Transmission extends ExtensionProperty {
+  getTransmissionFactor(): number;
+}
 
 /** What glTF-Transform does not keep of a file. */
 export interface FileOptions {
@@ -29,7 +35,12 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
     positions,
     indices,
     groups,
-    parts: parts.map(({ aliases, name }) => (aliases.length > 0 ? aliases : [name])),
+    parts: parts.map(({ aliases, name, primitive }) => {
+      const material = primitive.getMaterial();
+      const transmission = material?.getExtension(transmissionExtension) as Transmission | null | undefined;
+      const glass = nameOfGlass(material?.getAlphaMode(), material?.getAlpha(), transmission?.getTransmissionFactor());
+      return [...(aliases.length > 0 ? aliases : [name]), ...glass];
+    }),
     ...skeletonOf(document, parts, vrmBones(extensions)),
     hints: faceHints(
       parts.map((part) => ({

@@ -1,6 +1,15 @@
-import { BufferAttribute, BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Matrix4,
+  type MeshPhysicalMaterial,
+  type Object3D,
+  type Skeleton,
+  Vector3,
+} from 'three';
 import * as cages from '../../cages/index.js';
 import type { Mesh } from '../../index.js';
+import { nameOfGlass } from '../../parts/drawn.js';
 import { faceHints, type MorphTarget } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { type Expressions, vrmExpressions } from '../../parts/morph-names.js';
@@ -154,8 +163,14 @@ function namesOf(parts: readonly Part[], root: object): string[][] {
       ? [...new Set(geometry.groups.map(({ materialIndex = 0 }) => materialIndex))]
       : [0];
     return (order.length > 0 ? order : [0]).map((index) => {
-      const material = materials[index]?.name ?? '';
-      return material === '' || own.includes(material) ? own : [...own, material];
+      const {
+        name: material = '',
+        transparent,
+        opacity,
+        transmission,
+      } = (materials[index] ?? {}) as Partial<MeshPhysicalMaterial>;
+      const names = material === '' || own.includes(material) ? own : [...own, material];
+      return [...names, ...nameOfGlass(transparent ? 'BLEND' : 'OPAQUE', opacity, transmission)];
     });
   });
 }
