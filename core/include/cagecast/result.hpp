@@ -45,6 +45,7 @@ struct Timings {
   double segments = 0;  ///< Steps 4 and 7: connected components and their areas; with steps 1 to 3 of interior samples,
                         ///< and writing the results of all steps per vertex.
   double recheck = 0;   ///< Step 9: more rays from occluded points.
+  double motion = 0;    ///< Step 13: what is seen in poses of the target.
   double holes = 0;     ///< Step 10: uncovered points and the holes over them.
   double seams = 0;     ///< Step 12: UVs per triangle corner.
   double classify = 0;  ///< Steps 5, 8, 10 and 11: which segments are culled; zones of vertices and triangles.

@@ -61,6 +61,15 @@ std::uint32_t HiderRecords::add(std::uint32_t enough, std::span<const std::uint3
   return recent;
 }
 
+bool HiderRecords::isFree(std::uint32_t record) const noexcept {
+  // Rays that hit the fewest come first.
+  std::uint32_t missing = words_[record];
+  std::size_t at = record + std::size_t{2};
+  for (std::uint32_t rays = words_[record + std::size_t{1}]; rays > 0 && missing > 0 && words_[at] == 0; --rays, ++at)
+    --missing;
+  return missing == 0;
+}
+
 void findHiders(const Scene& scene, PointData& data, const Array<SegmentStats>& stats, HiderRecords& records) noexcept {
   Arena& arena = scene.arena;
   data.hiddenBy = arena.allocate<std::uint32_t>(data.points.count);

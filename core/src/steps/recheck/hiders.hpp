@@ -25,6 +25,8 @@ class HiderRecords {
   /// As many as step 9 sends from a point.
   static constexpr std::size_t kMostRays = 12;
 
+  /// Whether a record names no segment: nothing hides its point.
+  [[nodiscard]] bool isFree(std::uint32_t record) const noexcept;
   [[nodiscard]] bool failed() const noexcept { return words_.failed(); }
   /// Whether there is no record.
   [[nodiscard]] bool empty() const noexcept { return words_.size() <= 1; }
