@@ -17,7 +17,7 @@ namespace {
 /// docs/method.md, step 13: a pose moves what it moves by more than this share of the diagonal.
 constexpr double kMoves = 1e-4;
 /// A point may lie deeper than is typical by this share of the diagonal of the box around what the pose moves.
-constexpr double kMaxDeeperOfMoved = 0.02;
+constexpr double kMaxDeeperOfMoved = 0.05;
 
 /// What is known of the points at rest, and becomes known in poses.
 struct Found {
@@ -63,18 +63,28 @@ struct MovedBox {
   }
 };
 
-/// Finds the points that might be seen in a pose: those that are occluded, but for those that nothing hides any more.
-/// @param[out] isHidden  1 per point.
+/// Why an occluded point is looked at in a pose.
+enum Reason : std::uint8_t {
+  kNone = 0,
+  kHidden = 1,  ///< It may be painted, if it is seen.
+  kAtLoop = 2,  ///< It may explain a hole, if it is bare.
+};
+
+/// Finds the occluded points that are looked at in a pose.
+/// @param[out] reasons  1 per point: a sum of `Reason`.
 /// @return Whether there is any.
-bool findHidden(const Scene& scene, const Points& points, const Found& found, const MovedBox& moved, bool* isHidden) {
-  const auto& [data, stats, records] = found;
+bool findReasons(const Scene& scene, const Found& known, const MovedBox& moved, std::uint8_t* reasons) {
+  const auto& [data, stats, records] = known;
   const double deepest = scene.length(TypicalDepth(stats).mean()) + kMaxDeeperOfMoved * moved.diagonal();
   bool isAny = false;
-  for (std::uint32_t p = 0; p < points.count; ++p) {
-    isHidden[p] = data.visibility[p] == Visibility::occluded && stats[data.segments[p]].coveredArea > 0 &&
-                  static_cast<double>(data.distances[p]) <= deepest && moved.contains(points.exactly(p)) &&
-                  !found.isFree(p);
-    isAny = isAny || isHidden[p];
+  for (std::uint32_t p = 0; p < data.points.count; ++p) {
+    reasons[p] = kNone;
+    if (data.visibility[p] != Visibility::occluded || !moved.contains(data.points.exactly(p))) continue;
+    const bool isHidden = stats[data.segments[p]].coveredArea > 0 &&
+                          static_cast<double>(data.distances[p]) <= deepest && !known.isFree(p);
+    const bool isAtLoop = scene.options.steps.holes && scene.loops.touches(data.cageTriangles[p]);
+    reasons[p] = static_cast<std::uint8_t>((isHidden ? kHidden : kNone) | (isAtLoop ? kAtLoop : kNone));
+    isAny = isAny || reasons[p] != kNone;
   }
   return isAny;
 }
@@ -167,8 +177,8 @@ void findInPose(const Scene& scene, const Found& known, std::span<const float> p
   const auto& [data, stats, records] = known;
   const MovedBox moved(scene, pose);
   if (moved.empty()) return;
-  auto* isHidden = arena.allocate<bool>(data.points.count);
-  if (arena.failed() || !findHidden(scene, data.points, known, moved, isHidden)) return;
+  auto* reasons = arena.allocate<std::uint8_t>(data.points.count);
+  if (arena.failed() || !findReasons(scene, known, moved, reasons)) return;
 
   const Posed posed(scene, data, pose);
   if (posed.failed()) return;
@@ -182,7 +192,7 @@ void findInPose(const Scene& scene, const Found& known, std::span<const float> p
   std::fill(isChosen, isChosen + count, false);
   std::fill(found, found + count, 0u);
   for (std::size_t v = 0; v < vertexCount; ++v) {
-    if (isHidden[data.points.ofVertex[v]]) isChosen[posed.scene.points.ofVertex[v]] = true;
+    if (reasons[data.points.ofVertex[v]] != kNone) isChosen[posed.scene.points.ofVertex[v]] = true;
   }
   std::uint32_t chosenCount = 0;
   for (std::uint32_t p = 0; p < count; ++p) {
@@ -194,7 +204,10 @@ void findInPose(const Scene& scene, const Found& known, std::span<const float> p
   for (std::size_t v = 0; v < vertexCount; ++v) {
     const std::uint32_t p = data.points.ofVertex[v];
     const std::uint32_t record = found[posed.scene.points.ofVertex[v]];
-    if (!isHidden[p] || record == 0 || (data.hiddenBy[p] != 0 && !records.isFree(record))) continue;
+    if (record == 0) continue;
+    const bool isFree = records.isFree(record);
+    data.isBareInPose[p] = data.isBareInPose[p] || (isFree && (reasons[p] & kAtLoop) != 0);
+    if ((reasons[p] & kHidden) == 0 || (data.hiddenBy[p] != 0 && !isFree)) continue;
     data.hiddenBy[p] = record;
     if (data.cageDistances[p] < std::numeric_limits<double>::infinity()) data.recovery[p] = Recovery::always;
   }
@@ -203,6 +216,10 @@ void findInPose(const Scene& scene, const Found& known, std::span<const float> p
 }  // namespace
 
 void findMotion(const Scene& scene, PointData& data, const Array<SegmentStats>& stats, HiderRecords& records) noexcept {
+  if (scene.targetMesh.poses.empty()) return;
+  data.isBareInPose = scene.arena.allocate<bool>(data.points.count);
+  if (scene.arena.failed()) return;
+  std::fill(data.isBareInPose, data.isBareInPose + data.points.count, false);
   const std::size_t size = scene.targetMesh.positions.size();
   for (std::span<const float> poses = scene.targetMesh.poses; !poses.empty() && !scene.arena.failed();
        poses = poses.subspan(size))

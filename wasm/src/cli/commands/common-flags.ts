@@ -87,9 +87,11 @@ const optionOf = (option: (typeof optionFlags)[number]): Option => {
   const limits = range[1] === Infinity ? `at least ${range[0]}` : `${range[0]} to ${range[1]}`;
   const help = [
     `${text[0]!.toLowerCase()}${text.slice(1).replace(/\.$/, '')}`,
-    ...(kind === 'choice' ? [] : [kind === 'length' ? `a share of the target's diagonal, ${limits}` : limits]),
+    ...(kind === 'choice' || kind === 'toggle' ? [] : [kind === 'length' ? `a share of the target's diagonal, ${limits}` : limits]),
     `default: ${standard}${standard === paper ? '' : `, or ${paper} with --preset paper`}`,
   ].join('; ');
+  if (kind === 'toggle')
+    return new Option(`${flag} <WHETHER>`, help).choices(range.map(String)).argParser((word) => word === 'true');
   return kind === 'choice'
     ? new Option(`${flag} <HOW>`, help).choices(range)
     : parsed(`${flag} <SHARE>`, help, numberWithin(range[0], range[1]));

@@ -19,6 +19,7 @@ import type { Vector } from '../../inspect/geometry.js';
 import { chooseParts, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
 import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/origin.js';
 import { morphed, movePoints } from '../../parts/points.js';
+import { type MorphedPart, posesOf } from '../../parts/poses.js';
 import { placeMeshes, type Skin } from '../../parts/skin.js';
 import { transformUvs } from '../../parts/uv-transform.js';
 import { wrong } from '../errors.js';
@@ -103,7 +104,9 @@ export function extractNear(
     const { firstVertex, vertexCount } = parts[p]!;
     return [...new Set(groups.subarray(firstVertex, firstVertex + vertexCount))];
   });
-  const mesh = { positions, indices, groups, ...(uvs && { uvs }) };
+  const isCage = argument === 'cage' || argument === 'template';
+  const poses = isCage ? undefined : posesOf(morphedParts(parts, positions));
+  const mesh = { positions, indices, groups, ...(uvs && { uvs }), ...(poses && { poses }) };
   return { mesh, parts, leftOut, accessories: bare, origin: near };
 }
 
@@ -353,6 +356,29 @@ export function targetDeltas(geometry: BufferGeometry, target: number): Float32A
   const values = valuesOf(shape as Attribute);
   if (geometry.morphTargetsRelative) return values;
   return valuesOf(geometry.getAttribute('position') as Attribute).map((x, i) => values[i]! - x);
+}
+
+/**
+ * Parts, and what moves them.
+ * @param positions    Of all parts, in the space of the model.
+ * @param expressions  The names of the expressions that use a morph target. Default: none.
+ */
+export function morphedParts(
+  parts: readonly Part[],
+  positions: Float32Array,
+  expressions: (mesh: Part['mesh'], target: number) => string[] = () => [],
+): MorphedPart[] {
+  return parts.map(({ mesh, geometry, aliases, matrix, firstVertex, vertexCount }) => {
+    const names: string[] = [];
+    for (const [name, t] of Object.entries(mesh?.morphTargetDictionary ?? {})) names[t] = name;
+    const targets = (geometry.morphAttributes.position ?? []).map((_, t) => ({
+      names: [names[t], ...expressions(mesh, t)],
+      deltas: () => targetDeltas(geometry, t),
+      shown: mesh?.morphTargetInfluences?.[t],
+    }));
+    const own = positions.subarray(3 * firstVertex, 3 * (firstVertex + vertexCount));
+    return { names: aliases, matrix: matrix.elements, positions: own, targets };
+  });
 }
 
 function placeIndices(
