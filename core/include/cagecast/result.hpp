@@ -96,12 +96,13 @@ struct Recovery {
   static constexpr std::uint32_t throughHole = 2;
 };
 
-/// What hides occluded vertices, by segment: a vertex is free if enough of its rays hit nothing but culled segments.
+/// What hides occluded vertices, by segment: a vertex is free if enough of its rays, at rest or in a pose, hit nothing
+/// but culled segments.
 struct Hiders {
   /// 1 per vertex: where its record in `records` begins; 0 if its recovery depends on no segment but its own.
   std::span<const std::uint32_t> ofVertex;
-  /// One after the other, from 1 on: how many rays are enough, how many follow, and for each of these the number of
-  /// segments that it hits, and their numbers.
+  /// One after the other, from 1 on: where an earlier record begins that is enough as well, or 0; how many rays are
+  /// enough, how many follow, and for each of these the number of segments that it hits, and their numbers.
   std::span<const std::uint32_t> records;
 };
 
@@ -111,7 +112,7 @@ struct Hiders {
 struct HoleShare {
   std::uint32_t hole = 0;  ///< The number of the boundary loop.
   std::uint32_t segment = 0;
-  double exposedArea = 0;    ///< Area that is not occluded.
+  double exposedArea = 0;    ///< Area that is not occluded, or is bare in a pose of the target (step 13).
   double uncoveredArea = 0;  ///< The part of it that the cage does not cover.
   /// Occluded area that the cage does not cover; 0 if `occlusionReach` is infinite or nothing of the segment is
   /// covered.

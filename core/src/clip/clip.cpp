@@ -78,8 +78,8 @@ bool renumberHiders(Projection& projection, std::span<const std::uint32_t> segme
   for (std::size_t v = 0; v < segments.size(); ++v) numbers[projection.segments[v]] = segments[v];
   Array<std::uint32_t>& records = projection.hiders;
   for (std::size_t at = 1; at < records.size();) {
-    std::uint32_t rays = records[at + 1];
-    for (at += 2; rays > 0; --rays) {
+    std::uint32_t rays = records[at + 2];
+    for (at += 3; rays > 0; --rays) {
       for (std::uint32_t left = records[at++]; left > 0; --left, ++at) records[at] = numbers[records[at]];
     }
   }

@@ -156,20 +156,24 @@ Status checkPoses(const MeshView& target, double limit, Box& box) {
 bool areRecords(const Hiders& hiders, std::size_t vertexCount, std::size_t segmentCount) {
   const auto& [ofVertex, records] = hiders;
   if (!ofVertex.empty() && ofVertex.size() != vertexCount) return false;
-  std::size_t last = 0;
-  return std::all_of(ofVertex.begin(), ofVertex.end(), [&, &records = records](std::size_t at) {
-    if (at == last) return true;
-    last = at;
-    if (at == 0) return true;
-    if (records.size() < 2 || at > records.size() - 2) return false;
-    std::uint32_t rays = records[at + 1];
-    for (at += 2; rays > 0 && at < records.size(); --rays) {
+  const auto isRecord = [&records = records, segmentCount](std::size_t at) {
+    if (records.size() < 3 || at > records.size() - 3 || records[at] >= at) return false;
+    std::uint32_t rays = records[at + 2];
+    for (at += 3; rays > 0 && at < records.size(); --rays) {
       const std::size_t count = records[at++];
       if (count > records.size() - at) return false;
       if (firstStray(records.subspan(at, count), segmentCount) < count) return false;
       at += count;
     }
     return rays == 0;
+  };
+  std::size_t last = 0;
+  return std::all_of(ofVertex.begin(), ofVertex.end(), [&, &records = records](std::size_t at) {
+    if (at == last) return true;
+    for (last = at; at != 0; at = records[at]) {
+      if (!isRecord(at)) return false;
+    }
+    return true;
   });
 }
 

@@ -182,12 +182,13 @@ function rayStep({ shown }: Facts, { outcome, cage, model, outside }: Path, diag
 /** The segments that hide a vertex, besides its own. */
 function hidersOf({ hiddenBy, hiders }: Projection, vertex: number): number[] {
   const segments = new Set<number>();
-  let at = hiddenBy[vertex] ?? 0;
-  if (at === 0) return [];
-  for (let rays = hiders[++at]!; rays > 0; --rays) {
-    const end = at + 2 + hiders[at + 1]!;
-    for (const segment of hiders.subarray(at + 2, end)) segments.add(segment);
-    at = end - 1;
+  for (let record = hiddenBy[vertex] ?? 0; record !== 0; record = hiders[record]!) {
+    let at = record + 3;
+    for (let rays = hiders[record + 2]!; rays > 0; --rays) {
+      const end = at + 1 + hiders[at]!;
+      for (const segment of hiders.subarray(at + 1, end)) segments.add(segment);
+      at = end;
+    }
   }
   return [...segments];
 }

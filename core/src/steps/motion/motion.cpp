@@ -207,8 +207,8 @@ void findInPose(const Scene& scene, const Found& known, std::span<const float> p
     if (record == 0) continue;
     const bool isFree = records.isFree(record);
     data.isBareInPose[p] = data.isBareInPose[p] || (isFree && (reasons[p] & kAtLoop) != 0);
-    if ((reasons[p] & kHidden) == 0 || (data.hiddenBy[p] != 0 && !isFree)) continue;
-    data.hiddenBy[p] = record;
+    if ((reasons[p] & kHidden) == 0) continue;
+    data.hiddenBy[p] = records.either(data.hiddenBy[p], record);
     if (data.cageDistances[p] < std::numeric_limits<double>::infinity()) data.recovery[p] = Recovery::always;
   }
 }
