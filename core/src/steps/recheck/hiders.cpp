@@ -59,7 +59,10 @@ std::uint32_t HiderRecords::either(std::uint32_t earlier, std::uint32_t record) 
   const std::size_t start = words_.size();
   words_.add(earlier);
   const std::size_t end = endOf(record);
-  for (std::size_t i = record + std::size_t{1}; i < end; ++i) words_.add(words_[i]);
+  for (std::size_t i = record + std::size_t{1}; i < end; ++i) {
+    const std::uint32_t word = words_[i];  // A copy, as the list may grow.
+    words_.add(word);
+  }
   return words_.failed() ? 0 : shared(start);
 }
 
