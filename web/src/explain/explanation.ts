@@ -208,7 +208,9 @@ function recoveryStep(facts: Facts, vertex: number): Explanation['steps'] {
     ? 'It would be recovered, but its part is culled.'
     : isHidden && projection.hiddenBy[vertex]
       ? isCosmetic
-        ? 'What hides it stays bare itself and hides nothing, so it is recovered.'
+        ? hidersOf(projection, vertex).length === 0
+          ? 'It comes into view when the face moves, so it is recovered.'
+          : 'What hides it stays bare itself and hides nothing, so it is recovered.'
         : painted.length > 0
           ? `It is hidden by ${nameOf(facts, painted[0]!)}, which is painted.`
           : 'What hides it stays bare itself, but it lies under a hole of the cage that no unpainted part explains.'
@@ -257,7 +259,9 @@ function brief(
       if (locks[part.segment] === 'always') return `you chose to paint ${part.name} anyway`;
       if (shown.projection.visibility[vertex] === Visibility.Occluded)
         return shown.projection.hiddenBy[vertex]
-          ? 'only what stays bare itself lies over it'
+          ? hidersOf(shown.projection, vertex).length === 0
+            ? 'it comes into view when the face moves'
+            : 'only what stays bare itself lies over it'
           : 'it seemed hidden, but rays in other directions reach the cage';
       if (shown.projection.visibility[vertex] === Visibility.Uncovered)
         return 'it seemed uncovered, but the rule for holes recovers it';
