@@ -79,8 +79,7 @@ struct Mesh {
 
   bool copy(const val& mesh) {
     return copyArray(mesh["positions"], positions) && copyArray(mesh["indices"], indices) &&
-           copyArray(mesh["uvs"], uvs) && copyArray(mesh["groups"], groups) &&
-           copyArray(mesh["poses"], poses);
+           copyArray(mesh["uvs"], uvs) && copyArray(mesh["groups"], groups) && copyArray(mesh["poses"], poses);
   }
   [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups, poses}; }
 };

@@ -81,9 +81,9 @@ struct Stage {
   double Timings::*time;
 };
 constexpr Stage kStages[] = {
-    {"weld", &Timings::weld},         {"build", &Timings::build},     {"project", &Timings::project},
-    {"occluded", &Timings::occluded}, {"covered", &Timings::covered}, {"segments", &Timings::segments},
-    {"recheck", &Timings::recheck},   {"motion", &Timings::motion},   {"holes", &Timings::holes},
+    {"weld", &Timings::weld},         {"build", &Timings::build},       {"project", &Timings::project},
+    {"occluded", &Timings::occluded}, {"covered", &Timings::covered},   {"segments", &Timings::segments},
+    {"recheck", &Timings::recheck},   {"motion", &Timings::motion},     {"holes", &Timings::holes},
     {"seams", &Timings::seams},       {"classify", &Timings::classify}, {"total", &Timings::total}};
 
 /// The times of each step in milliseconds, run by run.

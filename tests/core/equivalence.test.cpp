@@ -83,8 +83,8 @@ void addPoses(Scene& scene, scenes::Random& random) {
   const float size = std::sqrt(scenes::distance(target.vertex(0), target.vertex(target.vertexCount() / 2)));
   for (std::uint32_t left = 1 + random.below(3); left > 0; --left) {
     const std::uint32_t kind = random.below(5), axis = random.below(3);
-    const float share = random.between(0.05f, 0.6f), middle = target.vertex(random.below(
-        static_cast<std::uint32_t>(target.vertexCount())))[axis];
+    const float share = random.between(0.05f, 0.6f),
+                middle = target.vertex(random.below(static_cast<std::uint32_t>(target.vertexCount())))[axis];
     const Point by{random.between(-share, share), random.between(-share, share), random.between(-share, share)};
     for (std::size_t v = 0; v < target.vertexCount(); ++v) {
       Point p = target.vertex(v);

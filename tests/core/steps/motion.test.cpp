@@ -34,9 +34,8 @@ Mesh face(const Profile& profile) {
 /// A level cage before the face, with a hole.
 /// @param hole  Half its width and half its height.
 Mesh cageWithHole(std::array<float, 2> hole) {
-  return scenes::without(scenes::sheet({-1.2f, -1.2f, 0.15f}, {2.4f, 0, 0}, {0, 2.4f, 0}, 48), [=](Point p) {
-    return std::abs(p[0]) < hole[0] && std::abs(p[1]) < hole[1];
-  });
+  return scenes::without(scenes::sheet({-1.2f, -1.2f, 0.15f}, {2.4f, 0, 0}, {0, 2.4f, 0}, 48),
+                         [=](Point p) { return std::abs(p[0]) < hole[0] && std::abs(p[1]) < hole[1]; });
 }
 
 template <typename Map>
@@ -68,8 +67,19 @@ constexpr float kDeep = -0.3f;  // Of a mouth.
 /// Lips that touch, whose inner sides lead into a mouth with teeth; a pose opens it.
 struct Mouth {
   Mesh cage;
-  Mesh target = face({{1, 0}, {0.5f, 0}, {0.1f, 0}, {0.001f, 0}, {0.001f, -0.02f}, {0.001f, -0.04f}, {0.001f, kDeep},
-                      {-0.001f, kDeep}, {-0.001f, -0.04f}, {-0.001f, -0.02f}, {-0.001f, 0}, {-0.1f, 0}, {-0.5f, 0},
+  Mesh target = face({{1, 0},
+                      {0.5f, 0},
+                      {0.1f, 0},
+                      {0.001f, 0},
+                      {0.001f, -0.02f},
+                      {0.001f, -0.04f},
+                      {0.001f, kDeep},
+                      {-0.001f, kDeep},
+                      {-0.001f, -0.04f},
+                      {-0.001f, -0.02f},
+                      {-0.001f, 0},
+                      {-0.1f, 0},
+                      {-0.5f, 0},
                       {-1, 0}});
   std::size_t skin = target.vertexCount();
 

@@ -85,7 +85,13 @@ export function extract(file: GltfFile, origin: Origin = kSceneOrigin, whichCoun
     const mesh = joinPieces(parts);
     const uvs = readUvs(file, parts, mesh.positions.length / 3);
     const poses = whichCount === 'cage' ? undefined : posesOf(morphedParts(file, parts, mesh.positions));
-    return { mesh: { ...mesh, ...(uvs && { uvs }), ...(poses && { poses }) }, parts, leftOut, accessories, origin: near };
+    return {
+      mesh: { ...mesh, ...(uvs && { uvs }), ...(poses && { poses }) },
+      parts,
+      leftOut,
+      accessories,
+      origin: near,
+    };
   });
 }
 

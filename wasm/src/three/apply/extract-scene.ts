@@ -1,6 +1,5 @@
 import {
   BackSide,
-  type BufferAttribute,
   type BufferGeometry,
   FrontSide,
   type InstancedBufferAttribute,
@@ -23,6 +22,7 @@ import { type MorphedPart, posesOf } from '../../parts/poses.js';
 import { placeMeshes, type Skin } from '../../parts/skin.js';
 import { transformUvs } from '../../parts/uv-transform.js';
 import { wrong } from '../errors.js';
+import { type Attribute, targetDeltas, valuesOf } from './attributes.js';
 
 /** One mesh of a scene, or a single geometry, and the ranges of its elements in the joined arrays. */
 export interface Part {
@@ -115,8 +115,6 @@ function endOf(parts: readonly Part[]): [vertices: number, triangles: number] {
   const last = parts.at(-1);
   return last ? [last.firstVertex + last.vertexCount, last.firstTriangle + last.triangleCount] : [0, 0];
 }
-
-type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
 function listParts(
   object: Object3D | BufferGeometry,
@@ -289,17 +287,6 @@ function skinOf(mesh: SkinnedMesh): Skin<Object3D> {
   };
 }
 
-/** The numbers of an attribute, decoded, to be read only: its own array if that has nothing else. */
-export function valuesOf(attribute: Attribute): Float32Array {
-  const { count, itemSize, array } = attribute;
-  if (array instanceof Float32Array && !('isInterleavedBufferAttribute' in attribute)) return array;
-  const values = new Float32Array(count * itemSize);
-  // Half floats are decoded by these, not by `getComponent`.
-  const get = (['getX', 'getY', 'getZ', 'getW'] as const).slice(0, itemSize);
-  for (let k = 0; k < get.length; ++k) for (let i = 0; i < count; ++i) values[i * itemSize + k] = attribute[get[k]!](i);
-  return values;
-}
-
 /**
  * Whether something is an overlay, by the mark in its `userData`. GLTFLoader sets the same mark on geometries and materials of
  * overlays from a file, from their `extras` (gltf/overlay.ts). Lists of materials may have gaps.
@@ -347,15 +334,6 @@ export function placePositions(
   );
   if (matrix.equals(identity)) out.set(values, 3 * firstVertex);
   else movePoints(matrix.elements, values, out, 3 * firstVertex);
-}
-
-/** How a morph target moves the positions of a geometry; `undefined` if there is none. */
-export function targetDeltas(geometry: BufferGeometry, target: number): Float32Array | undefined {
-  const shape = geometry.morphAttributes.position?.[target];
-  if (!shape) return undefined;
-  const values = valuesOf(shape as Attribute);
-  if (geometry.morphTargetsRelative) return values;
-  return valuesOf(geometry.getAttribute('position') as Attribute).map((x, i) => values[i]! - x);
 }
 
 /**
