@@ -39,12 +39,15 @@ val endingOf(const Status& status, const Given&... given) {
 struct ModelArrays {
   Mesh mesh;
   cagecast::Array<std::uint8_t> marks;
+  cagecast::Array<std::uint16_t> vertexJoints;
   Model model;
 
   bool copy(const val& source) {
-    if (!mesh.copy(source["mesh"]) || !copyArray(source["marks"], marks)) return false;
-    model = {mesh.view(), listOf<std::string>(source["parts"]), listOf<Joint>(source["joints"]), marks,
-             listOf<Landmark>(source["hints"])};
+    if (!mesh.copy(source["mesh"]) || !copyArray(source["marks"], marks) ||
+        !copyArray(source["vertexJoints"], vertexJoints))
+      return false;
+    model = {mesh.view(), listOf<std::string>(source["parts"]), listOf<Joint>(source["joints"]),
+             marks,       listOf<Landmark>(source["hints"]),    vertexJoints};
     return true;
   }
 };
@@ -79,10 +82,11 @@ val fitCageCall(const val& from, const val& target, const val& landmarks, FitOpt
   options.landmarks = listOf<Landmark>(landmarks);
   FittedCage cage;
   const Status status = fitCage(source, arrays.model, options, progressTo(report), cage);
-  val out = endingOf(status, source, arrays.model, options, cage.missing);
+  val out = endingOf(status, source, arrays.model, options);
   if (!status.ok()) return out;
   setCage(out, cage);
   out.set("missing", listed(cage.missing));
+  out.set("guessed", listed(cage.guessed));
   return out;
 }
 

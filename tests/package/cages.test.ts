@@ -287,7 +287,8 @@ describe('fitCage', () => {
       assert.ok(Math.hypot(middle[0]! - left!, middle[1]! - up!) < 0.15 * share, `${name}: ${middle}`);
     }
     const avatar = gltf.cageModel(await new NodeIO().read(file));
-    assert.throws(() => sync.fitCage(template, { ...avatar, hints: {} }), { code: 'badLandmarks' });
+    assert.equal(sync.fitCage(template, { ...avatar, hints: {} }).guessed[0], 'eye_centre_left');
+    assert.deepEqual(sync.fitCage(template, avatar).guessed, []);
     const corner = [0.25, -0.5, 0.68] as const;
     near(
       sync.fitCage(template, avatar, { mouth_corner_left: corner }).used['mouth_corner_left']!,
@@ -402,16 +403,22 @@ function figure(extensions: object = {}): Uint8Array {
   const body = ball([0, 120, 0], () => 30, 6, 12);
   const vertices = body.positions.length / 3;
   const mesh = maker.mesh(body);
-  const weights = Float32Array.from({ length: 4 * vertices }, (_, i) => Number(i % 4 === 0));
+  const hat = maker.mesh(body);
+  // Every third vertex is held by the second joint most.
+  const weights = Float32Array.from({ length: 4 * vertices }, (_, i) => [0.4, Number(i % 12 === 1), 0, 0][i % 4]!);
   Object.assign(maker.json.meshes[mesh]!.primitives[0]!.attributes, {
-    JOINTS_0: maker.accessor(new Uint8Array(4 * vertices), 'VEC4'),
+    JOINTS_0: maker.accessor(
+      Uint8Array.from({ length: 4 * vertices }, (_, i) => Number(i % 4 === 1)),
+      'VEC4',
+    ),
     WEIGHTS_0: maker.accessor(weights, 'VEC4'),
   });
   const inverses = Float32Array.from([...moving(0, -100, 0), ...moving(0, -150, -10)]);
   const holder = maker.node({ name: 'body', mesh, skin: 0 }, false); // 0
-  const neck = maker.node({ name: 'J_Head', translation: [0, 30, 10] }, false); // 1
+  const neck = maker.node({ name: 'J_Head', translation: [0, 30, 10], children: [4] }, false); // 1
   const spine = maker.node({ name: 'spine', translation: [0, 20, 0], children: [neck] }, false); // 2
   const hips = maker.node({ name: 'J_Hips', translation: [0, 100, 0], children: [spine] }, false); // 3
+  maker.node({ name: 'hat', mesh: hat, translation: [0, -150, -10] }, false); // 4
   maker.node({ name: 'Armature', scale: [0.01, 0.01, 0.01], children: [holder, hips] });
   maker.json.skins = [{ joints: [hips, neck], inverseBindMatrices: maker.accessor(inverses, 'MAT4') }];
   Object.assign(maker.json, { extensions, extensionsUsed: Object.keys(extensions) });
@@ -425,7 +432,7 @@ describe('cageModel', () => {
     (loaded.scene.getObjectByName('J_Head') as Bone).position.x += 50;
     models.push(three.cageModel(loaded));
     assert.deepEqual(models[2]!.positions, models[1]!.positions);
-    for (const { positions, joints } of models) {
+    for (const { positions, joints, vertexJoints } of models) {
       const heights = positions.filter((_, i) => i % 3 === 1);
       near([Math.min(...heights), Math.max(...heights)], [0.9, 1.5], 'heights');
       const names = joints!.map(({ name, parent }) => [name, parent]);
@@ -435,6 +442,9 @@ describe('cageModel', () => {
       ]);
       near(joints![0]!.position, [0, 1, 0], 'hips');
       near(joints![1]!.position, [0, 1.5, 0.1], 'head');
+      const count = positions.length / 6;
+      const held = Array.from({ length: 2 * count }, (_, v) => Number(v >= count || v % 3 === 0));
+      assert.deepEqual([...vertexJoints!], held);
     }
   });
 

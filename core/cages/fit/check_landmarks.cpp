@@ -1,5 +1,6 @@
 #include "fit/steps.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mesh/limits.hpp"
@@ -169,7 +170,8 @@ Status checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box) {
 Status checkAgreement(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
                       const std::vector<bool>& given, double diagonal) {
   const SkinPairs pairs = skinPairs(from, to);
-  if (pairs.places.size() < 3) return {};
+  const bool isAnyGiven = std::find(given.begin(), given.end(), true) != given.end();
+  if (pairs.places.size() < 3 || !isAnyGiven) return {};
   const double asGiven = residual(pairs.from, pairs.to);
   for (const std::size_t i : {swappedSides(pairs, to, asGiven, diagonal), exchangedPair(from, to, given, diagonal)})
     if (i != kNone) return fault(Code::wrongSide, Argument::landmarks, i);

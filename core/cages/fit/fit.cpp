@@ -40,27 +40,27 @@ struct Pairs {
   std::vector<std::uint32_t> places;  ///< In the template's list.
 };
 
-Status pairLandmarks(const Template& from, const std::vector<Landmark>& given, const std::vector<Landmark>& found,
-                     Pairs& out, FittedCage& cage) {
-  for (std::uint32_t i = 0; i < given.size(); ++i)
-    if (findLandmark(from.landmarks, given[i].name) == nullptr) return {Code::unknownLandmark, Argument::landmarks, i};
+/// Pairs landmarks of a template with given ones, else with found ones.
+/// @param[out] unknown  Those of the template that are neither.
+Pairs pairLandmarks(const Template& from, const std::vector<Landmark>& given, const std::vector<Landmark>& found,
+                    std::vector<std::string>& unknown) {
+  Pairs out;
+  unknown.clear();
   for (std::uint32_t i = 0; i < from.landmarks.size(); ++i) {
     const Landmark& landmark = from.landmarks[i];
     const Landmark* there = findLandmark(given, landmark.name);
     const bool isGiven = there != nullptr;
     if (!isGiven) there = findLandmark(found, landmark.name);
     if (there == nullptr) {
-      cage.missing.push_back(landmark.name);
+      unknown.push_back(landmark.name);
       continue;
     }
     out.from.push_back(landmark);
     out.to.push_back(*there);
     out.given.push_back(isGiven);
     out.places.push_back(i);
-    cage.landmarks.push_back(*there);
   }
-  const auto count = static_cast<std::uint32_t>(out.from.size());
-  return count < kMinLandmarks ? Status{Code::tooFewLandmarks, Argument::landmarks, count} : Status{};
+  return out;
 }
 
 /// Whether the triangles of a cage are within a distance of the box around a hull and landmarks.
@@ -78,6 +78,17 @@ std::vector<bool> keptTriangles(const Model& model, const std::vector<std::strin
   std::vector<bool> keep = trianglesOf(model.mesh, matchingParts(model.parts, exclude));
   keep.flip();
   return keep;
+}
+
+/// The same names, those first that say most of where a template belongs.
+std::vector<std::string> mostHelpfulFirst(std::vector<std::string> names) {
+  static constexpr const char* kFirst[] = {"eye_centre_left", "eye_centre_right", "lip_lower",   "chin",
+                                           "bumper_front",    "bumper_rear",      "roof",        "wheel_front_centre",
+                                           "joint_neck",      "joint_hips",       "joint_wrist", "nose_tip"};
+  auto next = names.begin();
+  for (const char* name : kFirst)
+    next = std::stable_partition(next, names.end(), [&](const std::string& one) { return one.starts_with(name); });
+  return names;
 }
 
 class Fit {
@@ -138,9 +149,20 @@ class Fit {
     return positions;
   }
 
-  /// Pairs the landmarks of the template with those that were given or are found.
+  /// Whether known landmarks leave open where the cage belongs, or where the lower half of a head's face is.
+  [[nodiscard]] bool isTooLittle(const std::vector<Landmark>& known) const {
+    static constexpr const char* kLowerFace[] = {"chin", "lip_upper", "lip_lower", "mouth_corner_left"};
+    const auto isKnown = [&](const char* name) { return placeOf(known, name).has_value(); };
+    return known.size() < kMinLandmarks || (isHead(from_) && isKnown("eye_centre_left") &&
+                                            std::none_of(std::begin(kLowerFace), std::end(kLowerFace), isKnown));
+  }
+
+  /// Pairs the landmarks of the template with those that were given, are found, or, where these are too few, guessed.
   [[nodiscard]] Status pair(const TemplateCage& cage, FittedCage& out) {
     const std::vector<Landmark>& given = options_.landmarks;
+    for (std::uint32_t i = 0; i < given.size(); ++i)
+      if (findLandmark(from_.landmarks, given[i].name) == nullptr)
+        return {Code::unknownLandmark, Argument::landmarks, i};
     FoundLandmarks found;
     const bool allGiven = std::all_of(from_.landmarks.begin(), from_.landmarks.end(), [&](const Landmark& landmark) {
       return findLandmark(given, landmark.name) != nullptr;
@@ -149,7 +171,14 @@ class Fit {
       const Progress finding = partOf(progress_, 0, kLandmarksEnd);
       if (const Status status = findLandmarks(model_, finding, found); !status.ok()) return status;
     }
-    if (const Status status = pairLandmarks(from_, given, found.landmarks, pairs_, out); !status.ok()) return status;
+    pairs_ = pairLandmarks(from_, given, found.landmarks, out.missing);
+    if (isTooLittle(pairs_.to)) {
+      out.guessed = mostHelpfulFirst(out.missing);
+      for (Landmark& guess : guessLandmarks(from_, cage, model_, pairs_.to))
+        found.landmarks.push_back(std::move(guess));
+      pairs_ = pairLandmarks(from_, given, found.landmarks, out.missing);
+    }
+    out.landmarks = pairs_.to;
     Status status = checkJoints(pairs_.to, boundsOf(model_.mesh));
     if (status.ok()) status = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);
     if (!status.ok() && status.code != Code::smallSkeleton) status.at = pairs_.places[status.at];

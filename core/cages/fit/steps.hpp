@@ -42,6 +42,13 @@ Axes axesOf(const std::vector<Landmark>& landmarks);
 /// The boundary loop that is a rim: the longest one, if it is longer than `kMinRim` diagonals; -1 if there is none.
 int rimOf(const TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& loops, double diagonal);
 
+/// Whether a template is for heads, by its landmarks: it has a face and no legs.
+bool isHead(const Template& from);
+
+/// Where a template's landmarks are on a model if nothing but its size and symmetry, and a few landmarks, are known.
+std::vector<Landmark> guessLandmarks(const Template& from, const TemplateCage& cage, const Model& model,
+                                     const std::vector<Landmark>& known);
+
 /// Checks a list of landmarks by itself: not too many, finite, named, near its model, no name twice, no two on one
 /// spot.
 /// @param argument  What to blame.

@@ -68,6 +68,7 @@ void orient(const Figure& figure, Eyes& eyes) {
   const double distance = length(apart);
   eyes.left = 1 / distance * apart;
   eyes.front = frontOf(figure.mesh, eyes.left, eyes.middle(), distance);
+  if (figure.front && dot(eyes.front, *figure.front) < 0) eyes.front = -1 * eyes.front;
   // Right-handed: left x up = front.
   if (dot(cross(eyes.left, kUp), eyes.front) < 0) {
     std::swap(eyes.centres[0], eyes.centres[1]);
@@ -213,6 +214,31 @@ std::optional<Eyes> findHintedEyes(const Figure& figure, const std::vector<Landm
   orient(figure, eyes);
   // Lids are in front of the eyeballs.
   for (Vec3& centre : eyes.centres) centre = centre - eyes.radius * eyes.front;
+  return eyes;
+}
+
+std::optional<Eyes> findJointedEyes(const Figure& figure, const std::vector<Landmark>& joints) {
+  constexpr double kRadius = 0.2;    ///< Of an eyeball, as a share of the distance of the eyes.
+  constexpr double kNearest = 0.02;  ///< Eyes are farther apart than this share of the diagonal of a head.
+  const auto left = placeOf(joints, "joint_eye_left"), right = placeOf(joints, "joint_eye_right");
+  if (!left || !right) return std::nullopt;
+  Eyes eyes;
+  eyes.centres = {*left, *right};
+  const Vec3 apart = *left - *right;
+  eyes.radius = kRadius * length(apart);
+  const double diagonal = diagonalOf(figure.mesh);
+  if (!(length(apart) > kNearest * diagonal) || length(apart) > diagonal || std::abs(apart.y) > 0.2 * length(apart))
+    return std::nullopt;
+  eyes.confidence = 0.8;
+  eyes.isNamed = true;
+  orient(figure, eyes);
+  // Joints may be anywhere behind the eyes that they turn.
+  const Surface surface(figure.mesh);
+  for (Vec3& centre : eyes.centres) {
+    const SurfaceRay ray{centre + diagonal * eyes.front, -1 * eyes.front};
+    const double skin = diagonal - surface.trace({&ray, 1})[0].distance;
+    if (std::isfinite(skin)) centre = centre + (skin - eyes.radius) * eyes.front;
+  }
   return eyes;
 }
 

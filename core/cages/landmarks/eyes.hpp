@@ -36,6 +36,9 @@ std::optional<Eyes> findNamedEyes(const Figure& figure);
 /// The eyes by a model's hints: where lids close.
 std::optional<Eyes> findHintedEyes(const Figure& figure, const std::vector<Landmark>& hints);
 
+/// The eyes where a rig has joints for them.
+std::optional<Eyes> findJointedEyes(const Figure& figure, const std::vector<Landmark>& joints);
+
 /// The eyes as two connected components that mirror each other, are round, and are seen from the front only.
 /// @param plane  Of the figure, or of its head.
 std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane);

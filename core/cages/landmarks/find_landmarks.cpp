@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include "landmarks/head.hpp"
 #include "landmarks/landmark_list.hpp"
 #include "landmarks/rig.hpp"
+#include "mesh/bounds.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/progress.hpp"
 
@@ -27,11 +29,22 @@ bool areAt(const Eyes& eyes, const Eyes& others) {
   return std::max(off(0), off(1)) < kSameEye * apart;
 }
 
-/// Finds a figure's head: around the first eyes, named, loose or fused with the skin, that are as far apart as eyes
-/// are, and where hints say, if there are any.
+/// The planes that may mirror a head: where bones tell left from right, one.
+std::vector<MirrorPlane> planesOf(const Figure& figure, const Rig& rig) {
+  const std::optional<Vec3> left = leftOf(rig.joints);
+  if (!left) return findMirrorPlanes(figure.mesh);
+  const auto [low, high] = rangeOf(figure.mesh.positions, *left);
+  MirrorPlane plane = refineMirrorPlane(figure.mesh, {*left, std::midpoint(low, high)});
+  if (dot(plane.left, *left) < 0) plane = {-1 * plane.left, -plane.offset, plane.residual};
+  return {plane};
+}
+
+/// Finds a figure's head: around the first eyes, named, jointed, loose or fused with the skin, that are as far apart as
+/// eyes are, and where hints say, if there are any.
 /// @param goOn  Told shares from 0 to 1 on the way.
 /// @return false if `goOn` cancelled it.
-bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const auto& goOn, std::optional<Head>& head) {
+bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const Rig& rig, const auto& goOn,
+              std::optional<Head>& head) {
   std::optional<Eyes> hinted = findHintedEyes(figure, hints);
   const auto makeHeadOf = [&](std::optional<Eyes> eyes) {
     if (!eyes || (hinted && !areAt(*eyes, *hinted))) return false;
@@ -42,13 +55,15 @@ bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const au
   };
   if (makeHeadOf(findNamedEyes(figure))) return true;
   if (!goOn(0.1f)) return false;
-  if (hinted) {
+  for (const bool byMorphs : {true, false}) {
+    if (!byMorphs) hinted = findJointedEyes(figure, rig.joints);
+    if (!hinted) continue;
     const MirrorPlane plane{hinted->left, dot(hinted->left, hinted->middle())};
     if (makeHeadOf(findLooseEyes(figure, plane)) || makeHeadOf(hinted)) return true;
     hinted.reset();  // No head is there.
     if (makeHeadOf(findNamedEyes(figure))) return true;
   }
-  const std::vector<MirrorPlane> planes = findMirrorPlanes(figure.mesh);
+  const std::vector<MirrorPlane> planes = planesOf(figure, rig);
   float share = 0.2f;
   const float step = 0.8f / static_cast<float>(2 * planes.size());
   for (const auto find : {findLooseEyes, findFusedEyes})
@@ -72,12 +87,15 @@ Status find(const Model& model, const Progress& progress, FoundLandmarks& out) {
   if (const Status status = checkModel(model); !status.ok()) return status;
   const auto goOn = [&](float share) { return report(progress, share, "landmarks"); };
   if (!goOn(0)) return kAborted;
-  const Figure figure = readFigure(model);
-  Rig rig = recogniseRig(model.joints);
+  Figure figure = readFigure(model);
+  const Rig rig = recogniseRig(model.joints);
+  if (const auto left = leftOf(rig.joints)) figure.front = cross(*left, {0, 1, 0});
   out.rig = rig.name;
   std::optional<Head> head;
+  const Figure ofBones = headOf(figure, model, rig.isHead);
   if (!findHead(
-          figure, model.hints, [&](float share) { return goOn(0.9f * share); }, head) ||
+          ofBones.mesh.empty() ? figure : ofBones, model.hints, rig, [&](float share) { return goOn(0.9f * share); },
+          head) ||
       !goOn(0.9f))
     return kAborted;
   if (head)

@@ -110,6 +110,7 @@ std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane
   double most = kMinNose;
   for (const double side : {plane.left.x < 0 ? -1.0 : 1.0, plane.left.x < 0 ? 1.0 : -1.0}) {
     const HeadFrame frame = guessFrame(skin, plane, side);
+    if (figure.front && dot(frame.front, *figure.front) < 0) continue;
     if (!(frame.unit > kMinHead * diagonal)) continue;
     const TriangleMesh local = frame.toLocal(within(skin, frame.origin, 0.6 * frame.unit));
     if (local.empty()) continue;

@@ -23,4 +23,15 @@ std::string mirrorName(std::string_view name) {
   return name.ends_with(kRight) ? with(kRight, kLeft) : std::string();
 }
 
+std::optional<Vec3> leftOf(const std::vector<Landmark>& landmarks) {
+  Vec3 sum{0, 0, 0};
+  for (const Landmark& landmark : landmarks) {
+    const auto other = placeOf(landmarks, mirrorName(landmark.name));
+    if (landmark.name.ends_with("_left") && other) sum = sum + positionOf(landmark) - *other;
+  }
+  sum.y = 0;
+  const double size = length(sum);
+  return size > 0 ? std::optional(1 / size * sum) : std::nullopt;
+}
+
 }  // namespace cagecast::cages

@@ -34,4 +34,7 @@ inline bool isJoint(std::string_view name) { return name.starts_with("joint_"); 
 /// The name of the landmark on the other side: "ear_top_right" for "ear_top_left"; empty if it has no side.
 std::string mirrorName(std::string_view name);
 
+/// The horizontal direction to a figure's left, of unit length, by landmarks that come in pairs.
+std::optional<Vec3> leftOf(const std::vector<Landmark>& landmarks);
+
 }  // namespace cagecast::cages

@@ -52,6 +52,30 @@ Figure readFigure(const Model& model) {
   // A file whose only part is called "Eyeball" is a model of an eyeball.
   if (!out.has(Role::surface)) std::fill(out.roles.begin(), out.roles.end(), Role::surface);
   out.components = connectedPieces(out.mesh, out.componentCount);
+  out.triangleOf = std::move(triangleOf);
+  return out;
+}
+
+Figure headOf(const Figure& figure, const Model& model, const std::vector<bool>& isHead) {
+  Figure out;
+  if (model.vertexJoints.empty()) return out;
+  const auto isHeld = [&](std::size_t corner) {
+    const std::uint16_t joint = model.vertexJoints[model.mesh.indices[corner]];
+    return joint != kNoJoint && isHead[joint];
+  };
+  std::vector<bool> keep(figure.roles.size());
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    const std::size_t first = 3 * std::size_t{figure.triangleOf[t]};
+    const bool isOfHead = figure.roles[t] == Role::eye || figure.roles[t] == Role::mouth;
+    keep[t] = isOfHead || (isHeld(first) && isHeld(first + 1) && isHeld(first + 2));
+    if (!keep[t]) continue;
+    out.roles.push_back(figure.roles[t]);
+    out.triangleOf.push_back(figure.triangleOf[t]);
+  }
+  if (!out.has(Role::surface)) return {};
+  out.mesh = subset(figure.mesh, keep);
+  out.components = connectedPieces(out.mesh, out.componentCount);
+  out.front = figure.front;
   return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct Figure {
   std::vector<Role> roles;                ///< Per triangle.
   std::vector<std::uint32_t> components;  ///< Per triangle.
   std::uint32_t componentCount = 0;
+  std::vector<std::uint32_t> triangleOf = {};  ///< Of the model, per triangle.
+  std::optional<Vec3> front = {};              ///< If bones tell.
 
   [[nodiscard]] bool has(Role role) const;
   /// The triangles with one of some roles.
@@ -34,5 +37,9 @@ struct Figure {
 };
 
 Figure readFigure(const Model& model);
+
+/// What the joints of a figure's head hold, with its eyes and mouth. Empty if nothing says what that is.
+/// @param isHead  Per joint of the model.
+Figure headOf(const Figure& figure, const Model& model, const std::vector<bool>& isHead);
 
 }  // namespace cagecast::cages

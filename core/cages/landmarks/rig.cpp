@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
+#include <set>
 #include <string_view>
 
 namespace cagecast::cages {
@@ -14,16 +16,20 @@ enum Naming : std::size_t { kVrm, kMixamo, kRoblox, kVroid, kRigify, kNamings };
 struct RigBone {
   std::string_view landmark;
   std::array<std::string_view, kNamings> names;
+  std::string_view words;  ///< Of other rigs, with "|" between them.
 };
 
 constexpr RigBone kBones[] = {
-#define BONE(landmark, vrm, mixamo, roblox, vroid, rigify) {landmark, {vrm, mixamo, roblox, vroid, rigify}},
+#define BONE(landmark, vrm, mixamo, roblox, vroid, rigify, words) \
+  {landmark, {vrm, mixamo, roblox, vroid, rigify}, words},
 #include "landmarks/bones.def"
 #undef BONE
 };
 
 /// Fewer named joints than this may be chance: many rigs have a "Head" and a "Neck".
 constexpr std::size_t kMinNamed = 6;
+/// Words say less than a naming that is known: they have to name so many more joints than it does.
+constexpr std::size_t kClearlyMore = 2;
 
 /// Case, spaces and separators of names vary with the exporter.
 std::string plain(std::string_view name) {
@@ -75,6 +81,118 @@ void forEachJoint(Visit visit) {
   }
 }
 
+/// A landmark, and its place in the list of joints.
+struct RigJoint {
+  std::string landmark;
+  std::size_t joint = 0;
+};
+
+/// A joint's name without its side, in lower case.
+struct SidedName {
+  std::string_view side;  ///< "left", "right", or empty.
+  std::string rest;
+};
+
+/// The words of a name: they end at separators and before capitals; numbers belong to the word before them.
+std::vector<std::string> wordsOf(std::string_view name) {
+  std::vector<std::string> out(1);
+  char last = 0;
+  for (const char c : name) {
+    const auto code = static_cast<unsigned char>(c);
+    const bool isLetter = code >= 0x80 || std::isalnum(code) != 0;
+    if (!isLetter || (std::isupper(code) != 0 && std::islower(static_cast<unsigned char>(last)) != 0))
+      out.emplace_back();
+    if (isLetter) out.back() += static_cast<char>(code < 0x80 ? std::tolower(code) : code);
+    last = c;
+  }
+  std::erase(out, "");
+  return out;
+}
+
+std::string_view sideOf(std::string_view word) {
+  if (word == "l" || word == "left" || word == "左") return "left";
+  return word == "r" || word == "right" || word == "右" ? "right" : "";
+}
+
+/// Splits names into their side and what is left of them, without words that nearly all names begin with, such as those
+/// of an armature.
+std::vector<SidedName> sidedNames(const std::vector<Joint>& joints) {
+  constexpr std::size_t kNearlyAll = 80;  ///< Per cent.
+  std::vector<std::vector<std::string>> all;
+  for (const Joint& joint : joints) all.push_back(wordsOf(joint.name));
+  std::map<std::string, std::size_t> counts;
+  for (const auto& words : all)
+    for (const std::string& word : std::set<std::string>(words.begin(), words.end())) ++counts[word];
+  std::vector<SidedName> out;
+  for (const auto& words : all) {
+    SidedName name;
+    for (const std::string& word : words) {
+      const bool isCommon = 100 * counts[word] >= kNearlyAll * all.size() && words.size() > 1;
+      const bool isPrefix = name.rest.empty() && (isCommon || word == "c");  // "c" is the centre.
+      std::string_view rest = word;
+      if (isPrefix) continue;
+      for (const std::string_view begin : {"left", "right", "左", "右"})
+        if (name.side.empty() && rest.starts_with(begin)) {
+          name.side = sideOf(begin);
+          rest.remove_prefix(begin.size());
+        }
+      if (name.side.empty() && !sideOf(rest).empty())
+        name.side = sideOf(rest);
+      else
+        name.rest += rest;
+    }
+    out.push_back(std::move(name));
+  }
+  return out;
+}
+
+/// The joint of a side that has one of some words for a name, of the first word that any has: with or without a number.
+std::size_t findByWords(const std::vector<SidedName>& names, std::string_view words, std::string_view side,
+                        const std::vector<bool>& isTaken) {
+  while (!words.empty()) {
+    const std::size_t end = words.find('|');
+    const std::string_view word = words.substr(0, end);
+    for (const bool numbered : {false, true})
+      for (std::size_t j = 0; j < names.size(); ++j) {
+        std::string_view rest = names[j].rest;
+        if (isTaken[j] || names[j].side != side || !rest.starts_with(word)) continue;
+        rest.remove_prefix(word.size());
+        const bool isNumber = std::all_of(rest.begin(), rest.end(), [](char c) { return c >= '0' && c <= '9'; });
+        if (rest.empty() || (numbered && isNumber)) return j;
+      }
+    words = end == std::string_view::npos ? "" : words.substr(end + 1);
+  }
+  return names.size();
+}
+
+/// The joints of a rig that has names of its own, by the words in them.
+std::vector<RigJoint> jointsByWords(const std::vector<SidedName>& names) {
+  std::vector<bool> isTaken(names.size());
+  std::vector<RigJoint> out;
+  forEachJoint([&](const std::string& landmark, const RigBone& bone, std::string_view side) {
+    const bool isPaired = bone.landmark.back() == '*';
+    const std::size_t j = findByWords(names, bone.words, isPaired ? side : "", isTaken);
+    if (j == names.size()) return;
+    isTaken[j] = true;
+    out.push_back({landmark, j});
+  });
+  return out;
+}
+
+/// Whether each joint is that of a head, or below it.
+std::vector<bool> belowHead(const std::vector<Joint>& joints, const std::vector<SidedName>& names) {
+  const std::size_t head = findByWords(names, "head|頭", "", std::vector<bool>(names.size()));
+  std::vector<bool> out(joints.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    auto at = static_cast<std::int64_t>(j);
+    for (std::size_t steps = 0; at >= 0 && steps <= joints.size() && !out[j]; ++steps) {
+      out[j] = static_cast<std::size_t>(at) == head;
+      at = joints[static_cast<std::size_t>(at)].parent;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<std::string> jointLandmarks() {
@@ -92,21 +210,32 @@ Rig recogniseRig(const std::vector<Joint>& joints) {
     names.push_back(bareName(joint.name, mixamo));
     anyMixamo = anyMixamo || mixamo;
   }
-  std::array<std::vector<Landmark>, kNamings> found;
+  std::array<std::vector<RigJoint>, kNamings> found;
   forEachJoint([&](const std::string& landmark, const RigBone& bone, std::string_view side) {
     for (std::size_t naming = 0; naming < kNamings; ++naming) {
       const std::string wanted = plain(replaced(replaced(bone.names[naming], '#', side), '%', side.substr(0, 1)));
       const auto at = std::find(names.begin(), names.end(), wanted);
-      if (wanted.empty() || at == names.end()) continue;
-      found[naming].push_back({landmark, joints[static_cast<std::size_t>(at - names.begin())].position, 1});
+      if (!wanted.empty() && at != names.end())
+        found[naming].push_back({landmark, static_cast<std::size_t>(at - names.begin())});
     }
   });
   const auto most =
       std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
-  if (most->size() < kMinNamed) return {"unknown"};
-  const auto naming = static_cast<std::size_t>(most - found.begin());
   const char* kNames[] = {"VRM", anyMixamo ? "Mixamo" : "Ready Player Me", "Roblox R15", "VRoid", "Rigify"};
-  return {kNames[naming], std::move(*most)};
+  Rig rig{kNames[most - found.begin()]};
+  std::vector<RigJoint> best = std::move(*most);
+  const std::vector<SidedName> sided = sidedNames(joints);
+  rig.isHead = belowHead(joints, sided);
+  if (std::vector<RigJoint> others = jointsByWords(sided); others.size() > best.size() + kClearlyMore) {
+    best = std::move(others);
+    rig.name = "other";
+  }
+  if (best.size() < kMinNamed) {
+    rig.name = "unknown";
+    return rig;
+  }
+  for (const RigJoint& one : best) rig.joints.push_back({one.landmark, joints[one.joint].position, 1});
+  return rig;
 }
 
 }  // namespace cagecast::cages

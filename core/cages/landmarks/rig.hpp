@@ -7,10 +7,11 @@
 
 namespace cagecast::cages {
 
-/// A skeleton whose naming is known.
+/// A skeleton, as far as its names are understood.
 struct Rig {
-  std::string name;                   ///< As in `FoundLandmarks::rig`; empty without joints.
+  std::string name = {};              ///< As in `FoundLandmarks::rig`; empty without joints.
   std::vector<Landmark> joints = {};  ///< `joint_hips` and so on: those that it has.
+  std::vector<bool> isHead = {};      ///< Per joint of the model: whether it is the head's, or below it.
 
   [[nodiscard]] bool known() const noexcept { return !joints.empty(); }
 };

@@ -75,6 +75,11 @@ Status checkModel(const Model& model) noexcept {
     if (parent < -1 || parent >= static_cast<std::int64_t>(model.joints.size()))
       return fault(Code::parentOutOfRange, j);
   }
+  if (!model.vertexJoints.empty() && model.vertexJoints.size() != model.mesh.positions.size() / 3)
+    return fault(Code::vertexJointCountMismatch, model.vertexJoints.size());
+  for (std::size_t v = 0; v < model.vertexJoints.size(); ++v)
+    if (model.vertexJoints[v] != kNoJoint && model.vertexJoints[v] >= model.joints.size())
+      return fault(Code::vertexJointOutOfRange, v);
   return {};
 }
 

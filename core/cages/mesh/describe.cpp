@@ -33,15 +33,6 @@ std::string listed(const std::vector<std::string>& names) {
   return names.size() > kMaxNames ? out + " and " + std::to_string(names.size() - kMaxNames) + " more" : out;
 }
 
-/// Which landmarks to give first.
-std::string firstOf(const std::vector<std::string>& missing) {
-  if (missing.empty()) return {};
-  std::vector<std::string> first;
-  for (const char* name : {"eye_centre_left", "eye_centre_right", "nose_tip", "lip_lower", "chin"})
-    if (std::find(missing.begin(), missing.end(), name) != missing.end()) first.emplace_back(name);
-  return "; please give some of " + listed(first.empty() ? missing : first);
-}
-
 /// The name of a landmark. Of what the call did not get, a sentence says nothing.
 std::string nameAt(const std::vector<Landmark>& landmarks, std::size_t at) {
   return at < landmarks.size() ? landmarks[at].name : "a landmark";
@@ -76,7 +67,6 @@ struct Call {
   const Model& model;
   const Template& from;  ///< Or a cage without landmarks.
   const std::vector<Landmark>& given;
-  const std::vector<std::string>& missing;
   float reach = 0;
 };
 
@@ -108,7 +98,6 @@ std::string valueOf(std::string_view name, const Status& status, const Call& cal
   if (name == "parts") return std::to_string(call.model.parts.size());
   if (name == "parent") return at < call.model.joints.size() ? std::to_string(call.model.joints[at].parent) : "?";
   if (name == "joints") return std::to_string(call.model.joints.size());
-  if (name == "give") return status.argument == Argument::landmarks ? firstOf(call.missing) : "";
   if (name == "names") {
     std::vector<std::string> names;
     for (const Landmark& landmark : call.from.landmarks) names.push_back(landmark.name);
@@ -133,15 +122,14 @@ std::string describe(const Status& status, const Call& call) {
 
 }  // namespace
 
-std::string describe(const Status& status, const Model& model) { return describe(status, Call{model, {}, {}, {}}); }
+std::string describe(const Status& status, const Model& model) { return describe(status, Call{model, {}, {}}); }
 
-std::string describe(const Status& status, const Template& from, const Model& model, const FitOptions& options,
-                     const std::vector<std::string>& missing) {
-  return describe(status, Call{model, from, options.landmarks, missing});
+std::string describe(const Status& status, const Template& from, const Model& model, const FitOptions& options) {
+  return describe(status, Call{model, from, options.landmarks});
 }
 
 std::string describe(const Status& status, const MeshView& cage, const Model& model, const RefineOptions& options) {
-  return describe(status, Call{model, {cage, {}}, {}, {}, options.reach});
+  return describe(status, Call{model, {cage, {}}, {}, options.reach});
 }
 
 }  // namespace cagecast::cages

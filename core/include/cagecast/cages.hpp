@@ -46,7 +46,12 @@ struct Model {
   /// both sides (which is left, its shape says), and `mouth`, the middle between the lips. Given landmarks count more,
   /// found ones less. May be empty.
   std::vector<Landmark> hints = {};
+  /// The joint that holds each vertex most, as its place in `joints`; `kNoJoint` for none. What a head's joints hold is
+  /// where a face is looked for. May be empty.
+  std::span<const std::uint16_t> vertexJoints = {};
 };
+
+inline constexpr std::uint16_t kNoJoint = 0xffff;
 
 /// What a model is, which decides resolution, tightness and seams.
 enum class Kind : std::uint8_t { automatic, head, body, prop };
@@ -98,7 +103,8 @@ using Progress = std::function<bool(float share, const char* stage)>;
 struct FoundLandmarks {
   std::vector<Landmark> landmarks;
   std::vector<std::string> missing;  ///< Names that were looked for in vain, or that are too uncertain: ask for these.
-  std::string rig;         ///< "VRM", "Mixamo", "Ready Player Me", "Roblox R15", "VRoid", "Rigify"; "unknown" or empty.
+  std::string
+      rig;  ///< "VRM", "Mixamo", "Ready Player Me", "Roblox R15", "VRoid", "Rigify", "other"; "unknown" or empty.
   Kind kind = Kind::prop;  ///< What the model seems to be.
 };
 
@@ -117,8 +123,10 @@ struct Template {
 
 /// A fitted cage; its landmarks are those that the fit used.
 struct FittedCage : Cage {
-  /// Landmarks of the template that are not known on the model: ask for these. Valid with `tooFewLandmarks`, too.
-  std::vector<std::string> missing;
+  std::vector<std::string> missing;  ///< Landmarks of the template that are not known on the model: ask for these.
+  /// Landmarks that are used with a guess of where they are, as fewer than four were known: the model is taken for the
+  /// template's own, stretched to its size. Ask for these first.
+  std::vector<std::string> guessed;
 };
 
 /// Moves a template cage onto another model; triangles, UVs and holes stay.
@@ -138,9 +146,7 @@ Status refineCage(const MeshView& cage, const Model& model, const RefineOptions&
 /// value and the limit. All but the status is what the call was given.
 std::string describe(const Status& status, const Model& model);
 /// The same of `fitCage`.
-/// @param missing  What it left in `out`.
-std::string describe(const Status& status, const Template& from, const Model& model, const FitOptions& options,
-                     const std::vector<std::string>& missing);
+std::string describe(const Status& status, const Template& from, const Model& model, const FitOptions& options);
 /// The same of `refineCage`.
 std::string describe(const Status& status, const MeshView& cage, const Model& model, const RefineOptions& options);
 

@@ -63,6 +63,32 @@ TEST_CASE("rigs are recognised by the names of their joints", "[cages][landmarks
   CHECK(placeOf(rigify.joints, "joint_head")->x == 2);
   CHECK(placeOf(rigify.joints, "joint_knee_right")->x == 5);
   CHECK(rig("", {"Bone", "Bone.001", "Head"}).name == "unknown");
+  // Rigs with names of their own: the words say what is what, and which side.
+  const std::vector<std::vector<std::string>> others = {
+      {"pelvis", "neck_01", "head", "clavicle_l", "upperarm_l", "upperarm_twist_01_l", "lowerarm_l", "hand_l",
+       "thigh_r", "calf_r", "foot_r"},
+      {"Bip01 Pelvis", "Bip01 Neck", "Bip01 Head", "Bip01 L Clavicle", "Bip01 L UpperArm", "Bip01 L UpArmTwist",
+       "Bip01 L Forearm", "Bip01 L Hand", "Bip01 R Thigh", "Bip01 R Calf", "Bip01 R Foot"},
+      {"hip", "neckLower", "head", "lCollar", "lShldrBend", "lShldrTwist", "lForearmBend", "lHand", "rThighBend",
+       "rShin", "rFoot"},
+      {"C_hips", "C_neck", "C_head", "L_clavicle", "L_armUpper", "L_armTwist", "L_armLower", "L_hand", "R_legUpper",
+       "R_legLower", "R_foot"},
+      {"下半身", "首", "頭", "左肩", "左腕", "左腕捩", "左ひじ", "左手首", "右足", "右ひざ", "右足首"},
+      {"Hips", "Neck", "Head", "Shoulder.L", "UpperArm.L", "UpperArmTwist.L", "LowerArm.L", "Wrist.L", "UpperLeg.R",
+       "LowerLeg.R", "Foot.R"}};
+  for (const std::vector<std::string>& names : others) {
+    const Rig of = rig("", names);
+    CAPTURE(names.back());
+    const std::pair<const char*, double> expected[] = {
+        {"hips", 0},       {"neck", 1},       {"head", 2},      {"clavicle_left", 3}, {"shoulder_left", 4},
+        {"elbow_left", 6}, {"wrist_left", 7}, {"hip_right", 8}, {"knee_right", 9},    {"ankle_right", 10}};
+    for (const auto& [name, place] : expected) {
+      CAPTURE(name);
+      REQUIRE(placeOf(of.joints, std::string("joint_") + name));
+      CHECK(placeOf(of.joints, std::string("joint_") + name)->x == place);
+    }
+    CHECK(of.joints.size() == std::size(expected));
+  }
   CHECK(rig("", {}).name.empty());
 }
 
@@ -79,6 +105,30 @@ TEST_CASE("eyes are found by name and by shape, whatever way the head faces", "[
     REQUIRE(placeOf(of.landmarks, name));
     CHECK(length(*placeOf(of.landmarks, name) - turned({x, 0.1, 0.72})) < 0.02);
   }
+}
+
+TEST_CASE("a face is looked for in what the joints of a head hold", "[cages][landmarks]") {
+  OwnedModel figure;
+  figure.add("skin", ellipsoid({0, 0, 0}, {0.7, 1, 0.85}, 24));
+  const std::size_t headEnd = figure.positions.size() / 3;
+  figure.add("coat", ellipsoid({0, -3.2, 0}, {1.4, 2, 0.8}, 24));
+  // Buttons look like eyes; the eyes are painted on.
+  for (const double side : {0.3, -0.3}) figure.add("coat", sphere({side, -2.8, 0.75}, 0.13, 12));
+  Model model = figure.model();
+  model.joints = {{"Hips", {0, -4, 0}},       {"Spine2", {0, -2, 0}, 0},       {"Neck", {0, -1, 0}, 1},
+                  {"Head", {0, -0.8f, 0}, 2}, {"LeftEye", {0.2f, 0.1f, 0}, 3}, {"RightEye", {-0.2f, 0.1f, 0}, 3},
+                  {"LeftArm", {1, -2, 0}, 1}, {"RightArm", {-1, -2, 0}, 1}};
+  FoundLandmarks out;
+  REQUIRE(findLandmarks(model, nullptr, out).ok());
+  std::vector<std::uint16_t> holders(figure.positions.size() / 3, 1);
+  std::fill_n(holders.begin(), headEnd, std::uint16_t{3});
+  model.vertexJoints = holders;
+  REQUIRE(findLandmarks(model, nullptr, out).ok());
+  const auto eye = placeOf(out.landmarks, "eye_centre_left");
+  REQUIRE(eye);
+  CHECK(length(Vec3{eye->x - 0.2, eye->y - 0.1, 0}) < 0.02);
+  CHECK(eye->z > 0.6);
+  CHECK(out.kind == Kind::body);
 }
 
 TEST_CASE("hints say where a face is, against its shape and the names of its parts", "[cages][landmarks]") {

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { type Command, Edits, History, LayerStack } from 'cagecast/three/paint';
 import { barePart } from '../../../web/src/state/project/bare-part';
-import { cagePart, landmarksPart } from '../../../web/src/state/project/cage-part';
+import { cagePart } from '../../../web/src/state/project/cage-part';
 import { Keeper, type Offer } from '../../../web/src/state/project/keeper';
 import { layersPart } from '../../../web/src/state/project/layers-part';
 import { type Contribution, filesIn, Project } from '../../../web/src/state/project/project';
@@ -57,13 +57,11 @@ async function tab(browser: FakeBrowser, memory: Partial<Flags> = {}, fragment =
     unpack: never,
   };
   const live = { shape: { deform: 'bend', amount: 0, cage: true, morphs: new Map() } as never, move() {} };
-  const maker = { lacking: undefined, ask() {} } as never;
   const parts: Contribution[] = [
     layersPart({ session, stack, edits, away, samples, painter: undefined, images }),
     ...settingsParts(session, live, undefined),
     barePart(session),
     cagePart({ session, samples, templates: ['human-head'] }, undefined),
-    landmarksPart(maker, ['human-head']),
   ];
   for (const part of parts) project.add(part);
   const self = {};

@@ -14,6 +14,7 @@ export interface CageAnswer extends Answer {
 }
 export interface FitAnswer extends CageAnswer {
   missing: string[];
+  guessed: string[];
 }
 export interface FoundAnswer extends Answer {
   landmarks: CoreLandmark[];
@@ -30,6 +31,7 @@ export interface CoreModel {
   joints: { name: string; position: number[]; parent: number }[];
   marks: Uint8Array;
   hints: CoreLandmark[];
+  vertexJoints: Uint16Array;
 }
 
 /** A template, as C++ takes it. */

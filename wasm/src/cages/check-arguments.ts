@@ -16,7 +16,7 @@ const wrong = (fn: string, place: string, text: string) =>
  */
 export function checkModel(fn: string, model: unknown): CoreModel {
   const mesh = checkMesh(fn, 'model', model);
-  const { parts = [], joints = [], marks, hints } = model as CageModel;
+  const { parts = [], joints = [], marks, hints, vertexJoints } = model as CageModel;
   const bad = (field: string, value: unknown, type: string) =>
     wrong(fn, `model.${field}`, ` is ${show(value)}, not ${type}`);
   if (!Array.isArray(joints)) throw bad('joints', joints, 'an array of joints { name, position, parent }');
@@ -26,8 +26,12 @@ export function checkModel(fn: string, model: unknown): CoreModel {
   // An array that was moved to a worker is empty, which C++ would take for "no marks".
   if (plainMarks?.length === 0 && mesh.indices.length > 0)
     throw wrong(fn, 'model.marks', ` has 0 numbers, not 1 for each of ${count(mesh.indices.length / 3, 'triangle')}`);
+  const plainVertexJoints = plainArray(vertexJoints, 'Uint16Array');
+  if (vertexJoints !== undefined && !plainVertexJoints)
+    throw wrong(fn, 'model.vertexJoints', ` is ${showArray(vertexJoints, 'Uint16Array')}, not a Uint16Array`);
   return {
     mesh,
+    vertexJoints: plainVertexJoints ?? new Uint16Array(0),
     marks: plainMarks ?? new Uint8Array(0),
     parts: checkParts(fn, 'model.parts', parts),
     hints: checkLandmarks(fn, 'model.hints', hints),

@@ -99,6 +99,7 @@ export function fitCage(
       used: landmarksOf(answer.landmarks),
       confidence: confidenceOf(answer.landmarks),
       missing: answer.missing,
+      guessed: answer.guessed,
     }),
   });
 }

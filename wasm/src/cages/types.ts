@@ -37,6 +37,11 @@ export interface CageModel extends Mesh {
    * `mouth`, the middle between the lips. Given landmarks count more, found ones less. Default: none.
    */
   hints?: Landmarks | undefined;
+  /**
+   * The joint that holds each vertex most, as its place in `joints`; 65535 for none. What a head's joints hold is where a face is
+   * looked for. Default: not known.
+   */
+  vertexJoints?: Uint16Array | undefined;
 }
 
 /** What a model is: it decides resolution, tightness and seams of a cage. */
@@ -78,6 +83,11 @@ export interface Fit {
   confidence: Record<string, number>;
   /** Landmarks of the template that were not found: give these for a better fit. */
   missing: string[];
+  /**
+   * Landmarks of `used` that are guesses, because fewer than four were known: the model is taken for the template's own, stretched to
+   * its size. Give some of these first: eyes, nose, mouth and chin of a head. Empty if enough were known.
+   */
+  guessed: string[];
 }
 
 /** What was found on a model. */
@@ -87,7 +97,7 @@ export interface FoundLandmarks {
   confidence: Record<string, number>;
   /** Landmarks that were not found, or are too uncertain. */
   missing: string[];
-  /** `VRM`, `Mixamo`, `Ready Player Me`, `Roblox R15`, `VRoid`, `Rigify`, `unknown`; empty without a skeleton. */
+  /** `VRM`, `Mixamo`, `Ready Player Me`, `Roblox R15`, `VRoid`, `Rigify`, `other`, `unknown`; empty without a skeleton. */
   rig: string;
   /** What the model seems to be. */
   kind: Kind;

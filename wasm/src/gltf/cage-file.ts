@@ -1,9 +1,9 @@
 import type { CageModel, Template } from '../cages/types.js';
 import { faceHints } from '../parts/face-hints.js';
-import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
+import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../parts/joints.js';
 import { fromOrigin } from '../parts/origin.js';
 import { readExtras } from '../parts/template-extras.js';
-import { type Extracted, morphedParts, type Part, parentsOf, worldMatrices } from './extract-file.js';
+import { type Extracted, morphedParts, type Part, parentsOf, skinOf, worldMatrices } from './extract-file.js';
 import { InputError } from './input-error.js';
 import type { GltfFile } from './read-gltf.js';
 
@@ -15,7 +15,7 @@ export function cageModelOf(file: GltfFile, { mesh, parts, origin }: Extracted):
     indices,
     groups,
     parts: partNamesOf(parts),
-    joints: jointsOf(file, { parts, origin }),
+    ...skeletonOf(file, { parts, origin }),
     hints: faceHints(morphedParts(file, parts, positions)),
   };
 }
@@ -34,7 +34,7 @@ export function templateOf({ json, path }: GltfFile, { mesh, parts }: Extracted)
   return { positions: mesh.positions, indices: mesh.indices, uvs: mesh.uvs!, ...extras };
 }
 
-function jointsOf(file: GltfFile, { parts, origin }: Pick<Extracted, 'parts' | 'origin'>) {
+function skeletonOf(file: GltfFile, { parts, origin }: Pick<Extracted, 'parts' | 'origin'>) {
   const { nodes = [], extensions } = file.json;
   const parents = parentsOf(nodes);
   const bones = vrmBones(extensions as VrmExtensions | undefined);
@@ -56,5 +56,6 @@ function jointsOf(file: GltfFile, { parts, origin }: Pick<Extracted, 'parts' | '
     });
   });
   const others = [...bones.keys()].filter((node) => node >= 0 && node < nodes.length).map(atNode);
-  return listJoints([...joints, ...others], (node) => parents.get(node));
+  const held = parts.map((part) => ({ ...part, skin: skinOf(file, part) }));
+  return readSkeleton([...joints, ...others], held, (node) => parents.get(node));
 }

@@ -230,7 +230,7 @@ function instanceOf(file: GltfFile, path: string, attributes: Record<string, unk
 }
 
 /** How its skin holds a part. */
-function skinOf(file: GltfFile, part: Part): Skin<number> | undefined {
+export function skinOf(file: GltfFile, part: Part): Skin<number> | undefined {
   const { skin } = file.json.nodes![part.node]!;
   if (skin === undefined) return undefined;
   const { joints = [], inverseBindMatrices } = file.json.skins![skin]!;

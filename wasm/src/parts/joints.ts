@@ -33,22 +33,59 @@ export function* upFrom<Node>(node: Node, parentOf: (node: Node) => Node | null 
   }
 }
 
+/** A skeleton, as `CageModel` has it. */
+export interface Skeleton {
+  joints: { name: string; position: [number, number, number]; parent: number }[];
+  vertexJoints: Uint16Array;
+}
+
+/** A part, and what holds it. */
+export interface HeldPart<Node> {
+  node: Node;
+  vertexCount: number;
+  /** Its joints, and 4 per vertex: numbers of joints, and their weights. */
+  skin: { joints: readonly Node[]; held: ArrayLike<number>; weights: ArrayLike<number> } | undefined;
+}
+
+/** No joint: `kNoJoint` in C++. */
+const kNoJoint = 0xffff;
+
 /**
- * Numbers joints and finds their parents: the nearest joint above each.
+ * Numbers joints, and finds their parents, the nearest joint above each, and the joint that holds each vertex most: by its weights, or
+ * of parts without a skin the nearest above.
  * @param joints  The first of those with the same node counts.
+ * @param parts   In the order of their vertices.
  */
-export function listJoints<Node>(
+export function readSkeleton<Node>(
   joints: Iterable<ReadJoint<Node>>,
+  parts: readonly HeldPart<Node>[],
   parentOf: (node: Node) => Node | null | undefined,
-): { name: string; position: [number, number, number]; parent: number }[] {
+): Skeleton {
   const first = new Map<Node, ReadJoint<Node>>();
   for (const joint of joints) if (!first.has(joint.node)) first.set(joint.node, joint);
   const numbers = new Map([...first.keys()].map((node, j) => [node, j]));
-  return [...first.values()].map(({ node, name, position }) => {
-    const [, ...above] = upFrom(node, parentOf);
-    const parent = above.find((one) => numbers.has(one));
-    return { name, position, parent: parent === undefined ? -1 : numbers.get(parent)! };
-  });
+  const nearest = (nodes: Iterable<Node>) => [...nodes].map((node) => numbers.get(node)).find((j) => j !== undefined);
+  const vertexJoints = new Uint16Array(parts.reduce((sum, { vertexCount }) => sum + vertexCount, 0)).fill(kNoJoint);
+  let start = 0;
+  for (const { node, vertexCount, skin } of parts) {
+    if (!skin) vertexJoints.fill(nearest(upFrom(node, parentOf)) ?? kNoJoint, start, start + vertexCount);
+    else {
+      const numberOf = skin.joints.map((joint) => numbers.get(joint) ?? kNoJoint);
+      for (let v = 0; v < vertexCount; ++v) {
+        let most = 4 * v;
+        for (let k = 4 * v; k < 4 * v + 4; ++k) if (skin.weights[k]! > skin.weights[most]!) most = k;
+        vertexJoints[start + v] = numberOf[skin.held[most]!] ?? kNoJoint;
+      }
+    }
+    start += vertexCount;
+  }
+  return {
+    joints: [...first.values()].map(({ node, name, position }) => {
+      const [, ...above] = upFrom(node, parentOf);
+      return { name, position, parent: nearest(above) ?? -1 };
+    }),
+    vertexJoints,
+  };
 }
 
 /** What a glTF's `extensions` say about a human skeleton: VRM 1.0 and VRM 0.x. */

@@ -11,7 +11,7 @@ import { shelfOf } from '../platform/shelf';
 import type { CageMaker } from '../state/cage-maker';
 import type { Loader } from '../state/model';
 import { barePart } from '../state/project/bare-part';
-import { cagePart, landmarksPart } from '../state/project/cage-part';
+import { cagePart } from '../state/project/cage-part';
 import { Keeper, type Offer } from '../state/project/keeper';
 import { type LayersOfPage, layersPart } from '../state/project/layers-part';
 import { Project } from '../state/project/project';
@@ -58,7 +58,6 @@ export function setUpProjects(page: ProjectOfPage): Projects {
     brushPart,
     barePart(session),
     cagePart({ session, samples, templates }, wardrobe),
-    landmarksPart(page.maker, templates),
     ...(wardrobe ? [wardrobePart(wardrobe)] : []),
   ];
   for (const part of parts) project.add(part);

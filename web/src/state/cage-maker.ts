@@ -2,7 +2,7 @@ import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cage
 import { cageModel } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/paint';
 import { likelyTemplate } from './likely-template';
-import { type Fitting, kMinLandmarks, lacksLandmarks, madeOf, noteMade, readable, sampleOf } from './made-cages';
+import { type Fitting, kMostAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
 import { type Box, boxOf, diagonalOfBox } from './surface';
@@ -69,11 +69,6 @@ export class CageMaker extends Emitter<{
     this.#session = session;
     let shown: { target?: Model; cage?: Model } = {};
     session.on('transfer', ({ target, cage }) => {
-      if (this.lacking) {
-        // Landmarks that were placed are of no cage yet: by other rules, they stay.
-        if (target === shown.target && cage === shown.cage) return;
-        this.latest = undefined;
-      }
       if (target !== shown.target) this.emit('template', likelyTemplate(target.mesh.positions));
       shown = { target, cage };
       this.emit('notes', { note: madeOf(cage.files[0]!)?.note ?? '', missing: '' });
@@ -86,11 +81,6 @@ export class CageMaker extends Emitter<{
       const names = missing.map(readable).join(', ');
       this.emit('notes', { missing: names && `Landmarks that were not found: ${names}.` });
     });
-  }
-
-  /** A fit that lacks landmarks, while the user is asked for them. */
-  get lacking(): Fitting | undefined {
-    return this.latest && lacksLandmarks(this.latest.used) ? this.latest : undefined;
   }
 
   /** Whether the current cage stayed where it was when it was to be moved into place. */
@@ -190,13 +180,13 @@ export class CageMaker extends Emitter<{
   }
 
   /** Does cancellable work on the current target, and shows the cage that it comes to; not while another target is being loaded. */
-  async #run(title: string, work: (context: Context) => Promise<Result | undefined>): Promise<void> {
+  async #run(title: string, work: (context: Context) => Promise<Result>): Promise<void> {
     if (!this.#session.keepTarget()) return this.#workshop.announce('Another model is being loaded.');
     const { target, cage: current } = this.#session.shown!;
     const abort = new AbortController();
     const making = { abort: () => abort.abort(), makesCage: true };
     const report = (stage: string, share: number): unknown => this.#session.work(stage, share, making);
-    const done = this.#session.work(title, 0, making);
+    report(title, 0);
     try {
       const [engine, read] = await Promise.all([
         this.#workshop.engine(),
@@ -210,7 +200,6 @@ export class CageMaker extends Emitter<{
       const old = { ...kNoName, positions: rest.slice(), indices: indices.slice(), uvs: uvs.slice() } as Cage;
       const result = await work.call(this, { engine, model: cageModel(read.loaded), old, options });
       if (abort.signal.aborted) return;
-      if (!result) return done();
       const { cage, note, fitting, isNew } = result;
       const isChanged = cage.uvs === old.uvs;
       const file = new File(
@@ -258,33 +247,13 @@ export class CageMaker extends Emitter<{
     return { cage: { ...cage, uvs: old.uvs }, note: 'The cage was moved into place. Save it if it is right.' };
   }
 
-  /** @returns Undefined if too few landmarks are known; the user is asked for more. */
-  async #fit({ engine, model, options }: Context, name: TemplateName, given: Landmarks): Promise<Result | undefined> {
-    const template = await engine.loadTemplate(name);
-    try {
-      const { cage, ...found } = await engine.fitCage(template, model, given, options);
-      const note = 'The template was fitted: a paint for it fits every model that it was fitted to.';
-      return { cage, note, fitting: { ...found, template: name, given } };
-    } catch (error) {
-      if ((error as { code?: string }).code !== 'badLandmarks') throw error;
-      const found = await engine.findLandmarks(model, options);
-      const names = Object.keys(template.landmarks);
-      const all = { ...found.landmarks, ...given };
-      const used = Object.fromEntries(names.flatMap((known) => (all[known] ? [[known, all[known]]] : [])));
-      if (!lacksLandmarks(used)) throw error;
-      const missing = names.filter((known) => !used[known]);
-      this.ask({ ...found, template: name, given, used, missing });
-      return undefined;
-    }
-  }
-
-  /** Asks the user for the landmarks that a fit lacks. */
-  ask(fitting: Fitting): void {
-    const found = Object.keys(fitting.used).length;
-    const note = `Of ${kMinLandmarks} landmarks that are needed, ${found} were found: place more on the model.`;
-    this.emit('notes', { note, missing: '' });
-    this.latest = fitting;
-    this.emit('fitting', fitting);
+  async #fit({ engine, model, options }: Context, name: TemplateName, given: Landmarks): Promise<Result> {
+    const { cage, ...found } = await engine.fitCage(await engine.loadTemplate(name), model, given, options);
+    const note =
+      found.guessed.length > 0
+        ? `Too little was found to fit the template by, so it was placed by the model’s size: mark ${found.guessed.slice(0, kMostAsked).map(readable).join(', ')}.`
+        : 'The template was fitted: a paint for it fits every model that it was fitted to.';
+    return { cage, note, fitting: { ...found, template: name, given } };
   }
 }
 

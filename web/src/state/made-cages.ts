@@ -2,17 +2,15 @@ import type { Fit, Landmarks, TemplateName } from 'cagecast/cages';
 import type { Model } from './model';
 import type { Sample } from './sample';
 
-/** A template that was fitted, or that lacks landmarks for that. */
+/** A template that was fitted. */
 export interface Fitting extends Omit<Fit, 'cage'> {
   template: TemplateName;
   /** Those of `used` that the user placed. */
   given: Landmarks;
 }
 
-/** A fit needs so many landmarks. */
-export const kMinLandmarks = 4;
-
-export const lacksLandmarks = (known: Landmarks): boolean => Object.keys(known).length < kMinLandmarks;
+/** How many landmarks the user is asked for at most, where too little was found. */
+export const kMostAsked = 4;
 
 /** How a cage was made here. */
 interface Made {

@@ -197,6 +197,9 @@ function readLandmarks(path: string): Promise<Landmarks> {
 /** How many landmarks are listed at most. */
 const kMaxNames = 12;
 
+/** How many landmarks are asked for where too little was found. */
+const kMostAsked = 4;
+
 /** Landmarks less certain than this are listed. */
 const kCertain = 0.7;
 
@@ -207,25 +210,28 @@ interface FitNotes {
   report: object;
 }
 
-function describeFit({ used, confidence, missing }: Fit, given: Landmarks): FitNotes {
+function describeFit({ used, confidence, missing, guessed }: Fit, given: Landmarks): FitNotes {
   const all = Object.keys(used);
   const own = all.filter((name) => Object.hasOwn(given, name)).length;
   const list = (names: string[]) => listed(names, kMaxNames, ' (--json lists all)');
   const doubtful = all
-    .filter((name) => confidence[name]! < kCertain)
+    .filter((name) => confidence[name]! < kCertain && !guessed.includes(name))
     .sort((a, b) => confidence[a]! - confidence[b]!)
     .map((name) => `${name} (${confidence[name]!.toFixed(2)})`);
   const isJoint = (name: string) => name.startsWith('joint_');
   const lines = [
     `landmarks: ${integer(all.length)} used, ${integer(own)} of them given`,
     doubtful.length > 0 && `found, but not certain (1 would be): ${list(doubtful)}`,
+    guessed.length > 0 && `guessed by size and symmetry, as too little was found: ${list(guessed)}`,
     missing.length > 0 && `not found: ${list(missing)}`,
     missing.some(isJoint) &&
       !all.some(isJoint) &&
       'no joint is found: TARGET has no skeleton, or names of bones that are not known',
   ];
-  const advice = doubtful.length + missing.length > 0 && 'give these for a better fit: --landmarks L.json';
-  return { lines, advice, report: { landmarks: { used, confidence, missing } } };
+  const ask = guessed.length > 0 ? guessed.slice(0, kMostAsked).join(', ') : 'these';
+  const isAsking = doubtful.length + missing.length + guessed.length > 0;
+  const advice = isAsking && `give ${ask} for a better fit: --landmarks L.json`;
+  return { lines, advice, report: { landmarks: { used, confidence, missing, guessed } } };
 }
 
 /** Said where findings advise flags that these commands do not have, or have for something else. */

@@ -2,12 +2,12 @@ import type { Document, Node } from '@gltf-transform/core';
 import * as cages from '../../cages/index.js';
 import { CagecastError, type Mesh } from '../../index.js';
 import { faceHints } from '../../parts/face-hints.js';
-import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../../parts/joints.js';
+import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { vrmExpressions } from '../../parts/morph-names.js';
 import { readExtras } from '../../parts/template-extras.js';
 import { InputError } from '../input-error.js';
 import { createAccessor } from './add-transfer.js';
-import { type DocumentPart, extractDocument, jointMatrix, morphedParts } from './extract-document.js';
+import { type DocumentPart, extractDocument, jointMatrix, morphedParts, skinOf } from './extract-document.js';
 import { isDocument, read, wrong } from './transfer-document.js';
 
 /** What glTF-Transform does not keep of a file. */
@@ -29,7 +29,7 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
     indices,
     groups,
     parts: parts.map(({ aliases, name }) => (aliases.length > 0 ? aliases : [name])),
-    joints: jointsOf(document, parts, vrmBones(extensions)),
+    ...skeletonOf(document, parts, vrmBones(extensions)),
     hints: faceHints(morphedParts(document, parts, positions, vrmExpressions(extensions))),
   };
 }
@@ -132,7 +132,7 @@ export function addCage<D extends Document>(
   return { document, node };
 }
 
-function jointsOf(document: Document, parts: readonly DocumentPart[], bones: Map<number, string>) {
+function skeletonOf(document: Document, parts: readonly DocumentPart[], bones: Map<number, string>) {
   const nodes = document.getRoot().listNodes();
   const boneOf = new Map([...bones].flatMap(([n, bone]) => (nodes[n] ? [[nodes[n], bone] as const] : [])));
   const nameOf = (node: Node) => boneOf.get(node) ?? (node.getName() || `nodes[${nodes.indexOf(node)}]`);
@@ -149,5 +149,6 @@ function jointsOf(document: Document, parts: readonly DocumentPart[], bones: Map
       return position ? { node, name: nameOf(node), position } : atNode(node);
     });
   });
-  return listJoints([...joints, ...[...boneOf.keys()].map(atNode)], (node) => node.getParentNode());
+  const held = parts.map((part) => ({ ...part, skin: skinOf(part) }));
+  return readSkeleton([...joints, ...[...boneOf.keys()].map(atNode)], held, (node) => node.getParentNode());
 }

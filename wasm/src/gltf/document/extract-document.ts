@@ -244,7 +244,7 @@ export function jointMatrix(joint: Node): Matrix {
 }
 
 /** How its skin holds a part. */
-function skinOf({ node, primitive, localPositions: positions }: DocumentPart): Skin<Node> | undefined {
+export function skinOf({ node, primitive, localPositions: positions }: DocumentPart): Skin<Node> | undefined {
   const skin = node.getSkin();
   if (!skin) return undefined;
   const inverses = skin.getInverseBindMatrices()?.getArray();

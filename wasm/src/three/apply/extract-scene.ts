@@ -270,7 +270,7 @@ export function placesOf(meshes: readonly ThreeMesh[]): Matrix4[] {
 /** Whether a mesh is where its skeleton is. A detached one is where it is itself. */
 const isAttached = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).bindMode === 'attached';
 
-function skinOf(mesh: SkinnedMesh): Skin<Object3D> {
+export function skinOf(mesh: SkinnedMesh): Skin<Object3D> {
   const { skeleton, bindMatrix, geometry } = mesh;
   const values = (name: string) => {
     const attribute = geometry.getAttribute(name) as Attribute | undefined;

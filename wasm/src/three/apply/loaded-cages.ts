@@ -2,11 +2,11 @@ import { BufferAttribute, BufferGeometry, Matrix4, type Object3D, type Skeleton,
 import * as cages from '../../cages/index.js';
 import type { Mesh } from '../../index.js';
 import { faceHints } from '../../parts/face-hints.js';
-import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../../parts/joints.js';
+import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { vrmExpressions } from '../../parts/morph-names.js';
 import { readExtras } from '../../parts/template-extras.js';
 import { wrong } from '../errors.js';
-import { extract, holderOf, isSkinned, morphedParts, type Part } from './extract-scene.js';
+import { extract, holderOf, isSkinned, morphedParts, type Part, skinOf } from './extract-scene.js';
 
 /**
  * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones, and
@@ -43,7 +43,7 @@ export function cageModel(model: Loaded): cages.CageModel {
     indices,
     groups,
     parts: namesOf(parts, object),
-    joints: jointsOf(parts, bones),
+    ...skeletonOf(parts, bones),
     hints: faceHints(morphedParts(parts, positions, isLoadedGltf(model) ? expressionsOf(model) : undefined)),
   };
 }
@@ -164,7 +164,7 @@ function bonesOf(loaded: LoadedGltf): Map<Object3D, string> {
   return found;
 }
 
-function jointsOf(parts: readonly Part[], bones: Map<Object3D, string>) {
+function skeletonOf(parts: readonly Part[], bones: Map<Object3D, string>) {
   const nameOf = (bone: Object3D) => bones.get(bone) ?? bone.name;
   const joints = parts.flatMap(({ mesh, matrix }) => {
     if (!mesh || !isSkinned(mesh)) return [];
@@ -178,5 +178,9 @@ function jointsOf(parts: readonly Part[], bones: Map<Object3D, string>) {
   function atObject(node: Object3D): ReadJoint<Object3D> {
     return { node, name: nameOf(node), position: new Vector3().setFromMatrixPosition(node.matrixWorld).toArray() };
   }
-  return listJoints([...joints, ...[...bones.keys()].map(atObject)], (bone) => bone.parent);
+  const held = parts.flatMap(({ mesh, vertexCount }) => {
+    const skin = mesh && isSkinned(mesh) ? skinOf(mesh) : undefined;
+    return mesh ? [{ node: mesh as Object3D, vertexCount, skin }] : [];
+  });
+  return readSkeleton([...joints, ...[...bones.keys()].map(atObject)], held, (bone) => bone.parent);
 }

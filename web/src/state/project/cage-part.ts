@@ -1,5 +1,4 @@
 import type { Landmarks, TemplateName } from 'cagecast/cages';
-import type { CageMaker } from '../cage-maker';
 import { type Fitting, madeOf, noteMade } from '../made-cages';
 import type { Samples } from '../sample';
 import type { Session } from '../session';
@@ -66,32 +65,23 @@ export function cagePart(
   };
 }
 
-/** The landmarks of the user while they are too few for a fit. */
-export function landmarksPart(maker: CageMaker, templates: readonly string[]): Contribution {
-  return {
-    name: 'landmarks',
-    isWork: true,
-    save: () => maker.lacking,
-    read(saved) {
-      const fitting = fittingOf(saved, templates);
-      return { ready: () => maker.ask(fitting) };
-    },
-  };
-}
-
 function fittingOf(saved: unknown, templates: readonly string[]): Fitting {
-  const { template, given, used, confidence, missing } = objectOf(saved, 'fit');
+  const { template, given, used, confidence, missing, guessed = [] } = objectOf(saved, 'fit');
   if (!templates.includes(template as string)) damaged('it has an unknown template');
   return {
     template: template as TemplateName,
     given: landmarksOf(given),
     used: landmarksOf(used),
     confidence: Object.fromEntries(named(confidence).map(([name, value]) => [name, numberOf(value, 0, 1, 1)])),
-    missing: listOf(missing, kMaxLandmarks, 'landmarks')
-      .map((name) => textOf(name, ''))
-      .filter((name) => kName.test(name)),
+    missing: namesOf(missing),
+    guessed: namesOf(guessed),
   };
 }
+
+const namesOf = (saved: unknown): string[] =>
+  listOf(saved, kMaxLandmarks, 'landmarks')
+    .map((name) => textOf(name, ''))
+    .filter((name) => kName.test(name));
 
 const named = (saved: unknown): [string, unknown][] =>
   Object.entries(objectOf(saved, 'landmarks'))

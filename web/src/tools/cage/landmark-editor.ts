@@ -2,7 +2,7 @@ import type { Command, History } from 'cagecast/three/paint';
 import { Box3, Plane, Vector3 } from 'three';
 import { announce, element } from '../../platform/page';
 import type { CageMaker } from '../../state/cage-maker';
-import { type Fitting, kMinLandmarks, madeOf, readable } from '../../state/made-cages';
+import { type Fitting, kMostAsked, madeOf, readable } from '../../state/made-cages';
 import type { Model } from '../../state/model';
 import type { Session } from '../../state/session';
 import { firstHit } from '../../view/ray';
@@ -131,7 +131,7 @@ export class LandmarkEditor {
     this.#write();
     // What was brought back takes no other tool out of the hand; and beside other models, landmarks are too near each other.
     if (isNew && fitting === this.#maker.latest && !this.#viewer.stage.crowd) this.#tools.choose(this.#offer);
-    if (this.#tools.chosen === this.#offer && Object.keys(this.spots).length < kMinLandmarks) this.#askForNext();
+    if (this.#tools.chosen === this.#offer) this.#askForNext();
     this.#viewer.redraw();
   }
 
@@ -151,13 +151,12 @@ export class LandmarkEditor {
   /** Writes which landmarks there are, in the panel and as buttons on the stage. */
   #write(): void {
     const { missing = [], used = {} } = this.#fitting!;
-    const unknown = [...Object.keys(used), ...missing].filter((name) => !this.spots[name]);
+    const unknown = [...Object.keys(used), ...missing].filter(
+      (name) => !this.spots[name] || this.#fitting!.guessed.includes(name),
+    );
     unknown.sort((a, b) => Number(kFirst.test(b)) - Number(kFirst.test(a)));
     const own = Object.keys(this.given).length;
     const known = Object.keys(this.spots);
-    // Too few for a fit, they are saved as they are now; a fit keeps those that it was made with.
-    if (known.length < kMinLandmarks && this.#fitting === this.#maker.lacking)
-      Object.assign(this.#fitting!, { used: this.spots, given: this.given });
     element('landmark-count', HTMLElement).textContent = `${known.length}, ${own} by you`;
     element('landmark-missing', HTMLElement).hidden = unknown.length === 0;
     element('landmark-reset', HTMLButtonElement).disabled = own === 0;
@@ -351,8 +350,10 @@ export class LandmarkEditor {
     if (!matchMedia('(pointer: coarse)').matches) element('view', HTMLCanvasElement).focus({ preventScroll: true });
   }
 
+  /** Asks for the landmark that would help most, if a fit had to guess some, until the user has placed a few. */
   #askForNext(): void {
-    this.#askFor(this.#choice.options[0]?.value);
+    const next = this.#fitting!.guessed.find((name) => !this.given[name]);
+    this.#askFor(Object.keys(this.given).length < kMostAsked ? next : undefined);
   }
 
   #place(x: number, y: number): void {
@@ -361,11 +362,8 @@ export class LandmarkEditor {
     if (!name || !this.#put(name, x, y)) return;
     this.#record(`placing the ${readable(name)}`, before);
     this.#showName(undefined);
-    if (Object.keys(this.spots).length < kMinLandmarks) this.#askForNext();
-    else {
-      this.#askFor(undefined);
-      this.#fit();
-    }
+    this.#askFor(undefined);
+    this.#fit();
   }
 
   #reset(): void {
@@ -404,8 +402,7 @@ export class LandmarkEditor {
 
   #fit(): void {
     this.#stopWaiting();
-    if (this.#fitting && Object.keys(this.spots).length >= kMinLandmarks)
-      void this.#maker.fit(this.#fitting.template, this.given);
+    if (this.#fitting) void this.#maker.fit(this.#fitting.template, this.given);
   }
 }
 
