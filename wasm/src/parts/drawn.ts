@@ -172,7 +172,7 @@ const around = ([low, high]: Box, [otherLow, otherHigh]: Box): Box => [
   high.map((x, k) => Math.max(x, otherHigh[k]!)),
 ];
 
-/** Whether a part is a ground under, or a wall beside, what the others are: flat, outside, and wider. As `Foreground` in C++. */
+/** Whether a part is a ground under, or a wall beside, what the others are: flat, outside, wider, and not above their foot. As `Foreground` in C++. */
 function isBackdrop(box: Box, others: Box): boolean {
   const [[low, high], [otherLow, otherHigh]] = [box, others];
   const [{ size }, { size: otherSize }] = [sizeOf(box), sizeOf(others)];
@@ -180,7 +180,8 @@ function isBackdrop(box: Box, others: Box): boolean {
     const thick = kThick * otherSize[axis]!;
     const isOutside = high[axis]! <= otherLow[axis]! + thick || (axis !== 1 && low[axis]! >= otherHigh[axis]! - thick);
     const isWider = [0, 1, 2].every((k) => k === axis || size[k]! > kBeyond * otherSize[k]!);
-    return size[axis]! <= thick && isOutside && isWider;
+    const isStanding = axis === 1 || low[1]! <= otherLow[1]! + kThick * otherSize[1]!;
+    return size[axis]! <= thick && isOutside && isWider && isStanding;
   });
 }
 
