@@ -75,12 +75,13 @@ struct Mesh {
   Array<std::uint32_t> indices;
   Array<float> uvs;
   Array<std::uint32_t> groups;
+  Array<float> poses;
 
   bool copy(const val& mesh) {
     return copyArray(mesh["positions"], positions) && copyArray(mesh["indices"], indices) &&
-           copyArray(mesh["uvs"], uvs) && copyArray(mesh["groups"], groups);
+           copyArray(mesh["uvs"], uvs) && copyArray(mesh["groups"], groups) && copyArray(mesh["poses"], poses);
   }
-  [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups}; }
+  [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups, poses}; }
 };
 
 }  // namespace cagecast::bindings

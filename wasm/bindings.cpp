@@ -253,6 +253,7 @@ EMSCRIPTEN_BINDINGS(cagecast) {
       .field("covered", &Timings::covered)
       .field("segments", &Timings::segments)
       .field("recheck", &Timings::recheck)
+      .field("motion", &Timings::motion)
       .field("holes", &Timings::holes)
       .field("seams", &Timings::seams)
       .field("classify", &Timings::classify)

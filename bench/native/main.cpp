@@ -81,10 +81,10 @@ struct Stage {
   double Timings::*time;
 };
 constexpr Stage kStages[] = {
-    {"weld", &Timings::weld},         {"build", &Timings::build},     {"project", &Timings::project},
-    {"occluded", &Timings::occluded}, {"covered", &Timings::covered}, {"segments", &Timings::segments},
-    {"recheck", &Timings::recheck},   {"holes", &Timings::holes},     {"seams", &Timings::seams},
-    {"classify", &Timings::classify}, {"total", &Timings::total}};
+    {"weld", &Timings::weld},         {"build", &Timings::build},       {"project", &Timings::project},
+    {"occluded", &Timings::occluded}, {"covered", &Timings::covered},   {"segments", &Timings::segments},
+    {"recheck", &Timings::recheck},   {"motion", &Timings::motion},     {"holes", &Timings::holes},
+    {"seams", &Timings::seams},       {"classify", &Timings::classify}, {"total", &Timings::total}};
 
 /// The times of each step in milliseconds, run by run.
 std::string timesOf(const std::vector<Timings>& runs) {

@@ -10,6 +10,7 @@
 #include "steps/holes/region.hpp"
 #include "steps/interior_samples.hpp"
 #include "steps/masks.hpp"
+#include "steps/motion/motion.hpp"
 #include "steps/occluded.hpp"
 #include "steps/point_data.hpp"
 #include "steps/project.hpp"
@@ -44,7 +45,7 @@ void measureSegments(const Scene& scene, PointData& data, const bool* isOuter, A
   sumAreas(scene, samples, data, stats);
 }
 
-/// Steps 9 and 10: which points are recovered if their segment is not culled.
+/// Steps 9, 10 and 13: which points are recovered if their segment is not culled.
 void findRecovery(const Scene& scene, PointData& data, HiderRecords& hiders, Projection& out) {
   const Steps& steps = scene.options.steps;
   if (steps.projection != ProjectionMode::nearestPoint || !(steps.recheck || steps.holes)) return;
@@ -56,6 +57,8 @@ void findRecovery(const Scene& scene, PointData& data, HiderRecords& hiders, Pro
       findHiders(scene, data, out.segmentStats, hiders);
       if (!scene.arena.failed()) recheckOccluded(scene, data, out.segmentStats, hiders);
     });
+    if (scene.options.motion && !scene.arena.failed())
+      timed(out.timings.motion, [&] { findMotion(scene, data, out.segmentStats, hiders); });
   }
   if (steps.holes) timed(out.timings.holes, [&] { assignHoles(scene, data, out.segmentStats, out.holeShares); });
 }

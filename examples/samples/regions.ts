@@ -102,18 +102,17 @@ function outlinesOf({ uvs, indices }: Cage, isIn: (corners: Corners) => boolean)
       if (!next.delete(`${to} ${from}`)) next.set(`${from} ${to}`, [from, to]);
     }
   }
-  const edges = new Map(next.values());
+  // Outlines may meet at a vertex.
+  const edges = new Map<number, number[]>();
+  for (const [from, to] of next.values()) edges.set(from, [...(edges.get(from) ?? []), to]);
   const outlines: Outline[] = [];
-  for (const start of edges.keys()) {
-    const outline: [number, number][] = [];
-    for (let v: number | undefined = start; v !== undefined && edges.has(v); ) {
-      outline.push([uvs[2 * v]!, uvs[2 * v + 1]!]);
-      const to: number | undefined = edges.get(v);
-      edges.delete(v);
-      v = to;
+  for (const start of edges.keys())
+    while (edges.get(start)!.length > 0) {
+      const outline: [number, number][] = [];
+      for (let v: number | undefined = start; v !== undefined; v = edges.get(v)!.pop())
+        outline.push([uvs[2 * v]!, uvs[2 * v + 1]!]);
+      outlines.push(outline.slice(0, -1)); // it ends where it begins
     }
-    if (outline.length >= 3) outlines.push(outline);
-  }
   return outlines;
 }
 

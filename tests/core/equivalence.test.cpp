@@ -77,6 +77,31 @@ Scene anyScene(std::uint64_t seed, scenes::Random& random) {
   return scene;
 }
 
+/// Adds some poses: parts of the target move, crumple, collapse or fly away.
+void addPoses(Scene& scene, scenes::Random& random) {
+  Mesh& target = scene.target;
+  const float size = std::sqrt(scenes::distance(target.vertex(0), target.vertex(target.vertexCount() / 2)));
+  for (std::uint32_t left = 1 + random.below(3); left > 0; --left) {
+    const std::uint32_t kind = random.below(5), axis = random.below(3);
+    const float share = random.between(0.05f, 0.6f),
+                middle = target.vertex(random.below(static_cast<std::uint32_t>(target.vertexCount())))[axis];
+    const Point by{random.between(-share, share), random.between(-share, share), random.between(-share, share)};
+    for (std::size_t v = 0; v < target.vertexCount(); ++v) {
+      Point p = target.vertex(v);
+      const bool moves = p[axis] > middle;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float noise = random.between(-0.1f, 0.1f);
+        if (kind == 0) p[k] += 0.2f * size * noise;
+        if (moves && kind == 1) p[k] += size * by[k];
+        if (moves && kind == 2) p[k] += size * (by[k] + noise);
+        if (moves && kind == 3) p[k] = std::round(p[k] * 4) / 4;
+        if (moves && kind == 4 && left == 1) p[k] += 20 * size * by[k];
+      }
+      target.poses.insert(target.poses.end(), p.begin(), p.end());
+    }
+  }
+}
+
 /// A part beside others, in a cage, by name.
 Scene placed(std::string name, Mesh cage, Mesh target) { return {std::move(name), std::move(cage), std::move(target)}; }
 
@@ -143,6 +168,31 @@ TEST_CASE("the answer is the reference's on random scenes, by any options", "[eq
   CHECK(unstable * 10 <= vertices);
   CHECK(inHoles > 0);
   CHECK(deep > 0);
+}
+
+TEST_CASE("the answer is the reference's in random poses", "[equivalence][motion]") {
+  std::size_t gained = 0, vertices = 0, unstable = 0;
+  for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 200; ++seed) {
+    scenes::Random random(seed);
+    Scene scene = anyScene(seed, random);
+    addPoses(scene, random);
+    TransferOptions options = random.below(3) == 0 ? anyOptions(random) : TransferOptions{};
+    options.motion = options.steps.recheck = true;
+    INFO("CAGECAST_SEED=" << seed);
+    const auto found = requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
+    vertices += found.vertices;
+    unstable += found.unstable;
+    const auto moving = copied(transferred(scene.cage.view(), scene.target.view(), options).zones.zones);
+    options.motion = false;
+    const auto still = copied(transferred(scene.cage.view(), scene.target.view(), options).zones.zones);
+    for (std::size_t v = 0; v < still.size(); ++v) {
+      if (still[v] == Zone::cosmetic) CHECK(moving[v] == Zone::cosmetic);
+      gained += still[v] != moving[v];
+    }
+  }
+  INFO(unstable << " of " << vertices << " vertices are unstable, " << gained << " gained");
+  CHECK(unstable * 10 <= vertices);
+  CHECK(gained > 100);
 }
 
 TEST_CASE("the answer is the reference's on large random scenes", "[equivalence]") {

@@ -143,6 +143,7 @@ describe('transfer', () => {
         'covered',
         'segments',
         'recheck',
+        'motion',
         'holes',
         'seams',
         'classify',

@@ -9,7 +9,7 @@ import { build } from 'esbuild';
  */
 const kPages: [what: string, most: number, script: string][] = [
   ['Zone', 430, "import { Zone } from 'cagecast'; console.log(Zone.Cosmetic);"],
-  ['init and transfer', 102_000, "import { init, transfer } from 'cagecast'; console.log(init, transfer);"],
+  ['init and transfer', 112_000, "import { init, transfer } from 'cagecast'; console.log(init, transfer);"],
   ['transfer of cagecast/slim', 16_200, "import { init, transfer } from 'cagecast/slim'; console.log(init, transfer);"],
   ['transfer of cagecast/worker', 2650, "import { transfer } from 'cagecast/worker'; console.log(transfer);"],
   [
@@ -26,7 +26,7 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'applyTransferAsync, layers and painting',
-    39_000,
+    43_000,
     `import { applyTransferAsync } from 'cagecast/three';
     import { createLayers, createPainter } from 'cagecast/three/paint';
     console.log(applyTransferAsync, createLayers, createPainter);`,

@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { Document, NodeIO } from '@gltf-transform/core';
+import { KHRONOS_EXTENSIONS } from '@gltf-transform/extensions';
 import { type Code, init, type Mesh } from 'cagecast';
 import {
   type Cage,
@@ -460,6 +461,28 @@ describe('cageModel', () => {
       const held = Array.from({ length: 2 * count }, (_, v) => Number(v >= count || v % 3 === 0));
       assert.deepEqual([...vertexJoints!], held);
     }
+  });
+
+  test('calls glass what can be looked through', async () => {
+    const maker = new GlbMaker();
+    const mesh = maker.mesh(ball([0, 0, 0], () => 1, 6, 12));
+    const pane = { alphaMode: 'BLEND' as const, pbrMetallicRoughness: { baseColorFactor: [1, 1, 1, 0.4] as never } };
+    maker.json.materials = [
+      { name: 'Pane', ...pane },
+      { name: 'Visor', extensions: { KHR_materials_transmission: { transmissionFactor: 0.9 } } },
+      { name: 'Hair', alphaMode: 'BLEND' },
+    ];
+    maker.json.extensionsUsed = ['KHR_materials_transmission'];
+    const { attributes, indices } = maker.json.meshes[mesh]!.primitives[0]!;
+    maker.json.meshes[mesh]!.primitives = [0, 1, 2].map((material) => ({ attributes, indices, material }) as never);
+    maker.node({ name: 'all', mesh });
+    const file = maker.finish();
+    const document = await new NodeIO().registerExtensions(KHRONOS_EXTENSIONS).readBinary(new Uint8Array(file));
+    for (const { parts } of [gltf.cageModel(document), three.cageModel(await load(file))])
+      assert.deepEqual(
+        parts!.map((names) => names.includes('glass')),
+        [true, true, false],
+      );
   });
 
   test('names the joints of a VRM by its bones; damaged tables are no reason to refuse a model', async () => {

@@ -191,10 +191,12 @@ describe('errors', () => {
       [{ recovery: corners(0, 5, 0) }, /projection\.recovery\[1\] = 5 is out of range \(\d+ holes\)/, 1],
       [{ recovery: corners(0, 0) }, /has 3 entries of visibility but 2 of recovery/],
       [{ hiddenBy: corners(0, 0) }, /has 3 entries of visibility but 2 of hiddenBy/],
-      ...[[0], [0, 1, 1], [0, 1, 1, 2, 0], [0, 1, 1, 1, 99], [0, 1, 2, 0]].map((hiders): [object, RegExp, number] => {
-        const change = { hiddenBy: corners(0, 1, 0), hiders: corners(...hiders) };
-        return [change, /hiddenBy\[1\] = 1 is no record of hiders/, 1];
-      }),
+      ...[[0], [0, 0, 1, 1], [0, 0, 1, 1, 2, 0], [0, 0, 1, 1, 1, 99], [0, 0, 1, 2, 0], [0, 1, 1, 0]].map(
+        (hiders): [object, RegExp, number] => {
+          const change = { hiddenBy: corners(0, 1, 0), hiders: corners(...hiders) };
+          return [change, /hiddenBy\[1\] = 1 is no record of hiders/, 1];
+        },
+      ),
       [{ holeShares: [{ ...share, segment: 4 }] }, /projection\.holeShares\[0\]/],
       [{ holeShares: [{ ...share, hiddenArea: undefined }] }, /projection\.holeShares\[0\] is not .* hiddenArea/],
       [{ segmentStats: [{ ...stats, depth: NaN }] }, /projection\.segmentStats\[0\]/],

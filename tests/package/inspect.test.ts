@@ -7,7 +7,7 @@ import { ball, head, join3d, within } from './scenes.js';
 
 before(init);
 
-type Whole = { [K in keyof Mesh]-?: NonNullable<Mesh[K]> };
+type Whole = { [K in keyof Omit<Mesh, 'poses'>]-?: NonNullable<Mesh[K]> };
 const { cage, target } = head(1, 16) as { cage: Whole; target: Whole };
 const parts = [0, 1, 2].map((group) => ({
   name: ['skin', 'eye', 'tongue'][group]!,
@@ -42,6 +42,22 @@ describe('inspect', () => {
       [sentence.replace(/[\d.]+ %/, 'n %'), ignore],
       ['"Visor" hides n % of the rest, which could be painted without it', ['Visor']],
     );
+  });
+
+  test('a bare face is the first finding, if it is known where the eyes are', () => {
+    const skin = ball([0, 0, 0], () => 1, 24, 48);
+    const shell = ball([0, 0, 0], () => 1.1, 16, 24) as Whole;
+    const landmarks = { eye_centre_left: [0.25, 0.1, 0.85], eye_centre_right: [-0.25, 0.1, 0.85] } as const;
+    assert.equal(find(inspect(shell, skin, { landmarks }), 'faceBare'), undefined);
+    const isFace = (i: number) => {
+      const [x, y, z] = [0, 1, 2].map((k) => shell.positions[3 * shell.indices[i - (i % 3)]! + k]!);
+      return Math.hypot(x!, y!) < 0.6 && z! > 0;
+    };
+    const open = { ...shell, indices: shell.indices.filter((_, i) => !isFace(i)) };
+    const { verdict, findings } = inspect(open, skin, { landmarks });
+    assert.deepEqual([verdict, findings[0]!.code], ['unfit', 'faceBare']);
+    assert.match(findings[0]!.sentence, /^The face is left bare: \d+(\.\d+)? % of what is seen of "group 0" there$/);
+    assert.equal(find(inspect(open, skin), 'faceBare'), undefined);
   });
 
   test('pieces that almost touch are found, with the tolerance that joins them', () => {

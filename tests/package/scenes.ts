@@ -11,6 +11,9 @@ export interface Scene {
   target: Mesh;
 }
 
+/** A mesh with UVs and groups. */
+type Whole = Mesh & Required<Omit<Mesh, 'poses'>>;
+
 /** Numbers in 0 … 1 that a seed repeats (mulberry32). */
 export function random(seed: number): () => number {
   let state = seed >>> 0;
@@ -29,7 +32,7 @@ export function ball(
   radius: (phi: number, theta: number) => number,
   rings: number,
   sectors: number,
-): Required<Mesh> & { indices: Uint32Array } {
+): Whole & { indices: Uint32Array } {
   const positions: number[] = [];
   const uvs: number[] = [];
   const indices: number[] = [];
@@ -61,7 +64,7 @@ export function ball(
 }
 
 /** Several meshes as one, a group for each. */
-export function join3d(...meshes: Mesh[]): Required<Mesh> & { indices: Uint32Array } {
+export function join3d(...meshes: Mesh[]): Whole & { indices: Uint32Array } {
   const positions: number[] = [];
   const uvs: number[] = [];
   const indices: number[] = [];
@@ -209,7 +212,7 @@ export function soup(seed: number, triangles = 150): Scene {
 }
 
 /** A triangle with UVs, and one just under it. */
-export function smallest(): { cage: Required<Mesh>; target: Required<Mesh> } {
+export function smallest(): { cage: Whole; target: Whole } {
   const mesh = (z: number) => ({
     positions: new Float32Array([0, 0, z, 1, 0, z, 0, 1, z]),
     indices: new Uint32Array([0, 1, 2]),

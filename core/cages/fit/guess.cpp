@@ -122,7 +122,7 @@ double between(const std::vector<Level>& levels, double y) {
 /// Stretches the template to the size of a model.
 class Stretch {
  public:
-  Stretch(const Upright& from, const Upright& to, std::vector<Level> known) : from_(from.box), to_(to.box) {
+  Stretch(const Upright& from, const Upright& to, const std::vector<Level>& known) : from_(from.box), to_(to.box) {
     levels_ = {{from_.low.y, to_.low.y}, {from_.high.y, to_.high.y}};
     for (const Level& level : known) {
       constexpr double kApart = 0.05;  ///< Of the height.

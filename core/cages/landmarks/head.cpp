@@ -108,6 +108,27 @@ void addHintedMouth(Head& head) {
     if (const Spot* corner = head.hint(name)) head.add(name, corner->position, corner->confidence);
 }
 
+/// Looks for another mouth where a crease on the midline ends at once, as those under a nose and above a chin do: one
+/// that has corners.
+void preferLongCrease(Head& head) {
+  constexpr int kTries = 3;
+  const auto hasCorners = [&] { return head.find("mouth_corner_left") != nullptr; };
+  if (!head.mouth || head.hint("mouth") != nullptr || hasCorners()) return;
+  const std::vector<Spot> spots = head.spots;
+  const std::optional<MouthLine> mouth = head.mouth;
+  std::vector<double> tried;
+  for (int i = 0; i < kTries && head.mouth && !hasCorners(); ++i) {
+    tried.push_back(head.mouth->crease);
+    std::erase_if(head.spots, [](const Spot& spot) { return !spot.name.starts_with("eye_"); });
+    head.mouth.reset();
+    (void)findProfile(head, tried);
+    findMouthCorners(head);
+  }
+  if (hasCorners()) return;
+  head.spots = spots;
+  head.mouth = mouth;
+}
+
 }  // namespace
 
 std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes, const std::vector<Landmark>& hints) {
@@ -176,6 +197,7 @@ void findHeadLandmarks(const Figure& figure, const Eyes& eyes, Head& head) {
     return addHintedMouth(head);
   }
   findMouthCorners(head);
+  preferLongCrease(head);
   findEars(head);
   findSkull(head);
 }

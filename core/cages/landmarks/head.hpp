@@ -62,8 +62,9 @@ std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes, const std::
 void findHeadLandmarks(const Figure& figure, const Eyes& eyes, Head& head);
 
 /// The midline of a face: nose, brow, lips and chin, from the curve of its profile. Needs the eyes' height.
+/// @param notMouths  Heights of creases on the midline that are no mouth.
 /// @return false if there is no human face's profile, and no hint where its mouth is.
-bool findProfile(Head& head);
+bool findProfile(Head& head, const std::vector<double>& notMouths = {});
 
 /// Crown, forehead and back of the head. Needs the profile.
 void findSkull(Head& head);

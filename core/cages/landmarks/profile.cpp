@@ -98,11 +98,16 @@ double firstFold(const Profile& profile, double top, double bottom) {
 
 /// The first sharp crease of a range below the fold under the nose; the fold above the chin may be deeper, but is
 /// wider.
-std::optional<MouthLine> mouth(const Profile& profile, double subnasale, const Range& range) {
+/// @param others  Heights of creases that are no mouth.
+std::optional<MouthLine> mouth(const Profile& profile, double subnasale, const Range& range,
+                               const std::vector<double>& others = {}) {
   constexpr double kHalfCrease = 0.006;  ///< Half its width.
   constexpr double kMin = 0.0012;        ///< Its depth.
   constexpr double kOpen = 0.02;         ///< Deeper ones are gaps.
+  constexpr double kSame = 0.015;        ///< Creases that are closer together are one.
   const auto depth = [&](double y) {
+    if (std::any_of(others.begin(), others.end(), [&](double other) { return std::abs(other - y) < kSame; }))
+      return 0.0;
     const double value = profile.sharp.hollow(y, kHalfCrease);
     return std::isnan(value) || value > kOpen ? kOpen : value;
   };
@@ -208,7 +213,7 @@ std::optional<double> findNose(Head& head, Profile& profile, const std::optional
 
 }  // namespace
 
-bool findProfile(Head& head) {
+bool findProfile(Head& head, const std::vector<double>& notMouths) {
   constexpr double kNear = 0.01, kFar = 0.13;            ///< Of a mouth, below the fold under the nose.
   constexpr double kKnown = 0.012;                       ///< A mouth that is known is at most this far off.
   constexpr double kMinMouth = -0.04, kMaxMouth = -0.4;  ///< Its height: other hints mean nothing.
@@ -227,7 +232,7 @@ bool findProfile(Head& head) {
     const Range about{*known - kKnown, *known + kKnown};
     head.mouth = mouth(profile, subnasale, about).value_or(MouthLine{*known, *known, *known, 0});
   } else {
-    head.mouth = mouth(profile, subnasale, {subnasale - kFar, subnasale - kNear});
+    head.mouth = mouth(profile, subnasale, {subnasale - kFar, subnasale - kNear}, notMouths);
   }
   if (!head.mouth) return true;
   const double fold = lips(head, profile, subnasale, *head.mouth);

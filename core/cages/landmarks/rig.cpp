@@ -119,6 +119,7 @@ std::string_view sideOf(std::string_view word) {
 std::vector<SidedName> sidedNames(const std::vector<Joint>& joints) {
   constexpr std::size_t kNearlyAll = 80;  ///< Per cent.
   std::vector<std::vector<std::string>> all;
+  all.reserve(joints.size());
   for (const Joint& joint : joints) all.push_back(lowerWords(joint.name));
   std::map<std::string, std::size_t> counts;
   for (const auto& words : all)

@@ -9,8 +9,9 @@ const std::vector<std::string>& defaultExclusions() {
       "cornea*", "sclera*", "teeth*", "tooth*", "tongue*", "gum", "gums", "mouth*", "hair*", "beard*", "moustache*",
       "mustache*", "glass*", "goggles*",
       // Vehicles.
-      "window*", "windscreen*", "windshield*", "wheel*", "tyre*", "tire*", "rim", "rims", "light", "lights", "headlight*",
-      "taillight*", "lamp*", "grille*", "seat*", "dashboard*", "steering*", "interior*", "lining*", "floor*"};
+      "window*", "windscreen*", "windshield*", "wheel*", "tyre*", "tire*", "rim", "rims", "light", "lights",
+      "headlight*", "taillight*", "lamp*", "grille*", "seat*", "dashboard*", "steering*", "interior*", "lining*",
+      "floor*"};
   return patterns;
 }
 

@@ -195,8 +195,8 @@ bool HoleMarker::findSamples(const Progress& progress) {
       rays.push_back({point.position, 1 / point.distance * (position - point.position)});
     }
     const std::vector<RayHit> hits = model_.surface->trace(rays);
-    std::vector<Vec3> places;
-    for (const Sample& candidate : candidates) places.push_back(candidate.position);
+    std::vector<Vec3> places(candidates.size());
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] = candidates[i].position;
     const std::vector<bool> isFace = model_.face.isBelow(places);
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const bool isSeen = std::isfinite(hits[i].distance) && model_.isMarked[hits[i].triangle];

@@ -22,15 +22,17 @@ bool isSheet(const Bounds& box, double whole) {
   return *std::min_element(size.begin(), size.end()) <= kThick * box.diagonal() && 2 * box.diagonal() > whole;
 }
 
-/// Whether a piece is a ground under, or a wall beside, what the others are: flat, outside, and wider.
+/// Whether a piece is a ground under, or a wall beside, what the others are: flat, outside, wider, and not above their
+/// foot.
 bool isBackdrop(const Bounds& box, const Bounds& others) {
   const auto size = listed(box.size()), otherSize = listed(others.size());
   const auto low = listed(box.low), high = listed(box.high);
   const auto otherLow = listed(others.low), otherHigh = listed(others.high);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double thick = kThick * otherSize[axis];
-    bool is = size[axis] <= thick &&
-              (high[axis] <= otherLow[axis] + thick || (axis != 1 && low[axis] >= otherHigh[axis] - thick));
+    const bool isOutside = high[axis] <= otherLow[axis] + thick || (axis != 1 && low[axis] >= otherHigh[axis] - thick);
+    const bool isStanding = axis == 1 || low[1] <= otherLow[1] + kThick * otherSize[1];
+    bool is = size[axis] <= thick && isOutside && isStanding;
     for (std::size_t k = 0; k < 3; ++k) is = is && (k == axis || size[k] > kBeyond * otherSize[k]);
     if (is) return true;
   }

@@ -45,6 +45,7 @@ struct Timings {
   double segments = 0;  ///< Steps 4 and 7: connected components and their areas; with steps 1 to 3 of interior samples,
                         ///< and writing the results of all steps per vertex.
   double recheck = 0;   ///< Step 9: more rays from occluded points.
+  double motion = 0;    ///< Step 13: what is seen in poses of the target.
   double holes = 0;     ///< Step 10: uncovered points and the holes over them.
   double seams = 0;     ///< Step 12: UVs per triangle corner.
   double classify = 0;  ///< Steps 5, 8, 10 and 11: which segments are culled; zones of vertices and triangles.
@@ -95,12 +96,13 @@ struct Recovery {
   static constexpr std::uint32_t throughHole = 2;
 };
 
-/// What hides occluded vertices, by segment: a vertex is free if enough of its rays hit nothing but culled segments.
+/// What hides occluded vertices, by segment: a vertex is free if enough of its rays, at rest or in a pose, hit nothing
+/// but culled segments.
 struct Hiders {
   /// 1 per vertex: where its record in `records` begins; 0 if its recovery depends on no segment but its own.
   std::span<const std::uint32_t> ofVertex;
-  /// One after the other, from 1 on: how many rays are enough, how many follow, and for each of these the number of
-  /// segments that it hits, and their numbers.
+  /// One after the other, from 1 on: where an earlier record begins that is enough as well, or 0; how many rays are
+  /// enough, how many follow, and for each of these the number of segments that it hits, and their numbers.
   std::span<const std::uint32_t> records;
 };
 
@@ -110,7 +112,7 @@ struct Hiders {
 struct HoleShare {
   std::uint32_t hole = 0;  ///< The number of the boundary loop.
   std::uint32_t segment = 0;
-  double exposedArea = 0;    ///< Area that is not occluded.
+  double exposedArea = 0;    ///< Area that is not occluded, or is bare in a pose of the target (step 13).
   double uncoveredArea = 0;  ///< The part of it that the cage does not cover.
   /// Occluded area that the cage does not cover; 0 if `occlusionReach` is infinite or nothing of the segment is
   /// covered.

@@ -45,10 +45,11 @@ class Workspace {
   std::size_t limit_;
 };
 
-/// Finds, for every vertex of the target, its UV and whether it is occluded or uncovered: steps 1 to 4, 6, 7, 9, 10 and
-/// 12. The result does not depend on threshold, floor or locks.
+/// Finds, for every vertex of the target, its UV and whether it is occluded or uncovered: steps 1 to 4, 6, 7, 9, 10,
+/// 12 and 13. The result does not depend on threshold, floor or locks.
 /// @return badOption, or any code about the meshes, or weldToleranceTooLarge, or outOfMemory.
-/// Cost: O((V + N + M) log(N + M)) for V vertices and N triangles of the target and M triangles of the cage. Up to
+/// Cost: O((V + N + M) log(N + M)) for V vertices and N triangles of the target and M triangles of the cage, and for
+/// each pose of the target at most once more. Up to
 /// their product for a target of very many small segments under a cage with very many holes, or where many cage
 /// triangles are equally near to each vertex.
 Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,

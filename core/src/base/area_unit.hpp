@@ -11,8 +11,9 @@ namespace cagecast {
 /// triangles stays within 63 bits.
 class AreaUnit {
  public:
-  explicit AreaUnit(std::uint32_t triangleCount)
-      : perArea_(std::ldexp(1.0, 60 - static_cast<int>(std::bit_width(triangleCount)))) {}
+  /// @param sizeBits  If the box is larger: its diagonal is less than 2^(1 + sizeBits).
+  explicit AreaUnit(std::uint32_t triangleCount, int sizeBits = 0)
+      : perArea_(std::ldexp(1.0, 60 - static_cast<int>(std::bit_width(triangleCount)) - 2 * sizeBits)) {}
   /// What a triangle gives to each of its corners.
   [[nodiscard]] std::int64_t third(double doubleArea) const { return rounded(doubleArea / 6); }
   /// What a triangle gives to each of its four interior samples.

@@ -78,8 +78,8 @@ bool renumberHiders(Projection& projection, std::span<const std::uint32_t> segme
   for (std::size_t v = 0; v < segments.size(); ++v) numbers[projection.segments[v]] = segments[v];
   Array<std::uint32_t>& records = projection.hiders;
   for (std::size_t at = 1; at < records.size();) {
-    std::uint32_t rays = records[at + 1];
-    for (at += 2; rays > 0; --rays) {
+    std::uint32_t rays = records[at + 2];
+    for (at += 3; rays > 0; --rays) {
       for (std::uint32_t left = records[at++]; left > 0; --left, ++at) records[at] = numbers[records[at]];
     }
   }
@@ -90,6 +90,31 @@ bool renumberHiders(Projection& projection, std::span<const std::uint32_t> segme
 std::uint32_t heaviestSource(const ClippedMesh& cut, std::size_t newVertex) {
   const float* const weights = &cut.weights[3 * newVertex];
   return cut.sources[3 * newVertex + static_cast<std::size_t>(std::max_element(weights, weights + 3) - weights)];
+}
+
+/// The poses of a cut target: its new vertices blend those of their sources.
+/// @return false if memory ran out.
+bool blendPoses(const DecidedTarget& decided, const ClippedMesh& cut, Array<float>& out) {
+  const MeshView& target = decided.mesh;
+  const std::size_t size = target.positions.size();
+  const std::size_t newCount = cut.sources.size() / 3;
+  const std::size_t poseCount = target.poses.size() / size;
+  if (!out.reset(poseCount * (size + 3 * newCount))) return false;
+  float* to = out.data();
+  for (std::size_t n = 0; n < poseCount; ++n) {
+    const float* const pose = &target.poses[n * size];
+    to = std::copy_n(pose, size, to);
+    for (std::size_t i = 0; i < cut.sources.size(); i += 3) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        double sum = 0;
+        for (std::size_t s = 0; s < 3; ++s)
+          sum += static_cast<double>(cut.weights[i + s]) *
+                 static_cast<double>(pose[std::size_t{3} * cut.sources[i + s] + k]);
+        *to++ = static_cast<float>(sum);
+      }
+    }
+  }
+  return true;
 }
 
 /// What lies beyond an outer border of the cage, on no loop, and so was left uncovered, still does.
@@ -173,8 +198,11 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
   // New vertices are as close as 1e-7 to each other, also across a border: those are not one.
   locked.weldTolerance = 0;
   locked.masks = {};
+  Array<float> poses;
+  if (options.motion && !blendPoses(decided, cut, poses)) return kOutOfMemory;
   Projection again;
-  if (const Status status = projectPart(cage, {cut.positions, cut.indices, {}, groups}, locked, workspace, again);
+  if (const Status status =
+          projectPart(cage, {cut.positions, cut.indices, {}, groups, poses}, locked, workspace, again);
       !status.ok())
     return status;
   locked.locks = {locks, {}};

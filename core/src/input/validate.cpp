@@ -132,24 +132,48 @@ std::size_t firstTooLarge(std::span<const float> positions, double limit) {
   return i;
 }
 
+/// Checks the poses of a target.
+/// @param limit  The greatest coordinate.
+/// @param box    Around the positions; grows to contain those of the poses.
+Status checkPoses(const MeshView& target, double limit, Box& box) {
+  if (target.poses.empty()) return {};
+  const auto fault = [](Code code, std::size_t at) {
+    return Status{code, Argument::target, static_cast<std::uint32_t>(std::min<std::size_t>(at, UINT32_MAX))};
+  };
+  if (target.poses.size() % target.positions.size() != 0) return fault(Code::poseCountMismatch, target.poses.size());
+  Box posed;
+  if (!bound(target.poses, posed)) return fault(Code::badPose, firstNonFinite(target.poses));
+  for (int k = 0; k < 3; ++k) {
+    if (static_cast<double>(std::max(-posed.low[k], posed.high[k])) > limit)
+      return fault(Code::badPose, firstTooLarge(target.poses, limit));
+    box.low[k] = std::min(box.low[k], posed.low[k]);
+    box.high[k] = std::max(box.high[k], posed.high[k]);
+  }
+  return {};
+}
+
 /// Whether each vertex has 0 or a whole record with existing segments.
 bool areRecords(const Hiders& hiders, std::size_t vertexCount, std::size_t segmentCount) {
   const auto& [ofVertex, records] = hiders;
   if (!ofVertex.empty() && ofVertex.size() != vertexCount) return false;
-  std::size_t last = 0;
-  return std::all_of(ofVertex.begin(), ofVertex.end(), [&, &records = records](std::size_t at) {
-    if (at == last) return true;
-    last = at;
-    if (at == 0) return true;
-    if (records.size() < 2 || at > records.size() - 2) return false;
-    std::uint32_t rays = records[at + 1];
-    for (at += 2; rays > 0 && at < records.size(); --rays) {
+  const auto isRecord = [&records = records, segmentCount](std::size_t at) {
+    if (records.size() < 3 || at > records.size() - 3 || records[at] >= at) return false;
+    std::uint32_t rays = records[at + 2];
+    for (at += 3; rays > 0 && at < records.size(); --rays) {
       const std::size_t count = records[at++];
       if (count > records.size() - at) return false;
       if (firstStray(records.subspan(at, count), segmentCount) < count) return false;
       at += count;
     }
     return rays == 0;
+  };
+  std::size_t last = 0;
+  return std::all_of(ofVertex.begin(), ofVertex.end(), [&, &records = records](std::size_t at) {
+    if (at == last) return true;
+    for (last = at; at != 0; at = records[at]) {
+      if (!isRecord(at)) return false;
+    }
+    return true;
   });
 }
 
@@ -193,6 +217,8 @@ Status checkMeshes(const MeshView& cage, const MeshView& target, Units& units) n
   if (size > 0) std::frexp(size, &exponent);
   const double scale = std::ldexp(1.0, std::clamp(1 - exponent, -126, 127));
   const double limit = std::min(static_cast<double>(kMaxProportion) / scale, static_cast<double>(kMaxCoordinate));
+  const Box restBox = targetBox;
+  if (const Status status = checkPoses(target, limit, targetBox); !status.ok()) return status;
   float sceneSize = 0;
   for (int k = 0; k < 3; ++k) {
     const auto scaled = [scale](float x) { return static_cast<float>(static_cast<double>(x) * scale); };
@@ -202,14 +228,14 @@ Status checkMeshes(const MeshView& cage, const MeshView& target, Units& units) n
       const std::size_t at = firstTooLarge((ofCage ? cage : target).positions, limit);
       return {Code::tooLarge, ofCage ? Argument::cage : Argument::target, static_cast<std::uint32_t>(at)};
     }
-    units.low[k] = scaled(targetBox.low[k]);
-    units.high[k] = scaled(targetBox.high[k]);
-    const float low = std::min(units.low[k], scaled(cageBox.low[k]));
-    const float high = std::max(units.high[k], scaled(cageBox.high[k]));
+    units.low[k] = scaled(restBox.low[k]);
+    units.high[k] = scaled(restBox.high[k]);
+    const float low = std::min(scaled(targetBox.low[k]), scaled(cageBox.low[k]));
+    const float high = std::max(scaled(targetBox.high[k]), scaled(cageBox.high[k]));
     sceneSize = std::max({sceneSize, high - low, high * kSizePerDistance, -low * kSizePerDistance});
   }
   units.scale = static_cast<float>(scale);
-  units.diagonal = targetBox.diagonal() * scale;
+  units.diagonal = restBox.diagonal() * scale;
   units.sceneSize = sceneSize;
   return {};
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "base/area_unit.hpp"
 #include "base/arena.hpp"
 #include "cagecast/mesh.hpp"
 #include "cagecast/status.hpp"
@@ -22,6 +23,10 @@ struct Points {
   const std::uint32_t* triangles = nullptr;  ///< 3 points per triangle with an area.
   const double* doubleAreas = nullptr;       ///< Twice the area of each of them, scaled.
   const float* positionLow = nullptr;        ///< 3 per point, or none: the exact position minus `positions`.
+  int sizeBits = 0;                          ///< The diagonal of their box is less than 2^(1 + sizeBits), scaled.
+
+  /// The unit of areas of these triangles.
+  [[nodiscard]] AreaUnit areaUnit() const { return AreaUnit(triangleCount, sizeBits); }
 
   /// Splits a position into floats and the remainder.
   static void split(Vec3 p, float* position, float* positionLow) noexcept;

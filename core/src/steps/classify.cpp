@@ -120,15 +120,19 @@ Zone zoneOf(Visibility visibility) {
 }
 
 /// Step 9: whether enough rays of a vertex hit nothing but culled segments.
-/// @param record  Of `Hiders`.
+/// @param at  A record of `Hiders`.
 template <typename IsCulled>
-bool isFree(const std::uint32_t* record, IsCulled isCulled) {
-  std::uint32_t missing = record[0];
-  std::uint32_t rays = record[1];
-  for (record += 2; rays > 0 && missing > 0; --rays) {
-    const std::uint32_t count = *record++;
-    missing -= std::all_of(record, record + count, isCulled);
-    record += count;
+bool isFree(std::span<const std::uint32_t> records, std::uint32_t at, IsCulled isCulled) {
+  std::uint32_t missing = 1;
+  for (; at != 0 && missing > 0; at = records[at]) {
+    const std::uint32_t* record = &records[at] + 1;
+    missing = record[0];
+    std::uint32_t rays = record[1];
+    for (record += 2; rays > 0 && missing > 0; --rays) {
+      const std::uint32_t count = *record++;
+      missing -= std::all_of(record, record + count, isCulled);
+      record += count;
+    }
   }
   return missing == 0;
 }
@@ -148,7 +152,7 @@ void writeZones(const ProjectionView& projection, Zones& out) {
   for (std::size_t v = 0; v < recovery.size(); ++v) {
     if (recovery[v] == Recovery::never || isCulled(segments[v])) continue;
     if (!hiddenBy.empty() && hiddenBy[v] != 0) {
-      if (hiddenBy[v] != last) isLastFree = isFree(&records[last = hiddenBy[v]], isCulled);
+      if (hiddenBy[v] != last) isLastFree = isFree(records, last = hiddenBy[v], isCulled);
       if (!isLastFree) continue;
     }
     bool isRecovered = true;

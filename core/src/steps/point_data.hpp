@@ -50,6 +50,8 @@ struct PointData {
   std::uint32_t* recovery = nullptr;
   /// Of step 9: values of `Hiders::ofVertex`. Null without it.
   std::uint32_t* hiddenBy = nullptr;
+  /// Of step 13: whether an occluded point at a boundary loop is bare in a pose. Null without poses.
+  bool* isBareInPose = nullptr;
 };
 
 }  // namespace cagecast

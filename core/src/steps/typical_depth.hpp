@@ -18,7 +18,8 @@ struct TypicalDepth {
     }
   }
   /// What lies deeper is meant to lie inside: teeth, tongues and what surrounds them.
-  [[nodiscard]] double most() const noexcept { return depth / covered + kMaxDeeper; }
+  [[nodiscard]] double most() const noexcept { return mean() + kMaxDeeper; }
+  [[nodiscard]] double mean() const noexcept { return depth / covered; }
 
  private:
   static constexpr double kMaxDeeper = 0.015;

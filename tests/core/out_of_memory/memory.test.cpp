@@ -49,6 +49,18 @@ std::size_t failEverywhere(const Call& call) {
   }
 }
 
+/// A scene with two poses, in which a half of the target moves.
+scenes::Scene posed(scenes::Scene scene) {
+  for (const float by : {0.1f, -0.2f}) {
+    for (std::size_t v = 0; v < scene.target.vertexCount(); ++v) {
+      scenes::Point p = scene.target.vertex(v);
+      if (p[0] > 0) p[1] += by;
+      scene.target.poses.insert(scene.target.poses.end(), p.begin(), p.end());
+    }
+  }
+  return scene;
+}
+
 TransferOptions welding(TransferOptions options) {
   options.weldTolerance = 1e-4f;
   return options;
@@ -57,7 +69,7 @@ TransferOptions welding(TransferOptions options) {
 }  // namespace
 
 TEST_CASE("wherever memory runs out in a transfer, the status says so and the next call is right", "[memory]") {
-  const scenes::Scene scene = scenes::patchwork(1);
+  const scenes::Scene scene = posed(scenes::patchwork(1));
   for (const TransferOptions& options : {welding(TransferOptions{}), TransferOptions::paper()}) {
     const std::size_t count = failEverywhere([&](Workspace& workspace, Hash& hash) {
       TransferResult result;
@@ -70,7 +82,7 @@ TEST_CASE("wherever memory runs out in a transfer, the status says so and the ne
 }
 
 TEST_CASE("wherever memory runs out when borders are cut, the status says so and the next call is right", "[memory]") {
-  const scenes::Scene scene = scenes::patchwork(1);
+  const scenes::Scene scene = posed(scenes::patchwork(1));
   const TransferResult result = transferred(scene.cage.view(), scene.target.view(), cutting());
   const DecidedTarget target{scene.target.view(), result.zones.zones, result.projection.segments,
                              result.zones.culledBy};
@@ -104,7 +116,7 @@ TEST_CASE("wherever memory runs out when segments are judged or vertices split, 
 }
 
 TEST_CASE("what memory held before changes no result", "[memory]") {
-  for (const scenes::Scene& scene : {scenes::patchwork(1), scenes::patchwork(5), scenes::head(6)}) {
+  for (const scenes::Scene& scene : {scenes::patchwork(1), posed(scenes::patchwork(5)), posed(scenes::head(6))}) {
     std::vector<std::string> hashes;
     for (const int fill : {0, 1, 255}) {
       Workspace workspace;

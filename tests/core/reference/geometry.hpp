@@ -32,6 +32,9 @@ Vec vertex(const MeshView& mesh, std::uint32_t index);
 struct Box {
   Vec low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
   void add(Vec p);
+  [[nodiscard]] bool contains(Vec p) const {
+    return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
+  }
   [[nodiscard]] double diagonal() const { return length(high - low); }
   /// Whether the two share a point when this one is grown by `margin` on every side.
   [[nodiscard]] bool meets(const Box& other, double margin) const;

@@ -204,6 +204,8 @@ struct State {
   std::vector<Verdict> outer;    // Per loop: whether it is an outer border of the cage.
   std::vector<Verdict> beyond;   // Per point: whether it lies beyond one.
   Range deepest;                 // How deep, in diagonals, what is to be painted may lie.
+  std::vector<Verdict> inPose;   // Per point: whether it is occluded at rest and seen in a pose,
+  std::vector<Verdict> bare;     // or nothing at all lies over it there.
 };
 
 /// Whether a point is surely or perhaps so, given whether each of its outcomes is.
@@ -641,10 +643,11 @@ bool isHiddenByOthers(const Outcome& outcome, std::uint32_t segment) {
 }
 
 /// Step 9: whether a point lies no deeper than what is to be painted.
-Verdict isShallow(const Scene& scene, const State& state, std::size_t p) {
+/// @param deeper  By how much more it may, in diagonals.
+Verdict isShallow(const Scene& scene, const State& state, std::size_t p, double deeper = 0) {
   const double depth = state.places[p].nearest.distance / scene.diag;
-  return {depth <= state.deepest.is, depth * (1 - kDepthNoise) <= state.deepest.most,
-          depth * (1 + kDepthNoise) <= state.deepest.least};
+  return {depth <= state.deepest.is + deeper, depth * (1 - kDepthNoise) <= state.deepest.most + deeper,
+          depth * (1 + kDepthNoise) <= state.deepest.least + deeper};
 }
 
 /// Step 9: whether what hides a point, other segments alone, is culled.
@@ -659,6 +662,19 @@ Verdict isFree(const State& state, const Finding& finding, std::uint32_t segment
     if (&outcome == &finding.outcomes[0]) result.is = free.is;
     result.might = result.might || free.might;
     result.must = result.must && free.must;
+  }
+  return result;
+}
+
+/// Step 13: whether a point that is seen in a pose would be painted if nothing hid it.
+Verdict isUnderCage(const Finding& finding, const Verdict& underHole) {
+  Verdict result{false, false, true};
+  for (const Outcome& outcome : finding.outcomes) {
+    if (outcome.zone != Zone::occluded) continue;
+    const Verdict is = outcome.isUnderCage ? kSurely : underHole;
+    if (&outcome == &finding.outcomes[0]) result.is = is.is;
+    result.might = result.might || is.might;
+    result.must = result.must && is.must;
   }
   return result;
 }
@@ -773,6 +789,128 @@ class Recheck {
   std::vector<std::vector<std::uint32_t>> neighbours_;
 };
 
+// -------------------- 13 Motion
+
+/// The target in a pose.
+class Pose {
+ public:
+  /// @param segments  Of the vertices at rest.
+  Pose(const MeshView& cage, const MeshView& posed, const Options& options, const Scene& rest, const State& state)
+      : options_(options), state_(state), scene_(makeScene(cage, posed)) {
+    scene_.diag = rest.diag;
+    const std::size_t count = scene_.points.count();
+    at_.findings.resize(count), at_.places.resize(count), at_.segments.resize(count), at_.areas.resize(count);
+    at_.segmentCount = state.segmentCount;
+    for (std::size_t v = scene_.points.ofVertex.size(); v-- > 0;) {
+      const std::uint32_t q = scene_.points.ofVertex[v], p = rest.points.ofVertex[v];
+      at_.findings[q] = state.findings[p], at_.places[q] = state.places[p], at_.segments[q] = state.segments[p];
+    }
+    for (std::size_t t = 0; t < scene_.corners.size(); ++t)
+      for (const std::uint32_t q : scene_.corners[t]) at_.areas[q] += scene_.target.triangles()[t].area / 3;
+    outlooks_ = outlooks(scene_, at_, firm_);
+    known_.resize(count);
+  }
+
+  struct Look {
+    Verdict seen, bare;
+  };
+  const Look& at(std::uint32_t vertex) {
+    std::optional<Look>& known = known_[scene_.points.ofVertex[vertex]];
+    if (!known) known = look(scene_.points.ofVertex[vertex]);
+    return *known;
+  }
+
+ private:
+  [[nodiscard]] Look look(std::uint32_t q) const {
+    const std::uint32_t own = at_.segments[q];
+    const Ray normal{scene_.points.positions[q], at_.places[q].triangle->normal};
+    const auto target = scene_.target.along(normal, -2 * kCageHitStart * scene_.diag);
+    std::optional<Look> around;
+    const auto lookAlong = [&](const Ray& ray) {
+      std::set<std::uint32_t> hiders;
+      for (const Triangle* t : target) {
+        const auto& corners = scene_.corners[static_cast<std::size_t>(t - scene_.target.triangles().data())];
+        if (std::find(corners.begin(), corners.end(), q) != corners.end()) continue;
+        if (hit(ray, *t) > kSelfHitStart * scene_.diag) hiders.insert(segmentOf(scene_, at_.segments, *t));
+      }
+      if (hiders.count(own) > 0) {
+        if (!around) around = lookAround(q);
+        return *around;
+      }
+      Verdict free = kSurely;
+      for (const std::uint32_t s : hiders) free = free && !state_.passes[s];
+      return Look{free, hiders.empty() ? kSurely : Verdict{}};
+    };
+    Look result = lookAlong(normal);
+    if (!options_.findsStability) return result;
+    for (const Ray& ray : nudged(scene_, normal)) {
+      const Look beside = lookAlong(ray);
+      for (const auto which : {&Look::seen, &Look::bare}) {
+        (result.*which).might = (result.*which).might || (beside.*which).might;
+        (result.*which).must = (result.*which).must && (beside.*which).must;
+      }
+    }
+    return result;
+  }
+
+  /// Twelve other rays, as in step 9.
+  [[nodiscard]] Look lookAround(std::uint32_t q) const {
+    const auto& [normal, twoSided] = outlooks_[q];
+    const std::uint32_t own = at_.segments[q];
+    if (twoSided) return {};
+    const auto seen = [&](const InTheWay& inTheWay) {
+      Verdict is = isSeen(scene_, options_, scene_.points.positions[q], normal, inTheWay);
+      if (!firm_[own]) is.might = true, is.must = false;
+      return is;
+    };
+    return {seen([&](const Triangle& t) {
+              const std::uint32_t s = segmentOf(scene_, at_.segments, t);
+              return s == own ? kSurely : state_.passes[s];
+            }),
+            seen([](const Triangle&) { return kSurely; })};
+  }
+
+  const Options& options_;
+  const State& state_;
+  Scene scene_;
+  State at_;  // Of the pose: areas; all else is as at rest.
+  std::vector<bool> firm_;
+  std::vector<Outlook> outlooks_;
+  std::vector<std::optional<Look>> known_;
+};
+
+/// Finds what is occluded at rest and comes into view in poses, near what these move.
+void findMotion(const MeshView& cage, const MeshView& target, const Options& options, const Scene& rest, State& state) {
+  constexpr double kMoves = 1e-4, kMaxDeeper = 0.05, kMaxDeeperAtRest = 0.015;
+  std::vector<std::uint32_t> segments;
+  for (const std::uint32_t p : rest.points.ofVertex) segments.push_back(state.segments[p]);
+  for (std::size_t first = 0; first < target.poses.size(); first += target.positions.size()) {
+    const MeshView posed{target.poses.subspan(first, target.positions.size()), target.indices, {}, segments};
+    Box moved;
+    for (std::uint32_t v = 0; v < segments.size(); ++v) {
+      if (!(length(vertex(posed, v) - vertex(target, v)) > kMoves * rest.diag)) continue;
+      moved.add(vertex(target, v));
+      moved.add(vertex(posed, v));
+    }
+    if (!(moved.low.x <= moved.high.x)) continue;
+    Pose pose(cage, posed, options, rest, state);
+    const double deeper = kMaxDeeper * moved.diagonal() / rest.diag - kMaxDeeperAtRest;
+    for (std::uint32_t v = 0; v < segments.size(); ++v) {
+      const std::uint32_t p = rest.points.ofVertex[v];
+      if (!moved.contains(rest.points.positions[p])) continue;
+      const Verdict isOccluded =
+          overOutcomes(state.findings[p], [](const Outcome& o) { return o.zone == Zone::occluded; });
+      const Verdict isShallow = reference::isShallow(rest, state, p, deeper);
+      const Verdict mayGain = isOccluded && state.covered[segments[v]] && isShallow;
+      const Verdict mayExplain = options.steps.holes && state.loops[p] >= 0 ? isOccluded : Verdict{};
+      if (!mayGain.might && !mayExplain.might) continue;
+      const Pose::Look& look = pose.at(v);
+      state.inPose[p] = state.inPose[p] || (mayGain && look.seen);
+      state.bare[p] = state.bare[p] || (mayExplain && look.bare);
+    }
+  }
+}
+
 // -------------------- 10 Holes
 
 /// What is known of a hole of the cage, an open loop.
@@ -801,7 +939,7 @@ std::vector<Hole> judgeHoles(const Scene& scene, const State& state) {
     const auto isFound = [&](Zone zone) {
       return Verdict{finding.zone == zone, (finding.nearby & bit(zone)) != 0, finding.nearby == bit(zone)};
     };
-    add(failing[loop], !pass && !isFound(Zone::occluded));
+    add(failing[loop], !pass && (!isFound(Zone::occluded) || state.bare[p]));
     add(holes[loop].uncovered, pass && isFound(Zone::uncovered));
   }
   for (std::size_t l = 0; l < holes.size(); ++l) {
@@ -994,6 +1132,8 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
       state.passes.push_back({passes, passes, passes});
     }
   }
+  state.inPose.resize(pointCount), state.bare.resize(pointCount);
+  if (filtered && options.steps.recheck && options.motion) findMotion(cage, target, options, scene, state);
   std::vector<Verdict> seen(pointCount), underHole(pointCount);
   if (filtered && options.steps.holes) underHole = underHoles(scene, state);
   if (filtered && options.steps.recheck) {
@@ -1002,7 +1142,8 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
     const std::vector<Verdict> past = recheck.recoveredPastOthers(seen);
     for (std::size_t p = 0; p < pointCount; ++p)
       seen[p] = seen[p] || past[p] ||
-                (isShallow(scene, state, p) && isFree(state, state.findings[p], state.segments[p], underHole[p]));
+                (isShallow(scene, state, p) && isFree(state, state.findings[p], state.segments[p], underHole[p])) ||
+                (state.inPose[p] && isUnderCage(state.findings[p], underHole[p]));
   }
 
   for (std::size_t p = 0; p < pointCount; ++p) {

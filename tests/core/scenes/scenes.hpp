@@ -21,8 +21,9 @@ struct Mesh {
   std::vector<std::uint32_t> indices;
   std::vector<float> uvs;
   std::vector<std::uint32_t> groups;
+  std::vector<float> poses;  ///< None, unless added in the end: functions of meshes leave them out.
 
-  [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups}; }
+  [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups, poses}; }
   [[nodiscard]] std::size_t vertexCount() const { return positions.size() / 3; }
   [[nodiscard]] std::size_t triangleCount() const { return indices.size() / 3; }
   [[nodiscard]] Point vertex(std::size_t v) const {

@@ -180,8 +180,8 @@ TEST_CASE("a small part bare under a hole is culled, unless it is kept", "[class
 TEST_CASE("a projection that is not whole, or not of this target, is an error", "[classify][errors]") {
   struct Parts {
     std::vector<Visibility> visibility{3, Visibility::covered};
-    std::vector<std::uint32_t> segments{0, 0, 1}, recovery{0, 1, 2}, indices{0, 1, 2}, hiddenBy{0, 1, 5},
-        hiders{0, 1, 1, 1, 1, 2, 2, 0, 1, 0};
+    std::vector<std::uint32_t> segments{0, 0, 1}, recovery{0, 1, 2}, indices{0, 1, 2}, hiddenBy{0, 1, 6},
+        hiders{0, 0, 1, 1, 1, 1, 1, 2, 2, 0, 1, 0};
     std::vector<SegmentStats> stats{2};
     std::vector<HoleShare> shares{{0, 1}, {2, 0}};
   };
@@ -196,11 +196,13 @@ TEST_CASE("a projection that is not whole, or not of this target, is an error", 
                {[](Parts& of) { of.segments[1] = 2; }, Code::resultMismatch},
                {[](Parts& of) { of.recovery.pop_back(); }, Code::resultMismatch},
                {[](Parts& of) { of.hiddenBy.pop_back(); }, Code::resultMismatch},
-               {[](Parts& of) { of.hiddenBy[0] = 9; }, Code::resultMismatch},
+               {[](Parts& of) { of.hiddenBy[0] = 11; }, Code::resultMismatch},
                {[](Parts& of) { of.hiddenBy[0] = UINT32_MAX; }, Code::resultMismatch},
-               {[](Parts& of) { of.hiders[9] = 2; }, Code::resultMismatch},
+               {[](Parts& of) { of.hiders[11] = 2; }, Code::resultMismatch},
                {[](Parts& of) { of.hiders.pop_back(); }, Code::resultMismatch},
-               {[](Parts& of) { of.hiders[3] = UINT32_MAX; }, Code::resultMismatch},
+               {[](Parts& of) { of.hiders[4] = UINT32_MAX; }, Code::resultMismatch},
+               {[](Parts& of) { of.hiders[6] = 6; }, Code::resultMismatch},
+               {[](Parts& of) { of.hiders[6] = 4; }, Code::resultMismatch},
                {[](Parts& of) { of.shares[0].segment = 2; }, Code::resultMismatch},
                {[](Parts& of) { of.shares[0].hole = 3; }, Code::resultMismatch},
                {[](Parts& of) { of.shares[1].hole = UINT32_MAX; }, Code::resultMismatch}};

@@ -92,6 +92,7 @@ describe('a head', () => {
       positions: Float32Array.from([...model.positions, ...model.positions.map((x, i) => (i % 3 === 0 ? x + 0.5 : x))]),
       indices: Uint32Array.from([...model.indices, ...model.indices.map((vertex) => vertex + count)]),
       groups: Uint32Array.from([...model.groups!, ...model.groups!]),
+      vertexJoints: Uint16Array.from([...model.vertexJoints!, ...model.vertexJoints!]),
     };
     await assert.rejects(fitCage(await loadTemplate('human-head'), twice), {
       code: 'badModel',

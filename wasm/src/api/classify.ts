@@ -96,19 +96,27 @@ function checkSegment(segment: SegmentStats, s: number): SegmentStats {
   return { points, area, beyondArea, exposedArea, coveredArea, depth, group, ...computed };
 }
 
+/** Whether there is a whole record at a place, and those that are enough as well. */
+function isRecord(hiders: Uint32Array, start: number, segments: number): boolean {
+  for (let record = start; record !== 0; record = hiders[record]!) {
+    let at = record + 3;
+    if (at > hiders.length || hiders[record]! >= record) return false;
+    for (let rays = hiders[record + 2]!; rays > 0; --rays) {
+      const end = at + 1 + (hiders[at] ?? Infinity);
+      if (end > hiders.length || hiders.subarray(at + 1, end).some((segment) => segment >= segments)) return false;
+      at = end;
+    }
+  }
+  return true;
+}
+
 /** Checks that each vertex has 0 or a whole record. */
 function checkHiders(hiddenBy: Uint32Array, hiders: Uint32Array, segments: number): void {
   let last = 0;
   for (let v = 0; v < hiddenBy.length; ++v) {
     if (hiddenBy[v] === last || hiddenBy[v] === 0) continue;
-    let at = (last = hiddenBy[v]!) + 1;
-    let isWhole = at < hiders.length;
-    for (let rays = hiders[at++] ?? 0; rays > 0 && isWhole; --rays) {
-      const end = at + 1 + (hiders[at] ?? Infinity);
-      isWhole = end <= hiders.length && hiders.subarray(at + 1, end).every((segment) => segment < segments);
-      at = end;
-    }
-    if (!isWhole) throw wrong(`.hiddenBy[${v}] = ${last} is no record of hiders`, v);
+    last = hiddenBy[v]!;
+    if (!isRecord(hiders, last, segments)) throw wrong(`.hiddenBy[${v}] = ${last} is no record of hiders`, v);
   }
 }
 

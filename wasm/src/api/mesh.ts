@@ -14,9 +14,14 @@ export interface Mesh {
   uvs?: Float32Array | undefined;
   /** 1 per vertex, usually the number of its mesh or material: vertices of different groups are never welded. Default: all 0. */
   groups?: Uint32Array | undefined;
+  /**
+   * Of a target: other positions of its vertices, as `positions` has them, one pose after the other. What is hidden at rest and seen in
+   * one of them is painted as well, with the option `motion`. Default: none.
+   */
+  poses?: Float32Array | undefined;
 }
 
-const noUvs = new Float32Array(0);
+const noFloats = new Float32Array(0);
 const noGroups = new Uint32Array(0);
 
 /**
@@ -38,7 +43,7 @@ export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'templ
     const value: unknown = given[field];
     const array = plainArray(value, ...kinds);
     if (array) return array;
-    if ((field === 'uvs' || field === 'groups') && (value === undefined || value === null)) return undefined;
+    if (field !== 'positions' && field !== 'indices' && (value === undefined || value === null)) return undefined;
     throw new CagecastError(
       'badArgument',
       fn,
@@ -56,6 +61,7 @@ export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'templ
   )!;
   const uvs = arrayOf('uvs', 'Float32Array', 'Float32Array');
   const groups = arrayOf('groups', 'Uint32Array', 'Uint32Array');
+  const poses = arrayOf('poses', 'Float32Array', 'Float32Array');
   // With vertices, an empty array of groups is a mistake of the caller, which the core would take for "no groups".
   if (groups?.length === 0 && positions.length > 0) {
     throw new CagecastError(
@@ -65,7 +71,7 @@ export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'templ
       details,
     );
   }
-  return { positions, indices, uvs: uvs ?? noUvs, groups: groups ?? noGroups };
+  return { positions, indices, uvs: uvs ?? noFloats, groups: groups ?? noGroups, poses: poses ?? noFloats };
 }
 
 /** "1 vertex", "900 vertices". */

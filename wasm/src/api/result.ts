@@ -40,8 +40,9 @@ export interface Projection extends Projected {
   /** 1 per vertex: where its record in `hiders` begins; 0 if its recovery depends on no other segment. Empty if none does. */
   hiddenBy: Uint32Array<ArrayBuffer>;
   /**
-   * With `steps.recheck` and not `nearestVertex`, what hides occluded vertices. One record after the other, from 1 on: how many rays
-   * must hit nothing but culled segments, how many rays follow, and for each the number of segments that it hits, and the segments.
+   * With `steps.recheck` and not `nearestVertex`, what hides occluded vertices. One record after the other, from 1 on: where an earlier
+   * record begins that is enough as well, or 0; how many rays must hit nothing but culled segments, how many rays follow, and for each
+   * the number of segments that it hits, and the segments.
    */
   hiders: Uint32Array<ArrayBuffer>;
   /** 1 per hole and segment near it, with `steps.holes` and not `nearestVertex`; ordered by hole. */

@@ -31,7 +31,7 @@ export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & R
 }
 
 /**
- * Does the costly part of `transfer`: steps 1 to 4, 6, 7, 9, 10 and 12 of the method. The result does not depend on threshold,
+ * Does the costly part of `transfer`: steps 1 to 4, 6, 7, 9, 10, 12 and 13 of the method. The result does not depend on threshold,
  * floor or locks. Pass it to `classify`, once for each threshold that you want to try.
  * @param options  With `reuse`, an earlier projection is overwritten and returned.
  * @throws {CagecastError} as `transfer` does.

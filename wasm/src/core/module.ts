@@ -15,6 +15,7 @@ export interface CheckedMesh {
   indices: Uint32Array | Uint16Array | Uint8Array;
   uvs: Float32Array;
   groups: Uint32Array;
+  poses: Float32Array;
 }
 
 /** Locks and masks, as C++ takes them. */

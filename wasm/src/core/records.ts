@@ -17,6 +17,8 @@ export interface Timings {
   segments: number;
   /** Step 9: more rays from occluded points. */
   recheck: number;
+  /** Step 13: what is seen in poses of the target. */
+  motion: number;
   /** Step 10: uncovered points and the holes over them. */
   holes: number;
   /** Step 12: UVs per triangle corner. */

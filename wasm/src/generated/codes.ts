@@ -22,6 +22,13 @@ export type CoreCode =
   | 'nonFinitePosition'
   /** A UV is not a finite number; `at` is its position in `uvs`. */
   | 'nonFiniteUv'
+  /** There are not as many floats per pose as in `positions`; `at` is their number. */
+  | 'poseCountMismatch'
+  /**
+   * A coordinate of a pose is not a finite number, or too far from the origin (see `tooLarge`); `at` is its position in
+   * `poses`.
+   */
+  | 'badPose'
   /** Every triangle of the cage has zero area. */
   | 'noUsableCageTriangle'
   /**

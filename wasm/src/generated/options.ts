@@ -22,6 +22,11 @@ export interface ProjectStage {
    * share of the target's diagonal. Default: `0.0025`; in the preset `paper`: `0`.
    */
   pokeThrough?: number | undefined;
+  /**
+   * Whether what comes into view when the face moves (an eyelid, the inner side of a lip) is painted as well, judged by
+   * the target's poses. True or false. Default: `true`; in the preset `paper`: `false`.
+   */
+  motion?: boolean | undefined;
 }
 
 /** Options that `classify` reads. */
@@ -84,6 +89,7 @@ export const optionTable = {
   weldTolerance: { stage: 'project', isStep: false, kind: 'length' },
   occlusionReach: { stage: 'project', isStep: false, kind: 'length' },
   pokeThrough: { stage: 'project', isStep: false, kind: 'length' },
+  motion: { stage: 'project', isStep: false, kind: 'toggle' },
   minCovered: { stage: 'classify', isStep: false, kind: 'share' },
   projection: { stage: 'project', isStep: true, kind: 'choice', type: 'ProjectionMode' },
   interiorSamples: { stage: 'project', isStep: true, kind: 'toggle' },
@@ -139,6 +145,15 @@ export const optionFlags = [
     standard: 0.0025,
     paper: 0,
     text: 'How far a point may poke out of the cage, not at the border of a hole, and still count as covered.',
+  },
+  {
+    name: 'motion',
+    flag: '--motion',
+    kind: 'toggle',
+    range: [false, true],
+    standard: true,
+    paper: false,
+    text: "Whether what comes into view when the face moves (an eyelid, the inner side of a lip) is painted as well, judged by the target's poses.",
   },
   {
     name: 'minCovered',

@@ -1,47 +1,35 @@
 import type { CageModel, Template } from '../cages/types.js';
-import { faceHints, type MorphTarget } from '../parts/face-hints.js';
+import { nameOfGlass, transmissionExtension } from '../parts/drawn.js';
+import { faceHints } from '../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../parts/joints.js';
-import { type Expressions, vrmExpressions } from '../parts/morph-names.js';
 import { fromOrigin } from '../parts/origin.js';
 import { readTemplate } from '../parts/template-extras.js';
-import { type Extracted, type Part, parentsOf, skinOf, worldMatrices } from './extract-file.js';
+import { type Extracted, morphedParts, type Part, parentsOf, skinOf, worldMatrices } from './extract-file.js';
 import { InputError } from './input-error.js';
-import { decodeFloats } from './pieces.js';
 import type { GltfFile } from './read-gltf.js';
 
 /** What `cagecast/cages` needs of a file: its mesh, the names of its parts, its joints, and where its face is. */
 export function cageModelOf(file: GltfFile, { mesh, parts, origin }: Extracted): CageModel {
   const { positions, indices, groups } = mesh;
-  const expressions = vrmExpressions(file.json.extensions as VrmExtensions | undefined);
   return {
     positions,
     indices,
     groups,
-    parts: partNamesOf(parts),
+    parts: partNamesOf(file, parts),
     ...skeletonOf(file, { parts, origin }),
-    hints: faceHints(
-      parts.map((part) => ({
-        names: part.aliases,
-        matrix: part.matrix,
-        positions: positions.subarray(3 * part.firstVertex, 3 * (part.firstVertex + part.vertexCount)),
-        targets: targetsOf(file, part, expressions),
-      })),
-    ),
+    hints: faceHints(morphedParts(file, parts, positions)),
   };
 }
 
 /** The names of each part. */
-export const partNamesOf = (parts: readonly Part[]): string[][] =>
-  parts.map(({ aliases, name }) => (aliases.length > 0 ? aliases : [name]));
-
-function targetsOf({ json, accessors }: GltfFile, { node, mesh, primitive }: Part, expressions: Expressions) {
-  const { extras, primitives } = json.meshes![mesh]!;
-  const names = (extras as { targetNames?: unknown[] } | undefined)?.targetNames ?? [];
-  return (primitives[primitive]!.targets ?? []).map((target, t): MorphTarget => {
-    const deltas = accessors[target['POSITION'] ?? -1];
-    return { names: [names[t], ...expressions(node, mesh, t)], deltas: () => deltas && decodeFloats(deltas) };
+export const partNamesOf = ({ json: { meshes = [], materials = [] } }: GltfFile, parts: readonly Part[]): string[][] =>
+  parts.map(({ aliases, name, mesh, primitive }) => {
+    const material = materials[meshes[mesh]!.primitives[primitive]!.material ?? -1];
+    const alpha = material?.pbrMetallicRoughness?.baseColorFactor?.[3];
+    const transmission = material?.extensions?.[transmissionExtension] as { transmissionFactor?: number } | undefined;
+    const names = aliases.length > 0 ? aliases : [name];
+    return [...names, ...nameOfGlass(material?.alphaMode, alpha, transmission?.transmissionFactor)];
   });
-}
 
 /** A file as a template: its mesh, and what the extras of its nodes and meshes say. @throws {InputError} that names the file. */
 export function templateOf({ json, path }: GltfFile, { mesh, parts }: Extracted): Template {

@@ -12,7 +12,10 @@ import {
   type Look,
   visibilityExtension,
 } from '../parts/drawn.js';
+import type { VrmExtensions } from '../parts/joints.js';
+import { vrmExpressions } from '../parts/morph-names.js';
 import { kSceneOrigin, type Origin } from '../parts/origin.js';
+import { type MorphedPart, type MorphTarget, posesOf } from '../parts/poses.js';
 import { placeMeshes, type Skin } from '../parts/skin.js';
 import { topNodes } from './check-geometry.js';
 import { InputError, naming } from './input-error.js';
@@ -20,6 +23,7 @@ import { firstInstance, instancing } from './instancing.js';
 import { localMatrix } from './matrix.js';
 import { isOverlay } from './overlay.js';
 import {
+  decodeFloats,
   decodePositions,
   decodeTriangles,
   decodeUvs,
@@ -80,7 +84,14 @@ export function extract(file: GltfFile, origin: Origin = kSceneOrigin, whichCoun
     const near = moveTo(parts, origin);
     const mesh = joinPieces(parts);
     const uvs = readUvs(file, parts, mesh.positions.length / 3);
-    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts, leftOut, accessories, origin: near };
+    const poses = whichCount === 'cage' ? undefined : posesOf(morphedParts(file, parts, mesh.positions));
+    return {
+      mesh: { ...mesh, ...(uvs && { uvs }), ...(poses && { poses }) },
+      parts,
+      leftOut,
+      accessories,
+      origin: near,
+    };
   });
 }
 
@@ -130,6 +141,30 @@ export function partsBelow({ nodes = [] }: GLTF.IGLTF, parts: readonly Part[], i
   }
   return [...parts.keys()].filter((p) => below.has(parts[p]!.node));
 }
+
+/** Parts, and what moves them. @param positions  Of all of them, in the space of the model. */
+export function morphedParts(file: GltfFile, parts: readonly Part[], positions: Float32Array): MorphedPart[] {
+  const { json, accessors } = file;
+  const expressions = vrmExpressions(json.extensions as VrmExtensions | undefined);
+  return parts.map(({ node, mesh, primitive, aliases, matrix, firstVertex, vertexCount }) => {
+    const { extras, primitives, weights: ofMesh } = json.meshes![mesh]!;
+    const names = (extras as { targetNames?: unknown[] } | undefined)?.targetNames ?? [];
+    const weights = json.nodes![node]!.weights ?? ofMesh;
+    const targets = (primitives[primitive]!.targets ?? []).map((target, t): MorphTarget => {
+      const deltas = accessors[target['POSITION'] ?? -1];
+      return {
+        names: [names[t], ...expressions(node, mesh, t)],
+        deltas: () => deltas && decodeFloats(deltas),
+        shown: weights?.[t],
+      };
+    });
+    return { names: aliases, matrix, positions: ofPart(positions, firstVertex, vertexCount), targets };
+  });
+}
+
+/** The positions of a part. */
+const ofPart = (positions: Float32Array, firstVertex: number, vertexCount: number) =>
+  positions.subarray(3 * firstVertex, 3 * (firstVertex + vertexCount));
 
 function listParts(file: GltfFile): Part[] {
   const { meshes = [], nodes = [], materials = [] } = file.json;

@@ -54,6 +54,7 @@ export type FindingCode =
   | 'uvsInPieces'
   // The result.
   | 'nothingToPaint'
+  | 'faceBare'
   | 'holeUnexplained'
   | 'segmentInDoubt'
   | 'muchCulled'

@@ -6,6 +6,7 @@
 import { show } from '../core/error.js';
 import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../index.js';
 import { checkBackward } from './backward.js';
+import { checkFace, type Spots } from './face.js';
 import {
   type Finding,
   type FindingCode,
@@ -28,7 +29,20 @@ import { checkSegments, hasArea, type Segment, segmentsOf } from './segments.js'
 import { checkTopology, type Topology, topologyOf } from './topology.js';
 import { checkUvs, type UvLayout, uvLayoutOf } from './uv.js';
 
-export type { Finding, FindingCode, Hole, Inside, PartName, Place, Placement, Segment, Topology, UvLayout, Verdict };
+export type {
+  Finding,
+  FindingCode,
+  Hole,
+  Inside,
+  PartName,
+  Place,
+  Placement,
+  Segment,
+  Spots,
+  Topology,
+  UvLayout,
+  Verdict,
+};
 export { unfitFrom, usableFrom };
 
 /** Options of `inspect`: those of the transfer, and its result if there is one. */
@@ -37,6 +51,8 @@ export interface InspectOptions extends TransferOptions {
   result?: TransferResult | undefined;
   /** Names for ranges of the target's vertices. Default: the numbers of its groups. */
   parts?: readonly PartName[] | undefined;
+  /** Spots of the target, as its made or fitted cage has them: with the centres of both eyes, a bare face is a finding. */
+  landmarks?: Spots | undefined;
 }
 
 /** The result of `inspect`: plain data. */
@@ -107,7 +123,7 @@ const heaviestFirst = (findings: readonly Finding[]): Finding[] => [...findings]
 function outcomeOf(fn: string, cage: Mesh, target: Mesh, given: InspectOptions = {}) {
   if (typeof given !== 'object' || given === null)
     throw new CagecastError('badOption', fn, `options is ${show(given)}, not an object`);
-  const { result, parts, ...options } = given;
+  const { result, parts, landmarks, ...options } = given;
   if (result !== undefined) {
     checkArrays(fn, 'cage', cage, ['positions', 'indices', 'uvs']);
     checkArrays(fn, 'target', target, ['positions', 'indices']);
@@ -135,6 +151,7 @@ function outcomeOf(fn: string, cage: Mesh, target: Mesh, given: InspectOptions =
     ...checkPlacement(upright, placement),
     ...checkInside(inside),
     ...checkHoles(holes, segments),
+    ...checkFace(scene, landmarks),
     ...checkSegments(scene, segments, options.locks),
     ...checkHiding(scene, options),
     ...checkPieces(scene, options),

@@ -41,6 +41,8 @@ export interface LeftOut {
 
 /** The extension of glTF that switches nodes off, with all below them. */
 export const visibilityExtension = 'KHR_node_visibility';
+/** The extension of glTF for materials that light goes through. */
+export const transmissionExtension = 'KHR_materials_transmission';
 
 /** Names of cages, markers and collision shapes: of Roblox, of Unreal, and usual ones. Programs add numbers to them. */
 const kTechnical = /^(UCX|UBX|USP|UCP)_|_(OuterCage|InnerCage|Att|Collider)([._]?\d+)?$/i;
@@ -107,6 +109,14 @@ export function withBare(groups: readonly number[], locks: Locks | undefined): L
   return { ...locks, groups: { ...bare, ...locks?.groups } };
 }
 
+/** Alpha less than this, or transmission more than that, can be looked through. */
+const kAlpha = 0.85;
+const kTransmission = 0.3;
+
+/** What a part is called besides if its material can be looked through: corneas, visors, windows. Cages get holes over it. */
+export const nameOfGlass = (mode = 'OPAQUE', alpha = 1, transmission = 0): string[] =>
+  (mode === 'BLEND' && alpha < kAlpha) || transmission > kTransmission ? ['glass'] : [];
+
 /** Whether the alpha of a material leaves nothing of a part, by the modes of glTF. */
 export const isClear = (mode = 'OPAQUE', alpha = 1, cutoff = 0.5): boolean =>
   mode === 'BLEND' ? alpha <= 0 : mode === 'MASK' && alpha < cutoff;
@@ -162,7 +172,7 @@ const around = ([low, high]: Box, [otherLow, otherHigh]: Box): Box => [
   high.map((x, k) => Math.max(x, otherHigh[k]!)),
 ];
 
-/** Whether a part is a ground under, or a wall beside, what the others are: flat, outside, and wider. As `Foreground` in C++. */
+/** Whether a part is a ground under, or a wall beside, what the others are: flat, outside, wider, and not above their foot. As `Foreground` in C++. */
 function isBackdrop(box: Box, others: Box): boolean {
   const [[low, high], [otherLow, otherHigh]] = [box, others];
   const [{ size }, { size: otherSize }] = [sizeOf(box), sizeOf(others)];
@@ -170,7 +180,8 @@ function isBackdrop(box: Box, others: Box): boolean {
     const thick = kThick * otherSize[axis]!;
     const isOutside = high[axis]! <= otherLow[axis]! + thick || (axis !== 1 && low[axis]! >= otherHigh[axis]! - thick);
     const isWider = [0, 1, 2].every((k) => k === axis || size[k]! > kBeyond * otherSize[k]!);
-    return size[axis]! <= thick && isOutside && isWider;
+    const isStanding = axis === 1 || low[1]! <= otherLow[1]! + kThick * otherSize[1]!;
+    return size[axis]! <= thick && isOutside && isWider && isStanding;
   });
 }
 

@@ -1,23 +1,6 @@
 import type { Vector } from './affine.js';
 import { type FaceMotion, mayHaveLips, motionOf } from './morph-names.js';
-
-/** A part of a model, and what moves it. */
-export interface MorphedPart {
-  /** All that it is called. */
-  names: readonly string[];
-  /** From its own space to that of the model, column by column. */
-  matrix: ArrayLike<number>;
-  /** In the space of the model, 3 numbers per vertex. */
-  positions: Float32Array;
-  targets: readonly MorphTarget[];
-}
-
-export interface MorphTarget {
-  /** Its own name, if it has one, and those of the expressions that use it. */
-  names: readonly unknown[];
-  /** 3 numbers per vertex, in the space of the part; none if it moves none. */
-  deltas(): ArrayLike<number> | null | undefined;
-}
+import { type MorphedPart, movesOf } from './poses.js';
 
 /** Where vertices are, and where a motion moves them: 3 numbers each. */
 interface Moving {
@@ -70,13 +53,10 @@ export function faceHints(parts: readonly MorphedPart[]): Record<string, Vector>
   return Object.fromEntries(Object.entries(hints).filter(([, place]) => place.every(Number.isFinite)));
 }
 
-function movingOf({ positions, matrix: m }: MorphedPart, deltas: ArrayLike<number>): Moving {
-  const by = new Float32Array(positions.length);
-  for (let i = 0; i < by.length; i += 3)
-    for (let k = 0; k < 3; ++k)
-      by[i + k] = m[k]! * deltas[i]! + m[4 + k]! * deltas[i + 1]! + m[8 + k]! * deltas[i + 2]!;
-  return { positions, by };
-}
+const movingOf = (part: MorphedPart, deltas: ArrayLike<number>): Moving => ({
+  positions: part.positions,
+  by: movesOf(part, deltas),
+});
 
 /** The vertices that move at least so far. */
 function moved(motion: Motion, least: number): Moved[] {

@@ -23,6 +23,35 @@ const plain = (name: string): string =>
     .toLowerCase()
     .replace(/[^\p{L}\p{N}]/gu, '');
 
+/** A pose that a face is seen in, and how its morph targets are called, as `plain` has it: what is best comes first. */
+const kPoses: readonly (readonly RegExp[])[] = [
+  [/blink/, /eyes?close|closeeye/, /まばたき|瞬き/, /wink|ウィンク|ウインク/],
+  [/jawopen/, /mouthopen|openmouth/, /aa$|fclmtha$|^[aあ]$/],
+  [/mouthsmile|fclmth(joy|fun)/, /^(?!.*eye).*smile/, /^(joy|happy|fun)$|にっこり/],
+];
+/** A target of one side only. A Japanese wink without a side is one of the left eye. */
+const kLeft = /left|左|l$|^(ウィンク|ウインク)2?$/;
+const kRight = /right|右|r$/;
+
+/**
+ * The morph targets that make the poses of a face: a blink of both eyes, an open mouth, a smile.
+ * @param targets  All targets of a model, with their names. Those of one name are one, on several parts.
+ * @returns for each pose that the names know, the numbers of its targets.
+ */
+export function poseTargets(targets: readonly (readonly unknown[])[]): number[][] {
+  const names = targets.map((all) => all.filter((name) => typeof name === 'string').map(plain));
+  const first = (fits: (name: string) => boolean) => names.flat().find(fits);
+  const find = (pattern: RegExp) => {
+    const isOf = (side: RegExp) => (name: string) => pattern.test(name) && side.test(name);
+    const both = first((name) => pattern.test(name) && !kLeft.test(name) && !kRight.test(name));
+    return (both === undefined ? [kLeft, kRight].map((side) => first(isOf(side))) : [both]).filter((one) => one);
+  };
+  return kPoses.flatMap((patterns) => {
+    const chosen = patterns.map(find).find((found) => found.length > 0);
+    return chosen ? [[...names.keys()].filter((t) => names[t]!.some((name) => chosen.includes(name)))] : [];
+  });
+}
+
 /** What a morph target of one of some names does to a face; `undefined` if none says so. */
 export function motionOf(names: readonly unknown[]): FaceMotion | undefined {
   const all = names.filter((name) => typeof name === 'string').map(plain);

@@ -69,13 +69,18 @@ export function moveApart<T extends Mesh, C extends Mesh>(
   const moves = boxes.map(({ low, high }, c) => places[c]!.map((x, k) => x - (low[k]! + high[k]!) / 2));
   const positions = target.mesh.positions.slice();
   target.parts.forEach((part, p) => move(positions, moves[own[p]!]!, part));
+  const poses = target.mesh.poses?.slice();
+  for (let i = 0; poses && i < poses.length; i += positions.length) {
+    const pose = poses.subarray(i, i + positions.length);
+    target.parts.forEach((part, p) => move(pose, moves[own[p]!]!, part));
+  }
   const around = cage.mesh.positions.slice();
   cage.parts.forEach((part, c) => move(around, moves[c]!, part));
   for (const lid of lids) move(lid.positions, moves[lid.part]!);
   const count = cage.mesh.indices.length / 3;
   const besides = lids.flatMap(({ besides }) => besides);
   return {
-    target: { ...target.mesh, positions },
+    target: { ...target.mesh, positions, ...(poses && { poses }) },
     cage: { ...cage.mesh, ...joined(cage.mesh, around, lids) },
     mend: ({ triangles }) => {
       for (const [v, t] of triangles.entries()) if (t >= count) triangles[v] = besides[t - count]!;

@@ -3,7 +3,8 @@ import { type Image, maskTriangles, maskVertices } from '../bake/index.js';
 import type { Masks } from '../index.js';
 import { localIndices } from '../parts/prepare.js';
 import { checkObject } from './apply/apply-options.js';
-import { extract, type PartsOption, valuesOf } from './apply/extract-scene.js';
+import { valuesOf } from './apply/attributes.js';
+import { extract, type PartsOption } from './apply/extract-scene.js';
 import { wrong } from './errors.js';
 
 /** Where the masks of a model come from. */

@@ -18,7 +18,7 @@ import { defaultOrbit, type Orbit, Stage } from './stage.js';
 export type Check = Pick<Inspection, 'verdict' | 'findings'>;
 
 /** Attributes of which a change means another transfer. */
-const kOfTransfer = ['target', 'cage', 'preset', 'threshold', 'borders', 'feather'];
+const kOfTransfer = ['target', 'cage', 'preset', 'threshold', 'borders', 'motion', 'feather'];
 
 const kLost =
   'cagecast-viewer: the browser has stopped this 3D view, as the page has more of them than it allows (16 in Chromium) or the graphics were reset';
@@ -52,7 +52,7 @@ interface Shown {
  *
  * - `target`, `cage`: addresses of a glTF or GLB file each. Without a cage the target is shown bare.
  * - `paint`: the address of a picture in the cage's UVs.
- * - `opacity`, `feather`, `preset`, `threshold`, `borders`: as the options of `applyTransfer`.
+ * - `opacity`, `feather`, `preset`, `threshold`, `borders`, `motion`: as the options of `applyTransfer`.
  * - `camera-orbit`: degrees from the front and from above, and the distance as a share of that which shows all: `20deg 80deg 100%`.
  * - `alt`: what assistive technology says. `poster`: the address of a picture to show until the model is there.
  * - `check`: inspects the cage too, which takes up to 15 times as long as a transfer, on the page's thread.
@@ -354,12 +354,19 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       return Number(given);
     };
     const text = <T extends string>(name: string) => (this.getAttribute(name) as T | null) ?? undefined;
+    const whether = (name: string) => {
+      const given = text(name);
+      if (given !== undefined && given !== 'true' && given !== 'false')
+        throw new CagecastError('badOption', 'cagecast-viewer', `${name} is "${given}", not true or false`);
+      return given === undefined ? undefined : given === 'true';
+    };
     const all = {
       opacity: number('opacity'),
       feather: number('feather'),
       threshold: number('threshold'),
       preset: text<Preset>('preset'),
       borders: text<'cut' | 'triangle'>('borders'),
+      motion: whether('motion'),
     };
     return Object.fromEntries(Object.entries(all).filter(([, value]) => value !== undefined));
   }

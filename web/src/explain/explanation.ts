@@ -182,12 +182,13 @@ function rayStep({ shown }: Facts, { outcome, cage, model, outside }: Path, diag
 /** The segments that hide a vertex, besides its own. */
 function hidersOf({ hiddenBy, hiders }: Projection, vertex: number): number[] {
   const segments = new Set<number>();
-  let at = hiddenBy[vertex] ?? 0;
-  if (at === 0) return [];
-  for (let rays = hiders[++at]!; rays > 0; --rays) {
-    const end = at + 2 + hiders[at + 1]!;
-    for (const segment of hiders.subarray(at + 2, end)) segments.add(segment);
-    at = end - 1;
+  for (let record = hiddenBy[vertex] ?? 0; record !== 0; record = hiders[record]!) {
+    let at = record + 3;
+    for (let rays = hiders[record + 2]!; rays > 0; --rays) {
+      const end = at + 1 + hiders[at]!;
+      for (const segment of hiders.subarray(at + 1, end)) segments.add(segment);
+      at = end;
+    }
   }
   return [...segments];
 }
@@ -207,7 +208,9 @@ function recoveryStep(facts: Facts, vertex: number): Explanation['steps'] {
     ? 'It would be recovered, but its part is culled.'
     : isHidden && projection.hiddenBy[vertex]
       ? isCosmetic
-        ? 'What hides it stays bare itself and hides nothing, so it is recovered.'
+        ? hidersOf(projection, vertex).length === 0
+          ? 'It comes into view when the face moves, so it is recovered.'
+          : 'What hides it stays bare itself and hides nothing, so it is recovered.'
         : painted.length > 0
           ? `It is hidden by ${nameOf(facts, painted[0]!)}, which is painted.`
           : 'What hides it stays bare itself, but it lies under a hole of the cage that no unpainted part explains.'
@@ -256,7 +259,9 @@ function brief(
       if (locks[part.segment] === 'always') return `you chose to paint ${part.name} anyway`;
       if (shown.projection.visibility[vertex] === Visibility.Occluded)
         return shown.projection.hiddenBy[vertex]
-          ? 'only what stays bare itself lies over it'
+          ? hidersOf(shown.projection, vertex).length === 0
+            ? 'it comes into view when the face moves'
+            : 'only what stays bare itself lies over it'
           : 'it seemed hidden, but rays in other directions reach the cage';
       if (shown.projection.visibility[vertex] === Visibility.Uncovered)
         return 'it seemed uncovered, but the rule for holes recovers it';

@@ -5,6 +5,7 @@ import { make } from '../platform/make';
 import { element } from '../platform/page';
 import type { CageMaker } from '../state/cage-maker';
 import { namesLeftOut, withoutParts } from '../state/left-out';
+import { madeOf } from '../state/made-cages';
 import type { Session } from '../state/session';
 import { Superseded } from '../state/transfers';
 import { type KnownVerdict, paintableShare, type Remedy, regionOf, remedyFor, takeBacks } from '../state/verdict';
@@ -94,7 +95,8 @@ export class FitPanel {
         firstVertex,
         vertexCount,
       }));
-      const options = { preset, threshold, weldTolerance, locks, parts };
+      const landmarks = madeOf(shown.cage.files[0]!)?.fitting?.used;
+      const options = { preset, threshold, weldTolerance, locks, parts, landmarks };
       this.#write(await this.#client.ask('inspect', cage, withoutParts(target, projection), options));
     } catch (error) {
       if (error instanceof Superseded) return;

@@ -15,13 +15,14 @@ const kSteps = [
   'covered',
   'segments',
   'recheck',
+  'motion',
   'holes',
   'seams',
   'classify',
 ] as const;
 /** A first run that took longer by this factor is mentioned. */
 const kMuchLonger = 1.5;
-const kBeyondPaper: readonly string[] = ['recheck', 'holes', 'seams'];
+const kBeyondPaper: readonly string[] = ['recheck', 'motion', 'holes', 'seams'];
 
 /** Shows the number of vertices per zone, and the timings. */
 export function showResults(session: Session): void {

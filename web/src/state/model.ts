@@ -17,6 +17,8 @@ export interface ExtractedMesh {
   positions: Float32Array;
   /** The positions in the file, if `positions` may have been deformed. */
   rest?: Float32Array;
+  /** Where the vertices are in poses of the face, as `poses` of a `Mesh`. */
+  poses?: Float32Array | undefined;
   /** 3 per triangle, counter-clockwise seen from outside. */
   indices: Uint32Array;
   /** 2 per vertex: where it is in its base colour texture; without one, the first set. Absent unless every primitive has UVs. */

@@ -1,4 +1,4 @@
-import { MathUtils, type Object3D, type PerspectiveCamera, Spherical, Vector3 } from 'three';
+import { type Bone, MathUtils, type Object3D, type PerspectiveCamera, Spherical, Vector3 } from 'three';
 import type { Model } from '../state/model';
 import type { Look } from './overlay/looks';
 
@@ -47,9 +47,44 @@ export function freePartOf(canvas: HTMLElement): FreePart {
   };
 }
 
-/** Where a model looks: radians around it. Figures of VRM 0 look along -z, all others along +z. */
-export const frontOf = ({ loaded }: Pick<Model, 'loaded'>): number =>
-  loaded.parser?.json?.extensions?.VRM ? Math.PI : 0;
+/** Where a model looks: radians around it, 0 along +z. Figures of VRM 0 look along -z; others as the sides of their bones say. */
+export function frontOf({ loaded }: Pick<Model, 'loaded'>): number {
+  const known = fronts.get(loaded);
+  if (known !== undefined) return known;
+  const front = loaded.parser?.json?.extensions?.VRM ? Math.PI : frontByBones(loaded.scene);
+  fronts.set(loaded, front);
+  return front;
+}
+
+const fronts = new WeakMap<object, number>();
+
+/** Figures are turned by less than this, in radians, by how they stand. */
+const kStraight = Math.PI / 4;
+
+/** The front by all bones of which there is one on the left and one on the right; 0 if there are none, or it is about that. */
+function frontByBones(scene: Object3D): number {
+  const bones = new Map<string, Vector3>();
+  scene.updateMatrixWorld();
+  scene.traverse((object) => {
+    const name: unknown = object.userData['name'] ?? object.name; // GLTFLoader takes signs out of names
+    if ((object as Bone).isBone)
+      bones.set(String(name).toLowerCase(), new Vector3().setFromMatrixPosition(object.matrixWorld));
+  });
+  const left = new Vector3();
+  for (const [name, place] of bones) {
+    const other = bones.get(mirrored(name));
+    if (other) left.add(place).sub(other);
+  }
+  const front = Math.atan2(-left.z, left.x);
+  return Math.hypot(left.x, left.z) > 0 && Math.abs(front) > kStraight ? front : 0;
+}
+
+/** The name of what is on the right, if one is on the left: "arm_r" of "arm_l". */
+const mirrored = (name: string): string =>
+  name
+    .replace('left', 'right')
+    .replace('左', '右')
+    .replace(/(^|[\s_.-])l(?=[\s_.-]|$)/, '$1r');
 
 /** The width of what a model may fill. */
 const widthOf = ({ width }: FreePart): number => Math.max(width / 2, width - 2 * kTools);

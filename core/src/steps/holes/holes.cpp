@@ -23,6 +23,12 @@ struct Share {
   std::int64_t exposed, uncovered, hidden;
 };
 
+/// The points at loops, loop by loop.
+struct LoopPoints {
+  std::span<const std::uint32_t> points;
+  std::span<const std::uint32_t> ends;  ///< 1 per loop: where its points end.
+};
+
 /// Whether the ray of an occluded point surely misses the cage.
 bool missesCage(const PointData& data, std::uint32_t point) {
   return data.cageDistances != nullptr && data.cageDistances[point] == std::numeric_limits<double>::infinity();
@@ -34,6 +40,11 @@ bool takesPart(const Scene& scene, const PointData& data, const Array<SegmentSta
   if (data.visibility[point] != Visibility::occluded) return data.visibility[point] != Visibility::beyond;
   return std::isfinite(scene.options.occlusionReach) && missesCage(data, point) &&
          stats[data.segments[point]].coveredArea > 0;
+}
+
+/// Whether an occluded point counts as exposed all the same, as it is bare in a pose.
+bool isBareInPose(const PointData& data, std::uint32_t point) {
+  return data.isBareInPose != nullptr && data.isBareInPose[point];
 }
 
 /// Whether a point would be uncovered if what hides it were culled. One that step 9 recovers is seen under the cage.
@@ -55,12 +66,11 @@ std::uint32_t loopOfPoint(const Scene& scene, const PointData& data, std::uint32
 }
 
 /// Adds up, loop by loop, the areas that each segment has there.
-/// @param atLoops     The points at loops, loop by loop.
-/// @param ends        1 per loop: where its points end.
 /// @param[out] found  Room for as many as there are points.
 /// @return How many there are.
-std::uint32_t sumShares(const Scene& scene, const PointData& data, std::span<const std::uint32_t> atLoops,
-                        std::span<const std::uint32_t> ends, std::span<Share> found) {
+std::uint32_t sumShares(const Scene& scene, const PointData& data, const Array<SegmentStats>& stats,
+                        const LoopPoints& atLoops, std::span<Share> found) {
+  const auto& [points, ends] = atLoops;
   const Arena::Scope scope(scene.arena);
   auto* shareOf = scene.arena.allocate<std::uint32_t>(found.size());  // By segment.
   if (scene.arena.failed()) return 0;
@@ -69,7 +79,7 @@ std::uint32_t sumShares(const Scene& scene, const PointData& data, std::span<con
   for (std::uint32_t loop = 0, i = 0; loop < ends.size(); ++loop) {
     const std::uint32_t first = count;
     for (; i < ends[loop]; ++i) {
-      const std::uint32_t p = atLoops[i];
+      const std::uint32_t p = points[i];
       const std::uint32_t s = data.segments[p];
       // A share found at an earlier loop, or never, is not this one's.
       if (shareOf[s] < first || shareOf[s] >= count || found[shareOf[s]].segment != s) {
@@ -77,7 +87,9 @@ std::uint32_t sumShares(const Scene& scene, const PointData& data, std::span<con
         found[count++] = {loop, s, 0, 0, 0};
       }
       Share& share = found[shareOf[s]];
-      (data.visibility[p] == Visibility::occluded ? share.hidden : share.exposed) += data.areas[p];
+      const bool isHidden = data.visibility[p] == Visibility::occluded && takesPart(scene, data, stats, p);
+      if (isHidden) share.hidden += data.areas[p];
+      if (data.visibility[p] != Visibility::occluded || isBareInPose(data, p)) share.exposed += data.areas[p];
       if (data.visibility[p] == Visibility::uncovered) share.uncovered += data.areas[p];
     }
   }
@@ -103,7 +115,7 @@ void assignHoles(const Scene& scene, PointData& data, const Array<SegmentStats>&
     std::uint32_t recovery = Recovery::never;
     const bool isUncovered = data.visibility[i] == Visibility::uncovered || isUncoveredIfFree(data, i);
     if (isUncovered) recovery = Recovery::always;
-    const bool isCounted = takesPart(scene, data, stats, i);
+    const bool isCounted = takesPart(scene, data, stats, i) || isBareInPose(data, i);
     loopOf[i] = isCounted || isUncovered ? loopOfPoint(scene, data, i, recovery) : kNone;
     if (isUncovered) data.recovery[i] = recovery;
     if (!isCounted) loopOf[i] = kNone;
@@ -115,7 +127,7 @@ void assignHoles(const Scene& scene, PointData& data, const Array<SegmentStats>&
   for (std::uint32_t i = 0; i < pointCount; ++i) {
     if (loopOf[i] != kNone) atLoops[ends[loopOf[i]]++] = i;
   }
-  const std::uint32_t count = sumShares(scene, data, {atLoops, total}, {ends, loopCount}, {found, pointCount});
+  const std::uint32_t count = sumShares(scene, data, stats, {{atLoops, total}, {ends, loopCount}}, {found, pointCount});
   if (arena.failed() || !shares.reset(count)) return arena.fail();
 
   const AreaUnit unit(data.points.triangleCount);

@@ -111,7 +111,7 @@ void findFacing(const Scene& scene, const PointData& data, std::span<const bool>
   const Arena::Scope scope(arena);
   // Area whose normals agree with the cage's, less the area whose normals oppose them.
   auto* agreement = arena.allocate<std::int64_t>(segmentCount);
-  NormalSums sums(AreaUnit(points.triangleCount), data, out.normals, arena);
+  NormalSums sums(points.areaUnit(), data, out.normals, arena);
   if (arena.failed()) return;
   std::fill(out.normals, out.normals + points.count, Vec3{0, 0, 0});
   std::fill(out.isTwoSided, out.isTwoSided + points.count, false);

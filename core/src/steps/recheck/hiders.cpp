@@ -25,6 +25,7 @@ bool HiderRecords::isWithin(std::size_t one, std::size_t other) const noexcept {
 std::uint32_t HiderRecords::add(std::uint32_t enough, std::span<const std::uint32_t> rays,
                                 const SegmentHits& hits) noexcept {
   const std::size_t start = words_.size();
+  words_.add(0);
   words_.add(enough);
   words_.add(0);
   // Rays that hit the fewest come first; of equals the first, on every platform.
@@ -42,13 +43,30 @@ std::uint32_t HiderRecords::add(std::uint32_t enough, std::span<const std::uint3
     std::sort(&words_[at] + 1, &words_[at] + 1 + words_[at]);
     // If it is free, enough others are.
     std::uint32_t within = 0;
-    for (std::size_t other = start + 2; other < at; other += 1 + words_[other]) within += isWithin(other, at);
+    for (std::size_t other = start + kHead; other < at; other += 1 + words_[other]) within += isWithin(other, at);
     if (within >= enough) {
       words_.truncate(at);
     } else {
-      ++words_[start + 1];
+      ++words_[start + 2];
     }
   }
+  return shared(start);
+}
+
+std::uint32_t HiderRecords::either(std::uint32_t earlier, std::uint32_t record) noexcept {
+  if (earlier == 0 || isFree(record)) return record;
+  if (earlier == record || isFree(earlier)) return earlier;
+  const std::size_t start = words_.size();
+  words_.add(earlier);
+  const std::size_t end = endOf(record);
+  for (std::size_t i = record + std::size_t{1}; i < end; ++i) {
+    const std::uint32_t word = words_[i];  // A copy, as the list may grow.
+    words_.add(word);
+  }
+  return words_.failed() ? 0 : shared(start);
+}
+
+std::uint32_t HiderRecords::shared(std::size_t start) noexcept {
   const std::size_t size = words_.size() - start;
   std::uint64_t hash = size;
   for (std::size_t i = start; i < words_.size(); ++i) hash = HashIndex::mix(hash, words_[i]);
@@ -59,6 +77,20 @@ std::uint32_t HiderRecords::add(std::uint32_t enough, std::span<const std::uint3
     recent = static_cast<std::uint32_t>(start);
   }
   return recent;
+}
+
+std::size_t HiderRecords::endOf(std::size_t record) const noexcept {
+  std::size_t at = record + kHead;
+  for (std::uint32_t rays = words_[record + 2]; rays > 0; --rays) at += 1 + words_[at];
+  return at;
+}
+
+bool HiderRecords::isFree(std::size_t record) const noexcept {
+  // Rays that hit the fewest come first.
+  std::uint32_t missing = words_[record + 1];
+  std::size_t at = record + kHead;
+  for (std::uint32_t rays = words_[record + 2]; rays > 0 && missing > 0 && words_[at] == 0; --rays, ++at) --missing;
+  return missing == 0;
 }
 
 void findHiders(const Scene& scene, PointData& data, const Array<SegmentStats>& stats, HiderRecords& records) noexcept {

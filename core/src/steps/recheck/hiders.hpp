@@ -22,6 +22,13 @@ class HiderRecords {
   /// @return Where it begins.
   std::uint32_t add(std::uint32_t enough, std::span<const std::uint32_t> rays, const SegmentHits& hits) noexcept;
 
+  /// A record that is free if one of two is; one of them if that is enough.
+  /// @param earlier  0: none.
+  /// @param record   Of `add`.
+  std::uint32_t either(std::uint32_t earlier, std::uint32_t record) noexcept;
+  /// Whether a record needs no segment to be culled: nothing hides its point.
+  [[nodiscard]] bool isFree(std::size_t record) const noexcept;
+
   /// As many as step 9 sends from a point.
   static constexpr std::size_t kMostRays = 12;
 
@@ -33,6 +40,12 @@ class HiderRecords {
 
  private:
   static constexpr std::size_t kSlots = 1024;
+  /// What comes before the rays of a record: another record, how many are enough, how many there are.
+  static constexpr std::size_t kHead = 3;
+
+  /// The record that was added last, or an equal one among those of late.
+  std::uint32_t shared(std::size_t start) noexcept;
+  [[nodiscard]] std::size_t endOf(std::size_t record) const noexcept;
 
   /// Whether what one ray hits is hit by another as well. Both are given by their places in `words_`.
   [[nodiscard]] bool isWithin(std::size_t one, std::size_t other) const noexcept;

@@ -218,6 +218,8 @@ const kCertain = 0.7;
 interface FitNotes {
   lines: Line[];
   advice?: Line;
+  /** What to do instead if the cage does not fit. */
+  otherwise?: Line;
   report: object;
 }
 
@@ -242,7 +244,8 @@ function describeFit({ used, confidence, missing, guessed }: Fit, given: Landmar
   const ask = guessed.length > 0 ? guessed.slice(0, kMostAsked).join(', ') : 'these';
   const isAsking = doubtful.length + missing.length + guessed.length > 0;
   const advice = isAsking && `give ${ask} for a better fit: --landmarks L.json`;
-  return { lines, advice, report: { landmarks: { used, confidence, missing, guessed } } };
+  const otherwise = 'a texture for this model alone needs no template: cagecast make TARGET -o CAGE';
+  return { lines, advice, otherwise, report: { landmarks: { used, confidence, missing, guessed } } };
 }
 
 /** Said where findings advise flags that these commands do not have, or have for something else. */
@@ -272,6 +275,7 @@ async function finish(
     ...leftOutLines(report.target),
     verdict !== 'good' && notes.advice,
     ...conclusion,
+    verdict === 'unfit' && notes.otherwise,
     conclusion.some((line) => /--(keep|exclude) "/.test(line)) && kOtherFlags,
     html && `wrote ${html}`,
   ];

@@ -81,15 +81,25 @@ const kCageFileFlags = [
   ),
 ];
 
+/** A flag of true or false. */
+function whether(flags: string, help: string): Option {
+  const option = new Option(flags, help).choices(['true', 'false']);
+  const checked = option.parseArg!;
+  return option.argParser((word: string, before: unknown) => checked(word, before as never) === ('true' as unknown));
+}
+
 /** A flag for each option of core/include/cagecast/options.def. Words in commander's help begin in lower case. */
 const optionOf = (option: (typeof optionFlags)[number]): Option => {
   const { flag, kind, range, standard, paper, text } = option;
   const limits = range[1] === Infinity ? `at least ${range[0]}` : `${range[0]} to ${range[1]}`;
   const help = [
     `${text[0]!.toLowerCase()}${text.slice(1).replace(/\.$/, '')}`,
-    ...(kind === 'choice' ? [] : [kind === 'length' ? `a share of the target's diagonal, ${limits}` : limits]),
+    ...(kind === 'choice' || kind === 'toggle'
+      ? []
+      : [kind === 'length' ? `a share of the target's diagonal, ${limits}` : limits]),
     `default: ${standard}${standard === paper ? '' : `, or ${paper} with --preset paper`}`,
   ].join('; ');
+  if (kind === 'toggle') return whether(`${flag} <WHETHER>`, help);
   return kind === 'choice'
     ? new Option(`${flag} <HOW>`, help).choices(range)
     : parsed(`${flag} <SHARE>`, help, numberWithin(range[0], range[1]));

@@ -77,7 +77,7 @@ export function settingsOf(given: Json, folder: string): Settings {
   }
   take('maskColors', holdsColors, colorAttributes);
   for (const { name, kind, range } of optionFlags) {
-    if (kind === 'choice') takeChoice(name, range);
+    if (kind === 'choice' || kind === 'toggle') takeChoice(name, range);
     else {
       const [least, most] = range as readonly [number, number];
       const isWithin = (value: unknown) => typeof value === 'number' && value >= least && value <= most;

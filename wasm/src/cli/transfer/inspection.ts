@@ -1,3 +1,5 @@
+import type { Landmarks } from '../../cages/types.js';
+import { templateOf } from '../../gltf/cage-file.js';
 import { percent } from '../../inspect/finding.js';
 import { vertexAreas } from '../../inspect/geometry.js';
 import {
@@ -15,6 +17,7 @@ import { integer, short } from '../model/text.js';
 import { boundsAround, type UvBounds } from '../model/uv-bounds.js';
 import type { PerZone } from '../model/zones.js';
 import { withinBounds } from './cage-area.js';
+import type { ReadModel } from './models.js';
 import {
   type CageReport,
   cageReport,
@@ -55,7 +58,7 @@ export function inspectionReport(
   const areas = perZone(result.zones, vertexAreas(mesh));
   const total = areas.cosmetic + areas.occluded + areas.uncovered + areas.culled || 1;
   return {
-    ...inspect(cage.extracted.mesh, mesh, { ...options, result, parts }),
+    ...inspect(cage.extracted.mesh, mesh, { ...options, result, parts, landmarks: landmarksIn(cage) }),
     versions: versions(),
     target: {
       ...targetReport(command.target, run),
@@ -71,6 +74,15 @@ export function inspectionReport(
       culled: areas.culled / total,
     },
   };
+}
+
+/** The landmarks in a cage's extras: of the model that it was made for or fitted to. None if they are damaged. */
+function landmarksIn({ file, extracted }: ReadModel): Landmarks {
+  try {
+    return templateOf(file, extracted).landmarks;
+  } catch {
+    return {};
+  }
 }
 
 const kConclusions: Record<Verdict, string> = {

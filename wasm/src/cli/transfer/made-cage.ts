@@ -25,9 +25,9 @@ export function landmarksOf(model: ReadModel, io: Io): Promise<Landmarks> {
 }
 
 /** Whether each part of a model is one that a cage is made without, unless other names are given. */
-export async function partsLeftOut({ extracted }: ReadModel): Promise<boolean[]> {
+export async function partsLeftOut({ file, extracted }: ReadModel): Promise<boolean[]> {
   await init();
-  return matchingParts(partNamesOf(extracted.parts), defaultExclusions());
+  return matchingParts(partNamesOf(file, extracted.parts), defaultExclusions());
 }
 
 /**

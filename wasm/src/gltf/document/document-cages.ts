@@ -1,15 +1,20 @@
-import type { Document, Node } from '@gltf-transform/core';
+import type { Document, ExtensionProperty, Node } from '@gltf-transform/core';
 import * as cages from '../../cages/index.js';
 import { CagecastError, type Mesh } from '../../index.js';
-import { faceHints, type MorphTarget } from '../../parts/face-hints.js';
+import { nameOfGlass, transmissionExtension } from '../../parts/drawn.js';
+import { faceHints } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
-import { type Expressions, vrmExpressions } from '../../parts/morph-names.js';
+import { vrmExpressions } from '../../parts/morph-names.js';
 import { readTemplate } from '../../parts/template-extras.js';
 import { InputError } from '../input-error.js';
-import { decodeFloats } from '../pieces.js';
 import { createAccessor } from './add-transfer.js';
-import { type DocumentPart, extractDocument, jointMatrix, skinOf } from './extract-document.js';
+import { type DocumentPart, extractDocument, jointMatrix, morphedParts, skinOf } from './extract-document.js';
 import { isDocument, read, wrong } from './transfer-document.js';
+
+/** KHR_materials_transmission, as glTF-Transform has it, whose extensions are no dependency. */
+interface Transmission extends ExtensionProperty {
+  getTransmissionFactor(): number;
+}
 
 /** What glTF-Transform does not keep of a file. */
 export interface FileOptions {
@@ -29,16 +34,14 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
     positions,
     indices,
     groups,
-    parts: parts.map(({ aliases, name }) => (aliases.length > 0 ? aliases : [name])),
+    parts: parts.map(({ aliases, name, primitive }) => {
+      const material = primitive.getMaterial();
+      const transmission = material?.getExtension(transmissionExtension) as Transmission | null | undefined;
+      const glass = nameOfGlass(material?.getAlphaMode(), material?.getAlpha(), transmission?.getTransmissionFactor());
+      return [...(aliases.length > 0 ? aliases : [name]), ...glass];
+    }),
     ...skeletonOf(document, parts, vrmBones(extensions)),
-    hints: faceHints(
-      parts.map((part) => ({
-        names: part.aliases,
-        matrix: part.matrix,
-        positions: positions.subarray(3 * part.firstVertex, 3 * (part.firstVertex + part.vertexCount)),
-        targets: targetsOf(document, part, vrmExpressions(extensions)),
-      })),
-    ),
+    hints: faceHints(morphedParts(document, parts, positions, vrmExpressions(extensions))),
   };
 }
 
@@ -138,19 +141,6 @@ export function addCage<D extends Document>(
     .setExtras({ landmarks, holes, kind, ...(regions && { regions }) } as object as Record<string, unknown>);
   (root.getDefaultScene() ?? root.listScenes()[0] ?? document.createScene()).addChild(node);
   return { document, node };
-}
-
-function targetsOf(document: Document, { node, mesh, primitive }: DocumentPart, expressions: Expressions) {
-  const root = document.getRoot();
-  const place = [root.listNodes().indexOf(node), root.listMeshes().indexOf(mesh)] as const;
-  const names = (mesh.getExtras()['targetNames'] ?? []) as unknown[];
-  return primitive.listTargets().map((target, t): MorphTarget => {
-    const deltas = target.getAttribute('POSITION');
-    return {
-      names: [target.getName() || names[t], ...expressions(...place, t)],
-      deltas: () => deltas && decodeFloats(deltas),
-    };
-  });
 }
 
 function skeletonOf(document: Document, parts: readonly DocumentPart[], bones: Map<number, string>) {

@@ -12,12 +12,15 @@ import type { Vector } from '../../inspect/geometry.js';
 import { identity, type Matrix, multiply } from '../../parts/affine.js';
 import { chooseParts, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
 import { upFrom } from '../../parts/joints.js';
+import type { Expressions } from '../../parts/morph-names.js';
 import { kSceneOrigin, type Origin } from '../../parts/origin.js';
+import { type MorphedPart, type MorphTarget, posesOf } from '../../parts/poses.js';
 import { placeMeshes, type Skin } from '../../parts/skin.js';
 import { InputError } from '../input-error.js';
 import { firstInstance, instancing } from '../instancing.js';
 import { isMarked } from '../overlay.js';
 import {
+  decodeFloats,
   decodePositions,
   decodeTriangles,
   decodeUvs,
@@ -81,7 +84,9 @@ export function extractDocument(
     accessories,
     origin: moveTo(parts, origin),
   };
-  const mesh = joinPieces(parts);
+  const joined = joinPieces(parts);
+  const poses = isMeant === 'cage' ? undefined : posesOf(morphedParts(document, parts, joined.positions));
+  const mesh = { ...joined, ...(poses && { poses }) };
   const layouts = parts.map(({ primitive }) => uvLayoutOf(primitive.getMaterial()?.getBaseColorTextureInfo()));
   const sets = parts.map(({ primitive }, p) => primitive.getAttribute(layouts[p]!.set));
   if (parts.length === 0 || sets.some((set) => set === null)) return { mesh, parts, ...others };
@@ -91,6 +96,39 @@ export function extractDocument(
   );
   return { mesh: { ...mesh, uvs }, parts, ...others };
 }
+
+/**
+ * Parts, and what moves them.
+ * @param positions    Of all parts, in the space of the model.
+ * @param expressions  Those of a VRM. Default: none.
+ */
+export function morphedParts(
+  document: Document,
+  parts: readonly DocumentPart[],
+  positions: Float32Array,
+  expressions: Expressions = () => [],
+): MorphedPart[] {
+  const root = document.getRoot();
+  const [nodes, meshes] = [root.listNodes(), root.listMeshes()];
+  return parts.map(({ node, mesh, primitive, aliases, matrix, firstVertex, vertexCount }) => {
+    const place = [nodes.indexOf(node), meshes.indexOf(mesh)] as const;
+    const names = (mesh.getExtras()['targetNames'] ?? []) as unknown[];
+    const weights = weightsOf(node, mesh);
+    const targets = primitive.listTargets().map((target, t): MorphTarget => {
+      const deltas = target.getAttribute('POSITION');
+      return {
+        names: [target.getName() || names[t], ...expressions(...place, t)],
+        deltas: () => deltas && decodeFloats(deltas),
+        shown: weights[t],
+      };
+    });
+    const own = positions.subarray(3 * firstVertex, 3 * (firstVertex + vertexCount));
+    return { names: aliases, matrix, positions: own, targets };
+  });
+}
+
+const weightsOf = (node: Node, mesh: DocumentMesh): number[] =>
+  node.getWeights().length > 0 ? node.getWeights() : mesh.getWeights();
 
 function lookOf({ node, primitive, aliases, matrix, localPositions, localIndices }: DocumentPart): Look {
   const material = primitive.getMaterial();
@@ -158,7 +196,7 @@ function listParts(document: Document): DocumentPart[] {
         matrix,
         firstInstance(`"${node.getName() || mesh.getName()}"`, (semantic) => instances.getAttribute(semantic)),
       );
-    const weights = node.getWeights().length > 0 ? node.getWeights() : mesh.getWeights();
+    const weights = weightsOf(node, mesh);
     mesh.listPrimitives().forEach((primitive, p) => {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');

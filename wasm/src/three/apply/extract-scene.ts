@@ -1,6 +1,5 @@
 import {
   BackSide,
-  type BufferAttribute,
   type BufferGeometry,
   FrontSide,
   type InstancedBufferAttribute,
@@ -19,9 +18,11 @@ import type { Vector } from '../../inspect/geometry.js';
 import { chooseParts, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
 import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/origin.js';
 import { morphed, movePoints } from '../../parts/points.js';
+import { type MorphedPart, posesOf } from '../../parts/poses.js';
 import { placeMeshes, type Skin } from '../../parts/skin.js';
 import { transformUvs } from '../../parts/uv-transform.js';
 import { wrong } from '../errors.js';
+import { type Attribute, targetDeltas, valuesOf } from './attributes.js';
 
 /** One mesh of a scene, or a single geometry, and the ranges of its elements in the joined arrays. */
 export interface Part {
@@ -103,7 +104,9 @@ export function extractNear(
     const { firstVertex, vertexCount } = parts[p]!;
     return [...new Set(groups.subarray(firstVertex, firstVertex + vertexCount))];
   });
-  const mesh = { positions, indices, groups, ...(uvs && { uvs }) };
+  const isCage = argument === 'cage' || argument === 'template';
+  const poses = isCage ? undefined : posesOf(morphedParts(parts, positions));
+  const mesh = { positions, indices, groups, ...(uvs && { uvs }), ...(poses && { poses }) };
   return { mesh, parts, leftOut, accessories: bare, origin: near };
 }
 
@@ -112,8 +115,6 @@ function endOf(parts: readonly Part[]): [vertices: number, triangles: number] {
   const last = parts.at(-1);
   return last ? [last.firstVertex + last.vertexCount, last.firstTriangle + last.triangleCount] : [0, 0];
 }
-
-type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
 function listParts(
   object: Object3D | BufferGeometry,
@@ -286,17 +287,6 @@ export function skinOf(mesh: SkinnedMesh): Skin<Object3D> {
   };
 }
 
-/** The numbers of an attribute, decoded, to be read only: its own array if that has nothing else. */
-export function valuesOf(attribute: Attribute): Float32Array {
-  const { count, itemSize, array } = attribute;
-  if (array instanceof Float32Array && !('isInterleavedBufferAttribute' in attribute)) return array;
-  const values = new Float32Array(count * itemSize);
-  // Half floats are decoded by these, not by `getComponent`.
-  const get = (['getX', 'getY', 'getZ', 'getW'] as const).slice(0, itemSize);
-  for (let k = 0; k < get.length; ++k) for (let i = 0; i < count; ++i) values[i * itemSize + k] = attribute[get[k]!](i);
-  return values;
-}
-
 /**
  * Whether something is an overlay, by the mark in its `userData`. GLTFLoader sets the same mark on geometries and materials of
  * overlays from a file, from their `extras` (gltf/overlay.ts). Lists of materials may have gaps.
@@ -346,13 +336,27 @@ export function placePositions(
   else movePoints(matrix.elements, values, out, 3 * firstVertex);
 }
 
-/** How a morph target moves the positions of a geometry; `undefined` if there is none. */
-export function targetDeltas(geometry: BufferGeometry, target: number): Float32Array | undefined {
-  const shape = geometry.morphAttributes.position?.[target];
-  if (!shape) return undefined;
-  const values = valuesOf(shape as Attribute);
-  if (geometry.morphTargetsRelative) return values;
-  return valuesOf(geometry.getAttribute('position') as Attribute).map((x, i) => values[i]! - x);
+/**
+ * Parts, and what moves them.
+ * @param positions    Of all parts, in the space of the model.
+ * @param expressions  The names of the expressions that use a morph target. Default: none.
+ */
+export function morphedParts(
+  parts: readonly Part[],
+  positions: Float32Array,
+  expressions: (mesh: Part['mesh'], target: number) => string[] = () => [],
+): MorphedPart[] {
+  return parts.map(({ mesh, geometry, aliases, matrix, firstVertex, vertexCount }) => {
+    const names: string[] = [];
+    for (const [name, t] of Object.entries(mesh?.morphTargetDictionary ?? {})) names[t] = name;
+    const targets = (geometry.morphAttributes.position ?? []).map((_, t) => ({
+      names: [names[t], ...expressions(mesh, t)],
+      deltas: () => targetDeltas(geometry, t),
+      shown: mesh?.morphTargetInfluences?.[t],
+    }));
+    const own = positions.subarray(3 * firstVertex, 3 * (firstVertex + vertexCount));
+    return { names: aliases, matrix: matrix.elements, positions: own, targets };
+  });
 }
 
 function placeIndices(

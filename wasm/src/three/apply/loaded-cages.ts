@@ -1,12 +1,21 @@
-import { BufferAttribute, BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Matrix4,
+  type MeshPhysicalMaterial,
+  type Object3D,
+  type Skeleton,
+  Vector3,
+} from 'three';
 import * as cages from '../../cages/index.js';
 import type { Mesh } from '../../index.js';
-import { faceHints, type MorphTarget } from '../../parts/face-hints.js';
+import { nameOfGlass } from '../../parts/drawn.js';
+import { faceHints } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
-import { type Expressions, vrmExpressions } from '../../parts/morph-names.js';
+import { vrmExpressions } from '../../parts/morph-names.js';
 import { readTemplate } from '../../parts/template-extras.js';
 import { wrong } from '../errors.js';
-import { extract, holderOf, isSkinned, type Part, skinOf, targetDeltas } from './extract-scene.js';
+import { extract, holderOf, isSkinned, morphedParts, type Part, skinOf } from './extract-scene.js';
 
 /**
  * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones, and
@@ -44,27 +53,15 @@ export function cageModel(model: Loaded): cages.CageModel {
     groups,
     parts: namesOf(parts, object),
     ...skeletonOf(parts, bones),
-    hints: faceHints(
-      parts.map((part) => ({
-        names: part.aliases,
-        matrix: part.matrix.elements,
-        positions: positions.subarray(3 * part.firstVertex, 3 * (part.firstVertex + part.vertexCount)),
-        targets: targetsOf(part, isLoadedGltf(model) ? model : undefined),
-      })),
-    ),
+    hints: faceHints(morphedParts(parts, positions, isLoadedGltf(model) ? expressionsOf(model) : undefined)),
   };
 }
 
-function targetsOf({ mesh, geometry }: Part, loaded: LoadedGltf | undefined): MorphTarget[] {
-  const expressions: Expressions = loaded ? vrmExpressions(extensionsOf(loaded)) : () => [];
-  const placeOf = (object: Object3D | null | undefined) => loaded?.parser?.associations?.get(object as object);
-  const node = placeOf(mesh)?.nodes ?? placeOf(mesh?.parent)?.nodes;
-  const names: string[] = [];
-  for (const [name, t] of Object.entries(mesh?.morphTargetDictionary ?? {})) names[t] = name;
-  return (geometry.morphAttributes.position ?? []).map((_, t) => ({
-    names: [names[t], ...expressions(node, placeOf(mesh)?.meshes, t)],
-    deltas: () => targetDeltas(geometry, t),
-  }));
+/** The names of the expressions that use the morph targets of a mesh. */
+function expressionsOf(loaded: LoadedGltf): (mesh: Part['mesh'], target: number) => string[] {
+  const expressions = vrmExpressions(extensionsOf(loaded));
+  const placeOf = (object: Object3D | null | undefined) => loaded.parser?.associations?.get(object as object);
+  return (mesh, t) => expressions(placeOf(mesh)?.nodes ?? placeOf(mesh?.parent)?.nodes, placeOf(mesh)?.meshes, t);
 }
 
 /**
@@ -154,8 +151,14 @@ function namesOf(parts: readonly Part[], root: object): string[][] {
       ? [...new Set(geometry.groups.map(({ materialIndex = 0 }) => materialIndex))]
       : [0];
     return (order.length > 0 ? order : [0]).map((index) => {
-      const material = materials[index]?.name ?? '';
-      return material === '' || own.includes(material) ? own : [...own, material];
+      const {
+        name: material = '',
+        transparent,
+        opacity,
+        transmission,
+      } = (materials[index] ?? {}) as Partial<MeshPhysicalMaterial>;
+      const names = material === '' || own.includes(material) ? own : [...own, material];
+      return [...names, ...nameOfGlass(transparent ? 'BLEND' : 'OPAQUE', opacity, transmission)];
     });
   });
 }

@@ -58,5 +58,5 @@ const digits = (arrays: readonly (ArrayBufferView | undefined)[]): string =>
     .join('');
 
 const hashOfMesh = (mesh: Mesh | undefined): string =>
-  digits([mesh?.positions, mesh?.indices, mesh?.groups, mesh?.uvs]);
+  digits([mesh?.positions, mesh?.indices, mesh?.groups, mesh?.uvs, mesh?.poses]);
 const textHash = (text: string): string => digits([new TextEncoder().encode(text)]);
