@@ -16,6 +16,7 @@ import {
   loadTemplate,
   makeCage,
   matchingParts,
+  type Regions,
   refineCage,
   type Template,
   type TemplateName,
@@ -55,6 +56,16 @@ function head(detail = 12): CageModel & Mesh {
 
 /** A coarse grid: these tests are not about what a good cage is. */
 const options = { kind: 'head', triangles: 300, voxels: 60 } as const;
+/** Of a cage: one outline. */
+const regions: Regions = {
+  lips: [
+    [
+      [0.4, 0.5],
+      [0.6, 0.5],
+      [0.5, 0.6],
+    ],
+  ],
+};
 
 type Case = [call: () => unknown, code: Code, says: string | RegExp];
 
@@ -267,7 +278,7 @@ describe('fitCage', () => {
     const onProgress = (share: number) => void shares.push(share);
     const { cage, used, confidence, missing } = await fitCage(template, model, { nose_tip: nose }, { onProgress });
     assert.deepEqual([cage.uvs, cage.indices], [template.uvs, template.indices]);
-    assert.deepEqual([cage.holes, cage.kind], [template.holes, 'head']);
+    assert.deepEqual([cage.holes, cage.kind, cage.regions], [template.holes, 'head', template.regions]);
     assert.notEqual(inspect(cage, model).verdict, 'unfit');
     rising(shares);
     assert.equal(shares.at(-1), 1);
@@ -356,12 +367,13 @@ describe('refineCage', () => {
   test('moves a cage that is off into place; triangles, UVs, holes and landmarks stay, and so does a cage in place', async () => {
     const model = head();
     const landmarks = { nose_tip: [0, -1.1, 0] as [number, number, number] };
-    const made = { ...sync.makeCage(model, options), landmarks, holes: { eye: [0, 1, 2] } };
+    const made = { ...sync.makeCage(model, options), landmarks, holes: { eye: [0, 1, 2] }, regions };
     assert.deepEqual((await refineCage(made, model)).positions, made.positions);
     const moved = (by: number) => ({ ...made, positions: made.positions.map((x, i) => x + (i % 3 === 0 ? by : 0)) });
     const off = moved(0.06);
     const back = await refineCage(off, model, { reach: 0.05 });
     assert.deepEqual([back.uvs, back.indices, back.holes, back.kind], [made.uvs, made.indices, made.holes, 'head']);
+    assert.deepEqual(back.regions, regions);
     assert.deepEqual(back.landmarks, landmarks);
     const distance = (cage: Cage) =>
       cage.positions.reduce((sum, x, i) => sum + Math.abs(x - made.positions[i]!), 0) / made.positions.length;
@@ -377,6 +389,11 @@ describe('refineCage', () => {
       [call({}, { reach: -1 }), 'badOption', /^options\.reach/],
       [call({ holes: { mouth: 7 } }), 'badArgument', 'cage.holes.mouth is 7, not an array of vertices'],
       [call({ holes: new Map() }), 'badArgument', /^cage\.holes is .*, not an object/],
+      [
+        call({ regions: { lips: [[0, 1]] } }),
+        'badArgument',
+        /^cage\.regions\.lips is .*, not outlines, each of at least 3 corners/,
+      ],
       [call({ landmarks: { a: 'x' } }), 'badArgument', /^cage\.landmarks\.a is "x", not 3 finite numbers/],
       [call({ kind: 'bogus' }), 'badArgument', /^cage\.kind is "bogus", not one of "automatic"/],
     ]);
@@ -591,6 +608,7 @@ describe('cageTemplate', () => {
     landmarks: { nose_tip: [0, 0, 1], chin: [0, -1, 0.5] },
     holes: { neck: [1, 2, 3] },
     kind: 'head',
+    regions,
   } as const;
   const add = () => gltf.addCage(new Document(), cage);
 
@@ -625,6 +643,10 @@ describe('cageTemplate', () => {
       [{ landmarks: [] }, '.extras.landmarks is not an object'],
       [{ landmarks: { chin: [0, 1] } }, '.extras.landmarks.chin is not 3 finite numbers [x, y, z]'],
       [{ holes: { neck: [1, 9999] } }, '.extras.holes.neck is not a list of vertices (0..90)'],
+      [
+        { regions: { lips: [[0, 1]] } },
+        '.extras.regions.lips is not a list of outlines, each of at least 3 corners [u, v]',
+      ],
     ] as const) {
       const { document, node } = add();
       node.setExtras(extras as unknown as Record<string, unknown>);

@@ -104,11 +104,12 @@ function objOf({ positions, uvs, indices }: ReturnType<typeof face>): string {
 
 const near = (a: readonly number[], b: readonly number[]) => Math.hypot(...a.map((x, k) => x - b[k]!)) < 1e-5;
 
-function isFace({ positions, indices, landmarks, holes, kind }: Template, split = false): void {
+function isFace({ positions, indices, landmarks, holes, kind, regions }: Template, split = false): void {
   const { indices: filled } = face();
   assert.equal(kind, 'head');
   assert.equal(indices?.length, filled.length - 3 * 28, 'eyes are open');
   assert.deepEqual(Object.keys(holes!), ['eye_left', 'eye_right', 'mouth']);
+  assert.deepEqual(Object.keys(regions!), ['lips', 'eyelids', 'brows']);
   if (!split) assert.equal(holes!['mouth']!.length, 20 + 2); // both halves name its middle
   const x = (name: string) => landmarks[name]![0];
   assert.ok(x('eye_outer_left') > x('eye_inner_left') && x('eye_inner_left') > 0 && x('mouth_corner_right') < 0);

@@ -257,8 +257,8 @@ HoleContent contentOf(const TemplateCage& cage, const std::vector<std::uint32_t>
   return content;
 }
 
-/// The place of a border in front of the skin: as far as the cage is elsewhere.
-/// @param from  Where it was, for places that are not in front of skin.
+/// A place in front of the skin.
+/// @param from  Where its vertex was, for places that are not in front of skin.
 Vec3 inFrontOf(const Surface& skin, const EyeOpening& opening, const Flat& p, const Vec3& from, double offset) {
   const Vec3 at = opening.place(p);
   const double far = 8 * *std::max_element(opening.contour.begin(), opening.contour.end());
@@ -268,18 +268,25 @@ Vec3 inFrontOf(const Surface& skin, const EyeOpening& opening, const Flat& p, co
   return at + (far - hit.distance + offset) * opening.axis;
 }
 
+/// Where the corners of a hole are and should be.
+struct BorderMove {
+  const std::vector<std::uint32_t>& loop;
+  const std::vector<Flat>&from, &to;
+
+  [[nodiscard]] Flat at(std::size_t i) const { return {to[i].x - from[i].x, to[i].y - from[i].y}; }
+};
+
 /// Moves what is next to a hole out of the way of its border: as far as the border moves, less and less up to a
 /// distance of `kRoom` moves, so that nothing folds over.
-/// @param border,wanted  Where its corners are and should be.
-void makeRoom(const TemplateCage& cage, const std::vector<std::uint32_t>& loop, const std::vector<Flat>& border,
-              const std::vector<Flat>& wanted, const EyeOpening& opening, const Surface& skin,
+void makeRoom(const TemplateCage& cage, const BorderMove& border, const EyeOpening& opening, const Surface& skin,
               std::vector<Vec3>& positions) {
   double most = 0;
-  for (std::size_t i = 0; i < loop.size(); ++i)
-    most = std::max(most, std::hypot(wanted[i].x - border[i].x, wanted[i].y - border[i].y));
+  for (std::size_t i = 0; i < border.loop.size(); ++i)
+    most = std::max(most, std::hypot(border.at(i).x, border.at(i).y));
+  if (!(most > 0)) return;
   std::vector<bool> done(positions.size());
-  for (const std::uint32_t v : loop) done[v] = true;
-  std::vector<std::uint32_t> next = loop;
+  for (const std::uint32_t v : border.loop) done[v] = true;
+  std::vector<std::uint32_t> next = border.loop;
   // Along edges, so that the back of a head stays where it is.
   while (!next.empty()) {
     const std::uint32_t from = next.back();
@@ -288,20 +295,24 @@ void makeRoom(const TemplateCage& cage, const std::vector<std::uint32_t>& loop, 
       if (done[v]) continue;
       done[v] = true;
       const Flat p = opening.flat(positions[v]);
-      double total = 0, nearest = kRoom * most;
+      double total = 0, nearest = kRoom;
       Flat move;
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const double distance = std::hypot(p.x - border[i].x, p.y - border[i].y);
-        const double weight = 1 / (1e-12 + distance * distance * distance * distance);
+      for (std::size_t i = 0; i < border.loop.size(); ++i) {
+        const double distance = std::hypot(p.x - border.from[i].x, p.y - border.from[i].y) / most;
+        const double weight = 1 / std::max(1e-12, distance * distance * distance * distance);
         nearest = std::min(nearest, distance);
         total += weight;
-        move = {move.x + weight * (wanted[i].x - border[i].x), move.y + weight * (wanted[i].y - border[i].y)};
+        move = {move.x + weight * border.at(i).x, move.y + weight * border.at(i).y};
       }
-      const double share = (1 - nearest / (kRoom * most)) / total;
+      const double share = 1 - nearest / kRoom;
       if (!(share > 0)) continue;
       next.push_back(v);
-      const Flat there{p.x + share * move.x, p.y + share * move.y};
-      const double offset = dot(positions[v] - inFrontOf(skin, opening, p, positions[v], 0), opening.axis);
+      const Flat there{p.x + share / total * move.x, p.y + share / total * move.y};
+      const Vec3 below = inFrontOf(skin, opening, p, positions[v], 0);
+      const double before = dot(positions[v] - below, opening.axis);
+      const double rise = dot(inFrontOf(skin, opening, there, positions[v], 0) - below, opening.axis);
+      // It follows skin that falls, and rises, as from an eye onto a lid, no more than it must.
+      const double offset = rise < 0 ? before : std::max(before - rise, cage.offset);
       positions[v] = inFrontOf(skin, opening, there, positions[v], offset);
     }
   }
@@ -335,7 +346,7 @@ void drawTo(const TemplateCage& cage, std::vector<std::uint32_t> loop, const Eye
   for (Flat& p : border)
     p = {(p.x - borderMiddle.x) / borderSpread.x * contourSpread.x,
          (p.y - borderMiddle.y) / borderSpread.y * contourSpread.y};
-  makeRoom(cage, loop, before, fitOutline(border, {opening.contour, {}, {}}), opening, surface, positions);
+  makeRoom(cage, {loop, before, fitOutline(border, {opening.contour, {}, {}})}, opening, surface, positions);
   const std::vector<Flat> outline = fitOutline(border, contentOf(cage, loop, opening, positions));
   for (std::size_t i = 0; i < loop.size(); ++i)
     positions[loop[i]] = inFrontOf(surface, opening, outline[i], positions[loop[i]], cage.offset);

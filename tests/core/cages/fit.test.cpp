@@ -384,6 +384,57 @@ TEST_CASE("relaxing unfolds what was moved over its neighbours, and leaves the r
     if (!near[v]) CHECK(length(positions[v] - cage.mesh.positions[v]) == 0);
 }
 
+TEST_CASE("dense rings around the hole of an eye make room for it, and do not fold over", "[cages][fit]") {
+  constexpr std::uint32_t kAround = 24;
+  const auto disc = [](const std::vector<double>& radii, double height) {
+    OwnedModel out;
+    out.roll(
+        kAround, static_cast<std::uint32_t>(radii.size() - 1),
+        [&](double u, double v) {
+          const double r = radii[static_cast<std::size_t>(std::lround(v * static_cast<double>(radii.size() - 1)))];
+          return Vec3{r * std::cos(2 * kPi * u), -r * std::sin(2 * kPi * u), height};
+        },
+        [](double, double) { return true; });
+    return out;
+  };
+  const std::vector<double> rings{1, 1.1, 1.2, 1.3, 1.5, 2, 3, 16};
+  OwnedModel mesh = disc(rings, 0.05);
+  const TemplateCage cage = prepareTemplate({mesh.view(), {{"nose_tip", {0, -3, 0}}}});
+  OwnedModel ball;
+  ball.roll(
+      48, 24,
+      [](double u, double v) {
+        const double around = 2 * kPi * u, up = kPi * (v - 0.5);
+        return Vec3{2 * std::cos(up) * std::sin(around), 2 * std::sin(up), 2 * std::cos(up) * std::cos(around) - 2.2};
+      },
+      [](double, double) { return true; });
+  EyedFigure figure;
+  figure.componentCount = 2;
+  for (const auto& [part, isEye] :
+       {std::pair{disc({1.6, 2, 3, 16}, 0), false}, std::pair{disc({0.1, 16}, -5), false}, std::pair{ball, true}}) {
+    const TriangleMesh piece = weldExactly(part.view());
+    const auto first = static_cast<std::uint32_t>(figure.mesh.positions.size());
+    for (const Vec3& p : piece.positions) figure.mesh.positions.push_back(p);
+    for (const Triangle3& t : piece.triangles) {
+      figure.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+      figure.isEye.push_back(isEye);
+      figure.components.push_back(isEye ? 1 : 0);
+    }
+  }
+  figure.eyes = {{{0, 0, -2.2}, {0, 0, -2.2}}, {{99, 0, 0}, {99, 0, 0}}};
+  std::vector<Vec3> tracks, positions = cage.mesh.positions;
+  REQUIRE(fitEyeHoles(
+      cage, figure, [](double) { return true; }, tracks, positions));
+  const auto radius = [](const Vec3& p) { return std::hypot(p.x, p.y); };
+  for (std::uint32_t v = 0; v < positions.size(); ++v) {
+    const double before = radius(cage.mesh.positions[v]);
+    if (before < 1.05) CHECK(radius(positions[v]) > 1.55);
+    if (before > 10) CHECK(length(positions[v] - cage.mesh.positions[v]) == 0);
+  }
+  const std::vector<bool> folded = foldedTriangles({positions, cage.mesh.triangles});
+  CHECK(std::none_of(folded.begin(), folded.end(), [](bool is) { return is; }));
+}
+
 TEST_CASE("a jaw of which only the chin is known moves with it", "[cages][fit]") {
   const std::vector<Landmark> own{{"chin", {0, -1, 1}}, {"menton", {0, -1.5F, 0.5F}}, {"ear_lobe_left", {1, 0, 0}}};
   std::vector<Landmark> to{{"chin", {0, -2, 1}}, {"ear_lobe_left", {1, 0, 0}}};
