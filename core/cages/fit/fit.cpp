@@ -190,16 +190,16 @@ class Fit {
       if (const Status status = findLandmarks(model_, finding, found); !status.ok()) return status;
     }
     pairs_ = pairLandmarks(from_, given, found.landmarks, out.missing);
-    if (isTooLittle(pairs_.to)) {
+    Status status = checkJoints(pairs_.to, boundsOf(model_.mesh));
+    if (status.ok()) status = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);
+    if (!status.ok() && status.code != Code::smallSkeleton) status.at = pairs_.places[status.at];
+    if (status.ok() && isTooLittle(pairs_.to)) {
       out.guessed = mostHelpfulFirst(out.missing);
       for (Landmark& guess : guessLandmarks(from_, cage, model_, pairs_.to))
         found.landmarks.push_back(std::move(guess));
       pairs_ = pairLandmarks(from_, given, found.landmarks, out.missing);
     }
     out.landmarks = pairs_.to;
-    Status status = checkJoints(pairs_.to, boundsOf(model_.mesh));
-    if (status.ok()) status = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);
-    if (!status.ok() && status.code != Code::smallSkeleton) status.at = pairs_.places[status.at];
     return status;
   }
 

@@ -222,6 +222,8 @@ TEST_CASE("where too little is known, a cage is placed by size and symmetry", "[
     CHECK(landmark.confidence == (isGuessed ? 0.25f : 1));
     CHECK(length(positionOf(landmark) - moved(*placeOf(truth, landmark.name))) < 0.3);
   }
+  // A guess is no reason to refuse what a person gives.
+  heads.given = {{"chin", toPosition(moved({0, 1.2, 0.4}))}};
   CHECK(heads.fit().ok());
 }
 

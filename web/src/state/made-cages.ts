@@ -42,5 +42,6 @@ export const noteMade = (cage: File, how: Made): unknown => made.set(cage, how);
 export const readable = (landmark: string): string =>
   landmark
     .replace(/^(.*)_(left|right)$/, '$2 $1')
+    .replace(/^lip_(upper|lower)$/, '$1 lip')
     .replace(/^(.*?)joint_(.*)$/, '$1$2 joint')
     .replaceAll('_', ' ');

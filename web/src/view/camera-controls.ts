@@ -1,4 +1,4 @@
-import { MathUtils, MOUSE, PerspectiveCamera, Spherical, TOUCH, Vector3 } from 'three';
+import { Box3, MathUtils, MOUSE, PerspectiveCamera, Sphere, Spherical, TOUCH, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import type { Angle } from '../state/view-state';
 import { aspectOf, type FreePart, fittingDistance, kFieldOfView, kHome } from './framing';
@@ -15,6 +15,7 @@ const kTurnSeconds = 12; // of a whole turn of the turntable
 const kKeyStep = MathUtils.degToRad(6);
 const kKeyNearer = 1 / 1.1; // of the distance
 const kKeyMove = 40; // pixels
+const kRegionMargin = 1.2; // of the distance from which a region is looked at
 const kMiddle = new Vector3(); // of the model
 
 /** The camera, and how pointers, keys and time move it around what is on the stage. */
@@ -73,6 +74,18 @@ export class CameraControls {
     const angle = this.#orbit;
     if (side !== 'fit') angle.set(1, kLevel, this.#stage.front + (side === 'side' ? Math.PI / 2 : 0));
     this.#look({ phi: angle.phi, theta: angle.theta, radius: this.#fittingDistance(angle, true) }, kMiddle);
+  }
+
+  /**
+   * Shows a region of the model, as large as it fits.
+   * @param points  Of the stage.
+   * @param front   Where the region looks, as a model's front.
+   */
+  lookAt(points: readonly Vector3[], front: number): void {
+    this.#markMoved();
+    const { center, radius } = new Box3().setFromPoints([...points]).getBoundingSphere(new Sphere());
+    const distance = Math.max(kRegionMargin * radius * this.#fullDistance, this.#controls.minDistance);
+    this.#look({ phi: kLevel, theta: front, radius: Math.min(distance, this.#far) }, center);
   }
 
   /** The camera angle chosen by the user; undefined by default. */

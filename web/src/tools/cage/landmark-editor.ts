@@ -131,7 +131,10 @@ export class LandmarkEditor {
     this.#write();
     // What was brought back takes no other tool out of the hand; and beside other models, landmarks are too near each other.
     if (isNew && fitting === this.#maker.latest && !this.#viewer.stage.crowd) this.#tools.choose(this.#offer);
-    if (this.#tools.chosen === this.#offer) this.#askForNext();
+    if (this.#tools.chosen === this.#offer) {
+      if (isNew && fitting.guessed.length > 0) this.#lookAtSpots();
+      this.#askForNext();
+    }
     this.#viewer.redraw();
   }
 
@@ -348,6 +351,18 @@ export class LandmarkEditor {
     this.#ask.textContent = `Click on the model: ${readable(name)}.${side}`;
     announce(`${this.#ask.textContent} Or turn it under the cross and press Enter.`);
     if (!matchMedia('(pointer: coarse)').matches) element('view', HTMLCanvasElement).focus({ preventScroll: true });
+  }
+
+  /** Looks at the landmarks from their front: on a figure they may be a small part of it. */
+  #lookAtSpots(): void {
+    const { marks } = this.#viewer.stage;
+    const places = new Map(Object.keys(this.spots).map((name) => [name, marks.localToWorld(this.#at(name))]));
+    const left = new Vector3();
+    for (const [name, place] of places) {
+      const other = places.get(name.replace(/_left$/, '_right'));
+      if (other) left.add(place).sub(other);
+    }
+    this.#viewer.controls.lookAt([...places.values()], Math.atan2(-left.z, left.x));
   }
 
   /** Asks for the landmark that would help most, if a fit had to guess some, until the user has placed a few. */
