@@ -142,11 +142,11 @@ function whyNotDrawn(looks: readonly Look[]): (LeftOut['why'] | undefined)[] {
     if (inside.length > 0 && filled >= kFilled * shape.volume) reasons[p] = 'outline';
   });
   const boxes = shapes.map((shape, p) => (reasons[p] === undefined ? shape?.box : undefined));
-  const all = boxes.filter((box) => box !== undefined);
-  const others = all.filter((box) => !isSheet(box, all.reduce(around)));
+  const drawn = boxes.filter((box) => box !== undefined);
+  const whole = drawn.reduce(around, kNowhere);
+  const others = drawn.filter((box) => !isSheet(box, whole)).reduce(around, kNowhere);
   boxes.forEach((box, p) => {
-    if (box && others.length > 0 && !others.includes(box) && isBackdrop(box, others.reduce(around)))
-      reasons[p] = 'backdrop';
+    if (box && others !== kNowhere && isSheet(box, whole) && isBackdrop(box, others)) reasons[p] = 'backdrop';
   });
   return reasons;
 }
@@ -166,6 +166,11 @@ function isSheet(box: Box, whole: Box): boolean {
   const { size, diagonal } = sizeOf(box);
   return Math.min(...size) <= kThick * diagonal && 2 * diagonal > sizeOf(whole).diagonal;
 }
+
+const kNowhere: Box = [
+  [Infinity, Infinity, Infinity],
+  [-Infinity, -Infinity, -Infinity],
+];
 
 const around = ([low, high]: Box, [otherLow, otherHigh]: Box): Box => [
   low.map((x, k) => Math.min(x, otherLow[k]!)),
