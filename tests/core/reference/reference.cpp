@@ -855,11 +855,11 @@ class Pose {
 
   /// Twelve other rays, as in step 9.
   [[nodiscard]] Look lookAround(std::uint32_t q) const {
-    const auto& [normal, twoSided] = outlooks_[q];
+    const Outlook& outlook = outlooks_[q];
     const std::uint32_t own = at_.segments[q];
-    if (twoSided) return {};
+    if (outlook.twoSided) return {};
     const auto seen = [&](const InTheWay& inTheWay) {
-      Verdict is = isSeen(scene_, options_, scene_.points.positions[q], normal, inTheWay);
+      Verdict is = isSeen(scene_, options_, scene_.points.positions[q], outlook.normal, inTheWay);
       if (!firm_[own]) is.might = true, is.must = false;
       return is;
     };
