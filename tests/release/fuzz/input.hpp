@@ -72,7 +72,7 @@ class Input {
 
 /// A mesh and its arrays.
 struct Mesh {
-  std::vector<float> positions, uvs;
+  std::vector<float> positions, uvs, poses;
   std::vector<std::uint32_t> indices, groups;
 
   /// Up to 40 vertices and 60 triangles.
@@ -109,7 +109,11 @@ struct Mesh {
       }
     return out;
   }
-  [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups}; }
+  /// Adds a pose, in which some vertices are elsewhere.
+  void move(Input& input) {
+    for (const float x : positions) poses.push_back(input.below(4) == 0 ? input.coordinate() : x);
+  }
+  [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups, poses}; }
 
  private:
   Mesh() = default;
@@ -124,6 +128,7 @@ struct Scene {
     const std::uint8_t balls = input.byte();
     if ((balls & 1) != 0) cage = Mesh::ball(input, true);
     if ((balls & 2) != 0) target = Mesh::ball(input, false);
+    if ((balls & 4) != 0) target.move(input);
   }
 };
 
