@@ -7,77 +7,23 @@ import { objTemplate, type Template } from 'cagecast/cages';
 import * as gltf from 'cagecast/gltf';
 import * as three from 'cagecast/three';
 import { BufferAttribute, BufferGeometry } from 'three';
+import { kEye, kMiddle, kMouth, kRight, type Uv } from '../../wasm/src/parts/face-mesh-uvs.js';
 import { cagecast } from '../support/command.js';
 import { glbOf } from '../support/gltf.js';
 import { temporaryFolder } from '../support/temporary.js';
 
 const { at } = temporaryFolder('face-mesh');
 
-type Uv = [u: number, v: number];
 const mirrored = ([u, v]: Uv): Uv => [1 - u, v];
-
-/** Of the right half, v from the top: the corners of the lids and the lips, some points between them, and the middle of the face. */
-const kEye: Uv[] = [
-  ...[
-    [0.2801, 0.3756],
-    [0.2897, 0.3808],
-    [0.3014, 0.3874],
-    [0.3188, 0.3962],
-    [0.3434, 0.4006],
-    [0.3662, 0.3988],
-  ],
-  ...[
-    [0.3932, 0.3955],
-    [0.4104, 0.3911],
-    [0.4191, 0.3872],
-    [0.4088, 0.3739],
-    [0.3887, 0.3623],
-    [0.366, 0.356],
-  ],
-  ...[
-    [0.3434, 0.3554],
-    [0.3188, 0.3583],
-    [0.3014, 0.3632],
-    [0.2897, 0.3683],
-  ],
-] as Uv[];
-const kLips: Uv[] = [
-  ...[
-    [0.4036, 0.694],
-    [0.403, 0.7065],
-    [0.4265, 0.7035],
-    [0.4487, 0.6953],
-    [0.473, 0.6953],
-  ],
-  ...[
-    [0.4754, 0.6924],
-    [0.4522, 0.6924],
-    [0.4312, 0.6924],
-    [0.4134, 0.6924],
-    [0.382, 0.6947],
-  ],
-] as Uv[];
-const kMiddle: Uv[] = [
-  ...[
-    [0.5002, 0.5272],
-    [0.4999, 0.3515],
-    [0.5, 0.2699],
-    [0.5, 0.6525],
-    [0.5, 0.7194],
-    [0.4999, 0.8669],
-  ],
-  ...[
-    [0.5, 0.9545],
-    [0.5, 0.6953],
-    [0.5, 0.6923],
-  ],
-] as Uv[];
+/** The known points of its right half but for the eye, and those of both halves. */
+const right = [...kMouth, kRight['mouth_corner']!];
+const known = [...kEye, ...kEye.map(mirrored), ...right, ...right.map(mirrored), ...Object.values(kMiddle)];
 
 /** A face with eyes that 28 triangles fill. */
 function face(points = 468): Required<Pick<Template, 'positions' | 'uvs' | 'indices'>> {
-  const known = [...kEye, ...kEye.map(mirrored), ...kLips, ...kLips.map(mirrored), ...kMiddle];
-  const others = Array.from({ length: points - known.length }, (_, i): Uv => [0.05 + 0.002 * i, i % 2 ? 0.02 : 0.99]);
-  const all = [...known, ...others];
+  const own = [...new Map(known.map((uv) => [uv.join(), uv])).values()]; // the middle of the lips is its own mirror image
+  const others = Array.from({ length: points - own.length }, (_, i): Uv => [0.05 + 0.002 * i, i % 2 ? 0.02 : 0.99]);
+  const all = [...own, ...others];
   const indices: number[] = [];
   for (const first of [0, 16]) for (let k = 2; k < 16; ++k) indices.push(first, first + k - 1, first + k);
   for (let v = 2; v < all.length; ++v) if (v >= 32) indices.push(v - 32, v, v - 1);

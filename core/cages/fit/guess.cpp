@@ -7,7 +7,6 @@
 #include "landmarks/frame.hpp"
 #include "landmarks/height_map.hpp"
 #include "landmarks/parts.hpp"
-#include "landmarks/rig.hpp"
 
 /// Where a template's landmarks would be if the model were the template's, stretched to the same size: for models that
 /// too little is known of.
@@ -87,7 +86,7 @@ double chinOf(const Upright& figure, const std::optional<double>& eyes) {
     const bool mayEnd = i > kSudden && (eyes ? heightAt(i) < *eyes : static_cast<double>(i) > kShortest * widest);
     if (mayEnd && widths[i] < kNarrower * widest) break;
     if (mayEnd && widths[i] > kWider * widest && widths[i] > kWider * widths[i - kSudden]) {
-      while (widths[i] > kWider * widths[i - kSudden]) --i;
+      while (i > kSudden && widths[i] > kWider * widths[i - kSudden]) --i;
       return heightAt(i);
     }
     widest = std::max(widest, widths[i]);
@@ -116,26 +115,23 @@ double between(const std::vector<Level>& levels, double y) {
   std::size_t i = 1;
   while (i + 1 < levels.size() && y > levels[i].from) ++i;
   const Level &a = levels[i - 1], &b = levels[i];
-  return a.to + (b.to - a.to) * (y - a.from) / (b.from - a.from);
+  return b.from > a.from ? a.to + (b.to - a.to) * (y - a.from) / (b.from - a.from) : a.to;
 }
 
 /// Stretches the template to the size of a model.
 class Stretch {
  public:
-  Stretch(const Upright& from, const Upright& to, const std::vector<Level>& known) : from_(from.box), to_(to.box) {
-    levels_ = {{from_.low.y, to_.low.y}, {from_.high.y, to_.high.y}};
-    for (const Level& level : known) {
-      constexpr double kApart = 0.05;  ///< Of the height.
-      const auto isIn = [&](double y, const Bounds& box) {
-        const double clear = kApart * box.size().y;
-        return y > box.low.y + clear && y < box.high.y - clear;
-      };
-      if (isIn(level.from, from_) && isIn(level.to, to_)) levels_.push_back(level);
-    }
-    std::sort(levels_.begin(), levels_.end(), [](const Level& a, const Level& b) { return a.from < b.from; });
-    // Levels that change their order say nothing.
-    if (!std::is_sorted(levels_.begin(), levels_.end(), [](const Level& a, const Level& b) { return a.to < b.to; }))
-      levels_ = {levels_.front(), levels_.back()};
+  Stretch(const Upright& from, const Upright& to, std::vector<Level> known) : from_(from.box), to_(to.box) {
+    std::sort(known.begin(), known.end(), [](const Level& a, const Level& b) { return a.from < b.from; });
+    levels_ = {{from_.low.y, to_.low.y}};
+    const Level top{from_.high.y, to_.high.y};
+    const auto isAbove = [&](const Level& a, const Level& b) {
+      constexpr double kApart = 0.05;  ///< Of the height: two eyes are at one level.
+      return a.from - b.from > kApart * from_.size().y && a.to - b.to > kApart * to_.size().y;
+    };
+    for (const Level& level : known)
+      if (isAbove(level, levels_.back()) && isAbove(top, level)) levels_.push_back(level);
+    levels_.push_back(top);
   }
 
   [[nodiscard]] Vec3 operator()(const Vec3& p) const {
@@ -172,10 +168,8 @@ bool isHead(const Template& from) {
 std::vector<Landmark> guessLandmarks(const Template& from, const TemplateCage& cage, const Model& model,
                                      const std::vector<Landmark>& known) {
   const bool isFace = isHead(from);
-  const Rig rig = recogniseRig(model.joints);
   const Figure all = readFigure(model);
-  const Figure head = isFace ? headOf(all, model, rig.isHead) : Figure{};
-  const TriangleMesh skin = (head.mesh.empty() ? all : head).only(Role::surface);
+  const TriangleMesh skin = (isFace ? headOf(all, model) : all).only(Role::surface);
 
   Upright own(cage.mesh, leftOf(from.landmarks).value_or(Vec3{1, 0, 0}), boundsOf(cage.mesh).middle());
   if (isFace) {
@@ -187,14 +181,16 @@ std::vector<Landmark> guessLandmarks(const Template& from, const TemplateCage& c
   std::vector<Landmark> best;
   double least = std::numeric_limits<double>::infinity();
   // Of the ways that it may face, the one that brings the cage nearest to it.
-  for (const MirrorPlane& plane : likelyPlanes(skin, left ? left : leftOf(rig.joints))) {
+  for (const MirrorPlane& plane : likelyPlanes(skin, left ? left : leftOf(all.rig.joints))) {
     const Vec3 middle = boundsOf(skin).middle();
     Upright there(skin, plane.left, middle + (plane.offset - dot(plane.left, middle)) * plane.left);
     const auto eye = placeOf(known, "eye_centre_left");
     if (isFace) there.cutBelow(chinOf(there, eye ? std::optional(there.frame.toLocal(*eye).y) : std::nullopt));
+    // What is found of a face of which so little is found may be no nose or brow.
     std::vector<Level> levels;
     for (const Landmark& landmark : known)
-      if (const auto place = placeOf(from.landmarks, landmark.name))
+      if (const auto place = placeOf(from.landmarks, landmark.name);
+          place && (landmark.confidence == 1 || landmark.name.starts_with("eye_centre")))
         levels.push_back({own.frame.toLocal(*place).y, there.frame.toLocal(positionOf(landmark)).y});
     const Stretch stretch(own, there, levels);
     const auto placed = [&](const Vec3& p) { return there.frame.toModel(stretch(own.frame.toLocal(p))); };

@@ -139,9 +139,8 @@ struct EyedFigure {
 
 /// Draws the borders of eye holes to the contours of what is visible of the eyes, seen along the direction in which
 /// they look, with lashes as far as there is room. Where a model has no eyes of their own, holes stay where they are.
-/// @param[out] tracks  Per vertex of the cage: the direction in which its eye looks if it is on the border of a hole
-/// that
-///   was drawn, else zero.
+/// @param[out] tracks  Per vertex of the cage: where its eye looks if it is on the border of a hole that was drawn,
+///   else zero.
 /// @return false if cancelled.
 bool fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const StepCallback& step,
                  std::vector<Vec3>& tracks, std::vector<Vec3>& positions);

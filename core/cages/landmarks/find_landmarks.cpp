@@ -4,7 +4,6 @@
 
 #include "landmarks/head.hpp"
 #include "landmarks/landmark_list.hpp"
-#include "landmarks/rig.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/foreground.hpp"
@@ -31,8 +30,8 @@ bool areAt(const Eyes& eyes, const Eyes& others) {
 }
 
 /// The planes that may mirror a head: where bones tell left from right, one.
-std::vector<MirrorPlane> planesOf(const Figure& figure, const Rig& rig) {
-  const std::optional<Vec3> left = leftOf(rig.joints);
+std::vector<MirrorPlane> planesOf(const Figure& figure) {
+  const std::optional<Vec3> left = leftOf(figure.rig.joints);
   if (!left) return findMirrorPlanes(figure.mesh);
   const auto [low, high] = rangeOf(figure.mesh.positions, *left);
   MirrorPlane plane = refineMirrorPlane(figure.mesh, {*left, std::midpoint(low, high)});
@@ -43,12 +42,11 @@ std::vector<MirrorPlane> planesOf(const Figure& figure, const Rig& rig) {
 /// The share of the search that is done when a head is found, but not yet its landmarks.
 constexpr float kHeadMade = 0.6f;
 
-/// Finds a figure's head: around the first eyes, named, jointed, loose or fused with the skin, that are as far apart as
-/// eyes are, and where hints say, if there are any.
+/// Finds a figure's head: around the first eyes, named, loose or fused with the skin, that are as far apart as eyes
+/// are. Hints and joints say where to look first.
 /// @param goOn  Gets shares from 0 to 1 on the way.
 /// @return false if `goOn` cancelled it.
-bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const Rig& rig, const auto& goOn,
-              std::optional<Head>& head) {
+bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const auto& goOn, std::optional<Head>& head) {
   std::optional<Eyes> hinted = findHintedEyes(figure, hints);
   bool isCancelled = false;
   /// @return whether the search has ended.
@@ -63,15 +61,17 @@ bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const Ri
   };
   if (!goOn(0.1f)) return false;
   if (makeHeadOf(findNamedEyes(figure))) return !isCancelled;
-  for (const bool byMorphs : {true, false}) {
-    if (!byMorphs) hinted = findJointedEyes(figure, rig.joints);
-    if (!hinted) continue;
+  const auto makeHeadAtHint = [&] {
+    if (!hinted) return false;
     const MirrorPlane plane{hinted->left, dot(hinted->left, hinted->middle())};
-    if (makeHeadOf(findLooseEyes(figure, plane)) || makeHeadOf(hinted)) return !isCancelled;
+    if (makeHeadOf(findLooseEyes(figure, plane)) || makeHeadOf(hinted)) return true;
     hinted.reset();  // No head is there.
-    if (makeHeadOf(findNamedEyes(figure))) return !isCancelled;
-  }
-  const std::vector<MirrorPlane> planes = planesOf(figure, rig);
+    return makeHeadOf(findNamedEyes(figure));
+  };
+  if (makeHeadAtHint()) return !isCancelled;
+  hinted = findJointedEyes(figure, figure.rig.joints);
+  if (makeHeadAtHint()) return !isCancelled;
+  const std::vector<MirrorPlane> planes = planesOf(figure);
   float share = 0.2f;
   const float step = (kHeadMade - share) / static_cast<float>(2 * planes.size());
   for (const auto find : {findLooseEyes, findFusedEyes})
@@ -97,17 +97,12 @@ Status find(const Model& given, const Progress& progress, FoundLandmarks& out) {
   const Model& model = foreground.model();
   const auto goOn = [&](float share) { return report(progress, share, "landmarks"); };
   if (!goOn(0)) return kAborted;
-  Figure figure = readFigure(model);
-  const Rig rig = recogniseRig(model.joints);
-  if (const auto left = leftOf(rig.joints)) figure.front = cross(*left, {0, 1, 0});
+  const Figure figure = readFigure(model);
+  const Rig& rig = figure.rig;
   out.rig = rig.name;
   std::optional<Head> head;
-  const Figure ofBones = headOf(figure, model, rig.isHead);
-  if (!findHead(
-          ofBones.mesh.empty() ? figure : ofBones, model.hints, rig, [&](float share) { return goOn(0.9f * share); },
-          head) ||
-      !goOn(0.9f))
-    return kAborted;
+  const auto goOnFinding = [&](float share) { return goOn(0.9f * share); };
+  if (!findHead(headOf(figure, model), model.hints, goOnFinding, head) || !goOn(0.9f)) return kAborted;
   if (head)
     for (const Spot& spot : head->spots)
       if (spot.confidence >= kSure)

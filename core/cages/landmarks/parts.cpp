@@ -4,6 +4,8 @@
 #include <cctype>
 #include <string>
 
+#include "landmarks/landmark_list.hpp"
+
 namespace cagecast::cages {
 
 namespace {
@@ -53,15 +55,17 @@ Figure readFigure(const Model& model) {
   if (!out.has(Role::surface)) std::fill(out.roles.begin(), out.roles.end(), Role::surface);
   out.components = connectedPieces(out.mesh, out.componentCount);
   out.triangleOf = std::move(triangleOf);
+  out.rig = recogniseRig(model.joints);
+  if (const auto left = leftOf(out.rig.joints)) out.front = cross(*left, {0, 1, 0});
   return out;
 }
 
-Figure headOf(const Figure& figure, const Model& model, const std::vector<bool>& isHead) {
+Figure headOf(const Figure& figure, const Model& model) {
+  if (model.vertexJoints.empty()) return figure;
   Figure out;
-  if (model.vertexJoints.empty()) return out;
   const auto isHeld = [&](std::size_t corner) {
     const std::uint16_t joint = model.vertexJoints[model.mesh.indices[corner]];
-    return joint != kNoJoint && isHead[joint];
+    return joint != kNoJoint && figure.rig.isHead[joint];
   };
   std::vector<bool> keep(figure.roles.size());
   for (std::size_t t = 0; t < keep.size(); ++t) {
@@ -72,9 +76,10 @@ Figure headOf(const Figure& figure, const Model& model, const std::vector<bool>&
     out.roles.push_back(figure.roles[t]);
     out.triangleOf.push_back(figure.triangleOf[t]);
   }
-  if (!out.has(Role::surface)) return {};
+  if (!out.has(Role::surface)) return figure;
   out.mesh = subset(figure.mesh, keep);
   out.components = connectedPieces(out.mesh, out.componentCount);
+  out.rig = figure.rig;
   out.front = figure.front;
   return out;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cagecast/cages.hpp"
+#include "landmarks/rig.hpp"
 #include "mesh/triangle_mesh.hpp"
 
 namespace cagecast::cages {
@@ -21,14 +22,16 @@ enum class Role : std::uint8_t {
 /// The role of a part by its name, in which case does not matter.
 Role roleOf(std::string_view partName);
 
-/// A model whose equal positions are welded, with the role and the connected component of each triangle.
+/// A model whose equal positions are welded, with the role and the connected component of each triangle, and what its
+/// skeleton tells.
 struct Figure {
   TriangleMesh mesh;
   std::vector<Role> roles;                ///< Per triangle.
   std::vector<std::uint32_t> components;  ///< Per triangle.
   std::uint32_t componentCount = 0;
   std::vector<std::uint32_t> triangleOf = {};  ///< Of the model, per triangle.
-  std::optional<Vec3> front = {};              ///< If bones tell.
+  Rig rig = {};
+  std::optional<Vec3> front = {};  ///< Horizontal; if bones tell left from right.
 
   [[nodiscard]] bool has(Role role) const;
   /// The triangles with one of some roles.
@@ -38,8 +41,8 @@ struct Figure {
 
 Figure readFigure(const Model& model);
 
-/// What the joints of a figure's head hold, with its eyes and mouth. Empty if nothing says what that is.
-/// @param isHead  Per joint of the model.
-Figure headOf(const Figure& figure, const Model& model, const std::vector<bool>& isHead);
+/// What the joints of a figure's head hold, with its eyes and mouth; the whole figure if nothing says what that is.
+/// @param model  That the figure was read from.
+Figure headOf(const Figure& figure, const Model& model);
 
 }  // namespace cagecast::cages

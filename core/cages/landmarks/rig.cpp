@@ -183,13 +183,18 @@ std::vector<RigJoint> jointsByWords(const std::vector<SidedName>& names) {
 /// Whether each joint is that of a head, or below it.
 std::vector<bool> belowHead(const std::vector<Joint>& joints, const std::vector<SidedName>& names) {
   const std::size_t head = findByWords(names, "head|頭", "", std::vector<bool>(names.size()));
-  std::vector<bool> out(joints.size());
+  std::vector<bool> out(joints.size()), isKnown(joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) {
+    // Up to the head or to what is known, which a circle of parents is, too, once it is passed.
+    std::vector<std::size_t> path;
     auto at = static_cast<std::int64_t>(j);
-    for (std::size_t steps = 0; at >= 0 && steps <= joints.size() && !out[j]; ++steps) {
-      out[j] = static_cast<std::size_t>(at) == head;
-      at = joints[static_cast<std::size_t>(at)].parent;
+    for (; at >= 0 && !isKnown[static_cast<std::size_t>(at)]; at = joints[path.back()].parent) {
+      path.push_back(static_cast<std::size_t>(at));
+      isKnown[path.back()] = true;
+      if (path.back() == head) break;
     }
+    const bool isBelow = at >= 0 && (static_cast<std::size_t>(at) == head || out[static_cast<std::size_t>(at)]);
+    for (const std::size_t joint : path) out[joint] = isBelow;
   }
   return out;
 }

@@ -1,8 +1,7 @@
+#include <algorithm>
 #include <cmath>
 
 #include "landmarks/eyes.hpp"
-#include "landmarks/landmark_list.hpp"
-#include "landmarks/rig.hpp"
 #include "make/steps.hpp"
 #include "mesh/part_names.hpp"
 
@@ -21,19 +20,15 @@ bool coversSkin(const std::string& part) {
 }  // namespace
 
 FaceSkin faceSkinOf(const Model& model, const TriangleMesh& mesh, const std::vector<bool>& isMarked) {
-  Figure figure = readFigure(model);
-  const Rig rig = recogniseRig(model.joints);
-  if (const auto left = leftOf(rig.joints)) figure.front = cross(*left, {0, 1, 0});
+  const Figure figure = readFigure(model);
   std::optional<Eyes> eyes = findHintedEyes(figure, model.hints);
   if (!eyes) eyes = findNamedEyes(figure);
-  if (!eyes) eyes = findJointedEyes(figure, rig.joints);
+  if (!eyes) eyes = findJointedEyes(figure, figure.rig.joints);
   if (!eyes) return {};
   const double unit = length(eyes->centres[0] - eyes->centres[1]);
-  const std::vector<bool> covers = [&] {
-    std::vector<bool> out;
-    for (const std::string& part : model.parts) out.push_back(coversSkin(part));
-    return trianglesOf(model.mesh, out);
-  }();
+  std::vector<bool> isCoverPart(model.parts.size());
+  std::transform(model.parts.begin(), model.parts.end(), isCoverPart.begin(), coversSkin);
+  const std::vector<bool> covers = trianglesOf(model.mesh, isCoverPart);
   FaceSkin face;
   face.isSkin.resize(isMarked.size());
   face.isCover.resize(isMarked.size());

@@ -163,8 +163,15 @@ void HoleMarker::closeGaps(const Neighbours& neighbours, std::vector<bool>& mark
   closed.flip();
   grow(neighbours, closed, kGapEdges);
   closed.flip();
-  const std::vector<bool> isFace = model_.face.isBelow(hull_.positions);
-  for (std::size_t v = 0; v < marks.size(); ++v) marks[v] = marks[v] || (closed[v] && !isFace[v]);
+  std::vector<std::size_t> between;
+  std::vector<Vec3> places;
+  for (std::size_t v = 0; v < marks.size(); ++v)
+    if (closed[v] && !marks[v]) {
+      between.push_back(v);
+      places.push_back(hull_.positions[v]);
+    }
+  const std::vector<bool> isFace = model_.face.isBelow(places);
+  for (std::size_t i = 0; i < between.size(); ++i) marks[between[i]] = !isFace[i];
 }
 
 HoleMarker::HoleMarker(const MarkedMesh& model, double depth, TriangleMesh& hull)

@@ -208,7 +208,6 @@ Status make(const Model& given, const MakeOptions& options, const Progress& prog
   std::vector<bool> isMarked = marksOf(model, options, triangleOf);
   if (!lookForEyes(model, options, rising, settings.kind, isMarked)) return kAborted;
   lookForWheels(model, options, settings.kind, mesh, isMarked);
-  FaceSkin face = faceSkinOf(model, mesh, isMarked);
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
   if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return kNothingToPaint;
@@ -218,7 +217,7 @@ Status make(const Model& given, const MakeOptions& options, const Progress& prog
   if (const Status status = wrap(mesh, isMarked, wrapping, part(0, kHullEnd), hull); !status.ok()) return status;
 
   const Surface surface(mesh);
-  face.isCover.resize(face.others ? mesh.triangles.size() : 0, false);
+  FaceSkin face = faceSkinOf(model, mesh, isMarked);
   const MarkedMesh marked{&mesh, &surface, std::move(isMarked), std::move(face)};
   HoleMarker marker(marked, kVisibleDepth * offset, hull);
   if (!marker.mark(settings.kind == Kind::body ? 2 : 1, part(kHullEnd, kHolesEnd))) return kAborted;

@@ -50,7 +50,7 @@ void openNecks(const TriangleMesh& hull, const std::vector<Neck>& necks, std::ve
 
 /// The skin of a model's face, if names, morph targets or joints say where its eyes are.
 /// @param mesh  The model's triangles with an area, then others.
-/// @param isMarked  Per triangle of `mesh`.
+/// @param isMarked  Per triangle of `mesh`: not all of them.
 FaceSkin faceSkinOf(const Model& model, const TriangleMesh& mesh, const std::vector<bool>& isMarked);
 
 /// Whether each triangle is of a wheel, by shape: connected pieces that are equally large round discs, two or more, on

@@ -222,6 +222,11 @@ TEST_CASE("where too little is known, a cage is placed by size and symmetry", "[
     CHECK(landmark.confidence == (isGuessed ? 0.25f : 1));
     CHECK(length(positionOf(landmark) - moved(*placeOf(truth, landmark.name))) < 0.3);
   }
+  // Eyes that are known say where the rest is, though they are a little crooked.
+  heads.given = {{"eye_centre_left", toPosition(moved({0.35, -0.2, 0.75}))},
+                 {"eye_centre_right", toPosition(moved({-0.35, -0.19, 0.75}))}};
+  (void)heads.fitted();
+  CHECK(placeOf(heads.out.landmarks, "mouth_corner_left")->y < 3 * -0.5);
   // A guess is no reason to refuse what a person gives.
   heads.given = {{"chin", toPosition(moved({0, 1.2, 0.4}))}};
   CHECK(heads.fit().ok());

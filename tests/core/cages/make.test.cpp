@@ -138,6 +138,11 @@ TEST_CASE("wheels without a name are known by their shape", "[cages][make]") {
   }
   const TriangleMesh cage = meshOf(made(model));
   for (const double z : {-1.2, 1.2}) CHECK(hasHoleAt(cage, {1, 0.35, z}, 0.35));
+  // A heap of coins has none.
+  OwnedModel coins;
+  for (int i = 0; i < 100; ++i) coins.add("mesh", disc(i, 0, 0.35, 0.25));
+  const std::vector<bool> none = wheelsOf(weldExactly(coins.view()));
+  CHECK(std::find(none.begin(), none.end(), true) == none.end());
 }
 
 TEST_CASE("grounds and backdrops are left out", "[cages][make]") {
@@ -180,6 +185,16 @@ TEST_CASE("hair, a beard and brows leave no face bare", "[cages][make]") {
   for (const double x : {-0.35, 0.35}) CHECK(hasHoleAt(cage, {x, 0.2, 1}, 0.25));
   const SurfaceRay behind{{0, 0.8, -0.6}, {0, 0, -1}};
   CHECK(std::isinf(surface.trace({&behind, 1})[0].distance));
+  // Where there is nothing but hair, there is no face.
+  OwnedModel wig;
+  wig.add("hair", sphere({0, 0, 0}, 1, 24));
+  Model known = wig.model();
+  for (const auto& [name, x] : {std::pair{"eye_inner_left", 0.1f},
+                                {"eye_outer_left", 0.4f},
+                                {"eye_inner_right", -0.1f},
+                                {"eye_outer_right", -0.4f}})
+    known.hints.push_back({name, {x, 0.2f, 0.9f}});
+  CHECK(faultOf(known) == "model has nothing to paint: all that is seen of it is excluded");
 }
 
 TEST_CASE("a mark, as by a brush, gets its hole", "[cages][make]") {

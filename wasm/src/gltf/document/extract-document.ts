@@ -42,7 +42,7 @@ export interface DocumentPart extends Piece {
 
 /**
  * Says which primitives of nodes are transferred to; the others stay as they are, and hide nothing.
- * @param isDrawn  Whether a viewer draws it, and its name is not that of a cage, a marker or a collision shape.
+ * @param isDrawn  Whether a viewer draws it, and it is no cage, marker or collision shape by its name, and no backdrop.
  */
 export type PartsOption = (primitive: Primitive, node: Node, isDrawn: boolean) => boolean;
 

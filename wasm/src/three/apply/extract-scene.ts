@@ -55,7 +55,7 @@ export interface Extracted {
 
 /**
  * Says which meshes are painted; the others hide nothing.
- * @param isDrawn  Whether three.js draws it, and its name is not that of a cage, a marker or a collision shape.
+ * @param isDrawn  Whether three.js draws it, and it is no cage, marker or collision shape by its name, and no backdrop.
  */
 export type PartsOption = (mesh: ThreeMesh, isDrawn: boolean) => boolean;
 
