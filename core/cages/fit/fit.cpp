@@ -85,9 +85,9 @@ std::vector<bool> keptTriangles(const Model& model, const std::vector<std::strin
 
 /// The same names, those first that say most of where a template belongs.
 std::vector<std::string> mostHelpfulFirst(std::vector<std::string> names) {
-  static constexpr const char* kFirst[] = {"eye_centre_left", "eye_centre_right", "lip_lower",   "chin",
-                                           "bumper_front",    "bumper_rear",      "roof",        "wheel_front_centre",
-                                           "joint_neck",      "joint_hips",       "joint_wrist", "nose_tip"};
+  static constexpr const char* kFirst[] = {
+      "joint_neck",   "joint_hips",  "joint_wrist", "eye_centre_left",    "eye_centre_right", "lip_lower", "chin",
+      "bumper_front", "bumper_rear", "roof",        "wheel_front_centre", "nose_tip"};
   auto next = names.begin();
   for (const char* name : kFirst)
     next = std::stable_partition(next, names.end(), [&](const std::string& one) { return one.starts_with(name); });

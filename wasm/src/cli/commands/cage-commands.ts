@@ -161,17 +161,20 @@ const kMinLandmarks = 4;
 /** Reads a template with its landmarks. @throws {InputError} that names the file at fault. */
 async function readTemplate(path: string, flags: FitFlags, io: Io): Promise<Template> {
   const { templateLandmarks } = flags;
-  const own = /\.obj$/i.test(path) ? await readObjTemplate(path, io) : await readGltfTemplate(path, flags, io);
+  const own = isObj(path) ? await readObjTemplate(path, io) : await readGltfTemplate(path, flags, io);
   const landmarks = templateLandmarks === undefined ? own.landmarks : await readLandmarks(templateLandmarks);
   const count = Object.keys(landmarks).length;
   if (count >= kMinLandmarks) return { ...own, landmarks };
   const has = `has ${count === 0 ? 'no landmarks' : counted(count, 'landmark')}`;
   if (templateLandmarks !== undefined)
     throw new InputError(`${has}; at least ${kMinLandmarks} are needed`).in(templateLandmarks);
+  const place = isObj(path) ? '' : ' in the extras of its nodes and meshes';
   throw new InputError(
-    `${has} in the extras of its nodes and meshes; give at least ${kMinLandmarks} of the model that it was made for: --template-landmarks T.json`,
+    `${has}${place}; give at least ${kMinLandmarks} of the model that it was made for: --template-landmarks T.json`,
   ).in(path);
 }
+
+const isObj = (path: string) => /\.obj$/i.test(path);
 
 async function readGltfTemplate(path: string, flags: FitFlags, io: Io): Promise<Template> {
   const { file, extracted } = withUvs(await readModel(templateFile(path), common.readingOf(flags), io));
