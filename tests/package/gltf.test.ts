@@ -276,6 +276,24 @@ describe('document.transform(cagecast(…))', () => {
     );
   });
 
+  test('what a cage was made without stays bare', async () => {
+    const maker = new GlbMaker();
+    for (const name of ['skin', 'Hair']) maker.node({ name, mesh: maker.mesh(target) });
+    const bytes = maker.finish();
+    const around = await documentOf(cageGlb);
+    around
+      .getRoot()
+      .listNodes()[0]!
+      .setExtras({ bare: ['Hair'] });
+    for (const by of [around, { ...cage, bare: ['Hair'] }]) {
+      let fates: [number, boolean][] = [];
+      const onResult = ({ segmentStats }: TransferResult) =>
+        (fates = segmentStats.map(({ group, culledBy }) => [group, culledBy === 'lock']));
+      await (await documentOf(bytes)).transform(cagecast({ cage: by, onResult }));
+      assert.ok(fates.length >= 2 && fates.every(([group, isLocked]) => isLocked === (group === 1)));
+    }
+  });
+
   test('without a cage, the cages in the document are taken, each for the part of its name', async () => {
     const document = await documentOf(cagedFigure());
     const onResult = ({ uvs, zones }: TransferResult, parts: PartRange[]) =>

@@ -167,6 +167,11 @@ describe('extract', () => {
     assert.deepEqual(painted(both()).at(-1), 'lock');
     assert.notEqual(painted(both(), { locks: { groups: { 1: 'keep' } } }).at(-1), 'lock');
     assert.notEqual(painted(hat.clone())[0], 'lock');
+    // What a cage was made without stays bare, too.
+    const around = cage();
+    around.userData['bare'] = [(skin.name = 'skin')];
+    const { result } = applyTransfer(new Group().add(skin, meshOf(ball([0, 0.9, 0], () => 0.05, 8, 12))), around);
+    for (const { group, culledBy } of result.segmentStats) assert.equal(culledBy === 'lock', group === 0);
   });
 
   test('without a cage, the cages in a model are taken, each for the part of its name', async () => {

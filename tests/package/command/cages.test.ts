@@ -30,7 +30,8 @@ test('make writes a cage with holes over the eyes, a report, and the verdict', a
   assert.match(readFileSync('page.html', 'utf8'), /<h2>Holes<\/h2>/);
   assert.deepEqual(await validate('cage.glb'), []);
   const [{ name, extras }] = jsonOf('cage.glb').nodes as [{ name: string; extras: object }];
-  assert.deepEqual([name, Object.keys(extras).sort()], ['cage', ['holes', 'kind', 'landmarks']]);
+  assert.deepEqual([name, Object.keys(extras).sort()], ['cage', ['bare', 'holes', 'kind', 'landmarks']]);
+  assert.deepEqual((extras as { bare: string[] }).bare, ['Eye.L', 'EyeWhite']);
 });
 
 test('make: --exclude replaces the list of names, and --closing, --kind and --triangles say what is made', async () => {
@@ -40,6 +41,8 @@ test('make: --exclude replaces the list of names, and --closing, --kind and --tr
   });
   const stdout = await ok('make held.glb --triangles 300 -o out.glb --exclude lookers');
   assert.match(stdout, /, 2 holes$/m, 'names of nodes above parts are known');
+  const { target } = await json<{ target: { bare: string[] } }>('transfer held.glb --cage out.glb');
+  assert.deepEqual(target.bare, ['Eye.L', 'ball'], 'and still by who uses the cage');
   writeMade('eyes.glb', (maker) => {
     for (const x of [0, 3.4]) maker.node({ name: 'eye', mesh: maker.mesh(ball([x, 0, 0], () => 1, 12, 24)) });
   });
@@ -68,10 +71,12 @@ test('transfer and inspect --cage auto: they say which parts the cage is made wi
   );
   const inspected = await run('inspect head.glb --cage auto');
   assert.match(inspected.stdout, /^bare by their names, unless --keep names them: Eye\.L, ball$/m);
-  // A file named auto is read if its path says so, and is not said to be made without anything.
+  // A file named auto is read if its path says so.
   copyFileSync('cage.glb', 'auto');
-  const { target } = await json<{ target: { bare: string[] } }>('transfer head.glb --cage ./auto');
-  assert.deepEqual(target.bare, []);
+  assert.match(
+    await ok('transfer head.glb --cage ./auto'),
+    /^bare by their names, unless --keep names them: Eye\.L, ball$/m,
+  );
 });
 
 test('fit writes the template moved onto the model, and says what it was moved by', async () => {

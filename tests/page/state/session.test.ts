@@ -201,6 +201,12 @@ test('what is not drawn is part of a cage alone; accessories stay bare until the
   assert.equal(fate(), 'lock');
   page.session.lock([1], 'keep');
   assert.notEqual(fate(), 'lock');
+  // So does what the cage was made without.
+  const head = () => page.session.classification!.segmentStats[0]!.culledBy;
+  assert.notEqual(head(), 'lock');
+  page.session.shown!.cage.mesh.bare.push('head');
+  page.session.setLocks({});
+  assert.equal(head(), 'lock');
   page.session.swap();
   await page.ready();
   assert.equal(page.session.shown!.cage.mesh.primitives.length, 4);

@@ -5,17 +5,17 @@ import { packGlb } from '../parts/glb.js';
 import type { Cage, Template } from './types.js';
 
 /** What a GLB's node has in its `extras` if its mesh is a cage, as `cageGlb` writes it: docs/cages.md describes the format. */
-type CageExtras = Pick<Cage, 'landmarks' | 'holes' | 'kind' | 'regions'>;
+type CageExtras = Pick<Cage, 'landmarks' | 'holes' | 'kind' | 'regions' | 'bare'>;
 
 /**
- * Writes a cage as a GLB file: one node named `cage`, with landmarks, holes, kind and regions in its `extras`. So it is a template for fits.
- * @param cage  `landmarks`, `holes`, `kind` and `regions` may be missing. `origin` is where its origin is in the scene of its model, if elsewhere.
+ * Writes a cage as a GLB file: one node named `cage`, with landmarks, holes, kind, regions and names of bare parts in its `extras`. So it is a template for fits.
+ * @param cage  `landmarks`, `holes`, `kind`, `regions` and `bare` may be missing. `origin` is where its origin is in the scene of its model, if elsewhere.
  * @throws {CagecastError} `badArgument` if positions, UVs or indices are not of the right type.
  */
 export function cageGlb(
   cage: Pick<Template, 'positions' | 'uvs' | 'indices'> & Partial<CageExtras> & { origin?: Vector },
 ): Uint8Array<ArrayBuffer> {
-  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', regions, origin } = cage;
+  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', regions, bare, origin } = cage;
   const types = {
     positions: ['Float32Array'],
     uvs: ['Float32Array'],
@@ -43,7 +43,7 @@ export function cageGlb(
         name: 'cage',
         mesh: 0,
         ...(origin?.some((x) => x !== 0) && { translation: origin }),
-        extras: { landmarks, holes, kind, ...(regions && { regions }) } satisfies CageExtras,
+        extras: { landmarks, holes, kind, ...(regions && { regions }), ...(bare && { bare }) } satisfies CageExtras,
       },
     ],
     meshes: [{ name: 'cage', primitives: [{ attributes: { POSITION: 0, TEXCOORD_0: 1 }, indices: 2 }] }],

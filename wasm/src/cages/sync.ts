@@ -71,7 +71,7 @@ export function makeCage(model: CageModel, options: MakeOptions & SyncOptions = 
     fn: 'makeCage',
     defaults: 'makeOptions',
     run: (module, core, report) => module.makeCage(checkModel('makeCage', model), core, report),
-    result: (answer, module) => cageOf(module, answer),
+    result: (answer, module) => cageOf(module, answer, { holes: {}, bare: bareNames(module, model, options) }),
   });
 }
 
@@ -98,7 +98,7 @@ export function fitCage(
         report,
       ),
     result: (answer, module) => ({
-      cage: cageOf(module, answer, kept),
+      cage: cageOf(module, answer, { ...kept, bare: bareNames(module, model, options) }),
       used: landmarksOf(answer.landmarks),
       confidence: confidenceOf(answer.landmarks),
       missing: answer.missing,
@@ -132,6 +132,7 @@ export function refineCage(
   const kept = {
     holes: checkHoles('refineCage', 'cage.holes', from?.holes),
     regions: checkRegions('refineCage', 'cage.regions', from?.regions),
+    bare: (cage as Partial<Cage> | undefined)?.bare,
   };
   let given: CoreTemplate;
   return call(options, {
@@ -261,12 +262,25 @@ const landmarksOf = (landmarks: readonly CoreLandmark[]): Landmarks =>
 const confidenceOf = (landmarks: readonly CoreLandmark[]): Record<string, number> =>
   Object.fromEntries(landmarks.map(({ name, confidence }) => [name, confidence]));
 
+/** The names of a model's parts that are excluded; nothing if there are none. */
+function bareNames(
+  module: CagesModule,
+  { parts = [] }: CageModel,
+  { exclude = exclusionsOf(module) }: FitOptions,
+): string[] | undefined {
+  const names = [...new Set(parts.flat())];
+  const isExcluded = module.matchingParts(names, [...exclude]);
+  const bare = names.filter((_, n) => isExcluded[n]);
+  return bare.length > 0 ? bare : undefined;
+}
+
 /** @param kept  Of the cage that was moved, if one was: vertices keep their numbers and UVs. */
-function cageOf(module: CagesModule, answer: CageAnswer, kept: Pick<Cage, 'holes' | 'regions'> = { holes: {} }): Cage {
+function cageOf(module: CagesModule, answer: CageAnswer, kept: Pick<Cage, 'holes' | 'regions' | 'bare'>): Cage {
   const { positions, uvs, indices, landmarks, kind } = answer;
-  const { holes, regions } = kept;
+  const { holes, regions, bare } = kept;
   return {
     ...{ positions, uvs, indices, landmarks: landmarksOf(landmarks), holes, kind: kindOf(module, kind) },
     ...(regions && { regions }),
+    ...(bare && { bare }),
   };
 }

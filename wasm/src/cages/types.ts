@@ -72,6 +72,11 @@ export interface Cage {
   kind: Kind;
   /** Those of its template. Default: none. */
   regions?: Regions | undefined;
+  /**
+   * The names of parts of its model that the option `exclude` named. Transfers to loaded models leave parts of these names bare, unless
+   * locks say otherwise. Default: none.
+   */
+  bare?: readonly string[] | undefined;
 }
 
 /** A cage that is to be fitted to other models. A `Cage` is one. */

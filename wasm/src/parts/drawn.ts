@@ -102,6 +102,12 @@ export function leftOutText(leftOut: readonly LeftOut[]): string {
   return `${reasons.join(', ')}${more > 0 ? ` and ${more} more` : ''}`;
 }
 
+/** The groups of which a cage leaves some name bare; none if those are all. */
+export function groupsNamed(bare: readonly string[], names: readonly (readonly string[])[]): number[] {
+  const isBare = names.map((own) => own.some((name) => bare.includes(name)));
+  return isBare.includes(false) ? isBare.flatMap((is, group) => (is ? [group] : [])) : [];
+}
+
 /** Locks that leave groups bare, under those that are given. */
 export function withBare(groups: readonly number[], locks: Locks | undefined): Locks | undefined {
   if (groups.length === 0) return locks;

@@ -36,6 +36,7 @@ export function readTemplate<Of extends TemplateMesh>(
  */
 function readExtras(sources: Iterable<ExtrasSource>, wrong: (text: string) => Error): CageExtras {
   const out: CageExtras = { landmarks: {}, holes: {}, kind: 'automatic' };
+  const bare: string[] = [];
   for (const { extras, place, matrix, firstVertex, vertexCount } of sources) {
     const { landmarks, holes, kind, regions } = (extras ?? {}) as Record<string, unknown>;
     for (const [name, point] of entriesOf(landmarks, `${place}.extras.landmarks`, wrong)) {
@@ -53,10 +54,18 @@ function readExtras(sources: Iterable<ExtrasSource>, wrong: (text: string) => Er
         throw wrong(`${place}.extras.regions.${name} is not a list of outlines, each of at least 3 corners [u, v]`);
       out.regions = { ...out.regions, [name]: outlines };
     }
+    bare.push(...bareNames([extras]));
     if (kinds.includes(kind)) out.kind = kind as CageExtras['kind'];
   }
-  return out;
+  return bare.length > 0 ? { ...out, bare } : out;
 }
+
+/** The names of parts that cages leave bare, by what their nodes and meshes have in their extras. */
+export const bareNames = (extras: Iterable<unknown>): string[] =>
+  [...extras].flatMap((one) => {
+    const bare = (one as Partial<CageExtras> | undefined)?.bare;
+    return Array.isArray(bare) ? bare.filter((name) => typeof name === 'string') : [];
+  });
 
 function entriesOf(value: unknown, place: string, wrong: (text: string) => Error): [string, unknown][] {
   if (value === undefined) return [];

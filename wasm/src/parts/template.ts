@@ -25,4 +25,5 @@ export interface CageExtras {
   holes: Record<string, number[]>;
   kind: 'automatic' | 'head' | 'body' | 'prop';
   regions?: Record<string, Outline[]>;
+  bare?: string[];
 }

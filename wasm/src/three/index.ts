@@ -22,7 +22,14 @@ import {
   transferOptions,
 } from './apply/apply-options.js';
 import { cutGeometry } from './apply/cut-geometry.js';
-import { type Extracted, extract, extractNear, type Part, type PartsOption } from './apply/extract-scene.js';
+import {
+  bareGroups,
+  type Extracted,
+  extract,
+  extractNear,
+  type Part,
+  type PartsOption,
+} from './apply/extract-scene.js';
 import { atOnce } from './apply/remake.js';
 import { checkSaved, deserialize, keyOf, remember, serialize } from './apply/saved-transfer.js';
 import { zoneAttribute } from './apply/shown-parts.js';
@@ -46,6 +53,7 @@ export {
   type Applied,
   type ApplyOptions,
   type Borders,
+  bareGroups,
   type CutPart,
   cutGeometry,
   deserialize,
@@ -167,9 +175,10 @@ function read(
   const { saved, result, parts } = options;
   const extracted = extractNear(target, 'target', 'own', parts);
   const own = transferOptions(options);
-  const rules = { ...own, locks: withBare(extracted.accessories, own.locks) };
   const needsCage = !saved && (cuts || !result);
   const outer = needsCage ? extractNear(cage ?? ownCage(target), 'cage', extracted.origin) : undefined;
+  const bare = outer ? bareGroups(extracted, outer) : extracted.accessories;
+  const rules = { ...own, locks: withBare(bare, own.locks) };
   const apart = outer && moveApart(extracted, outer);
   const around = apart?.cage ?? outer?.mesh;
   if (result) checkResult(result, extracted);

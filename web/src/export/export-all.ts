@@ -1,5 +1,5 @@
 import { freeName, zip } from '../platform/zip';
-import { choicesOf } from '../state/choices';
+import { bareGroupsOf, choicesOf } from '../state/choices';
 import type { Session } from '../state/session';
 import { type Avatar, nameOf } from '../state/wardrobe/avatar';
 import { endingOf } from './ending';
@@ -30,12 +30,13 @@ export async function exportAll(
       const { shown } = session;
       const { model, projection } = avatar === active ? { ...shown, model: shown?.target } : (avatar.standing ?? {});
       const target = { name: avatar.name, files: avatar.files, ...(model && { mesh: model.mesh }) };
+      const bare = bareGroupsOf(model && { target: model, cage: avatar.cage! });
       const scene = {
         target,
         cage: avatar.cage!,
         rules,
         projection,
-        choices: avatar === active ? choices : choicesOf(avatar.locks, model, projection, session.bareOf(avatar.files)),
+        choices: avatar === active ? choices : choicesOf(avatar.locks, bare, projection, session.bareOf(avatar.files)),
       };
       const { glb } = await exportGlb(scene, png, into);
       const { name } = avatar.files[0]!;

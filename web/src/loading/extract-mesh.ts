@@ -14,7 +14,7 @@ export function extractMesh(
   nameOf: (mesh: Mesh) => string | undefined = () => undefined,
   slot: 'target' | 'cage' = 'target',
 ): ExtractedMesh {
-  const { mesh, parts, accessories, leftOut } = extract(root, slot === 'cage' ? 'cage' : 'the scene');
+  const { mesh, parts, leftOut, accessories, names, bare } = extract(root, slot === 'cage' ? 'cage' : 'the scene');
   if (parts.length === 0) throw new Error('the file contains no triangles, only points, lines or an empty scene');
   const primitives = parts.map(({ geometry, ...part }): Primitive => {
     const mesh = part.mesh as Mesh;
@@ -24,8 +24,7 @@ export function extractMesh(
   });
   // They would hide the model on the stage.
   if (slot === 'target') for (const { mesh, why } of leftOut) if (why === 'name') mesh.visible = false;
-  const names = leftOut.map(({ mesh, name }) => nameOf(mesh) || name);
-  return { ...mesh, primitives, accessories, leftOut: names };
+  return { ...mesh, primitives, accessories, names, bare, leftOut: leftOut.map((one) => nameOf(one.mesh) || one.name) };
 }
 
 /** The meshes of a model, as a target and as a cage. @throws Error as `extractMesh`. */

@@ -1,7 +1,7 @@
 import type { Classification, SegmentStats } from 'cagecast';
 import { make, swatch } from '../platform/make';
 import { element, showNotice } from '../platform/page';
-import { type Choice, choiceFor, type Locks } from '../state/choices';
+import { bareGroupsOf, type Choice, choiceFor, type Locks } from '../state/choices';
 import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
 import { cssColor, type Rgb } from '../view/colors';
@@ -62,8 +62,9 @@ export class PartsTable {
     card.addEventListener('toggle', () => card.open || this.#highlight([]));
     session.on('transfer', (shown) => this.#list(shown, session.locks));
     session.on('zones', ({ classification }) => {
-      const { target, projection } = session.shown!;
-      const chosen = (s: number) => choiceFor(s, projection.segmentStats[s]!.group, session.locks, target);
+      const { segmentStats } = session.shown!.projection;
+      const bare = bareGroupsOf(session.shown);
+      const chosen = (s: number) => choiceFor(s, segmentStats[s]!.group, session.locks, bare);
       // Locks may have been set elsewhere, even for some segments of a row only.
       const upToDate = this.#rows.every(({ segments, choice }) =>
         segments.every((segment) => chosen(segment) === choice.value),
@@ -143,8 +144,9 @@ export class PartsTable {
 /** The segments with area, grouped into rows. */
 function entriesOf(shown: Shown, locks: Locks): Entry[] {
   const entries = new Map<string, Entry>();
+  const bare = bareGroupsOf(shown);
   shown.projection.segmentStats.forEach(({ points, area, exposedArea, coveredArea, group }, segment) => {
-    const lock = choiceFor(segment, group, locks, shown.target);
+    const lock = choiceFor(segment, group, locks, bare);
     // What is left out has no area, but can be taken back.
     if (area === 0 && lock !== 'out') return;
     const key = coveredArea > 0 ? `segment ${segment}` : `group ${group} ${exposedArea > 0} ${lock}`;

@@ -140,10 +140,8 @@ export class CageMaker extends Emitter<{
     const { target, cage: current } = this.#session.shown!;
     const { cageGlb } = await this.#workshop.engine();
     const { positions, rest = positions, indices, uvs = new Float32Array() } = current.mesh;
-    const extras: Partial<Cage> = {};
-    current.scene.traverse(({ userData }) => void (userData.landmarks && Object.assign(extras, userData)));
     const bytes = cageGlb({
-      ...extras,
+      ...extrasOf(current),
       ...({ positions: rest, indices, uvs, ...change } as Cage),
       origin: originOf(current),
     });
@@ -197,7 +195,10 @@ export class CageMaker extends Emitter<{
       const onProgress = (share: number, step: string): unknown => report(kStages[step] ?? title, share);
       const options = { signal: abort.signal, onProgress };
       const { positions, rest = positions, indices, uvs = new Float32Array() } = current.mesh;
-      const old = { ...kNoName, positions: rest.slice(), indices: indices.slice(), uvs: uvs.slice() } as Cage;
+      const old = {
+        ...{ holes: {}, kind: 'automatic', ...extrasOf(current), landmarks: {} },
+        ...{ positions: rest.slice(), indices: indices.slice(), uvs: uvs.slice() },
+      } as Cage;
       const result = await work.call(this, { engine, model: cageModel(read.loaded), old, options });
       if (abort.signal.aborted) return;
       const { cage, note, fitting, isNew } = result;
@@ -261,7 +262,12 @@ export class CageMaker extends Emitter<{
 const cageNameFrom = (name: string): string =>
   name.replace(/(^cage|-cage|)(\.\w+)?$/, (_, ending: string) => `${ending || '-cage'}.glb`);
 
-const kNoName = { landmarks: {}, holes: {}, kind: 'automatic' } as const;
+/** What the file of a cage says of it besides its mesh. */
+function extrasOf({ scene }: Model): Partial<Cage> {
+  const extras: Partial<Cage> = {};
+  scene.traverse(({ userData }) => void (userData.landmarks && Object.assign(extras, userData)));
+  return extras;
+}
 
 /** A cage that is nowhere near the model is put around it first, as large as the model. */
 export function placeAround(cage: Cage, model: ArrayLike<number>): Cage {

@@ -1,5 +1,5 @@
 import type { ClassifyOptions, Lock, Preset } from 'cagecast';
-import type { Borders } from 'cagecast/three';
+import { type Borders, bareGroups } from 'cagecast/three';
 import type { ExtractedMesh, Model } from './model';
 import type { SplitProjection } from './transfers';
 
@@ -31,22 +31,23 @@ export const asLock = (choice: Choice): Lock => (choice === 'always' ? 'keep' : 
 export const knownLocks = (locks: Locks, { segmentStats }: Pick<SplitProjection, 'segmentStats'>): Locks =>
   Object.fromEntries(Object.entries(locks).filter(([segment]) => Number(segment) < segmentStats.length));
 
-/** What a model is, as far as it decides without the user: accessories stay bare. */
-type Worn = { mesh: Pick<ExtractedMesh, 'accessories'> };
+/** What stays bare without the user's choice: what a figure wears, and what the cage was made without. */
+export const bareGroupsOf = (pair: Record<'target' | 'cage', { mesh: ExtractedMesh }> | undefined): number[] =>
+  pair ? bareGroups(pair.target.mesh, pair.cage.mesh) : [];
 
 /** The choice for a segment of a group: the user's, if there is one. */
-export const choiceFor = (segment: number, group: number, chosen: Locks, { mesh }: Worn): Choice =>
-  chosen[segment] ?? (mesh.accessories.includes(group) ? 'exclude' : 'auto');
+export const choiceFor = (segment: number, group: number, chosen: Locks, bareGroups: readonly number[]): Choice =>
+  chosen[segment] ?? (bareGroups.includes(group) ? 'exclude' : 'auto');
 
 /**
  * The locks and masks that choices come to.
- * @param model      The model that they are for.
- * @param projection Of it.
+ * @param bareGroups Those that stay bare without a choice.
+ * @param projection Of the model that they are for.
  * @param bare       Its triangles that stay bare, as `BareMarks` gives them.
  */
 export function choicesOf(
   chosen: Locks,
-  model: Worn | undefined,
+  bareGroups: readonly number[],
   projection: Pick<SplitProjection, 'segments'> | undefined,
   bare?: Uint8Array,
 ): Pick<ClassifyOptions, 'locks' | 'masks'> {
@@ -54,7 +55,7 @@ export function choicesOf(
   const always = new Set(entries.flatMap(([segment, choice]) => (choice === 'always' ? [Number(segment)] : [])));
   const locks = {
     segments: Object.fromEntries(entries.map(([s, choice]) => [s, asLock(choice)])),
-    groups: Object.fromEntries(model?.mesh.accessories.map((group) => [group, 'exclude' as const]) ?? []),
+    groups: Object.fromEntries(bareGroups.map((group) => [group, 'exclude' as const])),
   };
   const vertices =
     always.size > 0 && projection && Int8Array.from(projection.segments, (segment) => (always.has(segment) ? 1 : 0));

@@ -28,6 +28,10 @@ export interface ExtractedMesh {
   primitives: Primitive[];
   /** The groups of what a figure wears or carries: it stays bare unless the user decides otherwise. */
   accessories: readonly number[];
+  /** The names of each group. */
+  names: string[][];
+  /** Of a cage, the names of the parts that it leaves bare. */
+  bare: string[];
   /** The names of what is left out, as it is not drawn, or is a cage, a marker or a collision shape. */
   leftOut: readonly string[];
 }

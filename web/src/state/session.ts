@@ -9,7 +9,16 @@ import {
 } from 'cagecast';
 import type { Inspection } from 'cagecast/inspect';
 import { Emitter } from 'cagecast/three/paint';
-import { BareMarks, type Choice, choicesOf, kFirstRules, knownLocks, type Locks, type Rules } from './choices';
+import {
+  BareMarks,
+  bareGroupsOf,
+  type Choice,
+  choicesOf,
+  kFirstRules,
+  knownLocks,
+  type Locks,
+  type Rules,
+} from './choices';
 import { choose, isUpToDate, leavingOut, leftOutBy, moveChoices, projectBy } from './left-out';
 import type { Model } from './model';
 import { Pace } from './pace';
@@ -229,7 +238,7 @@ export class Session extends Emitter<SessionEvents> {
 
   /** The locks and masks that the choices come to. */
   get choices(): Pick<ClassifyOptions, 'locks' | 'masks'> {
-    return choicesOf(this.#locks, this.#shown?.target, this.#shown?.projection, this.bare);
+    return choicesOf(this.#locks, bareGroupsOf(this.#shown), this.#shown?.projection, this.bare);
   }
 
   /** Changes the view. */

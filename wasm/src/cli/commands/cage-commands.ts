@@ -8,7 +8,6 @@ import { templateOf } from '../../gltf/cage-file.js';
 import { readBytes, standard } from '../../gltf/files.js';
 import { InputError, naming } from '../../gltf/input-error.js';
 import { counted } from '../../inspect/finding.js';
-import { withBare } from '../../parts/drawn.js';
 import { readObj } from '../../parts/obj.js';
 import { isPosition, readTemplate as withExtras } from '../../parts/template-extras.js';
 import type { Io } from '../io/io.js';
@@ -21,9 +20,10 @@ import { conclusionOf, inspectionReport } from '../transfer/inspection.js';
 import { inspectionPage } from '../transfer/inspection-page.js';
 import { fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
 import { type ReadModel, readBack, readModel, withUvs } from '../transfer/models.js';
+import { transferOptions } from '../transfer/part-names.js';
 import { readTarget } from '../transfer/read-target.js';
 import { leftOutLines } from '../transfer/report-parts.js';
-import { transferModels } from '../transfer/run-transfer.js';
+import { bareParts, transferModels } from '../transfer/run-transfer.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
 
@@ -264,8 +264,9 @@ async function finish(
 ): Promise<Found> {
   const { output, html } = flags;
   const rules = rulesOf(flags);
-  const locks = withBare(model.extracted.accessories, undefined);
-  const run = await transferModels(model, await readBack(cage, output, model), { preset: rules.preset, locks }, io);
+  const written = await readBack(cage, output, model);
+  const options = transferOptions(rules, model, bareParts(model, written));
+  const run = await transferModels(model, written, options, io);
   io.step('inspecting');
   const report = inspectionReport({ target: model.file.path, cage: output, rules }, run, []);
   const page = html === undefined ? [] : [{ path: html, data: inspectionPage(report, run) }];

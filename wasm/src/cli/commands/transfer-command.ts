@@ -39,7 +39,7 @@ A cage that faces the other way, as on a model of VRM 0, is turned by half if it
 What an earlier transfer added is replaced. Where triangles need different UVs, copies of vertices are added after the others (not
 with --seams vertex); --borders cut adds some, too; Draco changes their order. --region adds UVs and zones of its own (_NCZ_1, …).
 Of a file with meshes that are named as outer cages (Head_OuterCage of Head_Geo), these are the cage, each of the part of its name.
---cage auto makes a cage as cagecast make does, and excludes the parts that make leaves out, unless --keep names them. For a file
+--cage auto makes a cage as cagecast make does. Parts that a cage was made without stay bare, unless --keep names them. For a file
 named auto, write ./auto.
 --uv-bounds and --reference-cage are about --cage alone. Within the bounds, the UVs in OUT are 0..1. A triangle across them is
 painted whole, also with --borders cut; zones do not depend on them.

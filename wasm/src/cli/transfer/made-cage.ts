@@ -1,4 +1,4 @@
-import { defaultExclusions, findLandmarks, fitCage, init, makeCage, matchingParts } from '../../cages/sync.js';
+import { findLandmarks, fitCage, init, makeCage, matchingParts } from '../../cages/sync.js';
 import type { Cage, CageModel, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../../cages/types.js';
 import { cageModelOf, partNamesOf } from '../../gltf/cage-file.js';
 import { partsBelow } from '../../gltf/extract-file.js';
@@ -11,9 +11,10 @@ import { noSuchName } from './part-names.js';
 /** Makes a cage for a model. @throws {InputError} that names the file. */
 export async function makeCageFor(model: ReadModel, options: MakeOptions, io: Io): Promise<Cage> {
   const named = await withExcluded(model, options.exclude);
-  return calling('making a cage', { model: model.file.path }, io, (onProgress) =>
+  const cage = await calling('making a cage', { model: model.file.path }, io, (onProgress) =>
     makeCage(named, { ...options, onProgress }),
   );
+  return inOwnNames(cage, named, model);
 }
 
 /** The landmarks that are found on a model: with them, a cage that was made for it is a template. @throws {InputError} */
@@ -22,12 +23,6 @@ export function landmarksOf(model: ReadModel, io: Io): Promise<Landmarks> {
     const { landmarks } = findLandmarks(cageModelOf(model.file, model.extracted), { onProgress });
     return landmarks;
   });
-}
-
-/** Whether each part of a model is one that a cage is made without, unless other names are given. */
-export async function partsLeftOut({ file, extracted }: ReadModel): Promise<boolean[]> {
-  await init();
-  return matchingParts(partNamesOf(file, extracted.parts), defaultExclusions());
 }
 
 /**
@@ -53,6 +48,14 @@ async function withExcluded({ file, extracted }: ReadModel, patterns: readonly s
   return { ...model, parts: names };
 }
 
+/** A cage that leaves parts bare by names of their own, where it does by those of nodes above them. */
+function inOwnNames(cage: Cage, named: CageModel, { file, extracted: { parts } }: ReadModel): Cage {
+  const own = partNamesOf(file, parts).flat();
+  const below = (node: string) => parts.flatMap(({ name }, p) => (named.parts![p]!.includes(node) ? [name] : []));
+  const bare = cage.bare?.flatMap((name) => (own.includes(name) ? [name] : below(name)));
+  return { ...cage, ...(bare && { bare }) };
+}
+
 /** A template, landmarks of the model (none if there is no file of them), and the files that they come from. */
 interface FitSources {
   template: Template;
@@ -68,9 +71,10 @@ export async function fitCageTo(
   io: Io,
 ): Promise<Fit> {
   const named = await withExcluded(model, options.exclude);
-  return calling('fitting the cage', { model: model.file.path, ...files }, io, (onProgress) =>
+  const fit = await calling('fitting the cage', { model: model.file.path, ...files }, io, (onProgress) =>
     fitCage(template, named, landmarks, { ...options, onProgress }),
   );
+  return { ...fit, cage: inOwnNames(fit.cage, named, model) };
 }
 
 /** Calls a function that takes seconds, and shows how far it is. @param files  By the arguments that they are given as. */

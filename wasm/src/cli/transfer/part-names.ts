@@ -42,13 +42,13 @@ export function noSuchName(flag: string, { file: { json }, extracted }: Named): 
 
 /**
  * The options of `transfer`. Names of parts become locks by group, because each part is a group.
- * @param leftOut  Whether each part is excluded if nothing is said of it.
+ * @param bare  The parts that are excluded if nothing is said of them.
  * @throws {InputError} that names the file, if nothing has a given name, or a part is both kept and excluded in one place.
  */
 export function transferOptions(
   { preset, single, names, config }: Rules,
   model: ReadModel,
-  leftOut: readonly boolean[],
+  bare: readonly number[],
 ): TransferOptions {
   const { parts } = model.extracted;
   const saidOf: Rules['names'][] = parts.map(() => []);
@@ -61,7 +61,7 @@ export function transferOptions(
   const groups = parts.flatMap(({ name }, p) => {
     const rank = Math.max(...saidOf[p]!.map((rule) => rule.rank));
     const [first, ...others] = saidOf[p]!.filter((rule) => rule.rank === rank);
-    if (first === undefined) return leftOut[p] ? [[p, 'exclude']] : [];
+    if (first === undefined) return bare.includes(p) ? [[p, 'exclude']] : [];
     const other = others.find(({ lock }) => lock !== first.lock);
     if (other === undefined) return [[p, first.lock]];
     const place = first.isOptional ? ` (in ${config})` : '';

@@ -1,5 +1,6 @@
 import { FileModel } from '../../gltf/bake/bake-file.js';
 import { masksOf } from '../../gltf/bake/mask-sources.js';
+import { partNamesOf } from '../../gltf/cage-file.js';
 import type { ReadOptions } from '../../gltf/files.js';
 import { InputError, naming } from '../../gltf/input-error.js';
 import {
@@ -13,13 +14,15 @@ import {
 } from '../../index.js';
 import { isBackward, turnedBack } from '../../inspect/backward.js';
 import { boxOf } from '../../inspect/geometry.js';
+import { groupsNamed } from '../../parts/drawn.js';
 import { moveApart } from '../../parts/own-cages.js';
+import { bareNames } from '../../parts/template-extras.js';
 import { readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import type { Rules } from '../model/settings.js';
 import { kAutoCage, type Sources } from '../model/sources.js';
 import { withinBounds, withoutLacking } from './cage-area.js';
-import { makeCageFor, partsLeftOut } from './made-cage.js';
+import { makeCageFor } from './made-cage.js';
 import { besideOf, cageIn, inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
 import { transferOptions } from './part-names.js';
 import { readTarget } from './read-target.js';
@@ -56,20 +59,18 @@ export async function runTransfer(
   const target = read ?? (await readTarget(path, reading, io, rules.ignored));
   const masks = await readMasks(target, rules.masks, reading);
   const isMade = cage === kAutoCage;
-  const { parts, accessories } = target.extracted;
-  const named = isMade ? await partsLeftOut(target) : [];
-  const isBare = parts.map((_, p) => named[p] === true || accessories.includes(p));
-  const options = { ...transferOptions(rules, target, isBare), ...(masks && { masks }) };
   const cageOf = async (file: string) =>
     besideOf(target, withUvs(isOwnCage && file === cage ? cageIn(target) : await readCage(file, reading, io)));
   const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage, target) : await cageOf(cage);
+  const bare = bareParts(target, whole);
+  const options = { ...transferOptions(rules, target, bare), ...(masks && { masks }) };
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
   const apart = movedApart(target, withoutLacking(whole, reference));
   const { wholeCage } = apart;
   const first = await transferModels(apart.target, withinBounds(wholeCage, uvBounds), options, io);
   // Cages that have names know which way they face.
   const run = apart.target === target ? await faceForward(first, io) : first;
-  const names = parts.filter((_, p) => isBare[p] && options.locks?.groups?.[p] !== 'keep').map(({ name }) => name);
+  const names = bare.flatMap((p) => (options.locks?.groups?.[p] === 'keep' ? [] : [target.extracted.parts[p]!.name]));
   const { diagonal } = boxOf(target.extracted.mesh.positions);
   return {
     ...run,
@@ -77,6 +78,13 @@ export async function runTransfer(
     diagonal,
     bare: [...new Set(names)],
   };
+}
+
+/** The parts of a target that stay bare by their names: what a figure wears, and what the cage was made without. */
+export function bareParts({ file, extracted: { parts, accessories } }: ReadModel, cage: ReadModel): number[] {
+  const { meshes, nodes } = cage.file.json;
+  const extras = cage.extracted.parts.flatMap(({ mesh, node }) => [meshes![mesh]!.extras, nodes![node]!.extras]);
+  return [...new Set([...accessories, ...groupsNamed(bareNames(extras), partNamesOf(file, parts))])];
 }
 
 /** The parts of a target apart, each with the cage of its name, if there are such. @throws {InputError} that names one without. */

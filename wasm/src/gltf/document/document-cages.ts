@@ -1,20 +1,21 @@
-import type { Document, ExtensionProperty, Node } from '@gltf-transform/core';
+import type { Document, Node } from '@gltf-transform/core';
 import * as cages from '../../cages/index.js';
 import { CagecastError, type Mesh } from '../../index.js';
-import { nameOfGlass, transmissionExtension } from '../../parts/drawn.js';
 import { faceHints } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { vrmExpressions } from '../../parts/morph-names.js';
 import { readTemplate } from '../../parts/template-extras.js';
 import { InputError } from '../input-error.js';
 import { createAccessor } from './add-transfer.js';
-import { type DocumentPart, extractDocument, jointMatrix, morphedParts, skinOf } from './extract-document.js';
+import {
+  type DocumentPart,
+  extractDocument,
+  jointMatrix,
+  morphedParts,
+  partNames,
+  skinOf,
+} from './extract-document.js';
 import { isDocument, read, wrong } from './transfer-document.js';
-
-/** KHR_materials_transmission, as glTF-Transform has it, whose extensions are no dependency. */
-interface Transmission extends ExtensionProperty {
-  getTransmissionFactor(): number;
-}
 
 /** What glTF-Transform does not keep of a file. */
 export interface FileOptions {
@@ -34,12 +35,7 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
     positions,
     indices,
     groups,
-    parts: parts.map(({ aliases, name, primitive }) => {
-      const material = primitive.getMaterial();
-      const transmission = material?.getExtension(transmissionExtension) as Transmission | null | undefined;
-      const glass = nameOfGlass(material?.getAlphaMode(), material?.getAlpha(), transmission?.getTransmissionFactor());
-      return [...(aliases.length > 0 ? aliases : [name]), ...glass];
-    }),
+    parts: parts.map(partNames),
     ...skeletonOf(document, parts, vrmBones(extensions)),
     hints: faceHints(morphedParts(document, parts, positions, vrmExpressions(extensions))),
   };
@@ -126,7 +122,7 @@ export function addCage<D extends Document>(
   document: D,
   cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
 ): { document: D; node: Node } {
-  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', regions } = cage;
+  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', regions, bare } = cage;
   const root = read('addCage', 'document', document, () => document.getRoot());
   for (const [name, array] of Object.entries({ positions, uvs, indices }))
     if (!ArrayBuffer.isView(array)) throw wrong('addCage', `cage.${name}`, array, 'an array');
@@ -138,7 +134,10 @@ export function addCage<D extends Document>(
   const node = document
     .createNode('cage')
     .setMesh(document.createMesh('cage').addPrimitive(primitive))
-    .setExtras({ landmarks, holes, kind, ...(regions && { regions }) } as object as Record<string, unknown>);
+    .setExtras({ landmarks, holes, kind, ...(regions && { regions }), ...(bare && { bare }) } as object as Record<
+      string,
+      unknown
+    >);
   (root.getDefaultScene() ?? root.listScenes()[0] ?? document.createScene()).addChild(node);
   return { document, node };
 }

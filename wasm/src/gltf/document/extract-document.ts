@@ -10,7 +10,15 @@ import type {
 import type { Mesh } from '../../index.js';
 import type { Vector } from '../../inspect/geometry.js';
 import { identity, type Matrix, multiply } from '../../parts/affine.js';
-import { chooseParts, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
+import {
+  chooseParts,
+  isClear,
+  type LeftOut,
+  type Look,
+  nameOfGlass,
+  transmissionExtension,
+  visibilityExtension,
+} from '../../parts/drawn.js';
 import { upFrom } from '../../parts/joints.js';
 import type { Expressions } from '../../parts/morph-names.js';
 import { kSceneOrigin, type Origin } from '../../parts/origin.js';
@@ -144,6 +152,19 @@ function lookOf({ node, primitive, aliases, matrix, localPositions, localIndices
     indices: localIndices,
     matrix,
   };
+}
+
+/** KHR_materials_transmission, as glTF-Transform has it, whose extensions are no dependency. */
+interface Transmission extends ExtensionProperty {
+  getTransmissionFactor(): number;
+}
+
+/** The names of a part; see-through ones are called glass besides. */
+export function partNames({ aliases, name, primitive }: DocumentPart): string[] {
+  const material = primitive.getMaterial();
+  const transmission = material?.getExtension(transmissionExtension) as Transmission | null | undefined;
+  const glass = nameOfGlass(material?.getAlphaMode(), material?.getAlpha(), transmission?.getTransmissionFactor());
+  return [...(aliases.length > 0 ? aliases : [name]), ...glass];
 }
 
 export function uvLayoutOf(info: TextureInfo | null | undefined): UvLayout {

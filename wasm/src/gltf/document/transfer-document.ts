@@ -10,14 +10,21 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
-import { withBare } from '../../parts/drawn.js';
+import { groupsNamed, withBare } from '../../parts/drawn.js';
 import { moved } from '../../parts/origin.js';
 import { hasCages, moveApart } from '../../parts/own-cages.js';
+import { bareNames } from '../../parts/template-extras.js';
 import { type MaskSources, masksOf } from '../bake/mask-sources.js';
 import { InputError } from '../input-error.js';
 import { type Paint, paintOf } from '../overlay.js';
 import { DocumentModel } from './document-model.js';
-import { type ExtractedDocument, extractDocument, type PartsOption } from './extract-document.js';
+import {
+  type DocumentPart,
+  type ExtractedDocument,
+  extractDocument,
+  type PartsOption,
+  partNames,
+} from './extract-document.js';
 
 /** Options of a transfer from a cage to a document. */
 interface DocumentTransferOptions extends TransferOptions, MaskSources {
@@ -69,11 +76,22 @@ export async function transferDocument(
   const masks = within(caller, 'target', () =>
     masksOf(model, options.masks, { images: maskImages, colors: maskColors }),
   );
-  const rules = { ...options, masks, locks: withBare(target.accessories, options.locks) };
+  const bare = [...target.accessories, ...excludedParts(target.parts, cage, around.parts)];
+  const rules = { ...options, masks, locks: withBare(bare, options.locks) };
   const result = transfer(source, own, rules);
   const cut = cuts ? cutBorders(source, own, result, rules) : undefined;
   apart?.mend(result);
   return { target, model, result, cut, paint };
+}
+
+/** The parts of a target that a cage was made without. */
+function excludedParts(
+  parts: readonly DocumentPart[],
+  cage: Document | Mesh | undefined,
+  around: readonly DocumentPart[],
+): number[] {
+  const extras = around.flatMap(({ node, mesh }) => [node.getExtras(), mesh.getExtras()]);
+  return groupsNamed(bareNames([cage, ...extras]), parts.map(partNames));
 }
 
 /** What a cage has to be. */

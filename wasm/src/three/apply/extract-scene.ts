@@ -2,9 +2,6 @@ import {
   BackSide,
   type BufferGeometry,
   FrontSide,
-  type InstancedBufferAttribute,
-  type InstancedMesh,
-  type InterleavedBufferAttribute,
   type Material,
   Matrix4,
   type Object3D,
@@ -15,14 +12,17 @@ import {
 import { show } from '../../core/error.js';
 import type { CagecastError, Mesh } from '../../index.js';
 import type { Vector } from '../../inspect/geometry.js';
-import { chooseParts, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
+import { chooseParts, groupsNamed, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
 import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/origin.js';
 import { morphed, movePoints } from '../../parts/points.js';
 import { type MorphedPart, posesOf } from '../../parts/poses.js';
 import { placeMeshes, type Skin } from '../../parts/skin.js';
+import { bareNames } from '../../parts/template-extras.js';
 import { transformUvs } from '../../parts/uv-transform.js';
 import { wrong } from '../errors.js';
 import { type Attribute, targetDeltas, valuesOf } from './attributes.js';
+import { isGeometry, isInstanced, isMesh, isObject, isOfInstances } from './flags.js';
+import { groupNames, materialsOf, namesOf } from './names.js';
 
 /** One mesh of a scene, or a single geometry, and the ranges of its elements in the joined arrays. */
 export interface Part {
@@ -51,6 +51,10 @@ export interface Extracted {
   leftOut: (LeftOut & { mesh: ThreeMesh })[];
   /** The numbers in `groups` of what a figure wears or carries, by its name. `applyTransfer` leaves it bare. */
   accessories: number[];
+  /** The names of each group: of its mesh, the object that holds the meshes of one glTF mesh, its geometry and its material. */
+  names: string[][];
+  /** Of a cage, the names of the parts that it leaves bare. */
+  bare: string[];
 }
 
 /**
@@ -107,8 +111,34 @@ export function extractNear(
   const isCage = argument === 'cage' || argument === 'template';
   const poses = isCage ? undefined : posesOf(morphedParts(parts, positions));
   const mesh = { positions, indices, groups, ...(uvs && { uvs }), ...(poses && { poses }) };
-  return { mesh, parts, leftOut, accessories: bare, origin: near };
+  return {
+    mesh,
+    parts,
+    leftOut,
+    accessories: bare,
+    names: groupNames(parts, object),
+    bare: bareNames(parts.flatMap(extrasOf)),
+    origin: near,
+  };
 }
+
+/** What GLTFLoader keeps of the extras of a part: the parent of the meshes of one glTF mesh has those of its node. */
+export const extrasOf = ({ mesh, geometry }: Pick<Part, 'mesh' | 'geometry'>): unknown[] => [
+  geometry.userData,
+  mesh?.parent?.userData,
+  mesh?.userData,
+];
+
+/**
+ * The numbers in `groups` of what a transfer leaves bare unless locks say otherwise: what a figure wears or carries, and what the cage
+ * was made without, by its names. For those who call `transfer`.
+ * @param target  What `extract` returned.
+ * @param cage    What it returned for a cage.
+ */
+export const bareGroups = (
+  { accessories, names }: { accessories: readonly number[]; names: readonly (readonly string[])[] },
+  { bare }: { bare: readonly string[] },
+): number[] => [...new Set([...accessories, ...groupsNamed(bare, names)])];
 
 /** Where the next part begins: how many vertices and triangles there are before it. */
 function endOf(parts: readonly Part[]): [vertices: number, triangles: number] {
@@ -210,24 +240,6 @@ function below(root: Object3D, object: Object3D): Object3D[] {
 const isAid = (mesh: ThreeMesh, root: Object3D): boolean =>
   'isLineSegments2' in mesh || below(root, mesh).some(({ type }) => type.endsWith('Helper'));
 
-/** The object that holds the meshes of one glTF mesh, if it has several. */
-export function holderOf(mesh: ThreeMesh | undefined, root: object): Object3D | undefined {
-  const holder = mesh?.parent;
-  const isHolder = holder && holder !== root && holder.children.length > 1 && holder.children.every(isMesh);
-  return isHolder ? holder : undefined;
-}
-
-/** The materials of a mesh. Three.js draws nothing where a list of them has a gap. */
-const materialsOf = ({ material }: ThreeMesh): Material[] =>
-  ([material].flat() as (Material | undefined)[]).filter((one) => one !== undefined);
-
-function namesOf(mesh: ThreeMesh, root: Object3D): string[] {
-  const holder = holderOf(mesh, root);
-  // Of a glTF, `userData` has the name as it is in the file.
-  const own = [mesh, holder].flatMap((one) => [one?.name, one?.userData['name']]);
-  return [...own, mesh.geometry.name, ...materialsOf(mesh).map(({ name }) => name)].filter((name) => name);
-}
-
 function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
   const { geometry } = mesh;
   const position = geometry.getAttribute('position') as Attribute | undefined;
@@ -292,19 +304,6 @@ export function skinOf(mesh: SkinnedMesh): Skin<Object3D> {
  * overlays from a file, from their `extras` (gltf/overlay.ts). Lists of materials may have gaps.
  */
 export const isMarked = (one?: Pick<Object3D, 'userData'>): boolean => one?.userData['cagecastOverlay'];
-
-// Tested by three's own flags, not by class, because a page may have a second copy of three.
-const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry =>
-  (object as BufferGeometry | undefined)?.isBufferGeometry === true;
-const isObject = (object: Object3D): boolean => object?.isObject3D === true;
-export const isSkinned = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).isSkinnedMesh === true;
-export const isInstanced = (mesh: ThreeMesh): mesh is InstancedMesh => (mesh as InstancedMesh).isInstancedMesh === true;
-/** Whether an attribute has a value for each instance, not for each vertex. */
-export const isOfInstances = (attribute: object): boolean =>
-  (attribute as InstancedBufferAttribute).isInstancedBufferAttribute === true ||
-  ((attribute as InterleavedBufferAttribute).data as { isInstancedInterleavedBuffer?: true } | undefined)
-    ?.isInstancedInterleavedBuffer === true;
-export const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
 
 const wrongPart = (argument: string, name: string, text: string, at?: number): CagecastError =>
   wrong(`${argument}: ${show(name)} ${text}`, undefined, undefined, { argument, at });

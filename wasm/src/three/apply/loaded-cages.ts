@@ -1,21 +1,13 @@
-import {
-  BufferAttribute,
-  BufferGeometry,
-  Matrix4,
-  type MeshPhysicalMaterial,
-  type Object3D,
-  type Skeleton,
-  Vector3,
-} from 'three';
+import { BufferAttribute, BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
 import * as cages from '../../cages/index.js';
 import type { Mesh } from '../../index.js';
-import { nameOfGlass } from '../../parts/drawn.js';
 import { faceHints } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { vrmExpressions } from '../../parts/morph-names.js';
 import { readTemplate } from '../../parts/template-extras.js';
 import { wrong } from '../errors.js';
-import { extract, holderOf, isSkinned, morphedParts, type Part, skinOf } from './extract-scene.js';
+import { extract, extrasOf, morphedParts, type Part, skinOf } from './extract-scene.js';
+import { isSkinned } from './flags.js';
 
 /**
  * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones, and
@@ -44,14 +36,14 @@ const objectOf = (model: Loaded): Object3D | BufferGeometry => (isLoadedGltf(mod
  */
 export function cageModel(model: Loaded): cages.CageModel {
   const object = objectOf(model);
-  const { mesh, parts } = extract(object, 'model');
+  const { mesh, parts, names } = extract(object, 'model');
   const { positions, indices, groups } = mesh;
   const bones = isLoadedGltf(model) ? bonesOf(model) : new Map<Object3D, string>();
   return {
     positions,
     indices,
     groups,
-    parts: namesOf(parts, object),
+    parts: names,
     ...skeletonOf(parts, bones),
     hints: faceHints(morphedParts(parts, positions, isLoadedGltf(model) ? expressionsOf(model) : undefined)),
   };
@@ -73,15 +65,10 @@ export function cageTemplate(model: Loaded): cages.Template {
   if (mesh.uvs === undefined)
     throw wrong('template has a mesh without the attribute uv', 'cageTemplate', 'missingUvs', { argument: 'template' });
   const sources = parts.flatMap(({ name, mesh: of, geometry, matrix, firstVertex, vertexCount }) =>
-    // The parent of the meshes of one glTF mesh has the extras of its node.
-    [
-      { extras: geometry.userData, matrix },
-      { extras: of?.parent?.userData, matrix: of?.parent?.matrixWorld ?? matrix },
-      { extras: of?.userData, matrix },
-    ].map(({ extras, matrix: { elements } }) => ({
+    extrasOf({ mesh: of, geometry }).map((extras) => ({
       extras,
       place: `"${name}"`,
-      matrix: elements,
+      matrix: (of?.parent && extras === of.parent.userData ? of.parent.matrixWorld : matrix).elements,
       firstVertex,
       vertexCount,
     })),
@@ -129,39 +116,17 @@ export async function refineCage(
 export function cageGeometry(
   cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
 ): BufferGeometry {
-  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', regions } = cage;
+  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', regions, bare } = cage;
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(positions, 3));
   geometry.setAttribute('uv', new BufferAttribute(uvs, 2));
   geometry.setIndex(new BufferAttribute(indices, 1));
   geometry.computeVertexNormals();
-  geometry.userData = { landmarks, holes, kind, ...(regions && { regions }) };
+  geometry.userData = { landmarks, holes, kind, ...(regions && { regions }), ...(bare && { bare }) };
   return geometry;
 }
 
 const isTemplate = <T extends Mesh>(cage: Loaded | T): cage is T => (cage as Mesh | undefined)?.positions !== undefined;
-
-/** The names of each group: of its mesh, of the object that holds the meshes of one glTF mesh, and of its material. */
-function namesOf(parts: readonly Part[], root: object): string[][] {
-  return parts.flatMap(({ name, mesh, geometry }) => {
-    const own = [...new Set([name, geometry.name, holderOf(mesh, root)?.name].filter((text) => text))] as string[];
-    const materials = [mesh?.material ?? []].flat();
-    // As `extract` numbers groups: by the first of each material's groups.
-    const order = Array.isArray(mesh?.material)
-      ? [...new Set(geometry.groups.map(({ materialIndex = 0 }) => materialIndex))]
-      : [0];
-    return (order.length > 0 ? order : [0]).map((index) => {
-      const {
-        name: material = '',
-        transparent,
-        opacity,
-        transmission,
-      } = (materials[index] ?? {}) as Partial<MeshPhysicalMaterial>;
-      const names = material === '' || own.includes(material) ? own : [...own, material];
-      return [...names, ...nameOfGlass(transparent ? 'BLEND' : 'OPAQUE', opacity, transmission)];
-    });
-  });
-}
 
 function extensionsOf({ userData, parser }: LoadedGltf): VrmExtensions | undefined {
   // GLTFLoader keeps extensions that it does not know here.

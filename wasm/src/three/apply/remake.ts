@@ -15,7 +15,7 @@ import {
   ruleOf,
 } from '../../parts/blend.js';
 import type { PreparedPart } from '../../parts/prepare.js';
-import { isOfInstances } from './extract-scene.js';
+import { isOfInstances } from './flags.js';
 import { disposeOwn, own } from './own-attributes.js';
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;

@@ -8,7 +8,8 @@ import {
   MeshStandardMaterial,
   SkinnedMesh,
 } from 'three';
-import { isInstanced, isMarked, isSkinned, type Part } from '../apply/extract-scene.js';
+import { isMarked, type Part } from '../apply/extract-scene.js';
+import { isInstanced, isSkinned } from '../apply/flags.js';
 import { disown, disposeOwn, own } from '../apply/own-attributes.js';
 
 /** What an overlay has of its base at any time, not only when it was made. */

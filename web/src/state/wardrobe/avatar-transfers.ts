@@ -1,5 +1,5 @@
 import { classify } from 'cagecast';
-import { choicesOf } from '../choices';
+import { bareGroupsOf, choicesOf } from '../choices';
 import { isUpToDate, moveChoices, projectBy, withoutParts } from '../left-out';
 import type { Model } from '../model';
 import { haveSameUvs } from '../same-uvs';
@@ -54,7 +54,7 @@ export class AvatarTransfers {
       preset,
       threshold,
       weldTolerance,
-      locks: choicesOf(locks, standing.model, undefined).locks,
+      locks: choicesOf(locks, bareGroupsOf({ target: standing.model, cage }), undefined).locks,
       parts,
     };
     const target = standing.projection ? withoutParts(standing.model, standing.projection) : standing.model;
@@ -87,10 +87,11 @@ export class AvatarTransfers {
   }
 
   #classify(avatar: Avatar): void {
-    const { standing, locks, files } = avatar;
+    const { standing, cage, locks, files } = avatar;
     if (!standing?.projection) return;
     const { threshold } = this.#around.session.rules;
-    const choices = choicesOf(locks, standing.model, standing.projection, this.#around.session.bareOf(files));
+    const bare = cage ? bareGroupsOf({ target: standing.model, cage }) : [];
+    const choices = choicesOf(locks, bare, standing.projection, this.#around.session.bareOf(files));
     const classification = classify(standing.projection, { threshold, ...choices });
     standing.classify(classification);
     avatar.paintable = paintableShare(classification.segmentStats);
