@@ -375,6 +375,23 @@ describe('applyTransfer', () => {
     assertSplit(geometry, before, result);
   });
 
+  test('whole numbers of attributes that the format does not know are not averaged where borders are cut', () => {
+    const target = meshOf(scene.target);
+    const ids = Float32Array.from({ length: vertices }, (_, v) => 1000 * v);
+    for (const name of ['_feature_id_0', 'batchId'])
+      target.geometry.setAttribute(name, new BufferAttribute(ids.slice(), 1));
+    target.geometry.setAttribute('heat', new BufferAttribute(Float32Array.from(ids, Math.sin), 1));
+    assert.ok(applyTransfer(target, cage(), { borders: 'cut' }).cutTriangles > 0);
+    const isOld = (name: string, old: Float32Array) => {
+      const known = new Set(old);
+      return attribute(target.geometry, name).every((x) => known.has(x));
+    };
+    assert.deepEqual(
+      ['_feature_id_0', 'batchId', 'heat'].map((name) => isOld(name, name === 'heat' ? ids.map(Math.sin) : ids)),
+      [true, true, false],
+    );
+  });
+
   test('a mirrored mesh is split as it is seen', () => {
     const target = meshOf({
       ...scene.target,

@@ -1,11 +1,13 @@
 // Files that cannot be used, and files damaged at random. What they demand too much of is in hostile.test.ts.
 import assert from 'node:assert/strict';
-import { existsSync, readdirSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, symlinkSync } from 'node:fs';
 import { test } from 'node:test';
+import { PNG } from 'pngjs';
 import { fails, run } from '../../support/command.js';
 import { glbOf, packGlb, unpackGlb } from '../../support/gltf.js';
 import { random } from '../scenes.js';
-import { png, workplace, write, writeChanged } from './workplace.js';
+import { inRepository, png, workplace, write, writeChanged } from './workplace.js';
 
 const { target, cage } = workplace('reading');
 const whole = glbOf(target);
@@ -188,4 +190,24 @@ test('of a file damaged at random, all is done, or one clear line says what is w
     if (status === 0) assert.equal(stderr, '', label);
     else assert.ok(status === 1 && /^cagecast: [^\n]+\n$/.test(stderr) && !stderr.includes('unexpectedly'), label);
   }
+});
+
+test('a picture that is no PNG is decoded by the sharp of the project, as what npx runs has none beside it', () => {
+  cpSync(inRepository('dist'), 'elsewhere', { recursive: true });
+  write('paint.webp', readFileSync(inRepository('tests/package/command/paint.webp')));
+  const relay = () => {
+    const { status, stderr } = spawnSync(
+      process.execPath,
+      'elsewhere/cli.js relay target.glb cage.glb paint.webp --to cage.glb -o relayed.png'.split(' '),
+    );
+    return [status, stderr.toString()];
+  };
+  assert.deepEqual(relay(), [
+    1,
+    'cagecast: paint.webp: is a WebP image; to read those, npm install sharp beside cagecast\n',
+  ]);
+  mkdirSync('node_modules');
+  symlinkSync(inRepository('node_modules/sharp'), 'node_modules/sharp', 'junction');
+  assert.deepEqual(relay(), [0, '']);
+  assert.deepEqual([...PNG.sync.read(readFileSync('relayed.png')).data.subarray(0, 4)], [200, 200, 200, 200]);
 });

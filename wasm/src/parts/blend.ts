@@ -20,13 +20,11 @@ export type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array 
 /** How a new vertex gets an attribute: as the mean of its sources, as a normalised mean direction, or from its heaviest source. */
 export type Rule = 'mean' | 'direction' | 'heaviest';
 
-/** Integers that are not normalised are identifiers, so they are not averaged. */
+/** Whole numbers that the format does not know are identifiers, such as those of features, so they are not averaged. */
 export function ruleOf(semantic: string, values: AttributeArray, normalized: boolean): Rule {
   if (semantic === 'NORMAL' || semantic === 'TANGENT') return 'direction';
-  return semantic.startsWith('JOINTS_') ||
-    (semantic.startsWith('_') && !(values instanceof Float32Array) && !normalized)
-    ? 'heaviest'
-    : 'mean';
+  const isIdentifier = semantic.startsWith('_') && !normalized && values.every(Number.isInteger);
+  return isIdentifier || semantic.startsWith('JOINTS_') ? 'heaviest' : 'mean';
 }
 
 /** The largest value of a normalised type: it stands for 1. */

@@ -1,3 +1,5 @@
+import { createRequire } from 'node:module';
+import { join } from 'node:path';
 import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
 import { type ReadOptions, readBeside, readBytes } from '../../gltf/files.js';
@@ -24,7 +26,7 @@ export async function decodeImage(bytes: Uint8Array): Promise<Image> {
   if (type === 'image/ktx2') throw new InputError('is a KTX2 image, which cannot be baked; convert it to PNG');
   if (!imageIsWhole(bytes)) throw new InputError('is truncated: the image is incomplete');
   if (type === 'image/png') return decodePng(bytes);
-  const sharp = await loadSharp();
+  const sharp = loadSharp();
   if (!sharp)
     throw new InputError(
       `is a ${type === 'image/jpeg' ? 'JPEG' : 'WebP'} image; to read those, npm install sharp beside cagecast`,
@@ -67,12 +69,13 @@ type Sharp = (bytes: Uint8Array) => {
   };
 };
 
-/** sharp, which has native code and is no dependency. */
-async function loadSharp(): Promise<Sharp | undefined> {
-  const name = 'sharp';
-  try {
-    return ((await import(name)) as { default: Sharp }).default;
-  } catch {
-    return undefined;
-  }
+/** sharp, which has native code and is no dependency: the one beside this package, or, as `npx` runs it elsewhere, the project's. */
+function loadSharp(): Sharp | undefined {
+  for (const from of [import.meta.url, join(process.cwd(), 'package.json')])
+    try {
+      return createRequire(from)('sharp') as Sharp;
+    } catch {
+      // It is not there.
+    }
+  return undefined;
 }

@@ -28,6 +28,10 @@ const semantics: Record<string, string> = {
   skinWeight: 'WEIGHTS_0',
 };
 
+/** What an attribute is called in glTF, where those that the format does not know begin with a line. */
+const semanticOf = (name: string): string =>
+  semantics[name] ?? (/^(position|uv\d?|color(_\d+)?)$/.test(name) ? name : `_${name}`);
+
 /** A geometry's vertices and triangles as they will be. */
 export interface Remade {
   attributes: Map<string, BufferAttribute>;
@@ -53,11 +57,11 @@ export function* remake(
   const skin = isCut ? skinOf(geometry, blends) : new Map<string, AttributeArray>();
   const made = new Map<Attribute, BufferAttribute>();
   const extend = (attribute: Attribute, name: string, isMorph: boolean): BufferAttribute => {
-    const given = isMorph ? undefined : skin.get(semantics[name] ?? name);
+    const given = isMorph ? undefined : skin.get(semanticOf(name));
     // The delta of a direction is not a direction itself.
     const isDelta = isMorph && geometry.morphTargetsRelative;
     const rule = (values: AttributeArray): Rule =>
-      isDelta ? 'mean' : ruleOf(semantics[name] ?? name, values, attribute.normalized);
+      isDelta ? 'mean' : ruleOf(semanticOf(name), values, attribute.normalized);
     const extended = made.get(attribute) ?? extendAttribute(attribute, { split, blends, rule, given });
     if (!given) made.set(attribute, extended);
     return extended;
