@@ -151,7 +151,7 @@ async function makeCommandPage() {
       logLevel: 'error',
       define: { CAGECAST_VERSION: '""' },
       banner: {
-        js: "import { createRequire } from 'node:module'; const require = createRequire(import.meta.url), __dirname = '', __filename = '';",
+        js: "import { createRequire as cagecastRequire } from 'node:module'; const require = cagecastRequire(import.meta.url), __dirname = '', __filename = '';",
       },
       loader: { '.wasm': 'empty' },
       plugins: [withoutModules],
