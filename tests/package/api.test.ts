@@ -61,6 +61,27 @@ describe('init', () => {
     assert.equal(printed(script), 'unsupported unsupported\nfunction');
   });
 
+  test('takes a module that is compiled already, as where nothing may be compiled or read', () => {
+    const script = `
+      import { readFileSync } from 'node:fs';
+      const compiled = {};
+      for (const name of ['cagecast', 'cagecast-cages'])
+        compiled[name] = await WebAssembly.compile(readFileSync(new URL(import.meta.resolve('cagecast/' + name + '.wasm'))));
+      WebAssembly.compile = globalThis.fetch = process.getBuiltinModule = () => { throw new Error('forbidden'); };
+      const mesh = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array(6) };
+      for (const entry of ['cagecast', 'cagecast/slim']) {
+        const { init, transfer } = await import(entry);
+        await init({ module: 'cagecast.wasm' }).catch(({ code, message }) => console.log(code, message));
+        await init({ module: compiled.cagecast });
+        console.log(transfer(mesh, mesh).zones.length);
+      }
+      const cages = await import('cagecast/cages/sync');
+      await cages.init({ module: compiled['cagecast-cages'] });
+      console.log(cages.defaultExclusions().length > 9);`;
+    const failure = 'badOption init: options.module is "cagecast.wasm", neither a WebAssembly.Module nor its bytes';
+    assert.equal(printed(script), `${failure}\n3\n${failure}\n3\ntrue`);
+  });
+
   test('the module within the script is the same that lies beside it', () => {
     const script = `
       import { readFileSync } from 'node:fs';

@@ -196,6 +196,23 @@ describe('the worker', () => {
     assert.equal(answered('await init(); console.log((await transfer(mesh, mesh)).zones.length);'), '3');
   });
 
+  test('where there are no workers, as in edge functions, calls are carried out on their own thread', () => {
+    const script = `process.getBuiltinModule = undefined;
+      const { makeCage } = await import('cagecast/cages');
+      const { positions } = mesh;
+      const called = transfer(mesh, mesh, { move: true });
+      const controller = new AbortController();
+      const cancelled = transfer(mesh, mesh, { signal: controller.signal }).catch(({ message }) => message);
+      controller.abort(new Error('never mind'));
+      console.log(positions.length, (await called).zones.length, await cancelled);
+      await transfer({}, mesh).catch(({ code }) => console.log(code));
+      await makeCage(mesh).catch(({ message }) => console.log(message));`;
+    assert.match(
+      answered(script),
+      /^0 3 never mind\nbadArgument\nmakeCage: .* it has no workers,.* use cagecast\/cages\/sync\)$/,
+    );
+  });
+
   test('if no worker can be started, the error says so', () => {
     const script = `for (const call of [() => init(), () => transfer(mesh, mesh)])
       await call().catch(({ code, message }) => console.log(code, message));`;

@@ -23,5 +23,6 @@ export { type SplitVertices, splitVertices } from './api/split-vertices.js';
 export { project, transfer } from './api/transfer.js';
 export { init } from './core/engine.js';
 export { CagecastError, type Code, type ErrorDetails } from './core/error.js';
+export type { InitOptions } from './core/instantiate.js';
 export type { HoleShare, Ratios, SegmentStats, Timings } from './core/records.js';
 export { Visibility, Zone } from './generated/enums.js';

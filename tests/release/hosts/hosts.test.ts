@@ -148,6 +148,22 @@ describe('in Chromium', () => {
     assert.deepEqual(await visit('map/index.html'), answer);
   });
 
+  test('an import map of another origin, such as a CDN', async () => {
+    const elsewhere = await serve(user, { 'access-control-allow-origin': '*' });
+    const at = (file: string) => `${elsewhere.origin}/node_modules/cagecast/dist/${file}.js`;
+    const imports = Object.fromEntries(['slim', 'worker', 'cages'].map((name) => [`cagecast/${name}`, at(name)]));
+    const map = JSON.stringify({ imports: { cagecast: at('index'), ...imports } });
+    put('cdn', {
+      'program.js': program,
+      'index.html': page.replace('<script', `<script type="importmap">${map}</script><script`),
+    });
+    try {
+      assert.deepEqual(await visit('cdn/index.html'), answer);
+    } finally {
+      elsewhere.close();
+    }
+  });
+
   test('Vite, in development', async () => {
     put('dev', { 'program.js': program, 'index.html': page });
     const settings = { configFile: false, logLevel: 'error', server: { port: 0, host: '127.0.0.1' } } as const;

@@ -8,7 +8,14 @@
 import createModule from '#cages-glue';
 import type { Mesh } from '../api/mesh.js';
 import { CagecastError, type Code, isRecord, show } from '../core/error.js';
-import { failureOf, instantiate, notInitialised, unsupported } from '../core/instantiate.js';
+import {
+  failureOf,
+  givenModule,
+  type InitOptions,
+  instantiate,
+  notInitialised,
+  unsupported,
+} from '../core/instantiate.js';
 import { type Answer, nameOf } from '../core/module.js';
 import { compileFile } from '../core/read-file.js';
 import type { CageAnswer, CagesModule, CoreLandmark, CoreOptions, CoreTemplate } from './cages-module.js';
@@ -36,7 +43,7 @@ import type {
 } from './types.js';
 
 export type * from './types.js';
-export { CagecastError };
+export { CagecastError, type InitOptions };
 
 /** An option of every call. */
 export interface SyncOptions {
@@ -50,19 +57,23 @@ export interface SyncOptions {
 let starting: Promise<void> | undefined;
 let compiled: WebAssembly.Module | undefined;
 
-/** Loads the WebAssembly module, `cagecast-cages.wasm`. All calls share it. @throws {CagecastError} `unsupported` */
-export function init(): Promise<void> {
-  // The build inserts the file name as a literal, so that bundlers find the file.
-  starting ??= compileFile(new URL(CAGECAST_WASM, import.meta.url)).then(
-    (module) => {
-      compiled = module;
-    },
-    (cause: unknown) => {
-      starting = undefined;
-      throw unsupported(cause);
-    },
-  );
+/**
+ * Loads the WebAssembly module, `cagecast-cages.wasm`. All calls share it, and the options of the first count.
+ * @throws {CagecastError} `unsupported`, `badOption`
+ */
+export function init(): Promise<void>; // such as for `.then(init)`
+export function init(options: InitOptions): Promise<void>;
+export function init(options: InitOptions = {}): Promise<void> {
+  starting ??= start(options).catch((cause: unknown) => {
+    starting = undefined;
+    throw unsupported(cause);
+  });
   return starting;
+}
+
+async function start(options: InitOptions): Promise<void> {
+  // The build inserts the file name as a literal, so that bundlers find the file.
+  compiled = await (givenModule(options) ?? compileFile(new URL(CAGECAST_WASM, import.meta.url)));
 }
 
 /** As `makeCage` of `cagecast/cages`. Needs `init`. */

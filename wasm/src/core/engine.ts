@@ -1,7 +1,7 @@
 import createModule from '#glue';
 import { compile } from '#wasm';
 import { CagecastError, type Code } from './error.js';
-import { failureOf, instantiate, notInitialised, unsupported } from './instantiate.js';
+import { failureOf, givenModule, type InitOptions, instantiate, notInitialised, unsupported } from './instantiate.js';
 import { type Answer, type CoreModule, type CoreSegment, nameOf, type Workspace } from './module.js';
 import type { SegmentStats } from './records.js';
 import { overwrite, realLength } from './typed-arrays.js';
@@ -23,19 +23,21 @@ function makeCore(module: WebAssembly.Module): Core {
 
 /**
  * Compiles the WebAssembly module. Importing the package alone does nothing. It may be called several times, even at the same time:
- * all calls share one module.
- * @throws {CagecastError} `unsupported` if the host cannot run WebAssembly with SIMD; the next call tries again.
+ * all calls share one module, and the options of the first count.
+ * @throws {CagecastError} `unsupported` if the host cannot run WebAssembly with SIMD; the next call tries again. `badOption`
  */
-export function init(): Promise<void> {
-  starting ??= start().catch((cause: unknown) => {
+export function init(): Promise<void>; // such as for `.then(init)`
+export function init(options: InitOptions): Promise<void>;
+export function init(options: InitOptions = {}): Promise<void> {
+  starting ??= start(options).catch((cause: unknown) => {
     starting = undefined;
     throw unsupported(cause);
   });
   return starting;
 }
 
-async function start(): Promise<void> {
-  const module = await compile();
+async function start(options: InitOptions): Promise<void> {
+  const module = await (givenModule(options) ?? compile());
   instance = makeCore(module);
   compiled = module;
 }

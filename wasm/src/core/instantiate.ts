@@ -1,4 +1,22 @@
-import { CagecastError } from './error.js';
+import { CagecastError, show } from './error.js';
+
+/** Options of `init`. */
+export interface InitOptions {
+  /**
+   * The WebAssembly, compiled or as bytes: what `cagecast/cagecast.wasm` is, or for `cagecast/cages/sync` `cagecast/cagecast-cages.wasm`. For
+   * hosts that neither fetch files of the package nor compile at run time, such as edge functions. Default: the package's own.
+   */
+  module?: object | undefined;
+}
+
+/** The module among options, compiled; nothing if there is none. @throws {CagecastError} `badOption` */
+export function givenModule({ module }: InitOptions): Promise<WebAssembly.Module> | undefined {
+  if (module === undefined) return undefined;
+  if (module instanceof WebAssembly.Module) return Promise.resolve(module);
+  if (ArrayBuffer.isView(module) || module instanceof ArrayBuffer) return WebAssembly.compile(module as BufferSource);
+  const reason = `options.module is ${show(module)}, neither a WebAssembly.Module nor its bytes`;
+  throw new CagecastError('badOption', 'init', reason);
+}
 
 /**
  * Makes a fresh instance of a compiled module: a few milliseconds.

@@ -5,7 +5,8 @@ type OnReply = (reply: Reply) => void;
 type OnFailure = (message: string) => void;
 
 /** A worker of a browser, Deno or Bun as a thread. @param url  Of a file in the folder where the script should be. */
-export function threadOf(worker: Worker, url: string, onReply: OnReply, onFailure: OnFailure): Thread {
+export function threadOf(start: () => Worker, url: string, onReply: OnReply, onFailure: OnFailure): Thread {
+  const worker = startFromAnywhere(start, url);
   worker.onmessage = ({ data }: MessageEvent<Reply>) => onReply(data);
   worker.onerror = (event) => {
     event.preventDefault();
@@ -18,10 +19,22 @@ export function threadOf(worker: Worker, url: string, onReply: OnReply, onFailur
   };
 }
 
-/** Starts a worker thread in Node. @throws Error if this is another host. */
-export function threadOfNode(url: string, onReply: OnReply, onFailure: OnFailure): Thread {
+/** Starts a worker. Browsers start none from another origin, such as a CDN in an import map: there, a script of the page's own imports it. */
+function startFromAnywhere(start: () => Worker, url: string): Worker {
+  try {
+    return start();
+  } catch (error) {
+    const isElsewhere = /^https?:/.test(url) && new URL(url).origin !== globalThis.location?.origin;
+    if (!isElsewhere) throw error;
+    const script = URL.createObjectURL(new Blob([`import ${JSON.stringify(url)};`], { type: 'text/javascript' }));
+    return new Worker(script, { type: 'module' });
+  }
+}
+
+/** Starts a worker thread in Node; nothing in other hosts. */
+export function threadOfNode(url: string, onReply: OnReply, onFailure: OnFailure): Thread | undefined {
   const threads = nodeModule('node:worker_threads');
-  if (!threads) throw new Error('it has neither Worker nor process.getBuiltinModule, as Node 20.16 has');
+  if (!threads) return undefined;
   // Do not inherit the flags of this process: some, such as --input-type, are invalid for a file, and none is needed.
   const worker = new threads.Worker(new URL(url), { execArgv: [] });
   worker.on('message', onReply);
