@@ -470,7 +470,7 @@ describe('applyTransfer', () => {
     assert.ok(isPatched(material), 'it stays ready for a texture, whose shader is compiled already');
     dispose();
     assert.ok(!isPatched(material) && !Object.hasOwn(material, 'customProgramCacheKey'));
-    assert.ok(!geometry.hasAttribute('_cagecast_paint') && geometry.hasAttribute('uv1'));
+    assert.ok(!geometry.hasAttribute('_cagecast_paint') && !geometry.hasAttribute('uv1'));
   });
 
   for (const shows of ['texture', 'material'] as const) {
@@ -603,9 +603,9 @@ describe('overlays', () => {
     const bare = applyTransfer(target, cage(), { texture: null, material: null });
     assert.equal(bare.splitVertices, plain.splitVertices);
     assert.ok(!isPatched(target.material));
-    const painted = applyTransfer(other, cage(), { texture: new Texture() });
+    applyTransfer(other, cage(), { texture: new Texture() });
     applyTransfer(other, cage(), { texture: null });
-    assert.deepEqual(other.children, painted.overlays);
+    assert.deepEqual(other.children, []);
   });
 
   test('a later transfer takes away those whose paint it replaces, and takes none of them for a part', () => {
@@ -616,7 +616,7 @@ describe('overlays', () => {
     const painted = show({ texture: new Texture() });
     assert.deepEqual([target.children, painted.parts.length], [painted.overlays, 1]);
     show({});
-    assert.deepEqual(target.children, painted.overlays);
+    assert.deepEqual(target.children, []);
     show({ material: materials[0]! });
     const other = show({ material: materials[1]! });
     assert.deepEqual(target.children, other.overlays);
@@ -702,16 +702,74 @@ describe('geometries', () => {
     assert.notDeepEqual(attribute(second.geometry, 'uv1'), attribute(first.geometry, 'uv1'));
   });
 
+  test('are what they were, to begin with and in the end, however many transfers there are', () => {
+    for (const borders of ['triangle', 'cut'] as const) {
+      const target = meshOf(scene.target);
+      target.geometry.morphAttributes.position = [new Float32BufferAttribute(scene.target.positions, 3)];
+      const own = { ...target.geometry.attributes };
+      const { index, morphAttributes } = target.geometry;
+      const morphs = { ...morphAttributes };
+      const extracted = extract(target).mesh;
+      const show = () => applyTransfer(target, cage(), { borders, texture: new Texture() });
+      const all = [show()];
+      const first = structuredClone(arraysOf(target));
+      const saved = deserialize(serialize(all[0]!));
+      for (let i = 0; i < 7; ++i) all.push(show());
+      assert.deepEqual(arraysOf(target), first);
+      assert.deepEqual(extract(target).mesh, extracted);
+      applyTransfer(target, undefined, { saved, texture: new Texture() }).dispose();
+      assert.deepEqual([target.geometry.attributes, target.geometry.index], [own, index]);
+      assert.deepEqual(target.geometry.morphAttributes, morphs);
+      for (const one of all) one.dispose();
+      assert.deepEqual(target.geometry.attributes, own);
+    }
+  });
+
+  test('keep what others have added or changed since', () => {
+    const target = meshOf(scene.target);
+    const { geometry } = target;
+    applyTransfer(target, cage(), { borders: 'cut' });
+    geometry.computeVertexNormals();
+    const normals = attribute(geometry, 'normal').slice(0, 3 * vertices);
+    const positions = geometry.getAttribute('position');
+    for (let v = 0; v < positions.count; ++v) positions.setX(v, positions.getX(v) + 0.001);
+    positions.needsUpdate = true;
+    const moved = attribute(geometry, 'position').slice(0, 3 * vertices);
+    const applied = applyTransfer(target, cage(), { borders: 'cut' });
+    assert.deepEqual(extract(target).mesh.positions, moved);
+    applied.dispose();
+    assert.deepEqual([attribute(geometry, 'position'), attribute(geometry, 'normal')], [moved, normals]);
+    assert.deepEqual(Object.keys(geometry.attributes).sort(), ['normal', 'position', 'uv']);
+  });
+
+  test('have one channel on top of another, and lose both together where one is asked for no more', () => {
+    const target = meshOf(scene.target);
+    const first = applyTransfer(target, cage(), { channel: 1, borders: 'cut' });
+    const count = () => target.geometry.getAttribute('position').count;
+    const alone = count();
+    for (let i = 0; i < 3; ++i) applyTransfer(target, cage(), { channel: 2, borders: 'cut' });
+    const both = count();
+    const second = applyTransfer(target, cage(), { channel: 2, borders: 'cut' });
+    assert.equal(count(), both);
+    first.dispose();
+    assert.equal(count(), both, 'the second is made of the first');
+    second.dispose();
+    assert.equal(count(), vertices);
+    assert.ok(alone > vertices && both >= alone);
+  });
+
   test('take a result from elsewhere as it is, but not one of what they were', () => {
     const target = meshOf(scene.target);
     const result = transfer(extract(cage(), 'cage').mesh, extract(target).mesh);
     const applied = applyTransfer(target, cage(), { result });
     assert.equal(applied.result, result);
     assert.ok(applied.splitVertices > 0);
+    const again = applyTransfer(target, cage(), { result });
+    assert.equal(again.splitVertices, applied.splitVertices);
+    target.geometry = target.geometry.clone();
     assert.throws(() => applyTransfer(target, cage(), { result }), {
       message: /zones has \d+ entries, the target needs/,
     });
-    assert.equal(applyTransfer(target, cage()).splitVertices, 0, 'no vertex is split again');
   });
 });
 
@@ -836,17 +894,23 @@ describe('applyTransferAsync', () => {
     }
   });
 
-  const changes: Record<string, (target: ThreeMesh) => unknown> = {
-    'replaces the geometry': (target) => (target.geometry = geometryOf(scene.target)),
-    'splits vertices by a transfer': (target) => applyTransfer(target, cage(), { texture }),
-    'cuts triangles by a transfer': (target) => applyTransfer(target, cage(), { borders: 'cut' }),
+  const changes: Record<string, [change: (target: ThreeMesh) => unknown, expected: object]> = {
+    'replaces the geometry': [
+      (target) => (target.geometry = geometryOf(scene.target)),
+      { code: 'badArgument', message: /was changed meanwhile/ },
+    ],
+    'splits vertices by a transfer': [(target) => applyTransfer(target, cage(), { texture }), { code: 'superseded' }],
+    'cuts triangles by a transfer': [
+      (target) => applyTransfer(target, cage(), { borders: 'cut' }),
+      { code: 'superseded' },
+    ],
   };
-  for (const [name, change] of Object.entries(changes)) {
+  for (const [name, [change, expected]] of Object.entries(changes)) {
     test(`is an error if somebody ${name} meanwhile, whose work stays as it is`, async () => {
       const [target, other] = [meshOf(scene.target), meshOf(scene.target)];
       const onProgress = (_: number, stage: string) => stage === 'geometry' && change(target);
       const work = applyTransferAsync(target, cage(), { texture, onProgress });
-      await assert.rejects(work, { code: 'badArgument', message: /was changed meanwhile/ });
+      await assert.rejects(work, expected);
       change(other);
       assert.deepEqual(arraysOf(target), arraysOf(other));
       terminate();
@@ -866,6 +930,18 @@ describe('applyTransferAsync', () => {
     });
   }
 
+  test('the last of several calls for a model counts', async () => {
+    const target = meshOf(scene.target);
+    const calls = [0.2, 0.4, 0.6].map((threshold) => applyTransferAsync(target, cage(), { threshold, borders: 'cut' }));
+    const all = await Promise.all(calls);
+    const alone = meshOf(scene.target);
+    applyTransfer(alone, cage(), { threshold: 0.6, borders: 'cut' });
+    assert.deepEqual(arraysOf(target), arraysOf(alone));
+    for (const one of all.reverse()) one.dispose();
+    assert.deepEqual(arraysOf(target), arraysOf(meshOf(scene.target)));
+    terminate();
+  });
+
   test('is an error if attributes are added while others are copied', async () => {
     const target = meshOf(scene.target);
     const { geometry } = target;
@@ -876,7 +952,7 @@ describe('applyTransferAsync', () => {
       get() {
         if (isFirst) {
           isFirst = false;
-          applyTransfer(target, cage(), { seams: 'vertex', channel: 2 });
+          geometry.setAttribute('late', new BufferAttribute(new Float32Array(vertices), 1));
         }
         return values;
       },
@@ -884,7 +960,7 @@ describe('applyTransferAsync', () => {
     geometry.setAttribute('heat', heat);
     const work = applyTransferAsync(target, cage(), { texture });
     await assert.rejects(work, { code: 'badArgument', message: /was changed meanwhile/ });
-    assert.ok(geometry.hasAttribute('uv2') && !geometry.hasAttribute('uv1'));
+    assert.ok(geometry.hasAttribute('late') && !geometry.hasAttribute('uv1'));
     for (const one of Object.values(geometry.attributes)) assert.equal(one.count, heat.count);
     terminate();
   });

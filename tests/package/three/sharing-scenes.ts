@@ -142,12 +142,17 @@ export const sharingScenes: Scenes = {
     equal(lookOf(model), 'green');
   },
 
-  'a transfer shows its paint again when the one that replaced it is disposed of'() {
+  'a transfer shows its paint again when one in another channel is disposed of, not if one has taken its place'() {
     const model = modelOf(white());
     const look = applyTransfer(model, cage(), { texture: red() });
-    applyTransfer(model, cage(), { texture: green() }).dispose();
+    const other = applyTransfer(model, cage(), { texture: green(), channel: 2 });
+    equal(lookOf(model), 'green');
+    other.dispose();
     look.setTexture(blue());
     equal(lookOf(model), 'blue');
+    applyTransfer(model, cage(), { texture: green() }).dispose();
+    look.setTexture(blue());
+    equal(lookOf(model), 'none');
   },
 
   'the material of two models goes on showing the paint of each, whichever transfers end'() {

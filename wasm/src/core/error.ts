@@ -7,6 +7,7 @@ import type { CoreCode } from '../generated/codes.js';
  * - `notInitialised`: `init()` has not resolved yet.
  * - `unsupported`: this host cannot run the WebAssembly module or start a worker, or the worker has failed.
  * - `aborted`: the worker was terminated before the call ended.
+ * - `superseded`: a later call for the same mesh has ended before this one, and counts.
  * - `internal`: a defect of Cagecast; please report it.
  * - `badModel`, `badTemplate`, `badLandmarks`: `cagecast/cages` cannot use the target, the template or the landmarks.
  */
@@ -16,6 +17,7 @@ export type Code =
   | 'notInitialised'
   | 'unsupported'
   | 'aborted'
+  | 'superseded'
   | 'internal'
   | 'badModel'
   | 'badTemplate'

@@ -12,7 +12,7 @@ import { type Apart, type Caged, hasCages, moveApart as partsApart } from '../pa
 import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
-import { apply, rangesOf, statesOf } from './apply/apply.js';
+import { apply, rangesOf } from './apply/apply.js';
 import {
   type Applied,
   type ApplyOptions,
@@ -21,6 +21,7 @@ import {
   type Saved,
   transferOptions,
 } from './apply/apply-options.js';
+import { zoneAttribute } from './apply/attributes.js';
 import { cutGeometry } from './apply/cut-geometry.js';
 import {
   bareGroups,
@@ -32,7 +33,6 @@ import {
 } from './apply/extract-scene.js';
 import { atOnce } from './apply/remake.js';
 import { checkSaved, deserialize, keyOf, remember, serialize } from './apply/saved-transfer.js';
-import { zoneAttribute } from './apply/shown-parts.js';
 import { type Calling, nextTask, runInTasks } from './apply/tasks.js';
 import { wrong } from './errors.js';
 
@@ -123,8 +123,8 @@ export function applyTransfer(
  * last of them. `init` is not needed. The first frame after it uploads what has changed, which three.js does in one task.
  * @param options  And `signal`, which cancels the call: the promise is rejected with its reason. And `onProgress(share, stage)`; stages are
  * `transfer`, `geometry` and `done`.
- * @throws {CagecastError} as `applyTransfer`; `badArgument` if a geometry was changed meanwhile, as by another transfer; and
- * `unsupported` if the worker cannot start.
+ * @throws {CagecastError} as `applyTransfer`; `superseded` if a later call for the same mesh has ended before; `badArgument` if a geometry
+ * was changed by others meanwhile; and `unsupported` if the worker cannot start.
  */
 export async function applyTransferAsync(
   target: Object3D | BufferGeometry,
@@ -157,6 +157,8 @@ export async function applyTransferAsync(
 export const moveApart = <T extends Mesh, C extends Mesh>(target: Caged<T>, cage: Caged<C>): Apart<T, C> | undefined =>
   partsApart(target, cage, (text) => wrong(`target: ${text}`));
 
+let calls = 0;
+
 interface Call {
   /** What was prepared earlier. */
   saved: Prepared | undefined;
@@ -173,7 +175,8 @@ function read(
 ): Call {
   const cuts = isCut(fn, options.borders);
   const { saved, result, parts } = options;
-  const extracted = extractNear(target, 'target', 'own', parts);
+  const call = ++calls;
+  const extracted = extractNear(target, 'target', 'own', { isMeant: parts, channel: options.channel });
   const own = transferOptions(options);
   const needsCage = !saved && (cuts || !result);
   const outer = needsCage ? extractNear(cage ?? ownCage(target), 'cage', extracted.origin) : undefined;
@@ -182,7 +185,6 @@ function read(
   const apart = outer && moveApart(extracted, outer);
   const around = apart?.cage ?? outer?.mesh;
   if (result) checkResult(result, extracted);
-  const states = statesOf(extracted);
   return {
     saved: saved && checkSaved(saved, extracted),
     input: {
@@ -196,7 +198,7 @@ function read(
     },
     *finish(prepared) {
       if (!saved) apart?.mend(prepared.result);
-      const applied = yield* apply(extracted, states, prepared, options);
+      const applied = yield* apply(extracted, prepared, options, call);
       return remember(applied, () => ({ key: saved?.key ?? keyOf(extracted, around, rules, cuts), prepared }));
     },
   };

@@ -41,8 +41,9 @@ export interface ApplyOptions extends TransferOptions {
    */
   material?: Material | null | undefined;
   /**
-   * The channel of the new UVs, 1 to 3: the attribute `uv1`, `uv2` or `uv3`, which is overwritten. Default: the lowest that no
-   * geometry uses already; an error if all are in use.
+   * The channel of the new UVs, 1 to 3: the attribute `uv1`, `uv2` or `uv3`, which is overwritten. A transfer begins with the geometries
+   * as they were before those that wrote its channel, and takes their place and that of later ones, so that others show beside it.
+   * Default: the lowest that the model does not use itself, in the place of all earlier transfers; an error if all are in use.
    */
   channel?: 1 | 2 | 3 | undefined;
   /**
@@ -58,8 +59,7 @@ export interface ApplyOptions extends TransferOptions {
 }
 
 /**
- * What was added to a scene. Where a later transfer shows its paint on the same meshes, the methods change nothing but what is left of
- * the earlier one.
+ * What was added to a scene. Where a later transfer has taken its place, the methods change nothing.
  */
 export interface Applied {
   /** The result for the original vertices of the target. */
@@ -110,8 +110,8 @@ export interface Applied {
    */
   update(classification: Classification): void;
   /**
-   * Removes the paint and the overlays, and makes the materials what they were. The UVs and zones stay. Geometries that are disposed
-   * of as well come first, so that their buffers are freed at once.
+   * Removes the paint and the overlays, and makes materials and geometries what they were. Geometries that are disposed of as well come
+   * first, so that their buffers are freed at once.
    */
   dispose(): void;
 }

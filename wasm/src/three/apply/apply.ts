@@ -1,11 +1,20 @@
-import { Box3, BufferAttribute, BufferGeometry, type Material, Matrix3, type Mesh, type Texture, Vector3 } from 'three';
+import {
+  Box3,
+  BufferAttribute,
+  type BufferGeometry,
+  type Material,
+  Matrix3,
+  type Mesh,
+  type Texture,
+  Vector3,
+} from 'three';
 import { show } from '../../core/error.js';
 import type { Classification } from '../../index.js';
 import { noteOf } from '../../inspect/bare.js';
 import type { PartRange, Prepared } from '../../parts/prepare.js';
 import { notA, wrong } from '../errors.js';
 import { removeOverlay, removeOverlays } from '../materials/overlay-mesh.js';
-import { paintAttribute, refreshMatrix } from '../materials/paint-shader.js';
+import { refreshMatrix } from '../materials/paint-shader.js';
 import {
   canBePainted,
   isPainted,
@@ -15,13 +24,15 @@ import {
   unpaint,
 } from '../materials/painted-materials.js';
 import { type Applied, type ApplyOptions, checkLengths } from './apply-options.js';
-import { type Extracted, isMirrored, type Part } from './extract-scene.js';
+import { zoneAttribute } from './attributes.js';
+import { type Extracted, type ExtractedNear, isMirrored, type Part } from './extract-scene.js';
 import { disposeOwn, own } from './own-attributes.js';
 import { type Remade, remake, replace } from './remake.js';
-import { type ShownPart, showMaterial, showPaint, writePaint, writeZones, zoneAttribute } from './shown-parts.js';
+import { type ShownPart, showMaterial, showPaint, writePaint, writeZones } from './shown-parts.js';
+import { beforeOf, type Channel, isWrittenBy, noteWrite, rewind, takeOff, type Writer } from './writes.js';
 
-/** The channels that earlier transfers added to geometries, to be overwritten by the next one. */
-const givenChannels = new WeakMap<BufferGeometry, 1 | 2 | 3>();
+/** The number of the call that has changed a mesh, or a geometry without one, last. */
+const changedBy = new WeakMap<object, number>();
 
 /** The paintings that geometries were made for. */
 const paintings = new WeakMap<BufferGeometry, Painting>();
@@ -38,10 +49,8 @@ export const rangesOf = ({ parts }: Extracted): PartRange[] =>
     mirrored: isMirrored(matrix),
   }));
 
-function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
-  const free = ([1, 2, 3] as const).find((channel) =>
-    parts.every(({ geometry }) => givenChannels.get(geometry) === channel || !geometry.hasAttribute(`uv${channel}`)),
-  );
+function freeChannel(states: readonly BufferGeometry[]): Channel {
+  const free = ([1, 2, 3] as const).find((channel) => states.every((state) => !state.hasAttribute(`uv${channel}`)));
   if (free === undefined)
     throw wrong('target has uv1, uv2 and uv3 of its own; choose one to overwrite: options.channel');
   return free;
@@ -64,26 +73,10 @@ function ownGeometries(parts: readonly Part[], sources: readonly BufferGeometry[
     const { mesh, geometry } = part;
     if (mesh && (taken.has(geometry) || isShownElsewhere(geometry, parts))) {
       mesh.geometry = part.geometry = sources[p]!.clone();
-      const channel = givenChannels.get(geometry);
-      if (channel) givenChannels.set(part.geometry, channel);
     }
     taken.add(part.geometry);
   }
 }
-
-/** Holds what a geometry has now: transfers give it other attributes, but do not change these. */
-function stateOf(geometry: BufferGeometry): BufferGeometry {
-  const { name, userData, attributes, morphAttributes, morphTargetsRelative, index, groups, drawRange } = geometry;
-  const held = { name, userData, morphTargetsRelative, index, groups };
-  return Object.assign(new BufferGeometry(), held, {
-    attributes: { ...attributes },
-    morphAttributes: { ...morphAttributes },
-    drawRange: { ...drawRange },
-  });
-}
-
-/** The state of geometries when they are extracted, for `apply`. */
-export const statesOf = ({ parts }: Extracted): BufferGeometry[] => parts.map(({ geometry }) => stateOf(geometry));
 
 const hasOthers = (geometry: BufferGeometry, state: BufferGeometry): boolean =>
   geometry.attributes['position'] !== state.attributes['position'] || geometry.index !== state.index;
@@ -103,29 +96,36 @@ function checkMaterials(parts: readonly Part[]): void {
 /**
  * Applies what was prepared to the geometries and materials of a target. Nothing is changed before the last step; yields after each
  * attribute that was extended, for callers that share the thread.
+ * @param call  Greater than those of all calls before.
  */
 export function* apply(
-  target: Extracted,
-  extracted: readonly BufferGeometry[],
+  target: ExtractedNear,
   prepared: Prepared,
   options: ApplyOptions,
+  call: number,
 ): Generator<void, Applied> {
-  const { parts } = target;
-  const channel = options.channel ?? freeChannel(parts);
+  const { parts, states: extracted } = target;
   if (options.texture && !options.material) checkMaterials(parts);
-  const states = parts.map(({ geometry }, p) =>
-    hasOthers(geometry, extracted[p]!) ? extracted[p]! : stateOf(geometry),
-  );
+  const before = ({ geometry }: Part) => beforeOf(geometry, options.channel);
+  const states = parts.map((part, p) => {
+    const now = before(part);
+    return hasOthers(now, extracted[p]!) ? extracted[p]! : now;
+  });
+  const channel = options.channel ?? freeChannel(states);
   const remades: (Remade | undefined)[] = [];
   for (const [p, part] of parts.entries())
     remades.push(yield* remake(states[p]!, prepared.parts[p]!, part.firstTriangle));
-  const sources = parts.map(({ name, mesh, geometry }, p) => {
+  const sources = parts.map((part, p) => {
+    const { name, mesh, geometry } = part;
+    if ((changedBy.get(mesh ?? geometry) ?? 0) > call)
+      throw wrong(`a later transfer to ${show(name)} has ended before this one`, undefined, 'superseded');
+    const now = before(part);
     const isLate = (attribute: string) => remades[p] && !remades[p].attributes.has(attribute);
-    const isChanged = hasOthers(geometry, states[p]!) || Object.keys(geometry.attributes).some(isLate);
+    const isChanged = hasOthers(now, states[p]!) || Object.keys(now.attributes).some(isLate);
     // The transfer of a mesh elsewhere may change the geometry: this one gets a copy of what it was.
     if ((mesh && mesh.geometry !== geometry) || (isChanged && !(mesh && isShownElsewhere(geometry, parts))))
       throw wrong(`the geometry of ${show(name)} was changed meanwhile`);
-    return isChanged ? states[p]! : geometry;
+    return isChanged ? states[p]! : now;
   });
 
   ownGeometries(parts, sources);
@@ -136,30 +136,34 @@ export function* apply(
     matrix: new Matrix3(),
     meshes: new Set(parts.flatMap(({ mesh }) => mesh ?? [])),
   });
+  const replaced: (() => void)[] = [];
   parts.forEach(({ mesh, geometry }, p) => {
-    // Earlier overlays show paint, or UVs of a channel, that is overwritten here.
-    const isReplaced = options.material ? givenChannels.get(geometry) === channel : options.texture;
-    if (mesh && isReplaced) removeOverlays(mesh);
+    for (const writer of rewind(geometry, options.channel)) replaced.push(() => writer.replaced(geometry));
+    changedBy.set(mesh ?? geometry, call);
+    if (mesh && options.texture) removeOverlays(mesh); // They show paint that is covered here.
     if (remades[p]) replace(geometry, remades[p]!);
     else disposeOwn(geometry, [`uv${channel}`, zoneAttribute]); // or the GPU buffers of what is replaced here would be left to the garbage collector
     const { split } = prepared.parts[p]!;
     geometry.setAttribute(`uv${channel}`, own(new BufferAttribute(split.uvs.slice(), 2)));
     geometry.setAttribute(zoneAttribute, own(new BufferAttribute(new Float32Array(split.sources.length), 1)));
-    givenChannels.set(geometry, channel);
     paintings.set(geometry, painting);
   });
   const shown = parts.map((part, p): ShownPart => ({ ...prepared.parts[p]!, part, cosmetic: new Uint8Array(0) }));
-  return new Shown(target, prepared, shown, { painting, material: options.material, channel });
+  const applied = new Shown(target, prepared, shown, { painting, material: options.material, channel });
+  shown.forEach(({ part: { geometry } }, p) => noteWrite(geometry, { writer: applied, channel, before: sources[p]! }));
+  applied.start();
+  for (const tell of replaced) tell();
+  return applied;
 }
 
 interface Display {
   painting: Painting;
   material: Material | null | undefined;
-  channel: 1 | 2 | 3;
+  channel: Channel;
 }
 
 /** Its methods are fields, so that they may be taken out of it. */
-class Shown implements Applied {
+class Shown implements Applied, Writer {
   readonly result;
   readonly splitVertices;
   readonly cutTriangles;
@@ -191,7 +195,17 @@ class Shown implements Applied {
     this.#painting = display.painting;
     this.#material = display.material;
     this.#culled = this.result.segmentStats.map(({ culled }) => culled);
+  }
+
+  /** Shows it for the first time. */
+  start(): void {
     this.#decide(this.result);
+  }
+
+  /** Another transfer has taken the place of this one on a part. */
+  replaced(geometry: BufferGeometry): void {
+    for (const { overlay, part } of this.#shown) if (overlay && part.geometry === geometry) this.#remove(overlay);
+    this.#show();
   }
 
   get note(): string | undefined {
@@ -241,10 +255,18 @@ class Shown implements Applied {
     this.#show();
   }
 
-  /** The parts on which no later transfer shows its paint. */
+  /** The parts that have it, and on which no later transfer shows its paint. */
   get #current(): ShownPart[] {
     const { number } = this.#painting;
-    return this.#shown.filter(({ part }) => !((shownPaintings.get(part.geometry)?.number ?? 0) > number));
+    return this.#shown.filter(
+      ({ part: { geometry } }) =>
+        isWrittenBy(geometry, this) && !((shownPaintings.get(geometry)?.number ?? 0) > number),
+    );
+  }
+
+  #remove(overlay: Mesh): void {
+    removeOverlay(overlay);
+    if (overlay.material !== this.#material) (overlay.material as Material).dispose();
   }
 
   #show(): void {
@@ -279,18 +301,12 @@ class Shown implements Applied {
       for (const { part } of this.#shown) showInstead(part.mesh, copy, material);
       copy.dispose();
     }
-    for (const one of this.#shown) {
-      const { overlay, part } = one;
-      const geometry = part.mesh?.geometry ?? part.geometry;
-      if (paintings.get(part.geometry) === this.#painting) paintings.delete(part.geometry);
-      if (shownPaintings.get(part.geometry) === this.#painting) {
-        shownPaintings.delete(part.geometry);
-        disposeOwn(geometry, [paintAttribute]); // or the attribute's GPU buffer would be left to the garbage collector
-        geometry.deleteAttribute(paintAttribute);
-      }
-      if (!overlay) continue;
-      removeOverlay(overlay);
-      if (overlay.material !== this.#material) (overlay.material as Material).dispose();
+    for (const { overlay, part } of this.#shown) {
+      const { geometry } = part;
+      if (paintings.get(geometry) === this.#painting) paintings.delete(geometry);
+      if (shownPaintings.get(geometry) === this.#painting) shownPaintings.delete(geometry);
+      takeOff(geometry, this);
+      if (overlay) this.#remove(overlay);
     }
   };
 }

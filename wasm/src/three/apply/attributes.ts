@@ -1,5 +1,8 @@
 import type { BufferAttribute, BufferGeometry, InterleavedBufferAttribute } from 'three';
 
+/** The attribute with the `Zone` of each vertex. GLTFLoader gives `_NCZ` the same name. */
+export const zoneAttribute = '_ncz';
+
 export type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
 /** The numbers of an attribute, decoded, to be read only: its own array if that has nothing else. */

@@ -16,13 +16,14 @@ import { chooseParts, groupsNamed, isClear, type LeftOut, type Look, visibilityE
 import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/origin.js';
 import { morphed, movePoints } from '../../parts/points.js';
 import { type MorphedPart, posesOf } from '../../parts/poses.js';
-import { placeMeshes, type Skin } from '../../parts/skin.js';
 import { bareNames } from '../../parts/template-extras.js';
 import { transformUvs } from '../../parts/uv-transform.js';
 import { wrong } from '../errors.js';
 import { type Attribute, targetDeltas, valuesOf } from './attributes.js';
 import { isGeometry, isInstanced, isMesh, isObject, isOfInstances } from './flags.js';
 import { groupNames, materialsOf, namesOf } from './names.js';
+import { placesOf } from './places.js';
+import { asBefore, type Channel, stateOf } from './writes.js';
 
 /** One mesh of a scene, or a single geometry, and the ranges of its elements in the joined arrays. */
 export interface Part {
@@ -77,15 +78,45 @@ const identity = new Matrix4();
  * @throws {CagecastError} that names the part and the element.
  */
 export const extract = (object: Object3D | BufferGeometry, argument = 'target', isMeant?: PartsOption): Extracted =>
-  extractNear(object, argument, kSceneOrigin, isMeant);
+  extractNear(object, argument, kSceneOrigin, { isMeant });
+
+interface ExtractOptions {
+  isMeant?: PartsOption | undefined;
+  /** That a transfer will write. */
+  channel?: Channel | undefined;
+}
+
+/** What a transfer needs of a target. */
+export interface ExtractedNear extends Extracted {
+  origin: Vector;
+  /** What the geometry of each part was before the transfers whose place another one takes. */
+  states: BufferGeometry[];
+}
 
 /** The same with positions around an origin, which target and cage need in common; and that origin. */
 export function extractNear(
   object: Object3D | BufferGeometry,
   argument: string,
   origin: Origin,
-  isMeant?: PartsOption,
-): Extracted & { origin: Vector } {
+  { isMeant, channel }: ExtractOptions = {},
+): ExtractedNear {
+  return asItWas(object, channel, () => extractNow(object, argument, origin, isMeant));
+}
+
+/** Calls a function while an object is what it was before transfers: all, or those whose place one into a channel takes. */
+export function asItWas<T>(object: Object3D | BufferGeometry, channel: Channel | undefined, call: () => T): T {
+  const geometries = new Set<BufferGeometry>();
+  if (isGeometry(object)) geometries.add(object);
+  else if (isObject(object)) object.traverse((child) => void (isMesh(child) && geometries.add(child.geometry)));
+  return asBefore(geometries, channel, call);
+}
+
+function extractNow(
+  object: Object3D | BufferGeometry,
+  argument: string,
+  origin: Origin,
+  isMeant: PartsOption | undefined,
+): ExtractedNear {
   const { parts, leftOut, accessories } = listParts(object, argument, isMeant);
   const placed = ({ geometry, matrix }: Part) => ({
     points: valuesOf(geometry.getAttribute('position') as Attribute),
@@ -119,6 +150,7 @@ export function extractNear(
     names: groupNames(parts, object),
     bare: bareNames(parts.flatMap(extrasOf)),
     origin: near,
+    states: parts.map(({ geometry }) => stateOf(geometry)),
   };
 }
 
@@ -257,45 +289,6 @@ function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
     positions: position ? valuesOf(position) : [],
     indices: geometry.index?.array,
     matrix: matrix.elements,
-  };
-}
-
-/**
- * Returns the matrices from meshes to the scene: their world matrices; for skinned meshes, those by which their skeletons place them
- * in the bind pose; for instanced meshes, those of the first instance. World matrices must be up to date. Whether a skeleton has
- * moved follows from all meshes that it holds, so give them together. Cost: linear in the vertices of skinned meshes.
- */
-export function placesOf(meshes: readonly ThreeMesh[]): Matrix4[] {
-  const all = meshes.map((mesh) => {
-    const place = new Matrix4();
-    if (isInstanced(mesh)) mesh.getMatrixAt(0, place);
-    const skin = isAttached(mesh) ? skinOf(mesh) : undefined;
-    return { node: mesh as Object3D, matrix: place.premultiply(mesh.matrixWorld).elements, skin };
-  });
-  const nodes = {
-    parentOf: ({ parent }: Object3D) => parent,
-    worldOf: ({ matrixWorld }: Object3D) => matrixWorld.elements,
-  };
-  return placeMeshes(all, nodes).map((place) => new Matrix4().fromArray(place));
-}
-
-/** Whether a mesh is where its skeleton is. A detached one is where it is itself. */
-const isAttached = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).bindMode === 'attached';
-
-export function skinOf(mesh: SkinnedMesh): Skin<Object3D> {
-  const { skeleton, bindMatrix, geometry } = mesh;
-  const values = (name: string) => {
-    const attribute = geometry.getAttribute(name) as Attribute | undefined;
-    return attribute ? valuesOf(attribute) : new Float32Array();
-  };
-  return {
-    joints: skeleton?.bones ?? [],
-    inverseOf: (b) => skeleton!.boneInverses[b]!.elements,
-    bind: bindMatrix.elements,
-    held: values('skinIndex'),
-    weights: values('skinWeight'),
-    positions: values('position'),
-    isFloat: geometry.getAttribute('position')?.array instanceof Float32Array,
   };
 }
 

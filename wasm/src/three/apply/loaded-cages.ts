@@ -6,8 +6,9 @@ import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones 
 import { vrmExpressions } from '../../parts/morph-names.js';
 import { readTemplate } from '../../parts/template-extras.js';
 import { wrong } from '../errors.js';
-import { extract, extrasOf, morphedParts, type Part, skinOf } from './extract-scene.js';
+import { asItWas, extract, extrasOf, morphedParts, type Part } from './extract-scene.js';
 import { isSkinned } from './flags.js';
+import { skinOf } from './places.js';
 
 /**
  * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones, and
@@ -36,17 +37,19 @@ const objectOf = (model: Loaded): Object3D | BufferGeometry => (isLoadedGltf(mod
  */
 export function cageModel(model: Loaded): cages.CageModel {
   const object = objectOf(model);
-  const { mesh, parts, names } = extract(object, 'model');
-  const { positions, indices, groups } = mesh;
-  const bones = isLoadedGltf(model) ? bonesOf(model) : new Map<Object3D, string>();
-  return {
-    positions,
-    indices,
-    groups,
-    parts: names,
-    ...skeletonOf(parts, bones),
-    hints: faceHints(morphedParts(parts, positions, isLoadedGltf(model) ? expressionsOf(model) : undefined)),
-  };
+  return asItWas(object, undefined, () => {
+    const { mesh, parts, names } = extract(object, 'model');
+    const { positions, indices, groups } = mesh;
+    const bones = isLoadedGltf(model) ? bonesOf(model) : new Map<Object3D, string>();
+    return {
+      positions,
+      indices,
+      groups,
+      parts: names,
+      ...skeletonOf(parts, bones),
+      hints: faceHints(morphedParts(parts, positions, isLoadedGltf(model) ? expressionsOf(model) : undefined)),
+    };
+  });
 }
 
 /** The names of the expressions that use the morph targets of a mesh. */

@@ -162,6 +162,10 @@ function movedRanges(
   };
 }
 
+/** The same attribute for its first vertices alone. */
+export const firstOf = (attribute: Attribute, count: number): BufferAttribute =>
+  likeAttribute(attribute, valuesOf(attribute).slice(0, attribute.itemSize * count));
+
 /** The values of an attribute as they are stored, one element after the other. */
 function valuesOf(attribute: Attribute): TypedArray {
   if (!('isInterleavedBufferAttribute' in attribute)) return attribute.array;

@@ -9,12 +9,11 @@ import { wrong } from '../errors.js';
 import { makeOverlay, overlayMaterial, showTriangles } from '../materials/overlay-mesh.js';
 import { paintAttribute } from '../materials/paint-shader.js';
 import { canBePainted, originals, type Painting, paintOn } from '../materials/painted-materials.js';
+import { zoneAttribute } from './attributes.js';
 import { type Part, placePositions } from './extract-scene.js';
 import { own } from './own-attributes.js';
 import { atOnce, remake, replace } from './remake.js';
-
-/** The attribute with the `Zone` of each vertex. GLTFLoader gives `_NCZ` the same name. */
-export const zoneAttribute = '_ncz';
+import { noteChange } from './writes.js';
 
 /** A part of the target, and what is shown on it. */
 export interface ShownPart extends PreparedPart {
@@ -89,6 +88,7 @@ function splitAtPaint(shown: ShownPart): void {
   const known = { ...split, sources: Uint32Array.from({ length: count }, (_, v) => v), copies: 0 };
   const remade = atOnce(remake(geometry, { pieces: undefined, split: withCopies(known, copies) }, 0));
   if (remade) replace(geometry, remade);
+  noteChange(geometry);
   shown.split = withCopies(split, copies);
 }
 

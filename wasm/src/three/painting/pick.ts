@@ -14,8 +14,8 @@ import {
   Vector3,
 } from 'three';
 import type { Applied } from '../apply/apply-options.js';
+import { zoneAttribute } from '../apply/attributes.js';
 import type { Part } from '../apply/extract-scene.js';
-import { zoneAttribute } from '../apply/shown-parts.js';
 import { paintAttribute } from '../materials/paint-shader.js';
 import type { CageTexels, SurfacePoint } from './cage-texels.js';
 
