@@ -39,6 +39,7 @@ export {
   type LoadedGltf,
   makeCage,
   refineCage,
+  withBaseColors,
 } from './apply/loaded-cages.js';
 export { type ModelMasks, modelMasks } from './model-masks.js';
 export {

@@ -381,6 +381,13 @@ function placeIndices(
   }
 }
 
+/** The material of each group of a part, as `extract` numbers groups: in the order of their first triangles. */
+export function materialOfGroups({ mesh, geometry }: Part): (Material | undefined)[] {
+  if (!Array.isArray(mesh?.material)) return [mesh?.material];
+  const order = [...new Set(geometry.groups.map(({ materialIndex = 0 }) => materialIndex))];
+  return (order.length > 0 ? order : [0]).map((index) => (mesh.material as Material[])[index]);
+}
+
 /** Numbers the part's material groups, from `first` on. @returns the next number. */
 function placeGroups(
   { mesh, geometry, firstVertex, vertexCount, triangleCount }: Part,
@@ -415,7 +422,7 @@ function mapOf({ mesh }: Part): Texture | undefined {
 const uvsOf = (part: Part): Attribute | undefined => part.geometry.getAttribute(`uv${mapOf(part)?.channel || ''}`);
 
 /** Where UVs are in a texture, as in a glTF: `Texture.matrix` would scale last. */
-function inTexture(uvs: Float32Array, map: Texture | undefined): Float32Array {
+export function inTexture(uvs: Float32Array, map: Texture | undefined): Float32Array {
   if (!map) return uvs;
   const { offset, rotation, repeat } = map;
   if (rotation === 0 && offset.lengthSq() === 0 && repeat.x === 1 && repeat.y === 1) return uvs;

@@ -15,7 +15,8 @@ import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones 
 import { vrmExpressions } from '../../parts/morph-names.js';
 import { readTemplate } from '../../parts/template-extras.js';
 import { wrong } from '../errors.js';
-import { extract, holderOf, isSkinned, morphedParts, type Part, skinOf } from './extract-scene.js';
+import { baseColorsOf } from './base-colors.js';
+import { extract, holderOf, isSkinned, materialOfGroups, morphedParts, type Part, skinOf } from './extract-scene.js';
 
 /**
  * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones, and
@@ -57,6 +58,19 @@ export function cageModel(model: Loaded): cages.CageModel {
   };
 }
 
+/**
+ * Adds to a model of `cageModel` what its parts look like, so that a face that is only painted can be found. `makeCage`, `fitCage` and
+ * `findLandmarks` of this module do so. Textures whose pixels cannot be read are left out: compressed ones, and images of another origin
+ * that does not allow it.
+ * Cost: some milliseconds for each texture, each in a task of its own; nothing for a texture that was read before.
+ * @throws {CagecastError} `badArgument` that names the mesh.
+ */
+export async function withBaseColors(model: cages.CageModel, loaded: Loaded): Promise<cages.CageModel> {
+  return { ...model, ...(await baseColorsOf(objectOf(loaded))) };
+}
+
+const modelOf = (model: Loaded): Promise<cages.CageModel> => withBaseColors(cageModel(model), model);
+
 /** The names of the expressions that use the morph targets of a mesh. */
 function expressionsOf(loaded: LoadedGltf): (mesh: Part['mesh'], target: number) => string[] {
   const expressions = vrmExpressions(extensionsOf(loaded));
@@ -95,7 +109,7 @@ export async function makeCage(
   model: Loaded,
   options: cages.MakeOptions & cages.CageCallOptions = {},
 ): Promise<cages.Cage> {
-  return cages.makeCage(cageModel(model), options);
+  return cages.makeCage(await modelOf(model), options);
 }
 
 /** As `fitCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */
@@ -105,12 +119,17 @@ export async function fitCage(
   landmarks?: cages.Landmarks,
   options: cages.FitOptions & cages.CageCallOptions = {},
 ): Promise<cages.Fit> {
-  return cages.fitCage(isTemplate(template) ? template : cageTemplate(template), cageModel(model), landmarks, options);
+  return cages.fitCage(
+    isTemplate(template) ? template : cageTemplate(template),
+    await modelOf(model),
+    landmarks,
+    options,
+  );
 }
 
 /** As `findLandmarks` of `cagecast/cages`, for a loaded model. @throws {CagecastError} */
 export async function findLandmarks(model: Loaded, options: cages.CageCallOptions = {}): Promise<cages.FoundLandmarks> {
-  return cages.findLandmarks(cageModel(model), options);
+  return cages.findLandmarks(await modelOf(model), options);
 }
 
 /** As `refineCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */
@@ -143,20 +162,11 @@ const isTemplate = <T extends Mesh>(cage: Loaded | T): cage is T => (cage as Mes
 
 /** The names of each group: of its mesh, of the object that holds the meshes of one glTF mesh, and of its material. */
 function namesOf(parts: readonly Part[], root: object): string[][] {
-  return parts.flatMap(({ name, mesh, geometry }) => {
+  return parts.flatMap((part) => {
+    const { name, mesh, geometry } = part;
     const own = [...new Set([name, geometry.name, holderOf(mesh, root)?.name].filter((text) => text))] as string[];
-    const materials = [mesh?.material ?? []].flat();
-    // As `extract` numbers groups: by the first of each material's groups.
-    const order = Array.isArray(mesh?.material)
-      ? [...new Set(geometry.groups.map(({ materialIndex = 0 }) => materialIndex))]
-      : [0];
-    return (order.length > 0 ? order : [0]).map((index) => {
-      const {
-        name: material = '',
-        transparent,
-        opacity,
-        transmission,
-      } = (materials[index] ?? {}) as Partial<MeshPhysicalMaterial>;
+    return materialOfGroups(part).map((of) => {
+      const { name: material = '', transparent, opacity, transmission } = (of ?? {}) as Partial<MeshPhysicalMaterial>;
       const names = material === '' || own.includes(material) ? own : [...own, material];
       return [...names, ...nameOfGlass(transparent ? 'BLEND' : 'OPAQUE', opacity, transmission)];
     });
