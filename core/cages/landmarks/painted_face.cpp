@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "views/base_color.hpp"
 
@@ -19,7 +20,7 @@ constexpr double kHalfWidth = 0.45, kBelow = 0.6, kAbove = 0.35;  ///< Of what i
 constexpr double kRaysFrom = 0.8;
 
 /// How far a colour has to differ from skin, in units of CIELAB: little for faint lips, much where shadows are painted.
-constexpr double kLevels[] = {7, 12, 20, 32, 48};
+constexpr double kLevels[] = {6, 10, 16, 25, 40};
 
 /// A head seen from the front.
 struct Portrait {
@@ -124,6 +125,15 @@ struct Spotted {
   [[nodiscard]] double height() const { return high - low; }
 };
 
+/// How far a colour is from skin. Shadows and light that are painted in, which change all of a colour alike, count less.
+double distanceTo(const Vec3& skin, const Vec3& color) {
+  constexpr double kBlack = 16;  ///< Colours of one hue and any light meet at this lightness below 0.
+  constexpr double kDarkest = 0.6, kBrightest = 1.25, kShade = 0.3;
+  const Vec3 from{skin.x + kBlack, skin.y, skin.z}, to{color.x + kBlack, color.y, color.z};
+  const double shade = std::clamp(dot(to, from) / dot(from, from), kDarkest, kBrightest);
+  return length(to - shade * from) + kShade * std::abs(1 - shade) * length(from);
+}
+
 /// The shape and colours of an area.
 Spotted describeArea(const Portrait& portrait, const std::vector<Place>& area, const Vec3& skin) {
   const Grid& grid = portrait.map.grid;
@@ -143,7 +153,7 @@ Spotted describeArea(const Portrait& portrait, const std::vector<Place>& area, c
   }
   for (const Place& place : area)
     out.variety += length(portrait.colors[portrait.map.index(place.column, place.row)] - mean) / count;
-  out.contrast = length(mean - skin);
+  out.contrast = distanceTo(skin, mean);
   out.redness = mean.y - skin.y;
   const double half = 0.5 * grid.step;
   out.left = grid.a(low.column) - half;
@@ -172,7 +182,7 @@ std::vector<Spotted> areasOf(const Portrait& portrait, const Vec3& skin, double 
   const HeightMap& map = portrait.map;
   std::vector<bool> isOpen(map.heights.size());
   for (std::size_t i = 0; i < isOpen.size(); ++i)
-    isOpen[i] = std::isfinite(map.heights[i]) && length(portrait.colors[i] - skin) > level;
+    isOpen[i] = std::isfinite(map.heights[i]) && distanceTo(skin, portrait.colors[i]) > level;
   std::vector<Spotted> out;
   for (int row = 0; row < map.grid.rows; ++row)
     for (int column = 0; column < map.grid.columns; ++column) {
@@ -218,7 +228,7 @@ double likeEyes(const Pair& pair) {
   const double fill = (pair.left.area + pair.right.area) / (2 * pair.width() * pair.height());
   const double variety = 0.5 * (pair.left.variety + pair.right.variety);
   return ramp(apart, 0.35, 0.6) * ramp(apart, 2.8, 1.9) * ramp(share, 0.06, 0.15) * ramp(share, 1.05, 0.85) *
-         ramp(aspect, 0.08, 0.3) * ramp(aspect, 3.5, 2.2) * ramp(fill, 0.2, 0.45) * ramp(pair.contrast(), 5, 22) *
+         ramp(aspect, 0.06, 0.22) * ramp(aspect, 3.5, 2.2) * ramp(fill, 0.2, 0.45) * ramp(pair.contrast(), 5, 18) *
          (0.7 + 0.3 * ramp(variety, 0, 20));
 }
 
@@ -268,7 +278,7 @@ double likeMouth(const Spotted& area, double apart, double eyesY) {
   const double where = std::log(below / 0.95) / 0.5;
   const double aside = std::abs(0.5 * (area.left + area.right));
   return std::exp(-where * where) * ramp(wide, 0.12, 0.4) * ramp(wide, 1.9, 1.4) *
-         ramp(area.height() / area.width(), 1.4, 0.8) * ramp(area.contrast, 4, 14) *
+         ramp(area.height() / area.width(), 1.4, 0.8) * ramp(area.contrast, 3, 10) *
          ramp(aside, 0.3 * apart, 0.1 * apart) * (0.85 + 0.15 * ramp(area.redness, 0, 8));
 }
 
@@ -328,14 +338,13 @@ void addEyes(const Portrait& portrait, const Pair& pair, PaintedFace& out) {
   for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
     const Spotted& area = side == 0 ? pair.left : pair.right;
     const double sign = side == 0 ? 1 : -1;
-    const Vec3 middle = portrait.pointAt(sign * 0.5 * pair.apart(), y, 0);
+    Vec3 middle = portrait.pointAt(sign * 0.5 * pair.apart(), y, 0);
+    const Vec3 inner = portrait.pointAt(side == 0 ? area.left : area.right, y, middle.z);
+    const Vec3 outer = portrait.pointAt(side == 0 ? area.right : area.left, y, middle.z);
+    middle.z = std::max(middle.z, std::midpoint(inner.z, outer.z));  // A socket without its eye is hollow.
     out.eyes.centres[side] = portrait.frame.toModel(middle - radius * kFrontView.toward);
-    const double inner = side == 0 ? area.left + kPortraitStep : area.right - kPortraitStep;
-    const double outer = side == 0 ? area.right - kPortraitStep : area.left + kPortraitStep;
-    addLandmark(portrait, side == 0 ? "eye_inner_left" : "eye_inner_right", portrait.pointAt(inner, y, middle.z),
-                out.landmarks);
-    addLandmark(portrait, side == 0 ? "eye_outer_left" : "eye_outer_right", portrait.pointAt(outer, y, middle.z),
-                out.landmarks);
+    addLandmark(portrait, side == 0 ? "eye_inner_left" : "eye_inner_right", inner, out.landmarks);
+    addLandmark(portrait, side == 0 ? "eye_outer_left" : "eye_outer_right", outer, out.landmarks);
   }
 }
 
