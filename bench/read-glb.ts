@@ -1,10 +1,9 @@
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import type { CageModel, Template } from 'cagecast/cages';
-import { cageModel, cageTemplate, withBaseColors } from 'cagecast/gltf';
+import { cageModel, cageTemplate } from 'cagecast/gltf';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
-import sharp from 'sharp';
 
 async function readDocument(path: string) {
   await MeshoptDecoder.ready;
@@ -15,13 +14,10 @@ async function readDocument(path: string) {
   return { document: await io.readJSON(file), extensions: file.json.extensions };
 }
 
-/** Reads a target: its mesh, the names of its parts, its joints, and base colours. */
+/** Reads a target: its mesh, the names of its parts, its joints. */
 export async function readTarget(path: string): Promise<CageModel> {
   const { document, extensions } = await readDocument(path);
-  return withBaseColors(cageModel(document, { extensions }), document, async (bytes) => {
-    const { data, info } = await sharp(bytes).ensureAlpha().raw().toBuffer({ resolveWithObject: true });
-    return { width: info.width, height: info.height, data };
-  });
+  return cageModel(document, { extensions });
 }
 
 /** Reads a cage, and the landmarks that its file names. */

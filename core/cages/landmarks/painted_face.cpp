@@ -125,7 +125,8 @@ struct Spotted {
   [[nodiscard]] double height() const { return high - low; }
 };
 
-/// How far a colour is from skin. Shadows and light that are painted in, which change all of a colour alike, count less.
+/// How far a colour is from skin. Shadows and light that are painted in, which change all of a colour alike, count
+/// less.
 double distanceTo(const Vec3& skin, const Vec3& color) {
   constexpr double kBlack = 16;  ///< Colours of one hue and any light meet at this lightness below 0.
   constexpr double kDarkest = 0.6, kBrightest = 1.25, kShade = 0.3;
@@ -322,6 +323,9 @@ void addMouth(const Portrait& portrait, const Spotted& area, std::vector<Landmar
   const double height = portrait.map.near(area.x, area.y);
   const auto at = [&](double x, double y) { return portrait.pointAt(x, y, height); };
   addLandmark(portrait, "mouth", at(0, area.middleY), out);
+  constexpr double kLip = 0.375;  ///< From the middle to what is called a lip, as a share of both.
+  addLandmark(portrait, "lip_upper", at(0, area.middleY + kLip * area.height()), out);
+  addLandmark(portrait, "lip_lower", at(0, area.middleY - kLip * area.height()), out);
   addLandmark(portrait, "mouth_corner_left", at(area.right - kPortraitStep, area.rightY), out);
   addLandmark(portrait, "mouth_corner_right", at(area.left + kPortraitStep, area.leftY), out);
 }
