@@ -1,6 +1,6 @@
 import { type Image, resize } from '../../bake/index.js';
+import { opaque, smallSize } from '../../bake/small-image.js';
 import type { BaseColor, CageModel } from '../../cages/types.js';
-import { opaque, smallSize } from '../../parts/small-image.js';
 import type { Piece } from '../pieces.js';
 import { layUvs } from '../uv-layout.js';
 import { type BakeModel, type ImageCodec, type TextureUse, uvsOf } from './plan.js';

@@ -1,7 +1,7 @@
 import type { BufferGeometry, MeshStandardMaterial, Object3D, Texture } from 'three';
 import { type Image, resize } from '../../bake/index.js';
+import { opaque, smallSize } from '../../bake/small-image.js';
 import type { BaseColor, CageModel } from '../../cages/types.js';
-import { opaque, smallSize } from '../../parts/small-image.js';
 import { type Attribute, valuesOf } from './attributes.js';
 import { extract, inTexture, materialOfGroups, type Part } from './extract-scene.js';
 

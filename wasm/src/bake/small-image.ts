@@ -1,4 +1,4 @@
-import type { Image } from '../bake/image.js';
+import type { Image } from './image.js';
 
 /** The longest side of an image that a face is looked for in: more pixels show nothing new. */
 const kSmall = 512;
