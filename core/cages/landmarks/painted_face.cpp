@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "landmarks/landmark_list.hpp"
 #include "views/base_color.hpp"
 
 /// Faces that are only painted. Skin is one of the commonest colours of a head; what differs from it and is surrounded
