@@ -35,19 +35,50 @@ val endingOf(const Status& status, const Given&... given) {
   return ending(status, describe(status, given...));
 }
 
+/// The images of base colours, copied from JavaScript.
+struct Images {
+  std::vector<cagecast::Array<std::uint8_t>> pixels;
+
+  bool copy(const val& source) {
+    pixels.resize(source["length"].as<std::size_t>());
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+      if (!copyArray(source[i]["data"], pixels[i])) return false;
+    return true;
+  }
+  /// @param colors  Each with the number of its image; -1 for none.
+  [[nodiscard]] std::vector<BaseColor> colorsOf(const val& colors, const val& images) const {
+    std::vector<BaseColor> out(colors["length"].as<std::size_t>());
+    for (std::size_t c = 0; c < out.size(); ++c) {
+      out[c].factor = colors[c]["factor"].as<Position>();
+      const auto image = colors[c]["image"].as<int>();
+      if (image < 0) continue;
+      const val size = images[image];
+      out[c].image = {size["width"].as<std::uint32_t>(), size["height"].as<std::uint32_t>(),
+                      pixels[static_cast<std::size_t>(image)]};
+    }
+    return out;
+  }
+};
+
 /// A model, copied from JavaScript.
 struct ModelArrays {
   Mesh mesh;
+  Images images;
   cagecast::Array<std::uint8_t> marks;
   cagecast::Array<std::uint16_t> vertexJoints;
   Model model;
 
   bool copy(const val& source) {
     if (!mesh.copy(source["mesh"]) || !copyArray(source["marks"], marks) ||
-        !copyArray(source["vertexJoints"], vertexJoints))
+        !copyArray(source["vertexJoints"], vertexJoints) || !images.copy(source["images"]))
       return false;
-    model = {mesh.view(), listOf<std::string>(source["parts"]), listOf<Joint>(source["joints"]),
-             marks,       listOf<Landmark>(source["hints"]),    vertexJoints};
+    model = {mesh.view(),
+             listOf<std::string>(source["parts"]),
+             listOf<Joint>(source["joints"]),
+             marks,
+             listOf<Landmark>(source["hints"]),
+             vertexJoints,
+             images.colorsOf(source["baseColors"], source["images"])};
     return true;
   }
 };

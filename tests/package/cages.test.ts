@@ -27,7 +27,17 @@ import * as sync from 'cagecast/cages/sync';
 import * as gltf from 'cagecast/gltf';
 import { inspect } from 'cagecast/inspect';
 import * as three from 'cagecast/three';
-import type { Bone } from 'three';
+import {
+  type Bone,
+  BufferGeometry,
+  Color,
+  CompressedTexture,
+  DataTexture,
+  Float32BufferAttribute,
+  Group,
+  Mesh as Mesh3,
+  MeshBasicMaterial,
+} from 'three';
 import { GLTFLoader, type GLTF as Loaded } from 'three/addons/loaders/GLTFLoader.js';
 import { cagecast } from '../support/command.js';
 import { countingEnds } from '../support/ended-workers.js';
@@ -358,6 +368,22 @@ describe('fitCage', () => {
       [call({}, {}, { chin: 'low' }), 'badArgument', /^landmarks\.chin is "low", not 3 finite numbers/],
       [call({}, {}, {}, { triangles: 5 }), 'badOption', /^options\.triangles is unknown; there are: exclude$/],
       [call({ indices: none }), 'badTemplate', /template/],
+      [call({}, { baseColors: 3 }), 'badArgument', 'model.baseColors is 3, not an array of { factor, image }'],
+      [
+        call({}, { baseColors: [{ factor: [1] }] }),
+        'badArgument',
+        /^model\.baseColors\[0\]\.factor is .*, not 3 numbers within 0\.\.1/,
+      ],
+      [
+        call({}, { baseColors: [{ image: { width: 1, height: 1, data: [1, 2, 3, 4] } }] }),
+        'badArgument',
+        /^model\.baseColors\[0\]\.image is .*, not an image \{ width, height, data \} of bytes/,
+      ],
+      [
+        call({}, { baseColors: [{ image: { width: 1, height: 1, data: new Uint8ClampedArray(3) } }] }),
+        'badModel',
+        /^model\.baseColors\[0\] has a factor outside 0\.\.1, or an image without 4 bytes per pixel/,
+      ],
       [call({}, {}, { antler: [0, 0, 0] }), 'badLandmarks', /^landmarks: antler is .* outside the box/],
     ]);
   });
@@ -500,6 +526,74 @@ describe('cageModel', () => {
         parts!.map((names) => names.includes('glass')),
         [true, true, false],
       );
+  });
+
+  test('has base colours, as far as images can be read', async () => {
+    const pixels = Uint8Array.of(10, 20, 30, 0, 200, 100, 50, 255);
+    const colorOf = { asIs: [...pixels], opaque: [10, 20, 30, 255, 200, 100, 50, 255] };
+    const corners = { position: [0, 0, 0, 1, 0, 0, 0, 1, 0], uv: [0, 0, 1, 0, 0, 1] };
+
+    const document = new Document();
+    document.createBuffer();
+    const accessor = (type: 'VEC2' | 'VEC3', values: number[]) =>
+      document.createAccessor().setType(type).setArray(Float32Array.from(values));
+    const texture = document.createTexture().setMimeType('image/png').setImage(Uint8Array.of(1));
+    const unread = document.createTexture().setMimeType('image/ktx2').setImage(Uint8Array.of(2));
+    const scene = document.createScene();
+    const materials = [
+      document.createMaterial().setBaseColorTexture(texture).setBaseColorFactor([0.5, 2, 1, 1]),
+      document.createMaterial().setBaseColorTexture(texture).setAlphaMode('MASK'),
+      document.createMaterial().setBaseColorTexture(unread),
+      null,
+    ];
+    for (const material of materials) {
+      const primitive = document
+        .createPrimitive()
+        .setAttribute('POSITION', accessor('VEC3', corners.position))
+        .setMaterial(material);
+      if (material) primitive.setAttribute('TEXCOORD_0', accessor('VEC2', corners.uv));
+      scene.addChild(document.createNode().setMesh(document.createMesh().addPrimitive(primitive)));
+    }
+    const ofDocument = await gltf.withBaseColors(gltf.cageModel(document), document, async ([first]) => {
+      if (first === 2) throw new Error('KTX2');
+      return { width: 2, height: 1, data: pixels };
+    });
+
+    const geometry = new BufferGeometry()
+      .setAttribute('position', new Float32BufferAttribute(corners.position, 3))
+      .setAttribute('uv', new Float32BufferAttribute(corners.uv, 2));
+    const map = new DataTexture(pixels, 2, 1);
+    const bare = geometry.clone().deleteAttribute('uv');
+    const compressed = new CompressedTexture([], 2, 1);
+    const group = new Group().add(
+      new Mesh3(geometry, new MeshBasicMaterial({ map, color: new Color(0.5, 2, 1) })),
+      new Mesh3(geometry, new MeshBasicMaterial({ map, alphaTest: 0.5 })),
+      new Mesh3(geometry, new MeshBasicMaterial({ map: compressed })),
+      new Mesh3(bare, new MeshBasicMaterial()),
+    );
+    const ofScene = await three.withBaseColors(three.cageModel(group), group);
+
+    for (const { baseColors, uvs } of [ofDocument, ofScene]) {
+      assert.deepEqual(
+        baseColors!.map(({ image }) => image && [...image.data]),
+        [colorOf.opaque, colorOf.asIs, undefined, undefined],
+      );
+      assert.deepEqual(baseColors![0]!.factor, [0.5, 1, 1]);
+      assert.deepEqual([...uvs!.subarray(0, 12)], [...corners.uv, ...corners.uv]);
+      assert.deepEqual([...uvs!.subarray(18)], [0, 0, 0, 0, 0, 0]);
+    }
+    // A picture larger than what shows a face is made smaller, and one that is upside down is turned.
+    const rows = new DataTexture(Uint8Array.of(1, 1, 1, 255, 9, 9, 9, 255), 1, 2);
+    rows.flipY = true;
+    const large = new DataTexture(new Uint8Array(4 * 1024 * 16).fill(7), 1024, 16);
+    for (const [texture, size, first] of [
+      [rows, [1, 2], 9],
+      [large, [512, 8], 7],
+    ] as const) {
+      const mesh = new Mesh3(geometry, new MeshBasicMaterial({ map: texture }));
+      const { width, height, data } = (await three.withBaseColors(three.cageModel(mesh), mesh)).baseColors![0]!.image!;
+      assert.deepEqual([width, height, data[0]], [...size, first]);
+    }
   });
 
   test('names the joints of a VRM by its bones; damaged tables are no reason to refuse a model', async () => {

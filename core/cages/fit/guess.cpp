@@ -5,8 +5,8 @@
 
 #include "fit/steps.hpp"
 #include "landmarks/frame.hpp"
-#include "landmarks/height_map.hpp"
 #include "landmarks/parts.hpp"
+#include "views/height_map.hpp"
 
 /// Where a template's landmarks would be if the model were the template's, stretched to the same size: for models that
 /// too little is known of.

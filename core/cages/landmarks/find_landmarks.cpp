@@ -4,6 +4,7 @@
 
 #include "landmarks/head.hpp"
 #include "landmarks/landmark_list.hpp"
+#include "landmarks/painted_face.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/foreground.hpp"
@@ -42,21 +43,48 @@ std::vector<MirrorPlane> planesOf(const Figure& figure) {
 /// The share of the search that is done when a head is found, but not yet its landmarks.
 constexpr float kHeadMade = 0.6f;
 
-/// Finds a figure's head: around the first eyes, named, loose or fused with the skin, that are as far apart as eyes
-/// are. Hints and joints say where to look first.
+/// Hints of a model, and others of what it has no hint of.
+std::vector<Landmark> joined(std::vector<Landmark> hints, const std::vector<Landmark>& others) {
+  for (const Landmark& other : others)
+    if (findLandmark(hints, other.name) == nullptr) hints.push_back(other);
+  return hints;
+}
+
+/// Whether shape says too little of where the mouth of a head is.
+bool isMouthUnsure(const Head& head) {
+  constexpr double kClear = 0.8;
+  const Spot* lip = head.find("lip_upper");
+  return head.hint("mouth") == nullptr &&
+         (lip == nullptr || lip->confidence < kClear || head.find("mouth_corner_left") == nullptr);
+}
+
+/// Finds the landmarks of a head; if its mouth is not clear by shape, where it is painted.
+void findLandmarksOf(const Figure& figure, const Model& model, const Eyes& eyes, std::optional<Head>& head) {
+  findHeadLandmarks(figure, eyes, *head);
+  if (!isMouthUnsure(*head)) return;
+  const std::vector<Landmark> mouth = findPaintedMouth(figure, model, *head);
+  std::optional<Head> better = mouth.empty() ? std::nullopt : makeHead(figure, eyes, joined(model.hints, mouth));
+  if (!better) return;
+  findHeadLandmarks(figure, eyes, *better);
+  head = std::move(better);
+}
+
+/// Finds a figure's head: around the first eyes, named, loose, painted or fused with the skin, that are as far apart as
+/// eyes are. Hints and joints say where to look first.
+/// @param figure  Or its head. @param model  That it was read from.
 /// @param goOn  Gets shares from 0 to 1 on the way.
 /// @return false if `goOn` cancelled it.
-bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const auto& goOn, std::optional<Head>& head) {
-  std::optional<Eyes> hinted = findHintedEyes(figure, hints);
+bool findHead(const Figure& figure, const Model& model, const auto& goOn, std::optional<Head>& head) {
+  std::optional<Eyes> hinted = findHintedEyes(figure, model.hints);
   bool isCancelled = false;
   /// @return whether the search has ended.
-  const auto makeHeadOf = [&](std::optional<Eyes> eyes) {
+  const auto makeHeadOf = [&](std::optional<Eyes> eyes, const std::vector<Landmark>& painted = {}) {
     if (!eyes || (hinted && !areAt(*eyes, *hinted))) return false;
     eyes->isNamed = eyes->isNamed || hinted;
-    head = makeHead(figure, *eyes, hints);
+    head = makeHead(figure, *eyes, joined(model.hints, painted));
     if (!head) return false;
     isCancelled = !goOn(kHeadMade);
-    if (!isCancelled) findHeadLandmarks(figure, *eyes, *head);
+    if (!isCancelled) findLandmarksOf(figure, model, *eyes, head);
     return true;
   };
   if (!goOn(0.1f)) return false;
@@ -73,13 +101,29 @@ bool findHead(const Figure& figure, const std::vector<Landmark>& hints, const au
   if (makeHeadAtHint()) return !isCancelled;
   const std::vector<MirrorPlane> planes = planesOf(figure);
   float share = 0.2f;
-  const float step = (kHeadMade - share) / static_cast<float>(2 * planes.size());
-  for (const auto find : {findLooseEyes, findFusedEyes})
-    for (const MirrorPlane& plane : planes) {
-      if (!goOn(share)) return false;
-      if (makeHeadOf(find(figure, plane))) return !isCancelled;
-      share += step;
-    }
+  const float step = (kHeadMade - share) / static_cast<float>(2 * planes.size() + 1);
+  const auto next = [&] {
+    isCancelled = isCancelled || !goOn(share);
+    share += step;
+    return !isCancelled;
+  };
+  // A face that may be painted comes before eyes that are not clear.
+  const double clear = model.baseColors.empty() ? 0 : 0.8;
+  std::vector<std::optional<Eyes>> loose;
+  for (const MirrorPlane& plane : planes) {
+    if (!next()) return false;
+    loose.push_back(findLooseEyes(figure, plane));
+    if (loose.back() && loose.back()->confidence > clear && makeHeadOf(loose.back())) return !isCancelled;
+  }
+  if (!next()) return false;
+  const std::optional<PaintedFace> painted = findPaintedFace(figure, model, planes);
+  if (painted && makeHeadOf(painted->eyes, painted->landmarks)) return !isCancelled;
+  for (const std::optional<Eyes>& eyes : loose)
+    if (makeHeadOf(eyes)) return !isCancelled;
+  for (const MirrorPlane& plane : planes) {
+    if (!next()) return false;
+    if (makeHeadOf(findFusedEyes(figure, plane))) return !isCancelled;
+  }
   return true;
 }
 
@@ -102,7 +146,7 @@ Status find(const Model& given, const Progress& progress, FoundLandmarks& out) {
   out.rig = rig.name;
   std::optional<Head> head;
   const auto goOnFinding = [&](float share) { return goOn(0.9f * share); };
-  if (!findHead(headOf(figure, model), model.hints, goOnFinding, head) || !goOn(0.9f)) return kAborted;
+  if (!findHead(headOf(figure, model), model, goOnFinding, head) || !goOn(0.9f)) return kAborted;
   if (head)
     for (const Spot& spot : head->spots)
       if (spot.confidence >= kSure)

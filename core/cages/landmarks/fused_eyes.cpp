@@ -10,30 +10,6 @@ namespace {
 
 // Lengths are shares of the frame's unit, which is about the diagonal of head and neck.
 constexpr double kEyeStep = 0.004;
-/// From the tip of the nose to the back of the head.
-constexpr double kHeadDepth = 0.54;
-
-/// A frame for a head whose eyes are not known, from the depth of what is at the top of the figure.
-HeadFrame guessFrame(const TriangleMesh& mesh, const MirrorPlane& plane, double side) {
-  HeadFrame frame;
-  frame.left = side * plane.left;
-  frame.front = cross(frame.left, frame.up);
-  const double top = rangeOf(mesh.positions, frame.up).high;
-  frame.unit = diagonalOf(mesh);
-  double rear = 0;
-  for (int round = 0; round < 4; ++round) {
-    constexpr double kTopShare = 0.45;
-    Range depth;
-    for (const Vec3& p : mesh.positions)
-      if (p.y >= top - kTopShare * frame.unit) depth.add(dot(frame.front, p));
-    frame.unit = std::min(frame.unit, (depth.high - depth.low) / kHeadDepth);
-    rear = depth.low;
-  }
-  const Vec3 middle = side * plane.offset * frame.left;
-  frame.origin = {middle.x, top - kEyesToCrown * frame.unit, middle.z};
-  frame.origin = frame.origin + (rear + kEyesToBack * frame.unit - dot(frame.origin, frame.front)) * frame.front;
-  return frame;
-}
 
 /// How far the midline stands out from both sides of it: most at the tip of a nose.
 double ridge(const HeightMap& map, double y) {
@@ -109,7 +85,7 @@ std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane
   std::optional<Eyes> best;
   double most = kMinNose;
   for (const double side : {plane.left.x < 0 ? -1.0 : 1.0, plane.left.x < 0 ? 1.0 : -1.0}) {
-    const HeadFrame frame = guessFrame(skin, plane, side);
+    const HeadFrame frame = guessHeadFrame(skin, plane, side);
     if (figure.front && dot(frame.front, *figure.front) < 0) continue;
     if (!(frame.unit > kMinHead * diagonal)) continue;
     const TriangleMesh local = frame.toLocal(within(skin, frame.origin, 0.6 * frame.unit));

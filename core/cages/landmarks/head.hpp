@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "landmarks/curve.hpp"
 #include "landmarks/eyes.hpp"
 #include "landmarks/frame.hpp"
+#include "views/curve.hpp"
 
 namespace cagecast::cages {
 
@@ -53,6 +53,10 @@ struct Head {
     return nullptr;
   }
 };
+
+/// A frame for a head whose eyes are not known, from the depth of what is at the top of a figure.
+/// @param side  1 if its left is that of the plane, -1 if it faces the other way.
+HeadFrame guessHeadFrame(const TriangleMesh& mesh, const MirrorPlane& plane, double side);
 
 /// A head around two eyes, in a space of its own, without any landmark yet.
 /// @return Nothing if the eyes are too close or too far apart for the skin around them.

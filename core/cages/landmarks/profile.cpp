@@ -49,9 +49,12 @@ std::optional<double> noseTip(const Profile& profile) {
 /// The foremost place between the eyes and a mouth that is known; nothing if the face is flat there.
 std::optional<double> noseTipAbove(const Profile& profile, double mouth) {
   constexpr double kLowest = 0.85;  ///< Of the mouth's height: upper lips may be farther in front.
+  constexpr double kFlat = 1e-4;    ///< Less is how numbers are rounded.
   const double low = kLowest * mouth;
   const auto tip = profile.medium.highest(low, 0, profile.tilt);
-  return tip && *tip > low + 2 * kProfileStep && *tip < -2 * kProfileStep ? tip : std::nullopt;
+  const auto height = [&](double y) { return profile.height(profile.medium, y); };
+  if (!tip || !(*tip > low + 2 * kProfileStep && *tip < -2 * kProfileStep)) return std::nullopt;
+  return height(*tip) - std::max(height(low), height(0)) < kFlat ? std::nullopt : tip;
 }
 
 /// The hollow between brow and nose; the farthest behind the line from one to the other if there is no hollow.
@@ -137,9 +140,18 @@ std::optional<MouthLine> mouth(const Profile& profile, double subnasale, const R
   return out;
 }
 
+/// Puts lips where hints say that they are, at the depth of the profile.
+void useHintedLips(Head& head, const Profile& profile) {
+  for (Spot& spot : head.spots)
+    if (const Spot* hint = spot.name.starts_with("lip_") ? head.hint(spot.name) : nullptr)
+      if (const Vec3 place = profile.point(hint->position.y); std::isfinite(place.z)) spot.position = place;
+}
+
+constexpr double kClearCrease = 0.003;  ///< Between closed lips.
+
 /// Lips, and the place below the lower lip where the chin begins.
 double lips(Head& head, const Profile& profile, double subnasale, const MouthLine& gap) {
-  const double clear = gap.depth > 0.003 ? 0.85 : 0.6;
+  const double clear = gap.depth > kClearCrease ? 0.85 : 0.6;
   if (const auto upper = profile.fine.highest(gap.top - 0.002, std::min(gap.top + 0.03, subnasale), profile.tilt))
     head.add("lip_upper", profile.point(*upper), clear);
   const double lipTop = gap.bottom;
@@ -154,6 +166,7 @@ double lips(Head& head, const Profile& profile, double subnasale, const MouthLin
   for (double y = from; y > edge; y -= kProfileStep)
     if (turn(y) < kTurned && turn(y - kProfileStep) < kTurned) edge = y;
   head.add("lip_lower", profile.point(edge), clear - 0.1);
+  if (gap.depth <= kClearCrease) useHintedLips(head, profile);
   return foldY;
 }
 

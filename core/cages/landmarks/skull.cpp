@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "landmarks/head.hpp"
+#include "mesh/bounds.hpp"
 
 // Tried and left out: the nape. Where the neck is furthest in front, or begins to come out again, is 4 % of the head's
 // length away from where people put it, on the mean: necks are straight there.
@@ -21,6 +22,28 @@ double likeMost(double length, double ofMost) {
 }
 
 }  // namespace
+
+HeadFrame guessHeadFrame(const TriangleMesh& mesh, const MirrorPlane& plane, double side) {
+  constexpr double kHeadDepth = 0.54;  ///< From the tip of the nose to the back of the head.
+  HeadFrame frame;
+  frame.left = side * plane.left;
+  frame.front = cross(frame.left, frame.up);
+  const double top = rangeOf(mesh.positions, frame.up).high;
+  frame.unit = diagonalOf(mesh);
+  double rear = 0;
+  for (int round = 0; round < 4; ++round) {
+    constexpr double kTopShare = 0.45;
+    Range depth;
+    for (const Vec3& p : mesh.positions)
+      if (p.y >= top - kTopShare * frame.unit) depth.add(dot(frame.front, p));
+    frame.unit = std::min(frame.unit, (depth.high - depth.low) / kHeadDepth);
+    rear = depth.low;
+  }
+  const Vec3 middle = side * plane.offset * frame.left;
+  frame.origin = {middle.x, top - kEyesToCrown * frame.unit, middle.z};
+  frame.origin = frame.origin + (rear + kEyesToBack * frame.unit - dot(frame.origin, frame.front)) * frame.front;
+  return frame;
+}
 
 void findSkull(Head& head) {
   const Spot* brow = head.find("glabella");

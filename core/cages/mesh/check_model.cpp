@@ -35,6 +35,15 @@ bool hasArea(const MeshView& mesh, double diagonal) {
   return false;
 }
 
+/// Whether a base colour is one that can be read.
+bool isGood(const BaseColor& color, bool hasUvs) {
+  constexpr std::uint32_t kMaxSide = 1U << 16;  ///< Of an image: sizes stay within 64 bits.
+  const auto& [width, height, pixels] = color.image;
+  const bool isWithin = std::all_of(color.factor.begin(), color.factor.end(), [](float x) { return x >= 0 && x <= 1; });
+  const bool isWhole = std::max(width, height) <= kMaxSide && pixels.size() == std::uint64_t{4} * width * height;
+  return isWithin && isWhole && (pixels.empty() || hasUvs);
+}
+
 }  // namespace
 
 Status checkMesh(const MeshView& mesh, Argument argument) noexcept {
@@ -80,6 +89,10 @@ Status checkModel(const Model& model) noexcept {
   for (std::size_t v = 0; v < model.vertexJoints.size(); ++v)
     if (model.vertexJoints[v] != kNoJoint && model.vertexJoints[v] >= model.joints.size())
       return fault(Code::vertexJointOutOfRange, v);
+  for (std::size_t p = 0; p < model.baseColors.size(); ++p)
+    if (!isGood(model.baseColors[p], !model.mesh.uvs.empty())) return fault(Code::badBaseColor, p);
+  for (std::size_t v = 0; v < model.mesh.groups.size() && !model.baseColors.empty(); ++v)
+    if (model.mesh.groups[v] >= model.baseColors.size()) return fault(Code::noBaseColor, v);
   return {};
 }
 

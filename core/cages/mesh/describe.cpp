@@ -94,7 +94,8 @@ std::string valueOf(std::string_view name, const Status& status, const Call& cal
   if (name == "most vertices") return std::to_string(kMaxModelVertices);
   if (name == "triangles") return std::to_string(mesh.indices.size() / 3);
   if (name == "vertices") return std::to_string(mesh.positions.size() / 3);
-  if (name == "group") return at < mesh.groups.size() ? std::to_string(mesh.groups[at]) : "?";
+  if (name == "group") return at < mesh.groups.size() ? std::to_string(mesh.groups[at]) : "0";
+  if (name == "base colors") return std::to_string(call.model.baseColors.size());
   if (name == "parts") return std::to_string(call.model.parts.size());
   if (name == "parent") return at < call.model.joints.size() ? std::to_string(call.model.joints[at].parent) : "?";
   if (name == "joints") return std::to_string(call.model.joints.size());

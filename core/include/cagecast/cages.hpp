@@ -36,9 +36,21 @@ struct Joint {
   std::int32_t parent = -1;  ///< Its place in the list; -1 for a root.
 };
 
+/// An image of small size, such as 512 by 512: larger ones say no more of where a face is.
+struct Image {
+  std::uint32_t width = 0, height = 0;
+  std::span<const std::uint8_t> pixels = {};  ///< 4 per pixel: red, green, blue in sRGB, alpha; upper row first.
+};
+
+/// What a part looks like without light: its image, if it has one, times a colour.
+struct BaseColor {
+  std::array<float, 3> factor{1, 1, 1};  ///< Red, green, blue in linear light, 0..1.
+  Image image = {};                      ///< Lies on the part by its UVs, and is repeated beyond 0..1. Empty: white.
+};
+
 /// What a cage is made for. The arrays belong to the caller and are only read.
 struct Model {
-  MeshView mesh;                             ///< `groups` number the parts. UVs are checked, not used.
+  MeshView mesh;                             ///< `groups` number the parts. UVs are those of `baseColors`.
   std::vector<std::string> parts = {};       ///< Name of each part, or several: "node/mesh/material". May be empty.
   std::vector<Joint> joints = {};            ///< May be empty.
   std::span<const std::uint8_t> marks = {};  ///< 1 per triangle or none: 1 must not be painted, as by a brush.
@@ -49,6 +61,9 @@ struct Model {
   /// The joint that holds each vertex most, as its place in `joints`; `kNoJoint` for none. What a head's joints hold is
   /// where a face is looked for. May be empty.
   std::span<const std::uint16_t> vertexJoints = {};
+  /// The look of each part, by its number in `groups`. A painted face is looked for in it where names, bones and shape
+  /// do not say enough. May be empty. Pixels whose alpha is below one half are not there.
+  std::vector<BaseColor> baseColors = {};
 };
 
 inline constexpr std::uint16_t kNoJoint = 0xffff;
@@ -108,7 +123,7 @@ struct FoundLandmarks {
   Kind kind = Kind::prop;  ///< What the model seems to be.
 };
 
-/// Finds the landmarks of a head or a figure by part names, joint names and shape.
+/// Finds the landmarks of a head or a figure by part names, joint names, shape and base colours.
 Status findLandmarks(const Model& model, const Progress& progress, FoundLandmarks& out);
 
 /// Makes a cage for a model: a hull around it, with holes over the parts that are not painted, unwrapped.

@@ -92,6 +92,23 @@ TEST_CASE("whatever is wrong with a model is said in a sentence", "[cages][check
   holders = {kNoJoint, 0, 1};
   model.vertexJoints = holders;
   CHECK(describe(checkModel(model), model) == "model.vertexJoints[2] is not less than the number of joints, 1");
+  model.vertexJoints = {};
+  const std::vector<std::uint8_t> pixel = {1, 2, 3, 255};
+  const std::string bad =
+      "model.baseColors[0] has a factor outside 0..1, or an image without 4 bytes per pixel or "
+      "without UVs to lie by";
+  for (const BaseColor& color :
+       {BaseColor{.factor = {0, NAN, 0}}, BaseColor{.factor = {0, 0, 1.5f}}, BaseColor{.image = {1, 2, pixel}},
+        BaseColor{.image = {1U << 31, 1U << 31, pixel}}, BaseColor{.image = {1, 1, pixel}}}) {
+    model.baseColors = {color};
+    CHECK(describe(checkModel(model), model) == bad);
+  }
+  const std::vector<float> uvs(6);
+  model.mesh.uvs = uvs;
+  CHECK(checkModel(model).ok());
+  const std::vector<std::uint32_t> groups = {0, 1, 1};
+  model.mesh.groups = groups;
+  CHECK(describe(checkModel(model), model) == "model.groups[1] = 1, but there are 1 base colors");
 }
 
 TEST_CASE("every code has a sentence", "[cages][check]") {

@@ -1,3 +1,4 @@
+import type { Image } from '../bake/image.js';
 import type { Answer, CheckedMesh, Enum, EnumValue } from '../core/module.js';
 
 export interface CoreLandmark {
@@ -32,6 +33,9 @@ export interface CoreModel {
   marks: Uint8Array;
   hints: CoreLandmark[];
   vertexJoints: Uint16Array;
+  /** With the number of its image; -1 for none. */
+  baseColors: { factor: [number, number, number]; image: number }[];
+  images: Image[];
 }
 
 /** A template, as C++ takes it. */

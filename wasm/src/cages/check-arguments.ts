@@ -1,11 +1,12 @@
 import { checkMesh, count } from '../api/mesh.js';
+import type { Image } from '../bake/image.js';
 import { CagecastError, isRecord, show } from '../core/error.js';
 import { type EnumValue, namesOf } from '../core/module.js';
 import { plainArray, showArray } from '../core/typed-arrays.js';
 import { isRegion } from '../parts/template.js';
 import { isPosition } from '../parts/template-extras.js';
 import type { CagesModule, CoreLandmark, CoreModel, CoreOptions, CoreTemplate } from './cages-module.js';
-import type { CageModel, Holes, Landmarks, Regions, Template } from './types.js';
+import type { BaseColor, CageModel, Holes, Landmarks, Regions, Template } from './types.js';
 
 /** The error for a part of an argument. @param place  Where it is, such as `template.landmarks`. */
 const wrong = (fn: string, place: string, text: string) =>
@@ -17,7 +18,7 @@ const wrong = (fn: string, place: string, text: string) =>
  */
 export function checkModel(fn: string, model: unknown): CoreModel {
   const mesh = checkMesh(fn, 'model', model);
-  const { parts = [], joints = [], marks, hints, vertexJoints } = model as CageModel;
+  const { parts = [], joints = [], marks, hints, vertexJoints, baseColors } = model as CageModel;
   const bad = (field: string, value: unknown, type: string) =>
     wrong(fn, `model.${field}`, ` is ${show(value)}, not ${type}`);
   if (!Array.isArray(joints)) throw bad('joints', joints, 'an array of joints { name, position, parent }');
@@ -34,6 +35,7 @@ export function checkModel(fn: string, model: unknown): CoreModel {
     mesh,
     vertexJoints: plainVertexJoints ?? new Uint16Array(0),
     marks: plainMarks ?? new Uint8Array(0),
+    ...checkBaseColors(fn, 'model.baseColors', baseColors),
     parts: checkParts(fn, 'model.parts', parts),
     hints: checkLandmarks(fn, 'model.hints', hints),
     joints: joints.map((joint, j) => {
@@ -44,6 +46,30 @@ export function checkModel(fn: string, model: unknown): CoreModel {
       return { name: joint.name, position: joint.position, parent };
     }),
   };
+}
+
+/** Checks the types of base colours. @returns them with numbers of their images. @throws {CagecastError} `badArgument` */
+function checkBaseColors(fn: string, argument: string, colors: unknown): Pick<CoreModel, 'baseColors' | 'images'> {
+  if (colors === undefined || colors === null) return { baseColors: [], images: [] };
+  if (!Array.isArray(colors)) throw wrong(fn, argument, ` is ${show(colors)}, not an array of { factor, image }`);
+  const images = new Map<unknown, number>();
+  const baseColors = colors.map((color: unknown, c) => {
+    if (!isRecord(color)) throw wrong(fn, argument, `[${c}] is ${show(color)}, not { factor, image }`);
+    const { factor = [1, 1, 1], image } = color as BaseColor;
+    if (!isPosition(factor)) throw wrong(fn, argument, `[${c}].factor is ${show(factor)}, not 3 numbers within 0..1`);
+    if (image !== undefined && !isImage(image))
+      throw wrong(fn, argument, `[${c}].image is ${show(image)}, not an image { width, height, data } of bytes`);
+    if (image !== undefined && !images.has(image)) images.set(image, images.size);
+    return { factor, image: images.get(image) ?? -1 };
+  });
+  return { baseColors, images: [...images.keys()] as Image[] };
+}
+
+function isImage(image: unknown): image is Image {
+  if (!isRecord(image)) return false;
+  const { width, height, data } = image as Partial<Image>;
+  const isSide = (side: unknown) => Number.isInteger(side) && (side as number) > 0 && (side as number) < 2 ** 16;
+  return isSide(width) && isSide(height) && plainArray(data, 'Uint8Array', 'Uint8ClampedArray') !== undefined;
 }
 
 /** Checks the names of parts. @returns one name for each. @throws {CagecastError} `badArgument` */

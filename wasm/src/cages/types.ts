@@ -1,4 +1,5 @@
 import type { Mesh } from '../api/mesh.js';
+import type { Image } from '../bake/index.js';
 
 /** x, y, z in the space of the model. */
 export type Position = readonly [x: number, y: number, z: number];
@@ -27,8 +28,19 @@ export interface Joint {
   parent?: number | undefined;
 }
 
+/** What a part looks like without light: its image, if it has one, times a colour. */
+export interface BaseColor {
+  /** Red, green, blue in linear light, 0..1. Default: white. */
+  factor?: readonly [red: number, green: number, blue: number] | undefined;
+  /**
+   * Lies on the part by the model's UVs, and is repeated beyond 0..1. Pixels whose alpha is below one half are not there. 512 pixels
+   * along the longest side say enough. Parts may share one. Default: none.
+   */
+  image?: Image | undefined;
+}
+
 /**
- * What a cage is made for: a mesh as for `transfer` (its UVs are not used), and what is known about it. `cageModel` of
+ * What a cage is made for: a mesh as for `transfer` (its UVs are those of `baseColors`), and what is known about it. `cageModel` of
  * `cagecast/gltf` and `cagecast/three` reads it from a model.
  */
 export interface CageModel extends Mesh {
@@ -51,6 +63,11 @@ export interface CageModel extends Mesh {
    * looked for. Default: not known.
    */
   vertexJoints?: Uint16Array | undefined;
+  /**
+   * What each part looks like, by its number in `groups`. A painted face is looked for in it where names, bones and shape do not say
+   * enough. Default: not known.
+   */
+  baseColors?: readonly BaseColor[] | undefined;
 }
 
 /** What a model is: it decides resolution, tightness and seams of a cage. */

@@ -11,7 +11,7 @@ const bufferOf = getter<ArrayBuffer>('buffer');
 const offsetOf = getter<number>('byteOffset');
 const lengthOf = getter<number>('length');
 
-const constructors = { Float32Array, Uint32Array, Uint16Array, Uint8Array, Int8Array };
+const constructors = { Float32Array, Uint32Array, Uint16Array, Uint8Array, Uint8ClampedArray, Int8Array };
 type Constructors = typeof constructors;
 
 /** The name of a type of arrays that Cagecast takes. */

@@ -22,11 +22,13 @@ export {
   addCage,
   cageModel,
   cageTemplate,
+  type DecodingOptions,
   type FileOptions,
   findLandmarks,
   fitCage,
   makeCage,
   refineCage,
+  withBaseColors,
 } from './document/document-cages.js';
 export type { ReadLimits } from './limits.js';
 export type { LeftOut, PartsOption };

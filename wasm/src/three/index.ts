@@ -46,6 +46,7 @@ export {
   type LoadedGltf,
   makeCage,
   refineCage,
+  withBaseColors,
 } from './apply/loaded-cages.js';
 export { type ModelMasks, modelMasks } from './model-masks.js';
 export {

@@ -6,7 +6,7 @@ import { isCpp, isScript } from './files.mjs';
 // Folders lowest first: a file may include or import its own folder and those before it. Files beside the folders have their
 // places by name: transfer.cpp of the core is the last.
 const kCoreOrder = ['base', 'simd', 'geometry', 'input', 'search', 'cage', 'steps', 'seams', 'clip', 'transfer'];
-const kCagesOrder = ['linear', 'mesh', 'hull', 'landmarks', 'charts', 'make', 'fit', 'refine'];
+const kCagesOrder = ['linear', 'mesh', 'hull', 'views', 'landmarks', 'charts', 'make', 'fit', 'refine'];
 const kPackageOrder = [
   'generated',
   'core',

@@ -1,5 +1,5 @@
 import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
-import { cageModel } from 'cagecast/three';
+import { cageModel, withBaseColors } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/paint';
 import { likelyTemplate } from './likely-template';
 import { type Fitting, kMostAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
@@ -199,7 +199,9 @@ export class CageMaker extends Emitter<{
         ...{ holes: {}, kind: 'automatic', ...extrasOf(current), landmarks: {} },
         ...{ positions: rest.slice(), indices: indices.slice(), uvs: uvs.slice() },
       } as Cage;
-      const result = await work.call(this, { engine, model: cageModel(read.loaded), old, options });
+      const model = await withBaseColors(cageModel(read.loaded), read.loaded);
+      if (abort.signal.aborted) return;
+      const result = await work.call(this, { engine, model, old, options });
       if (abort.signal.aborted) return;
       const { cage, note, fitting, isNew } = result;
       const isChanged = cage.uvs === old.uvs;

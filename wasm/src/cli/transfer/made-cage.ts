@@ -1,9 +1,12 @@
 import { findLandmarks, fitCage, init, makeCage, matchingParts } from '../../cages/sync.js';
 import type { Cage, CageModel, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../../cages/types.js';
+import { FileModel } from '../../gltf/bake/bake-file.js';
+import { baseColorsOf } from '../../gltf/bake/base-colors.js';
 import { cageModelOf, partNamesOf } from '../../gltf/cage-file.js';
 import { partsBelow } from '../../gltf/extract-file.js';
 import { InputError } from '../../gltf/input-error.js';
 import { CagecastError } from '../../index.js';
+import { decodeImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import type { ReadModel } from './models.js';
 import { noSuchName } from './part-names.js';
@@ -18,11 +21,18 @@ export async function makeCageFor(model: ReadModel, options: MakeOptions, io: Io
 }
 
 /** The landmarks that are found on a model: with them, a cage that was made for it is a template. @throws {InputError} */
-export function landmarksOf(model: ReadModel, io: Io): Promise<Landmarks> {
+export async function landmarksOf(model: ReadModel, io: Io): Promise<Landmarks> {
+  const read = await cageModelWithColors(model);
   return calling('finding landmarks', { model: model.file.path }, io, (onProgress) => {
-    const { landmarks } = findLandmarks(cageModelOf(model.file, model.extracted), { onProgress });
+    const { landmarks } = findLandmarks(read, { onProgress });
     return landmarks;
   });
+}
+
+/** A model with base colours, as far as their images can be read. */
+async function cageModelWithColors({ file, extracted }: ReadModel): Promise<CageModel> {
+  const colors = await baseColorsOf(new FileModel(file, extracted.parts), decodeImage);
+  return { ...cageModelOf(file, extracted), ...colors };
 }
 
 /**
@@ -31,7 +41,7 @@ export function landmarksOf(model: ReadModel, io: Io): Promise<Landmarks> {
  */
 async function withExcluded({ file, extracted }: ReadModel, patterns: readonly string[] = []): Promise<CageModel> {
   await init();
-  const model = cageModelOf(file, extracted);
+  const model = await cageModelWithColors({ file, extracted });
   const names = [...model.parts!];
   const { nodes = [] } = file.json;
   for (const pattern of patterns) {

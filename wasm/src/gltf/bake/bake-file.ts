@@ -84,7 +84,6 @@ export class FileModel implements BakeModel<number, number> {
     return [baseColorFactor[0]!, baseColorFactor[1]!, baseColorFactor[2]!];
   }
 
-  /** Whether the alpha of its texture does not count. */
   isOpaque(material: number): boolean {
     return (this.#material(material).alphaMode ?? 'OPAQUE') === 'OPAQUE';
   }

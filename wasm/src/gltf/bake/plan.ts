@@ -43,6 +43,8 @@ export interface BakeModel<Material, Texture> {
   useOf(material: Material, slot: Slot): TextureUse<Texture> | undefined;
   /** By what the values of the texture are multiplied. */
   factorOf(material: Material, slot: Slot): readonly [number, number, number];
+  /** Whether the alpha of its base colour does not count. */
+  isOpaque(material: Material): boolean;
   /** Whether a texture shows occlusion: the metallic-roughness one, or one of its own. */
   hasOcclusion(material: Material): boolean;
   imageOf(texture: Texture): Promise<{ bytes: Uint8Array; mimeType: string } | undefined>;

@@ -5,8 +5,11 @@ import { faceHints } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { vrmExpressions } from '../../parts/morph-names.js';
 import { readTemplate } from '../../parts/template-extras.js';
+import { baseColorsOf } from '../bake/base-colors.js';
+import type { ImageCodec } from '../bake/plan.js';
 import { InputError } from '../input-error.js';
 import { createAccessor } from './add-transfer.js';
+import { DocumentModel } from './document-model.js';
 import {
   type DocumentPart,
   extractDocument,
@@ -21,6 +24,15 @@ import { isDocument, read, wrong } from './transfer-document.js';
 export interface FileOptions {
   /** The `extensions` of the file's JSON. A VRM's skeleton and expressions are in them: without it, names of nodes and morph targets count. */
   extensions?: VrmExtensions | undefined;
+}
+
+/** Options of calls that may look for a painted face. */
+export interface DecodingOptions extends FileOptions {
+  /**
+   * Decodes an image, as for `bake`; base colours are looked at for a painted face then, as by `withBaseColors`. What it rejects is
+   * left out. Default: they are not looked at.
+   */
+  decode?: ImageCodec['decode'] | undefined;
 }
 
 /**
@@ -39,6 +51,30 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
     ...skeletonOf(document, parts, vrmBones(extensions)),
     hints: faceHints(morphedParts(document, parts, positions, vrmExpressions(extensions))),
   };
+}
+
+/**
+ * Adds to a model of `cageModel` what its parts look like, so that a face that is only painted can be found.
+ * @param decode  Decodes an image, as for `bake`. Images for which it rejects are left out.
+ * Cost: that of decoding, and some milliseconds for each image.
+ * @throws {CagecastError} `badArgument` that names the primitive.
+ *
+ * @example
+ * const fit = await fitCage(template, await withBaseColors(cageModel(document), document, decode)); // of cagecast/cages
+ */
+export async function withBaseColors(
+  model: cages.CageModel,
+  document: Document,
+  decode: ImageCodec['decode'],
+): Promise<cages.CageModel> {
+  const { parts } = read('withBaseColors', 'document', document, () => extractDocument(document));
+  return { ...model, ...(await baseColorsOf(new DocumentModel(document, parts), decode)) };
+}
+
+/** A model, with base colours if images can be decoded. */
+async function modelOf(document: Document, { extensions, decode }: DecodingOptions): Promise<cages.CageModel> {
+  const model = cageModel(document, { extensions });
+  return decode ? withBaseColors(model, document, decode) : model;
 }
 
 /**
@@ -67,9 +103,9 @@ export function cageTemplate(document: Document): cages.Template {
  */
 export async function makeCage(
   document: Document,
-  { extensions, ...options }: cages.MakeOptions & cages.CageCallOptions & FileOptions = {},
+  { extensions, decode, ...options }: cages.MakeOptions & cages.CageCallOptions & DecodingOptions = {},
 ): Promise<cages.Cage> {
-  return cages.makeCage(cageModel(document, { extensions }), options);
+  return cages.makeCage(await modelOf(document, { extensions, decode }), options);
 }
 
 /**
@@ -80,10 +116,10 @@ export async function fitCage(
   template: Document | cages.Template,
   document: Document,
   landmarks?: cages.Landmarks,
-  { extensions, ...options }: cages.FitOptions & cages.CageCallOptions & FileOptions = {},
+  { extensions, decode, ...options }: cages.FitOptions & cages.CageCallOptions & DecodingOptions = {},
 ): Promise<cages.Fit> {
   const from = isDocument(template) ? cageTemplate(template) : template;
-  return cages.fitCage(from, cageModel(document, { extensions }), landmarks, options);
+  return cages.fitCage(from, await modelOf(document, { extensions, decode }), landmarks, options);
 }
 
 /**
@@ -92,9 +128,9 @@ export async function fitCage(
  */
 export async function findLandmarks(
   document: Document,
-  { extensions, ...options }: cages.CageCallOptions & FileOptions = {},
+  { extensions, decode, ...options }: cages.CageCallOptions & DecodingOptions = {},
 ): Promise<cages.FoundLandmarks> {
-  return cages.findLandmarks(cageModel(document, { extensions }), options);
+  return cages.findLandmarks(await modelOf(document, { extensions, decode }), options);
 }
 
 /**

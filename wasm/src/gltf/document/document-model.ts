@@ -47,6 +47,10 @@ export class DocumentModel implements BakeModel<Material, Texture> {
     return [r, g, b];
   }
 
+  isOpaque(material: Material): boolean {
+    return material.getAlphaMode() === 'OPAQUE';
+  }
+
   hasOcclusion(material: Material): boolean {
     return material.getOcclusionTexture() !== null;
   }

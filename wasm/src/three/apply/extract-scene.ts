@@ -407,7 +407,7 @@ function mapOf({ mesh }: Part): Texture | undefined {
 const uvsOf = (part: Part): Attribute | undefined => part.geometry.getAttribute(`uv${mapOf(part)?.channel || ''}`);
 
 /** Where UVs are in a texture, as in a glTF: `Texture.matrix` would scale last. */
-function inTexture(uvs: Float32Array, map: Texture | undefined): Float32Array {
+export function inTexture(uvs: Float32Array, map: Texture | undefined): Float32Array {
   if (!map) return uvs;
   const { offset, rotation, repeat } = map;
   if (rotation === 0 && offset.lengthSq() === 0 && repeat.x === 1 && repeat.y === 1) return uvs;

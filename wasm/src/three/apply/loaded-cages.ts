@@ -6,6 +6,7 @@ import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones 
 import { vrmExpressions } from '../../parts/morph-names.js';
 import { readTemplate } from '../../parts/template-extras.js';
 import { wrong } from '../errors.js';
+import { baseColorsOf } from './base-colors.js';
 import { asItWas, extract, extrasOf, morphedParts, type Part } from './extract-scene.js';
 import { isSkinned } from './flags.js';
 import { skinOf } from './places.js';
@@ -52,6 +53,19 @@ export function cageModel(model: Loaded): cages.CageModel {
   });
 }
 
+/**
+ * Adds to a model of `cageModel` what its parts look like, so that a face that is only painted can be found. `makeCage`, `fitCage` and
+ * `findLandmarks` of this module do so. Textures whose pixels cannot be read are left out: compressed ones, and images of another origin
+ * that does not allow it.
+ * Cost: some milliseconds for each texture, each in a task of its own; nothing for a texture that was read before.
+ * @throws {CagecastError} `badArgument` that names the mesh.
+ */
+export async function withBaseColors(model: cages.CageModel, loaded: Loaded): Promise<cages.CageModel> {
+  return { ...model, ...(await baseColorsOf(objectOf(loaded))) };
+}
+
+const modelOf = (model: Loaded): Promise<cages.CageModel> => withBaseColors(cageModel(model), model);
+
 /** The names of the expressions that use the morph targets of a mesh. */
 function expressionsOf(loaded: LoadedGltf): (mesh: Part['mesh'], target: number) => string[] {
   const expressions = vrmExpressions(extensionsOf(loaded));
@@ -85,7 +99,7 @@ export async function makeCage(
   model: Loaded,
   options: cages.MakeOptions & cages.CageCallOptions = {},
 ): Promise<cages.Cage> {
-  return cages.makeCage(cageModel(model), options);
+  return cages.makeCage(await modelOf(model), options);
 }
 
 /** As `fitCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */
@@ -95,12 +109,17 @@ export async function fitCage(
   landmarks?: cages.Landmarks,
   options: cages.FitOptions & cages.CageCallOptions = {},
 ): Promise<cages.Fit> {
-  return cages.fitCage(isTemplate(template) ? template : cageTemplate(template), cageModel(model), landmarks, options);
+  return cages.fitCage(
+    isTemplate(template) ? template : cageTemplate(template),
+    await modelOf(model),
+    landmarks,
+    options,
+  );
 }
 
 /** As `findLandmarks` of `cagecast/cages`, for a loaded model. @throws {CagecastError} */
 export async function findLandmarks(model: Loaded, options: cages.CageCallOptions = {}): Promise<cages.FoundLandmarks> {
-  return cages.findLandmarks(cageModel(model), options);
+  return cages.findLandmarks(await modelOf(model), options);
 }
 
 /** As `refineCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */

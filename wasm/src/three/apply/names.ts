@@ -23,17 +23,19 @@ export const namesOf = (mesh: ThreeMesh, root: Object3D): string[] => [
 export const groupNames = (parts: readonly Named[], root: object): string[][] =>
   parts.flatMap(({ name, mesh, geometry }) => {
     const own = mesh ? ownNamesOf(mesh, root) : namesIn([geometry]);
-    const materials = [mesh?.material ?? []].flat() as (MeshPhysicalMaterial | undefined)[];
-    // By the first of each material's groups.
-    const order = Array.isArray(mesh?.material)
-      ? [...new Set(geometry.groups.map(({ materialIndex = 0 }) => materialIndex))]
-      : [0];
-    return (order.length > 0 ? order : [0]).map((index) => {
-      const { transparent, opacity, transmission } = materials[index] ?? {};
+    return materialOfGroups({ mesh, geometry }).map((material) => {
+      const { transparent, opacity, transmission } = (material ?? {}) as Partial<MeshPhysicalMaterial>;
       const glass = nameOfGlass(transparent ? 'BLEND' : 'OPAQUE', opacity, transmission);
-      return [...new Set([name, ...own, ...namesIn([materials[index]]), ...glass])];
+      return [...new Set([name, ...own, ...namesIn([material]), ...glass])];
     });
   });
+
+/** The material of each group of a part, as `extract` numbers groups: in the order of their first triangles. */
+export function materialOfGroups({ mesh, geometry }: Pick<Named, 'mesh' | 'geometry'>): (Material | undefined)[] {
+  if (!Array.isArray(mesh?.material)) return [mesh?.material];
+  const order = [...new Set(geometry.groups.map(({ materialIndex = 0 }) => materialIndex))];
+  return (order.length > 0 ? order : [0]).map((index) => (mesh.material as Material[])[index]);
+}
 
 /** What a mesh is called without its materials. */
 function ownNamesOf(mesh: ThreeMesh, root: object): string[] {

@@ -1,4 +1,4 @@
-#include "landmarks/curve.hpp"
+#include "views/curve.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "landmarks/height_map.hpp"
+#include "views/height_map.hpp"
 
 #include <algorithm>
 

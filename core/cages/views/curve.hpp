@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "landmarks/height_map.hpp"
+#include "views/height_map.hpp"
 
 namespace cagecast::cages {
 

@@ -1,0 +1,109 @@
+import type { BufferGeometry, MeshStandardMaterial, Object3D, Texture } from 'three';
+import { type Image, resize } from '../../bake/index.js';
+import { opaque, smallSize } from '../../bake/small-image.js';
+import type { BaseColor, CageModel } from '../../cages/types.js';
+import { type Attribute, valuesOf } from './attributes.js';
+import { asItWas, extract, inTexture, type Part } from './extract-scene.js';
+import { materialOfGroups } from './names.js';
+
+/** A picture that a canvas can draw. */
+type Drawable = CanvasImageSource & { width: number; height: number };
+
+/** What a texture of any kind has as its image. */
+type Source = Partial<Omit<Image, 'data'>> & { data?: unknown };
+
+/**
+ * What the parts of a scene look like, as `CageModel` has it. Each texture is read once, in a task of its own; one whose pixels cannot be
+ * read (compressed, of another origin, not loaded) is left out.
+ */
+export async function baseColorsOf(
+  object: Object3D | BufferGeometry,
+): Promise<Required<Pick<CageModel, 'uvs' | 'baseColors'>>> {
+  const { vertices, parts } = asItWas(object, undefined, () => {
+    const { mesh, parts } = extract(object, 'model');
+    const looks = parts.map((part) => {
+      const materials = materialOfGroups(part) as (Partial<MeshStandardMaterial> | undefined)[];
+      const map = materials.find((material) => material?.map)?.map ?? undefined;
+      return { firstVertex: part.firstVertex, materials, map, own: map && uvsOf(part, map) };
+    });
+    return { vertices: mesh.positions.length / 3, parts: looks };
+  });
+  const uvs = new Float32Array(2 * vertices);
+  const baseColors: BaseColor[] = [];
+  for (const { firstVertex, materials, map, own } of parts) {
+    if (own) uvs.set(own, 2 * firstVertex);
+    for (const material of materials) {
+      const { color, transparent, alphaTest = 0 } = material ?? {};
+      // The UVs of a part are those of one texture.
+      const image = own && material?.map?.channel === map!.channel ? await imageOf(material.map) : undefined;
+      baseColors.push({
+        factor: color?.isColor ? [within(color.r), within(color.g), within(color.b)] : undefined,
+        image: image && (transparent || alphaTest > 0 ? image.asIs : image.opaque),
+      });
+    }
+  }
+  return { uvs, baseColors };
+}
+
+const within = (x: number) => Math.min(1, Math.max(0, x));
+
+/** Where a part is in its texture; undefined if its UVs do not say. */
+function uvsOf({ geometry, vertexCount }: Part, map: Texture): Float32Array | undefined {
+  const uv = geometry.getAttribute(`uv${map.channel || ''}`) as Attribute | undefined;
+  if (uv?.count !== vertexCount || uv.itemSize !== 2) return undefined;
+  const laid = inTexture(valuesOf(uv), map);
+  return laid.every(Number.isFinite) ? laid : undefined;
+}
+
+/** A small image, with its alpha and without. */
+interface Pictures {
+  asIs: Image;
+  opaque: Image;
+}
+
+/** What was read of each source of a texture, and in which version. */
+const known = new WeakMap<object, { version: number; pictures: Pictures | undefined }>();
+
+async function imageOf({ source, flipY }: Texture): Promise<Pictures | undefined> {
+  const before = known.get(source);
+  if (before?.version === source.version) return before.pictures;
+  await new Promise((resolve) => setTimeout(resolve));
+  const image = read(source.data as Source | undefined, flipY);
+  const pictures = image && { asIs: image, opaque: opaque(image) };
+  known.set(source, { version: source.version, pictures });
+  return pictures;
+}
+
+/** The pixels of an image, the upper row first as its UVs have it, and small. */
+function read(source: Source | undefined, isFlipped: boolean): Image | undefined {
+  const { width = 0, height = 0, data } = source ?? {};
+  if (width === 0 || height === 0) return undefined;
+  if (data !== undefined) {
+    const isRead = data instanceof Uint8Array || data instanceof Uint8ClampedArray;
+    if (!isRead || data.length !== 4 * width * height) return undefined;
+    const image = resize({ width, height, data }, ...smallSize({ width, height }));
+    return isFlipped ? flipped(image) : image;
+  }
+  const [columns, rows] = smallSize({ width, height });
+  try {
+    const context = canvasOf(columns, rows).getContext('2d', { willReadFrequently: true });
+    if (!context) return undefined;
+    if (isFlipped) context.setTransform(1, 0, 0, -1, 0, rows);
+    (context as CanvasRenderingContext2D).drawImage(source as Drawable, 0, 0, columns, rows);
+    return { width: columns, height: rows, data: context.getImageData(0, 0, columns, rows).data };
+  } catch {
+    return undefined; // no canvas, an image of another origin, or none that can be drawn
+  }
+}
+
+const canvasOf = (width: number, height: number): OffscreenCanvas | HTMLCanvasElement =>
+  typeof OffscreenCanvas === 'function'
+    ? new OffscreenCanvas(width, height)
+    : Object.assign(document.createElement('canvas'), { width, height });
+
+function flipped({ width, height, data }: Image): Image {
+  const out = new Uint8Array(data.length);
+  for (let row = 0; row < height; ++row)
+    out.set(data.subarray(4 * width * row, 4 * width * (row + 1)), 4 * width * (height - 1 - row));
+  return { width, height, data: out };
+}
