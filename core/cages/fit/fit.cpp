@@ -34,7 +34,7 @@ constexpr double kMaxBeyond = 1;
 /// What is farther than this from a cage without bones, in diagonals, has no part in its hull.
 constexpr double kHullReach = 0.5;
 /// Shares of the time, for progress: about those of heads and figures of 10,000 to 30,000 triangles.
-constexpr float kLandmarksEnd = 0.2f, kHullEnd = 0.4f, kTightenEnd = 0.8f, kEyesEnd = 0.9f, kRelaxEnd = 0.92f;
+constexpr float kLandmarksEnd = 0.2f, kHullEnd = 0.4f, kTightenEnd = 0.8f, kHolesEnd = 0.9f, kRelaxEnd = 0.92f;
 
 /// What is known of both models.
 struct Pairs {
@@ -227,8 +227,8 @@ class Fit {
       if (positions.empty()) return false;
     }
     std::vector<Vec3> tracks;
-    return fitEyeHoles(cage, figure_, stepsOf(kTightenEnd, kEyesEnd, "fit"), tracks, positions) &&
-           relax(cage, tracks, stepsOf(kEyesEnd, kRelaxEnd, "fit"), positions) &&
+    return fitHoles(cage, figure_, stepsOf(kTightenEnd, kHolesEnd, "fit"), tracks, positions) &&
+           relax(cage, tracks, stepsOf(kHolesEnd, kRelaxEnd, "fit"), positions) &&
            pushOut(cage, {skin_, hull}, tracks, stepsOf(kRelaxEnd, 1, "push out"), positions);
   }
 
@@ -251,6 +251,8 @@ class Fit {
     figure_ = {};
     figure_.componentCount = parts.componentCount;
     figure_.eyes = eyePairs(pairs_.from, pairs_.to);
+    figure_.mouth = mouthOf(from_.landmarks);
+    figure_.face = axesOf(pairs_.to);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const bool isEye = parts.roles[t] == Role::eye;
       isSkin[t] = kept[parts.triangleOf[t]];
@@ -276,7 +278,7 @@ class Fit {
   Similarity map_;           ///< From the template's space to the target's.
   std::vector<Bone> bones_;  ///< None for heads.
   TriangleMesh skin_;        ///< The target without excluded parts, in the template's space.
-  EyedFigure figure_;        ///< Eyes fill their sockets.
+  HoledFigure figure_;       ///< Eyes fill their sockets.
 };
 
 }  // namespace

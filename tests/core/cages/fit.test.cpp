@@ -415,7 +415,7 @@ TEST_CASE("dense rings around the hole of an eye make room for it, and do not fo
         return Vec3{2 * std::cos(up) * std::sin(around), 2 * std::sin(up), 2 * std::cos(up) * std::cos(around) - 2.2};
       },
       [](double, double) { return true; });
-  EyedFigure figure;
+  HoledFigure figure;
   figure.componentCount = 2;
   for (const auto& [part, isEye] :
        {std::pair{disc({1.6, 2, 3, 16}, 0), false}, std::pair{disc({0.1, 16}, -5), false}, std::pair{ball, true}}) {
@@ -430,7 +430,7 @@ TEST_CASE("dense rings around the hole of an eye make room for it, and do not fo
   }
   figure.eyes = {{{0, 0, -2.2}, {0, 0, -2.2}}, {{99, 0, 0}, {99, 0, 0}}};
   std::vector<Vec3> tracks, positions = cage.mesh.positions;
-  REQUIRE(fitEyeHoles(
+  REQUIRE(fitHoles(
       cage, figure, [](double) { return true; }, tracks, positions));
   const auto radius = [](const Vec3& p) { return std::hypot(p.x, p.y); };
   for (std::uint32_t v = 0; v < positions.size(); ++v) {
