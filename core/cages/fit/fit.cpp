@@ -112,15 +112,14 @@ class Fit {
     if (anchors.empty())
       return {Code::tooFewJoints, Argument::landmarks, static_cast<std::uint32_t>(pairs_.from.size())};
     std::vector<Vec3> positions = start(cage, anchors);
-    TriangleMesh hull;
     const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels,
                              meanOf(positionsOf(pairs_.to))};
     if (!makeHull(bones_.empty() ? nearTo(positions, cage) : figure_.mesh, around,
-                  partOf(progress_, kLandmarksEnd, kHullEnd), hull))
+                  partOf(progress_, kLandmarksEnd, kHullEnd), figure_.hull))
       return kAborted;
-    if (hull.empty()) return {Code::noVolume, Argument::model};
-    if (!draw(cage, hull, settings, positions)) return kAborted;
-    if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMaxBeyond * cage.diagonal))
+    if (figure_.hull.empty()) return {Code::noVolume, Argument::model};
+    if (!draw(cage, settings, positions)) return kAborted;
+    if (!isNear({positions, cage.mesh.triangles}, figure_.hull, pairs_.to, kMaxBeyond * cage.diagonal))
       return {Code::noFit, Argument::model};
     write(cage, positions, out);
     return report(progress_, 1, "done") ? Status{} : kAborted;
@@ -216,20 +215,19 @@ class Fit {
   }
 
   /// Draws the cage onto the hull, and pushes it out until the target is inside. @return false if cancelled.
-  [[nodiscard]] bool draw(const TemplateCage& cage, const TriangleMesh& hull, const FitSettings& settings,
-                          std::vector<Vec3>& positions) const {
+  [[nodiscard]] bool draw(const TemplateCage& cage, const FitSettings& settings, std::vector<Vec3>& positions) const {
     for (int pass = 0; pass < settings.passes; ++pass) {
       const float each = (kTightenEnd - kHullEnd) / static_cast<float>(settings.passes);
       const float from = kHullEnd + static_cast<float>(pass) * each;
       const std::vector<Vec3> free(positions.size(), Vec3{0, 0, 0});
       if (pass > 0 && !relax(cage, free, stepsOf(from, from, "fit"), positions)) return false;
-      positions = tighten(cage, positions, hull, settings.tighten, stepsOf(from, from + each, "fit"));
+      positions = tighten(cage, positions, figure_.hull, settings.tighten, stepsOf(from, from + each, "fit"));
       if (positions.empty()) return false;
     }
     std::vector<Vec3> tracks;
     return fitHoles(cage, figure_, stepsOf(kTightenEnd, kHolesEnd, "fit"), tracks, positions) &&
            relax(cage, tracks, stepsOf(kHolesEnd, kRelaxEnd, "fit"), positions) &&
-           pushOut(cage, {skin_, hull}, tracks, stepsOf(kRelaxEnd, 1, "push out"), positions);
+           pushOut(cage, {skin_, figure_.hull}, tracks, stepsOf(kRelaxEnd, 1, "push out"), positions);
   }
 
   /// Writes the cage in the target's space.

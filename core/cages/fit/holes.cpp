@@ -103,8 +103,10 @@ bool fitHoles(const TemplateCage& cage, const HoledFigure& figure, const StepCal
   const double ownSize = extent(own, unit(figure.mouth->across)), size = extent(border, figure.face.left);
   if (!(size > 0 && extent(own, figure.mouth->front) < kMaxBend * ownSize)) return true;
   const double width = size / ownSize * length(figure.mouth->across);
-  if (const auto opening = mouthOpening(border, width, figure.face, surface))
-    draw(hole, *opening, {Surface(joined(figure.mesh, opening->fill)), kLipOffset * width});
+  auto opening = mouthOpening(border, width, figure.face, surface);
+  if (!opening) return true;
+  for (Vec3& p : opening->fill.positions) p = p + cage.offset * opening->axis;
+  draw(hole, *opening, {Surface(joined(figure.hull, opening->fill)), std::min(0.0, kLipOffset * width - cage.offset)});
   return true;
 }
 

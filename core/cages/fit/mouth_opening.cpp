@@ -22,9 +22,13 @@ constexpr double kFaint = 0.01;
 /// The line is smooth over this distance.
 constexpr double kSmooth = 0.06;
 /// Lips are open if the area between them is larger than this square.
-constexpr double kMinOpen = 0.07;
+constexpr double kMinOpen = 0.1;
 /// What is higher is no mouth.
 constexpr double kMaxHeight = 1;
+/// The hole ends this far inside of the lips' rims, so that all of them is painted.
+constexpr double kInside = 0.012;
+/// Lips reach this far to the front of a crease: the hole between closed ones is not laid into it.
+constexpr double kLip = 0.06;
 /// Half the height of the hole between closed lips.
 constexpr double kLine = 0.006;
 /// Directions of the contour, and places along each of them.
@@ -68,7 +72,8 @@ class MouthView {
       const double aside = (column.x - middle) / reach;
       double height = kLine * width_ * std::sqrt(std::max(0.0, 1 - aside * aside));
       if (isOpen && column.high > column.low)
-        height = std::max({height, column.high - opening_.seam[i], opening_.seam[i] - column.low});
+        height = std::max({height, column.high - opening_.seam[i] - kInside * width_,
+                           opening_.seam[i] - column.low - kInside * width_});
       heights.push_back(height);
       most = std::max(most, height);
     }
@@ -87,7 +92,7 @@ class MouthView {
     }
     for (std::size_t i = 0; i + 1 < columns_.size(); ++i) {
       const Column &a = columns_[i], &b = columns_[i + 1];
-      if (!(a.high > a.low && b.high > b.low)) continue;
+      if (!a.hasRims || !b.hasRims || std::min(std::abs(a.x - middle), std::abs(b.x - middle)) > reach) continue;
       const auto first = static_cast<std::uint32_t>(opening_.fill.positions.size());
       for (const Vec3& p : {a.below, b.below, b.above, a.above}) opening_.fill.positions.push_back(p);
       opening_.fill.triangles.push_back({first, first + 1, first + 2});
@@ -104,7 +109,8 @@ class MouthView {
   struct Column {
     double x, middle;              ///< The middle of the hole.
     double low = 0, high = 0;      ///< What is behind the lips; equal if nothing is.
-    Vec3 below{}, above{};         ///< Its rims.
+    Vec3 below{}, above{};         ///< The rims of what is behind, or the lips next to a crease.
+    bool hasRims = false;          ///< Whether there is something at both.
     double crease = 0, depth = 0;  ///< The height of the deepest crease and how deep it is; of what is open, too.
   };
 
@@ -123,6 +129,7 @@ class MouthView {
 
   [[nodiscard]] Column look(double x, const Surface& surface) const {
     Column column{x, middleAt(x)};
+    column.crease = column.middle;
     const auto heightOf = [&](int row) { return column.middle + (row - kRows / 2) * rowStep_; };
     std::vector<SurfaceRay> rays;
     for (int row = 0; row <= kRows; ++row)
@@ -152,18 +159,23 @@ class MouthView {
       first = std::min(first, row);
       last = row;
     }
-    if (last < 0) return column;
-    while (isBehind(first - 1)) --first;
-    while (isBehind(last + 1)) ++last;
-    const auto edge = [&](int row) {
-      row = std::clamp(row, 0, kRows);
-      return opening_.place({x, heightOf(row)}) + (width_ - distances[static_cast<std::size_t>(row)]) * opening_.axis;
+    const auto rim = [&](double height) {
+      const auto row = std::clamp(std::lround((height - column.middle) / rowStep_) + kRows / 2, 0L, long{kRows});
+      const double distance = distances[static_cast<std::size_t>(row)];
+      if (std::isinf(distance)) column.hasRims = false;
+      return opening_.place({x, height}) + (width_ - distance) * opening_.axis;
     };
-    column.below = edge(first - 1);
-    column.above = edge(last + 1);
-    column.low = heightOf(first) - 0.5 * rowStep_;
-    column.high = heightOf(last) + 0.5 * rowStep_;
-    column.crease = 0.5 * (column.low + column.high);
+    if (last >= 0) {
+      while (isBehind(first - 1)) --first;
+      while (isBehind(last + 1)) ++last;
+      column.low = heightOf(first) - 0.5 * rowStep_;
+      column.high = heightOf(last) + 0.5 * rowStep_;
+      column.crease = 0.5 * (column.low + column.high);
+    }
+    const double apart = std::max(kLip * width_, 0.5 * (column.high - column.low) + rowStep_);
+    column.hasRims = true;
+    column.below = rim(column.crease - apart);
+    column.above = rim(column.crease + apart);
     return column;
   }
 

@@ -148,6 +148,7 @@ struct HoledFigure {
   std::vector<EyePair> eyes;   ///< Left and right; empty if not both are known of both.
   std::optional<Mouth> mouth;  ///< Of the template.
   Axes face;                   ///< Of the target.
+  TriangleMesh hull;           ///< Around it, `TemplateCage::offset` in front.
 };
 
 /// Draws the borders of holes to the contours of what they have to show: of what is visible of the eyes, seen along the
