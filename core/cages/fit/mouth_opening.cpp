@@ -18,7 +18,7 @@ constexpr double kSeamReach = 0.15;
 /// teeth.
 constexpr double kBehind = 0.15;
 /// A crease is as certain as it is deep: one of this depth as certain as the hole's own middle.
-constexpr double kFaint = 0.01;
+constexpr double kFaint = 0.03;
 /// The line is smooth over this distance.
 constexpr double kSmooth = 0.06;
 /// Lips are open if the area between them is larger than this square.
@@ -149,15 +149,17 @@ class MouthView {
       return row >= 0 && row <= kRows && depths[static_cast<std::size_t>(row)] >= kBehind * width_;
     };
     const int reach = static_cast<int>(kSeamReach * width_ / rowStep_);
-    int first = kRows, last = -1;
+    int first = kRows, last = -1, deepest = kRows / 2;
     for (int row = kRows / 2 - reach; row <= kRows / 2 + reach; ++row) {
-      if (depths[static_cast<std::size_t>(row)] > column.depth) {
-        column.depth = depths[static_cast<std::size_t>(row)];
-        column.crease = heightOf(row);
-      }
+      if (depths[static_cast<std::size_t>(row)] > depths[static_cast<std::size_t>(deepest)]) deepest = row;
       if (!isBehind(row)) continue;
       first = std::min(first, row);
       last = row;
+    }
+    // What is deepest at the edge is no crease: it goes down from there, as to the root of a nose.
+    if (std::abs(deepest - kRows / 2) < reach) {
+      column.crease = heightOf(deepest);
+      column.depth = depths[static_cast<std::size_t>(deepest)];
     }
     const auto rim = [&](double height) {
       const auto row = std::clamp(std::lround((height - column.middle) / rowStep_) + kRows / 2, 0L, long{kRows});
@@ -171,6 +173,7 @@ class MouthView {
       column.low = heightOf(first) - 0.5 * rowStep_;
       column.high = heightOf(last) + 0.5 * rowStep_;
       column.crease = 0.5 * (column.low + column.high);
+      column.depth = kBehind * width_;
     }
     const double apart = std::max(kLip * width_, 0.5 * (column.high - column.low) + rowStep_);
     column.hasRims = true;
