@@ -1,9 +1,10 @@
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import type { CageModel, Template } from 'cagecast/cages';
-import { cageModel, cageTemplate } from 'cagecast/gltf';
+import { cageModel, cageTemplate, withBaseColors } from 'cagecast/gltf';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
+import { PNG } from 'pngjs';
 
 async function readDocument(path: string) {
   await MeshoptDecoder.ready;
@@ -14,10 +15,12 @@ async function readDocument(path: string) {
   return { document: await io.readJSON(file), extensions: file.json.extensions };
 }
 
-/** Reads a target: its mesh, the names of its parts, its joints. */
+/** Reads a target: its mesh, the names of its parts, its joints, and base colours, as far as they are PNGs. */
 export async function readTarget(path: string): Promise<CageModel> {
   const { document, extensions } = await readDocument(path);
-  return cageModel(document, { extensions });
+  return withBaseColors(cageModel(document, { extensions }), document, async (bytes) =>
+    PNG.sync.read(Buffer.from(bytes)),
+  );
 }
 
 /** Reads a cage, and the landmarks that its file names. */

@@ -101,7 +101,7 @@ bool findHead(const Figure& figure, const Model& model, const auto& goOn, std::o
   if (makeHeadAtHint()) return !isCancelled;
   const std::vector<MirrorPlane> planes = planesOf(figure);
   float share = 0.2f;
-  const float step = (kHeadMade - share) / static_cast<float>(2 * planes.size() + 1);
+  const float step = (kHeadMade - share) / static_cast<float>(3 * planes.size());
   const auto next = [&] {
     isCancelled = isCancelled || !goOn(share);
     share += step;
@@ -115,8 +115,12 @@ bool findHead(const Figure& figure, const Model& model, const auto& goOn, std::o
     loose.push_back(findLooseEyes(figure, plane));
     if (loose.back() && loose.back()->confidence > clear && makeHeadOf(loose.back())) return !isCancelled;
   }
-  if (!next()) return false;
-  const std::optional<PaintedFace> painted = findPaintedFace(figure, model, planes);
+  std::optional<PaintedFace> painted;
+  for (const MirrorPlane& plane : planes) {
+    if (!next()) return false;
+    std::optional<PaintedFace> face = findPaintedFace(figure, model, plane);
+    if (face && (!painted || face->score > painted->score)) painted = std::move(face);
+  }
   if (painted && makeHeadOf(painted->eyes, painted->landmarks)) return !isCancelled;
   for (const std::optional<Eyes>& eyes : loose)
     if (makeHeadOf(eyes)) return !isCancelled;

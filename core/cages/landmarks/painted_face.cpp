@@ -355,36 +355,33 @@ void addEyes(const Portrait& portrait, const Pair& pair, PaintedFace& out) {
 
 }  // namespace
 
-std::optional<PaintedFace> findPaintedFace(const Figure& figure, const Model& model,
-                                           const std::vector<MirrorPlane>& planes) {
+std::optional<PaintedFace> findPaintedFace(const Figure& figure, const Model& model, const MirrorPlane& plane) {
   constexpr double kClear = 0.4;          ///< Eyes and mouth together.
   constexpr double kWithoutMouth = 0.45;  ///< What eyes alone count.
   constexpr double kLikely = 1.1;         ///< Files face +z, unless something else is clearly seen.
   if (model.baseColors.empty()) return std::nullopt;
   const TriangleMesh skin = figure.only(Role::surface);
   std::optional<PaintedFace> best;
-  double most = kClear;
-  for (const MirrorPlane& plane : planes)
-    for (const double side : {1.0, -1.0}) {
-      const HeadFrame frame = guessHeadFrame(skin, plane, side);
-      if (figure.front && dot(frame.front, *figure.front) < 0) continue;
-      const Portrait portrait = portraitOf(figure, model, frame);
-      if (portrait.colors.empty()) continue;
-      const Features features = featuresOf(portrait);
-      for (const Pair& pair : features.eyes) {
-        double likely = 0;
-        const Spotted* mouth = mouthOf(features.others, pair.apart(), pair.y(), likely);
-        const double score = pair.score * (kWithoutMouth + (1 - kWithoutMouth) * likely);
-        const double preferred = frame.front.z > 0.7 ? kLikely * score : score;
-        if (preferred <= most) continue;
-        most = preferred;
-        best.emplace();
-        addEyes(portrait, pair, *best);
-        if (mouth != nullptr && likely > 0.3) addMouth(portrait, *mouth, best->landmarks);
-        best->eyes.confidence = std::clamp(score, 0.5, 0.8);
-        best->eyes.isNamed = true;  // What is painted is an eye at any distance.
-      }
+  for (const double side : {1.0, -1.0}) {
+    const HeadFrame frame = guessHeadFrame(skin, plane, side);
+    if (figure.front && dot(frame.front, *figure.front) < 0) continue;
+    const Portrait portrait = portraitOf(figure, model, frame);
+    if (portrait.colors.empty()) continue;
+    const Features features = featuresOf(portrait);
+    for (const Pair& pair : features.eyes) {
+      double likely = 0;
+      const Spotted* mouth = mouthOf(features.others, pair.apart(), pair.y(), likely);
+      const double score = pair.score * (kWithoutMouth + (1 - kWithoutMouth) * likely);
+      const double preferred = frame.front.z > 0.7 ? kLikely * score : score;
+      if (preferred <= (best ? best->score : kClear)) continue;
+      best.emplace();
+      best->score = preferred;
+      addEyes(portrait, pair, *best);
+      if (mouth != nullptr && likely > 0.3) addMouth(portrait, *mouth, best->landmarks);
+      best->eyes.confidence = std::clamp(score, 0.5, 0.8);
+      best->eyes.isNamed = true;  // What is painted is an eye at any distance.
     }
+  }
   return best;
 }
 
