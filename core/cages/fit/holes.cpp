@@ -40,6 +40,7 @@ std::optional<Vec3> centreOf(const std::vector<Landmark>& landmarks, const std::
 
 std::vector<Vec3> placesOf(const std::vector<std::uint32_t>& loop, const std::vector<Vec3>& positions) {
   std::vector<Vec3> out;
+  out.reserve(loop.size());
   for (const std::uint32_t v : loop) out.push_back(positions[v]);
   return out;
 }

@@ -11,7 +11,7 @@ namespace {
 
 /// Lengths in widths of the mouth. It is looked at in columns and rows this far to each side of the hole's middle.
 constexpr double kSideReach = 0.6, kHeightReach = 0.75;
-constexpr int kColumns = 96, kRows = 150;
+constexpr int kColumns = 96, kRows = 150, kMiddleRow = 75;
 /// The line between the lips is this near to the middle of the hole.
 constexpr double kSeamReach = 0.15;
 /// What lies this deep between what is above and below is behind the lips: deeper than a crease, about as deep as
@@ -130,7 +130,7 @@ class MouthView {
   [[nodiscard]] Column look(double x, const Surface& surface) const {
     Column column{x, middleAt(x)};
     column.crease = column.middle;
-    const auto heightOf = [&](int row) { return column.middle + (row - kRows / 2) * rowStep_; };
+    const auto heightOf = [&](int row) { return column.middle + (row - kMiddleRow) * rowStep_; };
     std::vector<SurfaceRay> rays;
     for (int row = 0; row <= kRows; ++row)
       rays.push_back({opening_.place({x, heightOf(row)}) + width_ * opening_.axis, -1.0 * opening_.axis});
@@ -149,20 +149,20 @@ class MouthView {
       return row >= 0 && row <= kRows && depths[static_cast<std::size_t>(row)] >= kBehind * width_;
     };
     const int reach = static_cast<int>(kSeamReach * width_ / rowStep_);
-    int first = kRows, last = -1, deepest = kRows / 2;
-    for (int row = kRows / 2 - reach; row <= kRows / 2 + reach; ++row) {
+    int first = kRows, last = -1, deepest = kMiddleRow;
+    for (int row = kMiddleRow - reach; row <= kMiddleRow + reach; ++row) {
       if (depths[static_cast<std::size_t>(row)] > depths[static_cast<std::size_t>(deepest)]) deepest = row;
       if (!isBehind(row)) continue;
       first = std::min(first, row);
       last = row;
     }
     // What is deepest at the edge is no crease: it goes down from there, as to the root of a nose.
-    if (std::abs(deepest - kRows / 2) < reach) {
+    if (std::abs(deepest - kMiddleRow) < reach) {
       column.crease = heightOf(deepest);
       column.depth = depths[static_cast<std::size_t>(deepest)];
     }
     const auto rim = [&](double height) {
-      const auto row = std::clamp(std::lround((height - column.middle) / rowStep_) + kRows / 2, 0L, long{kRows});
+      const auto row = std::clamp(std::lround((height - column.middle) / rowStep_) + kMiddleRow, 0L, long{kRows});
       const double distance = distances[static_cast<std::size_t>(row)];
       if (std::isinf(distance)) column.hasRims = false;
       return opening_.place({x, height}) + (width_ - distance) * opening_.axis;
