@@ -207,7 +207,9 @@ const isScript = (name) => kSuites[name].tests !== undefined;
 const ready = (names) => Promise.all(names.flatMap((name) => kSuites[name].needs).map(built));
 // Different builds take turns at being held up by a single process, so they run at the same time, each with its share of the cores.
 const count = new Set(chosen.flatMap((name) => kSuites[name].needs)).size;
-process.env.CMAKE_BUILD_PARALLEL_LEVEL ??= String(Math.max(1, Math.floor(availableParallelism() / (count > 1 ? 2 : 1))));
+process.env.CMAKE_BUILD_PARALLEL_LEVEL ??= String(
+  Math.max(1, Math.floor(availableParallelism() / (count > 1 ? 2 : 1))),
+);
 const scripts = chosen.filter(isScript);
 const others = chosen.filter((name) => !isScript(name));
 if (others.some((name) => kSuites[name].needs.includes('native'))) built('native').catch(() => {});
