@@ -34,7 +34,7 @@ constexpr double kMaxBeyond = 1;
 /// What is farther than this from a cage without bones, in diagonals, has no part in its hull.
 constexpr double kHullReach = 0.5;
 /// Shares of the time, for progress: about those of heads and figures of 10,000 to 30,000 triangles.
-constexpr float kLandmarksEnd = 0.2f, kHullEnd = 0.4f, kTightenEnd = 0.8f, kHolesEnd = 0.9f, kRelaxEnd = 0.92f;
+constexpr float kLandmarksEnd = 0.2f, kHullEnd = 0.4f, kTightenEnd = 0.8f, kEyesEnd = 0.9f, kRelaxEnd = 0.92f;
 
 /// What is known of both models.
 struct Pairs {
@@ -112,14 +112,15 @@ class Fit {
     if (anchors.empty())
       return {Code::tooFewJoints, Argument::landmarks, static_cast<std::uint32_t>(pairs_.from.size())};
     std::vector<Vec3> positions = start(cage, anchors);
+    TriangleMesh hull;
     const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels,
                              meanOf(positionsOf(pairs_.to))};
     if (!makeHull(bones_.empty() ? nearTo(positions, cage) : figure_.mesh, around,
-                  partOf(progress_, kLandmarksEnd, kHullEnd), figure_.hull))
+                  partOf(progress_, kLandmarksEnd, kHullEnd), hull))
       return kAborted;
-    if (figure_.hull.empty()) return {Code::noVolume, Argument::model};
-    if (!draw(cage, settings, positions)) return kAborted;
-    if (!isNear({positions, cage.mesh.triangles}, figure_.hull, pairs_.to, kMaxBeyond * cage.diagonal))
+    if (hull.empty()) return {Code::noVolume, Argument::model};
+    if (!draw(cage, hull, settings, positions)) return kAborted;
+    if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMaxBeyond * cage.diagonal))
       return {Code::noFit, Argument::model};
     write(cage, positions, out);
     return report(progress_, 1, "done") ? Status{} : kAborted;
@@ -215,19 +216,20 @@ class Fit {
   }
 
   /// Draws the cage onto the hull, and pushes it out until the target is inside. @return false if cancelled.
-  [[nodiscard]] bool draw(const TemplateCage& cage, const FitSettings& settings, std::vector<Vec3>& positions) const {
+  [[nodiscard]] bool draw(const TemplateCage& cage, const TriangleMesh& hull, const FitSettings& settings,
+                          std::vector<Vec3>& positions) const {
     for (int pass = 0; pass < settings.passes; ++pass) {
       const float each = (kTightenEnd - kHullEnd) / static_cast<float>(settings.passes);
       const float from = kHullEnd + static_cast<float>(pass) * each;
       const std::vector<Vec3> free(positions.size(), Vec3{0, 0, 0});
       if (pass > 0 && !relax(cage, free, stepsOf(from, from, "fit"), positions)) return false;
-      positions = tighten(cage, positions, figure_.hull, settings.tighten, stepsOf(from, from + each, "fit"));
+      positions = tighten(cage, positions, hull, settings.tighten, stepsOf(from, from + each, "fit"));
       if (positions.empty()) return false;
     }
     std::vector<Vec3> tracks;
-    return fitHoles(cage, figure_, stepsOf(kTightenEnd, kHolesEnd, "fit"), tracks, positions) &&
-           relax(cage, tracks, stepsOf(kHolesEnd, kRelaxEnd, "fit"), positions) &&
-           pushOut(cage, {skin_, figure_.hull}, tracks, stepsOf(kRelaxEnd, 1, "push out"), positions);
+    return fitEyeHoles(cage, figure_, stepsOf(kTightenEnd, kEyesEnd, "fit"), tracks, positions) &&
+           relax(cage, tracks, stepsOf(kEyesEnd, kRelaxEnd, "fit"), positions) &&
+           pushOut(cage, {skin_, hull}, tracks, stepsOf(kRelaxEnd, 1, "push out"), positions);
   }
 
   /// Writes the cage in the target's space.
@@ -249,8 +251,6 @@ class Fit {
     figure_ = {};
     figure_.componentCount = parts.componentCount;
     figure_.eyes = eyePairs(pairs_.from, pairs_.to);
-    figure_.mouth = mouthOf(from_.landmarks);
-    figure_.face = axesOf(pairs_.to);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const bool isEye = parts.roles[t] == Role::eye;
       isSkin[t] = kept[parts.triangleOf[t]];
@@ -276,7 +276,7 @@ class Fit {
   Similarity map_;           ///< From the template's space to the target's.
   std::vector<Bone> bones_;  ///< None for heads.
   TriangleMesh skin_;        ///< The target without excluded parts, in the template's space.
-  HoledFigure figure_;       ///< Eyes fill their sockets.
+  EyedFigure figure_;        ///< Eyes fill their sockets.
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -127,39 +126,24 @@ struct EyePair {
 /// The pairs of both eyes by landmarks; empty if one is not known.
 std::vector<EyePair> eyePairs(const std::vector<Landmark>& from, const std::vector<Landmark>& to);
 
-/// The mouth of a template.
-struct Mouth {
-  Vec3 middle;
-  Vec3 across;  ///< From its right corner to its left one.
-  Vec3 front;   ///< Where the face looks.
-};
-
-/// The mouth of a template by its landmarks; nothing if they do not tell.
-std::optional<Mouth> mouthOf(const std::vector<Landmark>& landmarks);
-
 /// The target in the template's space.
-struct HoledFigure {
+struct EyedFigure {
   TriangleMesh mesh;                      ///< Without excluded parts other than eyes.
   std::vector<bool> isEye;                ///< Per triangle: by the name of its part.
   std::vector<std::uint32_t> components;  ///< Per triangle.
   TriangleMesh covers;                    ///< What is excluded and no eye: lashes, brows, hair.
   std::vector<std::uint32_t> coverComponents;
   std::uint32_t componentCount = 0;
-  std::vector<EyePair> eyes;   ///< Left and right; empty if not both are known of both.
-  std::optional<Mouth> mouth;  ///< Of the template.
-  Axes face;                   ///< Of the target.
-  TriangleMesh hull;           ///< Around it, `TemplateCage::offset` in front.
+  std::vector<EyePair> eyes;  ///< Left and right; empty if not both are known of both.
 };
 
-/// Draws the borders of holes to the contours of what they have to show: of what is visible of the eyes, seen along the
-/// direction in which they look, with lashes as far as there is room; and of what is between the lips, seen from in
-/// front. Where lips are closed, their hole becomes a line. Where a model has no eyes of their own, holes stay where
-/// they are.
-/// @param[out] tracks  Per vertex of the cage: from where its hole was seen if it is on the border of one that was
-///   drawn, else zero.
+/// Draws the borders of eye holes to the contours of what is visible of the eyes, seen along the direction in which
+/// they look, with lashes as far as there is room. Where a model has no eyes of their own, holes stay where they are.
+/// @param[out] tracks  Per vertex of the cage: where its eye looks if it is on the border of a hole that was drawn,
+///   else zero.
 /// @return false if cancelled.
-bool fitHoles(const TemplateCage& cage, const HoledFigure& figure, const StepCallback& step, std::vector<Vec3>& tracks,
-              std::vector<Vec3>& positions);
+bool fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const StepCallback& step,
+                 std::vector<Vec3>& tracks, std::vector<Vec3>& positions);
 
 /// Restores the template's shape at triangles that are folded over or thin, but are not so in the template.
 /// @param tracks  Per vertex: the only direction in which it moves, unless a triangle at it cannot be unfolded

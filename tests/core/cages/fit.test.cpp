@@ -415,7 +415,7 @@ TEST_CASE("dense rings around the hole of an eye make room for it, and do not fo
         return Vec3{2 * std::cos(up) * std::sin(around), 2 * std::sin(up), 2 * std::cos(up) * std::cos(around) - 2.2};
       },
       [](double, double) { return true; });
-  HoledFigure figure;
+  EyedFigure figure;
   figure.componentCount = 2;
   for (const auto& [part, isEye] :
        {std::pair{disc({1.6, 2, 3, 16}, 0), false}, std::pair{disc({0.1, 16}, -5), false}, std::pair{ball, true}}) {
@@ -430,7 +430,7 @@ TEST_CASE("dense rings around the hole of an eye make room for it, and do not fo
   }
   figure.eyes = {{{0, 0, -2.2}, {0, 0, -2.2}}, {{99, 0, 0}, {99, 0, 0}}};
   std::vector<Vec3> tracks, positions = cage.mesh.positions;
-  REQUIRE(fitHoles(
+  REQUIRE(fitEyeHoles(
       cage, figure, [](double) { return true; }, tracks, positions));
   const auto radius = [](const Vec3& p) { return std::hypot(p.x, p.y); };
   for (std::uint32_t v = 0; v < positions.size(); ++v) {
@@ -440,58 +440,6 @@ TEST_CASE("dense rings around the hole of an eye make room for it, and do not fo
   }
   const std::vector<bool> folded = foldedTriangles({positions, cage.mesh.triangles});
   CHECK(std::none_of(folded.begin(), folded.end(), [](bool is) { return is; }));
-}
-
-TEST_CASE("the hole of a mouth shows what is between the lips, and closes with them", "[cages][fit]") {
-  // Two lips that bulge from a plane and meet at a height of 0.1, or part around it by twice `parted`.
-  const auto makeFace = [](double parted) {
-    OwnedModel out;
-    for (const double side : {-1.0, 1.0})
-      out.roll(
-          80, 24,
-          [&](double u, double v) {
-            const double x = 8 * u - 4, gap = parted * std::max(0.0, 1 - x * x), along = side < 0 ? 1 - v : v;
-            return Vec3{x, 0.1 + side * (gap + along * (4 - gap)), 0.1 * std::exp(-x * x) * std::sin(kPi * along)};
-          },
-          [](double u, double) { return u < 0.98; });
-    out.roll(
-        4, 4,
-        [](double u, double v) {
-          return Vec3{8 * u - 4, 8 * v - 4, -2};
-        },
-        [](double, double) { return true; });
-    return weldExactly(out.view());
-  };
-  const auto at = [](double u, double v) {
-    const double radius = 0.4 + 4 * v * v;
-    return Vec3{2 * radius * std::cos(2 * kPi * u), -radius * std::sin(2 * kPi * u) + 2 * v * v, 0.2};
-  };
-  OwnedModel mesh;
-  mesh.roll(16, 8, at, [](double, double) { return true; });
-  const TemplateCage cage = prepareTemplate({mesh.view(), {{"nose_tip", {0, 3, 0.1F}}}});
-  for (const double parted : {0.0, 0.7}) {
-    CAPTURE(parted);
-    HoledFigure figure;
-    figure.mesh = makeFace(parted);
-    figure.hull = figure.mesh;
-    figure.components.assign(figure.mesh.triangles.size(), 0);
-    figure.isEye.assign(figure.mesh.triangles.size(), false);
-    figure.componentCount = 1;
-    figure.eyes = {{{50, 50, 0}, {50, 50, 0}}, {{-50, 50, 0}, {-50, 50, 0}}};
-    figure.mouth = Mouth{{0, 0, 0.2}, {2.4, 0, 0}, {0, 0, 1}};
-    figure.face.known = true;
-    std::vector<Vec3> tracks, positions = cage.mesh.positions;
-    const StepCallback goOn = [](double) { return true; };
-    REQUIRE(fitHoles(cage, figure, goOn, tracks, positions));
-    REQUIRE(relax(cage, tracks, goOn, positions));
-    Range heights;
-    for (std::size_t v = 0; v < positions.size(); ++v)
-      if (length(tracks[v]) > 0) heights.add(positions[v].y);
-    CHECK(0.5 * (heights.low + heights.high) == Approx(0.1).margin(0.1));
-    CHECK(heights.high - heights.low == Approx(2 * parted).margin(0.2));
-    const std::vector<bool> folded = foldedTriangles({positions, cage.mesh.triangles});
-    CHECK(std::none_of(folded.begin(), folded.end(), [](bool is) { return is; }));
-  }
 }
 
 TEST_CASE("a jaw of which only the chin is known moves with it", "[cages][fit]") {
