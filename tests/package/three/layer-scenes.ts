@@ -161,11 +161,11 @@ export const layerScenes: Scenes = {
   'one stack is shown on several models as a texture would be, and drawn again only after a change'() {
     const layers = createLayers({ renderer });
     const models = [plain(), plain()];
-    const applied = models.map((model) => applyTransfer(model, cage()));
+    const applied = models.map((model) => applyTransfer(model, { cage: cage() }));
     for (const one of applied) one.setTexture(layers.texture);
     const layer = layers.add(clear(0xdd3311, 120));
     const textured = plain();
-    applyTransfer(textured, cage(), { texture: clear(0xdd3311, 120) });
+    applyTransfer(textured, { cage: cage(), texture: clear(0xdd3311, 120) });
     const looksLike = (model: ReturnType<typeof plain>, most: number) => {
       layers.update();
       for (const one of models) near(draw(one).pixels, draw(model).pixels, most);

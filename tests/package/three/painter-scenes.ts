@@ -52,7 +52,7 @@ interface Painted {
 }
 
 function paintedBall(model: Object3D = modelOf(white()), layers?: Layers): Painted {
-  const applied = applyTransfer(model, cage());
+  const applied = applyTransfer(model, { cage: cage() });
   const painter = createPainter({ renderer, layers, applied, cage: cage() });
   painter.brush.color = '#ff0000';
   const look = (): number[] => {
@@ -219,7 +219,7 @@ const strokes: Scenes = {
   },
 
   'the texture below new layers cannot be undone; given layers stay as they are'() {
-    const applied = applyTransfer(modelOf(white()), cage());
+    const applied = applyTransfer(modelOf(white()), { cage: cage() });
     const options = { texture: clear(0xff0000, 255), applied, cage: cage() };
     const { layers } = createPainter({ ...options, renderer });
     equal([layers.undo(), layers.list.length], [undefined, 1]);

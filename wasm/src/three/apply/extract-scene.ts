@@ -21,6 +21,7 @@ import { transformUvs } from '../../parts/uv-transform.js';
 import { wrong } from '../errors.js';
 import { type Attribute, targetDeltas, valuesOf } from './attributes.js';
 import { isGeometry, isInstanced, isMesh, isObject, isOfInstances } from './flags.js';
+import { isCage, type LoadedCage, objectOf } from './models.js';
 import { groupNames, materialsOf, namesOf } from './names.js';
 import { placesOf } from './places.js';
 import { asBefore, type Channel, stateOf } from './writes.js';
@@ -77,8 +78,8 @@ const identity = new Matrix4();
  * @param isMeant   Which meshes count. Default: what is drawn; of a `cage` or `template`, its outer cages, or all if there are none
  * @throws {CagecastError} that names the part and the element.
  */
-export const extract = (object: Object3D | BufferGeometry, argument = 'target', isMeant?: PartsOption): Extracted =>
-  extractNear(object, argument, kSceneOrigin, { isMeant });
+export const extract = (model: LoadedCage, argument = 'target', isMeant?: PartsOption): Extracted =>
+  extractNear(model, argument, kSceneOrigin, { isMeant });
 
 interface ExtractOptions {
   isMeant?: PartsOption | undefined;
@@ -95,11 +96,12 @@ export interface ExtractedNear extends Extracted {
 
 /** The same with positions around an origin, which target and cage need in common; and that origin. */
 export function extractNear(
-  object: Object3D | BufferGeometry,
+  model: LoadedCage,
   argument: string,
   origin: Origin,
   { isMeant, channel }: ExtractOptions = {},
 ): ExtractedNear {
+  const object = objectOf(model, argument);
   return asItWas(object, channel, () => extractNow(object, argument, origin, isMeant));
 }
 
@@ -139,8 +141,7 @@ function extractNow(
     const { firstVertex, vertexCount } = parts[p]!;
     return [...new Set(groups.subarray(firstVertex, firstVertex + vertexCount))];
   });
-  const isCage = argument === 'cage' || argument === 'template';
-  const poses = isCage ? undefined : posesOf(morphedParts(parts, positions));
+  const poses = isCage(argument) ? undefined : posesOf(morphedParts(parts, positions));
   const mesh = { positions, indices, groups, ...(uvs && { uvs }), ...(poses && { poses }) };
   return {
     mesh,
@@ -164,12 +165,12 @@ export const extrasOf = ({ mesh, geometry }: Pick<Part, 'mesh' | 'geometry'>): u
 /**
  * The numbers in `groups` of what a transfer leaves bare unless locks say otherwise: what a figure wears or carries, and what the cage
  * was made without, by its names. For those who call `transfer`.
- * @param target  What `extract` returned.
- * @param cage    What it returned for a cage.
+ * @param cage    What `extract` returned for a cage.
+ * @param target  What it returned for a target.
  */
 export const bareGroups = (
-  { accessories, names }: { accessories: readonly number[]; names: readonly (readonly string[])[] },
   { bare }: { bare: readonly string[] },
+  { accessories, names }: { accessories: readonly number[]; names: readonly (readonly string[])[] },
 ): number[] => [...new Set([...accessories, ...groupsNamed(bare, names)])];
 
 /** Where the next part begins: how many vertices and triangles there are before it. */
@@ -183,15 +184,6 @@ function listParts(
   argument: string,
   isMeant: PartsOption | undefined,
 ): Pick<Extracted, 'parts' | 'leftOut' | 'accessories'> {
-  if (!isGeometry(object) && !isObject(object)) {
-    throw wrong(
-      `${argument} is ${show(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
-      undefined,
-      undefined,
-      { argument },
-    );
-  }
-  const isCage = argument === 'cage' || argument === 'template';
   const parts: Part[] = [];
   const add = (
     aliases: readonly string[],
@@ -249,7 +241,7 @@ function listParts(
   const chosen = chooseParts(
     found,
     ({ mesh, matrix }) => lookOf(mesh, matrix, object),
-    isMeant ? (p, isDrawn) => isMeant(meshes[p]!, isDrawn) : isCage ? 'cage' : undefined,
+    isMeant ? (p, isDrawn) => isMeant(meshes[p]!, isDrawn) : isCage(argument) ? 'cage' : undefined,
     (text) => wrong(`${argument}: ${text}; the option parts says which count`, undefined, undefined, { argument }),
   );
   for (const { name, mesh, matrix } of chosen.parts) add(namesOf(mesh, object), name, mesh, mesh.geometry, matrix);

@@ -1,7 +1,7 @@
-import { type BufferGeometry, type Camera, type Object3D, Raycaster, type Texture, Vector2, Vector3 } from 'three';
+import { type Camera, Raycaster, type Texture, Vector2, Vector3 } from 'three';
 import { show } from '../../core/error.js';
 import { check, checkColor, checkShare, kPaint, notA, wrong } from '../errors.js';
-import { type Applied, extract } from '../index.js';
+import { type Applied, extract, type LoadedCage } from '../index.js';
 import { createLayers, type Layers, type LayersOptions } from '../layers/layers.js';
 import type { SurfacePoint } from './cage-texels.js';
 import { LayerPainter } from './layer-painter.js';
@@ -21,7 +21,7 @@ export interface PainterOptions extends Partial<Pick<LayersOptions, 'renderer'>>
   /** What was painted: the models that pointers paint on. Each of them is given the layers' texture. */
   applied: Applied | readonly Applied[];
   /** The cage of the transfer; of several models with cages of one layout, that of one of them. */
-  cage: Object3D | BufferGeometry;
+  cage: LoadedCage;
   /** Texels per side of what is painted, 1024 or 2048. Default: 1024. */
   size?: PaintingSize | undefined;
 }
@@ -332,8 +332,8 @@ function checkBrush({ color, size, hardness, opacity }: BrushStyle): void {
  * Cost: tens of milliseconds for the first stroke.
  *
  * @example
- * const applied = applyTransfer(head.scene, cage.scene, { texture });
- * const painter = createPainter({ renderer, texture, applied, cage: cage.scene });
+ * const applied = applyTransfer(head, { cage, texture });
+ * const painter = createPainter({ renderer, texture, applied, cage });
  * painter.brush.color = '#cc2244';
  * painter.listen(camera);
  * renderer.setAnimationLoop(() => {
