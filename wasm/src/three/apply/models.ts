@@ -17,13 +17,30 @@ export type Loaded = Object3D | BufferGeometry | LoadedGltf;
 /** A cage: as a model, or as arrays, such as a `Cage` or `Template` of `cagecast/cages`. */
 export type LoadedCage = Loaded | Mesh;
 
+/** How a glTF lays a texture on UVs. */
+interface TextureInfo {
+  texCoord?: number;
+  extensions?: {
+    KHR_texture_transform?: {
+      offset?: [number, number];
+      rotation?: number;
+      scale?: [number, number];
+      texCoord?: number;
+    };
+  };
+}
+
 /** What GLTFLoader loads, as far as it is used here. */
 export interface LoadedGltf {
   scene: Object3D;
   userData?: Record<string, unknown>;
   parser?: {
-    associations?: Map<object, { nodes?: number; meshes?: number } | undefined>;
-    json?: { extensions?: VrmExtensions };
+    associations?: Map<object, { nodes?: number; meshes?: number; primitives?: number } | undefined>;
+    json?: {
+      extensions?: VrmExtensions;
+      meshes?: { primitives: { material?: number }[] }[];
+      materials?: { pbrMetallicRoughness?: { baseColorTexture?: TextureInfo } }[];
+    };
   };
 }
 
