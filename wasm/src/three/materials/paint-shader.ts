@@ -1,4 +1,5 @@
 import { Matrix3, type Texture, type WebGLProgramParametersWithUniforms } from 'three';
+import { checkColorSpace } from '../color-space.js';
 
 type Shader = Pick<WebGLProgramParametersWithUniforms, 'vertexShader' | 'fragmentShader' | 'uniforms'>;
 
@@ -106,6 +107,7 @@ export function addPaint(shader: Shader, uniforms: PaintUniforms, alone: boolean
 /** Brings the matrix of a paint up to date: the transform of its texture's UVs, and in its last row how much of the texture shows. */
 export function refreshMatrix({ texture, opacity, feather, matrix }: Paint): void {
   if (!texture) return;
+  checkColorSpace(texture);
   if (texture.matrixAutoUpdate) texture.updateMatrix();
   const { elements } = matrix.copy(texture.matrix);
   elements[2] = opacity;
