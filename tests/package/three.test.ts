@@ -546,6 +546,22 @@ describe('applyTransfer', () => {
     });
   }
 
+  test('a material of which nothing may be painted stays as it is, also beside one that is painted', () => {
+    const { cosmeticTriangles } = applyTransfer(meshOf(ungrouped), { cage: cage() }).result;
+    const order = [...cosmeticTriangles.keys()].sort((a, b) => cosmeticTriangles[b]! - cosmeticTriangles[a]!);
+    const indices = Uint32Array.from(order.flatMap((t) => [...ungrouped.indices.subarray(3 * t, 3 * t + 3)]));
+    const painted = cosmeticTriangles.filter(Boolean).length;
+    const geometry = geometryOf({ ...ungrouped, indices });
+    geometry.addGroup(0, 3 * painted, 0);
+    geometry.addGroup(3 * painted, Number.POSITIVE_INFINITY, 1);
+    const materials = [new MeshStandardMaterial(), new MeshStandardMaterial()];
+    const applied = applyTransfer(new ThreeMesh(geometry, materials), { cage: cage(), texture: new Texture() });
+    assert.deepEqual(materials.map(isPatched), [true, false]);
+    const all = { ...applied.result, cosmeticTriangles: new Uint8Array(order.length).fill(1) };
+    applied.setClassification({ ...all, zones: new Uint8Array(vertices) });
+    assert.deepEqual(materials.map(isPatched), [true, true]);
+  });
+
   test('painted materials keep one hidden class, so that a renderer reads them as fast as others', () => {
     setFlagsFromString('--allow-natives-syntax');
     const isAlike = new Function('a', 'b', 'return %HaveSameMap(a, b)') as (a: object, b: object) => boolean;
