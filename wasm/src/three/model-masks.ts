@@ -6,6 +6,7 @@ import { localIndices } from '../parts/prepare.js';
 import { valuesOf } from './apply/attributes.js';
 import { extract, type PartsOption } from './apply/extract-scene.js';
 import type { Loaded } from './apply/models.js';
+import { type Context, makeCanvas } from './canvas.js';
 import { wrong } from './errors.js';
 
 /** Where the masks of a model come from. */
@@ -69,7 +70,7 @@ function imageOf(name: string, given: Texture | Image): Image {
   let { data } = image;
   if (data === undefined) {
     try {
-      const context = new OffscreenCanvas(width, height).getContext('2d')!;
+      const context = makeCanvas(width, height).getContext('2d') as Context;
       context.drawImage(image, 0, 0);
       data = context.getImageData(0, 0, width, height).data;
     } catch (error) {

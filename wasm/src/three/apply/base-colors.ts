@@ -2,6 +2,7 @@ import type { BufferGeometry, MeshStandardMaterial, Object3D, Texture } from 'th
 import { type Image, resize } from '../../bake/index.js';
 import { opaque, smallSize } from '../../bake/small-image.js';
 import type { BaseColor, CageModel } from '../../cages/types.js';
+import { type Context, makeCanvas } from '../canvas.js';
 import { valuesOf } from './attributes.js';
 import { asItWas, extract, type Part } from './extract-scene.js';
 import { materialOfGroups } from './names.js';
@@ -88,20 +89,15 @@ function read(source: Source | undefined, isFlipped: boolean): Image | undefined
   }
   const [columns, rows] = smallSize({ width, height });
   try {
-    const context = canvasOf(columns, rows).getContext('2d', { willReadFrequently: true });
+    const context = makeCanvas(columns, rows).getContext('2d', { willReadFrequently: true }) as Context | null;
     if (!context) return undefined;
     if (isFlipped) context.setTransform(1, 0, 0, -1, 0, rows);
-    (context as CanvasRenderingContext2D).drawImage(source as Drawable, 0, 0, columns, rows);
+    context.drawImage(source as Drawable, 0, 0, columns, rows);
     return { width: columns, height: rows, data: context.getImageData(0, 0, columns, rows).data };
   } catch {
     return undefined; // no canvas, an image of another origin, or none that can be drawn
   }
 }
-
-const canvasOf = (width: number, height: number): OffscreenCanvas | HTMLCanvasElement =>
-  typeof OffscreenCanvas === 'function'
-    ? new OffscreenCanvas(width, height)
-    : Object.assign(document.createElement('canvas'), { width, height });
 
 function flipped({ width, height, data }: Image): Image {
   const out = new Uint8Array(data.length);

@@ -1,9 +1,9 @@
 import { SRGBColorSpace, Texture, type WebGLRenderer } from 'three';
 import { show } from '../../core/error.js';
+import { fromDataUrl, toPng } from '../canvas.js';
 import { kPaint, notA, wrong } from '../errors.js';
 import { kWhole, toTexels } from '../gpu/rect.js';
 import { readStraight } from '../gpu/straight.js';
-import { fromDataUrl, toPng } from './canvas.js';
 import { Composite } from './composite.js';
 import { type Layer, plainStyle, readStyle, type Sheet, type Style } from './layer.js';
 import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';

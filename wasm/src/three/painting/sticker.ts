@@ -1,6 +1,6 @@
 import { CanvasTexture, SRGBColorSpace, Vector3, type WebGLRenderer } from 'three';
+import { type Canvas, type Context, makeCanvas } from '../canvas.js';
 import { kPaint, notA, wrong } from '../errors.js';
-import { type Canvas, type Context, makeCanvas } from '../layers/canvas.js';
 import { Composite } from '../layers/composite.js';
 import { plainStyle } from '../layers/layer.js';
 import type { SurfacePoint } from './cage-texels.js';

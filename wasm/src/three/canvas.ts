@@ -1,7 +1,7 @@
 export type Canvas = HTMLCanvasElement | OffscreenCanvas;
 export type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
 
-/** An element where there is a document, as its fonts are those of the page. */
+/** An element where there is a document, as its fonts are those of the page. @throws where there is no canvas. */
 export function makeCanvas(width: number, height: number): Canvas {
   if (typeof document === 'undefined') return new OffscreenCanvas(width, height);
   return Object.assign(document.createElement('canvas'), { width, height });
