@@ -20,9 +20,9 @@ const controls = new OrbitControls(camera, renderer.domElement);
 new THREE.Box3().setFromObject(head.scene).getCenter(controls.target);
 camera.position.copy(controls.target).z += 2.5;
 
-const model = extract(head.scene); // as it is in the file: painting adds vertices
-const applied = applyTransfer(head.scene, cage.scene);
-const painter = createPainter({ renderer, texture: stripes, applied, cage: cage.scene });
+const model = extract(head); // as it is in the file: painting adds vertices
+const applied = applyTransfer(head, { cage });
+const painter = createPainter({ renderer, texture: stripes, applied, cage });
 const { layers } = painter;
 const [base] = layers.list; // the stripes
 painter.picture = { text: 'Rrr!', color: '#ffffff', size: 0.3 };

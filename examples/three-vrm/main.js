@@ -23,7 +23,7 @@ paint.flipY = false; // textures of glTF begin at the top
 paint.colorSpace = SRGBColorSpace;
 const { vrm } = avatar.userData;
 VRMUtils.combineSkeletons(vrm.scene);
-const { parts } = await applyTransferAsync(vrm.scene, cage.scene, { texture: paint });
+const { parts } = await applyTransferAsync(vrm.scene, { cage, texture: paint });
 
 const scene = new Scene().add(vrm.scene, new AmbientLight(0xffffff, 1.5), new DirectionalLight(0xffffff, 2));
 const camera = new PerspectiveCamera(35, innerWidth / innerHeight, 0.01, 100);

@@ -21,7 +21,7 @@ const [head, cage, paint] = await Promise.all([
 ]);
 paint.flipY = false; // textures of glTF begin at the top
 paint.colorSpace = SRGBColorSpace;
-const { parts } = applyTransfer(head.scene, cage.scene, { texture: paint });
+const { parts } = applyTransfer(head, { cage, texture: paint });
 
 const scene = new Scene().add(head.scene, new AmbientLight(0xffffff, 1.5), new DirectionalLight(0xffffff, 2));
 const camera = new PerspectiveCamera(35, innerWidth / innerHeight, 0.01, 100);

@@ -37,7 +37,7 @@ async function applyKept() {
   const kept = await cache.match('transfer');
   try {
     const saved = kept && deserialize(new Uint8Array(await kept.arrayBuffer()));
-    return saved && (await applyTransferAsync(head.scene, undefined, { saved, texture: paint }));
+    return saved && (await applyTransferAsync(head, { saved, texture: paint }));
   } catch {
     return undefined; // it is of another version of the package or of the model
   }
@@ -47,7 +47,7 @@ async function applyAnew() {
   const onProgress = (share) => {
     document.title = `${Math.round(100 * share)} %`;
   };
-  const made = await applyTransferAsync(head.scene, cage.scene, { texture: paint, onProgress });
+  const made = await applyTransferAsync(head, { cage, texture: paint, onProgress });
   await cache.put('transfer', new Response(serialize(made)));
   return made;
 }

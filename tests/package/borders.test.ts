@@ -137,7 +137,7 @@ describe('geometries of three.js with borders: cut', () => {
       const document = await new NodeIO().readBinary(glb);
       await document.transform(cagecast({ cage, borders: 'cut' }));
       const [base] = document.getRoot().listMeshes()[0]!.listPrimitives();
-      const { overlays, parts, cutTriangles } = applyTransfer(scene!, around!, { material, borders: 'cut' });
+      const { overlays, parts, cutTriangles } = applyTransfer(scene!, { cage: around!, material, borders: 'cut' });
       const { geometry } = parts[0]!;
       assert.ok(cutTriangles > 20);
       assert.equal(geometry.index!.count, target.indices.length + 3 * cutTriangles);
@@ -176,7 +176,7 @@ describe('geometries of three.js with borders: cut', () => {
     geometry.addGroup(0, middle, 0);
     geometry.addGroup(middle, Infinity, 1);
     geometry.setDrawRange(middle, corners - middle);
-    const { result, cutTriangles } = applyTransfer(geometry, geometryOf(cage), { borders: 'cut' });
+    const { result, cutTriangles } = applyTransfer(geometry, { cage: geometryOf(cage), borders: 'cut' });
     const cut = cutBorders(cage, plain, result);
     assert.equal(cutTriangles, cut.triangles.length - corners / 3);
     const pieces = cut.triangles.findIndex((t) => t >= middle / 3);
@@ -201,20 +201,24 @@ describe('geometries of three.js with borders: cut', () => {
   test('show another classification on the pieces, and on whole triangles in segments with another verdict', () => {
     const mesh = new ThreeMesh(geometryOf(target), material);
     const projection = project(cage, plain);
-    const { result, overlays, update } = applyTransfer(mesh, geometryOf(cage), { material, borders: 'cut' });
+    const { result, overlays, setClassification } = applyTransfer(mesh, {
+      cage: geometryOf(cage),
+      material,
+      borders: 'cut',
+    });
     const shown = () => overlays[0]!.geometry.index!.count / 3;
     const painted = count(cutBorders(cage, plain, result).cosmeticTriangles);
     assert.equal(shown(), painted);
     const [skin, eye] = [result.segments[0]!, result.segments[vertices - 1]!];
     assert.ok(!result.segmentStats[skin]!.culled && result.segmentStats[eye]!.culled);
-    update(classify(projection, { locks: { segments: { [skin]: 'exclude' } } }));
+    setClassification(classify(projection, { locks: { segments: { [skin]: 'exclude' } } }));
     assert.equal(shown(), 0);
     assert.notEqual(mesh.geometry.getAttribute('_ncz').getX(0), Zone.Cosmetic);
-    update(classify(projection));
+    setClassification(classify(projection));
     assert.equal(shown(), painted);
     const segments = Object.fromEntries(result.segmentStats.map((_, s) => [s, 'keep' as const]));
     const kept = classify(projection, { locks: { segments } });
-    update(kept);
+    setClassification(kept);
     const isMore = (one: number, t: number) =>
       one === 1 && result.segmentStats[result.segments[target.indices[3 * t]!]!]!.culled;
     const more = kept.cosmeticTriangles.filter(isMore).length;
@@ -229,8 +233,13 @@ describe('geometries of three.js with borders: cut', () => {
     const bare = { segments: only('exclude') };
     const shownAfter = (locks: TransferOptions['locks'], later: TransferOptions['locks']) => {
       const mesh = new ThreeMesh(geometryOf(plain), material);
-      const { overlays, update } = applyTransfer(mesh, geometryOf(cage), { material, borders: 'cut', locks });
-      update(classify(projection, { locks: later }));
+      const { overlays, setClassification } = applyTransfer(mesh, {
+        cage: geometryOf(cage),
+        material,
+        borders: 'cut',
+        locks,
+      });
+      setClassification(classify(projection, { locks: later }));
       const zones = mesh.geometry.getAttribute('_ncz').array;
       return {
         triangles: overlays[0]!.geometry.index!.count / 3,
@@ -243,7 +252,7 @@ describe('geometries of three.js with borders: cut', () => {
 
   test('a cage that cannot be used is an error, and nothing is changed', () => {
     const geometry = geometryOf(target);
-    assert.throws(() => applyTransfer(geometry, new BufferGeometry(), { borders: 'cut' }), { code: 'emptyMesh' });
+    assert.throws(() => applyTransfer(geometry, { cage: new BufferGeometry(), borders: 'cut' }), { code: 'emptyMesh' });
     assert.deepEqual(Object.keys(geometry.attributes), ['position', 'uv']);
   });
 });

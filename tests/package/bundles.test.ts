@@ -21,21 +21,21 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'applyTransferAsync',
-    23_400,
+    25_000,
     "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
     'applyTransferAsync, layers and painting',
-    43_000,
+    47_600,
     `import { applyTransferAsync } from 'cagecast/three';
     import { createLayers, createPainter } from 'cagecast/three/paint';
     console.log(applyTransferAsync, createLayers, createPainter);`,
   ],
-  ['layers', 8500, "import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);"],
+  ['layers', 12_400, "import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);"],
   ['inspect', 29_500, "import { inspect } from 'cagecast/inspect'; console.log(inspect);"],
   ['bake', 6500, "import { bake } from 'cagecast/bake'; console.log(bake);"],
   ['cagecast of cagecast/gltf', 127_000, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
-  ['makeCage', 2700, "import { makeCage } from 'cagecast/cages'; console.log(makeCage);"],
+  ['makeCage', 3000, "import { makeCage } from 'cagecast/cages'; console.log(makeCage);"],
 ];
 
 for (const [what, most, contents] of kPages)

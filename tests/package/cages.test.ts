@@ -349,6 +349,11 @@ describe('fitCage', () => {
     const none = new Uint32Array(0);
     await assertFailures('fitCage', [
       [call(null), 'badArgument', /^template is null, not a mesh/],
+      [
+        call({}, {}, { exclude: [] }),
+        'badArgument',
+        /^landmarks\.exclude is an option; options come after landmarks: /,
+      ],
       [() => fitCage(bare as Template, model), 'missingUvs', /^template\.uvs is missing/],
       [
         call({ landmarks: [1] }),

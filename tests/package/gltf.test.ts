@@ -218,6 +218,14 @@ describe('document.transform(cagecast(…))', () => {
     await document.transform(cagecast({ cage: away, onResult: (_, __, note) => void (told = note) }));
     assert.match(told!, /^nothing may be painted: the cage lies over next to none of the target; put /);
     assert.deepEqual(heard, [`cagecast: ${told}`]);
+    const outer = await documentOf(glbOf(cage));
+    const within = ball([0, 0, 0], () => 0.5, 60, 80);
+    await outer.transform(cagecast({ cage: within, onResult: (_, __, note) => void (told = note) }));
+    assert.match(told!, /^nothing may be painted: target and cage seem to be exchanged/);
+    assert.throws(
+      () => transfer(outer as never, target),
+      /^.*transfer: cage is a document of glTF-Transform; give cageTemplate\(cage\)/,
+    );
   });
 
   test('far from the origin', async () => {

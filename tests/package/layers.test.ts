@@ -1,6 +1,7 @@
 // Layers and painters as far as nothing is drawn: steps that can be undone, and what is refused.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import type { LoadedCage } from 'cagecast/three';
 import {
   createLayers,
   createPainter,
@@ -10,7 +11,7 @@ import {
   type Layers,
   type StickerPicture,
 } from 'cagecast/three/paint';
-import { SphereGeometry, Texture } from 'three';
+import { Group, Mesh, SphereGeometry, Texture } from 'three';
 import { allocatedBy, renderer } from '../support/no-renderer.js';
 
 const texture = new Texture();
@@ -60,7 +61,7 @@ test('a name is not given twice; what is undefined is as if it were not there; a
   const copy = layers.add(texture, saved);
   assert.notEqual(copy.id, saved.id);
   layers.set(copy, { ...layer, opacity: 0.25 });
-  assert.equal(layers.undo(), 'changing opacity, tint, blend, visible of Layer 2');
+  assert.equal(layers.undo(), 'changing opacity, tint, blend, visible, region of Layer 2');
   layers.remove(copy);
   assert.deepEqual(namesOf(layers), ['Layer 2', 'Layer 1', 'Layer 3']);
 });
@@ -116,6 +117,63 @@ test('the history drops the oldest commands at its memory limit, and undone ones
   history.add(failing);
   assert.throws(() => history.undo(), /full/);
   assert.equal(history.last, failing, 'what cannot be undone stays done');
+});
+
+test('a layer that is no step stays, whatever is undone', () => {
+  const layers = createLayers({ renderer });
+  layers.add(texture, { name: 'skin', undoable: false });
+  layers.add(texture, { name: 'star' });
+  assert.deepEqual([layers.undo(), layers.undo(), namesOf(layers)], ['adding star', undefined, ['skin']]);
+});
+
+test('a region that the cage does not have is an error that lists those that it has', () => {
+  const ball = new SphereGeometry();
+  const square = [0, 0, 1].map((u, i) => [u, i / 2]);
+  const known = Object.assign(new SphereGeometry(), { userData: { regions: { lips: [square] } } });
+  for (const [cage, why] of [
+    [undefined, 'give createLayers the cage'],
+    [ball, 'the cage has none'],
+    [known, 'the cage has these: "lips"'],
+    [{ scene: new Group().add(new Mesh(known)) }, 'the cage has these: "lips"'],
+  ] as const) {
+    const layers = createLayers({ renderer, cage });
+    const message = `cagecast/three/paint: region is "lip", which is not known; ${why}`;
+    assert.throws(() => layers.add(texture, { region: 'lip' }), { code: 'badOption', message });
+    assert.throws(() => layers.set(layers.add(texture), { region: 'lip' }), { code: 'badOption', message });
+  }
+  const arrays = { positions: new Float32Array(9), indices: new Uint32Array(3), uvs: new Float32Array(6) };
+  const layers = createLayers({ renderer, cage: { ...arrays, regions: { lips: [square] } } as LoadedCage });
+  const layer = layers.add(texture, { region: 'lips' });
+  layers.set(layer, { region: null });
+  assert.equal(layers.undo(), `changing region of ${layer.name}`);
+  assert.equal(layers.list[0]!.region, 'lips');
+});
+
+test('what is no saved layers is refused, and changes nothing', async () => {
+  const layers = createLayers({ renderer });
+  layers.add(texture, { name: 'star' });
+  const layer = { ...layers.list[0]!, image: 'data:image/png;base64,' };
+  for (const [saved, message] of [
+    [[layer], 'saved is of type Array, not what save returned'],
+    [{ version: 2, layers: [] }, 'saved.version is 2, not 1'],
+    [{ version: 1, layers: Array(17).fill(layer) }, 'saved.layers are 17, more than 16'],
+    [{ version: 1, layers: [layer, {}] }, 'saved.layers[1].name is undefined, not a name'],
+    [{ version: 1, layers: [{ ...layer, painting: 3 }] }, 'saved.layers[0].painting is 3, not 1024 or 2048'],
+    [{ version: 1, layers: [{ ...layer, tint: 'red' }] }, 'tint is "red", not a colour such as #ff8800'],
+    [
+      { version: 1, layers: [{ ...layer, region: 'lips' }] },
+      'region is "lips", which is not known; give createLayers the cage',
+    ],
+    [
+      { version: 1, layers: [{ ...layer, image: 'a.png' }] },
+      'saved.layers[0].image cannot be read: it is no data URL of an image',
+    ],
+  ] as const)
+    await assert.rejects(layers.load(saved as never), {
+      name: 'CagecastError',
+      message: `cagecast/three/paint: ${message}`,
+    });
+  assert.deepEqual(namesOf(layers), ['star']);
 });
 
 test('a frame allocates nothing for layers that have not changed', () => {

@@ -97,7 +97,7 @@ async function byThree(glb: Uint8Array, options: TransferOptions = {}): Promise<
   around.setAttribute('position', new BufferAttribute(cage.positions, 3));
   around.setAttribute('uv', new BufferAttribute(cage.uvs!, 2));
   around.setIndex([...cage.indices]);
-  return painted(applyTransfer(await load(glb), around, options).result);
+  return painted(applyTransfer(await load(glb), { cage: around, ...options }).result);
 }
 
 async function byCommand(glb: Uint8Array, ...flags: string[]): Promise<boolean[]> {

@@ -7,7 +7,7 @@ import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import type { CagecastError, Mesh } from 'cagecast';
 import { cageModel, cageTemplate, checkGltf } from 'cagecast/gltf';
-import { extract } from 'cagecast/three';
+import { extract, type Loaded } from 'cagecast/three';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { Texture } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
@@ -83,6 +83,17 @@ for (const [reader, read] of Object.entries(readers)) {
     }
   });
 }
+
+test('the UVs of what GLTFLoader has loaded are those in its texture, loaded or not', async () => {
+  const bare = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
+  bare.register(() => ({ name: 'no textures', loadTexture: async () => null as never }));
+  for (const { name, bytes, expected, not } of gltfFiles) {
+    if (expected instanceof RegExp || (not && 'three' in not)) continue;
+    const { uvs } = extract((await bare.parseAsync(Uint8Array.from(bytes).buffer, '')) as Loaded).mesh;
+    assert.equal(uvs?.length, expected.uvs?.length, name);
+    expected.uvs?.forEach((value, i) => assert.ok(Math.abs(uvs![i]! - value) < 1e-6, `${name}: ${[...uvs!]}`));
+  }
+});
 
 test('checkGltf admits what can be read', () => {
   for (const { bytes, expected } of gltfFiles) if (!(expected instanceof RegExp)) checkGltf(bytes);

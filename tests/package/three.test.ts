@@ -2,7 +2,16 @@ import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { setFlagsFromString } from 'node:v8';
 import { classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
-import { type ApplyOptions, applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
+import {
+  type ApplyOptions,
+  applyTransfer,
+  applyTransferAsync,
+  deserialize,
+  extract,
+  type Loaded,
+  type LoadedCage,
+  serialize,
+} from 'cagecast/three';
 import { terminate } from 'cagecast/worker';
 import {
   ArrowHelper,
@@ -122,9 +131,10 @@ describe('extract', () => {
       ['outline', 1],
       ['name', 1],
     ]);
-    const all = applyTransfer(root, cage(), { parts: () => true });
+    const all = applyTransfer(root, { cage: cage(), parts: () => true });
     assert.equal(all.parts.length, 8);
-    const { parts, leftOut: others } = applyTransfer(root, cage(), {
+    const { parts, leftOut: others } = applyTransfer(root, {
+      cage: cage(),
       parts: (one, isDrawn) => (isDrawn && one !== skin) || !one.visible,
     });
     assert.deepEqual([parts.length, others[0]!.why, others[0]!.mesh === skin], [1, 'ignored', true]);
@@ -160,7 +170,7 @@ describe('extract', () => {
     const [skin, hat] = [meshOf(scene.target), meshOf(ball([0, 0.9, 0], () => 0.05, 8, 12))];
     hat.name = 'Wolf3D_Headwear';
     const painted = (target: Object3D, options = {}) => {
-      const { result, parts } = applyTransfer(target, cage(), options);
+      const { result, parts } = applyTransfer(target, { cage: cage(), ...options });
       return parts.map(({ firstVertex }) => result.segmentStats[result.segments[firstVertex]!]!.culledBy);
     };
     const both = () => new Group().add(skin.clone(), hat.clone());
@@ -170,13 +180,15 @@ describe('extract', () => {
     // What a cage was made without stays bare, too.
     const around = cage();
     around.userData['bare'] = [(skin.name = 'skin')];
-    const { result } = applyTransfer(new Group().add(skin, meshOf(ball([0, 0.9, 0], () => 0.05, 8, 12))), around);
+    const { result } = applyTransfer(new Group().add(skin, meshOf(ball([0, 0.9, 0], () => 0.05, 8, 12))), {
+      cage: around,
+    });
     for (const { group, culledBy } of result.segmentStats) assert.equal(culledBy === 'lock', group === 0);
   });
 
   test('without a cage, the cages in a model are taken, each for the part of its name', async () => {
     const { scene: model } = await new GLTFLoader().parseAsync(Uint8Array.from(cagedFigure()).buffer, '');
-    const { result, parts } = applyTransfer(model, undefined);
+    const { result, parts } = applyTransfer(model);
     assert.deepEqual(
       parts.map(({ name }) => name),
       kCagedParts,
@@ -186,10 +198,7 @@ describe('extract', () => {
     assert.ok(result.cosmeticTriangles.every((one) => one === 1));
     assert.equal(extract(model, 'cage').parts.length, 3);
     model.children[0]!.name = model.children[0]!.userData['name'] = 'Foot_Geo';
-    assert.throws(
-      () => applyTransfer(model, undefined),
-      /target: "Foot_Geo" has no cage: none is named Foot_OuterCage/,
-    );
+    assert.throws(() => applyTransfer(model), /target: "Foot_Geo" has no cage: none is named Foot_OuterCage/);
   });
 
   test('posed and placed figures are taken in their bind pose, wherever they stand', async () => {
@@ -211,8 +220,8 @@ describe('extract', () => {
     // So what was saved of a model is accepted while an animation plays.
     const [rest, posed] = await Promise.all(['skin-at-rest', 'skin-that-is-posed'].map(load));
     const around = meshOf(ball([0, 0, 0], () => 1.5, 12, 18));
-    const saved = deserialize(serialize(applyTransfer(rest!, around)));
-    assert.equal(applyTransfer(posed!, undefined, { saved }).parts.length, 2);
+    const saved = deserialize(serialize(applyTransfer(rest!, { cage: around })));
+    assert.equal(applyTransfer(posed!, { saved }).parts.length, 2);
   });
 
   test('a figure that was bound where it stands, or has its bones inside, is taken there', () => {
@@ -256,39 +265,63 @@ test('arguments that are none, and models that cannot be read, are errors that n
   const instanced = new InstancedBufferGeometry().copy(geometryOf(scene.target) as InstancedBufferGeometry);
   few.name = `long ${'name '.repeat(20)}`;
   const apply = applyTransfer as (...args: unknown[]) => ReturnType<typeof applyTransfer>;
-  const applied = applyTransfer(meshOf(scene.target), cage(), { texture: new Texture() });
+  const applied = applyTransfer(meshOf(scene.target), { cage: cage(), texture: new Texture() });
   const whole = /make each instance a mesh of its own/;
   const cases: [() => unknown, RegExp, string?][] = [
-    [() => apply({ scene: target }, cage()), /^cagecast\/three: target is of type Object, not a scene, mesh or geo/],
-    [() => apply(target), /^cagecast\/three: cage is undefined, not a scene/],
-    [() => apply(target, cage(), { result: {} }), /options\.result\.zones is not an array, the target needs \d+; extr/],
-    [() => apply(target, cage(), { result: { ...result, uvs: 1 } }), /options\.result\.uvs is not an array/],
-    [() => apply(new Group(), cage()), /has no vertices/, 'emptyMesh'],
+    [
+      () => apply({ scene: {} }),
+      /^cagecast\/three: target is of type Object, not a loaded glTF, a scene, a mesh or a geo/,
+    ],
+    [() => apply(scene.target, { cage: cage() }), /target is of type Object, not a loaded glTF/],
+    [
+      () => apply(target, { cage: 'cage.glb' }),
+      /: cage is "cage\.glb", not a loaded glTF, .* or a cage of cagecast\/cages$/,
+    ],
+    [() => apply(target), /^applyTransfer: options\.cage is undefined, and no mesh of target is named as/, 'badOption'],
+    [
+      () => apply(target, { cage: cage(), result: {} }),
+      /options\.result\.zones is not an array, the target needs \d+; extr/,
+    ],
+    [() => apply(target, { cage: cage(), result: { ...result, uvs: 1 } }), /options\.result\.uvs is not an array/],
+    [() => apply(new Group(), { cage: cage() }), /has no vertices/, 'emptyMesh'],
     [() => extract(flat), /target: "geometry" has positions of 2 numbers, not 3/],
     [() => extract(few), /target: "long name [^"]*…" has 5 heat for \d+ vertices/],
     [
       () => extract(new Group().add(Object.assign(meshOf(scene.target), { visible: false, name: 'head' }))),
       /^cagecast\/three: target: all parts are left out: "head" \(hidden\); the option parts says which count$/,
     ],
-    [() => apply(target, cage(), { parts: 'head' }), /options\.parts is "head", not a function/, 'badOption'],
+    [() => apply(target, { cage: cage(), parts: 'head' }), /options\.parts is "head", not a function/, 'badOption'],
     [() => extract(new Group().add(new BatchedMesh(2, 99, 99, target.material))), whole],
     [() => extract(new ThreeMesh(instanced, target.material)), whole],
     [() => applied.setOpacity(2), /^setOpacity: opacity is 2, not a number from 0 to 1/],
     [() => applied.setTexture('paint.png' as never), /^setTexture: texture is "paint\.png", not a Texture/],
     [() => applied.paint(undefined as never), /^paint: material is undefined, not a Material/],
-    [() => applied.update({ ...strict(), segmentStats: undefined } as never), /classification\.segmentStats is not an/],
-    [() => applied.update(null as never), /classification\.zones is not an array/],
+    [
+      () => applied.setClassification({ ...strict(), segmentStats: undefined } as never),
+      /classification\.segmentStats is not an/,
+    ],
+    [() => applied.setClassification(null as never), /classification\.zones is not an array/],
     [() => serialize({} as never), /^serialize: applied is not what applyTransfer returned/],
   ];
+  const order =
+    /^applyTransfer: options is a model; give the cage as options\.cage: applyTransfer\(target, \{ cage \}\)$/;
+  for (const given of [cage(), cage().geometry, { scene: cage() }, scene.cage])
+    cases.push([() => apply(target, given), order, 'badOption']);
+  for (const given of [target, { scene: target }])
+    cases.push([
+      () => transfer(given as never, scene.target),
+      /^transfer: cage is a model of three\.js; give extract\(cage, 'cage'\)\.mesh/,
+    ]);
   for (const [call, message, code = 'badArgument'] of cases)
     assert.throws(call, { name: 'CagecastError', code, message });
 });
 
 test('wrong options are one error of both calls, which names the function, the option and its value', async () => {
   const [target, around] = [meshOf(scene.target), cage()];
+  const withCage = (options: ApplyOptions) => (Object(options) === options ? { cage: around, ...options } : options);
   const calls = {
-    applyTransfer: async (options: ApplyOptions) => applyTransfer(target, around, options),
-    applyTransferAsync: (options: ApplyOptions) => applyTransferAsync(target, around, options),
+    applyTransfer: async (options: ApplyOptions) => applyTransfer(target, withCage(options)),
+    applyTransferAsync: (options: ApplyOptions) => applyTransferAsync(target, withCage(options)),
   };
   const ofBoth: [unknown, string][] = [
     [null, 'options is null, not an object'],
@@ -307,6 +340,12 @@ test('wrong options are one error of both calls, which names the function, the o
     [{ signal: false }, 'options.signal is false, not an AbortSignal'],
     [{ onProgress: false }, 'options.onProgress is false, not a function'],
   ];
+  for (const call of Object.values(calls))
+    await assert.rejects(call({ textur: new Texture() } as ApplyOptions), {
+      code: 'badOption',
+      message:
+        /^(applyTransfer|applyTransferAsync): options\.textur is not an option; \1 takes: cage, texture, .*threshold/,
+    });
   for (const [fn, call] of Object.entries(calls))
     for (const [options, reason] of fn === 'applyTransfer' ? ofBoth : [...ofBoth, ...ofAsync]) {
       const error = { name: 'CagecastError', code: 'badOption', argument: 'options', fn, message: `${fn}: ${reason}` };
@@ -340,17 +379,28 @@ function assertSplit(geometry: BufferGeometry, before: BufferGeometry, result: T
 
 describe('applyTransfer', () => {
   test('a note says why nothing may be painted, and what helps', () => {
-    assert.equal(applyTransfer(meshOf(ungrouped), cage()).note, undefined);
+    assert.equal(applyTransfer(meshOf(ungrouped), { cage: cage() }).note, undefined);
     const target = Object.assign(meshOf(ungrouped), { name: 'head' });
-    const { note } = applyTransfer(target, cage(), { locks: { groups: { 0: 'exclude' } } });
+    const { note } = applyTransfer(target, { cage: cage(), locks: { groups: { 0: 'exclude' } } });
     assert.equal(note, 'nothing may be painted: "head" is excluded by choice; lift the lock');
+    const exchanged = 'nothing may be painted: target and cage seem to be exchanged; exchange them';
+    assert.equal(applyTransfer(cage(), { cage: meshOf(ball([0, 0, 0], () => 0.5, 40, 60)) }).note, exchanged);
+  });
+
+  test('models and cages are taken as they are loaded, and cages as arrays', () => {
+    const painted = (target: Loaded, around: LoadedCage) =>
+      applyTransfer(target, { cage: around }).result.cosmeticTriangles.filter(Boolean).length;
+    const expected = painted(meshOf(ungrouped), cage());
+    const loaded = (mesh: ThreeMesh) => ({ scene: new Group().add(mesh) });
+    for (const around of [loaded(cage()), cage().geometry, scene.cage])
+      assert.equal(painted(loaded(meshOf(ungrouped)), around), expected);
   });
 
   test('far from the origin', () => {
     const painted = (x: number) => {
       const [object, around] = [meshOf(ungrouped), cage()];
       for (const one of [object, around]) one.position.set(x, -x, 0);
-      return applyTransfer(object, around).result.cosmeticTriangles.filter(Boolean).length;
+      return applyTransfer(object, { cage: around }).result.cosmeticTriangles.filter(Boolean).length;
     };
     assert.equal(painted(1e7), painted(0));
   });
@@ -368,7 +418,7 @@ describe('applyTransfer', () => {
     const before = geometry.clone();
     let disposed = 0;
     geometry.addEventListener('dispose', () => ++disposed);
-    const { result, splitVertices } = applyTransfer(target, cage());
+    const { result, splitVertices } = applyTransfer(target, { cage: cage() });
     assert.ok(splitVertices > 0 && disposed === 1);
     assert.equal(target.geometry, geometry);
     assert.equal(geometry.getAttribute('position').count, vertices + splitVertices);
@@ -381,7 +431,7 @@ describe('applyTransfer', () => {
     for (const name of ['_feature_id_0', 'batchId'])
       target.geometry.setAttribute(name, new BufferAttribute(ids.slice(), 1));
     target.geometry.setAttribute('heat', new BufferAttribute(Float32Array.from(ids, Math.sin), 1));
-    assert.ok(applyTransfer(target, cage(), { borders: 'cut' }).cutTriangles > 0);
+    assert.ok(applyTransfer(target, { cage: cage(), borders: 'cut' }).cutTriangles > 0);
     const isOld = (name: string, old: Float32Array) => {
       const known = new Set(old);
       return attribute(target.geometry, name).every((x) => known.has(x));
@@ -400,7 +450,7 @@ describe('applyTransfer', () => {
     });
     target.scale.x = -1;
     const before = target.geometry.clone();
-    const { result, splitVertices } = applyTransfer(target, cage());
+    const { result, splitVertices } = applyTransfer(target, { cage: cage() });
     assert.ok(splitVertices > 0);
     // In the arrays of the result the second and third corners of mirrored triangles have changed places.
     const swapped = [0, 1, 4, 5, 2, 3];
@@ -410,7 +460,7 @@ describe('applyTransfer', () => {
 
   test("seams: 'vertex' adds uv1 and _ncz, as transfer answers", () => {
     const target = meshOf(scene.target);
-    const { result, overlays, splitVertices } = applyTransfer(target, cage(), { seams: 'vertex' });
+    const { result, overlays, splitVertices } = applyTransfer(target, { cage: cage(), seams: 'vertex' });
     const expected = transfer(scene.cage, ungrouped);
     assert.deepEqual(result.zones, expected.zones);
     assert.deepEqual(attribute(target.geometry, 'uv1'), expected.uvs);
@@ -423,7 +473,7 @@ describe('applyTransfer', () => {
     const [skin, tongue] = [ball([0, 0, 0], () => 1, 12, 20), ball([0, 0, 0], () => 0.3, 6, 9)];
     const around = ball([0, 0, 0], () => 1.1, 10, 16);
     const target = new Group().add(meshOf(skin), meshOf(tongue));
-    const { result } = applyTransfer(target, meshOf(around));
+    const { result } = applyTransfer(target, { cage: meshOf(around) });
     assert.deepEqual(result.zones, transfer(around, join3d(skin, tongue)).zones);
     const [outer, inner] = target.children as [ThreeMesh, ThreeMesh];
     assert.ok(attribute(outer.geometry, '_ncz').every((zone) => zone === Zone.Cosmetic));
@@ -436,7 +486,10 @@ describe('applyTransfer', () => {
     const texture = new Texture();
     const before = { ...texture };
     const { version } = material;
-    const { result, overlays, update, setTexture, dispose, splitVertices } = applyTransfer(target, cage(), { texture });
+    const { result, overlays, setClassification, setTexture, dispose, splitVertices } = applyTransfer(target, {
+      cage: cage(),
+      texture,
+    });
     assert.deepEqual([overlays.length, target.children.length, target.material], [0, 0, material]);
     assert.deepEqual({ ...texture }, before);
     assert.ok(material.version > version && splitVertices > 0);
@@ -453,18 +506,18 @@ describe('applyTransfer', () => {
     };
     assertPainted(result.cosmeticTriangles);
     const decided = strict();
-    update(decided);
+    setClassification(decided);
     assertPainted(decided.cosmeticTriangles);
     assert.deepEqual([...attribute(geometry, '_ncz')].slice(0, vertices), [...decided.zones]);
     // What no segment passes has no paint, and its material is as it was.
     const { zones, cosmeticTriangles } = decided;
-    update({
+    setClassification({
       ...decided,
       zones: zones.slice().fill(Zone.Culled),
       cosmeticTriangles: cosmeticTriangles.slice().fill(0),
     });
     assert.ok(!isPatched(material));
-    update(result);
+    setClassification(result);
     assert.ok(isPatched(material));
     setTexture(undefined);
     assert.ok(isPatched(material), 'it stays ready for a texture, whose shader is compiled already');
@@ -477,7 +530,7 @@ describe('applyTransfer', () => {
     test(`triangles in another order and UVs changed by others leave later updates right (${shows})`, () => {
       const options = shows === 'texture' ? { texture: new Texture() } : { material: new MeshStandardMaterial() };
       const [plain, sorted] = [meshOf(scene.target), meshOf(scene.target)];
-      const applied = [plain, sorted].map((target) => applyTransfer(target, cage(), options));
+      const applied = [plain, sorted].map((target) => applyTransfer(target, { cage: cage(), ...options }));
       const bytes = serialize(applied[1]!);
       // As three-mesh-bvh does, in place.
       const { array } = sorted.geometry.index!;
@@ -485,19 +538,35 @@ describe('applyTransfer', () => {
       array.set(triangles.reverse().flat());
       attribute(sorted.geometry, 'uv1').fill(0.5);
       assert.deepEqual(serialize(applied[1]!), bytes);
-      for (const one of applied) one.update(strict());
-      for (const one of applied) one.update(one.result);
+      for (const one of applied) one.setClassification(strict());
+      for (const one of applied) one.setClassification(one.result);
       const shown = ({ geometry }: ThreeMesh, { overlays }: (typeof applied)[0]) =>
         shows === 'texture' ? attribute(geometry, '_cagecast_paint') : overlays[0]!.geometry.index!.array;
       assert.deepEqual(shown(sorted, applied[1]!), shown(plain, applied[0]!));
     });
   }
 
+  test('a material of which nothing may be painted stays as it is, also beside one that is painted', () => {
+    const { cosmeticTriangles } = applyTransfer(meshOf(ungrouped), { cage: cage() }).result;
+    const order = [...cosmeticTriangles.keys()].sort((a, b) => cosmeticTriangles[b]! - cosmeticTriangles[a]!);
+    const indices = Uint32Array.from(order.flatMap((t) => [...ungrouped.indices.subarray(3 * t, 3 * t + 3)]));
+    const painted = cosmeticTriangles.filter(Boolean).length;
+    const geometry = geometryOf({ ...ungrouped, indices });
+    geometry.addGroup(0, 3 * painted, 0);
+    geometry.addGroup(3 * painted, Number.POSITIVE_INFINITY, 1);
+    const materials = [new MeshStandardMaterial(), new MeshStandardMaterial()];
+    const applied = applyTransfer(new ThreeMesh(geometry, materials), { cage: cage(), texture: new Texture() });
+    assert.deepEqual(materials.map(isPatched), [true, false]);
+    const all = { ...applied.result, cosmeticTriangles: new Uint8Array(order.length).fill(1) };
+    applied.setClassification({ ...all, zones: new Uint8Array(vertices) });
+    assert.deepEqual(materials.map(isPatched), [true, true]);
+  });
+
   test('painted materials keep one hidden class, so that a renderer reads them as fast as others', () => {
     setFlagsFromString('--allow-natives-syntax');
     const isAlike = new Function('a', 'b', 'return %HaveSameMap(a, b)') as (a: object, b: object) => boolean;
     const model = new Group().add(...[0, 1, 2, 3].map(() => meshOf(scene.target)));
-    applyTransfer(model, cage(), { texture: new Texture() });
+    applyTransfer(model, { cage: cage(), texture: new Texture() });
     // The first ones show V8 what the fields hold.
     const [, , third, fourth] = model.children.map((mesh) => (mesh as ReturnType<typeof meshOf>).material);
     assert.equal(third!.customProgramCacheKey(), fourth!.customProgramCacheKey());
@@ -508,14 +577,14 @@ describe('applyTransfer', () => {
     const copy = (await import(`${import.meta.resolve('cagecast/three')}?copy`)) as typeof import('cagecast/three');
     const [target, other] = [meshOf(scene.target), meshOf(scene.target)];
     const [first, second] = [new Texture(), new Texture()];
-    const before = applyTransfer(target, cage(), { texture: first });
+    const before = applyTransfer(target, { cage: cage(), texture: first });
     const firstKey = target.material.customProgramCacheKey();
-    copy.applyTransfer(target, cage(), { texture: second });
+    copy.applyTransfer(target, { cage: cage(), texture: second });
     const { vertexShader, fragmentShader, uniforms } = ShaderLib.standard;
     const shader = { vertexShader, fragmentShader, uniforms: { ...uniforms } } as WebGLProgramParametersWithUniforms;
     target.material.onBeforeCompile(shader, undefined as never);
     assert.equal(shader.uniforms['cagecastMap']!.value, second);
-    copy.applyTransfer(other, cage(), { texture: second });
+    copy.applyTransfer(other, { cage: cage(), texture: second });
     assert.notEqual(other.material.customProgramCacheKey(), firstKey);
     before.dispose();
   });
@@ -524,10 +593,10 @@ describe('applyTransfer', () => {
     const target = meshOf(scene.target);
     Object.assign(target.material, { isNodeMaterial: true, name: 'skin' });
     const before = Object.keys(target.geometry.attributes);
-    const apply = () => applyTransfer(target, cage(), { texture: new Texture() });
+    const apply = () => applyTransfer(target, { cage: cage(), texture: new Texture() });
     assert.throws(apply, { code: 'badOption', message: /has a node material, .* give options\.material/ });
     assert.deepEqual(Object.keys(target.geometry.attributes), before);
-    assert.equal(applyTransfer(target, cage(), { material: new MeshStandardMaterial() }).overlays.length, 1);
+    assert.equal(applyTransfer(target, { cage: cage(), material: new MeshStandardMaterial() }).overlays.length, 1);
   });
 
   test('a soft border: distances from the border of the paint, 0 on it, growing by no more than the edges', () => {
@@ -535,7 +604,7 @@ describe('applyTransfer', () => {
     const around = ball([0, 0, 0], () => 1.1, 24, 36);
     const indices = around.indices.filter((_, i) => around.positions[3 * around.indices[i - (i % 3)]! + 1]! < 0.5);
     const options = { texture: new Texture(), feather: 0.1 };
-    const { result } = applyTransfer(target, meshOf({ ...around, indices }), options);
+    const { result } = applyTransfer(target, { cage: meshOf({ ...around, indices }), ...options });
     const { geometry } = target;
     const paint = geometry.getAttribute('_cagecast_paint');
     const corners = geometry.index!.array;
@@ -563,20 +632,24 @@ describe('overlays', () => {
   test('a material lies on the cosmetic triangles of each mesh, and shares its vertices', () => {
     const target = meshOf(scene.target);
     const material = new MeshStandardMaterial();
-    const { result, overlays, update, dispose, channel } = applyTransfer(target, cage(), { material, channel: 2 });
+    const { result, overlays, setClassification, dispose, channel } = applyTransfer(target, {
+      cage: cage(),
+      material,
+      channel: 2,
+    });
     const [overlay] = overlays as [ThreeMesh<BufferGeometry, MeshStandardMaterial>];
     assert.deepEqual([overlay.parent, channel, overlay.material], [target, 2, material]);
     for (const name of ['position', 'uv2'])
       assert.equal(overlay.geometry.getAttribute(name), target.geometry.getAttribute(name));
     const isPainted = (_: number, i: number) => result.cosmeticTriangles[Math.floor(i / 3)] === 1;
     assert.deepEqual([...overlay.geometry.index!.array], [...target.geometry.index!.array].filter(isPainted));
-    // An update frees the triangles that it had, but not what is of its base, nor what a copy of the model shows.
+    // Another classification frees the triangles that it had, but not what is of its base, nor what a copy of the model shows.
     const { geometry } = overlay;
     const copy = target.clone().children[0] as ThreeMesh;
     let freed: unknown[] = ['nothing yet'];
     geometry.addEventListener('dispose', () => (freed = Object.values(geometry.attributes)));
     const decided = strict();
-    update(decided);
+    setClassification(decided);
     assert.equal(overlay.geometry.index!.count, 3 * decided.cosmeticTriangles.filter((one) => one === 1).length);
     assert.deepEqual([freed, copy.geometry], [[], geometry]);
     assert.equal(geometry.getAttribute('position'), target.geometry.getAttribute('position'));
@@ -587,7 +660,7 @@ describe('overlays', () => {
   test('another texture reaches the one on a material that cannot be painted', () => {
     const target = unpaintable();
     const [red, green] = [new Texture(), new Texture()];
-    const { overlays, setTexture } = applyTransfer(target, cage(), { texture: red });
+    const { overlays, setTexture } = applyTransfer(target, { cage: cage(), texture: red });
     const [overlay] = overlays as [ThreeMesh<BufferGeometry, MeshStandardMaterial>];
     const uniforms = compiled(overlay.material);
     for (const texture of [red, green, undefined, red, null, red]) {
@@ -599,19 +672,19 @@ describe('overlays', () => {
 
   test('a texture or a material that is null is none', () => {
     const [target, other] = [meshOf(scene.target), unpaintable()];
-    const plain = applyTransfer(meshOf(scene.target), cage());
-    const bare = applyTransfer(target, cage(), { texture: null, material: null });
+    const plain = applyTransfer(meshOf(scene.target), { cage: cage() });
+    const bare = applyTransfer(target, { cage: cage(), texture: null, material: null });
     assert.equal(bare.splitVertices, plain.splitVertices);
     assert.ok(!isPatched(target.material));
-    applyTransfer(other, cage(), { texture: new Texture() });
-    applyTransfer(other, cage(), { texture: null });
+    applyTransfer(other, { cage: cage(), texture: new Texture() });
+    applyTransfer(other, { cage: cage(), texture: null });
     assert.deepEqual(other.children, []);
   });
 
   test('a later transfer takes away those whose paint it replaces, and takes none of them for a part', () => {
     const target = unpaintable();
     const materials = [1, 2, 3].map(() => new MeshStandardMaterial());
-    const show = (options: ApplyOptions) => applyTransfer(target, cage(), options);
+    const show = (options: ApplyOptions) => applyTransfer(target, { cage: cage(), ...options });
     show({ texture: new Texture() });
     const painted = show({ texture: new Texture() });
     assert.deepEqual([target.children, painted.parts.length], [painted.overlays, 1]);
@@ -626,7 +699,7 @@ describe('overlays', () => {
     painted.dispose();
     const { overlays } = show({ texture: new Texture() });
     assert.deepEqual(target.children, overlays);
-    other.update(other.result);
+    other.setClassification(other.result);
     assert.deepEqual(target.children, overlays, 'what is replaced does not come back');
   });
 
@@ -646,7 +719,9 @@ describe('overlays', () => {
     const target = new SkinnedMesh(geometry, new MeshStandardMaterial());
     const root = new Group().add(bone, target);
     target.bind(new Skeleton([bone]));
-    const [overlay] = applyTransfer(root, cage(), { material: new MeshStandardMaterial() }).overlays as [SkinnedMesh];
+    const [overlay] = applyTransfer(root, { cage: cage(), material: new MeshStandardMaterial() }).overlays as [
+      SkinnedMesh,
+    ];
     assert.equal(overlay.skeleton, target.skeleton);
     const vertex = overlay.geometry.index!.getX(0);
     const rest = new Vector3().fromArray(scene.target.positions, 3 * vertex);
@@ -666,7 +741,7 @@ describe('geometries', () => {
     target.geometry.setAttribute('uv1', own);
     for (let i = 0; i < 2; ++i) {
       const texture = new Texture();
-      const applied = applyTransfer(target, cage(), { texture, seams: 'vertex' });
+      const applied = applyTransfer(target, { cage: cage(), texture, seams: 'vertex' });
       applied.dispose();
       assert.deepEqual([applied.channel, texture.channel], [2, 0]);
       assert.equal(target.geometry.getAttribute('uv1'), own);
@@ -674,8 +749,8 @@ describe('geometries', () => {
     }
     const other = meshOf(scene.target);
     for (const name of ['uv1', 'uv2', 'uv3']) other.geometry.setAttribute(name, own);
-    assert.throws(() => applyTransfer(other, cage()), /has uv1, uv2 and uv3 of its own/);
-    applyTransfer(other, cage(), { channel: 3, seams: 'vertex' });
+    assert.throws(() => applyTransfer(other, { cage: cage() }), /has uv1, uv2 and uv3 of its own/);
+    applyTransfer(other, { cage: cage(), channel: 3, seams: 'vertex' });
   });
 
   test('of two meshes are copied for the second', () => {
@@ -685,7 +760,7 @@ describe('geometries', () => {
       mesh.position.x = x;
       return mesh;
     });
-    applyTransfer(new Group().add(...meshes), cage(), { texture: new Texture() });
+    applyTransfer(new Group().add(...meshes), { cage: cage(), texture: new Texture() });
     const [first, second] = meshes.map((mesh) => mesh.geometry);
     assert.deepEqual([first === geometry, second === geometry], [true, false]);
     assert.notDeepEqual(attribute(first!, 'uv1'), attribute(second!, 'uv1'));
@@ -695,9 +770,9 @@ describe('geometries', () => {
     const first = meshOf(scene.target);
     const second = first.clone();
     second.position.x = 0.2;
-    applyTransfer(first, cage(), { texture: new Texture() });
+    applyTransfer(first, { cage: cage(), texture: new Texture() });
     const shown = structuredClone(arraysOf(first));
-    applyTransfer(second, cage(), { texture: new Texture() });
+    applyTransfer(second, { cage: cage(), texture: new Texture() });
     assert.deepEqual(arraysOf(first), shown);
     assert.notDeepEqual(attribute(second.geometry, 'uv1'), attribute(first.geometry, 'uv1'));
   });
@@ -710,14 +785,14 @@ describe('geometries', () => {
       const { index, morphAttributes } = target.geometry;
       const morphs = { ...morphAttributes };
       const extracted = extract(target).mesh;
-      const show = () => applyTransfer(target, cage(), { borders, texture: new Texture() });
+      const show = () => applyTransfer(target, { cage: cage(), borders, texture: new Texture() });
       const all = [show()];
       const first = structuredClone(arraysOf(target));
       const saved = deserialize(serialize(all[0]!));
       for (let i = 0; i < 7; ++i) all.push(show());
       assert.deepEqual(arraysOf(target), first);
       assert.deepEqual(extract(target).mesh, extracted);
-      applyTransfer(target, undefined, { saved, texture: new Texture() }).dispose();
+      applyTransfer(target, { saved, texture: new Texture() }).dispose();
       assert.deepEqual([target.geometry.attributes, target.geometry.index], [own, index]);
       assert.deepEqual(target.geometry.morphAttributes, morphs);
       for (const one of all) one.dispose();
@@ -728,14 +803,14 @@ describe('geometries', () => {
   test('keep what others have added or changed since', () => {
     const target = meshOf(scene.target);
     const { geometry } = target;
-    applyTransfer(target, cage(), { borders: 'cut' });
+    applyTransfer(target, { cage: cage(), borders: 'cut' });
     geometry.computeVertexNormals();
     const normals = attribute(geometry, 'normal').slice(0, 3 * vertices);
     const positions = geometry.getAttribute('position');
     for (let v = 0; v < positions.count; ++v) positions.setX(v, positions.getX(v) + 0.001);
     positions.needsUpdate = true;
     const moved = attribute(geometry, 'position').slice(0, 3 * vertices);
-    const applied = applyTransfer(target, cage(), { borders: 'cut' });
+    const applied = applyTransfer(target, { cage: cage(), borders: 'cut' });
     assert.deepEqual(extract(target).mesh.positions, moved);
     applied.dispose();
     assert.deepEqual([attribute(geometry, 'position'), attribute(geometry, 'normal')], [moved, normals]);
@@ -744,12 +819,12 @@ describe('geometries', () => {
 
   test('have one channel on top of another, and lose both together where one is asked for no more', () => {
     const target = meshOf(scene.target);
-    const first = applyTransfer(target, cage(), { channel: 1, borders: 'cut' });
+    const first = applyTransfer(target, { cage: cage(), channel: 1, borders: 'cut' });
     const count = () => target.geometry.getAttribute('position').count;
     const alone = count();
-    for (let i = 0; i < 3; ++i) applyTransfer(target, cage(), { channel: 2, borders: 'cut' });
+    for (let i = 0; i < 3; ++i) applyTransfer(target, { cage: cage(), channel: 2, borders: 'cut' });
     const both = count();
-    const second = applyTransfer(target, cage(), { channel: 2, borders: 'cut' });
+    const second = applyTransfer(target, { cage: cage(), channel: 2, borders: 'cut' });
     assert.equal(count(), both);
     first.dispose();
     assert.equal(count(), both, 'the second is made of the first');
@@ -761,13 +836,13 @@ describe('geometries', () => {
   test('take a result from elsewhere as it is, but not one of what they were', () => {
     const target = meshOf(scene.target);
     const result = transfer(extract(cage(), 'cage').mesh, extract(target).mesh);
-    const applied = applyTransfer(target, cage(), { result });
+    const applied = applyTransfer(target, { cage: cage(), result });
     assert.equal(applied.result, result);
     assert.ok(applied.splitVertices > 0);
-    const again = applyTransfer(target, cage(), { result });
+    const again = applyTransfer(target, { cage: cage(), result });
     assert.equal(again.splitVertices, applied.splitVertices);
     target.geometry = target.geometry.clone();
-    assert.throws(() => applyTransfer(target, cage(), { result }), {
+    assert.throws(() => applyTransfer(target, { cage: cage(), result }), {
       message: /zones has \d+ entries, the target needs/,
     });
   });
@@ -779,12 +854,12 @@ describe('saved transfers', () => {
   for (const borders of ['triangle', 'cut'] as const) {
     test(`give the same geometry and the same result, without a cage (borders: ${borders})`, () => {
       const [first, second] = [meshOf(scene.target), meshOf(scene.target)];
-      const applied = applyTransfer(first, cage(), { texture, borders });
-      const again = applyTransfer(second, undefined, { texture, saved: deserialize(serialize(applied)) });
+      const applied = applyTransfer(first, { cage: cage(), texture, borders });
+      const again = applyTransfer(second, { texture, saved: deserialize(serialize(applied)) });
       assert.deepEqual(arraysOf(second), arraysOf(first));
       assert.deepEqual(again.result, applied.result);
       assert.deepEqual([again.splitVertices, again.cutTriangles], [applied.splitVertices, applied.cutTriangles]);
-      for (const one of [applied, again]) one.update(strict());
+      for (const one of [applied, again]) one.setClassification(strict());
       assert.deepEqual(arraysOf(second), arraysOf(first));
       assert.deepEqual(serialize(again), serialize(applied));
     });
@@ -792,7 +867,7 @@ describe('saved transfers', () => {
 
   test('have a key that depends on target, cage and options', () => {
     const keyOf = (target: Mesh, around: Mesh, options = {}) =>
-      deserialize(serialize(applyTransfer(meshOf(target), meshOf(around), options))).key;
+      deserialize(serialize(applyTransfer(meshOf(target), { cage: meshOf(around), ...options }))).key;
     const scaled = (mesh: Mesh, by: number) => ({ ...mesh, positions: mesh.positions.map((x) => by * x) });
     const { target, cage } = scene;
     const keys = [
@@ -808,7 +883,7 @@ describe('saved transfers', () => {
   });
 
   test('of another target, damaged ones and others are errors; bytes in a Buffer are read, and copied', () => {
-    const bytes = serialize(applyTransfer(meshOf(scene.target), cage()));
+    const bytes = serialize(applyTransfer(meshOf(scene.target), { cage: cage() }));
     const large = Buffer.concat([Buffer.alloc(5), bytes]);
     const saved = deserialize(large.subarray(5));
     large.fill(255);
@@ -817,7 +892,7 @@ describe('saved transfers', () => {
     const moved = meshOf(scene.target);
     moved.position.x = 1;
     for (const target of [other, moved])
-      assert.throws(() => applyTransfer(target, undefined, { saved }), /is of another target or .*as it was$/);
+      assert.throws(() => applyTransfer(target, { saved }), /is of another target or .*as it was$/);
     const changed = (at: number, to: (byte: number) => number) => bytes.map((byte, i) => (i === at ? to(byte) : byte));
     for (const [wrong, message] of [
       [new Uint8Array(3), /is nothing that serialize wrote \(3 bytes\)/],
@@ -839,10 +914,10 @@ describe('applyTransferAsync', () => {
   test('gives what applyTransfer gives, and its errors', async () => {
     const [first, second] = [meshOf(scene.target), meshOf(scene.target)];
     const options = { texture, borders: 'cut' } as const;
-    const applied = applyTransfer(first, cage(), options);
+    const applied = applyTransfer(first, { cage: cage(), ...options });
     const shares: [number, string][] = [];
     const onProgress = (...share: [number, string]) => void shares.push(share);
-    const later = await applyTransferAsync(second, cage(), { ...options, onProgress });
+    const later = await applyTransferAsync(second, { cage: cage(), ...options, onProgress });
     assert.deepEqual(arraysOf(second), arraysOf(first));
     assert.deepEqual(later.result.zones, applied.result.zones);
     assert.deepEqual(
@@ -850,7 +925,7 @@ describe('applyTransferAsync', () => {
       ['transfer', 'geometry', 'done'],
     );
     assert.ok(shares.every(([share], i) => share > (shares[i - 1]?.[0] ?? 0)) && shares.at(-1)![0] === 1);
-    await assert.rejects(applyTransferAsync(new Group(), cage()), { code: 'emptyMesh' });
+    await assert.rejects(applyTransferAsync(new Group(), { cage: cage() }), { code: 'emptyMesh' });
     terminate();
   });
 
@@ -872,19 +947,19 @@ describe('applyTransferAsync', () => {
       }
     } as typeof MessageChannel;
     try {
-      await applyTransferAsync(many(), cage(), { texture });
+      await applyTransferAsync(many(), { cage: cage(), texture });
       assert.ok(tasks > 50, `${tasks} tasks`);
       const left = many();
       const before = arraysOf(left);
       const controller = new AbortController();
       const onProgress = (_: number, stage: string) => stage === 'geometry' && controller.abort(new Error('enough'));
       await assert.rejects(
-        applyTransferAsync(left, cage(), { texture, signal: controller.signal, onProgress }),
+        applyTransferAsync(left, { cage: cage(), texture, signal: controller.signal, onProgress }),
         /enough/,
       );
       assert.deepEqual(arraysOf(left), before);
       await assert.rejects(
-        applyTransferAsync(left, cage(), { signal: AbortSignal.abort(new Error('no')) }),
+        applyTransferAsync(left, { cage: cage(), signal: AbortSignal.abort(new Error('no')) }),
         /^Error: no$/,
       );
     } finally {
@@ -899,9 +974,12 @@ describe('applyTransferAsync', () => {
       (target) => (target.geometry = geometryOf(scene.target)),
       { code: 'badArgument', message: /was changed meanwhile/ },
     ],
-    'splits vertices by a transfer': [(target) => applyTransfer(target, cage(), { texture }), { code: 'superseded' }],
+    'splits vertices by a transfer': [
+      (target) => applyTransfer(target, { cage: cage(), texture }),
+      { code: 'superseded' },
+    ],
     'cuts triangles by a transfer': [
-      (target) => applyTransfer(target, cage(), { borders: 'cut' }),
+      (target) => applyTransfer(target, { cage: cage(), borders: 'cut' }),
       { code: 'superseded' },
     ],
   };
@@ -909,7 +987,7 @@ describe('applyTransferAsync', () => {
     test(`is an error if somebody ${name} meanwhile, whose work stays as it is`, async () => {
       const [target, other] = [meshOf(scene.target), meshOf(scene.target)];
       const onProgress = (_: number, stage: string) => stage === 'geometry' && change(target);
-      const work = applyTransferAsync(target, cage(), { texture, onProgress });
+      const work = applyTransferAsync(target, { cage: cage(), texture, onProgress });
       await assert.rejects(work, expected);
       change(other);
       assert.deepEqual(arraysOf(target), arraysOf(other));
@@ -922,8 +1000,8 @@ describe('applyTransferAsync', () => {
       const options = { texture, borders };
       const [first, alone] = [meshOf(scene.target), meshOf(scene.target)];
       const second = first.clone();
-      await Promise.all([first, second].map((target) => applyTransferAsync(target, cage(), options)));
-      applyTransfer(alone, cage(), options);
+      await Promise.all([first, second].map((target) => applyTransferAsync(target, { cage: cage(), ...options })));
+      applyTransfer(alone, { cage: cage(), ...options });
       assert.notEqual(first.geometry, second.geometry);
       for (const one of [first, second]) assert.deepEqual(arraysOf(one), arraysOf(alone));
       terminate();
@@ -932,10 +1010,12 @@ describe('applyTransferAsync', () => {
 
   test('the last of several calls for a model counts', async () => {
     const target = meshOf(scene.target);
-    const calls = [0.2, 0.4, 0.6].map((threshold) => applyTransferAsync(target, cage(), { threshold, borders: 'cut' }));
+    const calls = [0.2, 0.4, 0.6].map((threshold) =>
+      applyTransferAsync(target, { cage: cage(), threshold, borders: 'cut' }),
+    );
     const all = await Promise.all(calls);
     const alone = meshOf(scene.target);
-    applyTransfer(alone, cage(), { threshold: 0.6, borders: 'cut' });
+    applyTransfer(alone, { cage: cage(), threshold: 0.6, borders: 'cut' });
     assert.deepEqual(arraysOf(target), arraysOf(alone));
     for (const one of all.reverse()) one.dispose();
     assert.deepEqual(arraysOf(target), arraysOf(meshOf(scene.target)));
@@ -958,7 +1038,7 @@ describe('applyTransferAsync', () => {
       },
     });
     geometry.setAttribute('heat', heat);
-    const work = applyTransferAsync(target, cage(), { texture });
+    const work = applyTransferAsync(target, { cage: cage(), texture });
     await assert.rejects(work, { code: 'badArgument', message: /was changed meanwhile/ });
     assert.ok(geometry.hasAttribute('late') && !geometry.hasAttribute('uv1'));
     for (const one of Object.values(geometry.attributes)) assert.equal(one.count, heat.count);
@@ -971,7 +1051,7 @@ for (const matrixAutoUpdate of [true, false]) {
     const target = meshOf(scene.target);
     const texture = Object.assign(new Texture(), { matrixAutoUpdate });
     texture.offset.set(0.25, 0.5);
-    applyTransfer(target, cage(), { texture });
+    applyTransfer(target, { cage: cage(), texture });
     const { material } = target;
     const { cagecastMatrix } = compiled(material) as Record<string, { value: Matrix3 }>;
     const draw = () => {

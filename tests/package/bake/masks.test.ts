@@ -109,7 +109,7 @@ describe('masks of loaded models', () => {
     geometry.setAttribute('color', new BufferAttribute(colors, 3));
     const masks = modelMasks(geometry, { attribute: 'color' });
     assert.ok(masks.vertices!.every((mask) => mask === -1));
-    const { result } = applyTransfer(geometry, new SphereGeometry(1, 16, 12), { masks });
+    const { result } = applyTransfer(geometry, { cage: new SphereGeometry(1, 16, 12), masks });
     assert.ok(result.cosmeticTriangles.every((one) => one === 0));
     assert.throws(
       () => modelMasks(geometry, { attribute: '_mask' }),
@@ -159,7 +159,7 @@ describe('masks of loaded models', () => {
       [() => maskTriangles(mesh, null as never), /^maskTriangles: images is null, not an object$/],
       [
         () => modelMasks(plane(), { nevr: texture(image) } as object),
-        /^modelMasks: options\.nevr is not an option; there are: never, always, attribute, parts$/,
+        /^modelMasks: options\.nevr is not an option; modelMasks takes: never, always, attribute, parts$/,
       ],
       [() => modelMasks(plane(), texture(image) as object), /^modelMasks: options\.\w+ is not an option/],
       [() => modelMasks(plane(), undefined as never), /^modelMasks: options is undefined, not an object$/],

@@ -155,6 +155,7 @@ test('a line says why next to nothing may be painted, and what helps', async () 
     maker.json.materials = [{ doubleSided: true }];
     maker.node({ name: 'shell', mesh: maker.mesh({ ...shell, indices: inward }, { material: 0 }) });
   });
+  write('within.glb', glbOf({ ...ball([0, 0, 0], () => 0.5, 60, 80) }));
   writeMade('half.glb', (maker) => {
     const front = within(cage, (x) => x > 0.9);
     maker.node({ name: 'cap', mesh: maker.mesh(front) });
@@ -171,6 +172,10 @@ test('a line says why next to nothing may be painted, and what helps', async () 
     [
       'transfer target.glb --cage half.glb --preset paper',
       /^nothing .* covers only [\d.]+ % of .* "only"; try --keep "only" or a /m,
+    ],
+    [
+      'transfer cage.glb --cage within.glb',
+      /^nothing may be painted: target and cage seem to be exchanged; exchange them$/m,
     ],
     [
       'transfer target.glb --cage cage.glb --exclude only',

@@ -1,7 +1,22 @@
 // Layers of paint in one texture. Runs in the browser.
 import { applyTransfer } from 'cagecast/three';
-import { type Blend, createLayers, createPainter, LayerPainter } from 'cagecast/three/paint';
-import { DataTexture, MeshBasicMaterial, SRGBColorSpace, WebGLRenderer } from 'three';
+import {
+  type Blend,
+  createLayers,
+  createPainter,
+  LayerPainter,
+  type Painter,
+  type SavedLayers,
+} from 'cagecast/three/paint';
+import {
+  DataTexture,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  MeshBasicMaterial,
+  SRGBColorSpace,
+  type Texture,
+  WebGLRenderer,
+} from 'three';
 import {
   cage,
   clear,
@@ -11,9 +26,12 @@ import {
   equal,
   filled,
   flat,
+  halves,
+  loseContext,
   modelOf,
   near,
   ok,
+  pixelAt,
   refuses,
   renderer,
   type Scenes,
@@ -150,6 +168,142 @@ export const layerScenes: Scenes = {
     layers.dispose();
   },
 
+  'a layer with a region is seen within it only, with its strokes, and beside others'() {
+    const around = cage();
+    const [left, right] = [0, 0.5].map((u) => [[u, 0], [u + 0.5, 0], [u + 0.5, 1], [u, 1]]); // biome-ignore format: corners
+    around.geometry.userData = { regions: { left: [left], right: [right] } };
+    const layers = createLayers({ renderer, cage: around, size: 256 });
+    for (let i = 0; i < 10; ++i) layers.add(clear(0, 0));
+    layers.add(flat(0xdd3311), { region: 'left' });
+    layers.add(flat(0x1133dd), { region: 'right', opacity: 0.5 });
+    const at = (u: number) => [...layers.toImageData().data.subarray(4 * (128 * 256 + u), 4 * (128 * 256 + u) + 4)];
+    near([...at(64), ...at(192)], [0xdd, 0x33, 0x11, 255, 0x11, 0x33, 0xdd, 128], 1);
+    layers.set(layers.list[10]!, { region: null });
+    near([...at(64), at(192)[3]!], [0xdd, 0x33, 0x11, 255, 255], 1);
+    layers.undo();
+    for (const { id } of layers.list.slice(0, 3)) layers.remove({ id });
+    const painter = createPainter({ renderer, layers, applied: [], cage: around });
+    painter.addLayer();
+    layers.set(layers.list.at(-1)!, { region: 'left' });
+    painter.stroke(
+      [0.25, 0.75].map((x) => ({ x, y: 0.5 })),
+      { color: '#00ff00', size: 2, hardness: 1 },
+    );
+    near([...at(64), ...at(192)], [0, 255, 0, 255, 0x11, 0x33, 0xdd, 128], 1);
+    painter.dispose();
+    layers.dispose();
+  },
+
+  async 'saved layers look the same on another model, and are painted on further'() {
+    const around = cage();
+    around.geometry.userData = { regions: { left: [[[0, 0], [0.5, 0], [0.5, 1], [0, 1]]] } }; // biome-ignore format: corners
+    const first = createPainter({ renderer, applied: [], cage: around });
+    first.layers.add(halves(0xdd3311, 0x1133dd), { name: 'ground', tint: '#ffccee' });
+    first.stroke(
+      [
+        { x: 0.3, y: 0.4 },
+        { x: 0.6, y: 0.6 },
+      ],
+      { color: '#118800', size: 0.3, opacity: 0.7 },
+    );
+    first.sticker({ text: '07', color: '#ffffff', outline: '#000000' }, { at: { x: 0.4, y: 0.5 }, size: 0.4 });
+    first.layers.add(clear(0xeecc44, 150), { blend: 'multiply', opacity: 0.6, region: 'left' });
+    first.layers.add(flat(0), { visible: false });
+    const saved: SavedLayers = JSON.parse(JSON.stringify(await first.layers.save()));
+    const model = plain();
+    const second = createPainter({ renderer, applied: applyTransfer(model, { cage: around }), cage: around });
+    second.layers.add(flat(0x00ff00));
+    await second.layers.load(saved);
+    const look = ({ layers }: Painter) => [...layers.toImageData(256).data];
+    near(look(second), look(first), 3);
+    const styles = ({ layers }: Painter) => layers.list.map(({ id: _, sheet: __, ...style }) => style);
+    equal(styles(second), styles(first));
+    const before = look(first);
+    for (const one of [first, second]) {
+      one.erase([{ x: 0.45, y: 0.5 }], { size: 0.1, opacity: 1 });
+      equal(one.layers.list.length, 4);
+    }
+    near(look(second), look(first), 4);
+    ok(difference(look(first), before) > 20, 'nothing is erased');
+    await loseContext();
+    near(look(second), look(first), 4);
+    second.undo();
+    equal(second.undo(), 'loading layers');
+    equal(second.layers.list.length, 1);
+    for (const one of [first, second]) {
+      one.dispose();
+      one.layers.dispose();
+    }
+  },
+
+  'a layer lies as its texture does by itself, upside down or not'() {
+    for (const flipY of [false, true]) {
+      const texture = new DataTexture(
+        Uint8Array.from({ length: 256 }, (_, at) => [at < 128 ? 255 : 0, 0, at < 128 ? 0 : 255, 255][at % 4]!),
+        1,
+        64,
+      );
+      Object.assign(texture, { flipY, colorSpace: SRGBColorSpace, needsUpdate: true });
+      const [layered, textured] = [plain(), plain()];
+      const layers = createLayers({ renderer });
+      layers.add(texture);
+      layers.update();
+      applyTransfer(layered, { cage: cage(), texture: layers.texture });
+      applyTransfer(textured, { cage: cage(), texture });
+      const [a, b] = [draw(layered).pixels, draw(textured).pixels];
+      const red = (pixels: number[]) => [20, 44].map((y) => pixelAt(pixels, 32, y)[0]! > 100);
+      for (const pixels of [a, b]) equal(red(pixels), [!flipY, flipY]);
+      layers.dispose();
+    }
+  },
+
+  'around what lies on transparent black no dark fringe is seen: of layers never, of a texture where it is enlarged'() {
+    // Discs in the light colour of the model, which so are not seen at all.
+    const discs = (size: number) => {
+      const data = Uint8Array.from({ length: 4 * size * size }, (_, at) => {
+        const [x, y] = [(at >> 2) % size, Math.floor((at >> 2) / size)].map((k) => ((8 * k) / size) % 1);
+        return Math.hypot(x! - 0.5, y! - 0.5) < 0.3 ? [0xbb, 0xbb, 0xbb, 255][at % 4]! : 0;
+      });
+      const settings = { minFilter: LinearMipmapLinearFilter, magFilter: LinearFilter, generateMipmaps: true };
+      const texture = Object.assign(new DataTexture(data, size, size), settings);
+      return Object.assign(texture, { colorSpace: SRGBColorSpace, needsUpdate: true });
+    };
+    const bare = draw(plain()).pixels;
+    const shown = (texture: Texture) => {
+      const model = plain();
+      applyTransfer(model, { cage: cage(), texture });
+      return draw(model).pixels;
+    };
+    for (const size of [32, 512]) {
+      const layers = createLayers({ renderer });
+      layers.add(discs(size));
+      layers.update();
+      ok(difference(shown(layers.texture), bare) < 4, `layer of ${size} texels`);
+      layers.dispose();
+    }
+    const seen = shown(discs(32));
+    for (let at = 24; at < 40; ++at) near(pixelAt(seen, at, 32), pixelAt(bare, at, 32), 3);
+  },
+
+  'a texture of colours without a colour space is told of once'() {
+    const heard: string[] = [];
+    const { warn } = console;
+    console.warn = (text: string) => void heard.push(text);
+    const textures = [1, 2].map((n) => Object.assign(flat(0xdd3311), { colorSpace: '', name: `paint ${n}` }));
+    const layers = createLayers({ renderer });
+    layers.add(textures[0]!);
+    for (let i = 0; i < 2; ++i) layers.toImageData(16);
+    const model = plain();
+    applyTransfer(model, { cage: cage(), texture: textures[1]! });
+    for (let i = 0; i < 2; ++i) draw(model);
+    console.warn = warn;
+    equal(
+      heard.map((text) => /"(paint \d)" has no colour space/.exec(text)?.[1]),
+      ['paint 1', 'paint 2'],
+    );
+    layers.dispose();
+  },
+
   'a layer that is added with all that another one has stays a layer of its own'() {
     const layers = createLayers({ renderer, size: 256 });
     const first = layers.add(flat(0xff0000), { name: 'red' });
@@ -161,11 +315,11 @@ export const layerScenes: Scenes = {
   'one stack is shown on several models as a texture would be, and drawn again only after a change'() {
     const layers = createLayers({ renderer });
     const models = [plain(), plain()];
-    const applied = models.map((model) => applyTransfer(model, cage()));
+    const applied = models.map((model) => applyTransfer(model, { cage: cage() }));
     for (const one of applied) one.setTexture(layers.texture);
     const layer = layers.add(clear(0xdd3311, 120));
     const textured = plain();
-    applyTransfer(textured, cage(), { texture: clear(0xdd3311, 120) });
+    applyTransfer(textured, { cage: cage(), texture: clear(0xdd3311, 120) });
     const looksLike = (model: ReturnType<typeof plain>, most: number) => {
       layers.update();
       for (const one of models) near(draw(one).pixels, draw(model).pixels, most);

@@ -87,7 +87,7 @@ function made(kind: string, color: number, opacity: number): Material {
 }
 
 const red = (model: Object3D, layer = 0): number => colorsOf(model, layer)[0]!;
-const paint = (model: Object3D) => applyTransfer(model, cage(), { texture: flat(kPaint) });
+const paint = (model: Object3D) => applyTransfer(model, { cage: cage(), texture: flat(kPaint) });
 
 export const materialScenes: Scenes = {
   'paint takes on the shading of the material below, and its opacity, without a draw call'() {
@@ -109,10 +109,10 @@ export const materialScenes: Scenes = {
     const { geometry } = models[1]!.children[0] as Mesh;
     geometry.setAttribute('uv1', new BufferAttribute(new Float32Array(2 * geometry.getAttribute('position').count), 2));
     const look = () => models.map((model) => colorsOf(model).slice(0, 2));
-    applyTransfer(models[0]!, cage(), { texture });
+    applyTransfer(models[0]!, { cage: cage(), texture });
     const alone = look()[0]!;
     ok(Math.min(...alone) > 100, alone);
-    applyTransfer(models[1]!, cage(), { texture });
+    applyTransfer(models[1]!, { cage: cage(), texture });
     equal(look(), [alone, alone]);
     for (const model of models) ((model.children[0] as Mesh).material as Material).needsUpdate = true;
     equal(look(), [alone, alone], 'the picture by programs that were compiled again');
@@ -213,7 +213,7 @@ export const materialScenes: Scenes = {
       }
       return model;
     });
-    applyTransfer(models[1]!, cage(), { texture: flat(kPaint), threshold: 0 });
+    applyTransfer(models[1]!, { cage: cage(), texture: flat(kPaint), threshold: 0 });
     equal(
       models.map((model) => draw(model).calls),
       [30, 30],
@@ -258,7 +258,7 @@ export const materialScenes: Scenes = {
     const look = () => (difference(draw(model).pixels, bare) === 0 ? 'bare' : colorsSeen());
     const colorsSeen = () => lookOf(model);
     const texture = halves(0xff0000, 0x00ff00);
-    const applied = applyTransfer(model, cage(), { texture });
+    const applied = applyTransfer(model, { cage: cage(), texture });
     equal(look(), 'red,green');
     const { pixels } = draw(model);
     texture.offset.x = 0.25;
@@ -272,7 +272,7 @@ export const materialScenes: Scenes = {
       [() => (mesh.material = mesh.material.clone()), 'bare'],
       [() => applied.paint(mesh.material), 'red'],
       [() => applied.dispose(), 'bare'],
-      [() => applyTransfer(model, cage(), { texture: flat(0x00ff00) }), 'green'],
+      [() => applyTransfer(model, { cage: cage(), texture: flat(0x00ff00) }), 'green'],
     ];
     for (const [change, seen] of changes) {
       change();
@@ -282,14 +282,17 @@ export const materialScenes: Scenes = {
 
   'updates of an overlay leave nothing on the GPU'() {
     const model = modelOf(white());
-    const { result, update, dispose } = applyTransfer(model, cage(), { material: new MeshBasicMaterial() });
+    const { result, setClassification, dispose } = applyTransfer(model, {
+      cage: cage(),
+      material: new MeshBasicMaterial(),
+    });
     const geometries = () => {
       draw(model);
       return renderer.info.memory.geometries;
     };
     const first = geometries();
     for (let i = 0; i < 6; ++i) {
-      update(result);
+      setClassification(result);
       equal(geometries(), first);
     }
     dispose();
@@ -301,7 +304,7 @@ export const materialScenes: Scenes = {
     const counts = [first, last].flatMap((material) => {
       material.color.set(0xff0000);
       const model = modelOf(base);
-      applyTransfer(model, cage(), { material });
+      applyTransfer(model, { cage: cage(), material });
       return [red(model), red(clone(model))];
     });
     ok(counts[0]! > 100 && new Set(counts).size === 1, counts);
@@ -314,7 +317,7 @@ export const materialScenes: Scenes = {
     around.setIndex([...around.index!.array].filter((_, i, all) => array[3 * all[i - (i % 3)]! + 1]! < 0.3));
     const [hard, soft] = [0, 0.25].map((feather) => {
       const model = modelOf(new MeshBasicMaterial({ color: 0x0000ff }));
-      applyTransfer(model, new Mesh(around), { texture: flat(0xff0000), feather });
+      applyTransfer(model, { cage: new Mesh(around), texture: flat(0xff0000), feather });
       const { pixels } = draw(model);
       // From below upwards, through the middle.
       return Array.from({ length: kSize }, (_, y) => pixelAt(pixels, kSize / 2, y)[0]!);
@@ -354,4 +357,4 @@ export const materialScenes: Scenes = {
   },
 };
 
-const paintWith = (model: Object3D, around: Mesh) => applyTransfer(model, around, { texture: flat(kPaint) });
+const paintWith = (model: Object3D, around: Mesh) => applyTransfer(model, { cage: around, texture: flat(kPaint) });

@@ -29,6 +29,7 @@ import {
   filled,
   flat,
   kSize,
+  loseContext,
   modelOf,
   near,
   ok,
@@ -52,7 +53,7 @@ interface Painted {
 }
 
 function paintedBall(model: Object3D = modelOf(white()), layers?: Layers): Painted {
-  const applied = applyTransfer(model, cage());
+  const applied = applyTransfer(model, { cage: cage() });
   const painter = createPainter({ renderer, layers, applied, cage: cage() });
   painter.brush.color = '#ff0000';
   const look = (): number[] => {
@@ -64,20 +65,6 @@ function paintedBall(model: Object3D = modelOf(white()), layers?: Layers): Paint
 }
 
 const isRed = ([r, g]: number[]): boolean => r! > 200 && g! < 40;
-
-/** Loses the graphics context, and gets it back. @param meanwhile  What is done without it. */
-async function loseContext(meanwhile = (): void => {}): Promise<void> {
-  // It cannot be restored before the event has ended.
-  const event = (name: string) =>
-    new Promise((done) => renderer.domElement.addEventListener(name, () => setTimeout(done), { once: true }));
-  const lost = event('webglcontextlost');
-  renderer.forceContextLoss();
-  await lost;
-  meanwhile();
-  const restored = event('webglcontextrestored');
-  renderer.forceContextRestore();
-  await restored;
-}
 
 /** A white image, laid out on the page in another size than its own. */
 async function shownImage(width: number, height: number): Promise<HTMLImageElement> {
@@ -219,7 +206,7 @@ const strokes: Scenes = {
   },
 
   'the texture below new layers cannot be undone; given layers stay as they are'() {
-    const applied = applyTransfer(modelOf(white()), cage());
+    const applied = applyTransfer(modelOf(white()), { cage: cage() });
     const options = { texture: clear(0xff0000, 255), applied, cage: cage() };
     const { layers } = createPainter({ ...options, renderer });
     equal([layers.undo(), layers.list.length], [undefined, 1]);
@@ -479,7 +466,7 @@ const pointers: Scenes = {
     for (let i = 0; i < 16; ++i) layers.add(clear(0, 0));
     const { painter } = paintedBall(modelOf(white()), layers);
     const reported: string[] = [];
-    painter.onError = ({ message }) => reported.push(message);
+    painter.on('error', ({ message }) => void reported.push(message));
     withPointers((send) => {
       painter.listen(camera);
       send('pointerdown', 32, 32);

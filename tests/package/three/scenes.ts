@@ -219,3 +219,17 @@ export function commandsOf(model: Object3D): number {
   for (const [name] of methods) delete own[name];
   return count;
 }
+
+/** Loses the graphics context, and gets it back. @param meanwhile  What is done without it. */
+export async function loseContext(meanwhile = (): void => {}): Promise<void> {
+  // It cannot be restored before the event has ended.
+  const event = (name: string) =>
+    new Promise((done) => renderer.domElement.addEventListener(name, () => setTimeout(done), { once: true }));
+  const lost = event('webglcontextlost');
+  renderer.forceContextLoss();
+  await lost;
+  meanwhile();
+  const restored = event('webglcontextrestored');
+  renderer.forceContextRestore();
+  await restored;
+}

@@ -48,7 +48,7 @@ export const sharingScenes: Scenes = {
     const model = new Group().add(head, body);
     const lower = () => countOf(draw(model).pixels.slice(0, (4 * kSize * kSize) / 2), 0);
     const before = lower();
-    applyTransfer(head, around, { texture: red() });
+    applyTransfer(head, { cage: around, texture: red() });
     equal(lower(), before);
   },
 
@@ -68,7 +68,7 @@ export const sharingScenes: Scenes = {
           }`,
       });
       const model = modelOf(material);
-      return { model, applied: applyTransfer(model, cage(), { texture }) };
+      return { model, applied: applyTransfer(model, { cage: cage(), texture }) };
     }) as [{ model: Group; applied: ReturnType<typeof applyTransfer> }, { model: Group }];
     const look = () => [lookOf(a.model), lookOf(b.model)];
     for (let frame = 0; frame < 2; ++frame) equal(look(), ['red', 'green']);
@@ -88,12 +88,12 @@ export const sharingScenes: Scenes = {
     }
     const own = modelOf(new Own({ color: 0xbbbbbb }));
     draw(own);
-    applyTransfer(own, cage(), { texture: red() });
+    applyTransfer(own, { cage: cage(), texture: red() });
     equal(lookOf(own), 'red', 'the look of a class that reads what is private');
 
     const wrapped = white();
     const model = modelOf(wrapped);
-    const first = applyTransfer(model, cage(), { texture: red() });
+    const first = applyTransfer(model, { cage: cage(), texture: red() });
     draw(model);
     const { onBeforeCompile, customProgramCacheKey } = wrapped;
     wrapped.onBeforeCompile = (shader, one) => {
@@ -108,17 +108,17 @@ export const sharingScenes: Scenes = {
     equal([isRed(), isBlue()], [true, true], 'red and blue of a hook that wraps ours');
     first.dispose();
     equal([isRed(), isBlue()], [false, true]);
-    applyTransfer(model, cage(), { texture: red() });
+    applyTransfer(model, { cage: cage(), texture: red() });
     equal([isRed(), isBlue()], [true, true]);
 
     const replaced = white();
     const other = modelOf(replaced);
-    applyTransfer(other, cage(), { texture: red() });
+    applyTransfer(other, { cage: cage(), texture: red() });
     replaced.onBeforeRender = () => {};
     equal(lookOf(other), 'red', 'the look after onBeforeRender was replaced');
 
     // A hook that is replaced takes the paint away, until the next texture.
-    const third = applyTransfer(model, cage(), { texture: red() });
+    const third = applyTransfer(model, { cage: cage(), texture: red() });
     equal([isRed(), isBlue()], [true, true]);
     wrapped.onBeforeCompile = () => {};
     wrapped.needsUpdate = true;
@@ -129,12 +129,12 @@ export const sharingScenes: Scenes = {
 
   'a transfer that was replaced changes nothing any more'() {
     const model = modelOf(white());
-    const first = applyTransfer(model, cage(), { texture: red() });
-    const second = applyTransfer(model, cage(), { texture: green() });
+    const first = applyTransfer(model, { cage: cage(), texture: red() });
+    const second = applyTransfer(model, { cage: cage(), texture: green() });
     equal(lookOf(model), 'green');
     first.setTexture(blue());
     equal(lookOf(model), 'green');
-    first.update(first.result);
+    first.setClassification(first.result);
     second.setOpacity(0);
     equal(lookOf(model), 'none');
     second.setOpacity(1);
@@ -144,13 +144,13 @@ export const sharingScenes: Scenes = {
 
   'a transfer shows its paint again when one in another channel is disposed of, not if one has taken its place'() {
     const model = modelOf(white());
-    const look = applyTransfer(model, cage(), { texture: red() });
-    const other = applyTransfer(model, cage(), { texture: green(), channel: 2 });
+    const look = applyTransfer(model, { cage: cage(), texture: red() });
+    const other = applyTransfer(model, { cage: cage(), texture: green(), channel: 2 });
     equal(lookOf(model), 'green');
     other.dispose();
     look.setTexture(blue());
     equal(lookOf(model), 'blue');
-    applyTransfer(model, cage(), { texture: green() }).dispose();
+    applyTransfer(model, { cage: cage(), texture: green() }).dispose();
     look.setTexture(blue());
     equal(lookOf(model), 'none');
   },
@@ -158,11 +158,11 @@ export const sharingScenes: Scenes = {
   'the material of two models goes on showing the paint of each, whichever transfers end'() {
     const shared = white();
     const [a, b] = [modelOf(shared), modelOf(shared)];
-    applyTransfer(a, cage(), { texture: red() });
-    const first = applyTransfer(b, cage(), { texture: green() });
+    applyTransfer(a, { cage: cage(), texture: red() });
+    const first = applyTransfer(b, { cage: cage(), texture: green() });
     const look = () => [lookOf(a), lookOf(b)];
     equal(look(), ['red', 'green']);
-    const second = applyTransfer(b, cage(), { texture: blue() });
+    const second = applyTransfer(b, { cage: cage(), texture: blue() });
     equal(look(), ['red', 'blue']);
     first.dispose();
     equal(look(), ['red', 'blue']);
@@ -191,13 +191,13 @@ export const sharingScenes: Scenes = {
         equal(colorsOf(other)[0], before, `the other mesh after ${what}`);
       };
       isDrawn('it was drawn');
-      const first = applyTransfer(model, around, { texture: blue() });
+      const first = applyTransfer(model, { cage: around, texture: blue() });
       ok(first.splitVertices > 0 || turn === 0, 'no vertex was split');
       isDrawn('a texture');
-      applyTransfer(model, around, { material: new MeshBasicMaterial({ color: 0x00ff00 }) });
+      applyTransfer(model, { cage: around, material: new MeshBasicMaterial({ color: 0x00ff00 }) });
       isDrawn('an overlay');
       const overlaid = colorsOf(model)[1]!;
-      const third = applyTransfer(model, around, { channel: 2 });
+      const third = applyTransfer(model, { cage: around, channel: 2 });
       isDrawn('other UVs');
       third.dispose();
       isDrawn('the end of those');
@@ -205,7 +205,7 @@ export const sharingScenes: Scenes = {
       isDrawn('the end of the texture');
       share(shared); // what the model has now
       isDrawn('it shares again');
-      const fourth = applyTransfer(model, around, { channel: 2 });
+      const fourth = applyTransfer(model, { cage: around, channel: 2 });
       isDrawn('other UVs again');
       fourth.dispose();
       isDrawn('the end of all');
@@ -237,7 +237,7 @@ export const sharingScenes: Scenes = {
       equal(new Set(counts).size, 1, `${what}: ${counts.join(' ')}; the number of different counts`);
     };
     const programs = () => renderer.info.programs!.length;
-    const applied = applyTransfer(model, cage(), { texture });
+    const applied = applyTransfer(model, { cage: cage(), texture });
     const toggle = () => {
       draw(model);
       applied.setTexture(undefined);
@@ -247,7 +247,7 @@ export const sharingScenes: Scenes = {
     repeat('textures', toggle, programs);
     applied.dispose();
     const apply = () => {
-      const one = applyTransfer(model, cage(), { texture });
+      const one = applyTransfer(model, { cage: cage(), texture });
       draw(model);
       one.dispose();
       draw(model);
@@ -256,7 +256,7 @@ export const sharingScenes: Scenes = {
     Object.assign(gl, { createBuffer, deleteBuffer });
     const around = cage();
     const paint = () => {
-      const one = applyTransfer(model, around, { texture });
+      const one = applyTransfer(model, { cage: around, texture });
       const painter = createPainter({ renderer, texture, applied: one, cage: around });
       painter.stroke([{ x: 0.3, y: 0.5 }]);
       painter.update();
@@ -274,11 +274,12 @@ export const sharingScenes: Scenes = {
     const [ofModel, ofMesh] = (['model', 'mesh'] as const).map((of) => {
       const one = skinned();
       one.model.position.x = 5;
-      return applyTransfer(one[of], around).result.cosmeticTriangles.filter((isCosmetic) => isCosmetic === 1).length;
+      return applyTransfer(one[of], { cage: around }).result.cosmeticTriangles.filter((isCosmetic) => isCosmetic === 1)
+        .length;
     });
     ok(ofModel! > 100 && ofMesh === ofModel, [ofModel, ofMesh]);
     const { model, bone } = skinned();
-    const applied = applyTransfer(model, cage(), { texture: red() });
+    const applied = applyTransfer(model, { cage: cage(), texture: red() });
     const painter = createPainter({ renderer, texture: red(), applied, cage: cage() });
     new Box3().setFromObject(model); // Three.js keeps this, too.
     ok(painter.pick(ray(kSize / 2, kSize / 2)), 'nothing is picked');
@@ -292,7 +293,7 @@ export const sharingScenes: Scenes = {
 
   'where a ray meets nothing, nothing is painted; a list of materials may have a gap'() {
     const model = modelOf(white());
-    const applied = applyTransfer(model, cage(), { texture: red() });
+    const applied = applyTransfer(model, { cage: cage(), texture: red() });
     const painter = createPainter({ renderer, texture: red(), applied, cage: cage() });
     const miss = painter.pick(ray(0, 0));
     equal(miss, undefined);
@@ -308,7 +309,7 @@ export const sharingScenes: Scenes = {
     geometry.addGroup(600, corners - 600, 2);
     const list = [white(), undefined, white()] as MeshStandardMaterial[];
     const gap = new Group().add(new Mesh(geometry, list));
-    applyTransfer(gap, cage(), { texture: red() });
+    applyTransfer(gap, { cage: cage(), texture: red() });
     equal(lookOf(gap), 'red');
   },
 
@@ -325,7 +326,7 @@ export const sharingScenes: Scenes = {
     const texture = new VideoTexture(video);
     texture.colorSpace = SRGBColorSpace;
     const model = modelOf(new MeshBasicMaterial());
-    const applied = applyTransfer(model, cage(), { texture });
+    const applied = applyTransfer(model, { cage: cage(), texture });
     texture.needsUpdate = true;
     const alone = middleOf(model);
     near(alone, [128, 128, 128]);

@@ -122,7 +122,7 @@ describe('the packed package', () => {
       const cage = new SphereGeometry(1, 16, 8, 0, 2 * Math.PI, 0, 2);
       // Before its vertices are split.
       const { positions, indices, ...rest } = extract(scene).mesh;
-      const applied: Applied = applyTransfer(scene, cage, { texture: new Texture(), threshold: 0.3 });
+      const applied: Applied = applyTransfer(scene, { cage, texture: new Texture(), threshold: 0.3 });
       const arrays: Arrays = extract(cage, 'cage').mesh;
       const inspection: Inspection = inspect(arrays, { positions, indices, ...rest }, { result: applied.result });
       const verdict: Verdict = inspection.verdict;
@@ -134,7 +134,7 @@ describe('the packed package', () => {
       document.createScene().addChild(document.createNode().setMesh(document.createMesh().addPrimitive(primitive)));
       await document.transform(cagecast({ cage: arrays }));
       const box = new Group().add(new Mesh(new BoxGeometry(1, 1, 1, 3, 3, 3)));
-      const { cutTriangles }: Applied = applyTransfer(box, cage, { borders: 'cut', threshold: 0.3, seams: 'vertex' });
+      const { cutTriangles }: Applied = applyTransfer(box, { cage, borders: 'cut', threshold: 0.3, seams: 'vertex' });
       // @ts-expect-error no such option
       void (() => cagecast({ cag: arrays }));
       console.log(verdict !== undefined, cutTriangles > 0 && cut.triangles.length - indices.length / 3 === cutTriangles, applied.splitVertices > 0, applied.overlays.length, primitive.listSemantics().join());`;

@@ -24,6 +24,16 @@ export interface Mesh {
 const noFloats = new Float32Array(0);
 const noGroups = new Uint32Array(0);
 
+/** What a loaded model is instead of arrays, and how it is read; `undefined` if something is none. */
+function readerOf(name: string, model: object): string | undefined {
+  const { isObject3D, isBufferGeometry, scene, getRoot } = model as Record<string, unknown>;
+  if (isObject3D || isBufferGeometry || (scene as { isObject3D?: boolean } | undefined)?.isObject3D)
+    return `a model of three.js; give extract(${name}, '${name}').mesh, by extract of cagecast/three`;
+  if (typeof getRoot !== 'function') return undefined;
+  const read = name === 'cage' || name === 'template' ? 'cageTemplate' : 'cageModel';
+  return `a document of glTF-Transform; give ${read}(${name}), by ${read} of cagecast/gltf`;
+}
+
 /**
  * Checks the types of a mesh's arrays and adds empty ones for those that are missing. The core checks the values.
  * @throws {CagecastError} `badArgument`
@@ -38,6 +48,8 @@ export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'templ
       details,
     );
   }
+  const reader = readerOf(name, mesh);
+  if (reader) throw new CagecastError('badArgument', fn, `${name} is ${reader}`, details);
   const given = mesh as Partial<Mesh>;
   const arrayOf = <Kind extends ArrayKind>(field: keyof Mesh, type: string, ...kinds: Kind[]) => {
     const value: unknown = given[field];

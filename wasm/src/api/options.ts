@@ -9,6 +9,7 @@ import {
   type ProjectStage,
   type ProjectSteps,
 } from '../generated/options.js';
+import { checkNames, type Fn, type OptionName, optionNames, optionsOf } from './option-names.js';
 
 /**
  * A named set of values for all options. `paper` is the method as published: *Cage-based Texture Transfer with Geometric
@@ -91,27 +92,8 @@ interface CheckedOptions {
   overrides: CoreOverrides;
 }
 
-/** For each function, the stages whose options it takes, and its other options. */
-const kFunctions = {
-  project: { stages: ['project'], others: ['reuse'] },
-  classify: { stages: ['classify'], others: ['locks', 'masks', 'reuse'] },
-  transfer: { stages: ['project', 'classify'], others: ['locks', 'masks', 'reuse'] },
-  cutBorders: { stages: ['project', 'classify'], others: ['locks', 'masks'] },
-} as const;
-type Fn = keyof typeof kFunctions;
-
 const kPresets: readonly Preset[] = ['default', 'paper'];
 const kLockNames: readonly Lock[] = ['auto', 'keep', 'exclude'];
-
-type OptionName = keyof typeof optionTable;
-
-/** The options of a function: those in `steps`, or the others. */
-const optionsOf = (fn: Fn, isStep: boolean): OptionName[] =>
-  (Object.keys(optionTable) as OptionName[]).filter(
-    (name) =>
-      optionTable[name].isStep === isStep &&
-      (kFunctions[fn].stages as readonly string[]).includes(optionTable[name].stage),
-  );
 
 /** The C++ enumeration of a choice. */
 function typeOf(name: string): string | undefined {
@@ -156,13 +138,9 @@ function presetOf(fn: string, name: string, preset: unknown): CoreOptions {
  * @throws {CagecastError} `badOption`
  */
 export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'default'): CheckedOptions {
-  const given = checkNames(fn, 'options', options, [
-    'preset',
-    ...optionsOf(fn, false),
-    'steps',
-    ...kFunctions[fn].others,
-  ]);
-  const steps = checkNames(fn, 'options.steps', given['steps'], optionsOf(fn, true));
+  const given = checkNames(fn, 'options', options, optionNames(fn));
+  const { steps: givenSteps = {} } = given;
+  const steps = checkNames(fn, 'options.steps', givenSteps, optionsOf(fn, true));
   const chosen = (given['preset'] ?? preset) as Preset;
   const core = presetOf(fn, 'options.preset', chosen);
   for (const name of optionsOf(fn, false))
@@ -174,14 +152,6 @@ export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'de
     core,
     overrides: { locks: checkLocks(fn, given['locks']), masks: checkMasks(fn, given['masks']) },
   };
-}
-
-function checkNames(fn: string, where: string, given: unknown = {}, known: readonly string[]): Record<string, unknown> {
-  if (!isRecord(given)) throw new CagecastError('badOption', fn, `${where} is ${show(given)}, not an object`);
-  const unknown = Object.keys(given).find((name) => !known.includes(name));
-  if (unknown !== undefined)
-    throw new CagecastError('badOption', fn, `${where}.${unknown} is not an option; ${fn} takes: ${known.join(', ')}`);
-  return given as Record<string, unknown>;
 }
 
 function checkValue(fn: string, where: string, name: OptionName, value: unknown): CoreValue {

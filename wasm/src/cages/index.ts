@@ -9,6 +9,7 @@
 import type { Mesh } from '../api/mesh.js';
 import { CagecastError } from '../index.js';
 import { type CallOptions, type OnProgress, WorkerQueue } from '../worker/queue.js';
+import { checkOrder } from './check-order.js';
 import { spawn } from './spawn-cages.js';
 import type {
   Cage,
@@ -78,12 +79,13 @@ export function makeCage(model: CageModel, options: MakeOptions & CageCallOption
  * @throws {CagecastError} `badModel`, `badTemplate` or `badLandmarks` if the model, the template or the landmarks cannot be used,
  * with the reason; else as `makeCage`.
  */
-export function fitCage(
+export async function fitCage(
   template: Template,
   model: CageModel,
   landmarks?: Landmarks,
   options: FitOptions & CageCallOptions = {},
 ): Promise<Fit> {
+  checkOrder(landmarks);
   return unreadOf('fitCage', model) ?? queue.withOptions('fitCage', [template, model, landmarks], options);
 }
 

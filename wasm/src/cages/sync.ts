@@ -29,6 +29,7 @@ import {
   checkRegions,
   checkTemplate,
 } from './check-arguments.js';
+import { checkOrder } from './check-order.js';
 import type {
   Cage,
   CageModel,
@@ -93,6 +94,7 @@ export function fitCage(
   landmarks?: Landmarks,
   options: FitOptions & SyncOptions = {},
 ): Fit {
+  checkOrder(landmarks);
   const kept = {
     holes: checkHoles('fitCage', 'template.holes', template?.holes),
     regions: checkRegions('fitCage', 'template.regions', template?.regions),

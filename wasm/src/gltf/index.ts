@@ -92,8 +92,8 @@ export function cagecast(options: CagecastOptions): Transform {
   const { borders, onResult, ...own } = options;
   return async function cagecast(document: Document): Promise<void> {
     const cuts = isCut('cagecast', borders);
-    const { target, result, cut, paint } = await transferDocument('cagecast', document, own, cuts);
-    const note = noteOf(target.mesh, result, target.parts);
+    const { target, around, result, cut, paint } = await transferDocument('cagecast', document, own, cuts);
+    const note = noteOf(target.mesh, result, target.parts, around);
     if (note) document.getLogger().warn(`cagecast: ${note}`);
     onResult?.(
       structuredClone(result),

@@ -13,7 +13,17 @@ const kUncoveredReach = 0.03;
 /** How many hidden vertices are asked for what hides them. */
 const kMaxAsked = 48;
 
-type Cause = 'elsewhere' | 'uncovered' | 'hidden' | 'threshold' | 'floor' | 'depth' | 'hole' | 'lock' | 'mask';
+type Cause =
+  | 'exchanged'
+  | 'elsewhere'
+  | 'uncovered'
+  | 'hidden'
+  | 'threshold'
+  | 'floor'
+  | 'depth'
+  | 'hole'
+  | 'lock'
+  | 'mask';
 
 /** Why next to nothing may be painted. */
 export interface Bare {
@@ -32,11 +42,13 @@ export interface Bare {
 /**
  * Finds out why nothing, or less than 5 % of what the cage covers, may be painted; `undefined` if more may. Cost: linear in the
  * triangles; where that is hidden, some 50 times as much.
+ * @param cage  As it was given. Default: it is not known, and so not whether it was exchanged with the target.
  */
 export function bareOf(
   target: Mesh,
   { zones, distances, segments, segmentStats }: TransferResult,
   parts: readonly PartName[],
+  cage?: Mesh,
 ): Bare | undefined {
   const areas = vertexAreas(target);
   const { diagonal } = boxOf(target.positions);
@@ -67,11 +79,27 @@ export function bareOf(
   const hider = zone === 1 ? hiderOf(target, concerned, partOf) : undefined;
   return {
     share,
-    cause: isElsewhere ? 'elsewhere' : zone === 2 ? 'uncovered' : zone === 1 ? 'hidden' : causeOf(stats),
+    cause:
+      share === 0 && cage && areExchanged(cage, target)
+        ? 'exchanged'
+        : isElsewhere
+          ? 'elsewhere'
+          : zone === 2
+            ? 'uncovered'
+            : zone === 1
+              ? 'hidden'
+              : causeOf(stats),
     part: parts[largest(partOf)]?.name ?? '',
     hider: parts[hider ?? -1]?.name ?? '',
     coverage: stats?.coverage ?? 0,
   };
+}
+
+/** Whether a cage seems to be the target: it has more triangles than that, and lies within its box. */
+function areExchanged(cage: Mesh, target: Mesh): boolean {
+  const [inner, outer] = [boxOf(cage.positions), boxOf(target.positions)];
+  const isWithin = inner.min.every((low, k) => low >= outer.min[k]! && inner.max[k]! <= outer.max[k]!);
+  return cage.indices.length > target.indices.length && isWithin;
 }
 
 /** Which rule culls a segment. */
@@ -132,6 +160,7 @@ function hitAt(from: Vector, way: Vector, a: Vector, b: Vector, c: Vector): numb
 
 /** What to do about each cause, by the names of options. */
 const kAdvice: Record<Cause, string> = {
+  exchanged: 'exchange them',
   elsewhere: 'put both in the same place and unit',
   uncovered: 'fit the cage around it',
   hidden: 'leave out what hides it, or set a smaller occlusionReach if that lies outside the cage',
@@ -147,6 +176,7 @@ const kAdvice: Record<Cause, string> = {
 export function bareText({ share, cause, part, hider, coverage }: Bare, advice = kAdvice[cause]): string {
   const whole = `"${part}"`;
   const why: Record<Cause, string> = {
+    exchanged: 'target and cage seem to be exchanged',
     elsewhere: 'the cage lies over next to none of the target',
     uncovered: `most of ${whole} lies outside the cage, or under a hole of it`,
     hidden: `most of ${whole} is hidden by ${hider ? `"${hider}"` : 'other surfaces'}`,

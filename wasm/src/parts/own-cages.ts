@@ -51,8 +51,8 @@ export interface Apart<T extends Mesh, C extends Mesh> {
  * @throws {Error} of `fail` that names a part without a cage.
  */
 export function moveApart<T extends Mesh, C extends Mesh>(
-  target: Caged<T>,
   cage: Caged<C>,
+  target: Caged<T>,
   fail: (text: string) => Error,
 ): Apart<T, C> | undefined {
   const own = cage.mesh.uvs && cagesOf(target.parts, cage.parts, fail);

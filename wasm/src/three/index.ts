@@ -3,7 +3,6 @@
  * cannot be painted; and the functions of `cagecast/cages` for loaded models.
  * @module cagecast/three
  */
-import type { BufferGeometry, Object3D } from 'three';
 import type { Mesh, TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import type { CutPart } from '../parts/cut-part.js';
@@ -31,6 +30,7 @@ import {
   type Part,
   type PartsOption,
 } from './apply/extract-scene.js';
+import type { Loaded } from './apply/models.js';
 import { atOnce } from './apply/remake.js';
 import { checkSaved, deserialize, keyOf, remember, serialize } from './apply/saved-transfer.js';
 import { type Calling, nextTask, runInTasks } from './apply/tasks.js';
@@ -42,12 +42,11 @@ export {
   cageTemplate,
   findLandmarks,
   fitCage,
-  type Loaded,
-  type LoadedGltf,
   makeCage,
   refineCage,
   withBaseColors,
 } from './apply/loaded-cages.js';
+export type { Loaded, LoadedCage, LoadedGltf } from './apply/models.js';
 export { type ModelMasks, modelMasks } from './model-masks.js';
 export {
   type Apart,
@@ -89,10 +88,8 @@ export {
  *
  * Call `await init()` once before. `applyTransferAsync` keeps the main thread free.
  *
- * @param target  A loaded scene, a mesh, or a geometry (which gets the attributes; `Applied.paint` paints its material).
- * @param cage    Of the same types, with the attribute `uv`, and in the same space as the target; not needed with `saved`, or if the target
- * has meshes that are named as outer cages of others, as `Head_OuterCage` of `Head_Geo`.
- * @param options `texture` or `material` show something; without them, geometries only get the attributes.
+ * @param target  What GLTFLoader loaded, a scene, a mesh, or a geometry (which gets the attributes; `Applied.paint` paints its material).
+ * @param options `cage`, and `texture` or `material` to show something; without these two, geometries only get the attributes.
  * @throws {CagecastError} as `transfer` does; `badOption` that names an option and its value; `badArgument` if a part cannot be read or
  * no channel of UVs is free. Then nothing is changed.
  *
@@ -105,16 +102,12 @@ export {
  * const paint = await new TextureLoader().loadAsync('paint.png');
  * paint.flipY = false; // as for all textures of glTF
  * paint.colorSpace = SRGBColorSpace;
- * applyTransfer(head.scene, cage.scene, { texture: paint });
+ * applyTransfer(head, { cage, texture: paint });
  * scene.add(head.scene);
  */
-export function applyTransfer(
-  target: Object3D | BufferGeometry,
-  cage: Object3D | BufferGeometry | undefined,
-  options: ApplyOptions = {},
-): Applied {
+export function applyTransfer(target: Loaded, options: ApplyOptions = {}): Applied {
   checkOptions('applyTransfer', options);
-  const { saved, input, finish } = read('applyTransfer', target, cage, options);
+  const { saved, input, finish } = read('applyTransfer', target, options);
   return atOnce(finish(saved ?? prepare(input)));
 }
 
@@ -127,15 +120,11 @@ export function applyTransfer(
  * @throws {CagecastError} as `applyTransfer`; `superseded` if a later call for the same mesh has ended before; `badArgument` if a geometry
  * was changed by others meanwhile; and `unsupported` if the worker cannot start.
  */
-export async function applyTransferAsync(
-  target: Object3D | BufferGeometry,
-  cage: Object3D | BufferGeometry | undefined,
-  options: ApplyOptions & Calling = {},
-): Promise<Applied> {
+export async function applyTransferAsync(target: Loaded, options: ApplyOptions & Calling = {}): Promise<Applied> {
   checkOptions('applyTransferAsync', options);
   const { signal, onProgress, ...others } = options;
   signal?.throwIfAborted();
-  const { saved, input, finish } = read('applyTransferAsync', target, cage, others);
+  const { saved, input, finish } = read('applyTransferAsync', target, others);
   await nextTask();
   signal?.throwIfAborted();
   onProgress?.(0.05, 'transfer');
@@ -149,14 +138,14 @@ export async function applyTransferAsync(
 /**
  * Moves the parts of a target apart, each with the cage of its name, as `applyTransfer` does: for those who call `transfer`. Limbs that
  * are near each other keep to their own cages. A result holds for the parts where they were.
- * @param target  What `extract` returned; or its arrays, with parts that have its ranges.
- * @param cage    What it returned for a cage.
+ * @param cage    What `extract` returned for a cage; or its arrays, with parts that have its ranges.
+ * @param target  The same of a target.
  * @returns both as `transfer` takes them, and `mend`, which makes the `triangles` of a result those of the cage; undefined if the cage is
  * one, or has other names.
  * @throws {CagecastError} `badArgument` that names a part without a cage.
  */
-export const moveApart = <T extends Mesh, C extends Mesh>(target: Caged<T>, cage: Caged<C>): Apart<T, C> | undefined =>
-  partsApart(target, cage, (text) => wrong(`target: ${text}`));
+export const moveApart = <T extends Mesh, C extends Mesh>(cage: Caged<C>, target: Caged<T>): Apart<T, C> | undefined =>
+  partsApart(cage, target, (text) => wrong(`target: ${text}`));
 
 let calls = 0;
 
@@ -168,22 +157,17 @@ interface Call {
   finish(prepared: Prepared): Generator<void, Applied>;
 }
 
-function read(
-  fn: string,
-  target: Object3D | BufferGeometry,
-  cage: Object3D | BufferGeometry | undefined,
-  options: ApplyOptions,
-): Call {
+function read(fn: string, target: Loaded, options: ApplyOptions): Call {
   const cuts = isCut(fn, options.borders);
-  const { saved, result, parts } = options;
+  const { cage, saved, result, parts } = options;
   const call = ++calls;
   const extracted = extractNear(target, 'target', 'own', { isMeant: parts, channel: options.channel });
   const own = transferOptions(options);
   const needsCage = !saved && (cuts || !result);
-  const outer = needsCage ? extractNear(cage ?? ownCage(target), 'cage', extracted.origin) : undefined;
-  const bare = outer ? bareGroups(extracted, outer) : extracted.accessories;
+  const outer = needsCage ? extractNear(cage ?? ownCage(fn, target), 'cage', extracted.origin) : undefined;
+  const bare = outer ? bareGroups(outer, extracted) : extracted.accessories;
   const rules = { ...own, locks: withBare(bare, own.locks) };
-  const apart = outer && moveApart(extracted, outer);
+  const apart = outer && moveApart(outer, extracted);
   const around = apart?.cage ?? outer?.mesh;
   if (result) checkResult(result, extracted);
   return {
@@ -199,16 +183,23 @@ function read(
     },
     *finish(prepared) {
       if (!saved) apart?.mend(prepared.result);
-      const applied = yield* apply(extracted, prepared, options, call);
+      const applied = yield* apply(extracted, prepared, options, { call, cage: outer?.mesh });
       return remember(applied, () => ({ key: saved?.key ?? keyOf(extracted, around, rules, cuts), prepared }));
     },
   };
 }
 
-/** A target that has its cage with it; nothing if it has none. */
-function ownCage(target: Object3D | BufferGeometry): Object3D {
-  const has = (target as Object3D).isObject3D && hasCages(extract(target, 'cage').parts);
-  return has ? (target as Object3D) : (undefined as never);
+/** A target that has its cage with it. @throws {CagecastError} `badArgument` if it has none. */
+function ownCage(fn: string, target: Loaded): Loaded {
+  if (hasCages(extract(target, 'cage').parts)) return target;
+  throw wrong(
+    'options.cage is undefined, and no mesh of target is named as the outer cage of another',
+    fn,
+    'badOption',
+    {
+      argument: 'cage',
+    },
+  );
 }
 
 function checkResult(result: TransferResult, { mesh }: Extracted): void {

@@ -1,10 +1,12 @@
-import type { BufferGeometry, Object3D, Texture } from 'three';
+import type { Texture } from 'three';
+import { checkNames } from '../api/option-names.js';
 import { type Image, maskTriangles, maskVertices } from '../bake/index.js';
 import type { Masks } from '../index.js';
 import { localIndices } from '../parts/prepare.js';
-import { checkObject } from './apply/apply-options.js';
 import { valuesOf } from './apply/attributes.js';
 import { extract, type PartsOption } from './apply/extract-scene.js';
+import type { Loaded } from './apply/models.js';
+import { type Context, makeCanvas } from './canvas.js';
 import { wrong } from './errors.js';
 
 /** Where the masks of a model come from. */
@@ -26,17 +28,11 @@ export interface ModelMasks {
  * @throws {CagecastError} `badArgument` if no part has UVs or the attribute, or a texture has no image that can be read; `badOption`.
  *
  * @example
- * applyTransfer(scan.scene, cage.scene, { texture: paint, masks: modelMasks(scan.scene, { never: eyes }) });
+ * applyTransfer(scan, { cage, texture: paint, masks: modelMasks(scan, { never: eyes }) });
  */
-export function modelMasks(target: Object3D | BufferGeometry, options: ModelMasks): Masks {
-  checkObject('modelMasks', options);
-  const { never, always, attribute, parts: isMeant, ...others } = options;
-  for (const name in others)
-    throw wrong(
-      `options.${name} is not an option; there are: never, always, attribute, parts`,
-      'modelMasks',
-      'badOption',
-    );
+export function modelMasks(target: Loaded, options: ModelMasks): Masks {
+  checkNames('modelMasks', 'options', options, ['never', 'always', 'attribute', 'parts']);
+  const { never, always, attribute, parts: isMeant } = options;
   const { mesh, parts } = extract(target, 'target', isMeant);
   const images = { never: never && imageOf('never', never), always: always && imageOf('always', always) };
   const vertices = new Int8Array(mesh.positions.length / 3);
@@ -74,7 +70,7 @@ function imageOf(name: string, given: Texture | Image): Image {
   let { data } = image;
   if (data === undefined) {
     try {
-      const context = new OffscreenCanvas(width, height).getContext('2d')!;
+      const context = makeCanvas(width, height).getContext('2d') as Context;
       context.drawImage(image, 0, 0);
       data = context.getImageData(0, 0, width, height).data;
     } catch (error) {

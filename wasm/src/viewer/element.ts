@@ -151,7 +151,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       if (applied && map) {
         map.channel = applied.channel;
         const material = new MeshStandardMaterial({ map, transparent: true, opacity });
-        applyTransfer(scene, undefined, { saved: deserialize(serialize(applied)), channel: applied.channel, material });
+        applyTransfer(scene, { saved: deserialize(serialize(applied)), channel: applied.channel, material });
       }
       return (await new GLTFExporter().parseAsync(scene, { binary: true, animations })) as ArrayBuffer;
     } finally {
@@ -301,7 +301,13 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       const onProgress = (share: number, stage: string) => this.#tell('progress', { share: 0.3 + 0.7 * share, stage });
       const applied =
         outer &&
-        (await applyTransferAsync(gltf.scene, outer.gltf.scene, { ...options, texture: paint, signal, onProgress }));
+        (await applyTransferAsync(gltf, {
+          cage: outer.gltf,
+          ...options,
+          texture: paint,
+          signal,
+          onProgress,
+        }));
       signal.throwIfAborted();
       shown = { file, gltf, applied, paint, opacity: options.opacity ?? 1 };
       if (check && applied) tellVerdict = () => this.#tell('verdict', check(applied, options));

@@ -32,6 +32,7 @@ function threeCode({ target, cage, projection }: Shown, rules: Rules, locks: Rea
     (group) => ` && mesh.name !== ${JSON.stringify(target.mesh.primitives[group]!.mesh.name)}`,
   );
   const options = [
+    'cage',
     'texture',
     ...(preset ? [`preset: '${preset}'`] : []),
     ...(threshold === undefined ? [] : [`threshold: ${threshold}`]),
@@ -52,7 +53,7 @@ const [target, cage] = await Promise.all(files.map((file) => loader.loadAsync(fi
 const texture = await new TextureLoader().loadAsync('paint.png')
 texture.flipY = false
 texture.colorSpace = SRGBColorSpace
-${borders ? 'await ' : ''}applyTransfer(target.scene, cage.scene, { ${options.join(', ')} })
+applyTransfer(target, { ${options.join(', ')} })
 scene.add(target.scene)`;
 }
 

@@ -77,7 +77,7 @@ export function exportedPaint(
   };
 }
 
-function styleOf({ opacity, tint, blend, visible }: LinkedLayer): Style {
+function styleOf({ opacity, tint, blend, visible }: LinkedLayer): Partial<Style> {
   return { opacity, tint, blend: blendModes.includes(blend as Blend) ? (blend as Blend) : 'normal', visible };
 }
 

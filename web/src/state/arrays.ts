@@ -4,7 +4,7 @@ import type { ExtractedMesh, Model } from './model';
 
 /** What a transfer takes of a cage and a target: of parts that have cages of their own, each with its own. */
 export function arraysOf(cage: Model, target: Model): { cage: Mesh; target: Mesh; mend?: Mend } {
-  const apart = moveApart(rangesOf(target.mesh), rangesOf(cage.mesh));
+  const apart = moveApart(rangesOf(cage.mesh), rangesOf(target.mesh));
   const [outer, inner] = [apart?.cage ?? cage.mesh, apart?.target ?? target.mesh];
   return {
     cage: { positions: outer.positions, indices: outer.indices, uvs: outer.uvs },

@@ -33,7 +33,7 @@ export const knownLocks = (locks: Locks, { segmentStats }: Pick<SplitProjection,
 
 /** What stays bare without the user's choice: what a figure wears, and what the cage was made without. */
 export const bareGroupsOf = (pair: Record<'target' | 'cage', { mesh: ExtractedMesh }> | undefined): number[] =>
-  pair ? bareGroups(pair.target.mesh, pair.cage.mesh) : [];
+  pair ? bareGroups(pair.cage.mesh, pair.target.mesh) : [];
 
 /** The choice for a segment of a group: the user's, if there is one. */
 export const choiceFor = (segment: number, group: number, chosen: Locks, bareGroups: readonly number[]): Choice =>

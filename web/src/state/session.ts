@@ -123,9 +123,9 @@ export class Session extends Emitter<SessionEvents> {
     return this.#view;
   }
 
-  protected override emit<Name extends keyof SessionEvents>(name: Name, event: SessionEvents[Name]): void {
+  protected override emit<Name extends keyof SessionEvents>(name: Name, event: SessionEvents[Name]): boolean {
     if (name === 'progress') this.#working = (event as Progress).state === 'working';
-    super.emit(name, event);
+    return super.emit(name, event);
   }
 
   /** Whether anything was requested yet. */
@@ -319,7 +319,7 @@ export class Session extends Emitter<SessionEvents> {
     try {
       const scene = await this.#requests.read(superseded);
       if (superseded()) return;
-      if (!scene) return this.emit('progress', { state: 'waiting', missing: this.#requests.missing });
+      if (!scene) return void this.emit('progress', { state: 'waiting', missing: this.#requests.missing });
       const before = this.#shown;
       // A sample's paint does not fit another cage's UVs: show the checker instead.
       const stays = before?.paint === scene.paint && haveSameUvs(before.cage, scene.cage);

@@ -35,11 +35,12 @@ export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { i
 export type CageReport = ReturnType<typeof cageReport>;
 
 /** Why next to nothing may be painted, if so, and what helps. */
-export function bareNote({ target: { extracted }, result }: Run): string | undefined {
-  const bare = bareOf(extracted.mesh, result, extracted.parts);
+export function bareNote({ target: { extracted }, wholeCage, result }: Run): string | undefined {
+  const bare = bareOf(extracted.mesh, result, extracted.parts, wholeCage.extracted.mesh);
   if (!bare) return undefined;
   const keep = `--keep ${quoted(bare.part)}`;
   const advice: Record<Bare['cause'], string> = {
+    exchanged: 'exchange them',
     elsewhere: 'put both in the same place and unit; cagecast inspect says more',
     uncovered: 'fit the cage around it; cagecast inspect says more',
     hidden: `${bare.hider ? `try --ignore ${quoted(bare.hider)}` : 'leave out what hides it by --ignore'}, or --occlusion-reach 0 if that lies outside the cage`,

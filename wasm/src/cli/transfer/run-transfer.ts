@@ -90,7 +90,7 @@ export function bareParts({ file, extracted: { parts, accessories } }: ReadModel
 /** The parts of a target apart, each with the cage of its name, if there are such. @throws {InputError} that names one without. */
 function movedApart(target: ReadModel, wholeCage: ReadModel): { target: ReadModel; wholeCage: ReadModel } {
   const fail = (text: string) => new InputError(`${text}; --ignore leaves the part out`).in(target.file.path);
-  const apart = moveApart(target.extracted, wholeCage.extracted, fail);
+  const apart = moveApart(wholeCage.extracted, target.extracted, fail);
   if (!apart) return { target, wholeCage };
   const withMesh = (model: ReadModel, mesh: ReadModel['extracted']['mesh']) => ({
     ...model,

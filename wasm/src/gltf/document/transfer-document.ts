@@ -36,6 +36,8 @@ interface DocumentTransferOptions extends TransferOptions, MaskSources {
 /** A transfer to a document, which is not changed by it. */
 interface DocumentTransfer {
   target: ExtractedDocument;
+  /** The cage as it was given, around the origin of the target. */
+  around: Mesh;
   model: DocumentModel;
   result: TransferResult;
   /** With borders that are cut. */
@@ -70,7 +72,7 @@ export async function transferDocument(
     ? within(caller, 'cage', () => extractDocument((cage ?? document) as Document, origin, 'cage'))
     : { mesh: moved(cage as Mesh, origin), parts: [] };
   if (cage === undefined && !hasCages(around.parts)) throw wrong(caller, 'cage', cage, kNoCage);
-  const apart = within(caller, 'target', () => moveApart(target, around, (text) => new InputError(text)));
+  const apart = within(caller, 'target', () => moveApart(around, target, (text) => new InputError(text)));
   const [source, own] = [apart?.cage ?? around.mesh, apart?.target ?? target.mesh];
   const model = new DocumentModel(document, target.parts);
   const masks = within(caller, 'target', () =>
@@ -81,7 +83,7 @@ export async function transferDocument(
   const result = transfer(source, own, rules);
   const cut = cuts ? cutBorders(source, own, result, rules) : undefined;
   apart?.mend(result);
-  return { target, model, result, cut, paint };
+  return { target, around: around.mesh, model, result, cut, paint };
 }
 
 /** The parts of a target that a cage was made without. */

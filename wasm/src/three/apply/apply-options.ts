@@ -1,9 +1,11 @@
 import type { Material, Mesh, Texture } from 'three';
+import { checkNames, optionNames } from '../../api/option-names.js';
 import type { Classification, TransferOptions, TransferResult } from '../../index.js';
 import type { Borders } from '../../parts/borders-option.js';
 import type { Prepared } from '../../parts/prepare.js';
 import { notA, wrong } from '../errors.js';
 import type { Extracted, Part, PartsOption } from './extract-scene.js';
+import { isModel, type LoadedCage } from './models.js';
 import type { Calling } from './tasks.js';
 
 /** A transfer that was made earlier, for `applyTransfer`. */
@@ -16,7 +18,13 @@ export interface Saved {
 /** Options of `applyTransfer`: those of `transfer`, and what to display. */
 export interface ApplyOptions extends TransferOptions {
   /**
-   * A result of `transfer`, also from `cagecast/worker`, for the arrays that `extract` returned for `cage` and `target`. No transfer is
+   * The cage: what GLTFLoader loaded, a scene, a mesh or a geometry with the attribute `uv`, or a `Cage` or `Template` of
+   * `cagecast/cages`, in the same space as the target. Default: the meshes of the target that are named as outer cages of others, as
+   * `Head_OuterCage` of `Head_Geo`. Not needed with `saved`.
+   */
+  cage?: LoadedCage | undefined;
+  /**
+   * A result of `transfer`, also from `cagecast/worker`, for the arrays that `extract` returned for cage and target. No transfer is
    * made, so the options of `transfer` count only where `borders` are cut, which needs the cage.
    */
   result?: TransferResult | undefined;
@@ -88,7 +96,7 @@ export interface Applied {
   overlays: Mesh[];
   /**
    * Shows another texture in the next frame, or none (undefined or null). At no cost, but for the first texture since an
-   * `applyTransfer` or `update` without one: it costs about as much as `update`, and shaders are compiled for it. No effect where a
+   * `applyTransfer` or `setClassification` without one: it costs about as much as that, and shaders are compiled for it. No effect where a
    * material is shown.
    * @throws {CagecastError} `badArgument` if it is not a texture.
    */
@@ -96,19 +104,19 @@ export interface Applied {
   /** Changes how much of the paint shows, 0 to 1. In the next frame, at no cost. @throws {CagecastError} `badArgument` */
   setOpacity(opacity: number): void;
   /**
-   * Paints one more material, such as one that a mesh is given later. Materials that the meshes have at a call of `update` or
-   * `setTexture` are painted then.
+   * Paints one more material, such as one that a mesh is given later. Materials that the meshes have at a call of `setClassification`
+   * or `setTexture` are painted then.
    * @returns whether it can be painted; without a texture it will be with the first one.
    */
   paint(material: Material): boolean;
   /**
-   * Shows another classification. If borders were cut, segments whose verdict has changed are painted by whole triangles. The
+   * Shows another classification, as `classify` returns it for other options. If borders were cut, segments whose verdict has changed are painted by whole triangles. The
    * classification is not kept, so the next `classify` may overwrite it (`reuse`); it must not overwrite `result`.
    *
    * Cost: about 10 ms per 100,000 triangles; with `feather` more.
    * @throws {CagecastError} `badArgument` if the classification is of another target, or a geometry has changed since.
    */
-  update(classification: Classification): void;
+  setClassification(classification: Classification): void;
   /**
    * Removes the paint and the overlays, and makes materials and geometries what they were. Geometries that are disposed of as well come
    * first, so that their buffers are freed at once.
@@ -116,14 +124,30 @@ export interface Applied {
   dispose(): void;
 }
 
-/** @throws {CagecastError} `badOption` */
-export function checkObject(fn: string, options: unknown): void {
-  if (typeof options !== 'object' || !options) throw notA('an object', 'options', options, fn, 'badOption');
-}
+/** The options that `transfer` does not have. */
+const kOwnOptions = [
+  'cage',
+  'texture',
+  'opacity',
+  'feather',
+  'material',
+  'channel',
+  'borders',
+  'parts',
+  'result',
+  'saved',
+] satisfies (keyof ApplyOptions)[];
+const kCalling = ['signal', 'onProgress'] satisfies (keyof Calling)[];
 
 /** @throws {CagecastError} `badOption` that names the function, the option and its value. */
 export function checkOptions(fn: string, options: ApplyOptions & Calling): void {
-  checkObject(fn, options);
+  if (isModel(options))
+    throw wrong(`options is a model; give the cage as options.cage: ${fn}(target, { cage })`, fn, 'badOption');
+  checkNames(fn, 'options', options, [
+    ...kOwnOptions,
+    ...(fn === 'applyTransferAsync' ? kCalling : []),
+    ...optionNames('transfer').filter((name) => name !== 'reuse'),
+  ]);
   const check = (name: keyof typeof options, fits: unknown, what: string): void => {
     if (!fits) throw notA(what, `options.${name}`, options[name], fn, 'badOption');
   };
@@ -142,10 +166,8 @@ export function checkOptions(fn: string, options: ApplyOptions & Calling): void 
 }
 
 /** The options of `transfer` among those of `applyTransfer`. */
-export function transferOptions(options: ApplyOptions): TransferOptions {
-  const { result, saved, texture, opacity, feather, material, channel, borders, parts, ...rest } = options;
-  return rest;
-}
+export const transferOptions = (options: ApplyOptions): TransferOptions =>
+  Object.fromEntries(Object.entries(options).filter(([name]) => !(kOwnOptions as string[]).includes(name)));
 
 /** Checks by the lengths of its arrays that an argument belongs to this target. @throws {CagecastError} `badArgument` */
 export function checkLengths(name: string, given: object | null, lengths: Record<string, number>, hint = ''): void {

@@ -9,7 +9,7 @@ import {
   Vector3,
 } from 'three';
 import { show } from '../../core/error.js';
-import type { Classification } from '../../index.js';
+import type { Mesh as CageArrays, Classification } from '../../index.js';
 import { noteOf } from '../../inspect/bare.js';
 import type { PartRange, Prepared } from '../../parts/prepare.js';
 import { notA, wrong } from '../errors.js';
@@ -97,12 +97,13 @@ function checkMaterials(parts: readonly Part[]): void {
  * Applies what was prepared to the geometries and materials of a target. Nothing is changed before the last step; yields after each
  * attribute that was extended, for callers that share the thread.
  * @param call  Greater than those of all calls before.
+ * @param cage  As it was given, if it was.
  */
 export function* apply(
   target: ExtractedNear,
   prepared: Prepared,
   options: ApplyOptions,
-  call: number,
+  { call, cage }: { call: number; cage: CageArrays | undefined },
 ): Generator<void, Applied> {
   const { parts, states: extracted } = target;
   if (options.texture && !options.material) checkMaterials(parts);
@@ -149,7 +150,7 @@ export function* apply(
     paintings.set(geometry, painting);
   });
   const shown = parts.map((part, p): ShownPart => ({ ...prepared.parts[p]!, part, cosmetic: new Uint8Array(0) }));
-  const applied = new Shown(target, prepared, shown, { painting, material: options.material, channel });
+  const applied = new Shown(target, prepared, shown, { painting, material: options.material, channel, cage });
   shown.forEach(({ part: { geometry } }, p) => noteWrite(geometry, { writer: applied, channel, before: sources[p]! }));
   applied.start();
   for (const tell of replaced) tell();
@@ -160,6 +161,7 @@ interface Display {
   painting: Painting;
   material: Material | null | undefined;
   channel: Channel;
+  cage: CageArrays | undefined;
 }
 
 /** Its methods are fields, so that they may be taken out of it. */
@@ -171,6 +173,7 @@ class Shown implements Applied, Writer {
   readonly parts;
   readonly leftOut;
   readonly #target: Extracted['mesh'];
+  readonly #cage: Display['cage'];
   readonly #shown: ShownPart[];
   readonly #painting: Painting;
   readonly #material: Display['material'];
@@ -191,6 +194,7 @@ class Shown implements Applied, Writer {
     this.parts = shown.map(({ part }) => part);
     this.leftOut = leftOut;
     this.#target = mesh;
+    this.#cage = display.cage;
     this.#shown = shown;
     this.#painting = display.painting;
     this.#material = display.material;
@@ -209,7 +213,7 @@ class Shown implements Applied, Writer {
   }
 
   get note(): string | undefined {
-    return noteOf(this.#target, this.result, this.parts);
+    return noteOf(this.#target, this.result, this.parts, this.#cage);
   }
 
   get overlays(): Mesh[] {
@@ -236,7 +240,7 @@ class Shown implements Applied, Writer {
     return true;
   };
 
-  readonly update = (classification: Classification): void => {
+  readonly setClassification = (classification: Classification): void => {
     checkLengths('classification', classification, {
       zones: this.result.zones.length,
       cosmeticTriangles: this.result.cosmeticTriangles.length,

@@ -2,9 +2,11 @@ import type { BufferGeometry, MeshStandardMaterial, Object3D, Texture } from 'th
 import { type Image, resize } from '../../bake/index.js';
 import { opaque, smallSize } from '../../bake/small-image.js';
 import type { BaseColor, CageModel } from '../../cages/types.js';
-import { type Attribute, valuesOf } from './attributes.js';
-import { asItWas, extract, inTexture, type Part } from './extract-scene.js';
+import { type Context, makeCanvas } from '../canvas.js';
+import { valuesOf } from './attributes.js';
+import { asItWas, extract, type Part } from './extract-scene.js';
 import { materialOfGroups } from './names.js';
+import { inTexture, uvAttribute, uvLayoutOf } from './uv-layout.js';
 
 /** A picture that a canvas can draw. */
 type Drawable = CanvasImageSource & { width: number; height: number };
@@ -24,7 +26,7 @@ export async function baseColorsOf(
     const looks = parts.map((part) => {
       const materials = materialOfGroups(part) as (Partial<MeshStandardMaterial> | undefined)[];
       const map = materials.find((material) => material?.map)?.map ?? undefined;
-      return { firstVertex: part.firstVertex, materials, map, own: map && uvsOf(part, map) };
+      return { firstVertex: part.firstVertex, materials, map, own: map && uvsOf(part) };
     });
     return { vertices: mesh.positions.length / 3, parts: looks };
   });
@@ -48,10 +50,11 @@ export async function baseColorsOf(
 const within = (x: number) => Math.min(1, Math.max(0, x));
 
 /** Where a part is in its texture; undefined if its UVs do not say. */
-function uvsOf({ geometry, vertexCount }: Part, map: Texture): Float32Array | undefined {
-  const uv = geometry.getAttribute(`uv${map.channel || ''}`) as Attribute | undefined;
-  if (uv?.count !== vertexCount || uv.itemSize !== 2) return undefined;
-  const laid = inTexture(valuesOf(uv), map);
+function uvsOf(part: Part): Float32Array | undefined {
+  const layout = uvLayoutOf(part);
+  const uv = uvAttribute(part, layout);
+  if (uv?.count !== part.vertexCount || uv.itemSize !== 2) return undefined;
+  const laid = inTexture(valuesOf(uv), layout);
   return laid.every(Number.isFinite) ? laid : undefined;
 }
 
@@ -86,20 +89,15 @@ function read(source: Source | undefined, isFlipped: boolean): Image | undefined
   }
   const [columns, rows] = smallSize({ width, height });
   try {
-    const context = canvasOf(columns, rows).getContext('2d', { willReadFrequently: true });
+    const context = makeCanvas(columns, rows).getContext('2d', { willReadFrequently: true }) as Context | null;
     if (!context) return undefined;
     if (isFlipped) context.setTransform(1, 0, 0, -1, 0, rows);
-    (context as CanvasRenderingContext2D).drawImage(source as Drawable, 0, 0, columns, rows);
+    context.drawImage(source as Drawable, 0, 0, columns, rows);
     return { width: columns, height: rows, data: context.getImageData(0, 0, columns, rows).data };
   } catch {
     return undefined; // no canvas, an image of another origin, or none that can be drawn
   }
 }
-
-const canvasOf = (width: number, height: number): OffscreenCanvas | HTMLCanvasElement =>
-  typeof OffscreenCanvas === 'function'
-    ? new OffscreenCanvas(width, height)
-    : Object.assign(document.createElement('canvas'), { width, height });
 
 function flipped({ width, height, data }: Image): Image {
   const out = new Uint8Array(data.length);

@@ -6,7 +6,6 @@ import {
   Matrix4,
   type Object3D,
   type SkinnedMesh,
-  type Texture,
   type Mesh as ThreeMesh,
 } from 'three';
 import { show } from '../../core/error.js';
@@ -17,12 +16,13 @@ import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/ori
 import { morphed, movePoints } from '../../parts/points.js';
 import { type MorphedPart, posesOf } from '../../parts/poses.js';
 import { bareNames } from '../../parts/template-extras.js';
-import { transformUvs } from '../../parts/uv-transform.js';
 import { wrong } from '../errors.js';
 import { type Attribute, targetDeltas, valuesOf } from './attributes.js';
 import { isGeometry, isInstanced, isMesh, isObject, isOfInstances } from './flags.js';
+import { isCage, isLoadedGltf, type LoadedCage, type LoadedGltf, objectOf } from './models.js';
 import { groupNames, materialsOf, namesOf } from './names.js';
 import { placesOf } from './places.js';
+import { inTexture, uvAttribute, uvLayoutOf } from './uv-layout.js';
 import { asBefore, type Channel, stateOf } from './writes.js';
 
 /** One mesh of a scene, or a single geometry, and the ranges of its elements in the joined arrays. */
@@ -77,8 +77,8 @@ const identity = new Matrix4();
  * @param isMeant   Which meshes count. Default: what is drawn; of a `cage` or `template`, its outer cages, or all if there are none
  * @throws {CagecastError} that names the part and the element.
  */
-export const extract = (object: Object3D | BufferGeometry, argument = 'target', isMeant?: PartsOption): Extracted =>
-  extractNear(object, argument, kSceneOrigin, { isMeant });
+export const extract = (model: LoadedCage, argument = 'target', isMeant?: PartsOption): Extracted =>
+  extractNear(model, argument, kSceneOrigin, { isMeant });
 
 interface ExtractOptions {
   isMeant?: PartsOption | undefined;
@@ -95,12 +95,13 @@ export interface ExtractedNear extends Extracted {
 
 /** The same with positions around an origin, which target and cage need in common; and that origin. */
 export function extractNear(
-  object: Object3D | BufferGeometry,
+  model: LoadedCage,
   argument: string,
   origin: Origin,
   { isMeant, channel }: ExtractOptions = {},
 ): ExtractedNear {
-  return asItWas(object, channel, () => extractNow(object, argument, origin, isMeant));
+  const object = objectOf(model, argument);
+  return asItWas(object, channel, () => extractNow(model, argument, origin, isMeant));
 }
 
 /** Calls a function while an object is what it was before transfers: all, or those whose place one into a channel takes. */
@@ -112,11 +113,12 @@ export function asItWas<T>(object: Object3D | BufferGeometry, channel: Channel |
 }
 
 function extractNow(
-  object: Object3D | BufferGeometry,
+  model: LoadedCage,
   argument: string,
   origin: Origin,
   isMeant: PartsOption | undefined,
 ): ExtractedNear {
+  const object = objectOf(model, argument);
   const { parts, leftOut, accessories } = listParts(object, argument, isMeant);
   const placed = ({ geometry, matrix }: Part) => ({
     points: valuesOf(geometry.getAttribute('position') as Attribute),
@@ -134,13 +136,12 @@ function extractNow(
     placeIndices(part, indices, argument);
     group = placeGroups(part, groups, group);
   }
-  const uvs = readUvs(parts, vertices, argument);
+  const uvs = readUvs(parts, vertices, argument, isLoadedGltf(model) ? model : undefined);
   const bare = accessories.flatMap((p) => {
     const { firstVertex, vertexCount } = parts[p]!;
     return [...new Set(groups.subarray(firstVertex, firstVertex + vertexCount))];
   });
-  const isCage = argument === 'cage' || argument === 'template';
-  const poses = isCage ? undefined : posesOf(morphedParts(parts, positions));
+  const poses = isCage(argument) ? undefined : posesOf(morphedParts(parts, positions));
   const mesh = { positions, indices, groups, ...(uvs && { uvs }), ...(poses && { poses }) };
   return {
     mesh,
@@ -164,12 +165,12 @@ export const extrasOf = ({ mesh, geometry }: Pick<Part, 'mesh' | 'geometry'>): u
 /**
  * The numbers in `groups` of what a transfer leaves bare unless locks say otherwise: what a figure wears or carries, and what the cage
  * was made without, by its names. For those who call `transfer`.
- * @param target  What `extract` returned.
- * @param cage    What it returned for a cage.
+ * @param cage    What `extract` returned for a cage.
+ * @param target  What it returned for a target.
  */
 export const bareGroups = (
-  { accessories, names }: { accessories: readonly number[]; names: readonly (readonly string[])[] },
   { bare }: { bare: readonly string[] },
+  { accessories, names }: { accessories: readonly number[]; names: readonly (readonly string[])[] },
 ): number[] => [...new Set([...accessories, ...groupsNamed(bare, names)])];
 
 /** Where the next part begins: how many vertices and triangles there are before it. */
@@ -183,15 +184,6 @@ function listParts(
   argument: string,
   isMeant: PartsOption | undefined,
 ): Pick<Extracted, 'parts' | 'leftOut' | 'accessories'> {
-  if (!isGeometry(object) && !isObject(object)) {
-    throw wrong(
-      `${argument} is ${show(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
-      undefined,
-      undefined,
-      { argument },
-    );
-  }
-  const isCage = argument === 'cage' || argument === 'template';
   const parts: Part[] = [];
   const add = (
     aliases: readonly string[],
@@ -249,7 +241,7 @@ function listParts(
   const chosen = chooseParts(
     found,
     ({ mesh, matrix }) => lookOf(mesh, matrix, object),
-    isMeant ? (p, isDrawn) => isMeant(meshes[p]!, isDrawn) : isCage ? 'cage' : undefined,
+    isMeant ? (p, isDrawn) => isMeant(meshes[p]!, isDrawn) : isCage(argument) ? 'cage' : undefined,
     (text) => wrong(`${argument}: ${text}; the option parts says which count`, undefined, undefined, { argument }),
   );
   for (const { name, mesh, matrix } of chosen.parts) add(namesOf(mesh, object), name, mesh, mesh.geometry, matrix);
@@ -397,32 +389,22 @@ function placeGroups(
   return Math.max(next, first + 1);
 }
 
-/** The base colour texture of a part; of several, the first. */
-function mapOf({ mesh }: Part): Texture | undefined {
-  const materials = [mesh?.material].flat() as ({ map?: Texture | null } | undefined)[];
-  return materials.find((one) => one?.map)?.map ?? undefined;
-}
-
-/** The UVs by which the base colour texture of a part lies on it; the first if it has none. */
-const uvsOf = (part: Part): Attribute | undefined => part.geometry.getAttribute(`uv${mapOf(part)?.channel || ''}`);
-
-/** Where UVs are in a texture, as in a glTF: `Texture.matrix` would scale last. */
-export function inTexture(uvs: Float32Array, map: Texture | undefined): Float32Array {
-  if (!map) return uvs;
-  const { offset, rotation, repeat } = map;
-  if (rotation === 0 && offset.lengthSq() === 0 && repeat.x === 1 && repeat.y === 1) return uvs;
-  return transformUvs(uvs, { offset: [offset.x, offset.y], rotation, scale: [repeat.x, repeat.y] });
-}
-
-function readUvs(parts: readonly Part[], vertices: number, argument: string): Float32Array | undefined {
-  if (!parts.every(uvsOf)) return undefined;
+function readUvs(
+  parts: readonly Part[],
+  vertices: number,
+  argument: string,
+  loaded: LoadedGltf | undefined,
+): Float32Array | undefined {
+  const laid = parts.map((part) => {
+    const layout = uvLayoutOf(part, loaded);
+    return { ...part, layout, uv: uvAttribute(part, layout) };
+  });
+  if (!laid.every(({ uv }) => uv)) return undefined;
   const uvs = new Float32Array(2 * vertices);
-  for (const part of parts) {
-    const { name, firstVertex, vertexCount } = part;
-    const uv = uvsOf(part)!;
-    if (uv.count !== vertexCount || uv.itemSize !== 2)
-      throw wrongPart(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers, not ${vertexCount} of 2`);
-    uvs.set(inTexture(valuesOf(uv), mapOf(part)), 2 * firstVertex);
+  for (const { name, firstVertex, vertexCount, layout, uv } of laid) {
+    if (uv!.count !== vertexCount || uv!.itemSize !== 2)
+      throw wrongPart(argument, name, `has ${uv!.count} UVs of ${uv!.itemSize} numbers, not ${vertexCount} of 2`);
+    uvs.set(inTexture(valuesOf(uv!), layout), 2 * firstVertex);
   }
   return uvs;
 }

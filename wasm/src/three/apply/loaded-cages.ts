@@ -1,6 +1,5 @@
-import { BufferAttribute, BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
+import { type BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
 import * as cages from '../../cages/index.js';
-import type { Mesh } from '../../index.js';
 import { faceHints } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { vrmExpressions } from '../../parts/morph-names.js';
@@ -9,27 +8,16 @@ import { wrong } from '../errors.js';
 import { baseColorsOf } from './base-colors.js';
 import { asItWas, extract, extrasOf, morphedParts, type Part } from './extract-scene.js';
 import { isSkinned } from './flags.js';
+import {
+  geometryOf,
+  isArrays,
+  isLoadedGltf,
+  type Loaded,
+  type LoadedCage,
+  type LoadedGltf,
+  objectOf,
+} from './models.js';
 import { skinOf } from './places.js';
-
-/**
- * A model: a scene, mesh or geometry, or what GLTFLoader loaded. Only of the latter the skeleton of a VRM is known by its bones, and
- * its face by its expressions; else the names of objects and morph targets count.
- */
-export type Loaded = Object3D | BufferGeometry | LoadedGltf;
-
-/** What GLTFLoader loads, as far as it is used here. */
-export interface LoadedGltf {
-  scene: Object3D;
-  userData?: Record<string, unknown>;
-  parser?: {
-    associations?: Map<object, { nodes?: number; meshes?: number } | undefined>;
-    json?: { extensions?: VrmExtensions };
-  };
-}
-
-const isLoadedGltf = (model: Loaded): model is LoadedGltf =>
-  (model as LoadedGltf | undefined)?.scene?.isObject3D === true;
-const objectOf = (model: Loaded): Object3D | BufferGeometry => (isLoadedGltf(model) ? model.scene : model);
 
 /**
  * What `cagecast/cages` needs of a model: its triangles, a part for each mesh or material group, the joints of its skeletons, in the
@@ -77,8 +65,8 @@ function expressionsOf(loaded: LoadedGltf): (mesh: Part['mesh'], target: number)
  * A loaded cage as a template: its mesh, and the landmarks in its `userData`, where GLTFLoader puts the `extras` of a node or mesh.
  * @throws {CagecastError} `badArgument`, `missingUvs`
  */
-export function cageTemplate(model: Loaded): cages.Template {
-  const { mesh, parts } = extract(objectOf(model), 'template');
+export function cageTemplate(model: LoadedCage): cages.Template {
+  const { mesh, parts } = extract(model, 'template');
   if (mesh.uvs === undefined)
     throw wrong('template has a mesh without the attribute uv', 'cageTemplate', 'missingUvs', { argument: 'template' });
   const sources = parts.flatMap(({ name, mesh: of, geometry, matrix, firstVertex, vertexCount }) =>
@@ -110,7 +98,7 @@ export async function fitCage(
   options: cages.FitOptions & cages.CageCallOptions = {},
 ): Promise<cages.Fit> {
   return cages.fitCage(
-    isTemplate(template) ? template : cageTemplate(template),
+    isArrays(template) ? template : cageTemplate(template),
     await modelOf(model),
     landmarks,
     options,
@@ -124,31 +112,24 @@ export async function findLandmarks(model: Loaded, options: cages.CageCallOption
 
 /** As `refineCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */
 export async function refineCage(
-  cage: Loaded | Mesh | cages.Cage | cages.Template,
+  cage: LoadedCage,
   model: Loaded,
   options: cages.RefineOptions & cages.CageCallOptions = {},
 ): Promise<cages.Cage> {
-  return cages.refineCage(isTemplate(cage) ? cage : cageTemplate(cage), cageModel(model), options);
+  return cages.refineCage(isArrays(cage) ? cage : cageTemplate(cage), cageModel(model), options);
 }
 
 /**
- * The geometry of a cage, to be shown, or for `applyTransfer`. Landmarks, holes and kind are in its `userData`, which GLTFExporter
+ * The geometry of a cage, with normals, to be shown. Landmarks, holes and kind are in its `userData`, which GLTFExporter
  * does not write: `cageGlb` of `cagecast/cages` writes a file with them.
  */
 export function cageGeometry(
   cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
 ): BufferGeometry {
-  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', regions, bare } = cage;
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(positions, 3));
-  geometry.setAttribute('uv', new BufferAttribute(uvs, 2));
-  geometry.setIndex(new BufferAttribute(indices, 1));
+  const geometry = geometryOf(cage);
   geometry.computeVertexNormals();
-  geometry.userData = { landmarks, holes, kind, ...(regions && { regions }), ...(bare && { bare }) };
   return geometry;
 }
-
-const isTemplate = <T extends Mesh>(cage: Loaded | T): cage is T => (cage as Mesh | undefined)?.positions !== undefined;
 
 function extensionsOf({ userData, parser }: LoadedGltf): VrmExtensions | undefined {
   // GLTFLoader keeps extensions that it does not know here.

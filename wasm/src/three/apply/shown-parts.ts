@@ -138,11 +138,11 @@ export function showPaint(
 ): Material[] {
   const { mesh } = shown.part;
   if (!mesh) return [];
-  const hasPaint = paints && shown.cosmetic.includes(1);
   // Three.js draws nothing where a list of materials has a gap.
   const materials: (Material | undefined)[] = [mesh.material].flat();
-  const isBlind = materials.map((material) => material !== undefined && !canBePainted(material));
-  const needsOverlay = hasPaint && painting.texture && isBlind.includes(true);
+  const hasPaint = materials.map((material, m) => paints && material !== undefined && hasTriangles(shown, m));
+  const isBlind = materials.map((material, m) => hasPaint[m]! && !canBePainted(material!));
+  const needsOverlay = painting.texture && isBlind.includes(true);
   if (needsOverlay) {
     shown.overlay ??= makeOverlay(shown.part, mesh, overlayMaterial(materials[isBlind.indexOf(true)]!));
     // Each time, for the texture may be another.
@@ -152,9 +152,10 @@ export function showPaint(
     const triangles = needsOverlay ? blindTriangles(shown, isBlind) : new Uint8Array(0);
     showTriangles(shown.overlay, mesh, shown.split.indices, triangles);
   }
-  if (!hasPaint) return [];
+  const isPainted = hasPaint.map((has, m) => has && !isBlind[m]);
+  if (!isPainted.includes(true)) return [];
   const painted = materials.map((material, m) => {
-    if (!material || isBlind[m]) return material;
+    if (!material || !isPainted[m]) return material;
     const one = paintOn(copies.get(material) ?? material, painting);
     const original = originals.get(one);
     if (original) copies.set(original, one);
@@ -163,7 +164,16 @@ export function showPaint(
   if (Array.isArray(mesh.material))
     mesh.material = painted.every((one, m) => one === materials[m]) ? mesh.material : (painted as Material[]);
   else mesh.material = painted[0]!;
-  return painted.filter((one, m): one is Material => one !== undefined && !isBlind[m]);
+  return painted.filter((one, m): one is Material => one !== undefined && isPainted[m]!);
+}
+
+/** Whether triangles with a material of a part may be painted. */
+function hasTriangles({ part: { mesh }, cosmetic }: ShownPart, m: number): boolean {
+  if (!Array.isArray(mesh!.material)) return cosmetic.includes(1);
+  return mesh!.geometry.groups.some(
+    ({ start, count, materialIndex = 0 }) =>
+      materialIndex === m && cosmetic.subarray(start / 3, (start + count) / 3).includes(1),
+  );
 }
 
 /** Which of the painted triangles have a material that cannot be painted. */

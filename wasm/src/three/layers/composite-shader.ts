@@ -4,6 +4,8 @@ import { kErased } from '../gpu/erased.js';
 interface Recipe {
   /** How each layer is sampled, from the lowest. */
   takes: readonly ('whole' | 'spread')[];
+  /** Which of them are seen within a region only. */
+  masked: readonly boolean[];
   /** Which of them carries a stroke; -1 for none. */
   stroke: number;
   /** Whether they lie on others. */
@@ -55,7 +57,7 @@ vec4 join(vec4 layer, vec4 below, int blend) {
 `;
 
 /** A shader for exactly these layers: software renderers execute every branch, taken or not. */
-export function fragmentShader({ takes, stroke, hasBelow, hasVideo }: Recipe): string {
+export function fragmentShader({ takes, masked, stroke, hasBelow, hasVideo }: Recipe): string {
   const most = Math.max(1, takes.length);
   const soak = (take: string): string => `soak = strokeOpacity * ${take}(stroke, 1);
   layer = strokeErases ? erased(layer, soak.a) : layer * (1.0 - soak.a) + soak;`;
@@ -63,6 +65,7 @@ export function fragmentShader({ takes, stroke, hasBelow, hasVideo }: Recipe): s
     (take, index) => /* glsl */ `
   layer = ${take}(sheets[${index}], stored[${index}]);
   ${index === stroke ? soak(take) : ''}
+  ${masked[index] ? `layer *= texture(masks, vec3(gl_FragCoord.xy / float(size), slices[${index}])).r;` : ''}
   layer *= vec4(tints[${index}].rgb, 1.0) * tints[${index}].a;
   color = join(layer, color, blends[${index}]);`,
   );
@@ -72,6 +75,8 @@ uniform sampler2D sheets[${most}];
 uniform vec4 tints[${most}];
 uniform int blends[${most}];
 uniform int stored[${most}];
+uniform float slices[${most}];
+uniform highp sampler2DArray masks;
 uniform sampler2D stroke;
 uniform sampler2D below;
 uniform float strokeOpacity;

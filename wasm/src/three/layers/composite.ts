@@ -10,11 +10,13 @@ import {
   type WebGLRenderer,
   WebGLRenderTarget,
 } from 'three';
+import { checkColorSpace } from '../color-space.js';
 import { refreshMipmaps } from '../gpu/mipmaps.js';
 import { kMaxRects, Pass } from '../gpu/pass.js';
 import { disjoint, kWhole, type Rect, toTexels } from '../gpu/rect.js';
 import { fragmentShader } from './composite-shader.js';
 import { blendModes, type Layer, type Sheet } from './layer.js';
+import { RegionMasks, type Regions } from './regions.js';
 
 /** Layers that one pass draws, as there may be only 16 textures in a shader. The stack has at most twice as many. */
 const kMaxAtOnce = 8;
@@ -55,6 +57,8 @@ export class Composite {
     tints: { value: Array.from({ length: kMaxAtOnce }, () => new Vector4()) },
     blends: { value: new Array<number>(kMaxAtOnce).fill(0) },
     stored: { value: new Array<number>(kMaxAtOnce).fill(0) },
+    masks: { value: null as Texture | null },
+    slices: { value: new Array<number>(kMaxAtOnce).fill(0) },
     stroke: { value: null as Texture | null },
     below: { value: null as Texture | null },
     strokeOpacity: { value: 1 },
@@ -75,9 +79,15 @@ export class Composite {
   /** The parts that changed since the last update, in shares. */
   #stale: Rect[] = [kWhole];
 
-  /** @param size  Texels per side, a power of two. Default: 1024 or 2048, as the largest layer needs. */
-  constructor(size?: number) {
+  readonly #masks: RegionMasks;
+
+  /**
+   * @param size     Texels per side, a power of two. Default: 1024 or 2048, as the largest layer needs.
+   * @param regions  Of the cage. Default: none.
+   */
+  constructor(size?: number, regions: Regions = {}) {
     this.#size = size;
+    this.#masks = new RegionMasks(regions);
     // `refreshMipmaps` updates the changed parts; the renderer would rebuild all levels for every stroke.
     this.#target.texture.mipmapsAutoUpdate = false;
     // The renderer does not upload it; this tells `cagecast/three` how its texels are stored.
@@ -141,9 +151,17 @@ export class Composite {
     return true;
   }
 
+  /** The texels: premultiplied, in sRGB, row by row from v = 0. Waits for the GPU. */
+  read(renderer: WebGLRenderer): Uint8Array {
+    const texels = new Uint8Array(4 * this.size * this.size);
+    renderer.readRenderTargetPixels(this.#target, 0, 0, this.size, this.size, texels);
+    return texels;
+  }
+
   /** Frees its GPU memory. */
   dispose(): void {
     this.#target.dispose();
+    this.#masks.dispose();
     this.#below?.dispose();
     for (const pass of this.#passes.values()) pass.dispose();
     this.#passes.clear();
@@ -162,7 +180,8 @@ export class Composite {
     this.#fill(layers, hasBelow);
     const takes = layers.map(({ sheet }) => (isSquare(sheet.texture, target.width) ? 'whole' : 'spread'));
     const stroke = layers.findIndex(({ sheet }) => sheet === this.#strokeSheet);
-    const recipe = { takes, stroke, hasBelow, hasVideo: this.#uniforms.stored.value.includes(kVideo) };
+    const masked = layers.map(({ region }) => region !== null);
+    const recipe = { takes, masked, stroke, hasBelow, hasVideo: this.#uniforms.stored.value.includes(kVideo) };
     const key = JSON.stringify(recipe);
     let pass = this.#passes.get(key);
     if (!pass) this.#passes.set(key, (pass = new Pass(fragmentShader(recipe), this.#uniforms)));
@@ -170,12 +189,17 @@ export class Composite {
   }
 
   #fill(layers: readonly Layer[], hasBelow: boolean): void {
-    const { sheets, tints, blends, stored, stroke, below, strokeOpacity, strokeErases, size } = this.#uniforms;
+    const { sheets, tints, blends, stored, masks, slices, stroke, below, strokeOpacity, strokeErases, size } =
+      this.#uniforms;
     // Set all entries: a stale one could be the texture that is drawn to, which WebGL forbids.
     sheets.value = Array.from({ length: kMaxAtOnce }, (_, index) => layers[index]?.sheet.texture ?? null);
     below.value = hasBelow ? this.#below!.texture : null;
     stored.value.fill(0);
-    layers.forEach(({ sheet, tint, opacity, blend }, index) => {
+    const regions = [...new Set(this.#layers.flatMap(({ region }) => region ?? []))];
+    masks.value = this.#masks.of(regions);
+    layers.forEach(({ sheet, tint, opacity, blend, region }, index) => {
+      checkColorSpace(sheet.texture);
+      slices.value[index] = regions.indexOf(region!);
       const { r, g, b } = new Color(tint);
       tints.value[index]!.set(r, g, b, opacity);
       blends.value[index] = blendModes.indexOf(blend);

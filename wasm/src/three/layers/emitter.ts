@@ -9,7 +9,10 @@ export class Emitter<Events> {
     return () => void listeners.delete(listener);
   }
 
-  protected emit<Name extends keyof Events>(name: Name, event: Events[Name]): void {
-    for (const listener of this.#listeners[name] ?? []) listener(event);
+  /** @returns whether anyone listens. */
+  protected emit<Name extends keyof Events>(name: Name, event: Events[Name]): boolean {
+    const listeners = this.#listeners[name];
+    for (const listener of listeners ?? []) listener(event);
+    return !!listeners?.size;
   }
 }

@@ -27,10 +27,12 @@ export interface Style {
   tint: string;
   blend: Blend;
   visible: boolean;
+  /** The name of a region of the cage, such as `lips`, beyond which the layer is not seen; null for none. */
+  region: string | null;
 }
 
 /** The style of a layer by default. */
-export const plainStyle: Style = { opacity: 1, tint: '#ffffff', blend: 'normal', visible: true };
+export const plainStyle: Style = { opacity: 1, tint: '#ffffff', blend: 'normal', visible: true, region: null };
 
 /**
  * The fields of a style that are not undefined, and no others that were given with it.
@@ -41,11 +43,12 @@ export function readStyle(style: Partial<Style>, argument = 'style'): Partial<St
   check(typeof style === 'object' && style !== null, argument, style, 'an object');
   const isGiven = ([name, value]: [string, unknown]) => name in plainStyle && value !== undefined;
   const given = Object.fromEntries(Object.entries(style).filter(isGiven));
-  const { opacity, tint, blend, visible } = { ...plainStyle, ...given };
+  const { opacity, tint, blend, visible, region } = { ...plainStyle, ...given };
   checkShare('opacity', opacity);
   checkColor('tint', tint);
   check(blendModes.includes(blend), 'blend', blend, `one of ${blendModes.join(', ')}`);
   check(typeof visible === 'boolean', 'visible', visible, 'true or false');
+  check(region === null || typeof region === 'string', 'region', region, 'the name of a region, or null');
   return given;
 }
 

@@ -1,4 +1,5 @@
 import type { Texture, WebGLRenderer } from 'three';
+import type { LoadedCage } from '../apply/models.js';
 import { check, kPaint, notA, wrong } from '../errors.js';
 import { readStraight } from '../gpu/straight.js';
 import { Composite, maxCompositeSize } from './composite.js';
@@ -6,12 +7,17 @@ import { Edits } from './edits.js';
 import { Emitter } from './emitter.js';
 import { History } from './history.js';
 import { checkTexture, freeName, type Layer, readStyle, type Style } from './layer.js';
+import { PaintedSheet } from './painted-sheet.js';
+import { checkRegion, type Regions, regionsOf } from './regions.js';
+import { loadLayers, type SavedLayers, saveLayers } from './saved-layers.js';
 import { LayerStack } from './stack.js';
 
 /** Options of `createLayers`. */
 export interface LayersOptions {
   /** Draws the texture; the models that show it have to be drawn by the same one. */
   renderer: WebGLRenderer;
+  /** The cage, for layers that are seen within one of its regions. Default: there are no regions. */
+  cage?: LoadedCage | undefined;
   /** Texels per side of the texture: 256, 512, 1024 or 2048. Default: 1024, or 2048 where a layer is larger than 1024. */
   size?: (typeof kSizes)[number] | undefined;
 }
@@ -24,6 +30,8 @@ export interface NewLayer extends Partial<Style> {
   name?: string | undefined;
   /** From 0, the lowest, an integer; what is out of range is clamped. Default: on top. */
   place?: number | undefined;
+  /** Whether `undo` takes it away again. Default: true. */
+  undoable?: boolean | undefined;
 }
 
 /** A stack of layers that is shown as one texture. Every change is a step that can be undone. */
@@ -42,7 +50,11 @@ export class Layers extends Emitter<{
   /** @internal */
   readonly composite: Composite;
   readonly renderer: WebGLRenderer;
+  readonly #regions: Regions | undefined;
+  /** Paintings that were loaded, as far as they may be shown again. */
+  readonly #loaded: WeakRef<PaintedSheet>[] = [];
   readonly #restored = (): void => {
+    for (const sheet of this.#loaded) sheet.deref()?.restore(this.renderer);
     this.emit('restored', undefined);
     this.composite.set(this.stack.layers);
     this.announce();
@@ -50,12 +62,13 @@ export class Layers extends Emitter<{
 
   constructor(options: LayersOptions) {
     super();
-    const { renderer, size } = options ?? {};
+    const { renderer, cage, size } = options ?? {};
     // Other renderers have no such map.
     if (typeof renderer?.properties?.get !== 'function') throw wrong('options.renderer is not a WebGLRenderer', kPaint);
     if (size !== undefined) check(kSizes.includes(size), 'size', size, `one of ${kSizes.join(', ')}`);
     this.renderer = renderer;
-    this.composite = new Composite(size);
+    this.#regions = cage && regionsOf(cage);
+    this.composite = new Composite(size, this.#regions);
     this.stack.on('change', (layers) => {
       this.composite.set(layers);
       this.announce();
@@ -78,16 +91,17 @@ export class Layers extends Emitter<{
 
   /**
    * Adds a layer.
-   * @param texture  In the cage's UV space; its `colorSpace` counts, its `flipY` must be false, its offset, repeat and rotation do not count. One whose `needsUpdate` is set later,
-   *                 such as a canvas, is drawn again by `update`. It is not disposed of with the layer.
+   * @param texture  In the cage's UV space; its `colorSpace` and `flipY` count (false for what is drawn for a glTF), its offset, repeat and rotation
+   *                 do not. One whose `needsUpdate` is set later, such as a canvas, is drawn again by `update`. It is not disposed of
+   *                 with the layer.
    * @throws {CagecastError} `badArgument` for the 17th layer or if it is not a texture, `badOption` that names an option and its value.
    */
   add(texture: Texture, options: NewLayer = {}): Layer {
     checkTexture(texture, 'texture');
-    const style = readStyle(options, 'options');
-    const { name, place } = options;
+    const style = this.#readStyle(options, 'options');
+    const { name, place, undoable = true } = options;
     const title = name ?? (texture.name || freeName('Layer', this.list));
-    return this.edits.do(`adding ${title}`, () => {
+    return this.#do(`adding ${title}`, undoable, () => {
       const premultiplied = texture.premultiplyAlpha;
       const layer = this.stack.add(title, { texture, premultiplied }, style);
       if (place !== undefined) this.stack.move(layer, place);
@@ -96,11 +110,11 @@ export class Layers extends Emitter<{
   }
 
   /**
-   * Changes opacity, tint, blend mode or visibility. Equal changes of a layer in quick succession, as by a slider, are one step.
+   * Changes opacity, tint, blend mode, visibility or region. Equal changes of a layer in quick succession, as by a slider, are one step.
    * @throws {CagecastError} `badOption` that names a field and its value, `badArgument` if the layer was removed.
    */
   set(layer: Pick<Layer, 'id'>, style: Partial<Style>): void {
-    const change = readStyle(style);
+    const change = this.#readStyle(style, 'style');
     this.edits.do(`changing ${Object.keys(change).join(', ')} of ${this.#nameOf(layer)}`, () =>
       this.stack.restyle(layer, change),
     );
@@ -170,11 +184,45 @@ export class Layers extends Emitter<{
     return readStraight(this.renderer, this.texture, size);
   }
 
+  /**
+   * All layers as plain data, for `JSON.stringify`: their order, styles and images; paintings can be painted on again. On any model with
+   * a cage of the same layout they look the same. A stroke in progress is left out.
+   * Cost: draws and reads each layer, at 1024 or 2048 texels a side, and waits for the GPU; then some hundred milliseconds for PNG files.
+   */
+  save(): Promise<SavedLayers> {
+    return saveLayers(this.renderer, this.list);
+  }
+
+  /**
+   * Puts saved layers in the place of all that there are, as one step.
+   * @param undoable  Whether `undo` brings back those that there were. Default: true.
+   * @throws {CagecastError} `badArgument` that names the layer, if it is not what `save` returned; `badOption` for a region that the cage
+   * does not have. Then nothing is changed.
+   */
+  async load(saved: SavedLayers, { undoable = true }: Pick<NewLayer, 'undoable'> = {}): Promise<void> {
+    const layers = await loadLayers(this.renderer, saved, this.#regions);
+    this.#do('loading layers', undoable, () => {
+      for (const { id } of this.list) this.stack.remove(id);
+      for (const { name, sheet, style } of layers) this.stack.add(name, sheet, style);
+    });
+    for (const { sheet } of layers) if (sheet instanceof PaintedSheet) this.#loaded.push(new WeakRef(sheet));
+  }
+
   /** Frees the GPU memory of the texture and of what was painted. Textures that were added are the caller's. */
   dispose(): void {
     for (const { sheet } of this.list) sheet.dispose?.();
     this.renderer.domElement.removeEventListener('webglcontextrestored', this.#restored);
     this.composite.dispose();
+  }
+
+  #do<Result>(name: string, undoable: boolean, run: () => Result): Result {
+    return undoable ? this.edits.do(name, run) : run();
+  }
+
+  #readStyle(style: Partial<Style>, argument: string): Partial<Style> {
+    const given = readStyle(style, argument);
+    checkRegion(given.region, this.#regions);
+    return given;
   }
 
   #nameOf(layer: Pick<Layer, 'id'>): string {

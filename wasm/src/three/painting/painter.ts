@@ -1,11 +1,12 @@
-import { type BufferGeometry, type Camera, type Object3D, Raycaster, type Texture, Vector2, Vector3 } from 'three';
+import { type Camera, Raycaster, type Texture, Vector2, Vector3 } from 'three';
 import { show } from '../../core/error.js';
 import { check, checkColor, checkShare, kPaint, notA, wrong } from '../errors.js';
-import { type Applied, extract } from '../index.js';
+import { type Applied, extract, type LoadedCage } from '../index.js';
+import { Emitter } from '../layers/emitter.js';
 import { createLayers, type Layers, type LayersOptions } from '../layers/layers.js';
+import type { PaintingSize } from '../layers/painted-sheet.js';
 import type { SurfacePoint } from './cage-texels.js';
 import { LayerPainter } from './layer-painter.js';
-import type { PaintingSize } from './painted-sheet.js';
 import { pickSpot, pixelsPerUnit, type Spot } from './pick.js';
 import { type Drag, listenTo } from './pointer.js';
 import { type Aim, type BrushStyle, PointerStroke } from './pointer-stroke.js';
@@ -21,7 +22,7 @@ export interface PainterOptions extends Partial<Pick<LayersOptions, 'renderer'>>
   /** What was painted: the models that pointers paint on. Each of them is given the layers' texture. */
   applied: Applied | readonly Applied[];
   /** The cage of the transfer; of several models with cages of one layout, that of one of them. */
-  cage: Object3D | BufferGeometry;
+  cage: LoadedCage;
   /** Texels per side of what is painted, 1024 or 2048. Default: 1024. */
   size?: PaintingSize | undefined;
 }
@@ -51,7 +52,10 @@ export interface StickerPlace {
 const checkSize = (size: number): void => check(size > 0 && size <= 2, 'size', size, 'a number from 0 to 2');
 
 /** Paints on models, in the cage's UV space. */
-export class Painter {
+export class Painter extends Emitter<{
+  /** Why a pointer cannot paint, such as no room for another layer. Without a listener it is thrown, so that the page reports it. */
+  error: Error;
+}> {
   readonly layers: Layers;
   /** How `stroke` and pointers paint; the fields may be set. A size of 0.05 is a twentieth of the diagonal of the cage. */
   readonly brush: Omit<BrushStyle, 'erases'> = {
@@ -65,10 +69,6 @@ export class Painter {
   tool: Tool | undefined = 'brush';
   /** What pointers place with the tool `sticker`, upright as seen; the other fields are as those of `StickerPlace`. */
   picture: (StickerPicture & { size?: number; angle?: number; opacity?: number; mirrored?: boolean }) | undefined;
-  /** Gets the reason why a pointer cannot paint, such as no room for another layer. Default: throws it, so that the page reports it. */
-  onError = (error: Error): void => {
-    throw error;
-  };
   readonly #painter: LayerPainter;
   readonly #models: readonly Applied[];
   readonly #sheet = new StickerSheet();
@@ -77,17 +77,15 @@ export class Painter {
   #isDisposed = false;
 
   constructor(options: PainterOptions) {
+    super();
     const { layers, renderer, texture, applied, cage, size } = options ?? {};
     this.#models = [applied].flat();
     if (this.#models.some((model) => typeof model?.setTexture !== 'function'))
       throw wrong('options.applied is not what applyTransfer returned', kPaint);
     const { positions, indices, uvs } = extract(cage, 'cage').mesh;
     if (!uvs) throw wrong('options.cage has no UVs', kPaint);
-    this.layers = layers ?? createLayers({ renderer } as LayersOptions);
-    if (texture && !layers) {
-      this.layers.add(texture);
-      this.layers.edits.forget(); // it is no step that can be undone
-    }
+    this.layers = layers ?? createLayers({ renderer, cage } as LayersOptions);
+    if (texture && !layers) this.layers.add(texture, { undoable: false });
     this.#painter = new LayerPainter(this.layers);
     if (size !== undefined) this.#painter.size = size;
     this.#painter.setCage({ positions: Float32Array.from(positions), indices, uvs: Float32Array.from(uvs) });
@@ -195,7 +193,7 @@ export class Painter {
       try {
         return this.#drag(event, camera);
       } catch (error) {
-        this.onError(error as Error);
+        if (!this.emit('error', error as Error)) throw error;
         return undefined;
       }
     });
@@ -332,8 +330,8 @@ function checkBrush({ color, size, hardness, opacity }: BrushStyle): void {
  * Cost: tens of milliseconds for the first stroke.
  *
  * @example
- * const applied = applyTransfer(head.scene, cage.scene, { texture });
- * const painter = createPainter({ renderer, texture, applied, cage: cage.scene });
+ * const applied = applyTransfer(head, { cage, texture });
+ * const painter = createPainter({ renderer, texture, applied, cage });
  * painter.brush.color = '#cc2244';
  * painter.listen(camera);
  * renderer.setAnimationLoop(() => {

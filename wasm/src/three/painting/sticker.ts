@@ -1,4 +1,5 @@
 import { CanvasTexture, SRGBColorSpace, Vector3, type WebGLRenderer } from 'three';
+import { type Canvas, type Context, makeCanvas } from '../canvas.js';
 import { kPaint, notA, wrong } from '../errors.js';
 import { Composite } from '../layers/composite.js';
 import { plainStyle } from '../layers/layer.js';
@@ -86,15 +87,6 @@ export class StickerSheet {
 export function checkPicture(picture: StickerPicture): void {
   const given = Object(picture);
   if (!('text' in given || given.image)) throw notA('a text or an image', 'the picture', picture, kPaint);
-}
-
-type Canvas = HTMLCanvasElement | OffscreenCanvas;
-type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
-
-/** An element where there is a document, as its fonts are those of the page. */
-function makeCanvas(width: number, height: number): Canvas {
-  if (typeof document === 'undefined') return new OffscreenCanvas(width, height);
-  return Object.assign(document.createElement('canvas'), { width, height });
 }
 
 function drawText({ text, color, outline, font: family = 'system-ui, sans-serif' }: StickerText): Canvas {

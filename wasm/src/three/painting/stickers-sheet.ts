@@ -1,5 +1,5 @@
 import type { Vector2, Vector3 } from 'three';
-import { PaintedSheet } from './painted-sheet.js';
+import { PaintedSheet } from '../layers/painted-sheet.js';
 import type { StickerPicture } from './sticker.js';
 
 /** A sticker that can still be changed. @internal */

@@ -20,9 +20,9 @@ import {
 import { kMaxRects, Pass } from '../gpu/pass.js';
 import { disjoint, type Rect, toShares, toTexels } from '../gpu/rect.js';
 import type { ActiveStroke } from '../layers/composite.js';
+import { makePaintTarget, type PaintedSheet } from '../layers/painted-sheet.js';
 import type { CageTexels, Capsule, SurfacePoint } from './cage-texels.js';
 import { FillPass } from './fill-pass.js';
-import { makePaintTarget, type PaintedSheet } from './painted-sheet.js';
 import {
   brushShader,
   brushUniforms,

@@ -19,7 +19,7 @@ import type { Contribution, Files, Keep } from './project';
 interface ReadLayer {
   name: string;
   sheet: Sheet;
-  style: Style;
+  style: Partial<Style>;
 }
 
 /** What has the layers. */
@@ -140,7 +140,7 @@ export function layersPart({ session, stack, edits, away, samples, painter, imag
   };
 }
 
-function styleOf(saved: unknown): Style {
+function styleOf(saved: unknown): Partial<Style> {
   const { opacity, tint, blend, visible } = objectOf(saved, 'style of a layer');
   return {
     opacity: numberOf(opacity, 0, 1, 1),

@@ -1,6 +1,6 @@
 import { DataTexture, SRGBColorSpace, type Texture, Vector2, type WebGLRenderer, WebGLRenderTarget } from 'three';
 import { isEmpty, type Rect } from '../gpu/rect.js';
-import type { Sheet } from '../layers/layer.js';
+import type { Sheet } from './layer.js';
 
 /** Sizes of paintings, in texels per side. */
 export const paintingSizes = [1024, 2048] as const;
