@@ -31,10 +31,13 @@ function startFromAnywhere(start: () => Worker, url: string): Worker {
   }
 }
 
-/** Starts a worker thread in Node; nothing in other hosts. */
-export function threadOfNode(url: string, onReply: OnReply, onFailure: OnFailure): Thread | undefined {
+/** Starts a worker thread in Node. @throws Error if this is another host. */
+export function threadOfNode(url: string, onReply: OnReply, onFailure: OnFailure): Thread {
   const threads = nodeModule('node:worker_threads');
-  if (!threads) return undefined;
+  if (!threads)
+    throw new Error(
+      'it has no workers, nor process.getBuiltinModule, as Node 20.16 has; cagecast and cagecast/cages/sync need none',
+    );
   // Do not inherit the flags of this process: some, such as --input-type, are invalid for a file, and none is needed.
   const worker = new threads.Worker(new URL(url), { execArgv: [] });
   worker.on('message', onReply);
