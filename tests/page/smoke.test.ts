@@ -98,7 +98,7 @@ describe('without a picture', () => {
     await choose('preset', 'paper');
     assert.notDeepEqual(await shownCounts(page), before.counts);
     assert.ok((await steps()) < before.steps);
-    await page.locator('#code', { hasText: "{ texture, preset: 'paper' }" }).waitFor();
+    await page.locator('#code', { hasText: "texture, preset: 'paper' }" }).waitFor();
     await choose('preset', 'default');
     assert.deepEqual({ counts: await shownCounts(page), steps: await steps() }, before);
   });
