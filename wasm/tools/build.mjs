@@ -45,6 +45,7 @@ const kEntries = {
   'three/painting': 'three-paint',
   viewer: 'viewer',
   gltf: 'gltf',
+  glb: 'glb',
   worker: 'worker',
   cages: 'cages',
 };
@@ -220,9 +221,10 @@ function wasmModules(wasm, { index } = {}) {
           ...Object.fromEntries(
             Object.entries(kEntries).map(([folder, name]) => [`${folder}/index.js`, `./${name}.js`]),
           ),
+          'cages/sync.js': './cages-sync.js',
           'index.js': index,
         };
-        build.onResolve({ filter: /^\.\..*\/index\.js$/ }, ({ path, resolveDir }) => {
+        build.onResolve({ filter: /^\.\..*\/(index|sync)\.js$/ }, ({ path, resolveDir }) => {
           const file = entries[relative(at('wasm/src'), join(resolveDir, path)).replaceAll('\\', '/')];
           return file ? { path: file, external: true } : undefined;
         });

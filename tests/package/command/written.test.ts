@@ -91,6 +91,28 @@ test('an overlay is lit as its base is, and as transparent; where it fills what 
   assert.match(await ok(line), /\nthe overlay fills what the material cuts out of “only”; cagecast bake paints/);
 });
 
+test('in a VRM 0, the overlay has an entry among the properties of materials, which goes with it', async () => {
+  writeChanged('zero.vrm', glbOf(target), (json) => {
+    json.materials = [{ name: 'skin' }];
+    json.meshes![0]!.primitives[0]!.material = 0;
+    json.extensionsUsed = ['VRM'];
+    json.extensions = { VRM: { materialProperties: [{ name: 'skin', shader: 'VRM/MToon' }] } };
+  });
+  const properties = (name: string) => {
+    const { extensions, materials } = jsonOf(name);
+    const all = (extensions!['VRM'] as { materialProperties: { name: string; shader: string }[] }).materialProperties;
+    assert.deepEqual(
+      all.map((one) => one.name),
+      materials!.map((material) => material.name),
+    );
+    return all.map(({ shader }) => shader);
+  };
+  await ok('transfer zero.vrm --cage cage.glb --texture paint.png -o zero-out.vrm');
+  assert.deepEqual(properties('zero-out.vrm'), ['VRM/MToon', 'VRM_USE_GLTFSHADER']);
+  await ok('transfer zero-out.vrm --cage cage.glb -o zero-bare.vrm');
+  assert.deepEqual(properties('zero-bare.vrm'), ['VRM/MToon']);
+});
+
 /** A target with a bit of everything. */
 function rich(): Uint8Array {
   const maker = new GlbMaker();

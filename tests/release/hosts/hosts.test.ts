@@ -40,6 +40,7 @@ describe('TypeScript before 5.7', () => {
     'cagecast/inspect',
     'cagecast/cages',
     'cagecast/cages/sync',
+    'cagecast/glb',
   ];
   const consumer = `
     type IsAny<T> = 0 extends 1 & T ? true : false;

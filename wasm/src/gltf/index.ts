@@ -73,6 +73,9 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
  * each gets a copy. An earlier transfer to the document is replaced. Cut borders add vertices that blend existing ones, in all
  * attributes, skin weights and morph deltas. If the transform throws, the document is unchanged.
  *
+ * glTF-Transform itself drops extensions that it does not know, such as those of VRM, when it reads a file: avatars are for `paintGlb` of
+ * `cagecast/glb`.
+ *
  * Functions that change vertices, such as `simplify`, `weld` and `join`, belong before this one: simplified afterwards, an overlay
  * no longer lies on its surface, and UVs that were written anew stay beside those of a later transfer. `prune` takes UVs that no
  * texture uses: after a transfer without a texture, give it `keepAttributes: true`.

@@ -4,12 +4,14 @@ import type { TransferResult } from '../api/result.js';
 import { blend, blendSkin, ruleOf } from '../parts/blend.js';
 import { gather } from '../parts/split-part.js';
 import { dracoOf } from './check-geometry.js';
-import { dracoExtension, markForDraco, packDraco, unmarkDraco } from './draco-write.js';
 import { removeAttributes, removeOverlays } from './earlier-in-file.js';
 import type { Extracted, Part } from './extract-file.js';
 import { type Form, GlbWriter } from './glb-writer.js';
+import type { GltfFile } from './open-gltf.js';
+import { dracoExtension, markForDraco, unmarkDraco } from './output/draco-marks.js';
 import type { NamedFile } from './output/pack-gltf.js';
 import { separateMeshes } from './output/separate-meshes.js';
+import { addMaterial } from './output/vrm-materials.js';
 import {
   cornersIn,
   cosmeticCorners,
@@ -24,7 +26,6 @@ import {
   zoneAttribute,
 } from './overlay.js';
 import { type GroupMember, groupMember, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
-import type { GltfFile } from './read-gltf.js';
 
 /** What was added to a primitive. */
 export interface Added {
@@ -48,6 +49,8 @@ interface Writing {
   cut?: CutTarget | undefined;
   /** The form of the geometry. Default: that of the file */
   form?: Form;
+  /** Compresses by Draco what is marked for it. Needed if the file, or the form, is of Draco */
+  packDraco?: (writer: GlbWriter, file: GltfFile) => Promise<void>;
   /** The name of the attribute with the zones. Default: `_NCZ` */
   zones?: string;
   /** Whether it adds to what another cage painted of the same target, instead of replacing it. Default: no */
@@ -70,7 +73,7 @@ export async function writeTransfer(
   file: GltfFile,
   { parts }: Extracted,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
-  { paints = [], cut, form = 'keep', zones = zoneAttribute, isFurther = false, stem }: Writing = {},
+  { paints = [], cut, form = 'keep', packDraco, zones = zoneAttribute, isFurther = false, stem }: Writing = {},
 ): Promise<{ data: Uint8Array; beside: NamedFile[]; added: Added[]; replaced: number }> {
   const writer = await GlbWriter.from(file, form);
   const { json } = writer;
@@ -89,7 +92,7 @@ export async function writeTransfer(
   });
   if (form === 'draco') markForDraco(primitives);
   for (const group of groupsOf(members)) addToGroup(writer, file, group, { overlays, form, zones });
-  await packDraco(writer, file);
+  await packDraco?.(writer, file);
   const added = members.map((member) => member.added);
   if (stem === undefined) return { data: writer.finish(), beside: [], added, replaced };
   const { text, beside } = writer.finishText(stem);
@@ -280,7 +283,7 @@ class OverlayWriter {
       unlit: source?.extensions?.[unlitExtension] !== undefined,
     };
     const key = JSON.stringify(finish);
-    const number = this.#materials.get(key) ?? (json.materials ??= []).push(this.#made(finish)) - 1;
+    const number = this.#materials.get(key) ?? addMaterial(json, this.#made(finish));
     this.#materials.set(key, number);
     return number;
   }

@@ -18,6 +18,7 @@ const kPackageOrder = [
   'worker',
   'cages',
   'gltf',
+  'glb',
   'three',
   'viewer',
   'cli',

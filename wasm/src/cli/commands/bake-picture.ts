@@ -5,11 +5,12 @@ import { colorUseOf, isPainted, layoutOf, scaledTo, uvsOf } from '../../gltf/bak
 import type { Part } from '../../gltf/extract-file.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
+import { partsNamed } from '../../gltf/read-model.js';
 import type { UvLayout } from '../../gltf/uv-layout.js';
 import type { CutTarget } from '../../index.js';
 import { decodeImage } from '../io/images.js';
 import { listed, quoted } from '../model/text.js';
-import { noSuchName, partsNamed } from '../transfer/part-names.js';
+import { noSuchName } from '../transfer/part-names.js';
 import type { Run } from '../transfer/run-transfer.js';
 
 /** What a picture is made for. */

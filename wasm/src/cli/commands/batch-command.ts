@@ -1,6 +1,6 @@
 import { type Command, Option } from 'commander';
-import { standard } from '../../gltf/files.js';
 import { counted } from '../../inspect/finding.js';
+import { standard } from '../io/files.js';
 import type { Io } from '../io/io.js';
 import { kExit, UsageError } from '../model/failures.js';
 import type { Region } from '../model/sources.js';

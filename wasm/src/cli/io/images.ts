@@ -2,9 +2,10 @@ import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
-import { type ReadOptions, readBeside, readBytes } from '../../gltf/files.js';
 import { imageIsWhole, imageType, pngLength } from '../../gltf/image-file.js';
 import { firstLine, InputError, naming } from '../../gltf/input-error.js';
+import type { ReadOptions } from '../model/reading.js';
+import { readBeside, readBytes } from './files.js';
 
 /**
  * Reads an image file.

@@ -1,4 +1,3 @@
-import type { Accessor } from '@gltf-transform/core';
 import {
   areaOf,
   type Baked,
@@ -14,7 +13,8 @@ import { kMaxLayers } from '../../bake/pattern.js';
 import { CagecastError, type CutTarget, type TransferResult } from '../../index.js';
 import { blend } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
-import { decodeFloats, type Piece, requireFinite } from '../pieces.js';
+import { type AccessorData, decodeFloats } from '../accessors.js';
+import { type Piece, requireFinite } from '../pieces.js';
 import { groupMember } from '../primitive-group.js';
 import { layUvs, type UvLayout } from '../uv-layout.js';
 
@@ -39,7 +39,7 @@ export interface BakeModel<Material, Texture> {
   /** The materials that variants give a part instead of its own. */
   variantsOf(part: Piece): Material[];
   nameOf(material: Material): string;
-  attributeOf(part: Piece, semantic: string): Accessor | undefined;
+  attributeOf(part: Piece, semantic: string): AccessorData | undefined;
   useOf(material: Material, slot: Slot): TextureUse<Texture> | undefined;
   /** By what the values of the texture are multiplied. */
   factorOf(material: Material, slot: Slot): readonly [number, number, number];
