@@ -46,6 +46,7 @@ const kEntries = {
   viewer: 'viewer',
   gltf: 'gltf',
   glb: 'glb',
+  formats: 'formats',
   worker: 'worker',
   cages: 'cages',
 };
@@ -196,6 +197,21 @@ async function bundleCommand(bundle) {
     banner: { js: banner.join('\n') },
     loader: { '.wasm': 'binary' },
     plugins: [wasmModules('wasm-inline.ts')],
+  });
+  // What the command requires for files of other formats: three.js and its loaders. Of the index it needs the errors.
+  await bundle('formats/to-glb.ts', 'command-formats.cjs', 'node', {
+    format: 'cjs',
+    target: 'node20',
+    sourcemap: false,
+    plugins: [
+      {
+        name: 'errors',
+        setup: ({ onResolve }) =>
+          onResolve({ filter: /\/index\.js$/ }, ({ importer }) =>
+            importer.includes('formats') ? { path: at('wasm/src/core/error.ts') } : undefined,
+          ),
+      },
+    ],
   });
 }
 

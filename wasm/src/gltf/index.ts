@@ -30,6 +30,7 @@ export {
   refineCage,
   withBaseColors,
 } from './document/document-cages.js';
+export { type FileKind, type Format, fileKind } from './kinds.js';
 export type { ReadLimits } from './limits.js';
 export type { LeftOut, PartsOption };
 

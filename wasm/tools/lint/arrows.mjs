@@ -19,6 +19,7 @@ const kPackageOrder = [
   'cages',
   'gltf',
   'glb',
+  'formats',
   'three',
   'viewer',
   'cli',

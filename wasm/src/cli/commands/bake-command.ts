@@ -54,8 +54,11 @@ export function addBakeCommand(program: Command, io: Io): void {
   const command = program
     .command('bake')
     .description("bake PAINT into TARGET's own textures, in its own UVs; its geometry stays as it is")
-    .argument('<TARGET>', 'GLB, glTF or VRM')
-    .argument('<CAGE>', 'GLB or glTF with UVs that the paint was drawn for; auto makes one')
+    .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ')
+    .argument(
+      '<CAGE>',
+      'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ with UVs that the paint was drawn for; auto makes one',
+    )
     .argument('[PAINT]', "PNG in the cage's UV space; JPEG and WebP where sharp is installed")
     .addOption(
       common

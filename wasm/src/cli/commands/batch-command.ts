@@ -45,7 +45,10 @@ Examples:
 export function addBatchCommand(program: Command, io: Io): void {
   const command = program
     .command('batch')
-    .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders but linked ones')
+    .argument(
+      '[TARGETS...]',
+      'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ; * in a name matches any text, ** any folders but linked ones',
+    )
     .description('transfer to many files, in threads; print a line of JSON for each')
     .option('--manifest <JOBS.jsonl>', 'a JSON object per line, for a job each; - for the standard input')
     .option(

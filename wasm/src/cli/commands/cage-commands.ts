@@ -61,7 +61,7 @@ const kExitCodes = '\nExit codes: 0 good or usable, 1 an input cannot be used, 2
 export function addCageCommands(program: Command, io: Io): void {
   const make = program
     .command('make')
-    .argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing')
+    .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ of a head, a figure or a thing')
     .description(
       'make a cage for TARGET: a hull with UVs, and a hole over each part that is not painted; print a verdict',
     )
@@ -99,7 +99,7 @@ Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o
   const fit = program
     .command('fit')
     .argument('<TEMPLATE>', `GLB, glTF or OBJ of a cage for another model; or ${templateNames.join(', ')}`)
-    .argument('<TARGET>', 'GLB or glTF of the model that gets the cage')
+    .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ of the model that gets the cage')
     .description('move a template cage onto TARGET, so that one texture fits both; print a verdict')
     .option(
       '--template-landmarks <T.json>',

@@ -1,6 +1,6 @@
 import { constants } from 'node:fs';
-import { type FileHandle, open, realpath, stat } from 'node:fs/promises';
-import { isAbsolute, relative, resolve } from 'node:path';
+import { type FileHandle, open, readdir, realpath, stat } from 'node:fs/promises';
+import { basename, dirname, isAbsolute, relative, resolve } from 'node:path';
 import { decodedUri } from '../../gltf/data-uri.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
 import { checkBytes, defaultLimits, type ReadLimits } from '../../gltf/limits.js';
@@ -37,8 +37,17 @@ export async function readUri(name: string, uri: string, folder: string, options
   try {
     return await readBeside(path, folder, options);
   } catch (error) {
-    throw error instanceof InputError ? new InputError(`${name} is in ${uri.slice(0, 60)}: ${error.message}`) : error;
+    if (!(error instanceof InputError)) throw error;
+    throw new InputError(`${name} is in ${uri.slice(0, 60)}: ${error.message}${await nearlyNamed(path)}`);
   }
+}
+
+/** The end of a message: which file has the name that is missing but for capitals, if one has. */
+async function nearlyNamed(path: string): Promise<string> {
+  const names = await readdir(dirname(path)).catch((): string[] => []);
+  if (names.includes(basename(path))) return '';
+  const found = names.find((name) => name.toLowerCase() === basename(path).toLowerCase());
+  return found === undefined ? '' : `; there is ${found}`;
 }
 
 /**
@@ -136,6 +145,6 @@ function plain(error: unknown): InputError {
 /** Why a folder cannot be listed, with its name. */
 export const listingError = (error: unknown): InputError => plain(error).in((error as NodeJS.ErrnoException).path!);
 
-/** The file that a glTF in a folder refers to; none for a data URI or an address in the network. */
+/** The file that a glTF in a folder refers to, by slashes or backslashes; none for a data URI or an address in the network. */
 export const localFile = (uri: string, folder: string): string | undefined =>
-  /^[a-z][a-z0-9+.-]+:/i.test(uri) ? undefined : resolve(folder, decodedUri(uri));
+  /^[a-z][a-z0-9+.-]+:/i.test(uri) ? undefined : resolve(folder, decodedUri(uri).replaceAll('\\', '/'));
