@@ -625,6 +625,15 @@ async function strips(path: string, parts: readonly Strip[], wrapS?: keyof typeo
   await io.write(path, document);
 }
 
+test('UVs that lie wholly outside of a clamped texture hold no paint, which is said', async () => {
+  await strips('strip-cage.glb', [{ z: 0.02, u: (x) => x / 2 }]);
+  await strips('outside.glb', [{ z: 0, u: (x) => x + 3 }], 'CLAMP_TO_EDGE');
+  const reason = 'its UVs lie outside of 0..1, where its texture is clamped: nothing of the paint would be in it';
+  const line = 'bake outside.glb strip-cage.glb red.png -o';
+  await fails(1, `outside.glb: nothing can be baked: "nodes[0]": ${reason}`, `${line} never.glb`);
+  await fails(1, `outside.glb: "nodes[0]": ${reason}`, `${line} never.png`);
+});
+
 test('the way back shows what the model shows: what is nearest to the cage, and textures that are mirrored or clamped', async () => {
   await strips('strip-cage.glb', [{ z: 0.02, u: (x) => x / 2 }]);
   const shirt: Strip = { z: 0.008, from: 0.5, to: 1.5, u: (x) => 0.5 + x / 4 };

@@ -244,10 +244,18 @@ async function bakeTexture<Material, Texture>(
   if (wrong) return wrong;
   const { width, height } = base;
   const baked = fill('bake', layouts, paint, { width, height, wrap: use.wraps, kind: kindOf[slot] });
+  if (use.wraps.includes('clamp') && isEmpty(baked)) return kOutside;
   if (baked.overlap.lost > kMaxLost) return 'most of its paint would lie on that of others';
   const image = layOver(base, baked, slot === 'normal' ? [1, 1, 1] : factor);
   return { ...baked, png: await input.codec.encode(image) };
 }
+
+/** Why a texture that is clamped has nothing of a paint. */
+export const kOutside =
+  'its UVs lie outside of 0..1, where its texture is clamped: nothing of the paint would be in it';
+
+/** Whether nothing of a paint is in a texture. */
+export const isEmpty = ({ mask }: Baked): boolean => mask.every((one) => one === 0);
 
 /** The triangles that lie on a shared texture; those of a part that several materials lay there in the same way only once. */
 function layoutsOn<Material, Texture>(
