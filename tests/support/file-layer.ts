@@ -29,7 +29,7 @@ export async function loadFileLayer(): Promise<FileLayer> {
     write: false,
     loader: { '.wasm': 'binary' },
     banner: {
-      js: `import { createRequire } from 'node:module'; const require = createRequire(${JSON.stringify(import.meta.url)}), __dirname = '', __filename = '';`,
+      js: `import { createRequire as layerRequire } from 'node:module'; const require = layerRequire(${JSON.stringify(import.meta.url)}), __dirname = '', __filename = '';`,
     },
     plugins: [
       {

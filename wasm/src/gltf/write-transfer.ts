@@ -13,6 +13,8 @@ import type { NamedFile } from './output/pack-gltf.js';
 import { separateMeshes } from './output/separate-meshes.js';
 import { addMaterial } from './output/vrm-materials.js';
 import {
+  type BaseMaps,
+  baseMaps,
   cornersIn,
   cosmeticCorners,
   type Finish,
@@ -153,7 +155,7 @@ function addToGroup(
       if (corners.length === 0) continue;
       primitives.push(overlay.primitive(primitive, corners, attributes[uvSet]!));
       added.overlayTriangles += corners.length / 3;
-      added.fillsCutOuts = writer.json.materials?.[primitive.material ?? -1]?.alphaMode === 'MASK';
+      added.fillsCutOuts = cutsOut(writer.json.materials?.[primitive.material ?? -1]);
     }
     added.uvSet = uvSet;
     added.splitVertices = copies;
@@ -164,6 +166,10 @@ function addToGroup(
     delete primitive.mode; // strips and fans have become lists
   });
 }
+
+/** Whether the alpha of its texture may leave parts of a material out, which core glTF cannot say of an overlay. */
+const cutsOut = ({ alphaMode, pbrMetallicRoughness }: GLTF.IMaterial = {}): boolean =>
+  alphaMode === 'MASK' || (alphaMode === 'BLEND' && pbrMetallicRoughness?.baseColorTexture !== undefined);
 
 /** Adds new vertices, blends and copies, to all attributes and morph targets that primitives share. */
 function rewriteAttributes(
@@ -244,11 +250,15 @@ class OverlayWriter {
     const attributes: Record<string, number> = { TEXCOORD_0: uvs };
     for (const [semantic, accessor] of Object.entries(base.attributes))
       if (isOverlaid(semantic)) attributes[semantic] = accessor;
+    const lit = baseMaps(this.#materialOf(base), (semantic) => base.attributes[semantic] !== undefined);
+    lit.sets.forEach((set, i) => (attributes[`TEXCOORD_${1 + i}`] = base.attributes[set]!));
+    const tangents = base.attributes['TANGENT'];
+    if (lit.maps.normalTexture && tangents !== undefined) attributes['TANGENT'] = tangents;
     const { count } = this.#writer.json.accessors![uvs]!;
     return {
       attributes,
       indices: this.#writer.addIndices(corners, count),
-      material: this.#material(base),
+      material: this.#material(base, lit),
       ...(base.targets && {
         targets: base.targets.map((deltas) => this.#morph(deltas, 'NORMAL' in attributes, count)),
       }),
@@ -272,9 +282,9 @@ class OverlayWriter {
   }
 
   /** A material that shows the texture, lit as the base's material is. */
-  #material(base: GLTF.IMeshPrimitive): number {
+  #material(base: GLTF.IMeshPrimitive, { maps, metallic }: BaseMaps): number {
     const { json } = this.#writer;
-    const source = base.material === undefined ? undefined : json.materials?.[base.material];
+    const source = this.#materialOf(base);
     const { roughnessFactor = 1, baseColorFactor } = source?.pbrMetallicRoughness ?? {};
     const finish: Finish = {
       roughness: roughnessFactor,
@@ -282,13 +292,16 @@ class OverlayWriter {
       alpha: source?.alphaMode === 'BLEND' ? (baseColorFactor?.[3] ?? 1) : 1,
       unlit: source?.extensions?.[unlitExtension] !== undefined,
     };
-    const key = JSON.stringify(finish);
-    const number = this.#materials.get(key) ?? addMaterial(json, this.#made(finish));
+    const key = JSON.stringify([finish, maps, metallic]);
+    const made = () => ({ ...this.#made(finish, metallic), ...maps });
+    const number = this.#materials.get(key) ?? addMaterial(json, made());
     this.#materials.set(key, number);
     return number;
   }
 
-  #made({ roughness, doubleSided, alpha, unlit }: Finish): GLTF.IMaterial {
+  #materialOf = ({ material = -1 }: GLTF.IMeshPrimitive) => this.#writer.json.materials?.[material];
+
+  #made({ roughness, doubleSided, alpha, unlit }: Finish, metallic: BaseMaps['metallic']): GLTF.IMaterial {
     return {
       name: 'Cagecast overlay',
       extras: overlayMark,
@@ -297,8 +310,8 @@ class OverlayWriter {
       pbrMetallicRoughness: {
         baseColorTexture: { index: this.#shown() },
         ...(alpha < 1 && { baseColorFactor: [1, 1, 1, alpha] }),
-        metallicFactor: 0,
         roughnessFactor: roughness,
+        ...metallic,
       },
       // The base has it, so the file names it already.
       ...(unlit && { extensions: { [unlitExtension]: {} } }),
