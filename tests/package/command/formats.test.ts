@@ -137,6 +137,70 @@ test('an OBJ has the materials of its MTL, with the bytes of the images beside i
   assert.equal(unpackGlb(readFileSync('bare.glb')).json.images, undefined);
 });
 
+test('skins and morph targets of an FBX are kept, by their names', async () => {
+  const list = (name: string, values: readonly number[]) =>
+    fbxNode(`${name}: *${values.length}`, `a: ${values.join(',')}`);
+  const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+  const bound = [...identity.slice(0, 12), 0, 2, 0, 1]; // the bone is at y = 2
+  const at = (y: number) => `P: "Lcl Translation", "Lcl Translation", "", "A",0,${y},0`;
+  const fbx = [
+    '; FBX 7.4.0 project file',
+    fbxNode('FBXHeaderExtension: ', 'FBXHeaderVersion: 1003', 'FBXVersion: 7400'),
+    fbxNode(
+      'Objects: ',
+      fbxNode(
+        'Geometry: 10, "Geometry::head", "Mesh"',
+        list('Vertices', [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]),
+        list('PolygonVertexIndex', [0, 2, -2, 0, 1, -4, 0, 3, -3, 1, 2, -4]),
+      ),
+      fbxNode('Model: 20, "Model::head", "Mesh"', 'Version: 232'),
+      fbxNode('Model: 40, "Model::neck", "LimbNode"', 'Version: 232', fbxNode('Properties70: ', at(2))),
+      fbxNode('Deformer: 30, "Deformer::", "Skin"', 'Version: 101'),
+      fbxNode(
+        'Deformer: 31, "SubDeformer::", "Cluster"',
+        list('Indexes', [0, 1, 2, 3]),
+        list('Weights', [1, 1, 1, 1]),
+        list('Transform', identity),
+        list('TransformLink', bound),
+      ),
+      fbxNode('Deformer: 50, "Deformer::", "BlendShape"', 'Version: 100'),
+      fbxNode(
+        'Deformer: 51, "SubDeformer::smile", "BlendShapeChannel"',
+        'DeformPercent: 0',
+        list('FullWeights', [100]),
+      ),
+      fbxNode('Geometry: 52, "Geometry::smile", "Shape"', list('Indexes', [1]), list('Vertices', [0.5, 0, 0])),
+    ),
+    fbxNode(
+      'Connections: ',
+      ...['20,0', '40,0', '10,20', '30,10', '31,30', '40,31', '50,10', '51,50', '52,51'].map((one) => `C: "OO",${one}`),
+    ),
+    '',
+  ].join('\n');
+  const glb = await toGlb(new TextEncoder().encode(fbx));
+  assert.deepEqual(await validate(glb), []);
+  const root = (await io.readBinary(glb)).getRoot();
+  const [primitive] = root.listMeshes()[0]!.listPrimitives();
+  const [skin] = root.listSkins();
+  assert.deepEqual(
+    skin!.listJoints().map((joint) => joint.getName()),
+    ['neck'],
+  );
+  assert.deepEqual(skin!.getInverseBindMatrices()!.getElement(0, []).slice(12), [0, -2, 0, 1]);
+  assert.equal(primitive!.getAttribute('POSITION')!.getCount(), 4); // as many as are different
+  assert.deepEqual(root.listMeshes()[0]!.getExtras(), { targetNames: ['smile'] });
+  const [target] = primitive!.listTargets();
+  const moved = [...target!.getAttribute('POSITION')!.getArray()!].filter((x) => x !== 0);
+  assert.deepEqual(moved, [0.5]);
+  assert.equal(
+    root
+      .listNodes()
+      .find((node) => node.getSkin())!
+      .getName(),
+    'head',
+  );
+});
+
 test('what is no model is named as what it is, with what to do', async () => {
   const files: [name: string, text: string | Uint8Array, message: RegExp][] = [
     [
