@@ -2,14 +2,7 @@ import { InputError } from '../gltf/input-error.js';
 import { partsNamed, type ReadModel } from '../gltf/read-model.js';
 import type { Lock, Locks } from '../index.js';
 import { withBare } from '../parts/drawn.js';
-
-/** Patterns for the names of nodes, meshes and materials, in which `*` stands for any text. */
-export interface PartPatterns {
-  /** Parts that stay bare. Default: none but glasses, hats and what the cage was made without. */
-  exclude?: readonly string[] | undefined;
-  /** Parts that are painted wherever the cage covers them, even if their names would leave them bare. Default: none. */
-  keep?: readonly string[] | undefined;
-}
+import type { PartPatterns } from './part-patterns.js';
 
 /** How many names a message lists at most. */
 const kMaxNames = 20;

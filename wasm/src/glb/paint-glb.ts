@@ -14,7 +14,8 @@ import { noteOf } from '../inspect/bare.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import { cutBorders, transfer } from '../worker/index.js';
 import { fitTo } from './fit.js';
-import { locksOf, type PartPatterns } from './locks.js';
+import { locksOf } from './locks.js';
+import type { PartPatterns } from './part-patterns.js';
 
 /** Options of `paintGlb`: those of `transfer`, and what to paint. Of `cage` and `template`, one is needed. */
 export interface PaintOptions

@@ -107,12 +107,12 @@ export class FileModel implements BakeModel<number, number> {
     return { bytes, mimeType: imageType(bytes) ?? image.mimeType ?? 'an unknown type' };
   }
 
-  replace(materials: readonly number[], slot: Slot, png: Uint8Array, use: TextureUse<number>): void {
+  replace(materials: readonly number[], slot: Slot, bytes: Uint8Array, use: TextureUse<number>): void {
     const [json, writer] = [this.#json, this.#writer!];
     const before = json.textures![use.texture]!;
     const isOwn = infoOf(this.#material(materials[0]!), slot) !== undefined;
     const name = before.name ?? json.images?.[sourceOf(before) ?? -1]?.name ?? 'painted';
-    let number = writer.addTexture({ bytes: png, mimeType: 'image/png', name });
+    let number = writer.addTexture({ bytes, mimeType: imageType(bytes) ?? 'image/png', name });
     const made = json.textures![number]!;
     if (before.sampler !== undefined) made.sampler = before.sampler;
     if (isOwn && this.#isOnlyFor(use.texture, materials, slot)) {
