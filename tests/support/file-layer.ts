@@ -5,13 +5,13 @@ import { build } from 'esbuild';
 import { temporaryFolder } from './temporary.js';
 
 /** What the command reads and writes files by, which the package does not export. */
-export type FileLayer = Pick<typeof import('../../wasm/src/gltf/read-gltf.js'), 'readGltf'> &
+export type FileLayer = Pick<typeof import('../../wasm/src/cli/io/read-gltf.js'), 'readGltf'> &
   Pick<typeof import('../../wasm/src/gltf/extract-file.js'), 'extract'> &
   Pick<typeof import('../../wasm/src/gltf/write-transfer.js'), 'writeTransfer'> &
   Pick<typeof import('../../wasm/src/gltf/overlay.js'), 'paintOf'> &
-  Pick<typeof import('../../wasm/src/gltf/files.js'), 'defaultReading'>;
+  Pick<typeof import('../../wasm/src/cli/model/reading.js'), 'defaultReading'>;
 
-const kModules = ['read-gltf', 'extract-file', 'write-transfer', 'overlay', 'files'];
+const kModules = ['cli/io/read-gltf', 'gltf/extract-file', 'gltf/write-transfer', 'gltf/overlay', 'cli/model/reading'];
 
 /** Bundles the file layer, whose decoders are files that only a bundler reads. It uses the package's own index. */
 export async function loadFileLayer(): Promise<FileLayer> {
@@ -20,7 +20,7 @@ export async function loadFileLayer(): Promise<FileLayer> {
   const { outputFiles } = await build({
     stdin: {
       contents: kModules.map((name) => `export * from './${name}.js';`).join('\n'),
-      resolveDir: 'wasm/src/gltf',
+      resolveDir: 'wasm/src',
     },
     bundle: true,
     format: 'esm',
@@ -29,7 +29,7 @@ export async function loadFileLayer(): Promise<FileLayer> {
     write: false,
     loader: { '.wasm': 'binary' },
     banner: {
-      js: `import { createRequire } from 'node:module'; const require = createRequire(${JSON.stringify(import.meta.url)}), __dirname = '', __filename = '';`,
+      js: `import { createRequire as layerRequire } from 'node:module'; const require = layerRequire(${JSON.stringify(import.meta.url)}), __dirname = '', __filename = '';`,
     },
     plugins: [
       {

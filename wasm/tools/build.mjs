@@ -45,6 +45,8 @@ const kEntries = {
   'three/painting': 'three-paint',
   viewer: 'viewer',
   gltf: 'gltf',
+  glb: 'glb',
+  formats: 'formats',
   worker: 'worker',
   cages: 'cages',
 };
@@ -196,6 +198,21 @@ async function bundleCommand(bundle) {
     loader: { '.wasm': 'binary' },
     plugins: [wasmModules('wasm-inline.ts')],
   });
+  // What the command requires for files of other formats: three.js and its loaders. Of the index it needs the errors.
+  await bundle('formats/to-glb.ts', 'command-formats.cjs', 'node', {
+    format: 'cjs',
+    target: 'node20',
+    sourcemap: false,
+    plugins: [
+      {
+        name: 'errors',
+        setup: ({ onResolve }) =>
+          onResolve({ filter: /\/index\.js$/ }, ({ importer }) =>
+            importer.includes('formats') ? { path: at('wasm/src/core/error.ts') } : undefined,
+          ),
+      },
+    ],
+  });
 }
 
 /**
@@ -220,9 +237,10 @@ function wasmModules(wasm, { index } = {}) {
           ...Object.fromEntries(
             Object.entries(kEntries).map(([folder, name]) => [`${folder}/index.js`, `./${name}.js`]),
           ),
+          'cages/sync.js': './cages-sync.js',
           'index.js': index,
         };
-        build.onResolve({ filter: /^\.\..*\/index\.js$/ }, ({ path, resolveDir }) => {
+        build.onResolve({ filter: /^\.\..*\/(index|sync)\.js$/ }, ({ path, resolveDir }) => {
           const file = entries[relative(at('wasm/src'), join(resolveDir, path)).replaceAll('\\', '/')];
           return file ? { path: file, external: true } : undefined;
         });

@@ -3,6 +3,13 @@
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
+/** three.js has a copy of it. */
+const inThree = /three\/examples\/jsm\/libs\/fflate/;
+const fflateNotice = `fflate 0.8 (in command-formats.cjs, as a part of three, MIT, https://101arrowz.github.io/fflate)
+
+Copyright (c) 2023 Arjun Barrett. The terms are those of three, above.
+`;
+
 const rule = `\n${'-'.repeat(80)}\n\n`;
 
 /**
@@ -23,6 +30,7 @@ export function noticesOf(root, inputs, build) {
   const notices = [...packages].sort().map((folder) => noticeOf(join(root, folder)));
   return `Cagecast contains the following third-party software.\n${rule}${[
     ...notices,
+    ...(inThree.test([...inputs].join('\n')) ? [fflateNotice] : []),
     `nanoflann (in the WebAssembly modules)\n\n${header.slice(header.indexOf('/*'), header.indexOf('*/') + 2)}\n`,
     `meshoptimizer 0.22 (in cagecast-cages.wasm, https://github.com/zeux/meshoptimizer)\n\n${meshoptimizer.trim()}\n`,
     `Eigen 3.4 (in cagecast-cages.wasm)\n\nMozilla Public License 2.0, https://www.mozilla.org/MPL/2.0/. Unchanged; the source is at\nhttps://eigen.tuxfamily.org and in Debian's package libeigen3-dev.\n`,

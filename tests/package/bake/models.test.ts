@@ -1,6 +1,7 @@
 // Baking into the textures of models: of documents, and of files by the command.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { before, describe, test } from 'node:test';
 import { Document, type GLTF, type Material, NodeIO, TextureInfo } from '@gltf-transform/core';
 import { ALL_EXTENSIONS, KHRMaterialsTransmission, KHRMaterialsVariants } from '@gltf-transform/extensions';
@@ -624,6 +625,48 @@ async function strips(path: string, parts: readonly Strip[], wrapS?: keyof typeo
   }
   await io.write(path, document);
 }
+
+test('a JPEG stays a JPEG; where a texture becomes a PNG, its line says so; other images keep their bytes', async () => {
+  const sharp = createRequire(import.meta.url)('sharp') as (
+    bytes: Uint8Array,
+  ) => Record<'jpeg' | 'webp', () => { toBuffer(): Promise<Buffer> }>;
+  for (const [type, line] of [
+    ['jpeg', /^color: 96 × 96, on "box"$/m],
+    ['webp', /^color: 96 × 96, on "box"; image\/png now, image\/webp before$/m],
+  ] as const) {
+    const bytes = await sharp(pngOf(picture(size, () => [10, 20, 200, 255])))
+      [type]()
+      .toBuffer();
+    const { json, bin } = unpackGlb(readFileSync('box.glb'));
+    const untouched = pngOf(plain(1, 2, 3, 255));
+    const chunks = [Buffer.concat([bin, Buffer.alloc(-bin.length & 3)]), bytes, Buffer.from(untouched)];
+    const add = (chunk: number, mimeType: string) => {
+      const byteOffset = chunks.slice(0, chunk).reduce((sum, one) => sum + one.length, 0);
+      const view = json.bufferViews!.push({ buffer: 0, byteOffset, byteLength: chunks[chunk]!.length }) - 1;
+      return { bufferView: view, mimeType };
+    };
+    json.images![0] = add(1, `image/${type}`);
+    json.images!.push(add(2, 'image/png'));
+    json.textures!.push({ source: json.images!.length - 1 });
+    json.materials![0]!.emissiveTexture = { index: json.textures!.length - 1 };
+    const all = Buffer.concat(chunks);
+    json.buffers![0]!.byteLength = all.length;
+    writeFileSync(`${type}.glb`, packGlb({ json, bin: all }));
+    assert.match(await ok(`bake ${type}.glb cage.glb red.png -o ${type}-out.glb`), line);
+    const material = materialsOf(await io.read(`${type}-out.glb`))[0]!;
+    assert.equal(material.getBaseColorTexture()!.getMimeType(), type === 'jpeg' ? 'image/jpeg' : 'image/png');
+    assert.deepEqual([...material.getEmissiveTexture()!.getImage()!], [...untouched]);
+  }
+});
+
+test('UVs that lie wholly outside of a clamped texture hold no paint, which is said', async () => {
+  await strips('strip-cage.glb', [{ z: 0.02, u: (x) => x / 2 }]);
+  await strips('outside.glb', [{ z: 0, u: (x) => x + 3 }], 'CLAMP_TO_EDGE');
+  const reason = 'its UVs lie outside of 0..1, where its texture is clamped: nothing of the paint would be in it';
+  const line = 'bake outside.glb strip-cage.glb red.png -o';
+  await fails(1, `outside.glb: nothing can be baked: "nodes[0]": ${reason}`, `${line} never.glb`);
+  await fails(1, `outside.glb: "nodes[0]": ${reason}`, `${line} never.png`);
+});
 
 test('the way back shows what the model shows: what is nearest to the cage, and textures that are mirrored or clamped', async () => {
   await strips('strip-cage.glb', [{ z: 0.02, u: (x) => x / 2 }]);

@@ -4,10 +4,10 @@ import { spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, symlinkSync } from 'node:fs';
 import { test } from 'node:test';
 import { PNG } from 'pngjs';
-import { fails, run } from '../../support/command.js';
+import { fails, ok, run } from '../../support/command.js';
 import { glbOf, packGlb, unpackGlb } from '../../support/gltf.js';
 import { random } from '../scenes.js';
-import { inRepository, png, workplace, write, writeChanged } from './workplace.js';
+import { inRepository, jsonOf, png, workplace, write, writeChanged } from './workplace.js';
 
 const { target, cage } = workplace('reading');
 const whole = glbOf(target);
@@ -117,6 +117,24 @@ const wrongBytes: [bytes: Uint8Array | string, message: RegExp][] = [
   // The indices are the last: a float whose bits are a large number.
   [float(unpackGlb(whole).bin.length - 4, 1), /indices\[\d+\] = 1065353216 is out of range \(\d+ vertices\)/],
 ];
+
+test('a file beside a glTF is found by backslashes, too; if only capitals differ, the error says how it is named', async () => {
+  mkdirSync('textures', { recursive: true });
+  write('textures/Skin.PNG', png(5));
+  const named = (uri: string) =>
+    writeChanged('beside.glb', whole, (json) => {
+      json.images = [{ uri }];
+    });
+  named('textures\\Skin.PNG');
+  await ok('transfer beside.glb --cage cage.glb -o beside-out.glb');
+  assert.equal(jsonOf('beside-out.glb').images![0]!.name, 'Skin');
+  named('textures/skin.png');
+  await fails(
+    1,
+    'beside.glb: images[0] is in textures/skin.png: no such file; there is Skin.PNG',
+    'transfer beside.glb --cage cage.glb -o never.glb',
+  );
+});
 
 test('a target that cannot be used is one line that names file and element, and nothing is written', async () => {
   const files = [...readdirSync('.'), 'bad.glb'].sort();

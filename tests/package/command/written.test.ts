@@ -91,6 +91,81 @@ test('an overlay is lit as its base is, and as transparent; where it fills what 
   assert.match(await ok(line), /\nthe overlay fills what the material cuts out of “only”; cagecast bake paints/);
 });
 
+test('in a VRM 0, the overlay has an entry among the properties of materials, which goes with it', async () => {
+  writeChanged('zero.vrm', glbOf(target), (json) => {
+    json.materials = [{ name: 'skin' }];
+    json.meshes![0]!.primitives[0]!.material = 0;
+    json.extensionsUsed = ['VRM'];
+    json.extensions = { VRM: { materialProperties: [{ name: 'skin', shader: 'VRM/MToon' }] } };
+  });
+  const properties = (name: string) => {
+    const { extensions, materials } = jsonOf(name);
+    const all = (extensions!['VRM'] as { materialProperties: { name: string; shader: string }[] }).materialProperties;
+    assert.deepEqual(
+      all.map((one) => one.name),
+      materials!.map((material) => material.name),
+    );
+    return all.map(({ shader }) => shader);
+  };
+  await ok('transfer zero.vrm --cage cage.glb --texture paint.png -o zero-out.vrm');
+  assert.deepEqual(properties('zero-out.vrm'), ['VRM/MToon', 'VRM_USE_GLTFSHADER']);
+  await ok('transfer zero-out.vrm --cage cage.glb -o zero-bare.vrm');
+  assert.deepEqual(properties('zero-bare.vrm'), ['VRM/MToon']);
+});
+
+test('an overlay is lit by the maps of its base, which lie as they did: normals, occlusion, roughness and metalness', async () => {
+  writeMade('pores.glb', (maker) => {
+    const mesh = maker.mesh(target, { material: 0 });
+    const { attributes } = maker.json.meshes[mesh]!.primitives[0]!;
+    const tangents = Float32Array.from({ length: 4 * vertices }, (_, i) => Number(i % 4 === 0 || i % 4 === 3));
+    attributes['TANGENT'] = maker.accessor(tangents, 'VEC4');
+    attributes['NORMAL'] = maker.accessor(
+      Float32Array.from({ length: 3 * vertices }, (_, i) => Number(i % 3 === 2)),
+      'VEC3',
+    );
+    attributes['TEXCOORD_1'] = maker.accessor(new Float32Array(2 * vertices).fill(0.5), 'VEC2');
+    maker.node({ mesh, name: 'head' });
+    maker.json.images = [{ bufferView: maker.view(paint), mimeType: 'image/png' }];
+    maker.json.textures = [{ source: 0 }];
+    maker.json.extensionsUsed = ['KHR_texture_transform'];
+    const extensions = { KHR_texture_transform: { scale: [4, 4], texCoord: 1 } };
+    maker.json.materials = [
+      {
+        name: 'skin',
+        normalTexture: { index: 0, scale: 0.5, extensions },
+        occlusionTexture: { index: 0 },
+        pbrMetallicRoughness: { metallicRoughnessTexture: { index: 0 }, roughnessFactor: 0.7 },
+      },
+    ];
+  });
+  await ok('transfer pores.glb --cage cage.glb --texture paint.png -o pores-out.glb');
+  assert.deepEqual(await validate('pores-out.glb'), []);
+  const { meshes, materials } = jsonOf('pores-out.glb');
+  const [base, overlay] = meshes![0]!.primitives;
+  assert.deepEqual(
+    ['TEXCOORD_1', 'TEXCOORD_2', 'TANGENT'].map((semantic) => overlay!.attributes[semantic]),
+    ['TEXCOORD_1', 'TEXCOORD_0', 'TANGENT'].map((semantic) => base!.attributes[semantic]),
+  );
+  const { normalTexture, occlusionTexture, pbrMetallicRoughness: pbr } = materials![overlay!.material!]!;
+  const extensions = { KHR_texture_transform: { scale: [4, 4] } };
+  assert.deepEqual(normalTexture, { index: 0, scale: 0.5, texCoord: 1, extensions });
+  assert.deepEqual(occlusionTexture, { index: 0, texCoord: 2 });
+  assert.deepEqual(
+    [pbr!.metallicRoughnessTexture, pbr!.metallicFactor, pbr!.roughnessFactor],
+    [{ index: 0, texCoord: 2 }, 1, 0.7],
+  );
+  const transformed = await io.read('pores.glb');
+  await transformed.transform(cagecastTransform({ cage, texture: paint }));
+  const primitive = primitivesOf(transformed).find(isOverlay)!;
+  assert.deepEqual(primitive.listSemantics().sort(), Object.keys(overlay!.attributes).sort());
+  const material = primitive.getMaterial()!;
+  assert.deepEqual(
+    [material.getNormalScale(), material.getMetallicFactor(), material.getRoughnessFactor()],
+    [0.5, 1, 0.7],
+  );
+  assert.equal(material.getMetallicRoughnessTextureInfo()!.getTexCoord(), 2);
+});
+
 /** A target with a bit of everything. */
 function rich(): Uint8Array {
   const maker = new GlbMaker();

@@ -19,7 +19,10 @@ for (const [files, roles, warning] of [
   ['skin.jpeg other.webp', { texture: 'other.webp' }, ignored('skin.jpeg was')],
   ['scene.gltf scene.bin skin.png', { target: 'scene.gltf' }], // the image belongs to the model
   ['scene.gltf scene.bin cage.gltf', { target: 'scene.gltf', cage: 'cage.gltf' }],
-  ['thing.obj thing.png', { target: 'thing.obj', texture: 'thing.png' }], // so that it is said what it is
+  ['thing.obj thing.png', { target: 'thing.obj', texture: 'thing.png' }],
+  ['thing.obj thing.mtl thing.png', { target: 'thing.obj' }], // the image belongs to the model
+  ['thing.fbx cage.obj', { target: 'thing.fbx', cage: 'cage.obj' }],
+  ['thing.blend thing.png', { target: 'thing.blend', texture: 'thing.png' }], // so that it is said what it is
   ['notes.txt', { target: 'notes.txt' }],
   ['skin.png notes.txt', { texture: 'skin.png' }, ignored('notes.txt was')],
   ['work.cagecast a.glb', { project: 'work.cagecast' }],

@@ -40,6 +40,8 @@ describe('TypeScript before 5.7', () => {
     'cagecast/inspect',
     'cagecast/cages',
     'cagecast/cages/sync',
+    'cagecast/glb',
+    'cagecast/formats',
   ];
   const consumer = `
     type IsAny<T> = 0 extends 1 & T ? true : false;

@@ -74,7 +74,7 @@ describe('the packed package', () => {
       (name) => !/^(dist|package\.json|README\.md|LICENSE|CHANGELOG\.md)$/.test(name),
     );
     assert.deepEqual(top, []);
-    for (const name of distFiles()) assert.match(name, /\.(js|js\.map|d\.ts|wasm|glb|txt)$/);
+    for (const name of distFiles()) assert.match(name, /\.(c?js|js\.map|d\.ts|wasm|glb|txt)$/);
   });
 
   test('contains nothing about the machine it was built on', () => {

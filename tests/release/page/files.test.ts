@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { PNG } from 'pngjs';
 import { difference, look, modelArea, shareOfHue } from '../../support/picture';
-import { Site, setThreshold, settled, shownError, type Visit, violetPaint } from '../../support/site';
+import { drop, Site, setThreshold, settled, shownError, type Visit, violetPaint } from '../../support/site';
 
 let site: Site;
 // One page for all of it: a file's result must not depend on the files before.
@@ -45,6 +45,22 @@ test('a model is drawn by the programs of the one before, if it is of the same k
   const [linkedThen, misaligned] = await show('human-misaligned');
   assert.ok(difference(human, misaligned) > 0.01, 'the paint is seen elsewhere');
   assert.equal(linkedThen, linked);
+});
+
+test('an OBJ is opened with the MTL and the image that are dropped with it', async () => {
+  const { page, complaints } = await fresh();
+  const text = (name: string, lines: string) => ({ name, mimeType: 'text/plain', buffer: Buffer.from(lines) });
+  const corners = [0, 1].flatMap((x) => [0, 1].flatMap((y) => [0, 1].map((z) => `v ${x} ${y} ${z}`))).join('\n');
+  const sides = ['1 2 4 3', '5 7 8 6', '1 5 6 2', '3 4 8 7', '1 3 7 5', '2 6 8 4'];
+  const faces = sides.map((side) => `f ${side.replace(/\d/g, (v) => `${v}/${1 + (Number(v) % 3)}`)}`).join('\n');
+  const image = violetPaint();
+  await drop(page, [
+    text('cube.obj', `mtllib cube.mtl\n${corners}\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl skin\n${faces}\n`),
+    text('cube.mtl', `newmtl skin\nKd 1 1 1\nmap_Kd ${image.name}\n`),
+    image,
+  ]);
+  await page.locator('#target-name', { hasText: 'cube.glb' }).waitFor();
+  assert.deepEqual(complaints, []);
 });
 
 test('an own paint, PNG or JPEG, is drawn on the model', async () => {

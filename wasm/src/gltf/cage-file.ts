@@ -6,7 +6,7 @@ import { fromOrigin } from '../parts/origin.js';
 import { readTemplate } from '../parts/template-extras.js';
 import { type Extracted, morphedParts, type Part, parentsOf, skinOf, worldMatrices } from './extract-file.js';
 import { InputError } from './input-error.js';
-import type { GltfFile } from './read-gltf.js';
+import type { GltfFile } from './open-gltf.js';
 
 /** What `cagecast/cages` needs of a file: its mesh, the names of its parts, its joints, and where its face is. */
 export function cageModelOf(file: GltfFile, { mesh, parts, origin }: Extracted): CageModel {

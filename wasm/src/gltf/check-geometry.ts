@@ -21,6 +21,8 @@ export interface MeshoptView {
   byteLength: number;
   byteStride: number;
   count: number;
+  mode: string;
+  filter?: string;
 }
 
 /** The compressed form of a buffer view, if it has one. */

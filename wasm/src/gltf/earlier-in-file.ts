@@ -1,5 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import { extensionsByType, type GlbWriter } from './glb-writer.js';
+import { dropProperties } from './output/vrm-materials.js';
 import { isOfTransfer, isOverlay } from './overlay.js';
 
 /** Removes the UVs and zones of an earlier transfer from primitives. */
@@ -27,6 +28,7 @@ export function removeOverlays(writer: GlbWriter, meshes: Iterable<GLTF.IMesh>):
     removed.map(({ material }) => material),
     (number) => hasReference(json.meshes, /^material$/, number) || hasReference(json.extensions, /^material$/, number),
   );
+  dropProperties(json, materials.length);
   const textures = dropLast(
     json,
     'textures',

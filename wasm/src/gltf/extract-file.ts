@@ -1,4 +1,4 @@
-import type { Accessor, GLTF } from '@gltf-transform/core';
+import type { GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
 import type { Vector } from '../inspect/geometry.js';
@@ -17,13 +17,14 @@ import { vrmExpressions } from '../parts/morph-names.js';
 import { kSceneOrigin, type Origin } from '../parts/origin.js';
 import { type MorphedPart, type MorphTarget, posesOf } from '../parts/poses.js';
 import { placeMeshes, type Skin } from '../parts/skin.js';
+import { type AccessorData, decodeFloats } from './accessors.js';
 import { topNodes } from './check-geometry.js';
 import { InputError, naming } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';
 import { localMatrix } from './matrix.js';
+import type { GltfFile } from './open-gltf.js';
 import { isOverlay } from './overlay.js';
 import {
-  decodeFloats,
   decodePositions,
   decodeTriangles,
   decodeUvs,
@@ -34,7 +35,6 @@ import {
   type Piece,
   renumber,
 } from './pieces.js';
-import type { GltfFile } from './read-gltf.js';
 import { type UvLayout, uvLayoutOf } from './uv-layout.js';
 
 /** A primitive, by the numbers of its mesh and itself in the file's JSON. */
@@ -71,12 +71,18 @@ export type WhichCount = 'cage' | ((parts: readonly Part[], file: GltfFile) => I
  * left out. Morph targets shape a mesh by the weights of its node, or else of itself.
  * @param origin      What is subtracted from positions. Target and cage need the same one.
  * @param whichCount  Default: the parts that are drawn; of a `cage`, its outer cages, or all if there are none
+ * @param advice      The end of the error's message if no part counts.
  * @throws {InputError} that names the file, the primitive and the element.
  */
-export function extract(file: GltfFile, origin: Origin = kSceneOrigin, whichCount?: WhichCount): Extracted {
+export function extract(
+  file: GltfFile,
+  origin: Origin = kSceneOrigin,
+  whichCount?: WhichCount,
+  advice = '',
+): Extracted {
   return naming(file.path, () => {
     const all = listParts(file);
-    const fail = (text: string) => new InputError(`${text}; --ignore '' takes what is not drawn, too`);
+    const fail = (text: string) => new InputError(`${text}${advice}`);
     const chosen = typeof whichCount === 'function' ? whichCount(all, file) : whichCount;
     const { parts, leftOut: others, accessories } = chooseParts(all, looksOf(file), chosen, fail);
     renumber(parts);
@@ -270,7 +276,7 @@ const primitiveOf = ({ json }: GltfFile, { mesh, primitive }: PrimitiveRef): GLT
   json.meshes![mesh]!.primitives[primitive]!;
 
 /** The accessor of a primitive, decoded, and checked to have as many elements as the file says. */
-function accessorOf(file: GltfFile, ref: PrimitiveRef, semantic: string): Accessor | undefined {
+function accessorOf(file: GltfFile, ref: PrimitiveRef, semantic: string): AccessorData | undefined {
   const { attributes } = primitiveOf(file, ref);
   if (attributes[semantic] === undefined) return undefined;
   const accessor = file.accessors[attributes[semantic]];

@@ -1,17 +1,17 @@
-import { dirname, parse } from 'node:path';
-import type { Accessor, GLTF } from '@gltf-transform/core';
-import { MeshoptEncoder } from 'meshoptimizer/encoder';
+import type { GLTF } from '@gltf-transform/core';
+import type { MeshoptEncoder } from 'meshoptimizer/encoder';
 import { show } from '../core/error.js';
-import { packGlb, paddedLength } from '../parts/glb.js';
+import { joinBytes, packGlb, paddedLength } from '../parts/glb.js';
+import { type AccessorData, type ArrayData, componentTypeOf } from './accessors.js';
 import { type MeshoptView, meshoptExtensions, meshoptView } from './check-geometry.js';
-import { localFile, type ReadOptions, readUri } from './files.js';
+import { isDataUri, stemOf } from './data-uri.js';
 import { imageType } from './image-file.js';
 import { InputError } from './input-error.js';
+import type { GltfFile } from './open-gltf.js';
 import { type Contents, imageFile, type NamedFile, packGltf } from './output/pack-gltf.js';
 import { subtract } from './output/ranges.js';
 import type { Paint } from './overlay.js';
 import { sparseElements } from './primitive-group.js';
-import type { GltfFile } from './read-gltf.js';
 import { addedByTransfer, drop, eachAccessor, eachView, hasUnknownReferences, numbersOf } from './references.js';
 
 const kArrayBuffer = 34962;
@@ -27,38 +27,28 @@ const typesByEnding: Readonly<Record<string, string>> = { dds: 'image/vnd-ms.dds
 const extensionLists = ['extensionsUsed', 'extensionsRequired'] as const;
 const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4' } as const;
 
-type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
-
 /** How the geometry of written files is compressed: as that of the file that was read, or in another way. */
 export const forms = ['keep', 'none', 'meshopt', 'draco'] as const;
 export type Form = (typeof forms)[number];
 
 /** What an accessor that was added holds. */
 interface Stored {
-  values: AttributeArray;
+  values: ArrayData;
   size: number;
   accessor: GLTF.IAccessor;
 }
 
-function componentTypeOf(values: AttributeArray): GLTF.AccessorComponentType {
-  if (values instanceof Int8Array) return 5120;
-  if (values instanceof Uint8Array) return 5121;
-  if (values instanceof Int16Array) return 5122;
-  if (values instanceof Uint16Array) return 5123;
-  return values instanceof Uint32Array ? 5125 : 5126;
-}
-
 /** Pads the elements of an attribute, which begin at multiples of four bytes. */
-function align(values: AttributeArray, size: number): { aligned: AttributeArray; byteStride?: number } {
+function align(values: ArrayData, size: number): { aligned: ArrayData; byteStride?: number } {
   const perWord = 4 / values.BYTES_PER_ELEMENT;
   const stride = Math.ceil(size / perWord) * perWord;
   if (stride === size) return { aligned: values };
-  const aligned = new (values.constructor as new (length: number) => AttributeArray)((values.length / size) * stride);
+  const aligned = new (values.constructor as new (length: number) => ArrayData)((values.length / size) * stride);
   for (let i = 0; i < values.length; ++i) aligned[Math.floor(i / size) * stride + (i % size)] = values[i]!;
   return { aligned, byteStride: stride * values.BYTES_PER_ELEMENT };
 }
 
-const bytesOf = (values: AttributeArray) => new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
+const bytesOf = (values: ArrayData) => new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
 
 /**
  * Writes a GLB that has everything of a glTF file, with additions, and without what they replace.
@@ -77,9 +67,10 @@ export class GlbWriter {
   readonly #stored = new Map<GLTF.IAccessor, Stored>();
   /** The name of the extension that compresses views. */
   readonly #meshopt: string | undefined;
+  #encoder: typeof MeshoptEncoder | undefined;
 
   /** The accessors of the file, decoded. */
-  readonly #decoded: Accessor[];
+  readonly #decoded: AccessorData[];
 
   private constructor({ json, accessors }: GltfFile, form: Form) {
     this.json = structuredClone(json);
@@ -107,8 +98,13 @@ export class GlbWriter {
   static async from(file: GltfFile, form: Form): Promise<GlbWriter> {
     const writer = new GlbWriter(file, form);
     writer.#mergeBuffers(file.buffers);
-    await writer.#embedImages(dirname(file.path), file.reading);
-    if (writer.#meshopt !== undefined) await MeshoptEncoder.ready;
+    await writer.#embedImages(file);
+    if (writer.#meshopt !== undefined) {
+      // Only here, as its script compiles WebAssembly as soon as it runs.
+      const { MeshoptEncoder } = await import('meshoptimizer/encoder');
+      await MeshoptEncoder.ready;
+      writer.#encoder = MeshoptEncoder;
+    }
     return writer;
   }
 
@@ -123,7 +119,7 @@ export class GlbWriter {
       length = offset + json.buffers![b]!.byteLength;
       return offset;
     });
-    this.#bytes = Buffer.concat(chunks);
+    this.#bytes = joinBytes(chunks);
     // Buffers without bytes are fallbacks for compressed views; they are kept after the joined buffer.
     const kept = buffers.flatMap((bytes, b) => (bytes ? [] : [b]));
     const numbers = buffers.map((bytes, b) => (bytes ? 0 : 1 + kept.indexOf(b)));
@@ -146,17 +142,16 @@ export class GlbWriter {
     json.buffers = [first, ...fallbacks];
   }
 
-  async #embedImages(folder: string, reading: ReadOptions): Promise<void> {
+  async #embedImages(file: GltfFile): Promise<void> {
     for (const [i, image] of (this.json.images ?? []).entries()) {
       if (image.uri === undefined) continue;
-      const bytes = await readUri(`images[${i}]`, image.uri, folder, reading);
+      const bytes = await file.readUri(`images[${i}]`, image.uri);
       const [, named, ending = ''] = /^data:([^;,]+)|\.(\w+)$/.exec(image.uri) ?? [];
       const mimeType = image.mimeType ?? imageType(bytes) ?? named ?? typesByEnding[ending.toLowerCase()];
       if (mimeType === undefined)
         throw new InputError(`images[${i}] (${show(image.uri)}) is of an unknown type; give it a mimeType`);
-      const file = localFile(image.uri, folder);
       // As in the glTF, where it is known by its file.
-      if (file !== undefined) image.name ??= parse(file).name;
+      if (!isDataUri(image.uri)) image.name ??= stemOf(image.uri);
       delete image.uri;
       image.mimeType = mimeType;
       image.bufferView = this.addView(bytes);
@@ -174,7 +169,7 @@ export class GlbWriter {
    * Adds bytes of accessors, compressed if the file is.
    * @param mode  That of meshopt. `TRIANGLES` may turn triangles, so it is only for lists of them.
    */
-  #addData(values: AttributeArray, mode: 'ATTRIBUTES' | 'TRIANGLES' | 'INDICES', byteStride?: number): number {
+  #addData(values: ArrayData, mode: 'ATTRIBUTES' | 'TRIANGLES' | 'INDICES', byteStride?: number): number {
     const bytes = bytesOf(values);
     const target = mode === 'ATTRIBUTES' ? kArrayBuffer : kElementArrayBuffer;
     const view = { target, ...(byteStride !== undefined && { byteStride }) };
@@ -183,7 +178,7 @@ export class GlbWriter {
     // meshopt does not compress indices of one byte.
     if (name === undefined || bytes.byteLength === 0 || stride === 1) return this.addView(bytes, view);
     const count = bytes.byteLength / stride;
-    const packed = MeshoptEncoder.encodeGltfBuffer(bytes, count, stride, mode, 0);
+    const packed = this.#encoder!.encodeGltfBuffer(bytes, count, stride, mode, 0);
     const { buffer, byteOffset } = this.#standIn(bytes.byteLength);
     const compressed = { buffer: 0, byteLength: packed.byteLength, byteStride: stride, count, mode };
     return this.addView(packed, {
@@ -210,7 +205,7 @@ export class GlbWriter {
    * @param maySparse  Whether only elements that are not 0 may be stored, where that takes fewer bytes.
    * @returns the number of its accessor.
    */
-  addAttribute(values: AttributeArray, size: number, more: Partial<GLTF.IAccessor> = {}, maySparse = false): number {
+  addAttribute(values: ArrayData, size: number, more: Partial<GLTF.IAccessor> = {}, maySparse = false): number {
     const count = values.length / size;
     const accessor = {
       componentType: componentTypeOf(values),
@@ -224,17 +219,17 @@ export class GlbWriter {
   }
 
   /** Adds the bytes of a vertex attribute. @returns the number of their view. */
-  #addVertices(values: AttributeArray, size: number): number {
+  #addVertices(values: ArrayData, size: number): number {
     const { aligned, byteStride } = align(values, size);
     const stride = byteStride ?? (this.#meshopt === undefined ? undefined : size * values.BYTES_PER_ELEMENT);
     return this.#addData(aligned, 'ATTRIBUTES', stride);
   }
 
   /** Stores some elements of an accessor; the others are 0. */
-  #sparse(values: AttributeArray, size: number, listed: Uint32Array): { sparse?: GLTF.IAccessorSparse } {
+  #sparse(values: ArrayData, size: number, listed: Uint32Array): { sparse?: GLTF.IAccessorSparse } {
     if (listed.length === 0) return {};
     const indices = values.length / size <= 65536 ? Uint16Array.from(listed) : listed;
-    const own = new (values.constructor as new (length: number) => AttributeArray)(size * listed.length);
+    const own = new (values.constructor as new (length: number) => ArrayData)(size * listed.length);
     listed.forEach((element, i) => own.set(values.subarray(size * element, size * (element + 1)), size * i));
     const sparse = {
       count: listed.length,
@@ -252,7 +247,7 @@ export class GlbWriter {
     return this.#addAccessor({ ...accessor, bufferView: this.#addData(values, 'TRIANGLES') }, values, 1);
   }
 
-  #addAccessor(accessor: Omit<GLTF.IAccessor, 'max' | 'min'>, values: AttributeArray, size: number): number {
+  #addAccessor(accessor: Omit<GLTF.IAccessor, 'max' | 'min'>, values: ArrayData, size: number): number {
     const added = accessor as GLTF.IAccessor;
     this.#stored.set(added, { values, size, accessor: added });
     return this.addAccessor(added);

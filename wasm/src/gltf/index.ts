@@ -30,6 +30,7 @@ export {
   refineCage,
   withBaseColors,
 } from './document/document-cages.js';
+export { type FileKind, type Format, fileKind } from './kinds.js';
 export type { ReadLimits } from './limits.js';
 export type { LeftOut, PartsOption };
 
@@ -72,6 +73,9 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
  * with a texture, an overlay primitive of its cosmetic triangles. Everything else stays unchanged; if several nodes share a mesh,
  * each gets a copy. An earlier transfer to the document is replaced. Cut borders add vertices that blend existing ones, in all
  * attributes, skin weights and morph deltas. If the transform throws, the document is unchanged.
+ *
+ * glTF-Transform itself drops extensions that it does not know, such as those of VRM, when it reads a file: avatars are for `paintGlb` of
+ * `cagecast/glb`.
  *
  * Functions that change vertices, such as `simplify`, `weld` and `join`, belong before this one: simplified afterwards, an overlay
  * no longer lies on its surface, and UVs that were written anew stay beside those of a later transfer. `prune` takes UVs that no

@@ -1,5 +1,5 @@
-import type { Accessor } from '@gltf-transform/core';
 import type { Matrix } from '../parts/affine.js';
+import { type AccessorData, decodeFloats } from './accessors.js';
 import { InputError } from './input-error.js';
 import { localMatrix } from './matrix.js';
 
@@ -12,12 +12,12 @@ export const instancing = 'EXT_mesh_gpu_instancing';
  * @param attribute  The accessor of TRANSLATION, ROTATION or SCALE, if there is one.
  * @throws {InputError} that begins with `place`, if there is no instance, or its place is not of finite numbers.
  */
-export function firstInstance(place: string, attribute: (semantic: string) => Accessor | null | undefined): Matrix {
+export function firstInstance(place: string, attribute: (semantic: string) => AccessorData | null | undefined): Matrix {
   const read = (semantic: string, size: number): number[] | undefined => {
     const accessor = attribute(semantic);
     if (!accessor) return undefined;
     if (accessor.getCount() === 0) throw new InputError(`${place} has no instance`);
-    const value = accessor.getElement(0, []);
+    const value = [...decodeFloats(accessor).subarray(0, accessor.getElementSize())];
     if (accessor.getElementSize() !== size || !value.every(Number.isFinite))
       throw new InputError(`${place}: ${semantic} of ${instancing} is not of ${size} finite numbers`);
     return value;

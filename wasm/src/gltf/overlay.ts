@@ -1,6 +1,7 @@
 import type { GLTF } from '@gltf-transform/core';
 import { imageIsWhole, imageType, ktx2Problem } from './image-file.js';
 import { InputError } from './input-error.js';
+import { uvLayoutOf } from './uv-layout.js';
 
 /** The attribute with the `Zone` of each vertex, a byte: 0 may be painted, other values are Non-Cosmetic Zones. */
 export const zoneAttribute = '_NCZ';
@@ -105,7 +106,7 @@ export function cosmeticCorners(indices: Uint32Array, cosmetic: Uint8Array): Uin
 
 /**
  * Whether an overlay has an attribute of its base: positions, and those for lighting and deformation. Not colours, which would tint
- * the texture, nor tangents, which its material does not use.
+ * the texture. Tangents are for normal maps only, and have to be named besides.
  *
  * Positions are the very same, so that the overlay has the depth of the surface, bit for bit, and is drawn on it from any distance.
  * Moved off the surface, it would show holes where it is nearer to it than the depth buffer can tell.
@@ -124,6 +125,35 @@ export interface Finish {
   /** Its opacity, if it is transparent. */
   alpha: number;
   unlit: boolean;
+}
+
+/** The maps that light a material, and by which UV sets of its base they lie on an overlay: its own sets from `TEXCOORD_1` on. */
+export interface BaseMaps {
+  maps: Pick<GLTF.IMaterial, 'normalTexture' | 'occlusionTexture'>;
+  metallic: Pick<GLTF.IMaterialPbrMetallicRoughness, 'metallicRoughnessTexture' | 'metallicFactor'>;
+  sets: string[];
+}
+
+/** The maps of a material with which its overlay is lit, so that pores and scales stay. @param has  Whether the base has an attribute. */
+export function baseMaps(material: GLTF.IMaterial | undefined, has: (semantic: string) => boolean): BaseMaps {
+  const sets: string[] = [];
+  const on = <Info extends GLTF.ITextureInfo>(info: Info | undefined): Info | undefined => {
+    if (!info || material?.extensions?.[unlitExtension]) return undefined;
+    const { set } = uvLayoutOf(info);
+    if (!has(set)) return undefined;
+    if (!sets.includes(set)) sets.push(set);
+    const own = structuredClone({ ...info, texCoord: 1 + sets.indexOf(set) });
+    delete (own.extensions?.['KHR_texture_transform'] as { texCoord?: number } | undefined)?.texCoord;
+    return own;
+  };
+  const { metallicRoughnessTexture: rough, metallicFactor = 1 } = material?.pbrMetallicRoughness ?? {};
+  const [normalTexture, occlusionTexture] = [on(material?.normalTexture), on(material?.occlusionTexture)];
+  const metallicRoughnessTexture = on(rough);
+  return {
+    maps: { ...(normalTexture && { normalTexture }), ...(occlusionTexture && { occlusionTexture }) },
+    metallic: metallicRoughnessTexture ? { metallicRoughnessTexture, metallicFactor } : { metallicFactor: 0 },
+    sets,
+  };
 }
 
 export const unlitExtension = 'KHR_materials_unlit';

@@ -2,6 +2,7 @@ import type { GLTF } from '@gltf-transform/core';
 import { show } from '../core/error.js';
 import { checkLists } from './check-geometry.js';
 import { InputError } from './input-error.js';
+import { adviceOn } from './kinds.js';
 import { checkNesting, type ReadLimits } from './limits.js';
 
 /** The JSON of a GLB or glTF file, and the GLB's bytes. @throws {InputError} with a message that does not name the file. */
@@ -14,7 +15,9 @@ export function parseGltf(bytes: Uint8Array, limits: ReadLimits): { json: GLTF.I
   try {
     json = JSON.parse(new TextDecoder().decode(text)) as GLTF.IGLTF | null;
   } catch (cause) {
-    throw new InputError(isGlb ? 'its JSON is damaged' : 'is neither a GLB nor a glTF file', { cause });
+    throw new InputError(isGlb ? 'its JSON is damaged' : (adviceOn(bytes) ?? 'is neither a GLB nor a glTF file'), {
+      cause,
+    });
   }
   if (json?.asset?.version === undefined) throw new InputError('is JSON but not glTF: it has no asset.version');
   const { version } = json.asset;

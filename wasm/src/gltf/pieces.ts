@@ -1,9 +1,9 @@
-import type { Accessor } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
 import type { Vector } from '../inspect/geometry.js';
 import { isIdentity, type Matrix } from '../parts/affine.js';
 import { fromOrigin, type Origin, originOf } from '../parts/origin.js';
 import { morphed, movePoints } from '../parts/points.js';
+import { type AccessorData, decodeFloats } from './accessors.js';
 import { InputError } from './input-error.js';
 import { isMirrored } from './matrix.js';
 import { layUvs, type UvLayout } from './uv-layout.js';
@@ -119,11 +119,11 @@ export function requireFinite(place: string, semantic: string, values: Float32Ar
  */
 export function decodePositions(
   place: string,
-  accessor: Accessor,
+  accessor: AccessorData,
   weights: readonly number[],
-  deltas: (target: number) => Accessor | null | undefined,
+  deltas: (target: number) => AccessorData | null | undefined,
 ): Float32Array {
-  const decode = (path: string, one: Accessor) => {
+  const decode = (path: string, one: AccessorData) => {
     if (one.getElementSize() !== 3) throw new InputError(`${place}.${path}.POSITION is ${one.getType()}, not VEC3`);
     return decodeFloats(one);
   };
@@ -172,7 +172,7 @@ export function decodeTriangles(
 export function decodeUvs(
   place: string,
   { set, transform }: UvLayout,
-  accessor: Accessor,
+  accessor: AccessorData,
   vertexCount: number,
 ): Float32Array {
   if (accessor.getElementSize() !== 2)
@@ -181,18 +181,6 @@ export function decodeUvs(
     throw new InputError(`${place} has ${accessor.getCount()} ${set} for ${vertexCount} vertices`);
   const uvs = decodeFloats(accessor);
   return layUvs(uvs, transform);
-}
-
-/** All components of an accessor as 32-bit floats, with normalised integers decoded. */
-export function decodeFloats(accessor: Accessor): Float32Array {
-  const array = accessor.getArray()!;
-  if (array instanceof Float32Array) return array;
-  if (!accessor.getNormalized()) return Float32Array.from(array as ArrayLike<number>);
-  const size = accessor.getElementSize();
-  const out = new Float32Array(array.length);
-  const element: number[] = [];
-  for (let i = 0; i < accessor.getCount(); ++i) out.set(accessor.getElement(i, element), i * size);
-  return out;
 }
 
 function placePositions({ matrix: m, localPositions, firstVertex }: Piece, out: Float32Array): void {

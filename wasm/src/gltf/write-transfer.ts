@@ -4,13 +4,17 @@ import type { TransferResult } from '../api/result.js';
 import { blend, blendSkin, ruleOf } from '../parts/blend.js';
 import { gather } from '../parts/split-part.js';
 import { dracoOf } from './check-geometry.js';
-import { dracoExtension, markForDraco, packDraco, unmarkDraco } from './draco-write.js';
 import { removeAttributes, removeOverlays } from './earlier-in-file.js';
 import type { Extracted, Part } from './extract-file.js';
 import { type Form, GlbWriter } from './glb-writer.js';
+import type { GltfFile } from './open-gltf.js';
+import { dracoExtension, markForDraco, unmarkDraco } from './output/draco-marks.js';
 import type { NamedFile } from './output/pack-gltf.js';
 import { separateMeshes } from './output/separate-meshes.js';
+import { addMaterial } from './output/vrm-materials.js';
 import {
+  type BaseMaps,
+  baseMaps,
   cornersIn,
   cosmeticCorners,
   type Finish,
@@ -24,7 +28,6 @@ import {
   zoneAttribute,
 } from './overlay.js';
 import { type GroupMember, groupMember, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
-import type { GltfFile } from './read-gltf.js';
 
 /** What was added to a primitive. */
 export interface Added {
@@ -48,6 +51,8 @@ interface Writing {
   cut?: CutTarget | undefined;
   /** The form of the geometry. Default: that of the file */
   form?: Form;
+  /** Compresses by Draco what is marked for it. Needed if the file, or the form, is of Draco */
+  packDraco?: (writer: GlbWriter, file: GltfFile) => Promise<void>;
   /** The name of the attribute with the zones. Default: `_NCZ` */
   zones?: string;
   /** Whether it adds to what another cage painted of the same target, instead of replacing it. Default: no */
@@ -70,7 +75,7 @@ export async function writeTransfer(
   file: GltfFile,
   { parts }: Extracted,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
-  { paints = [], cut, form = 'keep', zones = zoneAttribute, isFurther = false, stem }: Writing = {},
+  { paints = [], cut, form = 'keep', packDraco, zones = zoneAttribute, isFurther = false, stem }: Writing = {},
 ): Promise<{ data: Uint8Array; beside: NamedFile[]; added: Added[]; replaced: number }> {
   const writer = await GlbWriter.from(file, form);
   const { json } = writer;
@@ -89,7 +94,7 @@ export async function writeTransfer(
   });
   if (form === 'draco') markForDraco(primitives);
   for (const group of groupsOf(members)) addToGroup(writer, file, group, { overlays, form, zones });
-  await packDraco(writer, file);
+  await packDraco?.(writer, file);
   const added = members.map((member) => member.added);
   if (stem === undefined) return { data: writer.finish(), beside: [], added, replaced };
   const { text, beside } = writer.finishText(stem);
@@ -150,7 +155,7 @@ function addToGroup(
       if (corners.length === 0) continue;
       primitives.push(overlay.primitive(primitive, corners, attributes[uvSet]!));
       added.overlayTriangles += corners.length / 3;
-      added.fillsCutOuts = writer.json.materials?.[primitive.material ?? -1]?.alphaMode === 'MASK';
+      added.fillsCutOuts = cutsOut(writer.json.materials?.[primitive.material ?? -1]);
     }
     added.uvSet = uvSet;
     added.splitVertices = copies;
@@ -161,6 +166,10 @@ function addToGroup(
     delete primitive.mode; // strips and fans have become lists
   });
 }
+
+/** Whether the alpha of its texture may leave parts of a material out, which core glTF cannot say of an overlay. */
+const cutsOut = ({ alphaMode, pbrMetallicRoughness }: GLTF.IMaterial = {}): boolean =>
+  alphaMode === 'MASK' || (alphaMode === 'BLEND' && pbrMetallicRoughness?.baseColorTexture !== undefined);
 
 /** Adds new vertices, blends and copies, to all attributes and morph targets that primitives share. */
 function rewriteAttributes(
@@ -241,11 +250,15 @@ class OverlayWriter {
     const attributes: Record<string, number> = { TEXCOORD_0: uvs };
     for (const [semantic, accessor] of Object.entries(base.attributes))
       if (isOverlaid(semantic)) attributes[semantic] = accessor;
+    const lit = baseMaps(this.#materialOf(base), (semantic) => base.attributes[semantic] !== undefined);
+    lit.sets.forEach((set, i) => (attributes[`TEXCOORD_${1 + i}`] = base.attributes[set]!));
+    const tangents = base.attributes['TANGENT'];
+    if (lit.maps.normalTexture && tangents !== undefined) attributes['TANGENT'] = tangents;
     const { count } = this.#writer.json.accessors![uvs]!;
     return {
       attributes,
       indices: this.#writer.addIndices(corners, count),
-      material: this.#material(base),
+      material: this.#material(base, lit),
       ...(base.targets && {
         targets: base.targets.map((deltas) => this.#morph(deltas, 'NORMAL' in attributes, count)),
       }),
@@ -269,9 +282,9 @@ class OverlayWriter {
   }
 
   /** A material that shows the texture, lit as the base's material is. */
-  #material(base: GLTF.IMeshPrimitive): number {
+  #material(base: GLTF.IMeshPrimitive, { maps, metallic }: BaseMaps): number {
     const { json } = this.#writer;
-    const source = base.material === undefined ? undefined : json.materials?.[base.material];
+    const source = this.#materialOf(base);
     const { roughnessFactor = 1, baseColorFactor } = source?.pbrMetallicRoughness ?? {};
     const finish: Finish = {
       roughness: roughnessFactor,
@@ -279,13 +292,16 @@ class OverlayWriter {
       alpha: source?.alphaMode === 'BLEND' ? (baseColorFactor?.[3] ?? 1) : 1,
       unlit: source?.extensions?.[unlitExtension] !== undefined,
     };
-    const key = JSON.stringify(finish);
-    const number = this.#materials.get(key) ?? (json.materials ??= []).push(this.#made(finish)) - 1;
+    const key = JSON.stringify([finish, maps, metallic]);
+    const made = () => ({ ...this.#made(finish, metallic), ...maps });
+    const number = this.#materials.get(key) ?? addMaterial(json, made());
     this.#materials.set(key, number);
     return number;
   }
 
-  #made({ roughness, doubleSided, alpha, unlit }: Finish): GLTF.IMaterial {
+  #materialOf = ({ material = -1 }: GLTF.IMeshPrimitive) => this.#writer.json.materials?.[material];
+
+  #made({ roughness, doubleSided, alpha, unlit }: Finish, metallic: BaseMaps['metallic']): GLTF.IMaterial {
     return {
       name: 'Cagecast overlay',
       extras: overlayMark,
@@ -294,8 +310,8 @@ class OverlayWriter {
       pbrMetallicRoughness: {
         baseColorTexture: { index: this.#shown() },
         ...(alpha < 1 && { baseColorFactor: [1, 1, 1, alpha] }),
-        metallicFactor: 0,
         roughnessFactor: roughness,
+        ...metallic,
       },
       // The base has it, so the file names it already.
       ...(unlit && { extensions: { [unlitExtension]: {} } }),

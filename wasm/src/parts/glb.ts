@@ -22,5 +22,16 @@ export function packGlb(json: object, chunks: readonly Uint8Array[]): Uint8Array
   return out;
 }
 
+/** Bytes one after the other. */
+export function joinBytes(chunks: readonly Uint8Array[]): Uint8Array<ArrayBuffer> {
+  const all = new Uint8Array(chunks.reduce((sum, { byteLength }) => sum + byteLength, 0));
+  let at = 0;
+  for (const chunk of chunks) {
+    all.set(chunk, at);
+    at += chunk.byteLength;
+  }
+  return all;
+}
+
 /** The next multiple of four. */
 export const paddedLength = (length: number): number => Math.ceil(length / 4) * 4;

@@ -18,6 +18,8 @@ const kPackageOrder = [
   'worker',
   'cages',
   'gltf',
+  'glb',
+  'formats',
   'three',
   'viewer',
   'cli',

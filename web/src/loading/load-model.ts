@@ -1,37 +1,32 @@
-import { checkGltf } from 'cagecast/gltf';
+import { checkGltf, fileKind } from 'cagecast/gltf';
 import { Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { askWorker } from '../platform/ask-worker';
 import { disposeAfterFrame } from '../platform/programs';
 import type { Loader, Model } from '../state/model';
 import { reasonOf } from '../state/wording';
 import { bringNear } from './bring-near';
 import { meshesOf } from './extract-mesh';
-import { paths } from './file-paths';
+import { companionOf, paths } from './file-paths';
+import type { Converted, FormatsRequest } from './formats-thread';
 import { readGltfHead } from './gltf-file';
 import { damageOf } from './image-damage';
-import { adviceOn, kSniffed } from './other-formats';
 
 /**
- * Reads a GLB or glTF model, Draco, meshopt, KTX2 and quantised data included.
- * @param file       The model.
+ * Reads a GLB or glTF model, Draco, meshopt, KTX2 and quantised data included; a model of another format as the GLB that is made of it.
+ * @param given      The model.
  * @param renderer   Undefined without WebGL.
- * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
+ * @param companions Files a model may refer to (a .bin, an .mtl, images), found by name.
  * @throws Error with a message that begins with the file's name.
  */
 export async function loadModel(
-  file: File,
+  given: File,
   renderer: WebGLRenderer | undefined,
   companions: readonly File[] = [],
 ): Promise<Model> {
   const urls = new Map<string, string>();
   try {
-    const bytes = await file.arrayBuffer().catch(() => {
-      throw new Error(
-        `the browser cannot read this file (${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB); it may be too large, or deleted`,
-      );
-    });
-    const advice = adviceOn(new Uint8Array(bytes, 0, Math.min(kSniffed, bytes.byteLength)));
-    if (advice) throw new Error(advice);
+    const { file, bytes } = await readAsGltf(given, companions);
     const head = readGltfHead(bytes);
     const used = [...new Set(head.uris.map((uri) => findCompanion(uri, companions, file)))];
     checkCost(bytes, used);
@@ -60,7 +55,7 @@ export async function loadModel(
       release();
     }
   } catch (error) {
-    throw new Error(`${file.name}: ${messageOf(error)}`, { cause: error });
+    throw new Error(`${given.name}: ${messageOf(error)}`, { cause: error });
   } finally {
     for (const url of urls.values()) URL.revokeObjectURL(url);
   }
@@ -130,14 +125,31 @@ function checkCost(bytes: ArrayBuffer, companions: readonly File[]): void {
   }
 }
 
+/** A model and its bytes; those of the GLB that is made of it, if it has another format. @throws Error without the file's name. */
+async function readAsGltf(file: File, companions: readonly File[]): Promise<{ file: File; bytes: ArrayBuffer }> {
+  const bytes = await file.arrayBuffer().catch(() => {
+    throw new Error(
+      `the browser cannot read this file (${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB); it may be too large, or deleted`,
+    );
+  });
+  const kind = fileKind(new Uint8Array(bytes));
+  if (!kind) return { file, bytes };
+  if (!kind.format) throw new Error(`this is ${kind.name}; ${kind.advice}`);
+  const worker = new Worker(new URL('./formats-thread.ts', import.meta.url), { type: 'module' });
+  const withPath = (one: File) => ({ file: one, path: paths.get(one) });
+  const request: FormatsRequest = { model: withPath(file), companions: companions.map(withPath) };
+  const { glb } = await askWorker<Converted>(worker, request);
+  const made = new File([glb], `${file.name.replace(/\.[^.]*$/, '')}.glb`);
+  return { file: made, bytes: await made.arrayBuffer() };
+}
+
 function findCompanion(uri: string, companions: readonly File[], model: File): File {
-  const name = uri.split('/').at(-1);
-  const folder = paths.get(model);
-  const path = folder && decodeURI(new URL(encodeURI(uri), `file:${encodeURI(folder)}`).pathname);
-  const found =
-    companions.find((file) => path && paths.get(file) === path) ?? companions.find((file) => file.name === name);
-  if (!found) throw new Error(`the model needs the file ${uri}; choose or drop both together`);
-  return found;
+  const found = companionOf(uri, companions, model);
+  if (found) return found;
+  const name = uri.split(/[\\/]/).at(-1)!;
+  const other = companions.find((file) => file.name.toLowerCase() === name.toLowerCase());
+  if (other) throw new Error(`the model needs the file ${uri}; there is ${other.name}, whose name has other capitals`);
+  throw new Error(`the model needs the file ${uri}; choose or drop both together`);
 }
 
 /** Adds the decoders that the file needs, fetched on demand. @returns A function that frees them. */

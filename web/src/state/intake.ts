@@ -9,12 +9,12 @@ export interface Intake {
   unclear: File[];
   /** Warnings to show. */
   warnings: string[];
-  /** All files: a .gltf finds its .bin and images here. */
+  /** All files: a model finds its .bin, .mtl and images here. */
   all: File[];
 }
 
-export const kModel = /\.(glb|gltf|vrm)$/i;
-const kForeign = /\.(obj|fbx|blend|usdz?|stl|ply|dae)$/i;
+export const kModel = /\.(glb|gltf|vrm|fbx|obj|ply|stl|usd[acz]?)$/i;
+const kForeign = /\.(blend|dae)$/i;
 export const kProject = /\.cagecast$/i;
 const kCage = /cage/i;
 export const kImage = /\.(png|jpe?g|webp)$/i;
@@ -29,16 +29,16 @@ export function modelsAmong(files: readonly File[]): { cages: File[]; targets: F
 }
 
 /**
- * Assigns files to roles: models by their names, images as paint unless a .gltf came with them.
+ * Assigns files to roles: models by their names, images as paint unless a .gltf, or the .mtl of an .obj, came with them.
  * A model of another format, or any other file if there is nothing else, becomes the target, so that the reader reports what is wrong with it.
  */
 export function sortFiles(all: readonly File[]): Intake {
   const { cages, targets: rest } = modelsAmong(all);
   const models = all.filter(({ name }) => kModel.test(name));
   const others = all.filter((file) => !models.includes(file));
-  // The images belong to the .gltf.
-  const withGltf = models.some(({ name }) => /\.gltf$/i.test(name));
-  const images = withGltf ? [] : others.filter(({ name, type }) => kImage.test(name) || type.startsWith('image/'));
+  // The images belong to these.
+  const withImages = all.some(({ name }) => /\.(gltf|mtl)$/i.test(name));
+  const images = withImages ? [] : others.filter(({ name, type }) => kImage.test(name) || type.startsWith('image/'));
   const project = others.find(({ name }) => kProject.test(name));
   if (project) return { project, unclear: [], warnings: [], all: [...all] };
   const intake: Intake = { texture: images.at(-1), unclear: [], warnings: [], all: [...all] };
@@ -53,7 +53,7 @@ export function sortFiles(all: readonly File[]): Intake {
       `${one.name} and ${other.name} are both named as cages; the one with more triangles is used as the target.`,
     );
   const used = [intake.target, intake.cage, intake.texture, one, other];
-  const [left, ...more] = (withGltf ? models : all).filter((file) => !used.includes(file));
+  const [left, ...more] = (withImages ? models : all).filter((file) => !used.includes(file));
   if (left)
     intake.warnings.push(
       `${left.name}${more.length > 0 ? ` and ${more.length} more were` : ' was'} ignored: only one target, one cage and one paint can be opened at a time.`,

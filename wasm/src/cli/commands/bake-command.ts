@@ -8,7 +8,7 @@ import { InputError, withName } from '../../gltf/input-error.js';
 import { CagecastError, type CutTarget } from '../../index.js';
 import { percent } from '../../inspect/finding.js';
 import type { Borders } from '../../parts/borders-option.js';
-import { decodeImage, encodePng, readImage } from '../io/images.js';
+import { decodeImage, encodeLike, encodePng, readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import { refuseOverwriting, writeFiles } from '../io/output.js';
 import { UsageError } from '../model/failures.js';
@@ -54,8 +54,11 @@ export function addBakeCommand(program: Command, io: Io): void {
   const command = program
     .command('bake')
     .description("bake PAINT into TARGET's own textures, in its own UVs; its geometry stays as it is")
-    .argument('<TARGET>', 'GLB, glTF or VRM')
-    .argument('<CAGE>', 'GLB or glTF with UVs that the paint was drawn for; auto makes one')
+    .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ')
+    .argument(
+      '<CAGE>',
+      'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ with UVs that the paint was drawn for; auto makes one',
+    )
     .argument('[PAINT]', "PNG in the cage's UV space; JPEG and WebP where sharp is installed")
     .addOption(
       common
@@ -139,7 +142,7 @@ async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefin
     writer,
     extracted.parts.map(({ mesh }) => writer.json.meshes![mesh]!),
   );
-  const codec = { decode: decodeImage, encode: encodePng };
+  const codec = { decode: decodeImage, encode: encodeLike };
   const model = new FileModel(file, extracted.parts, writer);
   const { report } = await bakeModel(model, { result: run.result, cut, paints, codec, size });
   if (report.textures.length === 0) {
@@ -160,8 +163,8 @@ function summary(output: string, { textures, left }: BakeReport): string[] {
   return [
     `wrote ${output}`,
     ...textures.map(
-      ({ slot, parts, width, height, overlap }) =>
-        `${slot}: ${width} × ${height}, on ${listNames(parts)}${overlapText(overlap)}`,
+      ({ slot, parts, width, height, overlap, mimeType, before = mimeType }) =>
+        `${slot}: ${width} × ${height}, on ${listNames(parts)}${mimeType === before ? '' : `; ${mimeType} now, ${before} before`}${overlapText(overlap)}`,
     ),
     ...left.map((one) => `not painted: ${leftText(one)}`),
   ];

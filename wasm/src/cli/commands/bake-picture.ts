@@ -1,15 +1,16 @@
 import { mostTexels } from '../../bake/image.js';
 import { type Baked, cageTexture, fill, type Image, type Layout, resize, type Wrap } from '../../bake/index.js';
 import { FileModel } from '../../gltf/bake/bake-file.js';
-import { colorUseOf, isPainted, layoutOf, scaledTo, uvsOf } from '../../gltf/bake/plan.js';
+import { colorUseOf, isEmpty, isPainted, kOutside, layoutOf, scaledTo, uvsOf } from '../../gltf/bake/plan.js';
 import type { Part } from '../../gltf/extract-file.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
+import { partsNamed } from '../../gltf/read-model.js';
 import type { UvLayout } from '../../gltf/uv-layout.js';
 import type { CutTarget } from '../../index.js';
 import { decodeImage } from '../io/images.js';
 import { listed, quoted } from '../model/text.js';
-import { noSuchName, partsNamed } from '../transfer/part-names.js';
+import { noSuchName } from '../transfer/part-names.js';
 import type { Run } from '../transfer/run-transfer.js';
 
 /** What a picture is made for. */
@@ -43,7 +44,10 @@ export async function paintForModel(
   const own = await imageOf(model, texture, size === undefined);
   const layouts = layoutsOf(model, parts, run, cut);
   const [width, height] = own ? scaledTo(own, size) : [size ?? kSide, size ?? kSide];
-  return { image: fill('bake', layouts, paint, { width, height }), parts };
+  const wraps = colorUseOf(model, parts[0]!)?.wraps;
+  const image = fill('bake', layouts, paint, { width, height, wrap: wraps });
+  if (wraps?.includes('clamp') && isEmpty(image)) throw new InputError(`${quoted(parts[0]!.name)}: ${kOutside}`);
+  return { image, parts };
 }
 
 /** What is painted on the model, in the cage's UVs. @throws {InputError} */

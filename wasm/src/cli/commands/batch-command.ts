@@ -1,6 +1,6 @@
 import { type Command, Option } from 'commander';
-import { standard } from '../../gltf/files.js';
 import { counted } from '../../inspect/finding.js';
+import { standard } from '../io/files.js';
 import type { Io } from '../io/io.js';
 import { kExit, UsageError } from '../model/failures.js';
 import type { Region } from '../model/sources.js';
@@ -45,7 +45,10 @@ Examples:
 export function addBatchCommand(program: Command, io: Io): void {
   const command = program
     .command('batch')
-    .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders but linked ones')
+    .argument(
+      '[TARGETS...]',
+      'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ; * in a name matches any text, ** any folders but linked ones',
+    )
     .description('transfer to many files, in threads; print a line of JSON for each')
     .option('--manifest <JOBS.jsonl>', 'a JSON object per line, for a job each; - for the standard input')
     .option(

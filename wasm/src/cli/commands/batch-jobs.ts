@@ -1,9 +1,9 @@
 import { createHash } from 'node:crypto';
 import { existsSync, readFileSync, statSync } from 'node:fs';
 import { basename, dirname, extname } from 'node:path';
-import { readBytes, standard } from '../../gltf/files.js';
 import { firstLine, InputError, naming } from '../../gltf/input-error.js';
 import { filesBeside } from '../io/beside.js';
+import { readBytes, standard } from '../io/files.js';
 import { filesOf } from '../io/glob.js';
 import { canonicalPath } from '../io/output.js';
 import { UsageError } from '../model/failures.js';

@@ -5,11 +5,12 @@ import { cageGlb } from '../../cages/cage-glb.js';
 import { templateNames } from '../../cages/template-names.js';
 import type { Cage, Fit, Kind, Landmarks, Template } from '../../cages/types.js';
 import { templateOf } from '../../gltf/cage-file.js';
-import { readBytes, standard } from '../../gltf/files.js';
 import { InputError, naming } from '../../gltf/input-error.js';
+import { bareParts, type ReadModel, readBack, withUvs } from '../../gltf/read-model.js';
 import { counted } from '../../inspect/finding.js';
 import { readObj } from '../../parts/obj.js';
 import { isPosition, readTemplate as withExtras } from '../../parts/template-extras.js';
+import { readBytes, standard } from '../io/files.js';
 import type { Io } from '../io/io.js';
 import { writeFiles } from '../io/output.js';
 import { kExit } from '../model/failures.js';
@@ -19,11 +20,11 @@ import { integer, type Line, listed, shown } from '../model/text.js';
 import { conclusionOf, inspectionReport } from '../transfer/inspection.js';
 import { inspectionPage } from '../transfer/inspection-page.js';
 import { fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
-import { type ReadModel, readBack, readModel, withUvs } from '../transfer/models.js';
+import { readModel } from '../transfer/models.js';
 import { transferOptions } from '../transfer/part-names.js';
 import { readTarget } from '../transfer/read-target.js';
 import { leftOutLines } from '../transfer/report-parts.js';
-import { bareParts, transferModels } from '../transfer/run-transfer.js';
+import { transferModels } from '../transfer/run-transfer.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
 
@@ -60,7 +61,7 @@ const kExitCodes = '\nExit codes: 0 good or usable, 1 an input cannot be used, 2
 export function addCageCommands(program: Command, io: Io): void {
   const make = program
     .command('make')
-    .argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing')
+    .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ of a head, a figure or a thing')
     .description(
       'make a cage for TARGET: a hull with UVs, and a hole over each part that is not painted; print a verdict',
     )
@@ -98,7 +99,7 @@ Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o
   const fit = program
     .command('fit')
     .argument('<TEMPLATE>', `GLB, glTF or OBJ of a cage for another model; or ${templateNames.join(', ')}`)
-    .argument('<TARGET>', 'GLB or glTF of the model that gets the cage')
+    .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ of the model that gets the cage')
     .description('move a template cage onto TARGET, so that one texture fits both; print a verdict')
     .option(
       '--template-landmarks <T.json>',

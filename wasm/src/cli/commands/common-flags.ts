@@ -1,8 +1,9 @@
 // Flags that several commands have, as commander parses them.
 import { type Command, InvalidArgumentError, Option } from 'commander';
 import { optionFlags } from '../../generated/options.js';
-import { type ReadOptions, standard } from '../../gltf/files.js';
 import { defaultLimits, type ReadLimits } from '../../gltf/limits.js';
+import { standard } from '../io/files.js';
+import type { ReadOptions } from '../model/reading.js';
 import { colorAttributes, holdsColors, kChoices, kSettingNames, type Layer, type Settings } from '../model/settings.js';
 import { kAutoCage, type Region } from '../model/sources.js';
 import { areBounds, boundsText, type UvBounds } from '../model/uv-bounds.js';

@@ -1,9 +1,10 @@
 import { lstatSync } from 'node:fs';
 import { basename, dirname, extname, join, relative, resolve } from 'node:path';
-import { type ReadOptions, readBeside, readBytes, standard } from '../../gltf/files.js';
+import { matcher } from '../../core/patterns.js';
 import { InputError, naming } from '../../gltf/input-error.js';
+import { readBeside, readBytes, standard } from '../io/files.js';
 import { isObject, parseObject, refuseUnknown } from '../model/json.js';
-import { matcher } from '../model/patterns.js';
+import type { ReadOptions } from '../model/reading.js';
 import { kSettingNames, type Layer, type Settings, settingsOf } from '../model/settings.js';
 import { shown } from '../model/text.js';
 

@@ -1,9 +1,9 @@
 import { readdir } from 'node:fs/promises';
 import { join } from 'node:path';
 import type { Command } from 'commander';
-import { isFolder, listingError } from '../../gltf/files.js';
 import { InputError, naming } from '../../gltf/input-error.js';
 import { counted, percent } from '../../inspect/finding.js';
+import { isFolder, listingError } from '../io/files.js';
 import type { Io } from '../io/io.js';
 import { kExit } from '../model/failures.js';
 import { cut, integer, short, table } from '../model/text.js';

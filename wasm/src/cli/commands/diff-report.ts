@@ -1,5 +1,5 @@
-import { readBytes } from '../../gltf/files.js';
 import { InputError, naming } from '../../gltf/input-error.js';
+import { readBytes } from '../io/files.js';
 import { isObject, parseObject } from '../model/json.js';
 import { shown } from '../model/text.js';
 import { kZoneNames } from '../model/zones.js';

@@ -1,4 +1,4 @@
-import { standard } from '../../gltf/files.js';
+import { standard } from '../io/files.js';
 import type { Io } from '../io/io.js';
 import { checkOutputs } from '../io/output.js';
 import { jsonText, type Line, oneLine } from '../model/text.js';

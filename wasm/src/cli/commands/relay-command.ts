@@ -48,8 +48,11 @@ export function addRelayCommand(program: Command, io: Io): void {
   const command = program
     .command('relay')
     .description('carry PAINT, drawn for CAGE, over to another cage on the same TARGET')
-    .argument('<TARGET>', 'GLB, glTF or VRM that both cages are around')
-    .argument('<CAGE>', 'GLB or glTF with UVs that the paint was drawn for; auto makes one')
+    .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ that both cages are around')
+    .argument(
+      '<CAGE>',
+      'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ with UVs that the paint was drawn for; auto makes one',
+    )
     .argument('<PAINT>', "PNG in the cage's UV space; JPEG and WebP where sharp is installed")
     .requiredOption('--to <CAGE>', 'the other cage; auto makes one')
     .addOption(

@@ -23,10 +23,10 @@ interface TransferFlags extends TargetFlags {
 /** Adds TARGET and the cage of a command that transfers to it. */
 export const addTarget = (command: Command): Command =>
   command
-    .argument('<TARGET>', 'GLB, glTF or VRM')
+    .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ')
     .option(
       '--cage <CAGE>',
-      'GLB or glTF with UVs that the texture was drawn for; auto makes one (default: the meshes of TARGET that are named as outer cages of others)',
+      'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ with UVs that the texture was drawn for; auto makes one (default: the meshes of TARGET that are named as outer cages of others)',
     );
 
 /** What its help says after the flags. */

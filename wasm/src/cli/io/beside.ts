@@ -1,8 +1,9 @@
 import { closeSync, openSync, readSync, statSync } from 'node:fs';
 import { dirname } from 'node:path';
 import type { GLTF } from '@gltf-transform/core';
-import { defaultReading, isOutside, localFile, type ReadOptions } from '../../gltf/files.js';
 import { parseGltf } from '../../gltf/parse.js';
+import { defaultReading, type ReadOptions } from '../model/reading.js';
+import { isOutside, localFile } from './files.js';
 
 /** Files with more JSON hold their buffers in it, as a rule; parsing them would take long. */
 const kMaxBytes = 2 ** 23;

@@ -1,6 +1,6 @@
 import { type Dirent, readdirSync, statSync } from 'node:fs';
-import { listingError } from '../../gltf/files.js';
-import { matcher } from '../model/patterns.js';
+import { matcher } from '../../core/patterns.js';
+import { listingError } from './files.js';
 
 /**
  * The files that a pattern names, in order: `*` matches any text within a name, `**` any folders. Names that begin with a dot are

@@ -2,9 +2,10 @@ import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
-import { type ReadOptions, readBeside, readBytes } from '../../gltf/files.js';
 import { imageIsWhole, imageType, pngLength } from '../../gltf/image-file.js';
 import { firstLine, InputError, naming } from '../../gltf/input-error.js';
+import type { ReadOptions } from '../model/reading.js';
+import { readBeside, readBytes } from './files.js';
 
 /**
  * Reads an image file.
@@ -60,8 +61,25 @@ export async function encodePng({ width, height, data }: Image): Promise<Uint8Ar
   return PNG.sync.write(png);
 }
 
+/** The quality of JPEGs that are written, of 100. */
+const kQuality = 90;
+
+/** Encodes an image that takes the place of one of some type: as a JPEG if that was one and sharp is there, else as a PNG. */
+export async function encodeLike(image: Image, mimeType: string | undefined): Promise<Uint8Array> {
+  const sharp = mimeType === 'image/jpeg' ? loadSharp() : undefined;
+  if (!sharp) return encodePng(image);
+  const { width, height, data } = image;
+  return sharp(data, { raw: { width, height, channels: 4 } })
+    .jpeg({ quality: kQuality })
+    .toBuffer();
+}
+
 /** The parts of sharp that are used here. */
-type Sharp = (bytes: Uint8Array) => {
+type Sharp = (
+  bytes: Uint8Array | Uint8ClampedArray,
+  options?: object,
+) => {
+  jpeg(options: { quality: number }): { toBuffer(): Promise<Uint8Array> };
   ensureAlpha(): {
     raw(): {
       toBuffer(options: object): Promise<{ data: Uint8Array; info: { width: number; height: number } }>;

@@ -14,9 +14,9 @@ import {
 } from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
 import { isatty } from 'node:tty';
-import { reasons, standard } from '../../gltf/files.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
 import { UsageError } from '../model/failures.js';
+import { reasons, standard } from './files.js';
 import type { Io } from './io.js';
 
 /**

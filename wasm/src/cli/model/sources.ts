@@ -1,4 +1,4 @@
-import type { ReadOptions } from '../../gltf/files.js';
+import type { ReadOptions } from './reading.js';
 import type { ResolvedSettings, Rules } from './settings.js';
 import type { UvBounds } from './uv-bounds.js';
 

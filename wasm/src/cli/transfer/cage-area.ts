@@ -1,6 +1,6 @@
 import { InputError } from '../../gltf/input-error.js';
+import type { ReadModel } from '../../gltf/read-model.js';
 import type { UvBounds } from '../model/uv-bounds.js';
-import type { ReadModel } from './models.js';
 
 /** A cage whose UVs are 0..1 within bounds: a texture covers just these. @throws {InputError} if no triangle reaches into them. */
 export function withinBounds(cage: ReadModel, bounds: UvBounds | undefined): ReadModel {

@@ -1,5 +1,6 @@
 import type { Landmarks } from '../../cages/types.js';
 import { templateOf } from '../../gltf/cage-file.js';
+import type { ReadModel } from '../../gltf/read-model.js';
 import { percent } from '../../inspect/finding.js';
 import { vertexAreas } from '../../inspect/geometry.js';
 import {
@@ -17,7 +18,6 @@ import { integer, short } from '../model/text.js';
 import { boundsAround, type UvBounds } from '../model/uv-bounds.js';
 import type { PerZone } from '../model/zones.js';
 import { withinBounds } from './cage-area.js';
-import type { ReadModel } from './models.js';
 import {
   type CageReport,
   cageReport,

@@ -5,10 +5,10 @@ import { baseColorsOf } from '../../gltf/bake/base-colors.js';
 import { cageModelOf, partNamesOf } from '../../gltf/cage-file.js';
 import { partsBelow } from '../../gltf/extract-file.js';
 import { InputError } from '../../gltf/input-error.js';
+import type { ReadModel } from '../../gltf/read-model.js';
 import { CagecastError } from '../../index.js';
 import { decodeImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
-import type { ReadModel } from './models.js';
 import { noSuchName } from './part-names.js';
 
 /** Makes a cage for a model. @throws {InputError} that names the file. */

@@ -1,26 +1,9 @@
-import { partsBelow } from '../../gltf/extract-file.js';
 import { InputError } from '../../gltf/input-error.js';
+import { type Named, partsNamed, type ReadModel } from '../../gltf/read-model.js';
 import type { TransferOptions } from '../../index.js';
 import { leftOutText } from '../../parts/drawn.js';
-import { matcher } from '../model/patterns.js';
 import type { Rules } from '../model/settings.js';
 import { cut, kMaxCharacters, listed, quoted } from '../model/text.js';
-import type { ReadModel } from './models.js';
-
-/** A model whose parts have names. */
-interface Named {
-  file: ReadModel['file'];
-  extracted: Pick<ReadModel['extracted'], 'parts'> & Partial<ReadModel['extracted']>;
-}
-
-/** The numbers of the parts that a pattern names. The name of a node that no part has stands for all parts below it. */
-export function partsNamed(pattern: string, { file: { json }, extracted: { parts } }: Named): number[] {
-  const matches = matcher(pattern);
-  const own = [...parts.keys()].filter((p) => parts[p]!.aliases.some(matches));
-  if (own.length > 0) return own;
-  const isAbove = (json.nodes ?? []).map(({ name }) => name !== undefined && matches(name));
-  return partsBelow(json, parts, isAbove);
-}
 
 /** How many names a message lists at most. */
 const kMaxNames = 20;

@@ -1,8 +1,10 @@
-import type { ReadOptions } from '../../gltf/files.js';
+import type { ReadModel } from '../../gltf/read-model.js';
+import { partsNamed } from '../../gltf/read-model.js';
 import type { Io } from '../io/io.js';
+import type { ReadOptions } from '../model/reading.js';
 import type { Rules } from '../model/settings.js';
-import { type ReadModel, readModel } from './models.js';
-import { noSuchName, partsNamed } from './part-names.js';
+import { readModel } from './models.js';
+import { noSuchName } from './part-names.js';
 
 /**
  * Reads a target: what is drawn of it, without the parts that are ignored.

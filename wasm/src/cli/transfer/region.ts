@@ -5,6 +5,7 @@ import { naming } from '../../gltf/input-error.js';
 import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/overlay.js';
 import { writeTransfer } from '../../gltf/write-transfer.js';
 import type { CutTarget, TransferResult } from '../../index.js';
+import { packDraco } from '../io/draco-write.js';
 import type { Io } from '../io/io.js';
 import type { TransferCommand } from '../model/sources.js';
 import { boundsOfTile, isTiled, type UvBounds } from '../model/uv-bounds.js';
@@ -81,6 +82,7 @@ export async function transferRegion(
       cut: cut && { ...cut, cosmeticTriangles: own },
       // Draco changes the order of triangles, which says what is painted already.
       form: isLast ? form : compressionOf(run) === undefined ? 'keep' : 'none',
+      packDraco,
       zones,
       isFurther: before !== undefined,
       stem: isText ? basename(output).slice(0, -'.gltf'.length) : undefined,

@@ -1,4 +1,6 @@
 // What the reports of `transfer` and `inspect` have in common.
+
+import type { ReadModel } from '../../gltf/read-model.js';
 import { presetOptions, type TransferResult } from '../../index.js';
 import { type Bare, bareOf, bareText } from '../../inspect/bare.js';
 import { percent } from '../../inspect/finding.js';
@@ -7,7 +9,6 @@ import { leftOutText } from '../../parts/drawn.js';
 import type { Sources } from '../model/sources.js';
 import { integer, type Line, listed, quoted, table } from '../model/text.js';
 import { kZoneNames, type PerZone } from '../model/zones.js';
-import type { ReadModel } from './models.js';
 import type { Run } from './run-transfer.js';
 
 export const versions = () => ({ cagecast: CAGECAST_VERSION, node: process.versions.node });

@@ -1,8 +1,7 @@
 import { FileModel } from '../../gltf/bake/bake-file.js';
 import { masksOf } from '../../gltf/bake/mask-sources.js';
-import { partNamesOf } from '../../gltf/cage-file.js';
-import type { ReadOptions } from '../../gltf/files.js';
-import { InputError, naming } from '../../gltf/input-error.js';
+import { naming } from '../../gltf/input-error.js';
+import { bareParts, besideOf, movedApart, type ReadModel, readBack, turned, withUvs } from '../../gltf/read-model.js';
 import {
   type CutTarget,
   cutBorders,
@@ -12,18 +11,16 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
-import { isBackward, turnedBack } from '../../inspect/backward.js';
+import { isBackward } from '../../inspect/backward.js';
 import { boxOf } from '../../inspect/geometry.js';
-import { groupsNamed } from '../../parts/drawn.js';
-import { moveApart } from '../../parts/own-cages.js';
-import { bareNames } from '../../parts/template-extras.js';
 import { readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
+import type { ReadOptions } from '../model/reading.js';
 import type { Rules } from '../model/settings.js';
 import { kAutoCage, type Sources } from '../model/sources.js';
 import { withinBounds, withoutLacking } from './cage-area.js';
 import { makeCageFor } from './made-cage.js';
-import { besideOf, cageIn, inFile, type ReadModel, readBack, readModel, withUvs } from './models.js';
+import { cageIn, inFile, readModel } from './models.js';
 import { transferOptions } from './part-names.js';
 import { readTarget } from './read-target.js';
 
@@ -65,7 +62,7 @@ export async function runTransfer(
   const bare = bareParts(target, whole);
   const options = { ...transferOptions(rules, target, bare), ...(masks && { masks }) };
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
-  const apart = movedApart(target, withoutLacking(whole, reference));
+  const apart = movedApart(target, withoutLacking(whole, reference), '; --ignore leaves the part out');
   const { wholeCage } = apart;
   const first = await transferModels(apart.target, withinBounds(wholeCage, uvBounds), options, io);
   // Cages that have names know which way they face.
@@ -79,33 +76,6 @@ export async function runTransfer(
     bare: [...new Set(names)],
   };
 }
-
-/** The parts of a target that stay bare by their names: what a figure wears, and what the cage was made without. */
-export function bareParts({ file, extracted: { parts, accessories } }: ReadModel, cage: ReadModel): number[] {
-  const { meshes, nodes } = cage.file.json;
-  const extras = cage.extracted.parts.flatMap(({ mesh, node }) => [meshes![mesh]!.extras, nodes![node]!.extras]);
-  return [...new Set([...accessories, ...groupsNamed(bareNames(extras), partNamesOf(file, parts))])];
-}
-
-/** The parts of a target apart, each with the cage of its name, if there are such. @throws {InputError} that names one without. */
-function movedApart(target: ReadModel, wholeCage: ReadModel): { target: ReadModel; wholeCage: ReadModel } {
-  const fail = (text: string) => new InputError(`${text}; --ignore leaves the part out`).in(target.file.path);
-  const apart = moveApart(wholeCage.extracted, target.extracted, fail);
-  if (!apart) return { target, wholeCage };
-  const withMesh = (model: ReadModel, mesh: ReadModel['extracted']['mesh']) => ({
-    ...model,
-    extracted: { ...model.extracted, mesh },
-  });
-  return {
-    target: withMesh(target, apart.target),
-    wholeCage: withMesh(wholeCage, apart.cage),
-  };
-}
-
-const turned = ({ file, extracted }: ReadModel): ReadModel => ({
-  file,
-  extracted: { ...extracted, mesh: turnedBack(extracted.mesh) },
-});
 
 /** A run as it is, or with its cage turned by half, if that faces the other way. */
 async function faceForward(run: Run, io: Io): Promise<Run> {

@@ -1,12 +1,12 @@
 import { basename } from 'node:path';
 import { partOf, primitivePath } from '../../gltf/extract-file.js';
-import { readBytes } from '../../gltf/files.js';
 import { InputError, naming } from '../../gltf/input-error.js';
 import type { ReadLimits } from '../../gltf/limits.js';
 import { type Paint, paintOf, tileAt } from '../../gltf/overlay.js';
+import type { ReadModel } from '../../gltf/read-model.js';
+import { readBytes } from '../io/files.js';
 import { quoted } from '../model/text.js';
 import { tilePath } from '../model/uv-bounds.js';
-import type { ReadModel } from './models.js';
 
 /** The types of images that a GLB can have as a texture. */
 const kTypes = ['image/png', 'image/jpeg', 'image/webp', 'image/ktx2'];

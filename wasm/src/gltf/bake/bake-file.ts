@@ -1,10 +1,9 @@
-import { dirname } from 'node:path';
-import type { Accessor, GLTF } from '@gltf-transform/core';
+import type { GLTF } from '@gltf-transform/core';
+import type { AccessorData } from '../accessors.js';
 import type { Part } from '../extract-file.js';
-import { readUri } from '../files.js';
 import type { GlbWriter } from '../glb-writer.js';
 import { imageType } from '../image-file.js';
-import type { GltfFile } from '../read-gltf.js';
+import type { GltfFile } from '../open-gltf.js';
 import { uvLayoutOf } from '../uv-layout.js';
 import { type BakeModel, type Slot, type TextureUse, wrapOf } from './plan.js';
 
@@ -56,7 +55,7 @@ export class FileModel implements BakeModel<number, number> {
     return this.#material(material).name ?? `materials[${material}]`;
   }
 
-  attributeOf(part: Part, semantic: string): Accessor | undefined {
+  attributeOf(part: Part, semantic: string): AccessorData | undefined {
     return this.#file.accessors[this.#primitive(part).attributes[semantic] ?? -1];
   }
 
@@ -93,12 +92,12 @@ export class FileModel implements BakeModel<number, number> {
   }
 
   async imageOf(texture: number): Promise<{ bytes: Uint8Array; mimeType: string } | undefined> {
-    const { json, buffers, path, reading } = this.#file;
+    const { json, buffers } = this.#file;
     const source = sourceOf(json.textures![texture]!);
     const image = source === undefined ? undefined : json.images?.[source];
     if (!image) return undefined;
     let bytes: Uint8Array;
-    if (image.uri !== undefined) bytes = await readUri(`images[${source}]`, image.uri, dirname(path), reading);
+    if (image.uri !== undefined) bytes = await this.#file.readUri(`images[${source}]`, image.uri);
     else {
       const view = json.bufferViews?.[image.bufferView ?? -1];
       const buffer = view && buffers[view.buffer];
@@ -108,12 +107,12 @@ export class FileModel implements BakeModel<number, number> {
     return { bytes, mimeType: imageType(bytes) ?? image.mimeType ?? 'an unknown type' };
   }
 
-  replace(materials: readonly number[], slot: Slot, png: Uint8Array, use: TextureUse<number>): void {
+  replace(materials: readonly number[], slot: Slot, bytes: Uint8Array, use: TextureUse<number>): void {
     const [json, writer] = [this.#json, this.#writer!];
     const before = json.textures![use.texture]!;
     const isOwn = infoOf(this.#material(materials[0]!), slot) !== undefined;
     const name = before.name ?? json.images?.[sourceOf(before) ?? -1]?.name ?? 'painted';
-    let number = writer.addTexture({ bytes: png, mimeType: 'image/png', name });
+    let number = writer.addTexture({ bytes, mimeType: imageType(bytes) ?? 'image/png', name });
     const made = json.textures![number]!;
     if (before.sampler !== undefined) made.sampler = before.sampler;
     if (isOwn && this.#isOnlyFor(use.texture, materials, slot)) {

@@ -1,4 +1,3 @@
-import type { Accessor } from '@gltf-transform/core';
 import {
   areaOf,
   type Baked,
@@ -14,7 +13,9 @@ import { kMaxLayers } from '../../bake/pattern.js';
 import { CagecastError, type CutTarget, type TransferResult } from '../../index.js';
 import { blend } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
-import { decodeFloats, type Piece, requireFinite } from '../pieces.js';
+import { type AccessorData, decodeFloats } from '../accessors.js';
+import { imageType } from '../image-file.js';
+import { type Piece, requireFinite } from '../pieces.js';
 import { groupMember } from '../primitive-group.js';
 import { layUvs, type UvLayout } from '../uv-layout.js';
 
@@ -39,7 +40,7 @@ export interface BakeModel<Material, Texture> {
   /** The materials that variants give a part instead of its own. */
   variantsOf(part: Piece): Material[];
   nameOf(material: Material): string;
-  attributeOf(part: Piece, semantic: string): Accessor | undefined;
+  attributeOf(part: Piece, semantic: string): AccessorData | undefined;
   useOf(material: Material, slot: Slot): TextureUse<Texture> | undefined;
   /** By what the values of the texture are multiplied. */
   factorOf(material: Material, slot: Slot): readonly [number, number, number];
@@ -48,8 +49,8 @@ export interface BakeModel<Material, Texture> {
   /** Whether a texture shows occlusion: the metallic-roughness one, or one of its own. */
   hasOcclusion(material: Material): boolean;
   imageOf(texture: Texture): Promise<{ bytes: Uint8Array; mimeType: string } | undefined>;
-  /** Gives materials a new texture in a slot, a PNG with the factor in it. @param use  Whose UVs and wrap modes it has. */
-  replace(materials: readonly Material[], slot: Slot, png: Uint8Array, use: TextureUse<Texture>): void;
+  /** Gives materials a new texture in a slot, a file with the factor in it. @param use  Whose UVs and wrap modes it has. */
+  replace(materials: readonly Material[], slot: Slot, bytes: Uint8Array, use: TextureUse<Texture>): void;
 }
 
 /** The UVs of a part in a set, if it has one that is complete. */
@@ -89,7 +90,8 @@ export const isPainted = (
 export interface ImageCodec {
   /** @throws {Error} if it cannot read such a file; the parts with this texture are not baked then. */
   decode: (bytes: Uint8Array, mimeType: string) => Promise<Image>;
-  encode: (image: Image) => Promise<Uint8Array>;
+  /** @param mimeType  Of the image that it takes the place of; undefined for a new one. What it makes may be of any type that glTF has. */
+  encode: (image: Image, mimeType?: string) => Promise<Uint8Array>;
 }
 
 /** Paints in the cage's UVs: colours; a normal map; occlusion, roughness and metalness in red, green and blue. Each has an alpha. */
@@ -102,7 +104,16 @@ export interface Paints {
 /** What `bake` did. */
 export interface BakeReport {
   /** The textures that have paint now: of which parts, and how their UVs overlap. */
-  textures: { slot: Slot; parts: string[]; width: number; height: number; overlap: Baked['overlap'] }[];
+  textures: {
+    slot: Slot;
+    parts: string[];
+    width: number;
+    height: number;
+    overlap: Baked['overlap'];
+    /** The media type of its image, and of the one before, if there was one. */
+    mimeType: string;
+    before: string | undefined;
+  }[];
   /** The parts that should be painted but have no texture that can hold it, and why; with a variant's material, if it is about that. */
   left: { part: string; material?: string; reason: string }[];
 }
@@ -121,6 +132,8 @@ interface BakeInput {
 const kMaxFlat = 0.1; // of its area in the cage's UVs
 const kFlat = 0.01; // texels
 const kMaxLost = 0.6; // of the paint; the same for a part of the texture
+/** The type of images that say no other. */
+const kPng = 'image/png';
 /** Side of a texture that a material did not have. */
 const kNewSide = 1024;
 
@@ -169,11 +182,12 @@ export async function bakeModel<Material, Texture>(
         for (const user of shared.users) refused.set(user, made);
         continue;
       }
-      const { width, height, overlap, png } = made;
+      const { width, height, overlap, bytes, before } = made;
       const materials = [...new Set(shared.users.map(({ material }) => material))];
-      replacements.push(() => model.replace(materials, slot, png, shared.use));
+      replacements.push(() => model.replace(materials, slot, bytes, shared.use));
       for (const { part, material } of shared.users) if (material === model.materialOf(part)) baked.add(part);
-      report.textures.push({ slot, parts: [...painted].map(({ name }) => name), width, height, overlap });
+      const parts = [...painted].map(({ name }) => name);
+      report.textures.push({ slot, parts, width, height, overlap, mimeType: imageType(bytes) ?? kPng, before });
     }
     for (const [{ part, material }, reason] of refused) {
       const ofVariant = material !== model.materialOf(part) && { material: model.nameOf(material!) };
@@ -229,13 +243,13 @@ function isTinted<Material, Texture>(model: BakeModel<Material, Texture>, part: 
   return colors?.values.some((value, i) => i % colors.size < 3 && value !== 1);
 }
 
-/** Bakes a shared texture. @returns what was baked, and the whole texture as a PNG; or why not. */
+/** Bakes a shared texture. @returns what was baked, the whole texture as a file, and the type of the one before; or why not. */
 async function bakeTexture<Material, Texture>(
   model: BakeModel<Material, Texture>,
   shared: SharedTexture<Material, Texture>,
   paint: Image,
   input: BakeInput,
-): Promise<(Baked & { png: Uint8Array }) | string> {
+): Promise<(Baked & { bytes: Uint8Array; before: string | undefined }) | string> {
   const { slot, use, factor } = shared;
   const base = await baseOf(model, shared, input);
   if (typeof base === 'string') return base;
@@ -244,10 +258,19 @@ async function bakeTexture<Material, Texture>(
   if (wrong) return wrong;
   const { width, height } = base;
   const baked = fill('bake', layouts, paint, { width, height, wrap: use.wraps, kind: kindOf[slot] });
+  if (use.wraps.includes('clamp') && isEmpty(baked)) return kOutside;
   if (baked.overlap.lost > kMaxLost) return 'most of its paint would lie on that of others';
   const image = layOver(base, baked, slot === 'normal' ? [1, 1, 1] : factor);
-  return { ...baked, png: await input.codec.encode(image) };
+  const before = shared.isNew ? undefined : (await model.imageOf(use.texture))?.mimeType;
+  return { ...baked, bytes: await input.codec.encode(image, before), before };
 }
+
+/** Why a texture that is clamped has nothing of a paint. */
+export const kOutside =
+  'its UVs lie outside of 0..1, where its texture is clamped: nothing of the paint would be in it';
+
+/** Whether nothing of a paint is in a texture. */
+export const isEmpty = ({ mask }: Baked): boolean => mask.every((one) => one === 0);
 
 /** The triangles that lie on a shared texture; those of a part that several materials lay there in the same way only once. */
 function layoutsOn<Material, Texture>(

@@ -8,6 +8,7 @@ import type {
   Primitive,
   PrimitiveTarget,
   Texture,
+  TextureInfo,
   TypedArray,
 } from '@gltf-transform/core';
 import type { CutTarget, TransferResult } from '../../index.js';
@@ -35,7 +36,7 @@ import {
   storedUvs,
 } from '../primitive-group.js';
 import { disposeUnused, removeAttributes, removeOverlays } from './earlier-in-document.js';
-import type { DocumentPart, ExtractedDocument } from './extract-document.js';
+import { type DocumentPart, type ExtractedDocument, uvLayoutOf } from './extract-document.js';
 
 /** A part, and what it becomes. */
 interface Member extends GroupMember {
@@ -219,9 +220,9 @@ class OverlayWriter {
     const overlay = this.#document
       .createPrimitive()
       .setIndices(indices)
-      .setMaterial(this.#material(base.getMaterial()))
       .setExtras({ ...overlayMark })
       .setAttribute('TEXCOORD_0', uvs);
+    overlay.setMaterial(this.#material(base, overlay));
     for (const semantic of base.listSemantics())
       if (isOverlaid(semantic)) overlay.setAttribute(semantic, base.getAttribute(semantic));
     for (const morph of base.listTargets()) {
@@ -253,7 +254,8 @@ class OverlayWriter {
   }
 
   /** A material that shows the texture, lit as the base's material is. */
-  #material(base: Material | null): Material {
+  #material(primitive: Primitive, overlay: Primitive): Material {
+    const base = primitive.getMaterial();
     const unlit = base?.getExtension<ExtensionProperty>(unlitExtension) ?? null;
     const finish: Finish = {
       roughness: base?.getRoughnessFactor() ?? 1,
@@ -261,7 +263,10 @@ class OverlayWriter {
       alpha: base?.getAlphaMode() === 'BLEND' ? base.getAlpha() : 1,
       unlit: unlit !== null,
     };
-    const key = JSON.stringify(finish);
+    const lit = unlit ? [] : mapsOn(primitive, overlay);
+    // Its maps are those of one material.
+    const maps = lit.length > 0 && [lit.length, this.#document.getRoot().listMaterials().indexOf(base!)];
+    const key = JSON.stringify([finish, maps]);
     const known = this.#materials.get(key);
     if (known) return known;
     const material = this.#document
@@ -274,7 +279,64 @@ class OverlayWriter {
       .setRoughnessFactor(finish.roughness)
       .setBaseColorTexture(this.#shown());
     if (unlit) material.setExtension(unlitExtension, unlit);
+    for (const setMap of lit) setMap(material);
     this.#materials.set(key, material);
     return material;
   }
+}
+
+/** Lays a texture by a UV set, whatever a transform of its own says. */
+function putAt(info: TextureInfo, set: number): void {
+  info.setTexCoord(set);
+  const transform = info.getExtension<ExtensionProperty & { setTexCoord(set: number | null): ExtensionProperty }>(
+    'KHR_texture_transform',
+  );
+  if (transform) info.setExtension('KHR_texture_transform', transform.clone().setTexCoord(null));
+}
+
+/** What gives a material the maps that light a base; the overlay gets the UVs and tangents that they need. */
+function mapsOn(primitive: Primitive, overlay: Primitive): ((material: Material) => void)[] {
+  const base = primitive.getMaterial();
+  const sets: string[] = [];
+  const on = (
+    texture: Texture | null | undefined,
+    info: TextureInfo | null | undefined,
+    set: (material: Material, texture: Texture) => TextureInfo,
+  ): ((material: Material) => void)[] => {
+    const { set: name } = uvLayoutOf(info);
+    const uvs = texture && info && primitive.getAttribute(name);
+    if (!texture || !info || !uvs) return [];
+    if (!sets.includes(name)) sets.push(name);
+    const at = 1 + sets.indexOf(name);
+    overlay.setAttribute(`TEXCOORD_${at}`, uvs);
+    return [(material) => putAt(set(material, texture).copy(info), at)];
+  };
+  const normal = on(
+    base?.getNormalTexture(),
+    base?.getNormalTextureInfo(),
+    (material, texture) =>
+      material.setNormalTexture(texture).setNormalScale(base!.getNormalScale()).getNormalTextureInfo()!,
+  );
+  if (normal.length > 0) overlay.setAttribute('TANGENT', primitive.getAttribute('TANGENT'));
+  return [
+    ...normal,
+    ...on(
+      base?.getOcclusionTexture(),
+      base?.getOcclusionTextureInfo(),
+      (material, texture) =>
+        material
+          .setOcclusionTexture(texture)
+          .setOcclusionStrength(base!.getOcclusionStrength())
+          .getOcclusionTextureInfo()!,
+    ),
+    ...on(
+      base?.getMetallicRoughnessTexture(),
+      base?.getMetallicRoughnessTextureInfo(),
+      (material, texture) =>
+        material
+          .setMetallicRoughnessTexture(texture)
+          .setMetallicFactor(base!.getMetallicFactor())
+          .getMetallicRoughnessTextureInfo()!,
+    ),
+  ];
 }

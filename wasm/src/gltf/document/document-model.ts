@@ -1,5 +1,6 @@
 import type { Accessor, Document, ExtensionProperty, Material, Texture, TextureInfo } from '@gltf-transform/core';
 import { type BakeModel, type Paints, type TextureUse, wrapOf } from '../bake/plan.js';
+import { imageType } from '../image-file.js';
 import { type DocumentPart, uvLayoutOf } from './extract-document.js';
 
 /** The extension of glTF-Transform, which is no dependency. */
@@ -63,7 +64,7 @@ export class DocumentModel implements BakeModel<Material, Texture> {
   replace(materials: readonly Material[], slot: keyof Paints, png: Uint8Array, use: TextureUse<Texture>): void {
     const painted = this.#document
       .createTexture(use.texture.getName())
-      .setMimeType('image/png')
+      .setMimeType(imageType(png) ?? 'image/png')
       .setImage(png as Uint8Array<ArrayBuffer>);
     for (const material of materials) setTexture(material, slot, painted);
     const { texture } = use;

@@ -24,11 +24,11 @@ import type { Expressions } from '../../parts/morph-names.js';
 import { kSceneOrigin, type Origin } from '../../parts/origin.js';
 import { type MorphedPart, type MorphTarget, posesOf } from '../../parts/poses.js';
 import { placeMeshes, type Skin } from '../../parts/skin.js';
+import { decodeFloats } from '../accessors.js';
 import { InputError } from '../input-error.js';
 import { firstInstance, instancing } from '../instancing.js';
 import { isMarked } from '../overlay.js';
 import {
-  decodeFloats,
   decodePositions,
   decodeTriangles,
   decodeUvs,

@@ -1,4 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
+import { joinBytes } from '../../parts/glb.js';
 
 /** What a GLB or a glTF holds besides its JSON: bytes of the first buffer, and images that get files of their own. */
 export interface Contents {
@@ -28,7 +29,7 @@ export const imageFile = (stem: string, image: number, mimeType: string | undefi
 /** A glTF of text, and the files beside it: those of images, and `stem`.bin with all other bytes. */
 export function packGltf({ json, chunks, images }: Contents, stem: string): { text: Uint8Array; beside: NamedFile[] } {
   // Only the buffer of a GLB is padded.
-  const bytes = Buffer.concat(chunks).subarray(0, json.buffers?.[0]?.byteLength ?? 0);
+  const bytes = joinBytes(chunks).subarray(0, json.buffers?.[0]?.byteLength ?? 0);
   const beside = images.map(({ name, bytes: data }) => ({ name, data }));
   if (bytes.length > 0) {
     json.buffers![0]!.uri = encodeURIComponent(`${stem}.bin`);

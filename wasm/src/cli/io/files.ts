@@ -1,19 +1,10 @@
 import { constants } from 'node:fs';
-import { type FileHandle, open, realpath, stat } from 'node:fs/promises';
-import { isAbsolute, relative, resolve } from 'node:path';
-import { show } from '../core/error.js';
-import { firstLine, InputError } from './input-error.js';
-import { checkBytes, defaultLimits, type ReadLimits } from './limits.js';
-
-/** How files are read. */
-export interface ReadOptions {
-  limits: ReadLimits;
-  /** Whether files may be read that are not in the folder of the glTF that refers to them. */
-  allowOutside: boolean;
-}
-
-/** How files are read if nothing else is said. */
-export const defaultReading: ReadOptions = { limits: defaultLimits, allowOutside: false };
+import { type FileHandle, open, readdir, realpath, stat } from 'node:fs/promises';
+import { basename, dirname, isAbsolute, relative, resolve } from 'node:path';
+import { decodedUri } from '../../gltf/data-uri.js';
+import { firstLine, InputError } from '../../gltf/input-error.js';
+import { checkBytes, defaultLimits, type ReadLimits } from '../../gltf/limits.js';
+import type { ReadOptions } from '../model/reading.js';
 
 /** The name of the standard input and output. */
 export const standard = '-';
@@ -37,28 +28,26 @@ export async function readBytes(path: string, limits: ReadLimits = defaultLimits
 }
 
 /**
- * Reads what a glTF refers to: a data URI, or a regular file in its folder.
+ * Reads a file that a glTF refers to: a regular one in its folder.
  * @throws {InputError} that begins with `name`.
  */
 export async function readUri(name: string, uri: string, folder: string, options: ReadOptions): Promise<Uint8Array> {
-  if (/^data:/i.test(uri)) return readDataUri(name, uri);
   const path = localFile(uri, folder);
   if (path === undefined) throw new InputError(`${name} is at ${uri.slice(0, 60)}; only local files can be read`);
   try {
     return await readBeside(path, folder, options);
   } catch (error) {
-    throw error instanceof InputError ? new InputError(`${name} is in ${uri.slice(0, 60)}: ${error.message}`) : error;
+    if (!(error instanceof InputError)) throw error;
+    throw new InputError(`${name} is in ${uri.slice(0, 60)}: ${error.message}${await nearlyNamed(path)}`);
   }
 }
 
-function readDataUri(name: string, uri: string): Uint8Array {
-  const [head, kind] = /^data:([^,]*),/i.exec(uri) ?? [];
-  if (head === undefined) throw new InputError(`${name} is ${show(uri)}, not a valid data URI`);
-  // `fetch` would do it too, in 7 seconds for 60 MB instead of one tenth.
-  const bytes = uri
-    .slice(head.length)
-    .replace(/%([0-9a-f]{2})/gi, (_, byte: string) => String.fromCharCode(Number.parseInt(byte, 16)));
-  return Buffer.from(bytes, /;\s*base64\s*$/i.test(kind!) ? 'base64' : 'latin1');
+/** The end of a message: which file has the name that is missing but for capitals, if one has. */
+async function nearlyNamed(path: string): Promise<string> {
+  const names = await readdir(dirname(path)).catch((): string[] => []);
+  if (names.includes(basename(path))) return '';
+  const found = names.find((name) => name.toLowerCase() === basename(path).toLowerCase());
+  return found === undefined ? '' : `; there is ${found}`;
 }
 
 /**
@@ -156,15 +145,6 @@ function plain(error: unknown): InputError {
 /** Why a folder cannot be listed, with its name. */
 export const listingError = (error: unknown): InputError => plain(error).in((error as NodeJS.ErrnoException).path!);
 
-/** The file that a glTF in a folder refers to; none for a data URI or an address in the network. */
+/** The file that a glTF in a folder refers to, by slashes or backslashes; none for a data URI or an address in the network. */
 export const localFile = (uri: string, folder: string): string | undefined =>
-  /^[a-z][a-z0-9+.-]+:/i.test(uri) ? undefined : resolve(folder, decoded(uri));
-
-/** The name of a file; as it stands, if it is not encoded as an address has to be. */
-function decoded(uri: string): string {
-  try {
-    return decodeURIComponent(uri);
-  } catch {
-    return uri;
-  }
-}
+  /^[a-z][a-z0-9+.-]+:/i.test(uri) ? undefined : resolve(folder, decodedUri(uri).replaceAll('\\', '/'));

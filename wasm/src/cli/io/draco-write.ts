@@ -2,27 +2,12 @@ import { type Accessor, Document, type GLTF, Logger, NodeIO, type TypedArray } f
 import { KHRDracoMeshCompression } from '@gltf-transform/extensions';
 import wasmBinary from 'draco3dgltf/draco_encoder.wasm';
 import createEncoderModule from 'draco3dgltf/draco_encoder_gltf_nodejs.js';
-import { dracoOf } from './check-geometry.js';
-import type { GlbWriter } from './glb-writer.js';
-import type { GltfFile } from './read-gltf.js';
+import { dracoOf } from '../../gltf/check-geometry.js';
+import type { GlbWriter } from '../../gltf/glb-writer.js';
+import type { GltfFile } from '../../gltf/open-gltf.js';
+import { dracoExtension, unmarkDraco } from '../../gltf/output/draco-marks.js';
 
 const silent = new Logger(Logger.Verbosity.SILENT);
-
-export const dracoExtension = 'KHR_draco_mesh_compression';
-
-/** Marks primitives to be compressed by `packDraco`. */
-export function markForDraco(primitives: readonly GLTF.IMeshPrimitive[]): void {
-  for (const primitive of primitives)
-    primitive.extensions = { ...primitive.extensions, [dracoExtension]: { bufferView: -1, attributes: {} } };
-}
-
-/** Takes Draco's stream from primitives whose attributes are to be stored in another form. */
-export function unmarkDraco(primitives: readonly GLTF.IMeshPrimitive[]): void {
-  for (const primitive of primitives) {
-    delete primitive.extensions?.[dracoExtension];
-    if (primitive.extensions && Object.keys(primitive.extensions).length === 0) delete primitive.extensions;
-  }
-}
 
 /**
  * Compresses those primitives again that were compressed by Draco and have been added to. Positions get 14 bits, normals 10, as is

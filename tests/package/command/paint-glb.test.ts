@@ -1,0 +1,133 @@
+// A model file in, the painted file out: the same as the command writes.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, test } from 'node:test';
+import { CagecastError } from 'cagecast';
+import { cageGlb, terminate as endCages, loadTemplate } from 'cagecast/cages';
+import { type PaintOptions, paintGlb } from 'cagecast/glb';
+import { terminate as endWorker } from 'cagecast/worker';
+import { build } from 'esbuild';
+import { ok } from '../../support/command.js';
+import { glbOf, unpackGlb, validate } from '../../support/gltf.js';
+import { inRepository, png, workplace, write, writeChanged } from './workplace.js';
+
+const { cage, target } = workplace('glb');
+const texture = png(200);
+const read = (name: string) => new Uint8Array(readFileSync(name));
+const human = (name: string) => read(inRepository(`examples/samples/human/${name}.glb`));
+
+after(() => {
+  endWorker();
+  endCages();
+});
+
+const avatars: [version: string, extensions: object][] = [
+  ['VRM', { VRM: { materialProperties: [{ name: 'skin', shader: 'VRM/MToon' }], meta: { title: 'Ünï' } } }],
+  ['VRMC_vrm', { VRMC_vrm: { specVersion: '1.0', meta: { name: 'Ünï', authors: ['a'] } } }],
+];
+for (const [name, extensions] of avatars)
+  test(`an avatar with ${name} keeps it, and is what the command writes`, async () => {
+    writeChanged(`${name}.vrm`, glbOf(target), (json) => {
+      json.materials = [{ name: 'skin' }];
+      json.meshes![0]!.primitives[0]!.material = 0;
+      json.extensionsUsed = [name];
+      Object.assign(json, { extensions: structuredClone(extensions) });
+    });
+    write('paint.png', texture);
+    for (const borders of ['triangle', 'cut'] as const) {
+      await ok(`transfer ${name}.vrm --cage cage.glb --texture paint.png --borders ${borders} -o out.vrm`);
+      const before = read(`${name}.vrm`);
+      const { bytes, triangles, note, bare, fit } = await paintGlb(before, {
+        cage: read('cage.glb'),
+        texture,
+        borders,
+      });
+      const [ours, commands] = [unpackGlb(bytes), unpackGlb(read('out.vrm'))];
+      for (const { json } of [ours, commands]) for (const image of json.images ?? []) delete image.name;
+      for (const { json } of [ours, commands]) for (const one of json.textures ?? []) delete one.name;
+      assert.deepEqual(ours, commands);
+      assert.deepEqual(await validate(bytes), []);
+      assert.ok(triangles.painted > 0 && triangles.total === target.indices.length / 3);
+      assert.deepEqual([note, bare, fit], [undefined, [], undefined]);
+      assert.deepEqual(before, read(`${name}.vrm`));
+    }
+  });
+
+test('a cage may be a mesh; parts stay bare, or not, by their names', async () => {
+  const model = glbOf(target);
+  const painted = async (options: Partial<PaintOptions>) =>
+    (await paintGlb(model, { cage: { ...cage, uvs: cage.uvs! }, texture, ...options })).triangles.painted;
+  assert.equal(await painted({}), (await paintGlb(model, { cage: read('cage.glb'), texture })).triangles.painted);
+  assert.equal(await painted({ exclude: ['on*'] }), 0);
+});
+
+test('a template is fitted first, here by its bytes; the cage that this makes can be given the next time', async () => {
+  const shares: number[] = [];
+  const template = cageGlb(await loadTemplate('human-head'));
+  const first = await paintGlb(human('target'), { template, texture, onProgress: (share) => shares.push(share) });
+  assert.ok(first.triangles.painted > 1000);
+  assert.deepEqual(first.bare, ['l-eye', 'r-eye', 'upper-teeth', 'lower-teeth', 'tongue']);
+  assert.deepEqual(
+    shares,
+    [...shares].sort((a, b) => a - b),
+  );
+  assert.deepEqual([shares[0], shares.at(-1)], [0, 1]);
+  const again = await paintGlb(human('target'), { cage: first.fit!.cage, texture });
+  assert.deepEqual(again.bytes, first.bytes);
+  const abort = new AbortController();
+  const aborted = paintGlb(human('target'), {
+    template,
+    texture,
+    signal: abort.signal,
+    onProgress: (share) => share > 0.2 && abort.abort(),
+  });
+  await assert.rejects(aborted, { name: 'AbortError' });
+});
+
+test('what cannot be used is named, with what helps', async () => {
+  const model = glbOf(target);
+  const own = { cage: read('cage.glb'), texture };
+  const wrong: [bytes: Uint8Array, options: object, message: RegExp, argument: string][] = [
+    [model, { texture }, /^paintGlb: cage is undefined, not there, and no template is/, 'cage'],
+    [model, { ...own, template: 'human-head' }, /^paintGlb: cage is of type Uint8Array, not undefined/, 'cage'],
+    [model, { cage: own.cage }, /^paintGlb: texture is undefined, not a Uint8Array/, 'texture'],
+    [model, { ...own, texture: model }, /^paintGlb: texture: is not a PNG, JPEG, WebP or KTX2 image/, 'texture'],
+    [model, { ...own, cage: texture }, /^paintGlb: cage: /, 'cage'],
+    [
+      model,
+      { ...own, cage: glbOf({ ...cage, uvs: undefined }) },
+      /^paintGlb: cage: meshes\[0\].*no TEXCOORD_0/,
+      'cage',
+    ],
+    [model, { ...own, exclude: ['nose'] }, /^paintGlb: exclude: nothing is named “nose”; there are only/, 'exclude'],
+    [model, { ...own, treshold: 1 }, /options.treshold is not an option/, 'options'],
+    [new Uint8Array(0), own, /^paintGlb: bytes: the file is empty/, 'bytes'],
+    [
+      new TextEncoder().encode(
+        JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'model.bin', byteLength: 4 }] }),
+      ),
+      own,
+      /^paintGlb: bytes: buffers\[0\] is in model\.bin, another file; give a GLB/,
+      'bytes',
+    ],
+  ];
+  for (const [bytes, options, message, argument] of wrong)
+    await assert.rejects(paintGlb(bytes, options as PaintOptions), (error: CagecastError) => {
+      assert.ok(error instanceof CagecastError, String(error));
+      assert.match(error.message, message);
+      assert.equal(error.argument, argument, error.message);
+      return true;
+    });
+});
+
+test('nothing of Node is imported as it is loaded', async () => {
+  const contents = "import { paintGlb } from 'cagecast/glb'; console.log(paintGlb);";
+  const { outputFiles } = await build({
+    stdin: { contents, resolveDir: import.meta.dirname },
+    bundle: true,
+    format: 'esm',
+    platform: 'browser',
+    write: false,
+  });
+  assert.doesNotMatch(outputFiles[0]!.text, /\b(from|import)\s*\(?["']node:/);
+});

@@ -1,0 +1,11 @@
+import { defaultLimits, type ReadLimits } from '../../gltf/limits.js';
+
+/** How files are read. */
+export interface ReadOptions {
+  limits: ReadLimits;
+  /** Whether files may be read that are not in the folder of the glTF that refers to them. */
+  allowOutside: boolean;
+}
+
+/** How files are read if nothing else is said. */
+export const defaultReading: ReadOptions = { limits: defaultLimits, allowOutside: false };

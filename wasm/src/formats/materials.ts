@@ -1,0 +1,104 @@
+import type { GLTF, vec3, vec4 } from '@gltf-transform/core';
+import {
+  ClampToEdgeWrapping,
+  type Color,
+  DoubleSide,
+  type Material,
+  MirroredRepeatWrapping,
+  type Texture,
+  type Vector2,
+  type Wrapping,
+} from 'three';
+import { imageType } from '../gltf/image-file.js';
+import type { ImageBytes } from './images.js';
+
+/** What materials of three.js may have. */
+interface Look {
+  color?: Color;
+  map?: Texture | null;
+  normalMap?: Texture | null;
+  normalScale?: Vector2;
+  emissive?: Color;
+  emissiveMap?: Texture | null;
+  roughness?: number;
+  metalness?: number;
+}
+
+const wraps = new Map<Wrapping, GLTF.TextureWrapMode>([
+  [ClampToEdgeWrapping, 33071],
+  [MirroredRepeatWrapping, 33648],
+]);
+const kTransform = 'KHR_texture_transform';
+const kWebp = 'EXT_texture_webp';
+/** Of materials that say nothing of it. */
+const kRoughness = 0.9;
+
+/** Writes materials, and the bytes of their images, to the JSON of a glTF. */
+export class MaterialWriter {
+  readonly #json: GLTF.IGLTF;
+  readonly #addView: (bytes: Uint8Array) => number;
+  readonly #materials = new Map<Material, number>();
+  readonly #images = new Map<Uint8Array, number>();
+
+  constructor(json: GLTF.IGLTF, addView: (bytes: Uint8Array) => number) {
+    this.#json = json;
+    this.#addView = addView;
+  }
+
+  /** @returns the number of the material. */
+  add(material: Material): number {
+    const known = this.#materials.get(material);
+    if (known !== undefined) return known;
+    const look = material as Material & Look;
+    const { name, opacity, transparent, alphaTest, side } = look;
+    const baseColorTexture = this.#texture(look.map);
+    const normalTexture = this.#texture(look.normalMap);
+    const emissiveTexture = this.#texture(look.emissiveMap);
+    const emissive = look.emissive?.toArray() ?? [0, 0, 0];
+    const written: GLTF.IMaterial = {
+      ...(name !== '' && { name }),
+      pbrMetallicRoughness: {
+        baseColorFactor: [...(look.color?.toArray() ?? [1, 1, 1]), opacity] as vec4,
+        metallicFactor: look.metalness ?? 0,
+        roughnessFactor: look.roughness ?? kRoughness,
+        ...(baseColorTexture && { baseColorTexture }),
+      },
+      ...(normalTexture && { normalTexture: { ...normalTexture, scale: look.normalScale?.x ?? 1 } }),
+      ...(emissive.some((x) => x > 0) && { emissiveFactor: emissive.map((x) => Math.min(1, x)) as vec3 }),
+      ...(emissiveTexture && { emissiveTexture }),
+      ...(transparent && { alphaMode: 'BLEND' as const }),
+      ...(alphaTest > 0 && { alphaMode: 'MASK' as const, alphaCutoff: alphaTest }),
+      ...(side === DoubleSide && { doubleSided: true }),
+    };
+    const number = (this.#json.materials ??= []).push(written) - 1;
+    this.#materials.set(material, number);
+    return number;
+  }
+
+  #texture(texture: Texture | null | undefined): GLTF.ITextureInfo | undefined {
+    const bytes = (texture?.image as ImageBytes | undefined)?.bytes;
+    const type = bytes && imageType(bytes);
+    if (!texture || !bytes || !type || type === 'image/ktx2') return undefined;
+    let source = this.#images.get(bytes);
+    source ??= (this.#json.images ??= []).push({ bufferView: this.#addView(bytes), mimeType: type }) - 1;
+    this.#images.set(bytes, source);
+    const [wrapS, wrapT] = [wraps.get(texture.wrapS), wraps.get(texture.wrapT)];
+    const sampler =
+      wrapS || wrapT
+        ? (this.#json.samplers ??= []).push({ ...(wrapS && { wrapS }), ...(wrapT && { wrapT }) }) - 1
+        : undefined;
+    if (type === 'image/webp') this.#use(kWebp);
+    const image = type === 'image/webp' ? { extensions: { [kWebp]: { source } } } : { source };
+    const index = (this.#json.textures ??= []).push({ ...image, ...(sampler !== undefined && { sampler }) }) - 1;
+    const { repeat, offset } = texture;
+    if (repeat.x === 1 && repeat.y === 1 && offset.x === 0 && offset.y === 0) return { index };
+    this.#use(kTransform);
+    // Its v points down.
+    const transform = { scale: repeat.toArray(), offset: [offset.x, 1 - repeat.y - offset.y] };
+    return { index, extensions: { [kTransform]: transform } };
+  }
+
+  #use(extension: string): void {
+    this.#json.extensionsUsed = [...new Set([...(this.#json.extensionsUsed ?? []), extension])];
+  }
+}

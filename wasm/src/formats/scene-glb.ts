@@ -1,0 +1,134 @@
+import type { GLTF, vec4 } from '@gltf-transform/core';
+import { type Material, Matrix4, type Mesh, type Object3D, type SkinnedMesh } from 'three';
+import { packGlb, paddedLength } from '../parts/glb.js';
+import { attributesOf, boundsOf, cornersOf } from './geometry.js';
+import { MaterialWriter } from './materials.js';
+
+/** Writes what is drawn of a scene as a GLB; nothing if it has no triangle. */
+export async function sceneGlb(scene: Object3D): Promise<Uint8Array | undefined> {
+  const writer = new SceneWriter();
+  scene.updateMatrixWorld(true);
+  const root = writer.addNode(scene);
+  writer.addSkins();
+  return writer.hasTriangles ? writer.finish(root) : undefined;
+}
+
+const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4', 16: 'MAT4' } as const;
+const componentTypes = { Float32Array: 5126, Uint32Array: 5125, Uint16Array: 5123 } as const;
+type Values = Float32Array | Uint32Array | Uint16Array;
+
+class SceneWriter {
+  readonly #json: GLTF.IGLTF = { asset: { version: '2.0', generator: `Cagecast ${CAGECAST_VERSION}` } };
+  readonly #chunks: Uint8Array[] = [];
+  #length = 0;
+  readonly #nodes = new Map<Object3D, number>();
+  readonly #materials = new MaterialWriter(this.#json, (bytes) => this.#addView(bytes));
+
+  get hasTriangles(): boolean {
+    return this.#json.meshes !== undefined;
+  }
+
+  /** Adds an object and all below it. @returns the number of its node. */
+  addNode(object: Object3D): number {
+    const { name, position, quaternion, scale } = object;
+    const node: GLTF.INode = {
+      ...(name !== '' && { name }),
+      ...(position.lengthSq() > 0 && { translation: position.toArray() }),
+      ...(quaternion.w !== 1 && { rotation: quaternion.clone().normalize().toArray() as vec4 }),
+      ...(!(scale.x === 1 && scale.y === 1 && scale.z === 1) && { scale: scale.toArray() }),
+    };
+    const number = (this.#json.nodes ??= []).push(node) - 1;
+    this.#nodes.set(object, number);
+    if ((object as Mesh).isMesh) {
+      const mesh = this.#addMesh(object as Mesh);
+      if (mesh !== undefined) node.mesh = mesh;
+    }
+    const children = object.children.map((child) => this.addNode(child));
+    if (children.length > 0) node.children = children;
+    return number;
+  }
+
+  #addMesh({ name, geometry, material, morphTargetDictionary, morphTargetInfluences }: Mesh): number | undefined {
+    const corners = cornersOf(geometry);
+    if (corners === undefined || corners.length === 0) return undefined;
+    const { attributes, targets, indices } = attributesOf(geometry, corners);
+    const own = Object.fromEntries(
+      Object.entries(attributes).map(([semantic, { values, size }]) => [
+        semantic,
+        this.#addAccessor(values, size, semantic === 'POSITION'),
+      ]),
+    );
+    const deltas = targets.map((target) => ({ POSITION: this.#addAccessor(target, 3, true) }));
+    const materials = [material].flat();
+    const groups =
+      Array.isArray(material) && geometry.groups.length > 0
+        ? geometry.groups
+        : [{ start: 0, count: Infinity, materialIndex: 0 }];
+    const primitives = groups.flatMap(({ start, count, materialIndex = 0 }): GLTF.IMeshPrimitive[] => {
+      const some = indices.subarray(start, Math.min(indices.length, start + count));
+      if (some.length < 3) return [];
+      return [
+        {
+          attributes: own,
+          indices: this.#addAccessor(some, 1),
+          ...this.#materialOf(materials[materialIndex]),
+          ...(deltas.length > 0 && { targets: deltas }),
+        },
+      ];
+    });
+    if (primitives.length === 0) return undefined;
+    const names = Object.keys(morphTargetDictionary ?? {});
+    const mesh: GLTF.IMesh = {
+      ...((geometry.name || name) !== '' && { name: geometry.name || name }),
+      primitives,
+      ...(deltas.length > 0 && { weights: deltas.map((_, t) => morphTargetInfluences?.[t] ?? 0) }),
+      ...(deltas.length === names.length && names.length > 0 && { extras: { targetNames: names } }),
+    };
+    return (this.#json.meshes ??= []).push(mesh) - 1;
+  }
+
+  #materialOf(material: Material | undefined): { material?: number } {
+    return material ? { material: this.#materials.add(material) } : {};
+  }
+
+  /** Adds the skins of all meshes, once all bones have their nodes. */
+  addSkins(): void {
+    for (const [object, number] of this.#nodes) {
+      const { skeleton, bindMatrix, isSkinnedMesh } = object as SkinnedMesh;
+      if (!isSkinnedMesh || this.#json.nodes![number]!.mesh === undefined) continue;
+      const joints = skeleton.bones.map((bone) => this.#nodes.get(bone));
+      if (joints.length === 0 || joints.includes(undefined)) continue;
+      const inverses = skeleton.boneInverses.flatMap((inverse) =>
+        new Matrix4().multiplyMatrices(inverse, bindMatrix).toArray(),
+      );
+      const inverseBindMatrices = this.#addAccessor(Float32Array.from(inverses), 16);
+      const skin = { joints: joints as number[], inverseBindMatrices };
+      this.#json.nodes![number]!.skin = (this.#json.skins ??= []).push(skin) - 1;
+    }
+  }
+
+  async finish(root: number): Promise<Uint8Array> {
+    this.#json.scene = 0;
+    this.#json.scenes = [{ nodes: [root] }];
+    this.#json.buffers = [{ byteLength: this.#length }];
+    return packGlb(this.#json, this.#chunks);
+  }
+
+  #addAccessor(values: Values, size: keyof typeof types, isBounded = false): number {
+    const accessor = {
+      bufferView: this.#addView(new Uint8Array(values.buffer, values.byteOffset, values.byteLength)),
+      componentType: componentTypes[values.constructor.name as keyof typeof componentTypes],
+      count: values.length / size,
+      type: types[size],
+      ...(isBounded && boundsOf(values)),
+    };
+    return (this.#json.accessors ??= []).push(accessor as GLTF.IAccessor) - 1;
+  }
+
+  #addView(bytes: Uint8Array): number {
+    const view = { buffer: 0, byteOffset: this.#length, byteLength: bytes.byteLength };
+    this.#chunks.push(bytes, new Uint8Array(paddedLength(bytes.byteLength) - bytes.byteLength));
+    this.#length += paddedLength(bytes.byteLength);
+    return (this.#json.bufferViews ??= []).push(view) - 1;
+  }
+}

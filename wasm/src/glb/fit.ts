@@ -1,0 +1,77 @@
+import {
+  type CageCallOptions,
+  type Fit,
+  fitCage,
+  type Landmarks,
+  loadTemplate,
+  type TemplateName,
+} from '../cages/index.js';
+import type { CageModel, Template } from '../cages/types.js';
+import { nodeModule } from '../core/node.js';
+import { cageModelOf, templateOf } from '../gltf/cage-file.js';
+import { extract } from '../gltf/extract-file.js';
+import { openGltf } from '../gltf/open-gltf.js';
+import { type ReadModel, withUvs } from '../gltf/read-model.js';
+import type { Vector } from '../inspect/geometry.js';
+import { moved } from '../parts/origin.js';
+
+interface FitCall extends Pick<CageCallOptions, 'signal' | 'onProgress'> {
+  landmarks?: Landmarks | undefined;
+}
+
+/** Of the progress, the share at which a fit ends. */
+const kFitted = 0.9;
+
+/** Fits a template to a model. @returns the fit in the space of the model's scene. @throws {InputError}, {CagecastError} */
+export async function fitTo(
+  model: ReadModel,
+  template: TemplateName | Uint8Array | Template,
+  { landmarks, signal, onProgress }: FitCall,
+): Promise<Fit> {
+  const from = await readTemplate(template);
+  const { origin } = model.extracted;
+  const given = landmarks && movedBy(landmarks, origin, -1);
+  const calling = {
+    signal,
+    onProgress: (share: number, stage: string) => onProgress?.(kFitted * share, stage),
+  };
+  const fit = await (hasWorkers() ? fitCage : fitHere)(from, cageModelOf(model.file, model.extracted), given, calling);
+  const back = origin.map((x) => -x) as unknown as Vector;
+  return {
+    ...fit,
+    used: movedBy(fit.used, origin, 1),
+    cage: { ...moved(fit.cage, back), landmarks: movedBy(fit.cage.landmarks, origin, 1) },
+  };
+}
+
+/** Whether workers that fit cages can be started. */
+const hasWorkers = () => typeof Worker === 'function' || nodeModule('node:worker_threads') !== undefined;
+
+/** Fits on this thread. */
+async function fitHere(
+  template: Template,
+  model: CageModel,
+  landmarks: Landmarks | undefined,
+  { signal: _, ...options }: CageCallOptions,
+): Promise<Fit> {
+  const cages = await import('../cages/sync.js');
+  await cages.init();
+  return cages.fitCage(template, model, landmarks, options);
+}
+
+async function readTemplate(template: TemplateName | Uint8Array | Template): Promise<Template> {
+  if (typeof template === 'string') return loadTemplate(template);
+  if (!(template instanceof Uint8Array)) return template;
+  const file = await openGltf('template', template);
+  const { extracted } = withUvs({ file, extracted: extract(file, undefined, 'cage') });
+  return templateOf(file, extracted);
+}
+
+/** Landmarks moved by an origin, so many times. */
+const movedBy = (landmarks: Landmarks, origin: Vector, times: 1 | -1): Landmarks =>
+  Object.fromEntries(
+    Object.entries(landmarks).map(([name, point]) => [
+      name,
+      point.map((x, k) => x + times * origin[k]!) as [number, number, number],
+    ]),
+  );

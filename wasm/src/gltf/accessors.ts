@@ -1,0 +1,114 @@
+import type { GLTF } from '@gltf-transform/core';
+import { type MeshoptView, meshoptView } from './check-geometry.js';
+
+/** The numbers of an accessor. Those of glTF-Transform are such, too. */
+export interface AccessorData {
+  /** Its components, without padding; null if it has none. */
+  getArray(): ArrayData | null;
+  getCount(): number;
+  /** Components of an element. */
+  getElementSize(): number;
+  getType(): GLTF.AccessorType;
+  getNormalized(): boolean;
+}
+
+export type ArrayData = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
+
+/** The component type of an array. */
+export function componentTypeOf(values: ArrayData): GLTF.AccessorComponentType {
+  if (values instanceof Int8Array) return 5120;
+  if (values instanceof Uint8Array) return 5121;
+  if (values instanceof Int16Array) return 5122;
+  if (values instanceof Uint16Array) return 5123;
+  return values instanceof Uint32Array ? 5125 : 5126;
+}
+
+/** By component types. */
+const arrays: Record<number, new (length: number) => ArrayData> = {
+  5120: Int8Array,
+  5121: Uint8Array,
+  5122: Int16Array,
+  5123: Uint16Array,
+  5125: Uint32Array,
+  5126: Float32Array,
+};
+const sizes = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16 } as const;
+
+/**
+ * Decodes the accessors of a glTF whose references are checked: sparse, interleaved, or compressed by meshopt; not those in streams of Draco.
+ * @param buffers  The bytes of each buffer, if it has any.
+ */
+export async function decodeAccessors(
+  { accessors = [], bufferViews = [] }: GLTF.IGLTF,
+  buffers: readonly (Uint8Array | undefined)[],
+): Promise<AccessorData[]> {
+  const views = await decodeViews(bufferViews, buffers);
+  return accessors.map((accessor) => {
+    const size = sizes[accessor.type];
+    const values = new arrays[accessor.componentType]!(size * accessor.count);
+    const { bufferView, byteOffset = 0, sparse } = accessor;
+    if (bufferView !== undefined)
+      copyElements(views[bufferView]!, { byteOffset, byteStride: bufferViews[bufferView]!.byteStride }, values, size);
+    if (sparse) {
+      const places = new arrays[sparse.indices.componentType]!(sparse.count);
+      const own = new arrays[accessor.componentType]!(size * sparse.count);
+      copyElements(views[sparse.indices.bufferView]!, sparse.indices, places, 1);
+      copyElements(views[sparse.values.bufferView]!, sparse.values, own, size);
+      places.forEach((place, i) => values.set(own.subarray(size * i, size * (i + 1)), size * place));
+    }
+    return {
+      getArray: () => values,
+      getCount: () => accessor.count,
+      getElementSize: () => size,
+      getType: () => accessor.type,
+      getNormalized: () => accessor.normalized ?? false,
+    };
+  });
+}
+
+/** All components of an accessor as 32-bit floats, with normalised integers decoded. */
+export function decodeFloats(accessor: AccessorData): Float32Array {
+  const array = accessor.getArray()!;
+  if (array instanceof Float32Array) return array;
+  if (!accessor.getNormalized()) return Float32Array.from(array as ArrayLike<number>);
+  const most =
+    2 ** (8 * array.BYTES_PER_ELEMENT - (array instanceof Int8Array || array instanceof Int16Array ? 1 : 0)) - 1;
+  return Float32Array.from(array as ArrayLike<number>, (x) => Math.max(x / most, -1));
+}
+
+/** Copies elements out of the bytes of a view. */
+function copyElements(
+  view: Uint8Array,
+  { byteOffset = 0, byteStride }: { byteOffset?: number; byteStride?: number | undefined },
+  values: ArrayData,
+  size: number,
+): void {
+  const out = new Uint8Array(values.buffer);
+  const length = size * values.BYTES_PER_ELEMENT;
+  const stride = byteStride ?? length;
+  if (stride === length) out.set(view.subarray(byteOffset, byteOffset + out.length));
+  else
+    for (let to = 0, from = byteOffset; to < out.length; to += length, from += stride)
+      out.set(view.subarray(from, from + length), to);
+}
+
+/** The bytes of each view, decompressed. */
+async function decodeViews(
+  views: readonly GLTF.IBufferView[],
+  buffers: readonly (Uint8Array | undefined)[],
+): Promise<Uint8Array[]> {
+  const bytesOf = ({ buffer, byteOffset = 0, byteLength }: Pick<MeshoptView, 'buffer' | 'byteOffset' | 'byteLength'>) =>
+    buffers[buffer]?.subarray(byteOffset, byteOffset + byteLength) ?? new Uint8Array(0);
+  if (!views.some(meshoptView)) return views.map(bytesOf);
+  // Only here, as its script compiles WebAssembly as soon as it runs.
+  const { MeshoptDecoder } = await import('meshoptimizer/decoder');
+  await MeshoptDecoder.ready;
+  return views.map((view) => {
+    const compressed = meshoptView(view);
+    if (!compressed) return bytesOf(view);
+    const { count, byteStride, mode, filter } = compressed;
+    const bytes = new Uint8Array(count * byteStride);
+    MeshoptDecoder.decodeGltfBuffer(bytes, count, byteStride, bytesOf(compressed), mode, filter);
+    return bytes;
+  });
+}

@@ -1,0 +1,94 @@
+import type { GLTF } from '@gltf-transform/core';
+import { type AccessorData, decodeAccessors } from './accessors.js';
+import { checkGeometry, dracoOf } from './check-geometry.js';
+import { checkRest } from './check-rest.js';
+import { isDataUri, readDataUri } from './data-uri.js';
+import { firstLine, InputError } from './input-error.js';
+import { checkBytes, checkLimits, defaultLimits, exceeds, type ReadLimits } from './limits.js';
+import { parseGltf } from './parse.js';
+
+/** A glTF file as it is, and its accessors decoded. */
+export interface GltfFile {
+  /** As the caller named it, for messages. */
+  path: string;
+  /** The JSON as it stands in the file. Not to be changed. */
+  json: GLTF.IGLTF;
+  /** The bytes of each buffer; `undefined` for one that has none (a fallback for compressed views). */
+  buffers: (Uint8Array | undefined)[];
+  /** The accessors, in the file's order, decompressed and decoded. */
+  accessors: AccessorData[];
+  /** Reads what it refers to. @throws {InputError} that begins with `name`. */
+  readUri(name: string, uri: string): Promise<Uint8Array>;
+}
+
+/** How a file is opened. */
+export interface Opening {
+  limits?: ReadLimits;
+  /** Reads a file beside it. @throws {InputError} that begins with `name`. Default: there are none. */
+  readBeside?(name: string, uri: string): Promise<Uint8Array>;
+  /** Decodes the accessors of a file that Draco compresses. Default: such a file is refused. */
+  decodeDraco?(json: GLTF.IGLTF, buffers: readonly (Uint8Array | undefined)[]): Promise<AccessorData[]>;
+}
+
+/**
+ * Opens a GLB or glTF file: quantised, sparse, interleaved, or compressed by meshopt. Only geometry is decoded; images and materials stay as
+ * they are.
+ * @param path  Its name, for messages.
+ * @throws {InputError} that names the file and what is wrong with it.
+ */
+export async function openGltf(
+  path: string,
+  content: Uint8Array,
+  { limits = defaultLimits, readBeside = refuseBeside, decodeDraco = refuseDraco }: Opening = {},
+): Promise<GltfFile> {
+  try {
+    checkBytes(content.byteLength, limits);
+    const { json, binary } = parseGltf(content, limits);
+    const readUri: GltfFile['readUri'] = async (name, uri) =>
+      isDataUri(uri) ? readDataUri(name, uri) : readBeside(name, uri);
+    const buffers = await readBuffers(json, binary, readUri, limits);
+    const sizes = buffers.map((buffer) => buffer?.byteLength);
+    checkGeometry(json, sizes);
+    checkRest(json);
+    const all = sizes.reduce<number>((sum, size) => sum + (size ?? 0), content.byteLength - (binary?.byteLength ?? 0));
+    checkLimits(json, all, limits);
+    const isDraco = json.meshes?.some(({ primitives }) => primitives.some(dracoOf)) ?? false;
+    const accessors = await (isDraco ? decodeDraco : decodeAccessors)(json, buffers);
+    return { path, json, buffers, accessors, readUri };
+  } catch (error) {
+    if (error instanceof InputError) throw error.in(path);
+    throw new InputError(`${path}: cannot be decoded (${firstLine(error)})`, { cause: error });
+  }
+}
+
+async function refuseBeside(name: string, uri: string): Promise<never> {
+  throw new InputError(`${name} is in ${uri.slice(0, 60)}, another file; give a GLB, which holds everything itself`);
+}
+
+async function refuseDraco(): Promise<never> {
+  throw new InputError(
+    'its geometry is compressed by Draco, which is not read here; the command reads it, and glTF-Transform can write it without',
+  );
+}
+
+async function readBuffers(
+  { buffers: list = [] }: GLTF.IGLTF,
+  binary: Uint8Array | undefined,
+  readUri: GltfFile['readUri'],
+  limits: ReadLimits,
+): Promise<(Uint8Array | undefined)[]> {
+  const buffers: (Uint8Array | undefined)[] = [];
+  let total = 0;
+  for (const [b, { uri, byteLength }] of list.entries()) {
+    const name = `buffers[${b}]`;
+    const bytes = uri === undefined ? (b === 0 ? binary : undefined) : await readUri(name, uri);
+    if (bytes !== undefined && bytes.byteLength < byteLength) {
+      throw new InputError(`${name} is truncated: it should have ${byteLength} bytes, there are ${bytes.byteLength}`);
+    }
+    total += bytes?.byteLength ?? 0;
+    if (total > limits.bytes)
+      throw exceeds(`its buffers up to ${name} have ${total.toLocaleString('en')} bytes`, 'bytes', limits);
+    buffers.push(bytes);
+  }
+  return buffers;
+}
