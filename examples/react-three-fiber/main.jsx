@@ -14,7 +14,7 @@ function PaintedHead({ paint: file }) {
     paint.colorSpace = SRGBColorSpace;
     const controller = new AbortController();
     let applied;
-    applyTransferAsync(head.scene, cage.scene, { texture: paint, signal: controller.signal }).then(
+    applyTransferAsync(head, { cage, texture: paint, signal: controller.signal }).then(
       (made) => {
         applied = made;
         document.title = `${made.parts.length} painted`;
