@@ -8,15 +8,7 @@ import {
   type Painter,
   type SavedLayers,
 } from 'cagecast/three/paint';
-import {
-  DataTexture,
-  LinearFilter,
-  LinearMipmapLinearFilter,
-  MeshBasicMaterial,
-  SRGBColorSpace,
-  type Texture,
-  WebGLRenderer,
-} from 'three';
+import { DataTexture, MeshBasicMaterial, SRGBColorSpace, WebGLRenderer } from 'three';
 import {
   cage,
   clear,
@@ -255,34 +247,6 @@ export const layerScenes: Scenes = {
       for (const pixels of [a, b]) equal(red(pixels), [!flipY, flipY]);
       layers.dispose();
     }
-  },
-
-  'around what lies on transparent black no dark fringe is seen: of layers never, of a texture where it is enlarged'() {
-    // Discs in the light colour of the model, which so are not seen at all.
-    const discs = (size: number) => {
-      const data = Uint8Array.from({ length: 4 * size * size }, (_, at) => {
-        const [x, y] = [(at >> 2) % size, Math.floor((at >> 2) / size)].map((k) => ((8 * k) / size) % 1);
-        return Math.hypot(x! - 0.5, y! - 0.5) < 0.3 ? [0xbb, 0xbb, 0xbb, 255][at % 4]! : 0;
-      });
-      const settings = { minFilter: LinearMipmapLinearFilter, magFilter: LinearFilter, generateMipmaps: true };
-      const texture = Object.assign(new DataTexture(data, size, size), settings);
-      return Object.assign(texture, { colorSpace: SRGBColorSpace, needsUpdate: true });
-    };
-    const bare = draw(plain()).pixels;
-    const shown = (texture: Texture) => {
-      const model = plain();
-      applyTransfer(model, { cage: cage(), texture });
-      return draw(model).pixels;
-    };
-    for (const size of [32, 512]) {
-      const layers = createLayers({ renderer });
-      layers.add(discs(size));
-      layers.update();
-      ok(difference(shown(layers.texture), bare) < 4, `layer of ${size} texels`);
-      layers.dispose();
-    }
-    const seen = shown(discs(32));
-    for (let at = 24; at < 40; ++at) near(pixelAt(seen, at, 32), pixelAt(bare, at, 32), 3);
   },
 
   'a texture of colours without a colour space is told of once'() {

@@ -1,4 +1,4 @@
-import { LinearFilter, Matrix3, type Texture, type WebGLProgramParametersWithUniforms } from 'three';
+import { Matrix3, type Texture, type WebGLProgramParametersWithUniforms } from 'three';
 import { checkColorSpace } from '../color-space.js';
 
 type Shader = Pick<WebGLProgramParametersWithUniforms, 'vertexShader' | 'fragmentShader' | 'uniforms'>;
@@ -26,36 +26,15 @@ varying vec4 vCagecastPaint;
 `;
 
 // The last row of a transform of UVs is 0, 0, 1, so there is room for opacity, feather and how to decode: 1 for sRGB, 2 for
-// colours that are multiplied by alpha, −1 for those that are not to be filtered. Others are filtered here where they are enlarged, each
-// texel with its alpha: what is transparent is mostly black, and would be seen as a dark fringe.
+// colours that are multiplied by alpha.
 // A triangle is painted if all its vertices are: what is interpolated from three zeros is exactly zero, on every GPU.
 const kFragment = `#define CAGECAST_PAINT
 varying vec4 vCagecastPaint;
 uniform sampler2D cagecastMap;
 uniform mat3 cagecastMatrix;
-vec4 cagecastEnlarged(vec4 texel, vec2 uv) {
-  vec2 size = vec2(textureSize(cagecastMap, 0));
-  vec2 at = uv * size - 0.5;
-  vec2 across = dFdx(at);
-  vec2 along = dFdy(at);
-  float reduced = max(dot(across, across), dot(along, along)) - 1.0;
-  if (reduced >= 1.0) return texel;
-  vec2 share = fract(at);
-  vec2 first = (floor(at) + 0.5) / size;
-  vec4 sum = vec4(0.0);
-  for (int k = 0; k < 4; ++k) {
-    vec2 step = vec2(k & 1, k >> 1);
-    vec2 weight = mix(1.0 - share, share, step);
-    vec4 one = textureLod(cagecastMap, first + step / size, 0.0);
-    sum += weight.x * weight.y * vec4(one.rgb * one.a, one.a);
-  }
-  return mix(vec4(sum.rgb / max(sum.a, 1e-4), sum.a), texel, max(reduced, 0.0));
-}
 vec4 cagecastTexel() {
   vec3 amount = vec3(cagecastMatrix[0].z, cagecastMatrix[1].z, cagecastMatrix[2].z);
-  vec2 uv = (cagecastMatrix * vec3(vCagecastPaint.xy, 1.0)).xy;
-  vec4 texel = texture2D(cagecastMap, uv);
-  if (amount.z == 0.0) texel = cagecastEnlarged(texel, uv);
+  vec4 texel = texture2D(cagecastMap, (cagecastMatrix * vec3(vCagecastPaint.xy, 1.0)).xy);
   vec3 linear = mix(pow((texel.rgb + 0.055) / 1.055, vec3(2.4)), texel.rgb / 12.92, vec3(lessThanEqual(texel.rgb, vec3(0.04045))));
   texel.rgb = mix(texel.rgb, linear, step(abs(amount.z - 1.0), 0.5));
   texel.rgb /= amount.z > 1.5 ? max(texel.a, 1e-4) : 1.0;
@@ -136,8 +115,7 @@ export function refreshMatrix({ texture, opacity, feather, matrix }: Paint): voi
   // The GPU decodes all but videos. What is drawn, as by `createLayers`, may be premultiplied; it is no video.
   const isDrawn = (texture as { isRenderTargetTexture?: boolean }).isRenderTargetTexture;
   const isVideo = (texture as { isVideoTexture?: true }).isVideoTexture;
-  const straight = texture.magFilter === LinearFilter ? 0 : -1;
-  elements[8] = isDrawn && texture.premultiplyAlpha ? 2 : isVideo && texture.colorSpace === 'srgb' ? 1 : straight;
+  elements[8] = isDrawn && texture.premultiplyAlpha ? 2 : isVideo && texture.colorSpace === 'srgb' ? 1 : 0;
 }
 
 const kNoPaint = /* @__PURE__ */ new Matrix3().set(0, 0, 0, 0, 0, 0, 0, 0, 0);
