@@ -1,4 +1,5 @@
 import assert from 'node:assert/strict';
+import { readdirSync, readFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { CagecastError, type Code, classify, init, type Mesh, project, transfer } from 'cagecast';
 import { optionFlags } from '../../wasm/src/generated/options.js';
@@ -353,4 +354,12 @@ describe('memory', () => {
     const { distances } = transfer(cage, target, { weldTolerance: 0 });
     assert.ok(distances.every((distance) => distance < 0.1));
   });
+});
+
+test('there is one class of errors: no script has its own but those that need no other', () => {
+  const alone = ['index.js', 'slim.js', 'cages-sync.js', 'cages-thread.js', 'cli.js', 'command.js'];
+  const scripts = readdirSync('dist').filter((name) => name.endsWith('.js') && !alone.includes(name));
+  assert.ok(scripts.length > 9);
+  for (const name of scripts)
+    assert.doesNotMatch(readFileSync(`dist/${name}`, 'utf8'), /name\s*=\s*["']CagecastError["']/, name);
 });

@@ -6,6 +6,7 @@ import {
   type ApplyOptions,
   applyTransfer,
   applyTransferAsync,
+  cageModel,
   deserialize,
   extract,
   type Loaded,
@@ -792,6 +793,9 @@ describe('geometries', () => {
       for (let i = 0; i < 7; ++i) all.push(show());
       assert.deepEqual(arraysOf(target), first);
       assert.deepEqual(extract(target).mesh, extracted);
+      assert.deepEqual(cageModel(target).positions, extracted.positions);
+      show();
+      assert.deepEqual(arraysOf(target), first, 'and after it was read');
       applyTransfer(target, { saved, texture: new Texture() }).dispose();
       assert.deepEqual([target.geometry.attributes, target.geometry.index], [own, index]);
       assert.deepEqual(target.geometry.morphAttributes, morphs);
@@ -819,13 +823,15 @@ describe('geometries', () => {
 
   test('have one channel on top of another, and lose both together where one is asked for no more', () => {
     const target = meshOf(scene.target);
-    const first = applyTransfer(target, { cage: cage(), channel: 1, borders: 'cut' });
+    const first = applyTransfer(target, { cage: cage(), texture: new Texture(), borders: 'cut' });
     const count = () => target.geometry.getAttribute('position').count;
     const alone = count();
     for (let i = 0; i < 3; ++i) applyTransfer(target, { cage: cage(), channel: 2, borders: 'cut' });
     const both = count();
     const second = applyTransfer(target, { cage: cage(), channel: 2, borders: 'cut' });
     assert.equal(count(), both);
+    assert.ok(isPatched(target.material));
+    assert.equal(target.geometry.getAttribute('_cagecast_paint').count, both, 'the first is still shown');
     first.dispose();
     assert.equal(count(), both, 'the second is made of the first');
     second.dispose();

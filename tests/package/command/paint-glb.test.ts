@@ -88,8 +88,13 @@ test('what cannot be used is named, with what helps', async () => {
   const model = glbOf(target);
   const own = { cage: read('cage.glb'), texture };
   const wrong: [bytes: Uint8Array, options: object, message: RegExp, argument: string][] = [
-    [model, { texture }, /^paintGlb: cage is undefined, not there, and no template is/, 'cage'],
-    [model, { ...own, template: 'human-head' }, /^paintGlb: cage is of type Uint8Array, not undefined/, 'cage'],
+    [model, { texture }, /^paintGlb: neither cage nor template is given; one of them is needed/, 'cage'],
+    [
+      model,
+      { ...own, template: 'human-head' },
+      /^paintGlb: cage and template are both given; one of them is needed/,
+      'cage',
+    ],
     [model, { cage: own.cage }, /^paintGlb: texture is undefined, not a Uint8Array/, 'texture'],
     [model, { ...own, texture: model }, /^paintGlb: texture: is not a PNG, JPEG, WebP or KTX2 image/, 'texture'],
     [model, { ...own, cage: texture }, /^paintGlb: cage: /, 'cage'],
@@ -99,8 +104,13 @@ test('what cannot be used is named, with what helps', async () => {
       /^paintGlb: cage: meshes\[0\].*no TEXCOORD_0/,
       'cage',
     ],
-    [model, { ...own, exclude: ['nose'] }, /^paintGlb: exclude: nothing is named “nose”; there are only/, 'exclude'],
-    [model, { ...own, treshold: 1 }, /options.treshold is not an option/, 'options'],
+    [model, { ...own, exclude: ['nose'] }, /^paintGlb: exclude: nothing is named "nose"; there are only/, 'exclude'],
+    [
+      model,
+      { ...own, treshold: 1 },
+      /^paintGlb: options\.treshold is not an option; paintGlb takes: texture, cage, .*threshold/,
+      'options',
+    ],
     [new Uint8Array(0), own, /^paintGlb: bytes: the file is empty/, 'bytes'],
     [
       new TextEncoder().encode(

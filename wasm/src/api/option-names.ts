@@ -1,4 +1,4 @@
-import { CagecastError, isRecord, show } from '../core/error.js';
+import { isRecord, show } from '../core/error.js';
 import { optionTable } from '../generated/options.js';
 
 /** For each function, the stages whose options it takes, and its other options. */
@@ -23,16 +23,9 @@ export const optionsOf = (fn: Fn, isStep: boolean): OptionName[] =>
 /** The names of all options of a function. */
 export const optionNames = (fn: Fn): string[] => ['preset', ...optionsOf(fn, false), 'steps', ...kFunctions[fn].others];
 
-/** Checks the names of options. @returns them. @throws {CagecastError} `badOption` that lists those that there are */
-export function checkNames(
-  fn: string,
-  where: string,
-  given: unknown,
-  known: readonly string[],
-): Record<string, unknown> {
-  if (!isRecord(given)) throw new CagecastError('badOption', fn, `${where} is ${show(given)}, not an object`);
+/** What is wrong with the names of options, as the reason of a `badOption`; nothing if all are known. */
+export function faultOfNames(fn: string, where: string, given: unknown, known: readonly string[]): string | undefined {
+  if (!isRecord(given)) return `${where} is ${show(given)}, not an object`;
   const unknown = Object.keys(given).find((name) => !known.includes(name));
-  if (unknown !== undefined)
-    throw new CagecastError('badOption', fn, `${where}.${unknown} is not an option; ${fn} takes: ${known.join(', ')}`);
-  return given as Record<string, unknown>;
+  return unknown && `${where}.${unknown} is not an option; ${fn} takes: ${known.join(', ')}`;
 }

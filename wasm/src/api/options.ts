@@ -9,7 +9,7 @@ import {
   type ProjectStage,
   type ProjectSteps,
 } from '../generated/options.js';
-import { checkNames, type Fn, type OptionName, optionNames, optionsOf } from './option-names.js';
+import { type Fn, faultOfNames, type OptionName, optionNames, optionsOf } from './option-names.js';
 
 /**
  * A named set of values for all options. `paper` is the method as published: *Cage-based Texture Transfer with Geometric
@@ -152,6 +152,12 @@ export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'de
     core,
     overrides: { locks: checkLocks(fn, given['locks']), masks: checkMasks(fn, given['masks']) },
   };
+}
+
+function checkNames(fn: string, where: string, given: unknown, known: readonly string[]): Record<string, unknown> {
+  const fault = faultOfNames(fn, where, given, known);
+  if (fault !== undefined) throw new CagecastError('badOption', fn, fault);
+  return given as Record<string, unknown>;
 }
 
 function checkValue(fn: string, where: string, name: OptionName, value: unknown): CoreValue {

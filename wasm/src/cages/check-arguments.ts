@@ -189,3 +189,11 @@ export function checkOptions(
   }
   return merged;
 }
+
+/** @throws {CagecastError} `badArgument` if options of `fitCage` are given in the place of landmarks. */
+export function checkOrder(landmarks: unknown): void {
+  const name = ['exclude', 'signal', 'onProgress'].find((option) => isRecord(landmarks) && option in landmarks);
+  if (name === undefined) return;
+  const text = `landmarks.${name} is an option; options come after landmarks: fitCage(template, model, undefined, { ${name} })`;
+  throw new CagecastError('badArgument', 'fitCage', text, { argument: 'landmarks' });
+}

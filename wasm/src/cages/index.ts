@@ -9,7 +9,6 @@
 import type { Mesh } from '../api/mesh.js';
 import { CagecastError } from '../index.js';
 import { type CallOptions, type OnProgress, WorkerQueue } from '../worker/queue.js';
-import { checkOrder } from './check-order.js';
 import { spawn } from './spawn-cages.js';
 import type {
   Cage,
@@ -85,7 +84,6 @@ export async function fitCage(
   landmarks?: Landmarks,
   options: FitOptions & CageCallOptions = {},
 ): Promise<Fit> {
-  checkOrder(landmarks);
   return unreadOf('fitCage', model) ?? queue.withOptions('fitCage', [template, model, landmarks], options);
 }
 

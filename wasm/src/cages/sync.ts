@@ -24,12 +24,12 @@ import {
   checkLandmarks,
   checkModel,
   checkOptions,
+  checkOrder,
   checkParts,
   checkPatterns,
   checkRegions,
   checkTemplate,
 } from './check-arguments.js';
-import { checkOrder } from './check-order.js';
 import type {
   Cage,
   CageModel,

@@ -13,7 +13,7 @@ import { extract } from '../gltf/extract-file.js';
 import { openGltf } from '../gltf/open-gltf.js';
 import { type ReadModel, withUvs } from '../gltf/read-model.js';
 import type { Vector } from '../inspect/geometry.js';
-import { moved } from '../parts/origin.js';
+import { landmarksMoved, moved } from '../parts/origin.js';
 
 interface FitCall extends Pick<CageCallOptions, 'signal' | 'onProgress'> {
   landmarks?: Landmarks | undefined;
@@ -30,7 +30,7 @@ export async function fitTo(
 ): Promise<Fit> {
   const from = await readTemplate(template);
   const { origin } = model.extracted;
-  const given = landmarks && movedBy(landmarks, origin, -1);
+  const given = landmarks && landmarksMoved(landmarks, origin, -1);
   const calling = {
     signal,
     onProgress: (share: number, stage: string) => onProgress?.(kFitted * share, stage),
@@ -39,8 +39,8 @@ export async function fitTo(
   const back = origin.map((x) => -x) as unknown as Vector;
   return {
     ...fit,
-    used: movedBy(fit.used, origin, 1),
-    cage: { ...moved(fit.cage, back), landmarks: movedBy(fit.cage.landmarks, origin, 1) },
+    used: landmarksMoved(fit.used, origin, 1),
+    cage: { ...moved(fit.cage, back), landmarks: landmarksMoved(fit.cage.landmarks, origin, 1) },
   };
 }
 
@@ -66,12 +66,3 @@ async function readTemplate(template: TemplateName | Uint8Array | Template): Pro
   const { extracted } = withUvs({ file, extracted: extract(file, undefined, 'cage') });
   return templateOf(file, extracted);
 }
-
-/** Landmarks moved by an origin, so many times. */
-const movedBy = (landmarks: Landmarks, origin: Vector, times: 1 | -1): Landmarks =>
-  Object.fromEntries(
-    Object.entries(landmarks).map(([name, point]) => [
-      name,
-      point.map((x, k) => x + times * origin[k]!) as [number, number, number],
-    ]),
-  );

@@ -1,3 +1,4 @@
+import { show } from '../core/error.js';
 import { InputError } from '../gltf/input-error.js';
 import { partsNamed, type ReadModel } from '../gltf/read-model.js';
 import type { Lock, Locks } from '../index.js';
@@ -15,7 +16,7 @@ export function locksOf(model: ReadModel, bare: readonly number[], patterns: Par
       for (const p of partsOf(model, lock, pattern)) {
         if (groups[p] !== undefined && groups[p] !== lock)
           throw new InputError(
-            `${lock}: “${pattern}” and a pattern of exclude match “${model.extracted.parts[p]!.name}”`,
+            `${lock}: ${show(pattern)} and a pattern of exclude match ${show(model.extracted.parts[p]!.name)}`,
           );
         groups[p] = lock;
       }
@@ -28,6 +29,6 @@ function partsOf(model: ReadModel, lock: string, pattern: string): number[] {
   const names = [...new Set(model.extracted.parts.flatMap(({ aliases }) => aliases))];
   const more = names.length > kMaxNames ? ` and ${names.length - kMaxNames} more` : '';
   throw new InputError(
-    `${lock}: nothing is named “${pattern}”; there are ${names.slice(0, kMaxNames).join(', ')}${more}`,
+    `${lock}: nothing is named ${show(pattern)}; there are ${names.slice(0, kMaxNames).join(', ')}${more}`,
   );
 }

@@ -1,3 +1,4 @@
+import { faultOfNames, optionNames } from '../api/option-names.js';
 import { cageGlb } from '../cages/cage-glb.js';
 import type { CageCallOptions, Fit, Landmarks, TemplateName } from '../cages/index.js';
 import type { Template } from '../cages/types.js';
@@ -37,6 +38,11 @@ export interface PaintOptions
   borders?: Borders | undefined;
 }
 
+const kOptions = [
+  ...['texture', 'cage', 'template', 'landmarks', 'exclude', 'keep', 'borders', 'signal', 'onProgress'],
+  ...optionNames('transfer').filter((name) => !['locks', 'masks', 'reuse'].includes(name)),
+];
+
 /** What `paintGlb` made. */
 export interface PaintedGlb {
   /** The painted file: a GLB, or the VRM that it was. */
@@ -70,7 +76,8 @@ export interface PaintedGlb {
  * const { bytes, note } = await paintGlb(await readFile('avatar.vrm'), { template: 'human-head', texture: await readFile('paint.png') });
  */
 export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promise<PaintedGlb> {
-  if (typeof options !== 'object' || options === null) throw wrong('options', options, 'an object');
+  const fault = faultOfNames('paintGlb', 'options', options, kOptions);
+  if (fault !== undefined) throw new CagecastError('badOption', 'paintGlb', fault);
   const {
     texture,
     cage,
@@ -85,12 +92,10 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
   } = options;
   if (!(bytes instanceof Uint8Array)) throw wrong('bytes', bytes, 'a Uint8Array');
   if (!(texture instanceof Uint8Array)) throw wrong('texture', texture, 'a Uint8Array');
-  if ((cage === undefined) === (template === undefined))
-    throw wrong(
-      'cage',
-      cage,
-      template === undefined ? 'there, and no template is' : 'undefined, though a template is given',
-    );
+  if ((cage === undefined) === (template === undefined)) {
+    const what = cage === undefined ? 'neither cage nor template is' : 'cage and template are both';
+    throw new CagecastError('badArgument', 'paintGlb', `${what} given; one of them is needed`, { argument: 'cage' });
+  }
   const cuts = isCut('paintGlb', borders);
   try {
     const paint = readPaint(texture);
@@ -119,7 +124,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
         painted: result.cosmeticTriangles.reduce((sum, one) => sum + one, 0),
         total: result.cosmeticTriangles.length,
       },
-      note: noteOf(mesh, result, parts),
+      note: noteOf(mesh, result, parts, around.extracted.mesh),
       bare: [...new Set(bare.filter((p) => locks?.groups?.[p] === 'exclude').map((p) => parts[p]!.name))],
       fit,
     };
@@ -165,7 +170,7 @@ async function readCage(cage: Uint8Array | Mesh, target: ReadModel): Promise<Rea
   if (cage instanceof Uint8Array) return withUvs(await readModel('cage', cage, target));
   if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'the bytes of a GLB, or a mesh');
   if (cage.uvs === undefined)
-    throw wrong('cage.uvs', cage.uvs, 'a Float32Array: the texture is drawn in the cage’s UVs');
+    throw wrong('cage.uvs', cage.uvs, "a Float32Array: the texture is drawn in the cage's UVs");
   return readModel('cage', cageGlb({ ...cage, uvs: cage.uvs }), target);
 }
 

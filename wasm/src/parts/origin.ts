@@ -53,3 +53,16 @@ export const moved = <M extends Mesh>(mesh: M, origin: Vector): M =>
   mesh.positions instanceof Float32Array && origin.some((x) => x !== 0)
     ? { ...mesh, positions: mesh.positions.map((value, i) => value - origin[i % 3]!) }
     : mesh;
+
+/** Named spots moved by an origin, so many times. */
+export const landmarksMoved = (
+  landmarks: Readonly<Record<string, Vector>>,
+  origin: Vector,
+  times: 1 | -1,
+): Record<string, [number, number, number]> =>
+  Object.fromEntries(
+    Object.entries(landmarks).map(([name, [x, y, z]]) => [
+      name,
+      [x + times * origin[0], y + times * origin[1], z + times * origin[2]],
+    ]),
+  );

@@ -1,3 +1,4 @@
+import { faultOfNames } from '../api/option-names.js';
 import { show } from '../core/error.js';
 import { CagecastError, type Code, type ErrorDetails } from '../index.js';
 
@@ -28,3 +29,9 @@ export const checkColor = (name: string, value: string): void =>
 /** @throws {CagecastError} `badOption` for a number below 0 or above 1. */
 export const checkShare = (name: string, value: number): void =>
   check(value >= 0 && value <= 1, name, value, 'a number from 0 to 1');
+
+/** @throws {CagecastError} `badOption` for options that are no object, or one that a function does not have. */
+export function checkNames(fn: string, where: string, given: unknown, known: readonly string[]): void {
+  const fault = faultOfNames(fn, where, given, known);
+  if (fault !== undefined) throw wrong(fault, fn, 'badOption');
+}

@@ -1,5 +1,4 @@
 import type { Texture } from 'three';
-import { checkNames } from '../api/option-names.js';
 import { type Image, maskTriangles, maskVertices } from '../bake/index.js';
 import type { Masks } from '../index.js';
 import { localIndices } from '../parts/prepare.js';
@@ -7,7 +6,7 @@ import { valuesOf } from './apply/attributes.js';
 import { extract, type PartsOption } from './apply/extract-scene.js';
 import type { Loaded } from './apply/models.js';
 import { type Context, makeCanvas } from './canvas.js';
-import { wrong } from './errors.js';
+import { checkNames, wrong } from './errors.js';
 
 /** Where the masks of a model come from. */
 export interface ModelMasks {

@@ -273,15 +273,19 @@ function brief(
     case Zone.Uncovered:
       if (shown.projection.visibility[vertex] === Visibility.Beyond) return kBeyond;
       return outside > 0 ? 'it lies outside the cage' : 'the cage has a hole over it';
-    default:
+    default: {
       if (locks[part.segment] === 'exclude') return `you excluded ${part.name}`;
-      if (classification.segmentStats[part.segment]!.culledBy === 'lock')
-        return `${part.name} is worn or carried, by its name; choose “keep” to paint it`;
-      if (classification.segmentStats[part.segment]!.culledBy === 'hole')
-        return `a hole of the cage seems to be meant for ${part.name}`;
+      const { culledBy, group } = classification.segmentStats[part.segment]!;
+      if (culledBy === 'lock') {
+        const isWorn = shown.target.mesh.accessories.includes(group);
+        const why = isWorn ? `${part.name} is worn or carried, by its name` : `the cage was made without ${part.name}`;
+        return `${why}; choose “keep” to paint it`;
+      }
+      if (culledBy === 'hole') return `a hole of the cage seems to be meant for ${part.name}`;
       return part.coverage < part.threshold
         ? `the cage covers ${percent(part.coverage)} of the exposed area of ${part.name}, less than the threshold of ${percent(part.threshold)}`
         : `too little of ${part.name} is covered`;
+    }
   }
 }
 

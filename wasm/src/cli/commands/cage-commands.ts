@@ -9,6 +9,7 @@ import { InputError, naming } from '../../gltf/input-error.js';
 import { bareParts, type ReadModel, readBack, withUvs } from '../../gltf/read-model.js';
 import { counted } from '../../inspect/finding.js';
 import { readObj } from '../../parts/obj.js';
+import { landmarksMoved } from '../../parts/origin.js';
 import { isPosition, readTemplate as withExtras } from '../../parts/template-extras.js';
 import { readBytes, standard } from '../io/files.js';
 import type { Io } from '../io/io.js';
@@ -140,21 +141,12 @@ async function fitTo(path: string, target: string, flags: FitFlags, io: Io): Pro
   const given = flags.landmarks === undefined ? undefined : await readLandmarks(flags.landmarks);
   const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags).ignored);
   const { origin } = model.extracted;
-  const landmarks = given && movedBy(given, origin, -1);
+  const landmarks = given && landmarksMoved(given, origin, -1);
   const files = { template: path, landmarks: flags.landmarks };
   const fit = await fitCageTo(model, { template, landmarks, files, options: { exclude } }, io);
-  const used = movedBy(fit.used, origin, 1);
+  const used = landmarksMoved(fit.used, origin, 1);
   return finish(fit.cage, model, flags, io, describeFit({ ...fit, used }, landmarks ?? {}));
 }
-
-/** Landmarks moved by an origin, so many times. */
-const movedBy = (landmarks: Landmarks, origin: readonly number[], times: 1 | -1): Landmarks =>
-  Object.fromEntries(
-    Object.entries(landmarks).map(([name, point]) => [
-      name,
-      point.map((x, k) => x + times * origin[k]!) as [number, number, number],
-    ]),
-  );
 
 /** How many landmarks `fitCage` needs of a template. */
 const kMinLandmarks = 4;

@@ -1,9 +1,9 @@
 import type { Material, Mesh, Texture } from 'three';
-import { checkNames, optionNames } from '../../api/option-names.js';
+import { optionNames } from '../../api/option-names.js';
 import type { Classification, TransferOptions, TransferResult } from '../../index.js';
 import type { Borders } from '../../parts/borders-option.js';
 import type { Prepared } from '../../parts/prepare.js';
-import { notA, wrong } from '../errors.js';
+import { checkNames, notA, wrong } from '../errors.js';
 import type { Extracted, Part, PartsOption } from './extract-scene.js';
 import { isModel, type LoadedCage } from './models.js';
 import type { Calling } from './tasks.js';

@@ -97,14 +97,14 @@ export function asBefore<T>(geometries: ReadonlySet<BufferGeometry>, channel: Ch
 export function rewind(geometry: BufferGeometry, channel?: Channel): Writer[] {
   const list = writesOf(geometry);
   const place = placeOf(list, channel);
-  if (place === list.length) return [];
-  const before = beforeOf(geometry, channel);
-  disposeOwn(geometry);
-  Object.assign(geometry, partsOf(before));
-  return list
-    .splice(place)
-    .map(({ writer }) => writer)
-    .reverse();
+  const gone = list.slice(place).map(({ writer }) => writer);
+  if (gone.length > 0) {
+    const before = beforeOf(geometry, channel);
+    disposeOwn(geometry);
+    Object.assign(geometry, partsOf(before));
+  }
+  writes.set(geometry, list.slice(0, place));
+  return gone.reverse();
 }
 
 /** Notes what a transfer has made of a geometry that was rewound. @param before  What `beforeOf` said. */
@@ -120,16 +120,16 @@ export function noteChange(geometry: BufferGeometry): void {
 
 /** Takes a writer off a geometry: it is what it was before, unless others have written on top; then it is once these are gone. */
 export function takeOff(geometry: BufferGeometry, writer: Writer): void {
-  const list = writesOf(geometry);
-  const write = list.find((one) => one.writer === writer);
+  const write = writesOf(geometry).find((one) => one.writer === writer);
   if (!write) return;
   write.writer = kNobody;
-  while (list.at(-1)?.writer === kNobody) rewind(geometry, list.at(-1)!.channel);
+  const last = () => writesOf(geometry).at(-1);
+  for (let top = last(); top?.writer === kNobody; top = last()) rewind(geometry, top.channel);
 }
 
-/** Whether a geometry has what a writer wrote. */
+/** Whether what a writer has made of a geometry is still in it. */
 export const isWrittenBy = (geometry: BufferGeometry, writer: Writer): boolean =>
-  writesOf(geometry).some((one) => one.writer === writer);
+  writes.get(geometry)?.some((one) => one.writer === writer) === true;
 
 const kNobody: Writer = { replaced() {} };
 
@@ -144,7 +144,7 @@ const versionOf = (attribute: Attribute): number =>
   'isInterleavedBufferAttribute' in attribute ? attribute.data.version : attribute.version;
 
 /** The writes of a geometry; none if others have given it other vertices or triangles since. */
-function writesOf(geometry: BufferGeometry): Write[] {
+function writesOf(geometry: BufferGeometry): readonly Write[] {
   const list = writes.get(geometry) ?? [];
   const made = list.at(-1)?.made;
   const { attributes, morphAttributes, index } = geometry;
@@ -153,8 +153,7 @@ function writesOf(geometry: BufferGeometry): Write[] {
     (index === made.index &&
       attributes['position']?.count === made.attributes['position']!.count &&
       morphAttributes.position === made.morphAttributes.position);
-  if (!isAsMade) list.length = 0;
-  return list;
+  return isAsMade ? list : [];
 }
 
 const placeOf = (list: readonly Write[], channel: Channel | undefined): number => {
