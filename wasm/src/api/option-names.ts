@@ -27,5 +27,6 @@ export const optionNames = (fn: Fn): string[] => ['preset', ...optionsOf(fn, fal
 export function faultOfNames(fn: string, where: string, given: unknown, known: readonly string[]): string | undefined {
   if (!isRecord(given)) return `${where} is ${show(given)}, not an object`;
   const unknown = Object.keys(given).find((name) => !known.includes(name));
-  return unknown && `${where}.${unknown} is not an option; ${fn} takes: ${known.join(', ')}`;
+  if (unknown === undefined) return undefined; // it may be the empty text
+  return `${where}.${unknown} is not an option; ${fn} takes: ${known.join(', ')}`;
 }
