@@ -122,17 +122,41 @@ export function applyTransfer(target: Loaded, options: ApplyOptions = {}): Appli
  */
 export async function applyTransferAsync(target: Loaded, options: ApplyOptions & Calling = {}): Promise<Applied> {
   checkOptions('applyTransferAsync', options);
-  const { signal, onProgress, ...others } = options;
-  signal?.throwIfAborted();
-  const { saved, input, finish } = read('applyTransferAsync', target, others);
-  await nextTask();
-  signal?.throwIfAborted();
-  onProgress?.(0.05, 'transfer');
-  const prepared = saved ?? (await prepareParts(input, { signal }));
+  const { signal, onProgress } = options;
+  const { finish, prepared } = await prepareInWorker('applyTransferAsync', target, options);
   onProgress?.(0.7, 'geometry');
   const applied = await runInTasks(finish(prepared), signal);
   onProgress?.(1, 'done');
   return applied;
+}
+
+/**
+ * What `applyTransferAsync` does in the worker, and no more: the model stays as it is, until `applyTransfer(target, { saved, texture })`
+ * shows the result at once. So a model can be put into a scene when it is ready to be painted.
+ * @param options  Those of `applyTransferAsync`; what is displayed does not count.
+ * @returns what `deserialize` returns, which is valid for this model, wherever it is by then, and however it is posed.
+ * @throws {CagecastError} as `applyTransferAsync`.
+ */
+export async function prepareTransfer(target: Loaded, options: ApplyOptions & Calling = {}): Promise<Saved> {
+  checkOptions('prepareTransfer', options);
+  const { prepared, save } = await prepareInWorker('prepareTransfer', target, options, true);
+  options.onProgress?.(1, 'done');
+  return save(prepared);
+}
+
+async function prepareInWorker(
+  fn: string,
+  target: Loaded,
+  { signal, onProgress, ...options }: ApplyOptions & Calling,
+  paints?: boolean,
+): Promise<Call & { prepared: Prepared }> {
+  signal?.throwIfAborted();
+  const call = read(fn, target, options);
+  const { saved, input } = call;
+  await nextTask();
+  signal?.throwIfAborted();
+  onProgress?.(0.05, 'transfer');
+  return { ...call, prepared: saved ?? (await prepareParts({ ...input, ...(paints && { paints }) }, { signal })) };
 }
 
 /**
@@ -153,6 +177,8 @@ interface Call {
   /** What was prepared earlier. */
   saved: Prepared | undefined;
   input: PrepareInput;
+  /** What was prepared, for another call. */
+  save(prepared: Prepared): Saved;
   /** Applies what was prepared, as `apply`. */
   finish(prepared: Prepared): Generator<void, Applied>;
 }
@@ -170,8 +196,14 @@ function read(fn: string, target: Loaded, options: ApplyOptions): Call {
   const apart = outer && moveApart(outer, extracted);
   const around = apart?.cage ?? outer?.mesh;
   if (result) checkResult(result, extracted);
+  const known = saved && checkSaved(saved, extracted);
+  const save = (prepared: Prepared): Saved => ({ key: saved?.key ?? keyOf(extracted, around, rules, cuts), prepared });
+  const mended = (prepared: Prepared): Prepared => {
+    if (!saved) apart?.mend(prepared.result);
+    return prepared;
+  };
   return {
-    saved: saved && checkSaved(saved, extracted),
+    saved: known,
     input: {
       cage: around,
       target: apart?.target ?? extracted.mesh,
@@ -181,10 +213,10 @@ function read(fn: string, target: Loaded, options: ApplyOptions): Call {
       cuts,
       paints: !!options.texture && !options.material,
     },
+    save: (prepared) => save(mended(prepared)),
     *finish(prepared) {
-      if (!saved) apart?.mend(prepared.result);
-      const applied = yield* apply(extracted, prepared, options, { call, cage: outer?.mesh });
-      return remember(applied, () => ({ key: saved?.key ?? keyOf(extracted, around, rules, cuts), prepared }));
+      const applied = yield* apply(extracted, mended(prepared), options, { call, cage: outer?.mesh });
+      return remember(applied, () => save(prepared));
     },
   };
 }

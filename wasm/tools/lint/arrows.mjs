@@ -21,6 +21,7 @@ const kPackageOrder = [
   'glb',
   'formats',
   'three',
+  'react',
   'viewer',
   'cli',
 ];

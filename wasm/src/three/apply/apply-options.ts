@@ -8,7 +8,7 @@ import type { Extracted, Part, PartsOption } from './extract-scene.js';
 import { isModel, type LoadedCage } from './models.js';
 import type { Calling } from './tasks.js';
 
-/** A transfer that was made earlier, for `applyTransfer`. */
+/** A transfer that was made earlier, by `prepareTransfer` or as `deserialize` reads it, for `applyTransfer`. */
 export interface Saved {
   /** Hashes of the target, the cage and the options, as hexadecimal digits. It is the same for the same three only. */
   key: string;
@@ -28,7 +28,7 @@ export interface ApplyOptions extends TransferOptions {
    * made, so the options of `transfer` count only where `borders` are cut, which needs the cage.
    */
   result?: TransferResult | undefined;
-  /** What `deserialize` returned: instead of a transfer, whose options and `borders` it keeps. Needs neither a cage nor `init`. */
+  /** What `prepareTransfer` or `deserialize` returned: instead of a transfer, whose options and `borders` it keeps. Needs neither a cage nor `init`. */
   saved?: Saved | undefined;
   /**
    * The paint, in the cage's UV space, mixed into the colour of the cosmetic triangles before they are lit. It is read, never
@@ -145,7 +145,7 @@ export function checkOptions(fn: string, options: ApplyOptions & Calling): void 
     throw wrong(`options is a model; give the cage as options.cage: ${fn}(target, { cage })`, fn, 'badOption');
   checkNames(fn, 'options', options, [
     ...kOwnOptions,
-    ...(fn === 'applyTransferAsync' ? kCalling : []),
+    ...(fn === 'applyTransfer' ? [] : kCalling),
     ...optionNames('transfer').filter((name) => name !== 'reuse'),
   ]);
   const check = (name: keyof typeof options, fits: unknown, what: string): void => {
@@ -159,7 +159,7 @@ export function checkOptions(fn: string, options: ApplyOptions & Calling): void 
     const share = options[name] ?? 1;
     check(name, share >= 0 && share <= 1, 'a number from 0 to 1');
   }
-  check('saved', !saved || typeof saved.key === 'string', 'what deserialize returned');
+  check('saved', !saved || typeof saved.key === 'string', 'what prepareTransfer or deserialize returned');
   check('parts', parts == null || typeof parts === 'function', 'a function');
   check('signal', signal == null || signal.throwIfAborted, 'an AbortSignal');
   check('onProgress', onProgress == null || typeof onProgress === 'function', 'a function');

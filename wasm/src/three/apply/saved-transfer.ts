@@ -3,7 +3,8 @@ import { hash, pack, unpack } from '../../parts/pack.js';
 import type { Prepared } from '../../parts/prepare.js';
 import { notA, wrong } from '../errors.js';
 import type { Applied, Saved } from './apply-options.js';
-import type { Extracted } from './extract-scene.js';
+import { type Attribute, valuesOf } from './attributes.js';
+import type { ExtractedNear } from './extract-scene.js';
 
 const made = new WeakMap<Applied, () => Saved>();
 
@@ -33,19 +34,23 @@ export function remember(applied: Applied, saved: () => Saved): Applied {
   return applied;
 }
 
-export const keyOf = (target: Extracted, cage: Mesh | undefined, options: TransferOptions, cuts: boolean): string =>
-  [targetKey(target), hashOfMesh(cage), textHash(JSON.stringify([options, cuts]))].join('-');
+export const keyOf = (target: ExtractedNear, cage: Mesh | undefined, options: TransferOptions, cuts: boolean): string =>
+  [shapeKey(target), hashOfMesh(target.mesh), hashOfMesh(cage), textHash(JSON.stringify([options, cuts]))].join('-');
 
-/** The part of a key that depends on the target. */
-const targetKey = ({ mesh, parts }: Extracted): string =>
-  `${hashOfMesh(mesh)}${textHash(parts.map(({ vertexCount, triangleCount }) => `${vertexCount} ${triangleCount}`).join())}`;
+/** The part of a key that depends on the shapes of a target's meshes, wherever these are, and however they are posed. */
+const shapeKey = ({ states, parts }: ExtractedNear): string => {
+  const counts = parts.map(({ vertexCount, triangleCount }) => `${vertexCount} ${triangleCount}`).join();
+  return digits([...states.map((state) => valuesOf(state.getAttribute('position') as Attribute)), encode(counts)]);
+};
 
 /** @throws {CagecastError} `badArgument` if what was saved is of another target. */
-export function checkSaved({ key, prepared }: Saved, target: Extracted): Prepared {
-  if (!key.startsWith(`${targetKey(target)}-`))
-    throw wrong('options.saved is of another target or state of it; load and place it as it was');
+export function checkSaved({ key, prepared }: Saved, target: ExtractedNear): Prepared {
+  if (!key.startsWith(`${shapeKey(target)}-`))
+    throw wrong('options.saved is of another target, or of other meshes of it; load it as it was');
   return prepared;
 }
+
+const encode = (text: string): Uint8Array => new TextEncoder().encode(text);
 
 /** Two hashes of arrays, one after the other, as hexadecimal digits. */
 const digits = (arrays: readonly (ArrayBufferView | undefined)[]): string =>
@@ -59,4 +64,4 @@ const digits = (arrays: readonly (ArrayBufferView | undefined)[]): string =>
 
 const hashOfMesh = (mesh: Mesh | undefined): string =>
   digits([mesh?.positions, mesh?.indices, mesh?.groups, mesh?.uvs, mesh?.poses]);
-const textHash = (text: string): string => digits([new TextEncoder().encode(text)]);
+const textHash = (text: string): string => digits([encode(text)]);

@@ -24,14 +24,18 @@ export interface LayersOptions {
 
 const kSizes = [256, 512, 1024, maxCompositeSize] as const;
 
+/** How a change is made. */
+export interface ChangeOptions {
+  /** Whether the change is a step that `undo` takes back. Default: true. */
+  undoable?: boolean | undefined;
+}
+
 /** The style of a new layer, its name, and where it lies. */
-export interface NewLayer extends Partial<Style> {
+export interface NewLayer extends Partial<Style>, ChangeOptions {
   /** For people, also in the undo history. Default: the texture's name. */
   name?: string | undefined;
   /** From 0, the lowest, an integer; what is out of range is clamped. Default: on top. */
   place?: number | undefined;
-  /** Whether `undo` takes it away again. Default: true. */
-  undoable?: boolean | undefined;
 }
 
 /** A stack of layers that is shown as one texture. Every change is a step that can be undone. */
@@ -99,7 +103,7 @@ export class Layers extends Emitter<{
   add(texture: Texture, options: NewLayer = {}): Layer {
     checkTexture(texture, 'texture');
     const style = this.#readStyle(options, 'options');
-    const { name, place, undoable = true } = options;
+    const { name, place, undoable } = options;
     const title = name ?? (texture.name || freeName('Layer', this.list));
     return this.#do(`adding ${title}`, undoable, () => {
       const premultiplied = texture.premultiplyAlpha;
@@ -113,9 +117,9 @@ export class Layers extends Emitter<{
    * Changes opacity, tint, blend mode, visibility or region. Equal changes of a layer in quick succession, as by a slider, are one step.
    * @throws {CagecastError} `badOption` that names a field and its value, `badArgument` if the layer was removed.
    */
-  set(layer: Pick<Layer, 'id'>, style: Partial<Style>): void {
+  set(layer: Pick<Layer, 'id'>, style: Partial<Style>, { undoable }: ChangeOptions = {}): void {
     const change = this.#readStyle(style, 'style');
-    this.edits.do(`changing ${Object.keys(change).join(', ')} of ${this.#nameOf(layer)}`, () =>
+    this.#do(`changing ${Object.keys(change).join(', ')} of ${this.#nameOf(layer)}`, undoable, () =>
       this.stack.restyle(layer, change),
     );
   }
@@ -125,13 +129,13 @@ export class Layers extends Emitter<{
    * @param place  From 0, the lowest; what is out of range is clamped.
    * @throws {CagecastError} `badArgument` if it is no integer, or the layer was removed.
    */
-  move(layer: Pick<Layer, 'id'>, place: number): void {
-    this.edits.do(`moving ${this.#nameOf(layer)}`, () => this.stack.move(layer, place));
+  move(layer: Pick<Layer, 'id'>, place: number, { undoable }: ChangeOptions = {}): void {
+    this.#do(`moving ${this.#nameOf(layer)}`, undoable, () => this.stack.move(layer, place));
   }
 
   /** Removes a layer. @throws {CagecastError} `badArgument` if it was removed. */
-  remove(layer: Pick<Layer, 'id'>): void {
-    this.edits.do(`removing ${this.#nameOf(layer)}`, () => this.stack.remove(layer.id));
+  remove(layer: Pick<Layer, 'id'>, { undoable }: ChangeOptions = {}): void {
+    this.#do(`removing ${this.#nameOf(layer)}`, undoable, () => this.stack.remove(layer.id));
   }
 
   /** Undoes the last step. @returns its name; undefined if there was none. */
@@ -195,11 +199,10 @@ export class Layers extends Emitter<{
 
   /**
    * Puts saved layers in the place of all that there are, as one step.
-   * @param undoable  Whether `undo` brings back those that there were. Default: true.
    * @throws {CagecastError} `badArgument` that names the layer, if it is not what `save` returned; `badOption` for a region that the cage
    * does not have. Then nothing is changed.
    */
-  async load(saved: SavedLayers, { undoable = true }: Pick<NewLayer, 'undoable'> = {}): Promise<void> {
+  async load(saved: SavedLayers, { undoable }: ChangeOptions = {}): Promise<void> {
     const layers = await loadLayers(this.renderer, saved, this.#regions);
     this.#do('loading layers', undoable, () => {
       for (const { id } of this.list) this.stack.remove(id);
@@ -215,8 +218,8 @@ export class Layers extends Emitter<{
     this.composite.dispose();
   }
 
-  #do<Result>(name: string, undoable: boolean, run: () => Result): Result {
-    return undoable ? this.edits.do(name, run) : run();
+  #do<Result>(name: string, undoable: boolean | undefined, run: () => Result): Result {
+    return undoable !== false ? this.edits.do(name, run) : run();
   }
 
   #readStyle(style: Partial<Style>, argument: string): Partial<Style> {
