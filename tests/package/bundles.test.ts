@@ -32,6 +32,7 @@ const kPages: [what: string, most: number, script: string][] = [
     console.log(applyTransferAsync, createLayers, createPainter);`,
   ],
   ['layers', 12_400, "import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);"],
+  ['useCagecast', 65_000, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
   ['inspect', 29_500, "import { inspect } from 'cagecast/inspect'; console.log(inspect);"],
   ['bake', 6500, "import { bake } from 'cagecast/bake'; console.log(bake);"],
   ['cagecast of cagecast/gltf', 127_000, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
@@ -48,7 +49,7 @@ for (const [what, most, contents] of kPages)
       format: 'esm',
       charset: 'utf8',
       target: 'es2022',
-      external: ['three', 'three/*', '@gltf-transform/*', 'node:*'],
+      external: ['three', 'three/*', 'react', '@react-three/fiber', '@gltf-transform/*', 'node:*'],
       write: false,
     });
     const { length } = gzipSync(outputFiles[0]!.contents, { level: 9 });

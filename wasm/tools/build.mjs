@@ -158,7 +158,10 @@ async function buildPackage() {
 /** Bundles what package.json exports besides the index. */
 async function bundleEntries(bundle) {
   // What is imported from index.js or from a peer stays a file of its own.
-  const shared = { external: ['./index.js', 'three', 'react', '@react-three/fiber'], plugins: [wasmModules('wasm-file.ts', { index: './index.js' })] };
+  const shared = {
+    external: ['./index.js', 'three', 'react', '@react-three/fiber'],
+    plugins: [wasmModules('wasm-file.ts', { index: './index.js' })],
+  };
   await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager, ...reading('cagecast') });
   for (const [folder, name] of Object.entries(kEntries))
     await bundle(`${folder}/index.ts`, `${name}.js`, 'neutral', shared);

@@ -1,4 +1,4 @@
-import { testScenes } from '../../support/page-scenes.js';
+import { testScenes } from '../three/run-scenes.js';
 
 await testScenes('tests/package/react/page.tsx', {
   jsx: 'automatic',

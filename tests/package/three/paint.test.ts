@@ -1,4 +1,4 @@
-import { testScenes } from '../../support/page-scenes.js';
+import { testScenes } from './run-scenes.js';
 
 /** The three.js of these scenes, as package.json names it; `oldest-three.test.ts` gives another. */
 const three = process.env['CAGECAST_THREE'] ?? 'three';

@@ -10,13 +10,12 @@ import { launchChromium } from '../../support/chromium.js';
 import { GlbMaker, tetrahedron } from '../../support/glb.js';
 import { validate } from '../../support/gltf.js';
 import { serve } from '../../support/serve.js';
-import { hostTools, installPacked, run } from './install.js';
+import { installPacked, run } from './install.js';
 
 const user = installPacked();
 /** The examples, and the folder of models that lies beside each. */
 const built: Record<string, string> = {
   three: 'lizard',
-  'react-three-fiber': 'lizard',
   worker: 'lizard',
   'web-component': 'lizard',
   'three-vrm': '../three-vrm/models',
@@ -62,7 +61,6 @@ async function buildExamples(): Promise<void> {
   });
   symlinkSync(resolve('examples/samples'), join(user, 'examples/samples'));
   const peers: Record<string, string> = { three: 'node_modules', '@pixiv/three-vrm': 'node_modules' };
-  for (const name of ['react', 'react-dom', '@react-three/fiber']) peers[name] = hostTools;
   for (const [name, from] of Object.entries(peers)) {
     mkdirSync(join(user, 'node_modules', name, '..'), { recursive: true });
     symlinkSync(resolve(from, name), join(user, 'node_modules', name));
@@ -74,7 +72,7 @@ async function buildExamples(): Promise<void> {
     base: './',
     logLevel: 'error',
     publicDir: false,
-    resolve: { dedupe: ['three', 'react'] },
+    resolve: { dedupe: ['three'] },
     build: {
       target: 'es2022',
       modulePreload: { polyfill: false },

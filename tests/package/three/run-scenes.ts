@@ -3,9 +3,9 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { after, test } from 'node:test';
 import { type BuildOptions, build } from 'esbuild';
-import { launchChromium } from './chromium.js';
-import { serve } from './serve.js';
-import { temporaryFolder } from './temporary.js';
+import { launchChromium } from '../../support/chromium.js';
+import { serve } from '../../support/serve.js';
+import { temporaryFolder } from '../../support/temporary.js';
 
 /** Warnings that say nothing: the renderer frees what a lost context had, too. */
 const kHarmless = /404|GPU stall|object does not belong to this context/;
