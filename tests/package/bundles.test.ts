@@ -11,7 +11,7 @@ const kPages: [what: string, most: number, script: string][] = [
   ['Zone', 430, "import { Zone } from 'cagecast'; console.log(Zone.Cosmetic);"],
   ['init and transfer', 112_000, "import { init, transfer } from 'cagecast'; console.log(init, transfer);"],
   ['transfer of cagecast/slim', 16_200, "import { init, transfer } from 'cagecast/slim'; console.log(init, transfer);"],
-  ['transfer of cagecast/worker', 2800, "import { transfer } from 'cagecast/worker'; console.log(transfer);"],
+  ['transfer of cagecast/worker', 3200, "import { transfer } from 'cagecast/worker'; console.log(transfer);"],
   [
     'init and applyTransfer',
     130_000,

@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
-import { before, describe, test } from 'node:test';
+import { after, before, describe, test } from 'node:test';
 import { setFlagsFromString } from 'node:v8';
 import { classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
+import { inspect as inspectArrays } from 'cagecast/inspect';
 import {
   type ApplyOptions,
   applyTransfer,
@@ -9,6 +10,7 @@ import {
   cageModel,
   deserialize,
   extract,
+  inspect,
   type Loaded,
   type LoadedCage,
   prepareTransfer,
@@ -852,6 +854,43 @@ describe('geometries', () => {
     assert.throws(() => applyTransfer(target, { cage: cage(), result }), {
       message: /zones has \d+ entries, the target needs/,
     });
+  });
+});
+
+describe('inspect', () => {
+  after(terminate);
+
+  test('says of loaded models what it says of their arrays, with the names of parts and the landmarks of the cage', async () => {
+    const target = new Group().add(meshOf(scene.target));
+    target.children[0]!.name = 'skin';
+    const around = cage();
+    const arrays = [extract(around, 'cage').mesh, extract(target).mesh] as const;
+    const found = await inspect(target, { cage: around, threshold: 0.6 });
+    const [skin] = extract(target).parts;
+    const parts = [{ name: skin!.name, firstVertex: 0, vertexCount: skin!.vertexCount }];
+    assert.deepEqual(found, inspectArrays(...arrays, { threshold: 0.6, parts }));
+    assert.ok(found.segments.some(({ part }) => part === 'skin'));
+    applyTransfer(target, { cage: around });
+    assert.deepEqual(await inspect(target, { cage: around, threshold: 0.6 }), found, 'also once it is painted');
+    const { positions } = extract(target).mesh;
+    const top = positions.reduce((most, y, i) => (i % 3 === 1 && y > positions[3 * most + 1]! ? (i - 1) / 3 : most), 0);
+    const [x, y, z] = positions.subarray(3 * top, 3 * top + 3);
+    const eyes = { eye_centre_left: [x! + 0.1, y!, z!], eye_centre_right: [x! - 0.1, y!, z!] } as const;
+    Object.assign(around.userData, { landmarks: eyes });
+    const strict = await inspect(target, { cage: around, threshold: 1 });
+    assert.deepEqual(strict, inspectArrays(...arrays, { threshold: 1, parts, landmarks: eyes }));
+  });
+
+  test('takes the cages in a file, and names what is wrong', async () => {
+    const { scene: model } = await new GLTFLoader().parseAsync(Uint8Array.from(cagedFigure()).buffer, '');
+    assert.notEqual((await inspect(model)).verdict, 'unfit');
+    await assert.rejects(inspect(meshOf(scene.target)), /^CagecastError: inspect: options.cage is undefined/);
+    await assert.rejects(
+      inspect(meshOf(scene.target), { cage: cage(), tint: 1 } as never),
+      /options.tint is not an option/,
+    );
+    const late = inspect(meshOf(scene.target), { cage: cage(), signal: AbortSignal.abort() });
+    await assert.rejects(late, /abort/);
   });
 });
 

@@ -1,7 +1,7 @@
 // How calls of cagecast/cages share workers: with workers that answer when they are told to.
 import assert from 'node:assert/strict';
 import { beforeEach, test } from 'node:test';
-import { matchingParts, terminate } from 'cagecast/cages';
+import { init, matchingParts, terminate } from 'cagecast/cages';
 
 /** A worker that does nothing by itself. */
 class IdleWorker {
@@ -103,4 +103,28 @@ test('terminate ends all workers and calls', async () => {
     [...'abcdefgh'].map((name) => `${name}: aborted`),
   );
   assert.ok(ended().every((is) => is));
+});
+
+test('init starts as many workers as it is told, which all stay; other numbers are errors', async () => {
+  for (const wrong of [0, 65, 1.5, '2', null])
+    await assert.rejects(
+      init({ workers: wrong as number }),
+      /^CagecastError: init: options.workers is .*, not 1 to 64$/,
+    );
+  await assert.rejects(init(4 as never), /options is 4, not an object/);
+  await assert.rejects(init({ worker: 4 } as never), /options.worker is not an option; init takes: workers/);
+  const started = init({ workers: most + 3 });
+  assert.equal(workers.length, most + 3);
+  for (const worker of workers) await worker.answer();
+  await started;
+  assert.ok(ended().every((is) => !is));
+  const names = [...'abcdefghij'].slice(0, most + 3);
+  calls(...names);
+  const last = workers.map(({ asked }) => (asked.at(-1)!.args[1] as string[])[0]);
+  assert.deepEqual(last, names);
+  for (const worker of workers) await worker.answer();
+  const one = init({ workers: 1 });
+  await workers.find(({ asked }) => asked.length === 3)!.answer();
+  await one;
+  assert.equal(ended().filter((is) => !is).length, 1);
 });

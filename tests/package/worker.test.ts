@@ -4,13 +4,16 @@ import { before, describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import type { CagecastError, Mesh } from 'cagecast';
 import * as direct from 'cagecast';
+import * as checks from 'cagecast/inspect';
 import {
   classify,
   cutBorders,
   init,
+  inspect,
   presetOptions,
   project,
   splitVertices,
+  suggest,
   terminate,
   transfer,
 } from 'cagecast/worker';
@@ -51,6 +54,19 @@ describe('the worker', () => {
     assert.deepEqual(await cutBorders(cage, target, result), direct.cutBorders(cage, target, result));
     assert.deepEqual(await presetOptions('paper'), direct.presetOptions('paper'));
     await init();
+  });
+
+  test('inspects as cagecast/inspect does', async () => {
+    const parts = [{ name: 'skin', firstVertex: 0, vertexCount: target.positions.length / 3 }];
+    const turned = { ...cage, indices: cage.indices.slice().reverse() };
+    for (const [around, options] of [
+      [cage, { parts }],
+      [turned, { threshold: 0.7 }],
+    ] as const) {
+      assert.deepEqual(await inspect(around, target, options), checks.inspect(around, target, options));
+      assert.deepEqual(await suggest(around, target, options), checks.suggest(around, target, options));
+    }
+    await assert.rejects(inspect(cage, target, { result: {} as never }), /^CagecastError: inspect: /);
   });
 
   test('carries out calls made at once in order', async () => {

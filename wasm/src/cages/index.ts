@@ -2,13 +2,14 @@
  * Cages for models that have none: made afresh for one model, fitted from a template, or moved into place.
  *
  * Each call takes seconds and runs in a worker. The first call starts one, others at the same time start more, up to the number of
- * cores, at least two and at most four; further calls wait. One worker stays when nothing is left to do. A worker loads its
+ * cores, at least two and at most four, or what `init({ workers })` says; further calls wait. One worker, or as many as `init` was told,
+ * stay when nothing is left to do. A worker loads its
  * WebAssembly, `cagecast-cages.wasm`, when it starts: until a function is called, nothing of it is loaded.
  * @module cagecast/cages
  */
 import type { Mesh } from '../api/mesh.js';
 import { CagecastError } from '../index.js';
-import { type CallOptions, type OnProgress, WorkerQueue } from '../worker/queue.js';
+import { type CallOptions, type OnProgress, type WorkerOptions, WorkerQueue } from '../worker/queue.js';
 import { spawn } from './spawn-cages.js';
 import type {
   Cage,
@@ -27,6 +28,7 @@ export { objTemplate } from './obj-template.js';
 export { type TemplateName, templateNames } from './template-names.js';
 export { loadTemplate } from './templates.js';
 export type * from './types.js';
+export type { WorkerOptions };
 export { CagecastError };
 
 /** Options of every call. */
@@ -127,9 +129,12 @@ export function matchingParts(
   return queue.withOptions('matchingParts', [parts, patterns], options);
 }
 
-/** Starts the worker and loads its WebAssembly before it is needed. Not necessary: every call does it. */
-export function init(): Promise<void> {
-  return queue.call('init', [], {});
+/**
+ * Starts a worker and loads its WebAssembly before it is needed, or several. Not necessary: every call does it.
+ * @throws {CagecastError} `badOption`; `unsupported` if a worker cannot start.
+ */
+export function init(options: WorkerOptions = {}): Promise<void> {
+  return queue.init(options);
 }
 
 /** Ends the workers and frees their memory. Pending calls reject with code `aborted`; the next call starts a new worker. */

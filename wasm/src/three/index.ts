@@ -7,7 +7,7 @@ import type { Mesh, TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
 import type { CutPart } from '../parts/cut-part.js';
 import { type LeftOut, withBare } from '../parts/drawn.js';
-import { type Apart, type Caged, hasCages, moveApart as partsApart } from '../parts/own-cages.js';
+import { type Apart, type Caged, moveApart as partsApart } from '../parts/own-cages.js';
 import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
@@ -31,6 +31,7 @@ import {
   type PartsOption,
 } from './apply/extract-scene.js';
 import type { Loaded } from './apply/models.js';
+import { ownCage } from './apply/own-cage.js';
 import { atOnce } from './apply/remake.js';
 import { checkSaved, deserialize, keyOf, remember, serialize } from './apply/saved-transfer.js';
 import { type Calling, nextTask, runInTasks } from './apply/tasks.js';
@@ -47,6 +48,7 @@ export {
   withBaseColors,
 } from './apply/loaded-cages.js';
 export type { Loaded, LoadedCage, LoadedGltf } from './apply/models.js';
+export { type InspectModelOptions, inspect } from './inspect-model.js';
 export { type ModelMasks, modelMasks } from './model-masks.js';
 export {
   type Apart,
@@ -219,19 +221,6 @@ function read(fn: string, target: Loaded, options: ApplyOptions): Call {
       return remember(applied, () => save(prepared));
     },
   };
-}
-
-/** A target that has its cage with it. @throws {CagecastError} `badArgument` if it has none. */
-function ownCage(fn: string, target: Loaded): Loaded {
-  if (hasCages(extract(target, 'cage').parts)) return target;
-  throw wrong(
-    'options.cage is undefined, and no mesh of target is named as the outer cage of another',
-    fn,
-    'badOption',
-    {
-      argument: 'cage',
-    },
-  );
 }
 
 function checkResult(result: TransferResult, { mesh }: Extracted): void {

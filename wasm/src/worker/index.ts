@@ -1,7 +1,8 @@
 /**
- * The functions of `cagecast`, off the main thread: the same names and arguments, with promises.
+ * The functions of `cagecast` and `cagecast/inspect`, off the main thread: the same names and arguments, with promises.
  *
- * All calls share one worker, which starts with the first call and runs them in order.
+ * All calls share one worker, which starts with the first call and runs them in order; a service with more cores calls
+ * `init({ workers })`, after which each call takes the first worker that is idle, or waits for one.
  * @module cagecast/worker
  */
 import {
@@ -18,18 +19,22 @@ import {
   type TransferOptions,
   type TransferResult,
 } from '../index.js';
+import type { Finding, Inspection, InspectOptions } from '../inspect/index.js';
 import type { Prepared, PrepareInput } from '../parts/prepare.js';
-import { type CallOptions, WorkerQueue } from './queue.js';
+import { type CallOptions, type WorkerOptions, WorkerQueue } from './queue.js';
 import { spawn } from './spawn.js';
 
 export * from '../index.js';
-export type { CallOptions };
+export type { CallOptions, WorkerOptions };
 
 const queue = new WorkerQueue(spawn);
 
-/** Starts the worker before it is needed. Not necessary: every call does it. @throws {CagecastError} `unsupported` */
-export function init(): Promise<void> {
-  return queue.call('init', [], {});
+/**
+ * Starts the worker before it is needed, or several. Not necessary: every call starts one.
+ * @throws {CagecastError} `badOption`; `unsupported` if a worker cannot start.
+ */
+export function init(options: WorkerOptions = {}): Promise<void> {
+  return queue.init(options);
 }
 
 /** As `transfer` of `cagecast`, off the main thread. There is no `reuse`: all arrays are new. */
@@ -69,6 +74,16 @@ export function cutBorders(
 ): Promise<CutTarget> {
   const { zones, segments, segmentStats } = result ?? {};
   return withOptions('cutBorders', [cage, target, result && { zones, segments, segmentStats }], options);
+}
+
+/** As `inspect` of `cagecast/inspect`, off the main thread. */
+export function inspect(cage: Mesh, target: Mesh, options: InspectOptions & CallOptions = {}): Promise<Inspection> {
+  return withOptions('inspect', [cage, target], options);
+}
+
+/** As `suggest` of `cagecast/inspect`, off the main thread. */
+export function suggest(cage: Mesh, target: Mesh, options: InspectOptions & CallOptions = {}): Promise<Finding[]> {
+  return withOptions('suggest', [cage, target], options);
 }
 
 /** As `presetOptions` of `cagecast`, off the main thread. */

@@ -1,3 +1,4 @@
+import { faultOfNames } from '../api/option-names.js';
 import { isRecord, show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import type { Reply, Request, Spawn, Thread } from './protocol.js';
@@ -12,6 +13,17 @@ export interface CallOptions {
    */
   move?: boolean | undefined;
 }
+
+/** Options of `init`. */
+export interface WorkerOptions {
+  /**
+   * How many workers there are at most, 1 to 64, all of which are started now and stay; each has a memory of its own. Default: as it
+   * was, at first the number that the entry names.
+   */
+  workers?: number | undefined;
+}
+
+const kMostWorkers = 64;
 
 /** How far a call is: a share 0..1 that never falls, and what it does. */
 export type OnProgress = (share: number, stage: string) => void;
@@ -35,11 +47,13 @@ interface Slot {
 
 /**
  * Calls that share workers. The first call starts one; each takes the first that is idle, starts another up to the limit, or waits.
- * They are begun in order. One worker stays when it is idle.
+ * They are begun in order. One worker stays when it is idle, or as many as `init` was told.
  */
 export class WorkerQueue {
   readonly #spawn: Spawn;
-  readonly #mostWorkers: number;
+  #mostWorkers: number;
+  /** How many workers stay when they are idle. */
+  #kept = 1;
   #lastId = 0;
   #slots: Slot[] = [];
   readonly #waiting: Job[] = [];
@@ -47,6 +61,19 @@ export class WorkerQueue {
   constructor(spawn: Spawn, mostWorkers = 1) {
     this.#spawn = spawn;
     this.#mostWorkers = mostWorkers;
+  }
+
+  /** Starts a worker, or as many as there shall be. */
+  async init(options: WorkerOptions = {}): Promise<void> {
+    const fault = faultOfNames('init', 'options', options, ['workers']);
+    if (fault !== undefined) throw new CagecastError('badOption', 'init', fault);
+    const { workers } = options;
+    if (workers !== undefined) {
+      if (!Number.isInteger(workers) || workers < 1 || workers > kMostWorkers)
+        throw new CagecastError('badOption', 'init', `options.workers is ${show(workers)}, not 1 to ${kMostWorkers}`);
+      this.#mostWorkers = this.#kept = workers;
+    }
+    await Promise.all(Array.from({ length: workers ?? 1 }, () => this.call('init', [], {})));
   }
 
   /** Calls a function with the options of a call among its own. @param args  Its other arguments. */
@@ -126,7 +153,7 @@ export class WorkerQueue {
       if (error) job.reject(error);
     }
     const idle = this.#slots.filter(({ job }) => !job);
-    for (const slot of idle.filter(({ thread }) => thread).slice(1)) stop(slot);
+    for (const slot of idle.filter(({ thread }) => thread).slice(this.#kept)) stop(slot);
     for (const { thread } of idle) thread?.setBusy(false);
     this.#slots = this.#slots.filter(({ job, thread }) => job || thread);
   }

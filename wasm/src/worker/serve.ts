@@ -1,4 +1,5 @@
 import { classify, cutBorders, init, presetOptions, project, splitVertices, transfer } from '../index.js';
+import { inspect, suggest } from '../inspect/index.js';
 import { prepare } from '../parts/prepare.js';
 import { answer } from './answer.js';
 import type { Reply, Request } from './protocol.js';
@@ -12,6 +13,8 @@ const functions = {
   cutBorders,
   presetOptions,
   prepareParts: prepare,
+  inspect,
+  suggest,
 } as Record<string, (...args: unknown[]) => unknown>;
 
 /** Carries out a call. @returns the reply, and the buffers in it that are to be moved, not copied. */

@@ -1,0 +1,50 @@
+import type { Inspection, InspectOptions } from '../inspect/index.js';
+import { withBare } from '../parts/drawn.js';
+import { moveApart } from '../parts/own-cages.js';
+import { type CallOptions, inspect as inspectArrays, transfer } from '../worker/index.js';
+import { bareGroups, extract, type PartsOption } from './apply/extract-scene.js';
+import { cageTemplate } from './apply/loaded-cages.js';
+import type { Loaded, LoadedCage } from './apply/models.js';
+import { ownCage } from './apply/own-cage.js';
+import { wrong } from './errors.js';
+
+/** Options of `inspect`: those of `cagecast/inspect`, whose names of parts and landmarks are those of the models. */
+export interface InspectModelOptions extends Omit<InspectOptions, 'parts' | 'landmarks'>, Pick<CallOptions, 'signal'> {
+  /** The cage, as for `applyTransfer`. Default: the target's own. */
+  cage?: LoadedCage | undefined;
+  /** Which meshes count, as for `applyTransfer`. */
+  parts?: PartsOption | undefined;
+}
+
+/**
+ * As `inspect` of `cagecast/inspect`, for loaded models, in the worker of `cagecast/worker`: whether the cage fits, and if not, why, and what
+ * to do about it.
+ * @throws {CagecastError} as `inspect` does; `badArgument` if a part cannot be read.
+ *
+ * @example
+ * const { verdict, findings } = await inspect(head, { cage });
+ * if (verdict === 'unfit') console.warn(findings[0].sentence, findings[0].advice);
+ */
+export async function inspect(target: Loaded, options: InspectModelOptions = {}): Promise<Inspection> {
+  const { cage, parts, signal, ...given } = options;
+  const extracted = extract(target, 'target', parts);
+  const outer = extract(cage ?? ownCage('inspect', target), 'cage');
+  const rules = { ...given, locks: withBare(bareGroups(outer, extracted), given.locks) };
+  const apart = given.result ? undefined : moveApart(outer, extracted, (text) => wrong(`target: ${text}`, 'inspect'));
+  const result = apart ? await transfer(apart.cage, apart.target, { ...rules, signal }) : given.result;
+  if (apart && result) apart.mend(result);
+  const landmarks = outer.mesh.uvs && cageTemplate(cage ?? target).landmarks;
+  return inspectArrays(outer.mesh, extracted.mesh, {
+    ...rules,
+    result,
+    parts: extracted.parts.map(nameOf),
+    landmarks,
+    signal,
+  });
+}
+
+const nameOf = ({ name, firstVertex, vertexCount }: { name: string; firstVertex: number; vertexCount: number }) => ({
+  name,
+  firstVertex,
+  vertexCount,
+});
