@@ -314,6 +314,52 @@ test('primitives that share vertices go on sharing them, and sparse morph target
     assert.deepEqual(cornersOf(primitive), cornersOf(before[p]!));
 });
 
+test('sparse accessors of meshes that share their views leave nothing behind where one is replaced', async () => {
+  const [moved, kTargets] = [40, 30];
+  const deltas = (of: number) => Float32Array.from({ length: 3 * moved }, (_, i) => (i + of) / 100);
+  writeMade('shared-views.glb', (maker) => {
+    const far = new Float32Array(3 * moved).map((_, i) => 50 + ((i * 7) % 11));
+    const meshes = [
+      maker.mesh({ positions: target.positions, indices }),
+      maker.mesh({ positions: far, indices: Uint32Array.from({ length: 36 }, (_, i) => i) }),
+    ];
+    const count = meshes.length * kTargets;
+    const places = new Uint16Array(moved * count).map((_, i) => i % moved);
+    const values = new Float32Array(3 * moved * count);
+    for (let t = 0; t < count; ++t) values.set(deltas(t), 3 * moved * t);
+    const [where, what] = [places, values].map((array) => maker.view(new Uint8Array(array.buffer)));
+    for (const [m, mesh] of meshes.entries()) {
+      const { primitives } = maker.json.meshes[mesh]!;
+      primitives[0]!.targets = Array.from({ length: kTargets }, (_, t) => {
+        const at = m * kTargets + t;
+        const sparse = {
+          count: moved,
+          indices: { bufferView: where!, byteOffset: 2 * moved * at, componentType: 5123 },
+          values: { bufferView: what!, byteOffset: 12 * moved * at },
+        } as const;
+        const bounds = {
+          min: [0, 0, 0].map((_, k) => (at + k) / 100),
+          max: [2, 1, 0].map((k) => (3 * moved - 1 - k + at) / 100),
+        };
+        const vertices = m === 0 ? target.positions.length / 3 : moved;
+        if (m === 0) bounds.min = [0, 0, 0];
+        const accessor = { componentType: 5126, count: vertices, type: 'VEC3', sparse, ...bounds } as const;
+        return { POSITION: maker.json.accessors.push(accessor) - 1 };
+      });
+      maker.node({ mesh });
+    }
+  });
+  const { json, document } = await written('shared-views.glb');
+  const slots = json.accessors!.flatMap(({ sparse }) => (sparse ? [{ ...sparse, bytes: 14 * sparse.count }] : []));
+  const holding = new Set(slots.flatMap(({ indices, values }) => [indices.bufferView, values.bufferView]));
+  const held = [...holding].reduce((sum, view) => sum + json.bufferViews![view]!.byteLength, 0);
+  const needed = slots.reduce((sum, { bytes }) => sum + bytes, 0);
+  assert.ok(held <= needed + 4 * slots.length, `${held} bytes for ${needed}`);
+  const far = primitivesOf(document)[1]!;
+  for (const [t, morph] of far.listTargets().entries())
+    assert.deepEqual([...morph.getAttribute('POSITION')!.getArray()!], [...deltas(kTargets + t)]);
+});
+
 test('views and accessors to which an unknown extension may refer keep their numbers, also if less is added than replaced', async () => {
   await ok('transfer target.glb --cage cage.glb --texture paint.png -o painted.glb');
   for (const flags of ['--compress draco', '']) {

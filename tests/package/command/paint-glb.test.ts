@@ -41,6 +41,7 @@ for (const [name, extensions] of avatars)
         cage: read('cage.glb'),
         texture,
         borders,
+        attributes: true,
       });
       const [ours, commands] = [unpackGlb(bytes), unpackGlb(read('out.vrm'))];
       for (const { json } of [ours, commands]) for (const image of json.images ?? []) delete image.name;
@@ -52,6 +53,25 @@ for (const [name, extensions] of avatars)
       assert.deepEqual(before, read(`${name}.vrm`));
     }
   });
+
+test('without attributes only the overlay has UVs, and parts without one stay as they are', async () => {
+  const around = { cage: read('cage.glb'), texture };
+  const [lean, whole] = [
+    await paintGlb(glbOf(target), around),
+    await paintGlb(glbOf(target), { ...around, attributes: true }),
+  ];
+  assert.deepEqual(lean.triangles, whole.triangles);
+  assert.ok(lean.bytes.length < whole.bytes.length);
+  assert.deepEqual(await validate(lean.bytes, 2), await validate(glbOf(target), 2), 'nothing is unused');
+  const primitives = (bytes: Uint8Array) => unpackGlb(bytes).json.meshes!.flatMap((mesh) => mesh.primitives);
+  const [base, ...overlays] = primitives(lean.bytes);
+  assert.deepEqual(Object.keys(base!.attributes).sort(), Object.keys(primitives(glbOf(target))[0]!.attributes).sort());
+  assert.deepEqual([overlays.length, 'TEXCOORD_0' in overlays[0]!.attributes], [1, true]);
+  const again = await paintGlb(lean.bytes, around);
+  assert.deepEqual(again.bytes, lean.bytes, 'an earlier transfer is replaced');
+  const bare = await paintGlb(glbOf(target), { ...around, exclude: ['*'] });
+  assert.deepEqual(unpackGlb(bare.bytes), unpackGlb(glbOf(target)));
+});
 
 test('a cage may be a mesh; parts stay bare, or not, by their names', async () => {
   const model = glbOf(target);
@@ -87,6 +107,10 @@ test('a template is fitted first, here by its bytes; the cage that this makes ca
 test('what cannot be used is named, with what helps', async () => {
   const model = glbOf(target);
   const own = { cage: read('cage.glb'), texture };
+  await assert.rejects(
+    paintGlb(model, { ...own, attributes: 1 as never }),
+    /options.attributes is 1, not true or false/,
+  );
   const wrong: [bytes: Uint8Array, options: object, message: RegExp, argument: string][] = [
     [model, { texture }, /^paintGlb: neither cage nor template is given; one of them is needed/, 'cage'],
     [

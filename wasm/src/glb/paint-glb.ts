@@ -9,7 +9,7 @@ import { openGltf } from '../gltf/open-gltf.js';
 import { type Paint, paintOf } from '../gltf/overlay.js';
 import { bareParts, errorInFile, movedApart, type ReadModel, turned, withUvs } from '../gltf/read-model.js';
 import { writeTransfer } from '../gltf/write-transfer.js';
-import { CagecastError, init, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
+import { CagecastError, type Code, init, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
 import { isBackward } from '../inspect/backward.js';
 import { noteOf } from '../inspect/bare.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
@@ -36,10 +36,12 @@ export interface PaintOptions
   landmarks?: Landmarks | undefined;
   /** Where the paint ends: at existing triangle edges (`triangle`, the default), or exactly at holes and seams, where triangles are cut (`cut`). */
   borders?: Borders | undefined;
+  /** Whether every primitive also gets the cage's UVs and `_NCZ` as attributes, for programs that read them. Default: false. */
+  attributes?: boolean | undefined;
 }
 
 const kOptions = [
-  ...['texture', 'cage', 'template', 'landmarks', 'exclude', 'keep', 'borders', 'signal', 'onProgress'],
+  ...['texture', 'cage', 'template', 'landmarks', 'exclude', 'keep', 'borders', 'attributes', 'signal', 'onProgress'],
   ...optionNames('transfer').filter((name) => !['locks', 'masks', 'reuse'].includes(name)),
 ];
 
@@ -60,8 +62,7 @@ export interface PaintedGlb {
 /**
  * Paints a model: the bytes of a GLB or VRM in, those of the painted file out.
  *
- * What `cagecast transfer` does: each primitive gets the cage's UVs and `_NCZ`, and an overlay of its triangles that may be painted. All else stays
- * byte for byte, with every extension, those of VRM 0 and 1 too; an earlier transfer is replaced. The file must hold its buffers and
+ * What `cagecast transfer` does: each primitive gets an overlay of its triangles that may be painted. All else stays byte for byte, with every extension, those of VRM 0 and 1 too; an earlier transfer is replaced. The file must hold its buffers and
  * images itself. What meshopt compresses stays so; Draco is refused.
  *
  * Fit and transfer run in workers where there are any. Nothing is loaded over the network but for a template by its name, and for a fit
@@ -84,6 +85,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     template,
     landmarks,
     borders,
+    attributes = false,
     exclude,
     keep,
     signal,
@@ -91,6 +93,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     ...rules
   } = options;
   if (!(bytes instanceof Uint8Array)) throw wrong('bytes', bytes, 'a Uint8Array');
+  if (typeof attributes !== 'boolean') throw wrong('options.attributes', attributes, 'true or false', 'badOption');
   if (!(texture instanceof Uint8Array)) throw wrong('texture', texture, 'a Uint8Array');
   if ((cage === undefined) === (template === undefined)) {
     const what = cage === undefined ? 'neither cage nor template is' : 'cage and template are both';
@@ -114,7 +117,11 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     const arrays = [source.extracted.mesh, pair.target.extracted.mesh] as const;
     const cut = cuts ? await cutBorders(...arrays, result, { ...rules, locks, signal }) : undefined;
     onProgress(0.95, 'writing');
-    const { data } = await writeTransfer(target.file, target.extracted, result, { paints: [paint], cut });
+    const { data } = await writeTransfer(target.file, target.extracted, result, {
+      paints: [paint],
+      cut,
+      hasAttributes: attributes,
+    });
     signal?.throwIfAborted();
     onProgress(1, 'writing');
     const { mesh, parts } = target.extracted;
@@ -182,7 +189,7 @@ function readPaint(texture: Uint8Array): Paint {
   }
 }
 
-const wrong = (name: string, value: unknown, type: string) =>
-  new CagecastError('badArgument', 'paintGlb', `${name} is ${show(value)}, not ${type}`, {
+const wrong = (name: string, value: unknown, type: string, code: Code = 'badArgument') =>
+  new CagecastError(code, 'paintGlb', `${name} is ${show(value)}, not ${type}`, {
     argument: name.split('.')[0],
   });

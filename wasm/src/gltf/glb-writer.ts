@@ -10,6 +10,7 @@ import { InputError } from './input-error.js';
 import type { GltfFile } from './open-gltf.js';
 import { type Contents, imageFile, type NamedFile, packGltf } from './output/pack-gltf.js';
 import { subtract } from './output/ranges.js';
+import { splitSparseViews } from './output/sparse-views.js';
 import type { Paint } from './overlay.js';
 import { sparseElements } from './primitive-group.js';
 import { addedByTransfer, drop, eachAccessor, eachView, hasUnknownReferences, numbersOf } from './references.js';
@@ -296,7 +297,7 @@ export class GlbWriter {
     }
   }
 
-  /** Gives accessors views of their own that share one with accessors that nothing refers to any more. */
+  /** Gives accessors views of their own that share one with accessors to which nothing refers any more. */
   #splitViews(): void {
     const { accessors = [] } = this.json;
     const used = numbersOf(eachAccessor, this.json);
@@ -307,6 +308,7 @@ export class GlbWriter {
     });
     const references = new Map<number, number>();
     eachView(this.json, (owner, key) => references.set(owner[key]!, (references.get(owner[key]!) ?? 0) + 1));
+    splitSparseViews(this.json, this.#bytes, { isDropped, references, addView: (bytes) => this.addView(bytes) });
     const primitives = (this.json.meshes ?? []).flatMap((mesh) => mesh.primitives);
     const indices = new Set(primitives.flatMap((primitive) => primitive.indices ?? []));
     const others = new Set(primitives.flatMap(({ mode = 4, indices }) => (mode === 4 ? [] : (indices ?? []))));

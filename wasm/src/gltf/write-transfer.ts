@@ -55,6 +55,8 @@ interface Writing {
   packDraco?: (writer: GlbWriter, file: GltfFile) => Promise<void>;
   /** The name of the attribute with the zones. Default: `_NCZ` */
   zones?: string;
+  /** Whether primitives get the UVs and zones as attributes; else only overlays have UVs. Default: yes */
+  hasAttributes?: boolean;
   /** Whether it adds to what another cage painted of the same target, instead of replacing it. Default: no */
   isFurther?: boolean;
   /** Writes a glTF of text, whose file is named so, with files beside it. Default: a GLB */
@@ -75,7 +77,7 @@ export async function writeTransfer(
   file: GltfFile,
   { parts }: Extracted,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
-  { paints = [], cut, form = 'keep', packDraco, zones = zoneAttribute, isFurther = false, stem }: Writing = {},
+  { paints = [], cut, form = 'keep', packDraco, isFurther = false, stem, ...rest }: Writing = {},
 ): Promise<{ data: Uint8Array; beside: NamedFile[]; added: Added[]; replaced: number }> {
   const writer = await GlbWriter.from(file, form);
   const { json } = writer;
@@ -93,7 +95,8 @@ export async function writeTransfer(
     return { ...member, primitives: meshes[p]!.primitives, primitive: primitives[p]!, part, added };
   });
   if (form === 'draco') markForDraco(primitives);
-  for (const group of groupsOf(members)) addToGroup(writer, file, group, { overlays, form, zones });
+  const { zones = zoneAttribute, hasAttributes = true } = rest;
+  for (const group of groupsOf(members)) addToGroup(writer, file, group, { overlays, form, zones, hasAttributes });
   await packDraco?.(writer, file);
   const added = members.map((member) => member.added);
   if (stem === undefined) return { data: writer.finish(), beside: [], added, replaced };
@@ -128,8 +131,14 @@ function addToGroup(
   writer: GlbWriter,
   file: GltfFile,
   members: readonly Member[],
-  { overlays, form, zones }: { overlays: readonly OverlayWriter[]; form: Form; zones: string },
+  {
+    overlays,
+    form,
+    zones,
+    hasAttributes,
+  }: { overlays: readonly OverlayWriter[]; form: Form; zones: string; hasAttributes: boolean },
 ): void {
+  if (!hasAttributes && form === 'keep' && members.every(({ cosmetic }) => !cosmetic.includes(1))) return;
   const { primitive: first, part } = members[0]!;
   const shared = shareVertices(part.vertexCount, members);
   const isNew = shared.isNew || form !== 'keep';
@@ -148,7 +157,7 @@ function addToGroup(
   let copies = shared.sources.length - part.vertexCount - shared.blends.sources.length / 3;
   members.forEach((member, m) => {
     const { primitive, primitives, cosmetic, added } = member;
-    Object.assign(primitive.attributes, attributes);
+    if (hasAttributes) Object.assign(primitive.attributes, attributes);
     const all = cosmeticCorners(shared.indices[m]!, cosmetic);
     for (const overlay of overlays) {
       const corners = cornersIn(overlay.paint.area, all, shared.uvs);
