@@ -43,6 +43,8 @@ const kEntries = {
   bake: 'bake',
   three: 'three',
   'three/painting': 'three-paint',
+  'three/webgpu': 'three-webgpu',
+  'three/painting-webgpu': 'three-paint-webgpu',
   viewer: 'viewer',
   gltf: 'gltf',
   glb: 'glb',
