@@ -25,11 +25,21 @@ const kPages: [what: string, most: number, script: string][] = [
     "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
+    'applyTransferAsync, for WebGPURenderer',
+    27_700,
+    "import 'cagecast/three/webgpu'; import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
+  ],
+  [
     'applyTransferAsync, layers and painting',
     47_600,
     `import { applyTransferAsync } from 'cagecast/three';
     import { createLayers, createPainter } from 'cagecast/three/paint';
     console.log(applyTransferAsync, createLayers, createPainter);`,
+  ],
+  [
+    'layers, for WebGPURenderer',
+    14_500,
+    "import 'cagecast/three/paint/webgpu'; import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);",
   ],
   ['layers', 12_400, "import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);"],
   ['useCagecast', 65_000, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],

@@ -232,8 +232,8 @@ test('what is refused names the argument and its value, changes nothing and leav
     [() => sticker({ opacity: 2 }), 'opacity is 2, not a number from 0 to 1'],
   ];
   const badArguments: [() => unknown, string][] = [
-    [() => createLayers(none), 'options.renderer is not a WebGLRenderer'],
-    [() => createLayers({} as never), 'options.renderer is not a WebGLRenderer'],
+    [() => createLayers(none), 'options.renderer is neither a WebGLRenderer nor a WebGPURenderer'],
+    [() => createLayers({} as never), 'options.renderer is neither a WebGLRenderer nor a WebGPURenderer'],
     [() => layers.add({} as Texture), 'texture is of type Object, not a Texture'],
     [() => layers.set(none, { opacity: 1 }), 'layer is undefined, not a layer'],
     [() => layers.move(none, 0), 'layer is undefined, not a layer'],

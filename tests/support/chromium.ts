@@ -42,6 +42,8 @@ const kRenderers = {
   mesa: ['--use-angle=gl-egl'],
   swiftshader: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
 };
+/** Only SwiftShader draws it. */
+const kWebGpu = ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader'];
 /** Mesa without a screen, and not by the machine's graphics card. */
 const kMesa = { EGL_PLATFORM: 'surfaceless', LIBGL_ALWAYS_SOFTWARE: '1', GALLIUM_DRIVER: 'llvmpipe' };
 
@@ -49,18 +51,25 @@ const kMesa = { EGL_PLATFORM: 'surfaceless', LIBGL_ALWAYS_SOFTWARE: '1', GALLIUM
  * Starts the Chromium that is installed, or the one that the environment variable CHROMIUM gives the path of.
  * @param drawing   Whether pages may draw with WebGL, by the processor.
  * @param renderer  Default: Mesa's, where Linux has it.
+ * @param webgpu    Whether they may draw with WebGPU, too.
  * @throws Error that says what to install, if there is none.
  */
 export function launchChromium({
   drawing,
   renderer = kRenderer,
+  webgpu = false,
 }: {
   drawing: boolean;
   renderer?: Renderer | undefined;
+  webgpu?: boolean | undefined;
 }): Promise<Browser> {
   return chromium.launch({
     executablePath: process.env['CHROMIUM'] ?? installed(),
-    args: [...kQuiet, ...(drawing ? [...kDrawing, ...kRenderers[renderer]] : ['--disable-gpu'])],
+    args: [
+      ...kQuiet,
+      ...(drawing ? [...kDrawing, ...kRenderers[renderer]] : ['--disable-gpu']),
+      ...(webgpu ? kWebGpu : []),
+    ],
     env: { ...process.env, ...kMesa },
   });
 }

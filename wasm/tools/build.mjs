@@ -44,6 +44,8 @@ const kEntries = {
   three: 'three',
   'three/painting': 'three-paint',
   react: 'react',
+  'three/webgpu': 'three-webgpu',
+  'three/painting-webgpu': 'three-paint-webgpu',
   viewer: 'viewer',
   gltf: 'gltf',
   glb: 'glb',

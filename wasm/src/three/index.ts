@@ -49,6 +49,7 @@ export {
 } from './apply/loaded-cages.js';
 export type { Loaded, LoadedCage, LoadedGltf } from './apply/models.js';
 export { type InspectModelOptions, inspect } from './inspect-model.js';
+export { setNodePainter } from './materials/node-paint.js';
 export { type ModelMasks, modelMasks } from './model-masks.js';
 export {
   type Apart,
@@ -86,7 +87,8 @@ export {
  * the overlays; overlays of materials stay beside those of materials whose UVs have another channel.
  *
  * A `ShaderMaterial` asks for paint by `#ifdef CAGECAST_PAINT`, within which `vec3 cagecastPaint(vec3 color)` returns a colour, in
- * linear light, with the paint on it. `WebGPURenderer` does not run such shaders: use the option `material` there.
+ * linear light, with the paint on it. With `WebGPURenderer` import `cagecast/three/webgpu` once: it has the same materials painted, and
+ * node materials, but no `ShaderMaterial`s, which that renderer does not draw.
  *
  * Call `await init()` once before. `applyTransferAsync` keeps the main thread free.
  *

@@ -13,6 +13,7 @@ import type { Mesh as CageArrays, Classification } from '../../index.js';
 import { noteOf } from '../../inspect/bare.js';
 import type { PartRange, Prepared } from '../../parts/prepare.js';
 import { notA, wrong } from '../errors.js';
+import { needsNodePainter } from '../materials/node-paint.js';
 import { removeOverlay, removeOverlays } from '../materials/overlay-mesh.js';
 import { refreshMatrix } from '../materials/paint-shader.js';
 import {
@@ -81,13 +82,12 @@ function ownGeometries(parts: readonly Part[], sources: readonly BufferGeometry[
 const hasOthers = (geometry: BufferGeometry, state: BufferGeometry): boolean =>
   geometry.attributes['position'] !== state.attributes['position'] || geometry.index !== state.index;
 
-/** Node materials are for `WebGPURenderer`, which would show an overlay of ours without its paint. */
+/** Node materials are for `WebGPURenderer`, which without its entry would show an overlay of ours, but no paint. */
 function checkMaterials(parts: readonly Part[]): void {
-  const isNode = (material: object | undefined) => (material as { isNodeMaterial?: true } | undefined)?.isNodeMaterial;
-  const part = parts.find(({ mesh }) => [mesh?.material].flat().some(isNode));
+  const part = parts.find(({ mesh }) => [mesh?.material].flat().some(needsNodePainter));
   if (!part) return;
   throw wrong(
-    `${show(part.name)} has a node material, which cannot show options.texture; give options.material`,
+    `${show(part.name)} has a node material, which shows options.texture once the page imports cagecast/three/webgpu; else give options.material`,
     undefined,
     'badOption',
   );

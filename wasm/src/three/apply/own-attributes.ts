@@ -1,4 +1,4 @@
-import type { BufferGeometry } from 'three';
+import { type BufferGeometry, REVISION } from 'three';
 
 /** Attributes that were made here, and that one geometry alone has. */
 const owned = new WeakSet<object>();
@@ -22,6 +22,12 @@ export function disposeOwn(geometry: BufferGeometry, names?: readonly string[]):
   const own = Object.entries(attributes).filter(([name, one]) => owned.has(one) && names?.includes(name) !== false);
   const ownIndex = names || !owned.has(index as object) ? null : index;
   Object.assign(geometry, { attributes: Object.fromEntries(own), morphAttributes: {}, index: ownIndex });
-  geometry.dispose();
-  Object.assign(geometry, { attributes, morphAttributes, index });
+  try {
+    geometry.dispose();
+  } catch (error) {
+    // Up to three.js r185, WebGPURenderer stops at an attribute that is missing; its buffers are left to the garbage collector.
+    if (Number.parseInt(REVISION, 10) > 185) throw error;
+  } finally {
+    Object.assign(geometry, { attributes, morphAttributes, index });
+  }
 }

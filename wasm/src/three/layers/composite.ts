@@ -152,8 +152,7 @@ export class Composite {
   }
 
   /** The texels: premultiplied, in sRGB, row by row from v = 0. Waits for the GPU. */
-  read(renderer: WebGLRenderer): Uint8Array {
-    const texels = new Uint8Array(4 * this.size * this.size);
+  read(renderer: WebGLRenderer, texels = new Uint8Array(4 * this.size * this.size)): Uint8Array {
     renderer.readRenderTargetPixels(this.#target, 0, 0, this.size, this.size, texels);
     return texels;
   }

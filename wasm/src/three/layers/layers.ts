@@ -3,10 +3,12 @@ import type { LoadedCage } from '../apply/models.js';
 import { check, kPaint, notA, wrong } from '../errors.js';
 import { readStraight } from '../gpu/straight.js';
 import { Composite, maxCompositeSize } from './composite.js';
+import { CopiedTexture } from './copied-texture.js';
 import { Edits } from './edits.js';
 import { Emitter } from './emitter.js';
 import { History } from './history.js';
 import { checkTexture, freeName, type Layer, readStyle, type Style } from './layer.js';
+import { giveBack, lendRenderer, type OtherRenderer } from './own-renderer.js';
 import { PaintedSheet } from './painted-sheet.js';
 import { checkRegion, type Regions, regionsOf } from './regions.js';
 import { loadLayers, type SavedLayers, saveLayers } from './saved-layers.js';
@@ -14,8 +16,12 @@ import { LayerStack } from './stack.js';
 
 /** Options of `createLayers`. */
 export interface LayersOptions {
-  /** Draws the texture; the models that show it have to be drawn by the same one. */
-  renderer: WebGLRenderer;
+  /**
+   * Draws the texture; the models that show it have to be drawn by the same one. For a `WebGPURenderer`, a `WebGLRenderer` of their own
+   * draws the layers, and an `update` that has changed them copies the texture, for which it waits for the GPU; the page imports
+   * `cagecast/three/paint/webgpu`.
+   */
+  renderer: WebGLRenderer | OtherRenderer;
   /** The cage, for layers that are seen within one of its regions. Default: there are no regions. */
   cage?: LoadedCage | undefined;
   /** Texels per side of the texture: 256, 512, 1024 or 2048. Default: 1024, or 2048 where a layer is larger than 1024. */
@@ -53,7 +59,13 @@ export class Layers extends Emitter<{
   readonly edits = new Edits(this.stack, this.history);
   /** @internal */
   readonly composite: Composite;
+  /** What draws the layers. */
   readonly renderer: WebGLRenderer;
+  /** The canvas on which models are seen. @internal */
+  readonly canvas: HTMLElement;
+  /** Where another renderer shows the layers. */
+  readonly #copied: CopiedTexture | undefined;
+  #isDisposed = false;
   readonly #regions: Regions | undefined;
   /** Paintings that were loaded, as far as they may be shown again. */
   readonly #loaded: WeakRef<PaintedSheet>[] = [];
@@ -67,17 +79,21 @@ export class Layers extends Emitter<{
   constructor(options: LayersOptions) {
     super();
     const { renderer, cage, size } = options ?? {};
+    const isOther = (renderer as OtherRenderer | undefined)?.isWebGPURenderer === true;
     // Other renderers have no such map.
-    if (typeof renderer?.properties?.get !== 'function') throw wrong('options.renderer is not a WebGLRenderer', kPaint);
+    if (!isOther && typeof (renderer as WebGLRenderer | undefined)?.properties?.get !== 'function')
+      throw wrong('options.renderer is neither a WebGLRenderer nor a WebGPURenderer', kPaint);
     if (size !== undefined) check(kSizes.includes(size), 'size', size, `one of ${kSizes.join(', ')}`);
-    this.renderer = renderer;
     this.#regions = cage && regionsOf(cage);
+    this.canvas = renderer.domElement;
+    this.renderer = isOther ? lendRenderer() : (renderer as WebGLRenderer);
+    this.#copied = isOther ? new CopiedTexture() : undefined;
     this.composite = new Composite(size, this.#regions);
     this.stack.on('change', (layers) => {
       this.composite.set(layers);
       this.announce();
     });
-    renderer.domElement.addEventListener('webglcontextrestored', this.#restored);
+    this.renderer.domElement.addEventListener('webglcontextrestored', this.#restored);
   }
 
   /**
@@ -85,7 +101,7 @@ export class Layers extends Emitter<{
    * its colours are premultiplied by alpha. Call `update` before it is drawn.
    */
   get texture(): Texture {
-    return this.composite.texture;
+    return this.#copied?.texture ?? this.composite.texture;
   }
 
   /** From the lowest to the uppermost. */
@@ -102,6 +118,8 @@ export class Layers extends Emitter<{
    */
   add(texture: Texture, options: NewLayer = {}): Layer {
     checkTexture(texture, 'texture');
+    if (this.#copied && texture.isRenderTargetTexture)
+      throw wrong('texture is drawn by another renderer than the layers, which cannot read it', kPaint);
     const style = this.#readStyle(options, 'options');
     const { name, place, undoable } = options;
     const title = name ?? (texture.name || freeName('Layer', this.list));
@@ -162,7 +180,9 @@ export class Layers extends Emitter<{
    * Cost: nothing if not; else one pass over what has changed, two with more than eight visible layers.
    */
   update(): boolean {
-    return this.composite.update(this.renderer);
+    const hasChanged = this.composite.update(this.renderer);
+    if (hasChanged) this.#copied?.copy(this.composite, this.renderer);
+    return hasChanged;
   }
 
   /** Announces that a part of the texture has changed, or that a stroke is in progress. For painters. @internal */
@@ -185,7 +205,7 @@ export class Layers extends Emitter<{
     if (!(Number.isInteger(size) && size > 0 && size <= maxCompositeSize))
       throw notA(`an integer from 1 to ${maxCompositeSize}`, 'size', size, kPaint);
     this.update();
-    return readStraight(this.renderer, this.texture, size);
+    return readStraight(this.renderer, this.composite.texture, size);
   }
 
   /**
@@ -216,6 +236,9 @@ export class Layers extends Emitter<{
     for (const { sheet } of this.list) sheet.dispose?.();
     this.renderer.domElement.removeEventListener('webglcontextrestored', this.#restored);
     this.composite.dispose();
+    this.#copied?.texture.dispose();
+    if (this.#copied && !this.#isDisposed) giveBack();
+    this.#isDisposed = true;
   }
 
   #do<Result>(name: string, undoable: boolean | undefined, run: () => Result): Result {
@@ -236,7 +259,8 @@ export class Layers extends Emitter<{
 
 /**
  * Makes an empty stack of layers.
- * @throws {CagecastError} `badArgument` without a `WebGLRenderer`, `badOption` for another size.
+ * @throws {CagecastError} `badArgument` without a `WebGLRenderer`, or a `WebGPURenderer` and its entry; `badOption` for another size;
+ * `unsupported` with a `WebGPURenderer` where there is no WebGL 2.
  *
  * @example
  * const layers = createLayers({ renderer });

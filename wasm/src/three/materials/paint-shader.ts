@@ -115,7 +115,9 @@ export function refreshMatrix({ texture, opacity, feather, matrix }: Paint): voi
   // The GPU decodes all but videos. What is drawn, as by `createLayers`, may be premultiplied; it is no video.
   const isDrawn = (texture as { isRenderTargetTexture?: boolean }).isRenderTargetTexture;
   const isVideo = (texture as { isVideoTexture?: true }).isVideoTexture;
-  elements[8] = isDrawn && texture.premultiplyAlpha ? 2 : isVideo && texture.colorSpace === 'srgb' ? 1 : 0;
+  const isPremultiplied = (isDrawn && texture.premultiplyAlpha) || texture.userData?.['cagecastPremultiplied'] === true;
+  elements[8] = isPremultiplied ? 2 : isVideo && texture.colorSpace === 'srgb' ? 1 : 0;
 }
 
-const kNoPaint = /* @__PURE__ */ new Matrix3().set(0, 0, 0, 0, 0, 0, 0, 0, 0);
+/** The matrix of no paint. */
+export const kNoPaint = /* @__PURE__ */ new Matrix3().set(0, 0, 0, 0, 0, 0, 0, 0, 0);

@@ -1,4 +1,5 @@
-import { Material, type ShaderMaterial, type Mesh as ThreeMesh } from 'three';
+import { Material, type ShaderMaterial, type Mesh as ThreeMesh, UnsignedByteType } from 'three';
+import { canBeNodePainted, type NodeHooks, nodeHooks, type ShownPaint } from './node-paint.js';
 import {
   addPaint,
   type Paint,
@@ -58,10 +59,15 @@ interface Patch {
   given: Partial<Hooks>;
   /** Whether neither the material nor its class does anything before it is rendered. */
   isQuiet: boolean;
+  /** How its shaders read the texture. */
+  reading: string;
+  /** Whether `WebGPURenderer` has drawn it. */
+  hasNodes: boolean;
 }
 
-const kHooks = ['onBeforeCompile', 'customProgramCacheKey', 'onBeforeRender'] as const;
-type Hooks = Pick<Material, (typeof kHooks)[number]>;
+const kNodeHooks = ['setupDiffuseColor', 'setupObserver'] as const satisfies (keyof NodeHooks)[];
+const kHooks = ['onBeforeCompile', 'customProgramCacheKey', 'onBeforeRender', ...kNodeHooks] as const;
+type Hooks = Pick<Material & NodeHooks, (typeof kHooks)[number]>;
 
 const patches = new WeakMap<Material, Patch>();
 
@@ -69,11 +75,12 @@ const kBuiltIn = ['Basic', 'Lambert', 'Phong', 'Standard', 'Toon', 'Matcap'].map
 
 /**
  * Whether paint can be mixed into a material's colour: the lit and unlit materials of three.js, and other `ShaderMaterial`s whose
- * shader is written as theirs are, or asks for `CAGECAST_PAINT`.
+ * shader is written as theirs are, or asks for `CAGECAST_PAINT`; and with `cagecast/three/webgpu`, those of `three/webgpu`.
  */
 export function canBePainted(material: Material): boolean {
   const kinds = material as Material & Record<string, unknown>;
-  if (kinds['isNodeMaterial'] === true || kinds['isRawShaderMaterial'] === true) return false;
+  if (kinds['isNodeMaterial'] === true) return canBeNodePainted(material);
+  if (kinds['isRawShaderMaterial'] === true) return false;
   if (kinds['isShaderMaterial'] === true) return takesPaint((material as ShaderMaterial).fragmentShader);
   return kBuiltIn.some((kind) => kinds[kind] === true);
 }
@@ -114,6 +121,8 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
     own: {},
     given: {},
     isQuiet: true,
+    reading: '',
+    hasNodes: false,
   };
   patches.set(material, record);
   // Somebody has replaced or wrapped the hook that was given, or none was given yet.
@@ -121,25 +130,28 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
   const isPatched = record.painting;
   record.painting = painting;
   setUniforms(record.uniforms, painting);
+  const reading = readingOf(painting);
   if (isPatched) {
+    if (record.hasNodes && reading !== record.reading) material.needsUpdate = true;
+    record.reading = reading;
     if (record.isQuiet && material.onBeforeRender === record.given.onBeforeRender)
       material.onBeforeRender = record.given.onBeforeRender = painting.refresh;
     return;
   }
   // A program that was compiled when it was painted before has the same key, but its uniforms may be gone.
   if (known) material.dispose();
+  record.reading = reading;
 
-  const { onBeforeCompile, customProgramCacheKey, onBeforeRender } = material;
-  record.own = Object.fromEntries(
-    kHooks.flatMap((name) => (Object.hasOwn(material, name) ? [[name, material[name]]] : [])),
-  );
+  const hooks = material as Material & Partial<NodeHooks>;
+  const { onBeforeCompile, customProgramCacheKey, onBeforeRender } = hooks;
+  record.own = Object.fromEntries(kHooks.flatMap((name) => (Object.hasOwn(hooks, name) ? [[name, hooks[name]]] : [])));
   record.isQuiet = onBeforeRender === Material.prototype.onBeforeRender;
   // Where others have wrapped them, these are called when the material is not painted any more, too.
   record.given = {
     customProgramCacheKey() {
       const key = customProgramCacheKey.call(material);
       // By default the key is the text of `onBeforeCompile`, which is not the material's own by now.
-      return record.painting ? `${key}|${onBeforeCompile}|${kCopy}${alone ? ' alone' : ''}` : key;
+      return record.painting ? `${key}|${onBeforeCompile}|${kCopy}${alone ? ' alone' : ''}${record.reading}` : key;
     },
     onBeforeCompile: (shader, renderer) => {
       onBeforeCompile.call(material, shader, renderer);
@@ -154,9 +166,27 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
           onBeforeRender.apply(material, args);
           record.painting?.refresh.apply(material, args);
         },
+    ...nodeHooks(record.own, shownOn, alone),
   };
   Object.assign(material, record.given);
   material.needsUpdate = true;
+}
+
+/** What a material shows of its paint in the frame that is drawn, for `WebGPURenderer`, which calls nothing before it draws. */
+function shownOn(material: Material): ShownPaint | undefined {
+  const record = patches.get(material);
+  if (!record?.painting) return undefined;
+  record.hasNodes = true;
+  refreshMatrix(record.painting);
+  const { cagecastMap, cagecastMatrix } = record.uniforms;
+  return { texture: cagecastMap.value, matrix: cagecastMatrix.value };
+}
+
+/** What of a texture is a part of shaders that `WebGPURenderer` builds. */
+function readingOf({ texture }: Paint): string {
+  if (!texture) return '';
+  const isVideo = (texture as { isVideoTexture?: true }).isVideoTexture;
+  return `${isVideo ? ' video' : ''}${texture.type === UnsignedByteType ? '' : ` ${texture.type}`}`;
 }
 
 /** Makes a material what it was, unless it shows another painting by now. Hooks that others have wrapped since stay theirs. */
@@ -166,9 +196,9 @@ export function unpaint(material: Material, painting: Painting | undefined): voi
   record.painting = undefined;
   setUniforms(record.uniforms, undefined);
   for (const name of kHooks) {
-    if (material[name] !== record.given[name]) continue;
+    if ((material as Partial<Hooks>)[name] !== record.given[name]) continue;
     if (record.own[name]) Object.assign(material, { [name]: record.own[name] });
-    else delete (material as Partial<Material>)[name];
+    else delete (material as Partial<Hooks>)[name];
   }
   material.needsUpdate = true;
 }

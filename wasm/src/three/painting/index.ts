@@ -12,6 +12,7 @@ export { Emitter } from '../layers/emitter.js';
 export { type Command, History } from '../layers/history.js';
 export { type Blend, blendModes, type Layer, type Sheet, type Style } from '../layers/layer.js';
 export { type ChangeOptions, createLayers, Layers, type LayersOptions, type NewLayer } from '../layers/layers.js';
+export { setOwnRenderer } from '../layers/own-renderer.js';
 export { PaintedSheet, type PaintingSize, paintingSizes } from '../layers/painted-sheet.js';
 export type { SavedLayer, SavedLayers } from '../layers/saved-layers.js';
 export { LayerStack, maxLayers } from '../layers/stack.js';

@@ -214,7 +214,7 @@ export class Painter extends Emitter<{
   }
 
   get #canvas(): HTMLElement {
-    return this.layers.renderer.domElement;
+    return this.layers.canvas;
   }
 
   /** Begins what the tool does with a pointer. */
