@@ -3,23 +3,15 @@
  * cannot be painted; and the functions of `cagecast/cages` for loaded models.
  * @module cagecast/three
  */
-import type { Mesh, TransferResult } from '../index.js';
-import { type Borders, isCut } from '../parts/borders-option.js';
-import type { CutPart } from '../parts/cut-part.js';
+import type { Mesh } from '../index.js';
+import { type Borders, isCut } from '../parts/cut-part.js';
 import { type LeftOut, withBare } from '../parts/drawn.js';
 import { type Apart, type Caged, hasCages, moveApart as partsApart } from '../parts/own-cages.js';
-import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
-import type { SplitPart } from '../parts/split-part.js';
-import { prepareParts } from '../worker/index.js';
+import { type Prepared, type PreparedPart, type PrepareOptions, prepareParts } from '../parts/prepare.js';
+import type { PartRange } from '../parts/split-part.js';
+import { prepareParts as prepareInWorker } from '../worker/index.js';
 import { apply, rangesOf } from './apply/apply.js';
-import {
-  type Applied,
-  type ApplyOptions,
-  checkLengths,
-  checkOptions,
-  type Saved,
-  transferOptions,
-} from './apply/apply-options.js';
+import { type Applied, type ApplyOptions, checkOptions, type Saved, transferOptions } from './apply/apply-options.js';
 import { zoneAttribute } from './apply/attributes.js';
 import { cutGeometry } from './apply/cut-geometry.js';
 import {
@@ -54,7 +46,6 @@ export {
   type ApplyOptions,
   type Borders,
   bareGroups,
-  type CutPart,
   cutGeometry,
   deserialize,
   type Extracted,
@@ -64,8 +55,8 @@ export {
   type PartRange,
   type PartsOption,
   type Prepared,
+  type PreparedPart,
   type Saved,
-  type SplitPart,
   serialize,
   zoneAttribute,
 };
@@ -108,7 +99,7 @@ export {
 export function applyTransfer(target: Loaded, options: ApplyOptions = {}): Applied {
   checkOptions('applyTransfer', options);
   const { saved, input, finish } = read('applyTransfer', target, options);
-  return atOnce(finish(saved ?? prepare(input)));
+  return atOnce(finish(saved ?? prepareParts(...input)));
 }
 
 /**
@@ -128,7 +119,8 @@ export async function applyTransferAsync(target: Loaded, options: ApplyOptions &
   await nextTask();
   signal?.throwIfAborted();
   onProgress?.(0.05, 'transfer');
-  const prepared = saved ?? (await prepareParts(input, { signal }));
+  const [around, mesh, how] = input;
+  const prepared = saved ?? (await prepareInWorker(around, mesh, { ...how, signal }));
   onProgress?.(0.7, 'geometry');
   const applied = await runInTasks(finish(prepared), signal);
   onProgress?.(1, 'done');
@@ -152,7 +144,7 @@ let calls = 0;
 interface Call {
   /** What was prepared earlier. */
   saved: Prepared | undefined;
-  input: PrepareInput;
+  input: [cage: Mesh | undefined, target: Mesh, options: PrepareOptions];
   /** Applies what was prepared, as `apply`. */
   finish(prepared: Prepared): Generator<void, Applied>;
 }
@@ -169,18 +161,19 @@ function read(fn: string, target: Loaded, options: ApplyOptions): Call {
   const rules = { ...own, locks: withBare(bare, own.locks) };
   const apart = outer && moveApart(outer, extracted);
   const around = apart?.cage ?? outer?.mesh;
-  if (result) checkResult(result, extracted);
   return {
     saved: saved && checkSaved(saved, extracted),
-    input: {
-      cage: around,
-      target: apart?.target ?? extracted.mesh,
-      parts: rangesOf(extracted),
-      options: rules,
-      result,
-      cuts,
-      paints: !!options.texture && !options.material,
-    },
+    input: [
+      around,
+      apart?.target ?? extracted.mesh,
+      {
+        ...rules,
+        parts: rangesOf(extracted),
+        borders: options.borders,
+        separatePaint: !!options.texture && !options.material,
+        result,
+      },
+    ],
     *finish(prepared) {
       if (!saved) apart?.mend(prepared.result);
       const applied = yield* apply(extracted, prepared, options, { call, cage: outer?.mesh });
@@ -200,17 +193,4 @@ function ownCage(fn: string, target: Loaded): Loaded {
       argument: 'cage',
     },
   );
-}
-
-function checkResult(result: TransferResult, { mesh }: Extracted): void {
-  const [vertices, triangles] = [mesh.positions.length / 3, mesh.indices.length / 3];
-  const lengths = {
-    zones: vertices,
-    cosmeticTriangles: triangles,
-    uvs: 2 * vertices,
-    cornerUvs: result.cornerUvs?.length === 0 ? 0 : 6 * triangles,
-    segments: vertices,
-    segmentStats: result.segmentStats?.length ?? 1,
-  };
-  checkLengths('options.result', result, lengths, '; extract it before vertices are split');
 }

@@ -1,5 +1,5 @@
 import { classify, cutBorders, init, presetOptions, project, splitVertices, transfer } from '../index.js';
-import { prepare } from '../parts/prepare.js';
+import { prepareParts } from '../parts/prepare.js';
 import { answer } from './answer.js';
 import type { Reply, Request } from './protocol.js';
 
@@ -11,7 +11,7 @@ const functions = {
   splitVertices,
   cutBorders,
   presetOptions,
-  prepareParts: prepare,
+  prepareParts,
 } as Record<string, (...args: unknown[]) => unknown>;
 
 /** Carries out a call. @returns the reply, and the buffers in it that are to be moved, not copied. */
