@@ -1,4 +1,5 @@
 import {
+  Color4,
   Engine,
   FreeCamera,
   HemisphericLight,
@@ -14,6 +15,7 @@ import { paintMeshes } from './paint.js';
 const canvas = document.body.appendChild(document.createElement('canvas'));
 const engine = new Engine(canvas, true, { useExactSrgbConversions: true });
 const scene = new Scene(engine);
+scene.clearColor = new Color4(0.87, 0.87, 0.87, 1);
 const load = (file) => LoadAssetContainerAsync(file, scene);
 const [head, cage] = await Promise.all([load('target.glb'), load('cage.glb'), init()]);
 // Textures of glTF begin at the top; the GPU decodes sRGB.

@@ -283,7 +283,10 @@ test('arguments that are none, and models that cannot be read, are errors that n
       () => apply(target, { cage: cage(), result: {} }),
       /^prepareParts: options\.result\.uvs is undefined, not a Float32Array$/,
     ],
-    [() => apply(target, { cage: cage(), result: { ...result, uvs: 1 } }), /options\.result\.uvs is 1, not a Float32Array/],
+    [
+      () => apply(target, { cage: cage(), result: { ...result, uvs: 1 } }),
+      /options\.result\.uvs is 1, not a Float32Array/,
+    ],
     [() => apply(new Group(), { cage: cage() }), /has no vertices/, 'emptyMesh'],
     [() => extract(flat), /target: "geometry" has positions of 2 numbers, not 3/],
     [() => extract(few), /target: "long name [^"]*…" has 5 heat for \d+ vertices/],

@@ -3,6 +3,7 @@ import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, symlinkSync, writ
 import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
+import { NodeIO } from '@gltf-transform/core';
 import type { Browser } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { build } from 'vite';
@@ -19,6 +20,7 @@ const common = `
 import { init } from 'cagecast';
 const query = new URLSearchParams(location.search);
 const borders = query.get('borders') ?? 'triangle';
+const model = query.has('posed') ? 'posed.glb' : 'target.glb';
 const canvas = Object.assign(document.body.appendChild(document.createElement('canvas')), { width: ${kSide}, height: ${kSide} });
 const { center, distance } = { center: [0, 0.02, 0], distance: 1.4 };
 await init();
@@ -31,7 +33,7 @@ import { applyTransfer } from 'cagecast/three';
 import { MeshBasicMaterial, PerspectiveCamera, Scene, SRGBColorSpace, TextureLoader, WebGLRenderer } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 const load = (file) => new GLTFLoader().loadAsync(file);
-const [head, cage, texture] = await Promise.all([load('target.glb'), load('cage.glb'), new TextureLoader().loadAsync('paint-tiger.png')]);
+const [head, cage, texture] = await Promise.all([load(model), load('cage.glb'), new TextureLoader().loadAsync('paint-tiger.png')]);
 texture.flipY = false;
 texture.colorSpace = SRGBColorSpace;
 head.scene.traverse((mesh) => {
@@ -39,6 +41,7 @@ head.scene.traverse((mesh) => {
 });
 const { setTexture } = applyTransfer(head, { cage, texture, borders });
 if (query.has('bare')) setTexture(null);
+head.scene.traverse(({ morphTargetInfluences: shapes }) => shapes?.fill(1));
 const camera = new PerspectiveCamera(35, 1, 0.01, 100);
 camera.position.set(center[0], center[1], center[2] + distance);
 const renderer = new WebGLRenderer({ canvas, preserveDrawingBuffer: true });
@@ -54,7 +57,7 @@ const engine = new Engine(canvas, false, { preserveDrawingBuffer: true, useExact
 const scene = new Scene(engine);
 scene.useRightHandedSystem = query.has('right');
 scene.clearColor = new Color4(0.867, 0.867, 0.867, 1);
-const [head, cage] = await Promise.all(['target.glb', 'cage.glb'].map((file) => LoadAssetContainerAsync(file, scene)));
+const [head, cage] = await Promise.all([model, 'cage.glb'].map((file) => LoadAssetContainerAsync(file, scene)));
 const paint = new Texture('paint-tiger.png', scene, { invertY: false, useSRGBBuffer: true });
 paint.anisotropicFilteringLevel = 1;
 for (const material of head.materials) {
@@ -62,6 +65,7 @@ for (const material of head.materials) {
   material.albedoTexture.anisotropicFilteringLevel = 1;
 }
 paintMeshes(head.meshes, cage.meshes, paint, { borders });
+for (const { morphTargetManager: shapes } of head.meshes) if (shapes) shapes.getTarget(0).influence = 1;
 head.addAllToScene();
 // The loader mirrors models in a left-handed scene.
 const x = scene.useRightHandedSystem ? center[0] : -center[0];
@@ -94,20 +98,21 @@ const load = (type, url, data) =>
     app.assets.add(asset);
     app.assets.load(asset);
   });
-const [model, outer, paint] = await Promise.all([
-  load('container', 'target.glb'),
+const [container, outer, paint] = await Promise.all([
+  load('container', model),
   load('container', 'cage.glb'),
   load('texture', 'paint-tiger.png', { srgb: true }),
 ]);
-const head = model.instantiateRenderEntity();
+const head = container.instantiateRenderEntity();
 for (const { meshInstances } of head.findComponents('render'))
   for (const { material } of meshInstances) {
-    material.useSkybox = false;
-    material.useFog = false;
+    Object.assign(material, { useSkybox: false, useMetalness: false, specular: new Color(0, 0, 0) });
     material.update();
   }
 paintEntity(app.graphicsDevice, head, outer.instantiateRenderEntity(), paint, { borders });
 app.root.addChild(head);
+for (const { meshInstances } of head.findComponents('render'))
+  for (const { morphInstance } of meshInstances) morphInstance?.setWeight(0, 1);
 // Light that is the same from everywhere: what is seen is the colour of the surface.
 app.scene.ambientLight = new Color(1, 1, 1);
 const camera = new Entity('camera');
@@ -122,6 +127,46 @@ app.once('frameend', () => {
 };
 const kExamples = ['babylon', 'playcanvas'];
 const kEngines = ['@babylonjs/core', '@babylonjs/loaders', 'playcanvas'];
+
+/** The model with bones, one of which is turned, and with a morph target. */
+async function posed(): Promise<Uint8Array> {
+  const io = new NodeIO();
+  const document = await io.read('examples/samples/lizard/target.glb');
+  const [root, buffer] = [document.getRoot(), document.getRoot().listBuffers()[0]!];
+  const accessor = (type: 'VEC3' | 'VEC4' | 'MAT4', array: Float32Array<ArrayBuffer> | Uint8Array<ArrayBuffer>) =>
+    document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
+  const skin = document.createSkin();
+  const still = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+  skin.setInverseBindMatrices(accessor('MAT4', Float32Array.from([...still, ...still])));
+  const turned = document.createNode('turned').setRotation([0, 0, Math.sin(0.2), Math.cos(0.2)]);
+  for (const joint of [document.createNode('still'), turned]) {
+    skin.addJoint(joint);
+    root.listScenes()[0]!.addChild(joint);
+  }
+  for (const node of root.listNodes().filter((one) => one.getMesh())) {
+    node.setSkin(skin);
+    node.getMesh()!.setWeights([0]);
+    for (const primitive of node.getMesh()!.listPrimitives()) {
+      const positions = primitive.getAttribute('POSITION')!;
+      const count = positions.getCount();
+      const [joints, weights, deltas] = [
+        new Uint8Array(4 * count),
+        new Float32Array(4 * count),
+        new Float32Array(3 * count),
+      ];
+      for (let v = 0; v < count; ++v) {
+        const [x = 0, y = 0] = positions.getElement(v, [] as number[]);
+        const pull = Math.min(Math.max(0.5 + 2 * y, 0), 1);
+        joints.set([0, 1], 4 * v);
+        weights.set([1 - pull, pull], 4 * v);
+        deltas[3 * v] = 0.3 * x;
+      }
+      primitive.setAttribute('JOINTS_0', accessor('VEC4', joints)).setAttribute('WEIGHTS_0', accessor('VEC4', weights));
+      primitive.addTarget(document.createPrimitiveTarget('wide').setAttribute('POSITION', accessor('VEC3', deltas)));
+    }
+  }
+  return io.writeBinary(document);
+}
 
 const user = installPacked();
 let browser: Browser;
@@ -158,6 +203,7 @@ before(async () => {
   for (const folder of [...kExamples, 'compared'])
     for (const file of readdirSync('examples/samples/lizard'))
       symlinkSync(resolve('examples/samples/lizard', file), join(out, folder, file));
+  writeFileSync(join(out, 'compared/posed.glb'), await posed());
   site = await serve(out);
   browser = await launchChromium({ drawing: true });
 });
@@ -167,8 +213,11 @@ after(async () => {
   rmSync(user, { recursive: true, force: true });
 });
 
-/** Opens a page, and waits for its title. @returns what it shows. */
-async function shown(path: string, title: RegExp): Promise<PNG> {
+/**
+ * Opens a page, and waits for its title, and until its picture is as it should be.
+ * @returns what it shows.
+ */
+async function shown(path: string, title = /^done$/, isRight: (picture: PNG) => boolean = () => true): Promise<PNG> {
   const page = await browser.newPage({ viewport: { width: kSide, height: kSide } });
   const faults: string[] = [];
   page.on('pageerror', (error) => faults.push(String(error)));
@@ -176,15 +225,25 @@ async function shown(path: string, title: RegExp): Promise<PNG> {
     if (message.type() === 'error' && !/favicon|404/.test(message.text())) faults.push(message.text());
   });
   await page.goto(`${site.origin}/${path}`);
-  for (const end = Date.now() + 60000; !title.test(await page.title()) && faults.length === 0 && Date.now() < end; )
-    await setTimeout(50);
+  const end = Date.now() + 60000;
+  while (!title.test(await page.title()) && faults.length === 0 && Date.now() < end) await setTimeout(50);
   assert.deepEqual(faults, [], path);
   assert.match(await page.title(), title, path);
-  const picture = await page.screenshot();
+  let picture = await page.screenshot();
+  while (!isRight(PNG.sync.read(picture)) && Date.now() < end) picture = await page.screenshot();
+  assert.deepEqual(faults, [], path);
   await page.close();
   const { CAGECAST_PICTURES: folder } = process.env;
   if (folder) writeFileSync(join(folder, `${path.replace(/\W+/g, '-')}.png`), picture);
   return PNG.sync.read(picture);
+}
+
+/** How many pixels have a colour as orange as the paint, which nothing else has. */
+function orange({ data }: PNG): number {
+  let count = 0;
+  for (let at = 0; at < data.length; at += 4)
+    if (data[at]! > 120 && data[at]! > 1.6 * data[at + 2]! && data[at]! > 1.15 * data[at + 1]!) ++count;
+  return count;
 }
 
 /** The mean difference of colours where a mask says so, of 255. */
@@ -220,24 +279,29 @@ describe('the paint in other engines', () => {
 
   for (const name of kExamples)
     test(`the example ${name} shows the paint`, async () => {
-      const { data } = await shown(`${name}/index.html`, /^[1-9]\d* painted$/);
-      let orange = 0;
-      for (let at = 0; at < data.length; at += 4)
-        if (data[at]! > 120 && data[at]! > 1.6 * data[at + 2]! && data[at]! > 1.15 * data[at + 1]!) ++orange;
-      assert.ok(orange >= 400, `${orange} pixels`);
+      const picture = await shown(`${name}/index.html`, /^[1-9]\d* painted$/, (one) => orange(one) >= 400);
+      assert.ok(orange(picture) >= 400, `${orange(picture)} pixels`);
     });
 
-  for (const borders of ['triangle', 'cut'])
-    describe(`is the same as in three.js: ${borders}`, () => {
+  const kCompared: Record<string, string[]> = {
+    'at rest': ['babylon.html?right', 'playcanvas.html?'],
+    'with cut borders, bones and a morph target': [
+      'babylon.html?posed&borders=cut',
+      'playcanvas.html?posed&borders=cut',
+    ],
+  };
+  for (const [what, pages] of Object.entries(kCompared))
+    describe(`is the same as in three.js: ${what}`, () => {
       let [painted, bare]: PNG[] = [];
       before(async () => {
-        painted = await shown(`compared/three.html?borders=${borders}`, /done/);
-        bare = await shown('compared/three.html?bare', /done/);
+        const query = pages[1]!.split('?')[1]!;
+        painted = await shown(`compared/three.html?${query}`);
+        bare = await shown(`compared/three.html?bare&${query}`);
       });
 
-      for (const page of ['babylon.html?', 'babylon.html?right&', 'playcanvas.html?'])
-        test(page.replace(/\W+/g, ' '), async (context) => {
-          const other = await shown(`compared/${page}borders=${borders}`, /done/);
+      for (const page of pages)
+        test(page, async (context) => {
+          const other = await shown(`compared/${page}`);
           const mask = differing(painted!, bare!);
           const area = mask.reduce((sum, is) => sum + is, 0);
           assert.ok(area > 0.05 * kSide * kSide, `${area} pixels are painted`);

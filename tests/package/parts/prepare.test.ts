@@ -10,7 +10,7 @@ import {
   prepareParts,
 } from 'cagecast/parts';
 import { prepareParts as prepareInWorker, terminate } from 'cagecast/worker';
-import { head } from './scenes.js';
+import { head } from '../scenes.js';
 
 const { cage, target } = head(5, 24);
 const vertices = target.positions.length / 3;
