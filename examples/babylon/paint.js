@@ -24,7 +24,8 @@ export function paintMeshes(target, cage, texture, options) {
   const prepared = prepareParts(outer.mesh, mesh, { ...options, parts });
   prepared.parts.forEach((part, p) => replaceVertices(meshes[p], part));
   const painted = meshes.filter((_, p) => prepared.parts[p].cosmeticTriangles.includes(1));
-  for (const { material } of painted) material.pluginManager?.getPlugin('Cagecast') ?? new Paint(material, texture);
+  for (const { material } of painted)
+    (material.pluginManager?.getPlugin('Cagecast') ?? new Paint(material)).texture = texture;
   return painted;
 }
 
@@ -68,9 +69,8 @@ function replaceVertices(mesh, part) {
 
 /** Mixes paint into the colour of a `PBRMaterial`, before it is lit. */
 class Paint extends MaterialPluginBase {
-  constructor(material, texture) {
+  constructor(material) {
     super(material, 'Cagecast', 200, { CAGECAST: true }, true, true);
-    this.texture = texture;
   }
   getClassName() {
     return 'CagecastPaint';

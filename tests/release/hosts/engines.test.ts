@@ -224,6 +224,10 @@ async function shown(path: string, title = /^done$/, isRight: (picture: PNG) => 
   page.on('console', (message) => {
     if (message.type() === 'error' && !/favicon|404/.test(message.text())) faults.push(message.text());
   });
+  // The server of tests knows scripts and pages only.
+  await page.route('**/*.css', async (route) =>
+    route.fulfill({ response: await route.fetch(), contentType: 'text/css' }),
+  );
   await page.goto(`${site.origin}/${path}`);
   const end = Date.now() + 60000;
   while (!title.test(await page.title()) && faults.length === 0 && Date.now() < end) await setTimeout(50);
