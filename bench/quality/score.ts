@@ -8,7 +8,7 @@ import {
   type Vector,
   vertexAreas,
 } from '../../wasm/src/inspect/geometry.js';
-import { blend } from '../../wasm/src/parts/blend.js';
+import { applySplit } from '../../wasm/src/parts/blend.js';
 import type { Model, Truth } from './models.js';
 
 /** What a way to transfer paints: of a result, or made up. */
@@ -88,7 +88,9 @@ export interface Smear {
 export function smear({ cage, target }: Model['scene'], result: TransferResult): Smear {
   const { uvs, cornerUvs } = result;
   const cut = cutBorders(cage, target, result);
-  const pieces = { positions: blend(target.positions, 3, cut), indices: cut.indices };
+  const sources = Uint32Array.from(cut.zones.keys());
+  const positions = applySplit(target.positions, 3, { sources, copies: 0, cut });
+  const pieces = { positions, indices: cut.indices };
   const ofPieces = { ...project(cage, pieces, { preset: 'paper' }), cosmeticTriangles: cut.cosmeticTriangles };
   return {
     vertex: smearedShare(cage, target, result, (corner) => uvs.subarray(2 * target.indices[corner]!)),

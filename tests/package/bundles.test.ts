@@ -20,6 +20,13 @@ const kPages: [what: string, most: number, script: string][] = [
     console.log(init, applyTransfer);`,
   ],
   [
+    'init and cagecast/parts',
+    110_000,
+    `import { init } from 'cagecast';
+    import { applySplit, joinParts, paintedVertices, prepareParts } from 'cagecast/parts';
+    console.log(init, applySplit, joinParts, paintedVertices, prepareParts);`,
+  ],
+  [
     'applyTransferAsync',
     26_500,
     "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",

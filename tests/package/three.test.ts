@@ -284,9 +284,12 @@ test('arguments that are none, and models that cannot be read, are errors that n
     [() => apply(target), /^applyTransfer: options\.cage is undefined, and no mesh of target is named as/, 'badOption'],
     [
       () => apply(target, { cage: cage(), result: {} }),
-      /options\.result\.zones is not an array, the target needs \d+; extr/,
+      /^prepareParts: options\.result\.uvs is undefined, not a Float32Array$/,
     ],
-    [() => apply(target, { cage: cage(), result: { ...result, uvs: 1 } }), /options\.result\.uvs is not an array/],
+    [
+      () => apply(target, { cage: cage(), result: { ...result, uvs: 1 } }),
+      /options\.result\.uvs is 1, not a Float32Array/,
+    ],
     [() => apply(new Group(), { cage: cage() }), /has no vertices/, 'emptyMesh'],
     [() => extract(flat), /target: "geometry" has positions of 2 numbers, not 3/],
     [() => extract(few), /target: "long name [^"]*…" has 5 heat for \d+ vertices/],
@@ -852,7 +855,7 @@ describe('geometries', () => {
     assert.equal(again.splitVertices, applied.splitVertices);
     target.geometry = target.geometry.clone();
     assert.throws(() => applyTransfer(target, { cage: cage(), result }), {
-      message: /zones has \d+ entries, the target needs/,
+      message: /uvs has \d+ entries, the target needs/,
     });
   });
 });

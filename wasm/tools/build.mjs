@@ -41,6 +41,7 @@ const kTemplates = 'examples/samples/templates';
 const kEntries = {
   inspect: 'inspect',
   bake: 'bake',
+  parts: 'parts',
   three: 'three',
   'three/painting': 'three-paint',
   react: 'react',

@@ -68,7 +68,8 @@ test('without attributes only the overlay has UVs, and parts without one stay as
   assert.deepEqual(Object.keys(base!.attributes).sort(), Object.keys(primitives(glbOf(target))[0]!.attributes).sort());
   assert.deepEqual([overlays.length, 'TEXCOORD_0' in overlays[0]!.attributes], [1, true]);
   const again = await paintGlb(lean.bytes, around);
-  assert.deepEqual(again.bytes, lean.bytes, 'an earlier transfer is replaced');
+  assert.equal(primitives(again.bytes).length, 2, 'an earlier transfer is replaced');
+  assert.deepEqual(again.triangles, lean.triangles);
   const bare = await paintGlb(glbOf(target), { ...around, exclude: ['*'] });
   assert.deepEqual(unpackGlb(bare.bytes), unpackGlb(glbOf(target)));
 });

@@ -38,6 +38,7 @@ describe('TypeScript before 5.7', () => {
     'cagecast/slim',
     'cagecast/worker',
     'cagecast/inspect',
+    'cagecast/parts',
     'cagecast/cages',
     'cagecast/cages/sync',
     'cagecast/glb',

@@ -12,7 +12,7 @@ import { writeTransfer } from '../gltf/write-transfer.js';
 import { CagecastError, type Code, init, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
 import { isBackward } from '../inspect/backward.js';
 import { noteOf } from '../inspect/bare.js';
-import { type Borders, isCut } from '../parts/borders-option.js';
+import { type Borders, isCut } from '../parts/cut-part.js';
 import { cutBorders, transfer } from '../worker/index.js';
 import { fitTo } from './fit.js';
 import { locksOf } from './locks.js';

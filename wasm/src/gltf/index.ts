@@ -6,7 +6,7 @@
 import type { Document, Transform } from '@gltf-transform/core';
 import type { Mesh, TransferOptions, TransferResult } from '../index.js';
 import { noteOf } from '../inspect/bare.js';
-import { type Borders, isCut } from '../parts/borders-option.js';
+import { type Borders, isCut } from '../parts/cut-part.js';
 import type { LeftOut } from '../parts/drawn.js';
 import type { MaskSources } from './bake/mask-sources.js';
 import { addTransfer } from './document/add-transfer.js';

@@ -1,11 +1,11 @@
 import type { Mesh } from '../api/mesh.js';
 import type { Vector } from '../inspect/geometry.js';
-import { isIdentity, type Matrix } from '../parts/affine.js';
+import type { Matrix } from '../parts/affine.js';
+import { joinParts } from '../parts/join-parts.js';
 import { fromOrigin, type Origin, originOf } from '../parts/origin.js';
-import { morphed, movePoints } from '../parts/points.js';
+import { morphed } from '../parts/points.js';
 import { type AccessorData, decodeFloats } from './accessors.js';
 import { InputError } from './input-error.js';
-import { isMirrored } from './matrix.js';
 import { layUvs, type UvLayout } from './uv-layout.js';
 
 /** One primitive of one node, and the ranges of its elements in the joined arrays. */
@@ -88,18 +88,10 @@ export function moveTo(pieces: readonly Piece[], origin: Origin): Vector {
  * Joins pieces into arrays, with a group for each. Vertices keep their order, transforms are applied in double
  * precision and rounded once, and the winding of mirrored pieces is reversed.
  */
-export function joinPieces(pieces: readonly Piece[]): Mesh & { indices: Uint32Array } {
-  const [vertices, triangles] = endOf(pieces);
-  const positions = new Float32Array(3 * vertices);
-  const indices = new Uint32Array(3 * triangles);
-  const groups = new Uint32Array(vertices);
-  pieces.forEach((piece, group) => {
-    placePositions(piece, positions);
-    placeIndices(piece, indices);
-    groups.fill(group, piece.firstVertex, piece.firstVertex + piece.vertexCount);
-  });
-  return { positions, indices, groups };
-}
+export const joinPieces = (pieces: readonly Piece[]): Mesh & { indices: Uint32Array } =>
+  joinParts(
+    pieces.map(({ localPositions: positions, localIndices: indices, matrix }) => ({ positions, indices, matrix })),
+  ).mesh;
 
 /** @throws {InputError} that names the first value of an attribute that is not a finite number. */
 export function requireFinite(place: string, semantic: string, values: Float32Array, size: number): void {
@@ -181,22 +173,4 @@ export function decodeUvs(
     throw new InputError(`${place} has ${accessor.getCount()} ${set} for ${vertexCount} vertices`);
   const uvs = decodeFloats(accessor);
   return layUvs(uvs, transform);
-}
-
-function placePositions({ matrix: m, localPositions, firstVertex }: Piece, out: Float32Array): void {
-  if (isIdentity(m)) {
-    out.set(localPositions, 3 * firstVertex);
-    return;
-  }
-  movePoints(m, localPositions, out, 3 * firstVertex);
-}
-
-function placeIndices({ matrix, localIndices, firstVertex, firstTriangle }: Piece, out: Uint32Array): void {
-  const mirrored = isMirrored(matrix);
-  for (let at = 0; at < localIndices.length; at += 3) {
-    const to = 3 * firstTriangle + at;
-    out[to] = firstVertex + localIndices[at]!;
-    out[to + (mirrored ? 2 : 1)] = firstVertex + localIndices[at + 1]!;
-    out[to + (mirrored ? 1 : 2)] = firstVertex + localIndices[at + 2]!;
-  }
 }

@@ -1,49 +1,18 @@
 import type { CutTarget, TransferResult } from '../index.js';
-import { type Blends, noBlends } from '../parts/blend.js';
-import { cutPart } from '../parts/cut-part.js';
-import { type SplitPart, splitPart } from '../parts/split-part.js';
+import type { Split } from '../parts/blend.js';
+import { type PreparedPart, preparePart } from '../parts/prepare.js';
 import { isMirrored } from './matrix.js';
 import type { Piece } from './pieces.js';
 
-/** A primitive whose vertices were cut and split, as if they were its own. */
-export interface GroupMember {
-  split: SplitPart;
-  /** 1 per vertex before it was split: its `Zone`. */
-  zones: Uint8Array;
-  /** The vertices that cutting added. */
-  blends: Blends;
-  /** 1 per triangle. */
-  cosmetic: Uint8Array;
-}
-
 /** What a result makes of one part of a target. @param cut  The whole target with cut borders, if they are cut. */
-export function groupMember(
+export const preparePiece = (
   part: Piece,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
   cut: CutTarget | undefined,
-): GroupMember {
-  const whole = { ...part, mirrored: isMirrored(part.matrix) };
-  const {
-    geometry,
-    result: own,
-    blends,
-  } = cut
-    ? cutPart(whole, cut, cut.zones.length - cut.sources.length / 3)
-    : { geometry: whole, result, blends: noBlends };
-  const { firstVertex, vertexCount, firstTriangle, triangleCount } = geometry;
-  return {
-    split: splitPart(geometry, own),
-    zones: own.zones.subarray(firstVertex, firstVertex + vertexCount),
-    blends,
-    cosmetic: own.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount),
-  };
-}
+): PreparedPart => preparePart({ ...part, mirrored: isMirrored(part.matrix) }, result, cut, false);
 
 /** Vertices that primitives share. Existing ones keep their numbers; those of cuts follow, then copies. */
-export interface SharedVertices {
-  blends: Blends;
-  /** 1 per vertex: what it copies, counted with those of cuts. */
-  sources: Uint32Array;
+export interface SharedVertices extends Split {
   /** 2 per vertex. */
   uvs: Float32Array;
   /** 1 per vertex. */
@@ -59,33 +28,30 @@ export interface SharedVertices {
  * primitives need different UVs or zones.
  * @param vertexCount  Of the attributes, before.
  */
-export function shareVertices(vertexCount: number, members: readonly GroupMember[]): SharedVertices {
+export function shareVertices(vertexCount: number, members: readonly PreparedPart[]): SharedVertices {
   const [only, ...others] = members;
   if (only && others.length === 0) {
-    const { sources, uvs, indices, copies } = only.split;
-    const zones = Uint8Array.from(sources, (v) => only.zones[v]!);
-    const isNew = copies > 0 || only.blends.sources.length > 0;
-    return { blends: only.blends, sources, uvs, zones, indices: [indices], isNew };
+    return { ...only, indices: [only.indices], isNew: only.sources.length > vertexCount };
   }
-  const blends: Blends = {
-    sources: Uint32Array.from(members.flatMap((member) => [...member.blends.sources])),
-    weights: Float32Array.from(members.flatMap((member) => [...member.blends.weights])),
+  const cut = {
+    sources: Uint32Array.from(members.flatMap((member) => [...(member.cut?.sources ?? [])])),
+    weights: Float32Array.from(members.flatMap((member) => [...(member.cut?.weights ?? [])])),
   };
-  const before = vertexCount + blends.sources.length / 3;
+  const before = vertexCount + cut.sources.length / 3;
   const sources = Array.from({ length: before }, (_, v) => v);
   const [uvs, zones]: [number[], number[]] = [new Array(2 * before).fill(0), new Array(before).fill(0)];
   const isTaken = new Uint8Array(before);
   const copies = new Map<string, number>();
   let firstBlend = vertexCount;
-  const indices = members.map(({ split, zones: own, blends: { sources: added } }) => {
+  const indices = members.map((split) => {
     const place = new Int32Array(split.sources.length).fill(-1);
     const shift = firstBlend - vertexCount;
-    firstBlend += added.length / 3;
+    firstBlend += (split.cut?.sources.length ?? 0) / 3;
     return split.indices.map((n) => {
       if (place[n]! >= 0) return place[n]!;
       const local = split.sources[n]!;
       const source = local < vertexCount ? local : local + shift;
-      const [u, v, zone] = [split.uvs[2 * n]!, split.uvs[2 * n + 1]!, own[local]!];
+      const [u, v, zone] = [split.uvs[2 * n]!, split.uvs[2 * n + 1]!, split.zones[n]!];
       let to = source;
       if (isTaken[source] === 1 && !(uvs[2 * source] === u && uvs[2 * source + 1] === v && zones[source] === zone)) {
         const key = `${source} ${u} ${v} ${zone}`;
@@ -99,7 +65,8 @@ export function shareVertices(vertexCount: number, members: readonly GroupMember
     });
   });
   return {
-    blends,
+    cut,
+    copies: sources.length - before,
     sources: Uint32Array.from(sources),
     uvs: Float32Array.from(uvs),
     zones: Uint8Array.from(zones),

@@ -1,8 +1,8 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { CutTarget } from '../api/cut-borders.js';
 import type { TransferResult } from '../api/result.js';
-import { blend, blendSkin, ruleOf } from '../parts/blend.js';
-import { gather } from '../parts/split-part.js';
+import { applySplit, ruleOf, splitSkin } from '../parts/blend.js';
+import type { PreparedPart } from '../parts/prepare.js';
 import { dracoOf } from './check-geometry.js';
 import { removeAttributes, removeOverlays } from './earlier-in-file.js';
 import type { Extracted, Part } from './extract-file.js';
@@ -27,7 +27,7 @@ import {
   uvsMark,
   zoneAttribute,
 } from './overlay.js';
-import { type GroupMember, groupMember, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
+import { preparePiece, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
 
 /** What was added to a primitive. */
 export interface Added {
@@ -89,8 +89,8 @@ export async function writeTransfer(
   const overlays = paints.map((paint) => new OverlayWriter(writer, paint));
 
   const members = parts.map((part, p): Member => {
-    const member = groupMember(part, result, cut);
-    const cutTriangles = member.cosmetic.length - part.triangleCount;
+    const member = preparePiece(part, result, cut);
+    const cutTriangles = member.cosmeticTriangles.length - part.triangleCount;
     const added = { uvSet: '', overlayTriangles: 0, fillsCutOuts: false, splitVertices: 0, cutTriangles };
     return { ...member, primitives: meshes[p]!.primitives, primitive: primitives[p]!, part, added };
   });
@@ -105,7 +105,7 @@ export async function writeTransfer(
 }
 
 /** A part, and what it becomes. */
-interface Member extends GroupMember {
+interface Member extends PreparedPart {
   /** Those of its mesh. */
   primitives: GLTF.IMeshPrimitive[];
   primitive: GLTF.IMeshPrimitive;
@@ -138,7 +138,8 @@ function addToGroup(
     hasAttributes,
   }: { overlays: readonly OverlayWriter[]; form: Form; zones: string; hasAttributes: boolean },
 ): void {
-  if (!hasAttributes && form === 'keep' && members.every(({ cosmetic }) => !cosmetic.includes(1))) return;
+  if (!hasAttributes && form === 'keep' && members.every(({ cosmeticTriangles }) => !cosmeticTriangles.includes(1)))
+    return;
   const { primitive: first, part } = members[0]!;
   const shared = shareVertices(part.vertexCount, members);
   const isNew = shared.isNew || form !== 'keep';
@@ -154,11 +155,11 @@ function addToGroup(
     }),
     [zones]: writer.addAttribute(shared.zones, 1, {}, true),
   };
-  let copies = shared.sources.length - part.vertexCount - shared.blends.sources.length / 3;
+  let { copies } = shared;
   members.forEach((member, m) => {
-    const { primitive, primitives, cosmetic, added } = member;
+    const { primitive, primitives, cosmeticTriangles, added } = member;
     if (hasAttributes) Object.assign(primitive.attributes, attributes);
-    const all = cosmeticCorners(shared.indices[m]!, cosmetic);
+    const all = cosmeticCorners(shared.indices[m]!, cosmeticTriangles);
     for (const overlay of overlays) {
       const corners = cornersIn(overlay.paint.area, all, shared.uvs);
       if (corners.length === 0) continue;
@@ -185,12 +186,12 @@ function rewriteAttributes(
   writer: GlbWriter,
   file: GltfFile,
   primitives: readonly GLTF.IMeshPrimitive[],
-  { sources, blends }: SharedVertices,
+  shared: SharedVertices,
 ): void {
   const { attributes, targets } = primitives[0]!;
-  const skin = blendSkin(
+  const skin = splitSkin(
     (semantic) => (attributes[semantic] === undefined ? undefined : file.accessors[attributes[semantic]]!.getArray()!),
-    blends,
+    shared,
   );
   // With other forms, primitives are marked that were not compressed.
   const fromDraco = primitives.some((primitive) => (dracoOf(primitive)?.bufferView ?? -1) >= 0);
@@ -205,7 +206,7 @@ function rewriteAttributes(
     const key = `${accessor} ${pulls ? semantic : rule}`;
     const known = made.get(key);
     if (known !== undefined) return known;
-    const values = gather(pulls ?? blend(array, size, blends, rule), size, sources);
+    const values = pulls ?? applySplit(array, size, shared, rule);
     // Draco has rounded the values, so the bounds in the file may be wrong.
     const more = {
       type: decoded.getType(),

@@ -1,23 +1,25 @@
 import type { CutTarget } from '../api/cut-borders.js';
-import type { Classification } from '../api/result.js';
-import { type Blends, heaviestOf } from './blend.js';
-import { gather, type PartGeometry, turnOver } from './split-part.js';
+import { show } from '../core/error.js';
+import { CagecastError } from '../index.js';
+import type { Blends } from './blend.js';
+import { gather, type PartGeometry, type PartRange, turnOver } from './split-part.js';
 
 /** A cut part, numbered as if it were the only one, and the result for it. */
-export interface CutPart {
+interface CutPart {
   geometry: PartGeometry;
   result: Pick<CutTarget, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>;
-  /** Its vertices that are new. */
-  blends: Blends;
-  /** 1 per triangle: the triangle of the whole target that it was cut from. */
-  origins: Uint32Array;
+  cut: PartCut;
 }
 
-/**
- * Extracts a part from a cut target. Vertices keep their order; new ones come after them.
- * @param targetVertexCount  Vertices of the whole target before it was cut.
- */
-export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget, targetVertexCount: number): CutPart {
+/** What cutting made of a part. */
+export interface PartCut extends Blends {
+  /** 1 per triangle: the triangle of the whole target that it was cut from; ascending. */
+  triangles: Uint32Array;
+}
+
+/** Extracts a part from a cut target. Vertices keep their order; new ones come after them. */
+export function cutPart(part: PartRange, cut: CutTarget): CutPart {
+  const targetVertexCount = cut.zones.length - cut.sources.length / 3;
   const { firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = part;
   const added = new Uint32Array(cut.sources.length / 3)
     .map((_, n) => n)
@@ -52,45 +54,24 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
       zones: gather(cut.zones, 1, vertices),
       cosmeticTriangles: cut.cosmeticTriangles.slice(first, end),
     },
-    blends: {
+    cut: {
       sources: gather(cut.sources, 3, added).map((v) => v - firstVertex),
       weights: gather(cut.weights, 3, added),
+      triangles: cut.triangles.slice(first, end),
     },
-    origins: cut.triangles.slice(first, end),
   };
 }
 
-/** What is needed of a cut part once its vertices are split. */
-export interface CutPieces extends Pick<CutPart, 'blends' | 'origins'> {
-  result: Pick<CutPart['result'], 'zones' | 'cosmeticTriangles'>;
-}
+/** Where the paint ends: at existing triangle edges, or at the borders of the cage, along which triangles are cut. */
+export type Borders = 'triangle' | 'cut';
 
-type Decision = Pick<Classification, 'zones' | 'cosmeticTriangles'>;
-
-/**
- * Applies another classification to a cut part: in segments whose verdict has changed, pieces take the result of the whole triangle
- * that they were cut from.
- * @param part     As it was before it was cut.
- * @param indices  Of the whole target, as the decision is.
- * @param isOther  1 per vertex of the whole target: whether its segment has another verdict.
- */
-export function decideAgain(
-  { result, blends, origins }: CutPieces,
-  { firstVertex, vertexCount }: Pick<PartGeometry, 'firstVertex' | 'vertexCount'>,
-  indices: ArrayLike<number>,
-  isOther: ArrayLike<number>,
-  now: Decision,
-): Decision {
-  return {
-    zones: result.zones.map((zone, v) => {
-      // A piece, and all sources of a new vertex, belong to one segment.
-      const n = v - vertexCount;
-      const source = firstVertex + (n < 0 ? v : heaviestOf(blends, n));
-      return isOther[source] ? now.zones[source]! : zone;
-    }),
-    cosmeticTriangles: result.cosmeticTriangles.map((cosmetic, piece) => {
-      const t = origins[piece]!;
-      return isOther[indices[3 * t]!] ? now.cosmeticTriangles[t]! : cosmetic;
-    }),
-  };
+/** Whether to cut borders. @throws {CagecastError} `badOption` */
+export function isCut(fn: string, borders: Borders = 'triangle'): boolean {
+  if (borders !== 'triangle' && borders !== 'cut')
+    throw new CagecastError(
+      'badOption',
+      fn,
+      `options.borders = ${show(borders)} is unknown; there are: "triangle", "cut"`,
+    );
+  return borders === 'cut';
 }

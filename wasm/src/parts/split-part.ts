@@ -1,13 +1,20 @@
 import { splitVertices, type TransferResult } from '../index.js';
 
-/** The ranges of a part in the arrays of a result, and its triangles. */
-export interface PartGeometry {
+/** Where a part is in the arrays of a target. */
+export interface PartRange {
   firstVertex: number;
   vertexCount: number;
   firstTriangle: number;
   triangleCount: number;
-  /** Whether its matrix mirrors it: then the winding of its triangles is reversed in the arrays, second and third corners swapped. */
-  mirrored: boolean;
+  /**
+   * Whether its matrix mirrors it: then the winding of its triangles is reversed in the arrays, second and third corners swapped.
+   * Default: no
+   */
+  mirrored?: boolean | undefined;
+}
+
+/** The ranges of a part, and its triangles. */
+export interface PartGeometry extends PartRange {
   /** 3 per triangle, as numbers of the part's own vertices, before the winding is reversed. */
   localIndices: ArrayLike<number>;
 }
@@ -20,7 +27,7 @@ export interface SplitPart {
   sources: Uint32Array<ArrayBuffer>;
   /** 3 per triangle, with copies where needed. */
   indices: Uint32Array<ArrayBuffer>;
-  /** Number of added vertices; if 0, the part is unchanged. */
+  /** Number of copies. */
   copies: number;
 }
 
@@ -77,4 +84,45 @@ export function gather<A extends Float32Array | Int8Array | Uint8Array | Int16Ar
 /** Turns triangles over, in place. */
 export function turnOver(indices: Uint32Array): void {
   for (let i = 0; i < indices.length; i += 3) [indices[i + 1], indices[i + 2]] = [indices[i + 2]!, indices[i + 1]!];
+}
+
+/** Copies of vertices, which come after the existing ones. */
+export interface Copies {
+  /** 1 per copy: the vertex that it copies. */
+  copied: Uint32Array<ArrayBuffer>;
+  /** 3 per triangle, with copies where needed. */
+  indices: Uint32Array<ArrayBuffer>;
+}
+
+/**
+ * Splits vertices until every triangle without paint has a vertex that no painted triangle has: then a triangle is painted if
+ * and only if all its vertices are. Few triangles need it: those without paint whose three vertices are all at its border.
+ * @param cosmetic  1 per triangle: 1 if it is painted.
+ * @returns `undefined` if no vertex has to be split.
+ */
+export function separatePaint(indices: ArrayLike<number>, cosmetic: Uint8Array, vertices: number): Copies | undefined {
+  const isPainted = verticesOf(indices, cosmetic, vertices);
+  const copies = new Map<number, number>();
+  const changes: [corner: number, copy: number][] = [];
+  for (let i = 0; i < 3 * cosmetic.length; i += 3) {
+    if (cosmetic[i / 3] === 1) continue;
+    const corners = [i, i + 1, i + 2];
+    if (corners.some((corner) => isPainted[indices[corner]!] === 0)) continue;
+    const corner = corners.find((c) => copies.has(indices[c]!)) ?? i;
+    const vertex = indices[corner]!;
+    if (!copies.has(vertex)) copies.set(vertex, vertices + copies.size);
+    changes.push([corner, copies.get(vertex)!]);
+  }
+  if (copies.size === 0) return undefined;
+  const split = Uint32Array.from(indices);
+  for (const [corner, copy] of changes) split[corner] = copy;
+  return { copied: Uint32Array.from(copies.keys()), indices: split };
+}
+
+/** 1 for each vertex that a painted triangle has. */
+export function verticesOf(indices: ArrayLike<number>, cosmetic: Uint8Array, vertices: number): Uint8Array {
+  const isPainted = new Uint8Array(vertices);
+  for (let t = 0; t < cosmetic.length; ++t)
+    if (cosmetic[t] === 1) for (let i = 3 * t; i < 3 * t + 3; ++i) isPainted[indices[i]!] = 1;
+  return isPainted;
 }

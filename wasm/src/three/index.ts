@@ -3,23 +3,15 @@
  * cannot be painted; and the functions of `cagecast/cages` for loaded models.
  * @module cagecast/three
  */
-import type { Mesh, TransferResult } from '../index.js';
-import { type Borders, isCut } from '../parts/borders-option.js';
-import type { CutPart } from '../parts/cut-part.js';
+import type { Mesh } from '../index.js';
+import { type Borders, isCut } from '../parts/cut-part.js';
 import { type LeftOut, withBare } from '../parts/drawn.js';
 import { type Apart, type Caged, moveApart as partsApart } from '../parts/own-cages.js';
-import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
-import type { SplitPart } from '../parts/split-part.js';
-import { prepareParts } from '../worker/index.js';
+import { type Prepared, type PreparedPart, type PrepareOptions, prepareParts } from '../parts/prepare.js';
+import type { PartRange } from '../parts/split-part.js';
+import { prepareParts as prepareOffThread } from '../worker/index.js';
 import { apply, rangesOf } from './apply/apply.js';
-import {
-  type Applied,
-  type ApplyOptions,
-  checkLengths,
-  checkOptions,
-  type Saved,
-  transferOptions,
-} from './apply/apply-options.js';
+import { type Applied, type ApplyOptions, checkOptions, type Saved, transferOptions } from './apply/apply-options.js';
 import { zoneAttribute } from './apply/attributes.js';
 import { cutGeometry } from './apply/cut-geometry.js';
 import {
@@ -57,7 +49,6 @@ export {
   type ApplyOptions,
   type Borders,
   bareGroups,
-  type CutPart,
   cutGeometry,
   deserialize,
   type Extracted,
@@ -67,8 +58,8 @@ export {
   type PartRange,
   type PartsOption,
   type Prepared,
+  type PreparedPart,
   type Saved,
-  type SplitPart,
   serialize,
   zoneAttribute,
 };
@@ -112,7 +103,7 @@ export {
 export function applyTransfer(target: Loaded, options: ApplyOptions = {}): Applied {
   checkOptions('applyTransfer', options);
   const { saved, input, finish } = read('applyTransfer', target, options);
-  return atOnce(finish(saved ?? prepare(input)));
+  return atOnce(finish(saved ?? prepareParts(...input)));
 }
 
 /**
@@ -160,7 +151,9 @@ async function prepareInWorker(
   await nextTask();
   signal?.throwIfAborted();
   onProgress?.(0.05, 'transfer');
-  return { ...call, prepared: saved ?? (await prepareParts({ ...input, ...(paints && { paints }) }, { signal })) };
+  const [around, mesh, how] = input;
+  const separatePaint = paints ?? how.separatePaint;
+  return { ...call, prepared: saved ?? (await prepareOffThread(around, mesh, { ...how, separatePaint, signal })) };
 }
 
 /**
@@ -180,7 +173,7 @@ let calls = 0;
 interface Call {
   /** What was prepared earlier. */
   saved: Prepared | undefined;
-  input: PrepareInput;
+  input: [cage: Mesh | undefined, target: Mesh, options: PrepareOptions];
   /** What was prepared, for another call. */
   save(prepared: Prepared): Saved;
   /** Applies what was prepared, as `apply`. */
@@ -199,7 +192,6 @@ function read(fn: string, target: Loaded, options: ApplyOptions): Call {
   const rules = { ...own, locks: withBare(bare, own.locks) };
   const apart = outer && moveApart(outer, extracted);
   const around = apart?.cage ?? outer?.mesh;
-  if (result) checkResult(result, extracted);
   const known = saved && checkSaved(saved, extracted);
   const save = (prepared: Prepared): Saved => ({ key: saved?.key ?? keyOf(extracted, around, rules, cuts), prepared });
   const mended = (prepared: Prepared): Prepared => {
@@ -208,32 +200,21 @@ function read(fn: string, target: Loaded, options: ApplyOptions): Call {
   };
   return {
     saved: known,
-    input: {
-      cage: around,
-      target: apart?.target ?? extracted.mesh,
-      parts: rangesOf(extracted),
-      options: rules,
-      result,
-      cuts,
-      paints: !!options.texture && !options.material,
-    },
+    input: [
+      around,
+      apart?.target ?? extracted.mesh,
+      {
+        ...rules,
+        parts: rangesOf(extracted),
+        borders: options.borders,
+        separatePaint: !!options.texture && !options.material,
+        result,
+      },
+    ],
     save: (prepared) => save(mended(prepared)),
     *finish(prepared) {
       const applied = yield* apply(extracted, mended(prepared), options, { call, cage: outer?.mesh });
       return remember(applied, () => save(prepared));
     },
   };
-}
-
-function checkResult(result: TransferResult, { mesh }: Extracted): void {
-  const [vertices, triangles] = [mesh.positions.length / 3, mesh.indices.length / 3];
-  const lengths = {
-    zones: vertices,
-    cosmeticTriangles: triangles,
-    uvs: 2 * vertices,
-    cornerUvs: result.cornerUvs?.length === 0 ? 0 : 6 * triangles,
-    segments: vertices,
-    segmentStats: result.segmentStats?.length ?? 1,
-  };
-  checkLengths('options.result', result, lengths, '; extract it before vertices are split');
 }

@@ -20,7 +20,7 @@ import {
   type TransferResult,
 } from '../index.js';
 import type { Finding, Inspection, InspectOptions } from '../inspect/index.js';
-import type { Prepared, PrepareInput } from '../parts/prepare.js';
+import type { Prepared, PrepareOptions } from '../parts/prepare.js';
 import { type CallOptions, type WorkerOptions, WorkerQueue } from './queue.js';
 import { spawn } from './spawn.js';
 
@@ -91,9 +91,13 @@ export function presetOptions(preset?: Preset, options: CallOptions = {}): Promi
   return withOptions('presetOptions', [preset], options);
 }
 
-/** What `applyTransferAsync` of `cagecast/three` does in the worker; not meant for others. @internal */
-export function prepareParts(input: PrepareInput, options: CallOptions = {}): Promise<Prepared> {
-  return queue.call('prepareParts', [input], options);
+/** As `prepareParts` of `cagecast/parts`, off the main thread. */
+export function prepareParts(
+  cage: Mesh | undefined,
+  target: Mesh,
+  options: PrepareOptions & CallOptions = {},
+): Promise<Prepared> {
+  return withOptions('prepareParts', [cage, target], options);
 }
 
 /** Ends the worker and frees its memory. Pending calls reject with code `aborted`; the next call starts a new worker. */

@@ -1,6 +1,6 @@
 import { classify, cutBorders, init, presetOptions, project, splitVertices, transfer } from '../index.js';
 import { inspect, suggest } from '../inspect/index.js';
-import { prepare } from '../parts/prepare.js';
+import { prepareParts } from '../parts/prepare.js';
 import { answer } from './answer.js';
 import type { Reply, Request } from './protocol.js';
 
@@ -12,7 +12,7 @@ const functions = {
   splitVertices,
   cutBorders,
   presetOptions,
-  prepareParts: prepare,
+  prepareParts,
   inspect,
   suggest,
 } as Record<string, (...args: unknown[]) => unknown>;

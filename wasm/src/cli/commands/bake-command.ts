@@ -7,7 +7,7 @@ import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError, withName } from '../../gltf/input-error.js';
 import { CagecastError, type CutTarget } from '../../index.js';
 import { percent } from '../../inspect/finding.js';
-import type { Borders } from '../../parts/borders-option.js';
+import type { Borders } from '../../parts/cut-part.js';
 import { decodeImage, encodeLike, encodePng, readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import { refuseOverwriting, writeFiles } from '../io/output.js';

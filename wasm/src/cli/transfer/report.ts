@@ -4,7 +4,7 @@ import type { SegmentStats, TransferResult } from '../../index.js';
 import { vertexAreas } from '../../inspect/geometry.js';
 import type { Finding, Segment, Verdict } from '../../inspect/index.js';
 import { hasArea, segmentsOf } from '../../inspect/segments.js';
-import type { Borders } from '../../parts/borders-option.js';
+import type { Borders } from '../../parts/cut-part.js';
 import type { Region, TransferCommand } from '../model/sources.js';
 import type { PerZone } from '../model/zones.js';
 import { countOf, type RegionRun } from './region.js';

@@ -1,7 +1,7 @@
 import type { Document } from '@gltf-transform/core';
 import { mostTexels } from '../../bake/index.js';
 import type { Mesh, TransferOptions } from '../../index.js';
-import { type Borders, isCut } from '../../parts/borders-option.js';
+import { type Borders, isCut } from '../../parts/cut-part.js';
 import { addTransfer } from '../document/add-transfer.js';
 import { removeOverlays } from '../document/earlier-in-document.js';
 import type { PartsOption } from '../document/extract-document.js';

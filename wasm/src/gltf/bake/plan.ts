@@ -11,12 +11,12 @@ import {
 } from '../../bake/index.js';
 import { kMaxLayers } from '../../bake/pattern.js';
 import { CagecastError, type CutTarget, type TransferResult } from '../../index.js';
-import { blend } from '../../parts/blend.js';
+import { applySplit } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
 import { type AccessorData, decodeFloats } from '../accessors.js';
 import { imageType } from '../image-file.js';
 import { type Piece, requireFinite } from '../pieces.js';
-import { groupMember } from '../primitive-group.js';
+import { preparePiece } from '../primitive-group.js';
 import { layUvs, type UvLayout } from '../uv-layout.js';
 
 /** What of a material a paint goes to: its base colour, its normals, or occlusion, roughness and metalness. */
@@ -332,18 +332,16 @@ export function layoutOf<Material, Texture>(
   { set, transform }: UvLayout,
   { result, cut }: Pick<BakeInput, 'result' | 'cut'>,
 ): Layout {
-  const { split, cosmetic, blends } = groupMember(part, result, cut);
+  const prepared = preparePiece(part, result, cut);
   const stored = uvsOf(model, part, set)!;
   requireFinite(`"${part.name}"`, set, stored, 2);
-  const ofCorners = (values: Float32Array, size: number) => {
-    const all = gather(blend(values, size, blends), size, split.sources);
-    return gather(all, size, split.indices);
-  };
+  const ofCorners = (values: Float32Array, size: number) =>
+    gather(applySplit(values, size, prepared), size, prepared.indices);
   return {
     name: part.name,
     to: ofCorners(layUvs(stored, transform), 2),
-    from: gather(split.uvs, 2, split.indices),
-    painted: cosmetic,
+    from: gather(prepared.uvs, 2, prepared.indices),
+    painted: prepared.cosmeticTriangles,
     positions: ofCorners(part.localPositions, 3),
   };
 }

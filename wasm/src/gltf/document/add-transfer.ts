@@ -12,8 +12,8 @@ import type {
   TypedArray,
 } from '@gltf-transform/core';
 import type { CutTarget, TransferResult } from '../../index.js';
-import { type AttributeArray, blend, blendSkin, ruleOf } from '../../parts/blend.js';
-import { gather } from '../../parts/split-part.js';
+import { type AttributeArray, applySplit, ruleOf, splitSkin } from '../../parts/blend.js';
+import type { PreparedPart } from '../../parts/prepare.js';
 import {
   cosmeticCorners,
   type Finish,
@@ -27,19 +27,12 @@ import {
   zoneAttribute,
 } from '../overlay.js';
 import type { Piece } from '../pieces.js';
-import {
-  type GroupMember,
-  groupMember,
-  type SharedVertices,
-  shareVertices,
-  sparseElements,
-  storedUvs,
-} from '../primitive-group.js';
+import { preparePiece, type SharedVertices, shareVertices, sparseElements, storedUvs } from '../primitive-group.js';
 import { disposeUnused, removeAttributes, removeOverlays } from './earlier-in-document.js';
 import { type DocumentPart, type ExtractedDocument, uvLayoutOf } from './extract-document.js';
 
 /** A part, and what it becomes. */
-interface Member extends GroupMember {
+interface Member extends PreparedPart {
   part: DocumentPart;
   primitive: Primitive;
   /** What shows the texture on it, if anything does. */
@@ -64,7 +57,7 @@ export function addTransfer(
   const overlay = paint && new OverlayWriter(document, paint);
   const members = parts.map(
     (part, p): Member => ({
-      ...groupMember(part, result, cut),
+      ...preparePiece(part, result, cut),
       part,
       primitive: primitiveOf[p]!,
       overlay: baked?.has(part) ? undefined : overlay,
@@ -119,8 +112,8 @@ function addToGroup(document: Document, members: readonly Member[]): void {
     .setExtras({ ...uvsMark });
   const zones = createAccessor(document, shared.zones, 'SCALAR').setSparse(isSparse(shared.zones, 1));
   const uvSet = freeUvSet((semantic) => first.getAttribute(semantic) !== null);
-  members.forEach(({ primitive, part: { node }, cosmetic, overlay }, m) => {
-    const corners = cosmeticCorners(shared.indices[m]!, cosmetic);
+  members.forEach(({ primitive, part: { node }, cosmeticTriangles, overlay }, m) => {
+    const corners = cosmeticCorners(shared.indices[m]!, cosmeticTriangles);
     if (overlay && corners.length > 0)
       node.getMesh()!.addPrimitive(overlay.primitive(primitive, indices(corners), uvs));
     primitive.setAttribute(uvSet, uvs).setAttribute(zoneAttribute, zones);
@@ -137,12 +130,8 @@ function isSparse(values: AttributeArray, size: number): boolean {
  * Adds new vertices, blends and copies, to all attributes and morph targets that primitives share. Accessors that nothing else uses
  * are disposed.
  */
-function remakePrimitives(
-  document: Document,
-  primitives: readonly Primitive[],
-  { sources, blends }: SharedVertices,
-): void {
-  const skin = blendSkin((semantic) => primitives[0]!.getAttribute(semantic)?.getArray() ?? undefined, blends);
+function remakePrimitives(document: Document, primitives: readonly Primitive[], shared: SharedVertices): void {
+  const skin = splitSkin((semantic) => primitives[0]!.getAttribute(semantic)?.getArray() ?? undefined, shared);
   const made = new Map<Accessor, Accessor>();
   /** @param semantic  None of a morph target's. */
   const remake = (accessor: Accessor, semantic?: string): Accessor => {
@@ -151,7 +140,7 @@ function remakePrimitives(
     const [array, size] = [accessor.getArray()!, accessor.getElementSize()];
     const rule = semantic === undefined ? 'mean' : ruleOf(semantic, array, accessor.getNormalized());
     const pulls = semantic === undefined ? undefined : skin.get(semantic);
-    const values = gather(pulls ?? blend(array, size, blends, rule), size, sources);
+    const values = pulls ?? applySplit(array, size, shared, rule);
     const own = accessor.clone().setArray(values);
     if (own.getSparse()) own.setSparse(isSparse(values, size));
     made.set(accessor, own);

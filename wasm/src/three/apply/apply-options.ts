@@ -1,7 +1,7 @@
 import type { Material, Mesh, Texture } from 'three';
 import { optionNames } from '../../api/option-names.js';
 import type { Classification, TransferOptions, TransferResult } from '../../index.js';
-import type { Borders } from '../../parts/borders-option.js';
+import type { Borders } from '../../parts/cut-part.js';
 import type { Prepared } from '../../parts/prepare.js';
 import { checkNames, notA, wrong } from '../errors.js';
 import type { Extracted, Part, PartsOption } from './extract-scene.js';

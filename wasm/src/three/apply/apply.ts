@@ -11,7 +11,8 @@ import {
 import { show } from '../../core/error.js';
 import type { Mesh as CageArrays, Classification } from '../../index.js';
 import { noteOf } from '../../inspect/bare.js';
-import type { PartRange, Prepared } from '../../parts/prepare.js';
+import type { Prepared } from '../../parts/prepare.js';
+import type { PartRange } from '../../parts/split-part.js';
 import { notA, wrong } from '../errors.js';
 import { needsNodePainter } from '../materials/node-paint.js';
 import { removeOverlay, removeOverlays } from '../materials/overlay-mesh.js';
@@ -144,9 +145,9 @@ export function* apply(
     if (mesh && options.texture) removeOverlays(mesh); // They show paint that is covered here.
     if (remades[p]) replace(geometry, remades[p]!);
     else disposeOwn(geometry, [`uv${channel}`, zoneAttribute]); // or the GPU buffers of what is replaced here would be left to the garbage collector
-    const { split } = prepared.parts[p]!;
-    geometry.setAttribute(`uv${channel}`, own(new BufferAttribute(split.uvs.slice(), 2)));
-    geometry.setAttribute(zoneAttribute, own(new BufferAttribute(new Float32Array(split.sources.length), 1)));
+    const { uvs, sources: vertices } = prepared.parts[p]!;
+    geometry.setAttribute(`uv${channel}`, own(new BufferAttribute(uvs.slice(), 2)));
+    geometry.setAttribute(zoneAttribute, own(new BufferAttribute(new Float32Array(vertices.length), 1)));
     paintings.set(geometry, painting);
   });
   const shown = parts.map((part, p): ShownPart => ({ ...prepared.parts[p]!, part, cosmetic: new Uint8Array(0) }));
@@ -188,8 +189,8 @@ class Shown implements Applied, Writer {
 
   constructor({ mesh, leftOut }: Extracted, prepared: Prepared, shown: ShownPart[], display: Display) {
     this.result = prepared.result;
-    this.splitVertices = prepared.parts.reduce((sum, { split }) => sum + split.copies, 0);
-    this.cutTriangles = prepared.cutTriangles ?? 0;
+    this.splitVertices = prepared.parts.reduce((sum, { copies }) => sum + copies, 0);
+    this.cutTriangles = prepared.cutTriangles;
     this.channel = display.channel;
     this.parts = shown.map(({ part }) => part);
     this.leftOut = leftOut;

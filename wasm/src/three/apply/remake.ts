@@ -5,15 +5,7 @@ import {
   type InterleavedBufferAttribute,
   type TypedArray,
 } from 'three';
-import {
-  type AttributeArray,
-  type Blends,
-  blendInto,
-  blendSkin,
-  noBlends,
-  type Rule,
-  ruleOf,
-} from '../../parts/blend.js';
+import { type AttributeArray, applySplit, ruleOf, splitSkin } from '../../parts/blend.js';
 import type { PreparedPart } from '../../parts/prepare.js';
 import { isOfInstances } from './flags.js';
 import { disposeOwn, own } from './own-attributes.js';
@@ -48,22 +40,33 @@ export interface Remade {
  */
 export function* remake(
   geometry: BufferGeometry,
-  { pieces, split }: PreparedPart,
+  part: PreparedPart,
   firstTriangle: number,
 ): Generator<void, Remade | undefined> {
-  const blends = pieces?.blends ?? noBlends;
-  const isCut = blends.sources.length > 0;
-  if (!isCut && split.copies === 0) return undefined;
-  const skin = isCut ? skinOf(geometry, blends) : new Map<string, AttributeArray>();
+  const { cut, copies } = part;
+  if (copies === 0 && !cut?.sources.length) return undefined;
+  const skin = splitSkin((semantic) => {
+    const attribute = geometry.getAttribute(nameOf(semantic)) as Attribute | undefined;
+    return attribute && storedFor(part, attribute);
+  }, part);
   const made = new Map<Attribute, BufferAttribute>();
   const extend = (attribute: Attribute, name: string, isMorph: boolean): BufferAttribute => {
     const given = isMorph ? undefined : skin.get(semanticOf(name));
+    if (given) return likeAttribute(attribute, given as TypedArray);
+    const known = made.get(attribute);
+    if (known) return known;
     // The delta of a direction is not a direction itself.
     const isDelta = isMorph && geometry.morphTargetsRelative;
-    const rule = (values: AttributeArray): Rule =>
-      isDelta ? 'mean' : ruleOf(semanticOf(name), values, attribute.normalized);
-    const extended = made.get(attribute) ?? extendAttribute(attribute, { split, blends, rule, given });
-    if (!given) made.set(attribute, extended);
+    const values = storedFor(part, attribute);
+    const rule = isDelta ? 'mean' : ruleOf(semanticOf(name), values, attribute.normalized);
+    const { itemSize } = attribute;
+    const extended = likeAttribute(
+      attribute,
+      ('isFloat16BufferAttribute' in attribute
+        ? splitHalves(values as Uint16Array, itemSize, part)
+        : applySplit(values, itemSize, part, rule)) as TypedArray,
+    );
+    made.set(attribute, extended);
     return extended;
   };
   const attributes = new Map<string, BufferAttribute>();
@@ -82,8 +85,8 @@ export function* remake(
     morphs.set(name, all);
   }
   // A copy, because three-mesh-bvh reorders the index of a geometry, while what is kept is in the order of the verdicts.
-  const indices = split.indices.slice();
-  return { attributes, morphs, indices, ...movedRanges(geometry, pieces?.origins, firstTriangle) };
+  const indices = part.indices.slice();
+  return { attributes, morphs, indices, ...movedRanges(geometry, cut?.triangles, firstTriangle) };
 }
 
 /** Replaces what a geometry has, and has its GPU buffers made again. */
@@ -104,40 +107,29 @@ export function atOnce<T>(steps: Generator<unknown, T>): T {
 
 const nameOf = (semantic: string): string => Object.keys(semantics).find((name) => semantics[name] === semantic) ?? '';
 
-const skinOf = (geometry: BufferGeometry, blends: Blends): Map<string, AttributeArray> =>
-  blendSkin((semantic) => {
-    const attribute = geometry.getAttribute(nameOf(semantic)) as Attribute | undefined;
-    return attribute && (valuesOf(attribute) as AttributeArray);
-  }, blends);
+/** The number of vertices of a part before it was cut and split. */
+const vertexCount = ({ sources, copies, cut }: PreparedPart): number =>
+  sources.length - copies - (cut?.sources.length ?? 0) / 3;
 
-interface Extension extends Pick<PreparedPart, 'split'> {
-  blends: Blends;
-  rule: (values: AttributeArray) => Rule;
-  /** The values of all vertices but the copies, if they are known. */
-  given: AttributeArray | undefined;
+/** The values of an attribute for the vertices of a part; 0 where it has less of them than there are positions. */
+function storedFor(part: PreparedPart, attribute: Attribute): AttributeArray {
+  const values = valuesOf(attribute) as AttributeArray;
+  const length = attribute.itemSize * vertexCount(part);
+  if (values.length === length) return values;
+  const own = new (values.constructor as new (length: number) => AttributeArray)(length);
+  own.set(values.subarray(0, length));
+  return own;
 }
 
-function extendAttribute(attribute: Attribute, { split, blends, rule, given }: Extension): BufferAttribute {
-  const { sources, copies } = split;
-  const { itemSize } = attribute;
-  const values = given ?? (valuesOf(attribute) as AttributeArray);
-  const whole = sources.length - copies;
-  const own = whole - blends.sources.length / 3;
-  const out = new (values.constructor as new (length: number) => AttributeArray)(itemSize * sources.length);
-  out.set(values.subarray(0, itemSize * (given ? whole : own)));
-  if (!given && whole > own) {
-    if ('isFloat16BufferAttribute' in attribute) blendHalves(out as Uint16Array, itemSize, own, blends);
-    else blendInto(out, own, itemSize, blends, rule(values));
-  }
-  for (let v = whole; v < sources.length; ++v)
-    for (let k = 0; k < itemSize; ++k) out[itemSize * v + k] = out[itemSize * sources[v]! + k]!;
-  return likeAttribute(attribute, out);
-}
-
-function blendHalves(values: Uint16Array, size: number, first: number, blends: Blends): void {
-  const floats = Float32Array.from(values, DataUtils.fromHalfFloat);
-  blendInto(floats, first, size, blends);
-  for (let i = size * first; i < values.length; ++i) values[i] = DataUtils.toHalfFloat(floats[i]!);
+function splitHalves(values: Uint16Array, size: number, part: PreparedPart): Uint16Array {
+  const out = applySplit(values, size, part, 'heaviest');
+  const means = applySplit(Float32Array.from(values, DataUtils.fromHalfFloat), size, part);
+  const own = vertexCount(part);
+  part.sources.forEach((source, v) => {
+    if (source < own) return;
+    for (let i = size * v; i < size * (v + 1); ++i) out[i] = DataUtils.toHalfFloat(means[i]!);
+  });
+  return out;
 }
 
 /** The groups and the draw range of a geometry whose triangles were cut into pieces. */

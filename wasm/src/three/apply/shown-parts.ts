@@ -2,9 +2,8 @@ import { BufferAttribute, type BufferGeometry, type Material, type Mesh } from '
 import { show } from '../../core/error.js';
 import type { Mesh as Arrays, Classification } from '../../index.js';
 import { borderDistances } from '../../parts/border-distance.js';
-import { decideAgain } from '../../parts/cut-part.js';
-import type { PreparedPart } from '../../parts/prepare.js';
-import { paintedVertices, separatePaint, withCopies } from '../../parts/separate-paint.js';
+import { decideAgain, type PreparedPart, withCopies } from '../../parts/prepare.js';
+import { separatePaint, verticesOf } from '../../parts/split-part.js';
 import { wrong } from '../errors.js';
 import { makeOverlay, overlayMaterial, showTriangles } from '../materials/overlay-mesh.js';
 import { paintAttribute } from '../materials/paint-shader.js';
@@ -24,9 +23,9 @@ export interface ShownPart extends PreparedPart {
 }
 
 /** The geometry of a part as it is now: three-vrm, for example, replaces those whose morph targets it combines. */
-function geometryOf({ part, split }: ShownPart): BufferGeometry {
+function geometryOf({ part, sources }: ShownPart): BufferGeometry {
   const geometry = part.mesh?.geometry ?? part.geometry;
-  const [found, count] = [geometry.getAttribute('position').count, split.sources.length];
+  const [found, count] = [geometry.getAttribute('position').count, sources.length];
   if (found !== count)
     throw wrong(`the geometry of ${show(part.name)} has ${found} vertices, it had ${count}; transfer again`);
   return geometry;
@@ -39,16 +38,9 @@ export function writeZones(
   isOther: Uint8Array,
   indices: Arrays['indices'],
 ): void {
-  const { part, pieces, split } = shown;
-  const { firstVertex, vertexCount, firstTriangle, triangleCount } = part;
-  const { zones, cosmeticTriangles } = pieces
-    ? decideAgain(pieces, part, indices, isOther, now)
-    : {
-        zones: now.zones.subarray(firstVertex, firstVertex + vertexCount),
-        cosmeticTriangles: now.cosmeticTriangles.slice(firstTriangle, firstTriangle + triangleCount),
-      };
+  const { zones, cosmeticTriangles } = decideAgain(shown, shown.part, indices, isOther, now);
   const attribute = geometryOf(shown).getAttribute(zoneAttribute) as BufferAttribute;
-  split.sources.forEach((source, v) => (attribute.array[v] = zones[source]!));
+  attribute.array.set(zones);
   attribute.needsUpdate = true;
   shown.cosmetic = cosmeticTriangles;
 }
@@ -58,18 +50,18 @@ export function writePaint(parts: readonly ShownPart[], reach: number, diagonal:
   for (const shown of parts) splitAtPaint(shown);
   const distances = reach > 0 ? distancesOf(parts, reach * diagonal) : undefined;
   parts.forEach((shown, p) => {
-    const { split, cosmetic } = shown;
+    const { uvs, indices, cosmetic } = shown;
     const geometry = geometryOf(shown);
-    const count = split.sources.length;
-    const isPainted = paintedVertices(split.indices, cosmetic, count);
+    const count = shown.sources.length;
+    const isPainted = verticesOf(indices, cosmetic, count);
     const known = geometry.getAttribute(paintAttribute) as BufferAttribute | undefined;
     // One that came with the model's file may be laid out in another way.
     const isOwn = known?.isBufferAttribute && known.array.length === 4 * count && known.array instanceof Float32Array;
     const attribute = isOwn ? known : own(new BufferAttribute(new Float32Array(4 * count), 4));
     const values = attribute.array;
     for (let v = 0; v < count; ++v) {
-      values[4 * v] = split.uvs[2 * v]!;
-      values[4 * v + 1] = split.uvs[2 * v + 1]!;
+      values[4 * v] = uvs[2 * v]!;
+      values[4 * v + 1] = uvs[2 * v + 1]!;
       values[4 * v + 2] = 1 - isPainted[v]!;
       values[4 * v + 3] = 2 + (distances ? distances[p]![v]! / diagonal : 0);
     }
@@ -80,40 +72,38 @@ export function writePaint(parts: readonly ShownPart[], reach: number, diagonal:
 
 /** Splits vertices of a part where another classification needs it. */
 function splitAtPaint(shown: ShownPart): void {
-  const { split, cosmetic } = shown;
-  const count = split.sources.length;
-  const copies = separatePaint(split.indices, cosmetic, count);
+  const copies = separatePaint(shown.indices, shown.cosmetic, shown.sources.length);
   if (!copies) return;
   const geometry = geometryOf(shown);
-  const known = { ...split, sources: Uint32Array.from({ length: count }, (_, v) => v), copies: 0 };
-  const remade = atOnce(remake(geometry, { pieces: undefined, split: withCopies(known, copies) }, 0));
+  const known = { ...shown, sources: Uint32Array.from(shown.sources.keys()), copies: 0, cut: undefined };
+  const remade = atOnce(remake(geometry, withCopies(known, copies), 0));
   if (remade) replace(geometry, remade);
   noteChange(geometry);
-  shown.split = withCopies(split, copies);
+  Object.assign(shown, withCopies(shown, copies));
 }
 
 function distancesOf(parts: readonly ShownPart[], reach: number): Float32Array[] {
   const firsts: number[] = [];
   let vertices = 0;
   let corners = 0;
-  for (const { split } of parts) {
+  for (const { sources, indices } of parts) {
     firsts.push(vertices);
-    vertices += split.sources.length;
-    corners += split.indices.length;
+    vertices += sources.length;
+    corners += indices.length;
   }
   const positions = new Float32Array(3 * vertices);
   const indices = new Uint32Array(corners);
   const cosmetic = new Uint8Array(corners / 3);
   let corner = 0;
   parts.forEach((shown, p) => {
-    const { part, split } = shown;
-    const range = { mesh: undefined, firstVertex: firsts[p]!, vertexCount: split.sources.length };
+    const { part, sources } = shown;
+    const range = { mesh: undefined, firstVertex: firsts[p]!, vertexCount: sources.length };
     placePositions({ geometry: geometryOf(shown), matrix: part.matrix, ...range }, positions);
     cosmetic.set(shown.cosmetic, corner / 3);
-    for (const vertex of split.indices) indices[corner++] = firsts[p]! + vertex;
+    for (const vertex of shown.indices) indices[corner++] = firsts[p]! + vertex;
   });
   const all = borderDistances(positions, indices, cosmetic, reach);
-  return parts.map(({ split }, p) => all.subarray(firsts[p]!, firsts[p]! + split.sources.length));
+  return parts.map(({ sources }, p) => all.subarray(firsts[p]!, firsts[p]! + sources.length));
 }
 
 /** Shows the given material on the painted triangles of a part. */
@@ -121,7 +111,7 @@ export function showMaterial(shown: ShownPart, material: Material): void {
   const { mesh } = shown.part;
   if (!mesh) return;
   shown.overlay ??= makeOverlay(shown.part, mesh, material);
-  showTriangles(shown.overlay, mesh, shown.split.indices, shown.cosmetic);
+  showTriangles(shown.overlay, mesh, shown.indices, shown.cosmetic);
 }
 
 /**
@@ -150,7 +140,7 @@ export function showPaint(
   }
   if (shown.overlay) {
     const triangles = needsOverlay ? blindTriangles(shown, isBlind) : new Uint8Array(0);
-    showTriangles(shown.overlay, mesh, shown.split.indices, triangles);
+    showTriangles(shown.overlay, mesh, shown.indices, triangles);
   }
   const isPainted = hasPaint.map((has, m) => has && !isBlind[m]);
   if (!isPainted.includes(true)) return [];

@@ -17,8 +17,6 @@ const kNoLayer = 31;
  */
 export class Overlay {
   readonly #primitives: PrimitiveOverlay[];
-  /** Number of vertices of the target. */
-  readonly #vertexCount: number;
   readonly #highlights: Record<Highlighted, Highlight>;
   #version = 0;
 
@@ -27,7 +25,6 @@ export class Overlay {
    * @param paint In the cage's UVs, with premultiplied alpha; it may be a render target's texture.
    */
   constructor(target: ExtractedMesh, projection: SplitProjection, paint: Texture | undefined) {
-    this.#vertexCount = target.positions.length / 3;
     this.#highlights = {
       parts: new Highlight(target, '#22d3ff', 0.5, 0.35),
       bare: new Highlight(target, '#d81b60', 0.55),
@@ -62,7 +59,7 @@ export class Overlay {
     const pace = new Pace();
     for (const primitive of this.#primitives) {
       if (call !== this.#version) return;
-      primitive.setCut(cut, this.#vertexCount);
+      primitive.setCut(cut);
       await pace.rest();
     }
   }

@@ -96,17 +96,15 @@ export class PrimitiveOverlay {
     this.#clearColored();
   }
 
-  /** Shows the filtered paint on the cut target. @param vertexCount Of the whole target before cutting. */
-  setCut(cut: CutTarget, vertexCount: number): void {
+  /** Shows the filtered paint on the cut target. */
+  setCut(cut: CutTarget): void {
     const { mesh } = this.#primitive;
     const geometry = shareVertices(mesh.geometry);
     geometry.morphAttributes = { ...geometry.morphAttributes }; // a copy, as `cutGeometry` replaces entries
-    const { pieces, split } = cutGeometry(geometry, this.#primitive, cut, vertexCount);
-    geometry.setAttribute(kUvName, new BufferAttribute(split.uvs, 2));
-    const { cosmeticTriangles, zones } = pieces.result;
-    const triangleZones = zonesOfTriangles(cosmeticTriangles, zones, pieces.geometry.localIndices);
-    geometry.setIndex(new BufferAttribute(new Uint32Array(split.indices.length), 1));
-    sortByZone(geometry, split.indices, triangleZones);
+    const { uvs, indices, zones, cosmeticTriangles } = cutGeometry(geometry, this.#primitive, cut);
+    geometry.setAttribute(kUvName, new BufferAttribute(uvs, 2));
+    geometry.setIndex(new BufferAttribute(new Uint32Array(indices.length), 1));
+    sortByZone(geometry, indices, zonesOfTriangles(cosmeticTriangles, zones, indices));
     detachShared(geometry, mesh.geometry);
     this.clearCut();
     this.#cut = overlayMesh(mesh, geometry);
