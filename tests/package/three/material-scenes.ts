@@ -31,8 +31,11 @@ import {
   RawShaderMaterial,
   Raycaster,
   RedFormat,
+  RepeatWrapping,
   ShaderMaterial,
   type SkinnedMesh,
+  SRGBColorSpace,
+  Texture,
   Vector3,
 } from 'three';
 import { clone } from 'three/addons/utils/SkeletonUtils.js';
@@ -308,6 +311,42 @@ export const materialScenes: Scenes = {
       return [red(model), red(clone(model))];
     });
     ok(counts[0]! > 100 && new Set(counts).size === 1, counts);
+  },
+
+  async 'images that are black where they are transparent have no dark fringes, near or far, nor once they change'() {
+    const striped = async (color: string, side = 128) => {
+      const canvas = new OffscreenCanvas(side, side);
+      const context = canvas.getContext('2d')!;
+      context.fillStyle = color;
+      for (let x = 0; x < side; x += 16) context.fillRect(x + 3, 0, 7, side);
+      const options = { premultiplyAlpha: 'none', colorSpaceConversion: 'none' } as const;
+      return createImageBitmap(await canvas.convertToBlob(), options);
+    };
+    for (const far of [1, 6]) {
+      const texture = new Texture(await striped('#ff0000'));
+      Object.assign(texture, { flipY: false, colorSpace: SRGBColorSpace, needsUpdate: true });
+      texture.repeat.setScalar(far);
+      texture.wrapS = texture.wrapT = RepeatWrapping;
+      const material = new MeshBasicMaterial({ color: 0xff0000 });
+      const model = modelOf(material);
+      const applied = applyTransfer(model, { cage: cage(), texture });
+      const { textures } = renderer.info.memory;
+      const darkest = (channel: number) => {
+        const { pixels } = draw(model);
+        const own = pixels.filter((_, at) => at % 4 === channel && pixels[at - channel + ((channel + 1) % 3)]! < 30);
+        ok(own.length > 800, own.length);
+        return Math.min(...own);
+      };
+      ok(darkest(0) > 250, `red ${darkest(0)}, ${far} times`);
+      material.color.set(0x00ff00);
+      texture.image = await striped('#00ff00', 64);
+      texture.needsUpdate = true;
+      ok(darkest(1) > 250, `green ${darkest(1)}, ${far} times`);
+      equal(texture.image.width, 64, 'the texture');
+      texture.dispose();
+      applied.dispose();
+      equal(renderer.info.memory.textures <= textures, true, 'textures');
+    }
   },
 
   'a soft border fades inside the painted zone'() {

@@ -1,5 +1,6 @@
 import { Matrix3, type Texture, type WebGLProgramParametersWithUniforms } from 'three';
 import { checkColorSpace } from '../color-space.js';
+import { withoutFringes } from './fringes.js';
 
 type Shader = Pick<WebGLProgramParametersWithUniforms, 'vertexShader' | 'fragmentShader' | 'uniforms'>;
 
@@ -80,7 +81,7 @@ export const paintUniforms = (): PaintUniforms => ({
 
 /** Makes the uniforms of a material show a paint, or none. The matrix goes on following the paint by `refreshMatrix`. */
 export function setUniforms({ cagecastMap, cagecastMatrix }: PaintUniforms, paint: Paint | undefined): void {
-  cagecastMap.value = paint?.texture ?? null;
+  cagecastMap.value = paint?.texture ? withoutFringes(paint.texture) : null;
   cagecastMatrix.value = paint?.texture ? paint.matrix : kNoPaint;
 }
 

@@ -17,6 +17,8 @@ export interface Painting extends Paint {
   meshes: ReadonlySet<ThreeMesh>;
   /** What its materials call for each mesh. One function for all of them, which engines call faster than one for each. */
   refresh: Material['onBeforeRender'];
+  /** The uniforms of its materials. */
+  uniforms: Set<PaintUniforms>;
 }
 
 let paintingCount = 0;
@@ -25,17 +27,22 @@ let paintingCount = 0;
 const kCopy = `cagecast ${Math.random()}`;
 
 /** Makes a painting that is brought up to date once in each frame. */
-export function makePainting(paint: Omit<Painting, 'refresh' | 'number'>): Painting {
-  let [last, lastFrame]: [unknown, number] = [undefined, -1];
+export function makePainting(paint: Omit<Painting, 'refresh' | 'number' | 'uniforms'>): Painting {
+  let [last, lastFrame, lastVersion]: [unknown, number, number | undefined] = [undefined, -1, undefined];
   const painting: Painting = {
     ...paint,
     number: ++paintingCount,
+    uniforms: new Set(),
     refresh(renderer) {
       const { frame } = renderer.info.render;
       if (frame === lastFrame && renderer === last) return;
       last = renderer;
       lastFrame = frame;
       refreshMatrix(painting);
+      const version = painting.texture?.version;
+      if (version === lastVersion) return;
+      lastVersion = version;
+      for (const uniforms of painting.uniforms) setUniforms(uniforms, painting);
     },
   };
   return painting;
@@ -128,7 +135,9 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
   // Somebody has replaced or wrapped the hook that was given, or none was given yet.
   if (material.onBeforeCompile !== record.given.onBeforeCompile) unpaint(material, record.painting);
   const isPatched = record.painting;
+  record.painting?.uniforms.delete(record.uniforms);
   record.painting = painting;
+  painting.uniforms.add(record.uniforms);
   setUniforms(record.uniforms, painting);
   const reading = readingOf(painting);
   if (isPatched) {
@@ -178,6 +187,7 @@ function shownOn(material: Material): ShownPaint | undefined {
   if (!record?.painting) return undefined;
   record.hasNodes = true;
   refreshMatrix(record.painting);
+  setUniforms(record.uniforms, record.painting);
   const { cagecastMap, cagecastMatrix } = record.uniforms;
   return { texture: cagecastMap.value, matrix: cagecastMatrix.value };
 }
@@ -193,6 +203,7 @@ function readingOf({ texture }: Paint): string {
 export function unpaint(material: Material, painting: Painting | undefined): void {
   const record = patches.get(material);
   if (!record || record.painting !== painting) return;
+  painting?.uniforms.delete(record.uniforms);
   record.painting = undefined;
   setUniforms(record.uniforms, undefined);
   for (const name of kHooks) {
