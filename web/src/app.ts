@@ -5,6 +5,7 @@ import { Explain } from './explain/explain-tool';
 import { ExportPanel } from './export/export-panel';
 import { exportedPaint } from './export/linked-layers';
 import { followLinks } from './export/links';
+import { Drawings } from './loading/drawn/drawings';
 import { loaderFor } from './loading/load-model';
 import { makeChecker } from './loading/load-paint';
 import { Opener } from './loading/opener';
@@ -120,7 +121,7 @@ setUpSectionNav();
 setUpStageButtons(viewer?.controls, history);
 const live = new Live(session, viewer);
 recordControls(session, live, history);
-const opener = new Opener(session, stack, edits, loader);
+const opener = new Opener(session, stack, edits, loader, new Drawings());
 const { png: exportPng, layers } = exportedPaint(session, stack, edits, opener, png);
 const wardrobe =
   viewer &&

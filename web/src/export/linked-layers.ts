@@ -22,7 +22,7 @@ export function exportedPaint(
   /** The name of a layer's paint in links; undefined for the user's own. */
   const nameOf = ({ sheet }: Layer): string | undefined => {
     if (sheet === session.checker) return kChecker;
-    const name = paintName(sheet.picture ?? '');
+    const name = (sheet as Paint).drawn ?? paintName(sheet.picture ?? '');
     return opener.has(name) ? name : undefined;
   };
   let requests = 0;

@@ -3,11 +3,13 @@ import { element, showError } from '../platform/page';
 import type { Locks } from '../state/choices';
 import type { Intake } from '../state/intake';
 import { madeOf, sampleOf } from '../state/made-cages';
-import type { Loader, Model } from '../state/model';
+import { asCage, type Loader, type Model } from '../state/model';
 import { type Paint, titleOf } from '../state/paint';
+import { haveSameUvs } from '../state/same-uvs';
 import { kChecker, type Sample, type Samples } from '../state/sample';
 import type { Requested, Shown } from '../state/scene';
 import { kReading, type Session } from '../state/session';
+import type { Drawings } from './drawn/drawings';
 import { setUpFiles } from './files';
 import { loadPaint } from './load-paint';
 import { type Choice, offerPaints } from './paint-picker';
@@ -22,6 +24,7 @@ export class Opener implements Samples {
   readonly #edits: Edits;
   readonly #select = element('sample-select', HTMLSelectElement);
   readonly #loader: Loader;
+  readonly #drawings: Drawings;
   /** Whether what was dropped on the page is for somebody else, who takes it. */
   takesDrop: (files: readonly File[]) => boolean = () => false;
   #samples: Sample[] = [];
@@ -35,8 +38,10 @@ export class Opener implements Samples {
   /** Puts the user's own files aside, or a cage made for them, before a sample takes their place. */
   onReplace: (() => void) | undefined;
 
-  constructor(session: Session, stack: LayerStack, edits: Edits, loader: Loader) {
+  constructor(session: Session, stack: LayerStack, edits: Edits, loader: Loader, drawings: Drawings) {
     this.#session = session;
+    this.#drawings = drawings;
+    session.paintFor = (cage) => this.#paintFor(cage);
     this.#stack = stack;
     this.#edits = edits;
     this.#loader = loader;
@@ -101,13 +106,15 @@ export class Opener implements Samples {
   /** Loads a paint of any sample. @param name By `paintName`. @returns Undefined if there is none. */
   async paint(name: string): Promise<Paint | undefined> {
     if (name === kChecker) return this.#session.checker;
+    const drawn = this.#drawings.find(name);
+    if (drawn) return this.#drawings.draw(drawn, this.#session.shown!.cage);
     const found = this.find(name);
     return found && this.#fetchPaint(found.sample, found.paint);
   }
 
   /** Whether there is a paint of that name, by `paintName`. */
   has(name: string): boolean {
-    return name === kChecker || this.find(name) !== undefined;
+    return name === kChecker || this.#drawings.find(name) !== undefined || this.find(name) !== undefined;
   }
 
   /** A sample's paint by `paintName`. */
@@ -119,6 +126,17 @@ export class Opener implements Samples {
 
   async #fetchPaint(sample: Sample, paint: Sample['paints'][number] | undefined): Promise<Paint> {
     return paint ? { ...(await loadPaint(await fetchFile(paint.file), paint.file)), sample } : this.#session.checker;
+  }
+
+  /** The paint of a cage that comes without one: as the base is drawn, or drawn afresh if that was made for another cage. */
+  async #paintFor(loading: Promise<Model>): Promise<Paint> {
+    const { shown, checker } = this.#session;
+    const cage = asCage(await loading);
+    const base = this.#stack.base?.sheet as Paint | undefined;
+    const isMade = base && (base.sample ?? base.drawn ?? (base as Paint) === checker);
+    if (!shown || (base && !isMade) || haveSameUvs(shown.cage, cage)) return shown?.paint ?? checker;
+    const drawn = this.#drawings.find(base?.drawn ?? '') ?? this.#drawings.firstFor(cage);
+    return this.#drawings.draw(drawn, cage).catch(() => checker);
   }
 
   /** Opens the user's own files. */
@@ -163,7 +181,7 @@ export class Opener implements Samples {
     const others = leftOut.length > 0 ? ` Left out: ${leftOut.join(', ')}.` : '';
     element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.${others}`;
     this.#describeOrigin({ target, cage });
-    this.#offerPaints({ cage });
+    void this.#offerPaints({ cage });
   }
 
   /** Says which of the models still belongs to a sample. */
@@ -203,7 +221,7 @@ export class Opener implements Samples {
       done();
     } catch (error) {
       if (isRequested) this.#session.fail(error);
-      this.#offerPaints(this.#session.shown!);
+      void this.#offerPaints(this.#session.shown!);
     }
   }
 
@@ -213,23 +231,33 @@ export class Opener implements Samples {
       act(await loading);
     } catch (error) {
       showError((error as Error).message);
-      this.#offerPaints(this.#session.shown!);
+      void this.#offerPaints(this.#session.shown!);
     }
   }
 
   /** Lists the base paints: the sample's, and the checker. */
-  #offerPaints({ cage }: Pick<Shown, 'cage'>): void {
+  async #offerPaints({ cage }: Pick<Shown, 'cage'>): Promise<void> {
     const { checker } = this.#session;
     const sample = sampleOf(cage);
-    const choices: (Choice & { load(): Promise<Paint> })[] = [
+    const drawn = this.#drawings.listFor(cage);
+    const pictures = await this.#drawings.pictures(cage).catch(() => []);
+    if (this.#session.shown?.cage !== cage) return;
+    const choices: (Choice & { drawn?: string; load(): Promise<Paint> })[] = [
       ...(sample?.paints ?? []).map((paint) => ({
         title: paint.title,
         picture: paint.file,
         load: () => this.#fetchPaint(sample!, paint),
       })),
+      ...drawn.flatMap((paint, i) => {
+        const [title, picture] = [paint.title, pictures[i]];
+        return picture ? [{ title, picture, drawn: paint.name, load: () => this.#drawings.draw(paint, cage) }] : [];
+      }),
       { title: checker.name, picture: checker.picture, load: async () => checker },
     ];
-    const chosen = choices.findIndex(({ picture }) => picture === this.#stack.base?.sheet.picture);
+    const base = this.#stack.base?.sheet as Paint | undefined;
+    const chosen = choices.findIndex(({ picture, drawn }) =>
+      drawn ? drawn === base?.drawn : picture === base?.picture,
+    );
     offerPaints(choices, chosen, {
       onChoose: (index) => this.#choose(choices[index]!.load()),
       onAdd: (index) =>

@@ -16,11 +16,11 @@ export function followPaints(session: Session, stack: LayerStack, edits: Edits):
     const base = stack.base?.sheet as Paint | undefined;
     const isSame = last !== undefined && haveSameUvs(last, cage);
     last = cage;
-    // A sample's paint does not fit another cage's UVs: show the checker instead.
-    if (base?.sample && base.sample !== cage.sample && !isSame) setBase(checker);
+    // What was made for a cage does not fit another one's UVs: until there is another, the checker is shown.
+    if ((base?.drawn || (base?.sample && base.sample !== cage.sample)) && !isSame) setBase(checker);
   });
   session.on('paint', (paint) => {
-    if (paint === checker || paint.sample) return setBase(paint);
+    if (paint === checker || paint.sample || paint.drawn) return setBase(paint);
     edits.do(`adding ${titleOf(paint)}`, () => {
       stack.add(titleOf(paint), paint);
       // The checker was only a placeholder.

@@ -12,6 +12,8 @@ export interface Paint {
   file?: File;
   /** The sample it belongs to; undefined for the user's own and the checker. */
   sample?: Sample;
+  /** Its name among the paints that are drawn for any cage; undefined for all others. */
+  drawn?: string;
 }
 
 /** The title of a paint in lists. */

@@ -75,6 +75,8 @@ interface SessionEvents {
 export class Session extends Emitter<SessionEvents> {
   /** The paint of models without a paint of their own. */
   readonly checker: Paint;
+  /** Gives the paint of a cage that is requested without one; undefined for the one that there is. */
+  paintFor: ((cage: Promise<Model>) => Promise<Paint> | undefined) | undefined;
   readonly #transferer: Transferer;
   readonly #requests = new Requests(() => this.#shown);
   #shown: Shown | undefined;
@@ -145,8 +147,9 @@ export class Session extends Emitter<SessionEvents> {
    */
   request(change: Requested, locks: Locks = {}, together = false): void {
     if (!change.target && !change.cage) this.#abortRest();
-    const paint = this.requested.paint ? {} : { paint: Promise.resolve(this.checker) };
-    this.#requests.add({ ...paint, ...change }, locks, together);
+    const made = change.cage && !change.paint ? this.paintFor?.(change.cage) : undefined;
+    const paint = made ?? (this.requested.paint ? undefined : Promise.resolve(this.checker));
+    this.#requests.add({ ...(paint && { paint }), ...change }, locks, together);
     void this.#run();
   }
 

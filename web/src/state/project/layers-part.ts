@@ -72,16 +72,17 @@ export function layersPart({ session, stack, edits, away, samples, painter, imag
       const packed = state instanceof File ? undefined : () => images.pack(bytes());
       return { size, file: keep(state, packed) };
     }
-    const { file, sample, picture } = sheet as Paint;
+    const { file, sample, picture, drawn } = sheet as Paint;
     if (!file) return { paint: kChecker };
-    return { file: keep(file), ...(sample && { paint: images.nameOf(picture) }) };
+    return { file: keep(file), ...(sample && { paint: images.nameOf(picture) }), ...(drawn && { drawn }) };
   };
   const readSheet = async (saved: unknown, files: Files): Promise<Sheet | Paint> => {
-    const { size, file, paint } = objectOf(saved, 'paint');
+    const { size, file, paint, drawn } = objectOf(saved, 'paint');
     if (paint === kChecker) return session.checker;
     if (size === undefined) {
       const known = typeof paint === 'string' ? samples.find(paint) : undefined;
       const loaded = await images.load(files(file), known?.paint.file);
+      if (typeof drawn === 'string') return { ...loaded, drawn };
       return known ? { ...loaded, sample: known.sample } : loaded;
     }
     if (!painter) throw new Error('paintings need WebGL, which is not available in this browser');
