@@ -122,6 +122,7 @@ setUpStageButtons(viewer?.controls, history);
 const live = new Live(session, viewer);
 recordControls(session, live, history);
 const opener = new Opener(session, stack, edits, loader, new Drawings());
+opener.cageFor = (target) => maker.cageFor(target);
 const { png: exportPng, layers } = exportedPaint(session, stack, edits, opener, png);
 const wardrobe =
   viewer &&

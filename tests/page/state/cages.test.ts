@@ -67,7 +67,7 @@ test('a cage is made for the model, fitted to it, moved, and turned; the page kn
   await maker.make();
   await page.ready();
   assert.deepEqual([page.shown[1], maker.isMade, maker.isFresh], ['a-cage.glb', true, true]);
-  assert.match(page.notes.note, /^A cage of 4 triangles was made\. The UV checker shows/);
+  assert.match(page.notes.note, /^A cage of 4 triangles was made\. Save it/);
   await maker.flip([1]);
   await page.ready();
   assert.deepEqual([...session.shown!.cage.mesh.indices.subarray(3, 6)], [0, 3, 1]);

@@ -3,7 +3,7 @@ import { element, showError } from '../platform/page';
 import type { Locks } from '../state/choices';
 import type { Intake } from '../state/intake';
 import { madeOf, sampleOf } from '../state/made-cages';
-import { asCage, type Loader, type Model } from '../state/model';
+import { asCage, asTarget, type Loader, type Model, ownCage } from '../state/model';
 import { type Paint, titleOf } from '../state/paint';
 import { haveSameUvs } from '../state/same-uvs';
 import { kChecker, type Sample, type Samples } from '../state/sample';
@@ -33,6 +33,8 @@ export class Opener implements Samples {
   /** The base paint that was chosen last. */
   #chosen: Promise<Paint> | undefined;
 
+  /** Gives a cage to a model that was opened alone. */
+  cageFor: ((target: Model) => Promise<Model>) | undefined;
   /** Opens a saved project. */
   onProject: ((file: File) => void) | undefined;
   /** Puts the user's own files aside, or a cage made for them, before a sample takes their place. */
@@ -158,6 +160,7 @@ export class Opener implements Samples {
       requested.target = pair.then(([larger]) => larger!);
       requested.cage = pair.then(([, smaller]) => smaller!);
     }
+    if (requested.target && !requested.cage) requested.cage = this.#cageOf(requested.target);
     if (texture) requested.paint = loadPaint(texture);
     if (texture && !target && !cage && !one && this.#session.isMakingCage) {
       void this.#use(requested.paint!, (paint) => this.#session.reportPaint(paint));
@@ -165,6 +168,23 @@ export class Opener implements Samples {
     }
     this.#warnings = warnings;
     this.#session.request(requested);
+  }
+
+  /** The cage of a target that was opened alone: its own, one that the user has opened before, or one that is fitted or made. */
+  async #cageOf(loading: Promise<Model>): Promise<Model> {
+    const before = this.#session.requested.cage?.catch(() => undefined);
+    const target = asTarget(await loading);
+    const own = ownCage(target);
+    if (own) return own;
+    const last = await before;
+    if (last && !last.sample && !madeOf(last.files[0]!)) return last;
+    try {
+      if (this.cageFor) return await this.cageFor(target);
+    } catch (error) {
+      if (!last) throw error;
+      showError((error as Error).message);
+    }
+    return last!;
   }
 
   #describe({ target, cage }: Shown): void {

@@ -61,6 +61,9 @@ export class CageMaker extends Emitter<{
   choices: ((model: CageModel) => { options: MakeOptions; marks?: Uint8Array }) | undefined;
   /** What the last fit that was asked for here came to. */
   latest: Fitting | undefined;
+  /** Cages that nobody has asked for. */
+  readonly #unasked = new WeakSet<File>();
+  #opening: AbortController | undefined;
 
   constructor(workshop: Workshop) {
     super();
@@ -68,6 +71,7 @@ export class CageMaker extends Emitter<{
     this.#workshop = workshop;
     this.#session = session;
     let shown: { target?: Model; cage?: Model } = {};
+    session.on('progress', ({ state }) => void (state !== 'working' && this.#opening?.abort()));
     session.on('transfer', ({ target, cage }) => {
       if (target !== shown.target) this.emit('template', likelyTemplate(target.mesh.positions));
       shown = { target, cage };
@@ -77,6 +81,8 @@ export class CageMaker extends Emitter<{
     // Of a good cage, nobody needs to know what was not found.
     session.on('inspected', ({ verdict, findings }) => {
       if (findings.some(({ code }) => code === 'cageBackward')) void this.#turnBack();
+      // It was a guess what the model is.
+      else if (verdict === 'unfit' && this.#unasked.delete(session.shown!.cage.files[0]!)) void this.make();
       const missing = (verdict !== 'good' && madeOf(session.shown!.cage.files[0]!)?.fitting?.missing) || [];
       const names = missing.map(readable).join(', ');
       this.emit('notes', { missing: names && `Landmarks that were not found: ${names}.` });
@@ -118,6 +124,40 @@ export class CageMaker extends Emitter<{
    */
   fit(template: TemplateName, given: Landmarks = {}): Promise<void> {
     return this.#run('Fitting a template', (context) => this.#fit(context, template, given));
+  }
+
+  /**
+   * The cage of a model that is opened alone: the template that it likely needs, or if too little is found to fit that by, one that is
+   * made for it. Another call, or the end of the request, ends it.
+   * @throws Error that names the model.
+   */
+  async cageFor(target: Model): Promise<Model> {
+    const abort = new AbortController();
+    this.#opening?.abort();
+    this.#opening = abort;
+    const report = (share: number, step: string): void =>
+      this.#session.reportLoading(kStages[step] ?? 'Fitting a cage', share);
+    const options = { signal: abort.signal, onProgress: report };
+    try {
+      const engine = await this.#workshop.engine();
+      const model = await withBaseColors(cageModel(target.loaded), target.loaded);
+      const context = { engine, model, options };
+      const fitted = await this.#fit(context, likelyTemplate(target.mesh.positions), {}).catch((error) => {
+        abort.signal.throwIfAborted();
+        if (error.code !== 'badModel') throw error;
+        return undefined;
+      });
+      const isFit = fitted?.fitting && fitted.fitting.guessed.length === 0;
+      const { cage, ...how } = isFit ? fitted : await this.#make(context);
+      const file = new File([engine.cageGlb({ ...cage, origin: originOf(target) })], cageNameFrom(target.name));
+      noteMade(file, { target: target.files[0]!, ...how, fitting: how.fitting });
+      this.#unasked.add(file);
+      return await this.#workshop.loader.load(file);
+    } catch (error) {
+      throw new Error(`${target.name}: ${reasonOf(error)}`, { cause: error });
+    } finally {
+      if (this.#opening === abort) this.#opening = undefined;
+    }
   }
 
   /** Moves, turns and scales the current cage onto the target, and bends it where it is inside. */
@@ -219,18 +259,14 @@ export class CageMaker extends Emitter<{
     }
   }
 
-  async #make({ engine, model, options }: Context): Promise<Result> {
+  async #make({ engine, model, options }: Omit<Context, 'old'>): Promise<Result> {
     const { options: chosen, marks: parts } = this.choices?.(model) ?? {};
     const { bare } = this.#session;
     // What was marked on the model is not painted, whatever is chosen for its part.
     const marks = bare && parts ? parts.map((mark, t) => mark | bare[t]!) : (bare ?? parts);
     const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
-    const { paint } = this.#session.shown!;
-    const next =
-      paint.file && !paint.sample
-        ? 'Save it with the paint that you draw for it.'
-        : 'The UV checker shows where paint lands; it goes away with the first paint.';
-    return { cage, note: `A cage of ${cage.indices.length / 3} triangles was made. ${next}`, isNew: true };
+    const note = `A cage of ${cage.indices.length / 3} triangles was made. Save it with the paint that you draw for it.`;
+    return { cage, note, isNew: true };
   }
 
   async #move({ engine, model, old, options }: Context): Promise<Result> {
@@ -250,7 +286,7 @@ export class CageMaker extends Emitter<{
     return { cage: { ...cage, uvs: old.uvs }, note: 'The cage was moved into place. Save it if it is right.' };
   }
 
-  async #fit({ engine, model, options }: Context, name: TemplateName, given: Landmarks): Promise<Result> {
+  async #fit({ engine, model, options }: Omit<Context, 'old'>, name: TemplateName, given: Landmarks): Promise<Result> {
     const { cage, ...found } = await engine.fitCage(await engine.loadTemplate(name), model, given, options);
     const note =
       found.guessed.length > 0

@@ -1,5 +1,6 @@
 import { type Edits, Emitter, type Layer, type LayerStack, maxLayers, type Sheet } from 'cagecast/three/paint';
 import type { Model } from './model';
+import type { Paint } from './paint';
 import { haveSameUvs } from './same-uvs';
 import type { Scene } from './scene';
 import type { Session } from './session';
@@ -42,7 +43,7 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
   /** The paint that was put away last, if the current target is the one that it was drawn on, and nothing is drawn since. */
   get earlier(): EarlierPaint | undefined {
     const { layers } = this.#stack;
-    const isBare = layers.every(({ sheet }) => sheet === this.#session.checker);
+    const isBare = layers.every((layer) => this.#isGiven(layer));
     return isBare && this.#earlier?.target === this.#last?.target ? this.#earlier : undefined;
   }
 
@@ -51,7 +52,7 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
     const carried = this.#earlier?.layers ?? [];
     this.#edits.do('carrying the paint over', () => {
       this.#stack.add(name, sheet);
-      this.#restyleChecker(false);
+      this.#showGiven(false);
     });
     this.#earlier = undefined;
     this.show(this.#away.filter(({ id }) => carried.every((layer) => layer.id !== id)));
@@ -74,14 +75,19 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
     const room = Math.max(1, maxLayers - this.#stack.layers.length);
     this.#edits.do('bringing layers back', () => {
       this.#stack.change([], (own.length > 0 ? own : all).slice(0, room));
-      this.#restyleChecker(false);
+      this.#showGiven(false);
     });
     this.show(this.layers);
   }
 
-  #restyleChecker(visible: boolean): void {
+  #showGiven(visible: boolean): void {
     const { base } = this.#stack;
-    if (base?.sheet === this.#session.checker) this.#stack.restyle(base, { visible });
+    if (base && this.#isGiven(base)) this.#stack.restyle(base, { visible });
+  }
+
+  /** Whether a layer is what a cage is painted with until there is something else. */
+  #isGiven({ sheet }: Layer): boolean {
+    return sheet === this.#session.checker || (sheet as Sheet & Partial<Paint>).drawn !== undefined;
   }
 
   #onCage(now: Pick<Scene, 'target' | 'cage'>): void {
@@ -89,13 +95,13 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
     this.#last = now;
     if (!before || haveSameUvs(before.cage, now.cage)) return;
     this.#edits.cancel(); // a stroke in progress is of the cage before
-    const shown = this.#stack.layers.filter(({ visible, sheet }) => visible && sheet !== this.#session.checker);
+    const shown = this.#stack.layers.filter((layer) => layer.visible && !this.#isGiven(layer));
     if (shown.length > 0) this.#earlier = { layers: shown, cage: before.cage.mesh, target: before.target };
     if (this.#earlier && haveSameUvs({ mesh: this.#earlier.cage }, now.cage)) this.#earlier = undefined;
     const old = this.#stack.layers.filter(({ id }) => id !== this.#stack.base?.id);
     // Nothing else is to be seen now.
     if (old.length === 0) {
-      this.#restyleChecker(true);
+      this.#showGiven(true);
       this.emit('change', undefined);
       return;
     }
@@ -103,7 +109,7 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
     const kept = [...this.layers, ...old].slice(-maxLayers);
     this.#edits.do('putting layers away', () => {
       for (const { id } of old) this.#stack.remove(id);
-      this.#restyleChecker(true);
+      this.#showGiven(true);
     });
     this.show(kept);
   }

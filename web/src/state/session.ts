@@ -147,9 +147,9 @@ export class Session extends Emitter<SessionEvents> {
    */
   request(change: Requested, locks: Locks = {}, together = false): void {
     if (!change.target && !change.cage) this.#abortRest();
-    const made = change.cage && !change.paint ? this.paintFor?.(change.cage) : undefined;
-    const paint = made ?? (this.requested.paint ? undefined : Promise.resolve(this.checker));
-    this.#requests.add({ ...(paint && { paint }), ...change }, locks, together);
+    const { cage, paint = cage && this.paintFor?.(cage) } = change;
+    const { paint: before = Promise.resolve(this.checker) } = this.requested;
+    this.#requests.add({ ...change, paint: paint ?? before }, locks, together);
     void this.#run();
   }
 
@@ -281,6 +281,11 @@ export class Session extends Emitter<SessionEvents> {
     this.#requests.abort(...kSlots);
     this.#abortRules();
     this.emit('progress', this.#shown ? { state: 'ready' } : { state: 'waiting', missing: ['target', 'cage'] });
+  }
+
+  /** Says what is being done for the files that were requested, and how far that is: 0..1. */
+  reportLoading(stage: string, share: number): void {
+    if (this.#working && !this.#work) this.#report(stage, 0.3 * share);
   }
 
   /**
