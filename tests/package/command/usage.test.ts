@@ -83,6 +83,7 @@ const wrong: [line: string, message: RegExp][] = [
   ['bake target.glb cage.glb paint.png --normal paint.png -o out.png', /--normal and --orm need an OUT\.glb/],
   ['bake target.glb cage.glb paint.png --back -o out.png', /--back takes TARGET and CAGE only/],
   ['bake target.glb cage.glb paint.png --part only -o out.glb', /--part is for a PNG; for a GLB, use --exclude/],
+  ['bake target.glb cage.glb paint.png --atlas 9000 -o out.glb', /not a whole number of texels within 64\.\.8192/],
   ['bake target.glb cage.glb paint.png --size 0 -o out.png', /not a whole number of texels within 1\.\./],
   ['make', /missing required argument 'TARGET'|required option/],
   ['make target.glb', /required option '-o, --output <CAGE\.glb>' not specified/],

@@ -9,7 +9,7 @@ import { uvLayoutOf } from '../uv-layout.js';
 import { type BakeModel, type Slot, type TextureUse, wrapOf } from './plan.js';
 
 /** Extensions that give a texture another image than its own `source`. */
-const sourceExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
+export const sourceExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
 
 /** The image of a texture. */
 function sourceOf({ source, extensions }: GLTF.ITexture): number | undefined {
