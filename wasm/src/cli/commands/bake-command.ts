@@ -19,6 +19,7 @@ import { resolveSettings } from '../model/settings.js';
 import type { Sources } from '../model/sources.js';
 import { configLine, quoted, takenAway } from '../model/text.js';
 import { allFilesReadBy } from '../transfer/files-read.js';
+import { missingLine } from '../transfer/report-parts.js';
 import { cutTarget, type Run, runTransfer } from '../transfer/run-transfer.js';
 import { listNames, paintForModel, paintOfModel } from './bake-picture.js';
 import * as common from './common-flags.js';
@@ -176,8 +177,21 @@ async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefin
   const { data, lines, atlas } = await withAtlas(writer.finish(), command, codec);
   return {
     data,
-    lines: [...summary(output, report), ...lines, overlays > 0 && takenAway(overlays), configLine(config)],
-    report: { output, ...report, ...(atlas && { atlas }), replacedOverlays: overlays, config: config ?? null },
+    lines: [
+      ...summary(output, report),
+      ...lines,
+      missingLine(file.missing),
+      overlays > 0 && takenAway(overlays),
+      configLine(config),
+    ],
+    report: {
+      output,
+      ...report,
+      ...(file.missing && { missing: file.missing }),
+      ...(atlas && { atlas }),
+      replacedOverlays: overlays,
+      config: config ?? null,
+    },
   };
 }
 

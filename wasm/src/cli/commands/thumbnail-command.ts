@@ -2,6 +2,7 @@ import { type Command, InvalidArgumentError } from 'commander';
 import { isColor, kLargest, kSize, kSmallest, type Thumbnail, thumbnailOf } from '../../glb/thumbnail/thumbnail.js';
 import { type Angles, type ViewName, views } from '../../glb/thumbnail/views.js';
 import { firstLine, InputError, withName } from '../../gltf/input-error.js';
+import type { GltfFile } from '../../gltf/open-gltf.js';
 import type { Mesh } from '../../index.js';
 import { moved } from '../../parts/origin.js';
 import { standard } from '../io/files.js';
@@ -16,6 +17,7 @@ import { resolveSettings } from '../model/settings.js';
 import type { Line } from '../model/text.js';
 import { readModel } from '../transfer/models.js';
 import { allBut } from '../transfer/read-target.js';
+import { missingLine } from '../transfer/report-parts.js';
 import { filledFor, placeholderFault } from './batch-jobs.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
@@ -30,7 +32,10 @@ interface ThumbnailFlags extends common.ReadFlags, common.PrintFlags {
 }
 
 /** A picture that was made of a model, or why there is none. */
-type Made = { model: string; output: string } & (Omit<Thumbnail, 'data'> | { error: string });
+type Made = { model: string; output: string } & (Omit<Drawn, 'data'> | { error: string });
+
+/** A picture, and what of the model was missing. */
+type Drawn = Thumbnail & Pick<GltfFile, 'missing'>;
 
 /** JPEG has no transparency: what is behind the model, unless a colour is given. */
 const kWhite = '#ffffff';
@@ -147,14 +152,14 @@ async function readCage(path: string, reading: ReadOptions, io: Io): Promise<Mes
 }
 
 /** Draws a model. @throws {InputError} that names the file. */
-async function draw(model: string, flags: ThumbnailFlags, cage: Mesh | undefined): Promise<Thumbnail> {
+async function draw(model: string, flags: ThumbnailFlags, cage: Mesh | undefined): Promise<Drawn> {
   const { output, size, view, part, ignore = [] } = flags;
   const background = flags.background ?? (/\.jpe?g$/i.test(output) ? kWhite : undefined);
   const file = await readGltf(model, common.readingOf(flags));
   const { ignored } = resolveSettings([{ settings: { ignore } }]).rules;
   const options = { size, view, parts: part, cage, background, decode: decodeImage };
   try {
-    return await thumbnailOf(file, options, allBut(ignored));
+    return { ...(await thumbnailOf(file, options, allBut(ignored))), ...(file.missing && { missing: file.missing }) };
   } catch (error) {
     throw error instanceof InputError && error.message.startsWith(model) ? error : withName(error, model);
   }
@@ -162,10 +167,11 @@ async function draw(model: string, flags: ThumbnailFlags, cage: Mesh | undefined
 
 function linesOf(one: Made): Line[] {
   if ('error' in one) return [one.error];
-  const { model, output, width, height, framed, undecoded } = one;
+  const { model, output, width, height, framed, undecoded, missing } = one;
   const name = output === standard ? '' : `wrote ${output}: `;
   return [
     `${name}${width} × ${height}, of ${model}${framed === 'model' ? '' : `, its ${framed}`}`,
+    missingLine(missing),
     ...undecoded.map((reason) => `not shown: the texture ${reason}`),
   ];
 }
