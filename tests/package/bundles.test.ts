@@ -54,6 +54,7 @@ const kPages: [what: string, most: number, script: string][] = [
   ['bake', 6500, "import { bake } from 'cagecast/bake'; console.log(bake);"],
   ['cagecast of cagecast/gltf', 127_000, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
   ['paintGlb', 188_000, "import { paintGlb } from 'cagecast/glb'; console.log(paintGlb);"],
+  ['thumbnail', 42_000, "import { thumbnail } from 'cagecast/glb'; console.log(thumbnail);"],
   ['makeCage', 3000, "import { makeCage } from 'cagecast/cages'; console.log(makeCage);"],
 ];
 

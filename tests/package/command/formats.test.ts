@@ -133,8 +133,18 @@ test('an OBJ has the materials of its MTL, with the bytes of the images beside i
   assert.deepEqual(Buffer.from(bin.subarray(byteOffset, byteOffset + byteLength)), image);
   assert.equal(json.materials![0]!.name, 'skin');
   write('bare.obj', `mtllib none.mtl\n${obj}`);
-  await ok('transfer bare.obj --cage cage.glb -o bare.glb');
+  assert.match(await ok('transfer bare.obj --cage cage.glb -o bare.glb'), /\nmissing: "none\.mtl": it was not found\n/);
   assert.equal(unpackGlb(readFileSync('bare.glb')).json.images, undefined);
+  write('lost.mtl', 'newmtl skin\nKd 1 1 1\nmap_Kd C:\\models\\lost.png\nmap_Bump skin.tga\n');
+  write('skin.tga', new Uint8Array(30));
+  write('lost.obj', `mtllib lost.mtl\n${obj}`);
+  const said = 'missing: "C:/models/lost.png": it was not found, "skin.tga": it is no PNG, JPEG or WebP image\n';
+  for (const command of ['transfer lost.obj --cage cage.glb -o lost.glb', 'thumbnail lost.obj -o lost.png'])
+    assert.ok((await ok(command)).includes(`\n${said}`), command);
+  assert.equal(unpackGlb(readFileSync('lost.glb')).json.images, undefined);
+  const missing: string[][] = [];
+  await toGlb(readFileSync('lost.obj'), { onMissing: (...one) => void missing.push(one) });
+  assert.deepEqual(missing, [['lost.mtl', 'it was not found']]);
 });
 
 test('skins and morph targets of an FBX are kept, by their names', async () => {

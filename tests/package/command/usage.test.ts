@@ -29,7 +29,7 @@ test('without a command it shows its help and exits 2', async () => {
 
 test('every command has --json and --quiet', async () => {
   const names = await commands();
-  assert.deepEqual(names, ['transfer', 'inspect', 'bake', 'relay', 'make', 'fit', 'batch', 'diff']);
+  assert.deepEqual(names, ['transfer', 'inspect', 'bake', 'relay', 'make', 'fit', 'batch', 'diff', 'thumbnail']);
   for (const name of names) assert.match(await ok(`help ${name}`), /--json .*\n +--quiet /, name);
 });
 
@@ -83,6 +83,7 @@ const wrong: [line: string, message: RegExp][] = [
   ['bake target.glb cage.glb paint.png --normal paint.png -o out.png', /--normal and --orm need an OUT\.glb/],
   ['bake target.glb cage.glb paint.png --back -o out.png', /--back takes TARGET and CAGE only/],
   ['bake target.glb cage.glb paint.png --part only -o out.glb', /--part is for a PNG; for a GLB, use --exclude/],
+  ['bake target.glb cage.glb paint.png --atlas 9000 -o out.glb', /not a whole number of texels within 64\.\.8192/],
   ['bake target.glb cage.glb paint.png --size 0 -o out.png', /not a whole number of texels within 1\.\./],
   ['make', /missing required argument 'TARGET'|required option/],
   ['make target.glb', /required option '-o, --output <CAGE\.glb>' not specified/],
@@ -108,6 +109,15 @@ const wrong: [line: string, message: RegExp][] = [
   [`${batch} -o {foo}.glb`, /\{foo\} is unknown; paths may hold \{name\} and \{dir\}/],
   [`${batch} --report {name}{stem}.json`, /\{stem\} is unknown/],
   [`${batch} --texture p.<UDIM>.png --uv-bounds 0,0,1,1 -o {name}.glb`, /cannot be given with a texture of <UDIM>/],
+  ['thumbnail', /missing required argument 'MODELS'|required option/],
+  ['thumbnail target.glb -o out.gif', /must end in \.png or \.jpg or \.jpeg or \.webp/],
+  ['thumbnail target.glb --size 8 -o out.png', /not a whole number of pixels within 16\.\.2048/],
+  ['thumbnail target.glb --view up -o out.png', /It is neither front, back.* nor two angles such as 30,15/],
+  ['thumbnail target.glb --view 30,100 -o out.png', /nor two angles/],
+  ['thumbnail target.glb --background red -o out.png', /It is not a colour such as #ffffff/],
+  ['thumbnail target.glb --part a --cage cage.glb -o out.png', /--part and --cage both say what fills the picture/],
+  ['thumbnail target.glb cage.glb -o out.png', /out\.png is written for several models; use \{name\} or \{dir\}/],
+  ['thumbnail target.glb -o {foo}.png', /\{foo\} is unknown/],
   ['diff - -', /only one file can be the standard input/],
   ['diff a.json b.json --tolerance 2', /not a number within 0\.\.1/],
 ];

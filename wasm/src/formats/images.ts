@@ -1,6 +1,10 @@
 import { ImageLoader } from 'three';
+import { imageType } from '../gltf/image-file.js';
 
-/** What stands for an image, in place of an element of a page: its bytes, if they were found. */
+/** Why a file beside a model is missing. */
+export const kNotFound = 'it was not found';
+
+/** What stands for an image, in place of an element of a page: its bytes, if it was found and a GLB can hold it. */
 export interface ImageBytes {
   bytes: Uint8Array | undefined;
 }
@@ -10,10 +14,12 @@ export interface ImageBytes {
  * they do at once: only so long three's own way is replaced.
  * @param read  Reads a file beside the model.
  * @param parse  Calls the loader, before it first waits for anything.
+ * @param onMissing  Called for each image that there is not, or that a GLB cannot hold.
  */
 export async function withFiles<Scene>(
   read: (name: string) => Promise<Uint8Array | undefined>,
   parse: () => Promise<Scene>,
+  onMissing: (name: string, reason: string) => void,
 ): Promise<Scene> {
   const { load } = ImageLoader.prototype;
   const { warn } = console;
@@ -26,7 +32,11 @@ export async function withFiles<Scene>(
       readImage(read, url)
         .catch(() => undefined)
         .then((bytes) => {
-          image.bytes = bytes;
+          const type = bytes && imageType(bytes);
+          if (!bytes) onMissing(nameOf(url), kNotFound);
+          else if (type === undefined || type === 'image/ktx2')
+            onMissing(nameOf(url), 'it is no PNG, JPEG or WebP image');
+          else image.bytes = bytes;
           onLoad?.(image as unknown as HTMLImageElement);
         }),
     );
@@ -47,12 +57,18 @@ export async function withFiles<Scene>(
   return done;
 }
 
+/** The name of an image as it stands in the model, with slashes. */
+const nameOf = (url: string): string => (isInside(url) ? 'an image in it' : url.replaceAll('\\', '/'));
+
+/** Whether an image is within the model. */
+const isInside = (url: string): boolean => /^(blob|data):/.test(url);
+
 async function readImage(
   read: (name: string) => Promise<Uint8Array | undefined>,
   url: string,
 ): Promise<Uint8Array | undefined> {
-  if (/^(blob|data):/.test(url)) return new Uint8Array(await (await fetch(url)).arrayBuffer());
-  const name = url.replaceAll('\\', '/');
+  if (isInside(url)) return new Uint8Array(await (await fetch(url)).arrayBuffer());
+  const name = nameOf(url);
   // Of a path on the computer where the model was made, at least the file's name may hold.
   return (await read(name)) ?? read(name.split('/').at(-1)!);
 }

@@ -78,7 +78,7 @@ export class MaterialWriter {
   #texture(texture: Texture | null | undefined): GLTF.ITextureInfo | undefined {
     const bytes = (texture?.image as ImageBytes | undefined)?.bytes;
     const type = bytes && imageType(bytes);
-    if (!texture || !bytes || !type || type === 'image/ktx2') return undefined;
+    if (!texture || !bytes || !type) return undefined;
     let source = this.#images.get(bytes);
     source ??= (this.#json.images ??= []).push({ bufferView: this.#addView(bytes), mimeType: type }) - 1;
     this.#images.set(bytes, source);

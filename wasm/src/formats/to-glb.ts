@@ -3,7 +3,7 @@ import { Group, Mesh, MeshStandardMaterial } from 'three';
 import { show } from '../core/error.js';
 import { type Format, fileKind } from '../gltf/kinds.js';
 import { CagecastError } from '../index.js';
-import { withFiles } from './images.js';
+import { kNotFound, withFiles } from './images.js';
 import { sceneGlb } from './scene-glb.js';
 
 /** Reads a file beside a model. */
@@ -14,9 +14,16 @@ export interface Companions {
    * @param name  As it stands in the model, with slashes.
    */
   read?: ((name: string) => Promise<Uint8Array | undefined>) | undefined;
+  /**
+   * Called for each file that the model names, but that the GLB goes without: it was not found, or is an image that glTF does not have.
+   * Default: nothing is said.
+   * @param reason  For people: "it was not found".
+   */
+  onMissing?: ((name: string, reason: string) => void) | undefined;
 }
 
-type Read = NonNullable<Companions['read']>;
+/** What the readers of the formats call. */
+type Beside = Required<{ [Name in keyof Companions]: NonNullable<Companions[Name]> }>;
 
 /**
  * Makes a GLB of a model in another format: FBX 7 or newer, OBJ with its MTL, PLY, STL, USDZ or USD, as three.js reads it.
@@ -35,7 +42,10 @@ type Read = NonNullable<Companions['read']>;
  *
  * const glb = await toGlb(await readFile('head.obj'), { read: (name) => readFile(`models/${name}`).catch(() => undefined) });
  */
-export async function toGlb(bytes: Uint8Array, { read = async () => undefined }: Companions = {}): Promise<Uint8Array> {
+export async function toGlb(
+  bytes: Uint8Array,
+  { read = async () => undefined, onMissing = () => {} }: Companions = {},
+): Promise<Uint8Array> {
   const wrong = (text: string, cause?: unknown) =>
     new CagecastError('badArgument', 'toGlb', text, { argument: 'bytes', cause });
   if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`);
@@ -43,8 +53,13 @@ export async function toGlb(bytes: Uint8Array, { read = async () => undefined }:
   if (kind?.format === undefined)
     throw wrong(kind ? `is ${kind.name}; ${kind.advice}` : 'is neither FBX, OBJ, PLY, STL nor USDZ');
   let glb: Uint8Array | undefined;
+  const told = new Set<string>();
+  const tellOnce: typeof onMissing = (name, reason) => {
+    if (!told.has(name)) onMissing(name, reason);
+    told.add(name);
+  };
   try {
-    glb = await sceneGlb(await readers[kind.format](bytes, read));
+    glb = await sceneGlb(await readers[kind.format](bytes, { read, onMissing: tellOnce }));
   } catch (error) {
     throw wrong(`is ${kind.name}, but cannot be read (${(error as Error).message.split('\n', 1)[0]})`, error);
   }
@@ -56,25 +71,31 @@ const bufferOf = (bytes: Uint8Array): ArrayBuffer => Uint8Array.from(bytes).buff
 const textOf = (bytes: Uint8Array): string => new TextDecoder().decode(bytes);
 
 /** What reads each format. */
-const readers: Record<Format, (bytes: Uint8Array, read: Read) => Promise<Object3D>> = {
-  async fbx(bytes, read) {
+const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Object3D>> = {
+  async fbx(bytes, { read, onMissing }) {
     const { FBXLoader } = await import('three/addons/loaders/FBXLoader.js');
-    return withFiles(read, async () => new FBXLoader().parse(bufferOf(bytes), ''));
+    return withFiles(read, async () => new FBXLoader().parse(bufferOf(bytes), ''), onMissing);
   },
-  async obj(bytes, read) {
+  async obj(bytes, { read, onMissing }) {
     const [{ OBJLoader }, { MTLLoader }] = await Promise.all([
       import('three/addons/loaders/OBJLoader.js'),
       import('three/addons/loaders/MTLLoader.js'),
     ]);
     const text = textOf(bytes);
     const libraries = [...text.matchAll(/^\s*mtllib\s+(.+?)\s*$/gm)].map(([, name]) => name!);
-    const found = await Promise.all(libraries.map((name) => read(name.replaceAll('\\', '/'))));
+    const names = libraries.map((name) => name.replaceAll('\\', '/'));
+    const found = await Promise.all(names.map(read));
+    for (const [i, library] of found.entries()) if (!library) onMissing(names[i]!, kNotFound);
     const materials = found.flatMap((library) => (library ? [textOf(library)] : [])).join('\n');
-    return withFiles(read, async () => {
-      const creator = new MTLLoader().parse(materials, '');
-      creator.preload();
-      return new OBJLoader().setMaterials(creator).parse(text);
-    });
+    return withFiles(
+      read,
+      async () => {
+        const creator = new MTLLoader().parse(materials, '');
+        creator.preload();
+        return new OBJLoader().setMaterials(creator).parse(text);
+      },
+      onMissing,
+    );
   },
   async ply(bytes) {
     const { PLYLoader } = await import('three/addons/loaders/PLYLoader.js');
@@ -86,11 +107,12 @@ const readers: Record<Format, (bytes: Uint8Array, read: Read) => Promise<Object3
     // Its normals are those of the triangles, which glTF has without them.
     return meshOf(new STLLoader().parse(bufferOf(bytes)).deleteAttribute('normal'));
   },
-  async usd(bytes, read) {
+  async usd(bytes, { read, onMissing }) {
     const { USDLoader } = await import('three/addons/loaders/USDLoader.js');
     return withFiles(
       read,
       () => new Promise<Group>((resolve, reject) => new USDLoader().parse(bufferOf(bytes), '', resolve, reject)),
+      onMissing,
     );
   },
 };

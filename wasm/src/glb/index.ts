@@ -1,5 +1,8 @@
 /**
- * A model file in, the painted file out: what `cagecast transfer` does, as one function for Node, pages and edge functions.
+ * A model file in, the painted file or a picture out: what `cagecast transfer` and `cagecast thumbnail` do, as functions for Node, pages and
+ * edge functions.
  * @module cagecast/glb
  */
 export { type PaintedGlb, type PaintOptions, paintGlb } from './paint-glb.js';
+export { type Thumbnail, type ThumbnailOptions, thumbnail } from './thumbnail/thumbnail.js';
+export type { Angles, ViewName } from './thumbnail/views.js';

@@ -1,6 +1,6 @@
 import { show } from '../core/error.js';
 import { InputError } from '../gltf/input-error.js';
-import { partsNamed, type ReadModel } from '../gltf/read-model.js';
+import { type Named, partsNamed, type ReadModel } from '../gltf/read-model.js';
 import type { Lock, Locks } from '../index.js';
 import { withBare } from '../parts/drawn.js';
 import type { PartPatterns } from './part-patterns.js';
@@ -23,12 +23,13 @@ export function locksOf(model: ReadModel, bare: readonly number[], patterns: Par
   return withBare(bare, Object.keys(groups).length > 0 ? { groups } : undefined);
 }
 
-function partsOf(model: ReadModel, lock: string, pattern: string): number[] {
+/** The numbers of the parts that a pattern names. @param option  Where it stands. @throws {InputError} if it names none. */
+export function partsOf(model: Named, option: string, pattern: string): number[] {
   const found = typeof pattern === 'string' ? partsNamed(pattern, model) : [];
   if (found.length > 0) return found;
   const names = [...new Set(model.extracted.parts.flatMap(({ aliases }) => aliases))];
   const more = names.length > kMaxNames ? ` and ${names.length - kMaxNames} more` : '';
   throw new InputError(
-    `${lock}: nothing is named ${show(pattern)}; there are ${names.slice(0, kMaxNames).join(', ')}${more}`,
+    `${option}: nothing is named ${show(pattern)}; there are ${names.slice(0, kMaxNames).join(', ')}${more}`,
   );
 }

@@ -41,7 +41,8 @@ export function templateOf({ json, path }: GltfFile, { mesh, parts }: Extracted)
   return readTemplate({ positions, indices, uvs: uvs! }, sources, (text) => new InputError(text).in(path));
 }
 
-function skeletonOf(file: GltfFile, { parts, origin }: Pick<Extracted, 'parts' | 'origin'>) {
+/** The joints of a file, and which holds each vertex of parts, in their order. */
+export function skeletonOf(file: GltfFile, { parts, origin }: Pick<Extracted, 'parts' | 'origin'>) {
   const { nodes = [], extensions } = file.json;
   const parents = parentsOf(nodes);
   const bones = vrmBones(extensions as VrmExtensions | undefined);

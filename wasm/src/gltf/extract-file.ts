@@ -101,6 +101,34 @@ export function extract(
   });
 }
 
+/** What a viewer draws of a scene: parts as `extract` places them, overlays among them, and what was subtracted from their places. */
+export interface Drawn extends Pick<Extracted, 'origin'> {
+  /** In the order of the file, so that overlays come after what they lie on. */
+  parts: Part[];
+  /** Those of the parts that are overlays. */
+  overlays: ReadonlySet<Part>;
+}
+
+/**
+ * Collects what is drawn of a glTF's default scene: the parts that `extract` takes, and their overlays.
+ * @param whichCount  As of `extract`.
+ * @throws {InputError} as `extract`
+ */
+export function extractDrawn(file: GltfFile, whichCount?: Exclude<WhichCount, 'cage'>): Drawn {
+  return naming(file.path, () => {
+    const all = listParts(file, true);
+    const isOver = (part: Part) => isOverlay(primitiveOf(file, part), file.json);
+    const [overlays, own] = [all.filter(isOver), all.filter((part) => !isOver(part))];
+    const fail = (text: string) => new InputError(text);
+    const chosen = new Set(chooseParts(own, looksOf(file), whichCount?.(own, file), fail).parts);
+    const nodes = new Set([...chosen].map(({ node }) => node));
+    const shown = new Set(overlays.filter(({ node }) => nodes.has(node)));
+    const parts = all.filter((part) => chosen.has(part) || shown.has(part));
+    renumber(parts);
+    return { parts, overlays: shown, origin: moveTo(parts, 'own') };
+  });
+}
+
 /** Returns what tells whether a part is drawn. */
 function looksOf({ json }: GltfFile): (part: Part) => Look {
   const { meshes = [], nodes = [], materials = [] } = json;
@@ -172,7 +200,7 @@ export function morphedParts(file: GltfFile, parts: readonly Part[], positions: 
 const ofPart = (positions: Float32Array, firstVertex: number, vertexCount: number) =>
   positions.subarray(3 * firstVertex, 3 * (firstVertex + vertexCount));
 
-function listParts(file: GltfFile): Part[] {
+function listParts(file: GltfFile, withOverlays = false): Part[] {
   const { meshes = [], nodes = [], materials = [] } = file.json;
   const parts: Part[] = [];
   // An explicit stack: a chain of nodes may be longer than JavaScript's call stack.
@@ -187,7 +215,7 @@ function listParts(file: GltfFile): Part[] {
     if (instances !== undefined) matrix = multiply(matrix, instanceOf(file, `nodes[${node}]`, instances.attributes));
     const meshDef = meshes[nodeDef.mesh]!;
     meshDef.primitives.forEach((primitive, p) => {
-      if (isOverlay(primitive, file.json)) return;
+      if (!withOverlays && isOverlay(primitive, file.json)) return;
       const ref = { mesh: nodeDef.mesh!, primitive: p };
       const accessor = accessorOf(file, ref, 'POSITION');
       if (accessor === undefined) return;

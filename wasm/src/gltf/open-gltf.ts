@@ -17,6 +17,8 @@ export interface GltfFile {
   buffers: (Uint8Array | undefined)[];
   /** The accessors, in the file's order, decompressed and decoded. */
   accessors: AccessorData[];
+  /** What was named in a file of another format, but is missing, for people. */
+  missing?: readonly string[];
   /** Reads what it refers to. @throws {InputError} that begins with `name`. */
   readUri(name: string, uri: string): Promise<Uint8Array>;
 }

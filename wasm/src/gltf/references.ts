@@ -4,7 +4,7 @@ import { instancing } from './instancing.js';
 import { isOfTransfer, isOverlay } from './overlay.js';
 
 /** Where the number of an accessor or of a view stands: a key of an object. */
-type Visit = (owner: Record<string, number>, key: string) => void;
+export type Visit = (owner: Record<string, number>, key: string) => void;
 
 /** Visits all references to accessors that this package knows. */
 export function eachAccessor({ meshes, skins, animations, nodes }: GLTF.IGLTF, visit: Visit): void {
@@ -108,4 +108,41 @@ export function drop<Element>(
   list.splice(0, list.length, ...kept.map((element) => before[element]!));
   kept.forEach((element, to) => (places[element] = to));
   each((owner, key) => (owner[key] = places[owner[key]!]!));
+}
+
+/** Visits all references from the materials of a glTF and their extensions to textures. */
+export function eachTexture({ materials }: GLTF.IGLTF, visit: Visit): void {
+  const stack: unknown[] = [...(materials ?? [])];
+  for (let value = stack.pop(); value !== undefined; value = stack.pop()) {
+    if (typeof value !== 'object' || value === null) continue;
+    if (Number.isInteger((value as { index?: unknown }).index)) visit(value as Record<string, number>, 'index');
+    for (const [key, child] of Object.entries(value)) if (key !== 'extras') stack.push(child ?? 0);
+  }
+}
+
+/** Visits all references to images: of textures and their extensions, and the thumbnail of VRM 1. */
+export function eachImage({ textures, extensions }: GLTF.IGLTF, visit: Visit): void {
+  const meta = (extensions?.['VRMC_vrm'] as { meta?: Record<string, number> } | undefined)?.meta;
+  if (Number.isInteger(meta?.['thumbnailImage'])) visit(meta!, 'thumbnailImage');
+  for (const texture of textures ?? [])
+    for (const owner of [texture, ...Object.values(texture.extensions ?? {})] as Record<string, number>[])
+      if (Number.isInteger(owner['source'])) visit(owner, 'source');
+}
+
+/** Visits all references to materials: of primitives, and of the expressions of VRM 1. */
+export function eachMaterial(json: GLTF.IGLTF, visit: Visit): void {
+  for (const primitive of (json.meshes ?? []).flatMap(({ primitives }) => primitives))
+    if (primitive.material !== undefined) visit(primitive as unknown as Record<string, number>, 'material');
+  for (const bind of materialBinds(json)) visit(bind, 'material');
+}
+
+/** What the expressions of VRM 1 do to materials. */
+export function materialBinds({ extensions }: GLTF.IGLTF): Record<string, number>[] {
+  type Expression = Record<'materialColorBinds' | 'textureTransformBinds', Record<string, number>[] | undefined>;
+  const { expressions } = (extensions?.['VRMC_vrm'] ?? {}) as {
+    expressions?: Record<'preset' | 'custom', Record<string, Expression> | undefined>;
+  };
+  return [expressions?.preset, expressions?.custom]
+    .flatMap((list) => Object.values(list ?? {}))
+    .flatMap((one) => [...(one.materialColorBinds ?? []), ...(one.textureTransformBinds ?? [])]);
 }

@@ -10,7 +10,7 @@ const kMaxLines = { 'README.md': 150, 'CONTRIBUTING.md': 150 };
 const kWords = {
   'rims?': 'boundary loop',
   'vote[sr]?|voters|voting': 'interior samples',
-  'atlas(es)?': 'UV charts',
+  'UV atlas(es)?': 'UV charts', // an atlas is a texture of several materials
   'sunk\\w*Area': 'depthWeightedArea',
   copyOf: 'twinOf',
   'bared\\w*': 'hole contents',

@@ -1,21 +1,25 @@
 import type { Command } from 'commander';
 import { type Baked, type Image, mostTexels } from '../../bake/index.js';
+import { type AtlasReport, packTextures } from '../../gltf/bake/atlas.js';
 import { FileModel } from '../../gltf/bake/bake-file.js';
-import { type BakeReport, bakeModel, type Paints } from '../../gltf/bake/plan.js';
+import { type BakeReport, bakeModel, type ImageCodec, type Paints } from '../../gltf/bake/plan.js';
 import { removeOverlays } from '../../gltf/earlier-in-file.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError, withName } from '../../gltf/input-error.js';
 import { CagecastError, type CutTarget } from '../../index.js';
 import { percent } from '../../inspect/finding.js';
+import { grouped } from '../../inspect/geometry.js';
 import type { Borders } from '../../parts/cut-part.js';
 import { decodeImage, encodeLike, encodePng, readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import { refuseOverwriting, writeFiles } from '../io/output.js';
+import { readGltf } from '../io/read-gltf.js';
 import { UsageError } from '../model/failures.js';
 import { resolveSettings } from '../model/settings.js';
 import type { Sources } from '../model/sources.js';
 import { configLine, quoted, takenAway } from '../model/text.js';
 import { allFilesReadBy } from '../transfer/files-read.js';
+import { missingLine } from '../transfer/report-parts.js';
 import { cutTarget, type Run, runTransfer } from '../transfer/run-transfer.js';
 import { listNames, paintForModel, paintOfModel } from './bake-picture.js';
 import * as common from './common-flags.js';
@@ -32,6 +36,8 @@ interface BakeFlags extends common.SettingFlags, common.ReadFlags, common.PrintF
   /** Names of the parts whose texture is meant, for a PNG; none for all. */
   part?: string[];
   size?: number;
+  /** Whether the textures are packed; into one of so many texels, if a number. */
+  atlas?: true | number;
 }
 
 /** The arguments of `cagecast bake`. */
@@ -40,10 +46,16 @@ interface BakeCommand extends Sources, Omit<BakeFlags, keyof common.SettingFlags
   borders: Borders;
 }
 
+/** The fewest texels of packed textures. */
+const kLeastAtlas = 64;
+
 /** What its help says after the flags. */
 const kHelp = `
 A part is not painted if its material has no texture, or its UVs are not an unwrapping; the summary says which. Where UVs
 overlap, as those of mirrored halves do, the part that comes first has the texels. Overlays of an earlier transfer are taken away.
+
+With --atlas, materials that differ only by textures and factors become one. Materials keep their own textures if UVs leave 0..1, so that
+the texture repeats, and if extensions may refer to them, as those of VRM 0 and MToon do; the summary says which.
 
 Examples:
   cagecast bake head.glb cage.glb paint.png --normal scales.png --size 2048 -o painted.glb
@@ -80,6 +92,13 @@ export function addBakeCommand(program: Command, io: Io): void {
         common.wholeNumberWithin(1, mostTexels, ' of texels'),
       ),
     )
+    .addOption(
+      common.parsed(
+        '--atlas [TEXELS]',
+        `pack the textures of all materials into one for colours, one for normals, and one for occlusion, roughness and metalness, of so many texels; ${kLeastAtlas} to ${mostTexels} (default: as many as they need, up to 4096)`,
+        common.wholeNumberWithin(kLeastAtlas, mostTexels, ' of texels'),
+      ),
+    )
     .addOption(common.bordersFlag());
   common.addFlags(command, 'What is painted', 'How files are read', 'What is printed');
   command
@@ -96,13 +115,17 @@ export function addBakeCommand(program: Command, io: Io): void {
 }
 
 /** What is wrong with the arguments together, if anything is. */
-function faultOf(paint: string | undefined, { output, normal, orm, back, part = [] }: BakeFlags): string | undefined {
+function faultOf(
+  paint: string | undefined,
+  { output, normal, orm, back, atlas, part = [] }: BakeFlags,
+): string | undefined {
   const isPicture = output.toLowerCase().endsWith('.png');
   const hasMaps = normal !== undefined || orm !== undefined;
   if (back && (!isPicture || paint !== undefined || hasMaps))
     return '--back takes TARGET and CAGE only, and writes a PNG';
   if (!back && isPicture && paint === undefined) return 'to write a PNG, PAINT is needed';
   if (isPicture && hasMaps) return '--normal and --orm need an OUT.glb';
+  if (isPicture && atlas !== undefined) return '--atlas needs an OUT.glb';
   if (!back && paint === undefined && !hasMaps) return 'there is nothing to bake: give PAINT, --normal or --orm';
   return !isPicture && part.length > 0 ? '--part is for a PNG; for a GLB, use --exclude' : undefined;
 }
@@ -151,12 +174,43 @@ async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefin
     throw new InputError(first ? `nothing can be baked: ${leftText(first)}` : 'nothing of it may be painted');
   }
   const { config } = command.rules;
-  const lines = [...summary(output, report), overlays > 0 && takenAway(overlays), configLine(config)];
+  const { data, lines, atlas } = await withAtlas(writer.finish(), command, codec);
   return {
-    data: writer.finish(),
-    lines,
-    report: { output, ...report, replacedOverlays: overlays, config: config ?? null },
+    data,
+    lines: [
+      ...summary(output, report),
+      ...lines,
+      missingLine(file.missing),
+      overlays > 0 && takenAway(overlays),
+      configLine(config),
+    ],
+    report: {
+      output,
+      ...report,
+      ...(file.missing && { missing: file.missing }),
+      ...(atlas && { atlas }),
+      replacedOverlays: overlays,
+      config: config ?? null,
+    },
   };
+}
+
+/** A baked file whose textures are packed, if that is asked for. @throws {InputError} */
+async function withAtlas(
+  data: Uint8Array,
+  { atlas, target, reading }: BakeCommand,
+  codec: ImageCodec,
+): Promise<{ data: Uint8Array; lines: string[]; atlas?: AtlasReport }> {
+  if (atlas === undefined) return { data, lines: [] };
+  const file = await readGltf(target, reading, data);
+  const { bytes, report } = await packTextures(file, codec, atlas === true ? undefined : atlas);
+  const { packed, textures, left } = report;
+  const lines = textures.map(({ slot, size }) => `${slot} atlas: ${size} × ${size}`);
+  for (const names of packed) if (names.length > 1) lines.push(`one material now: ${listNames(names)}`);
+  if (!bytes) lines.push('textures are not packed: fewer than two materials have some that can be');
+  for (const some of grouped(left, ({ reason }) => reason))
+    lines.push(`not packed: ${listNames(some.map(({ material }) => material))}: ${some[0].reason}`);
+  return { data: bytes ?? data, lines, atlas: report };
 }
 
 function summary(output: string, { textures, left }: BakeReport): string[] {

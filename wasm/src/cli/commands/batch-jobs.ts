@@ -161,6 +161,13 @@ export function placeholderFault(...written: readonly (string | undefined)[]): s
   return unknown && `${unknown} is unknown; paths may hold {name} and {dir}`;
 }
 
+/** A path for a target, with the name of its file and its folder in the placeholders. */
+export const filledFor = (target: string, path: string): string =>
+  // In one pass and by a function: names may hold `{dir}`, or `$&`.
+  path.replace(/\{name\}|\{dir\}/g, (found) =>
+    found === '{dir}' ? dirname(target) : basename(target, extname(target)),
+  );
+
 /** @throws {InputError} if something is missing or wrong. */
 function jobOf({ layersFor: _, results: __, ...given }: JobDefaults & { target: string }, layers: Layer[]): Job {
   const { target, cage = target, texture, regions = [], output, report } = given;
@@ -172,17 +179,12 @@ function jobOf({ layersFor: _, results: __, ...given }: JobDefaults & { target: 
     throw new InputError(`its output ${output} does not end in .glb, .vrm or .gltf`);
   const fault = placeholderFault(output, report) ?? boundsFault(texture, given.uvBounds);
   if (fault !== undefined) throw new InputError(fault);
-  // In one pass and by a function: names may hold `{dir}`, or `$&`.
-  const fill = (path: string | undefined) =>
-    path?.replace(/\{name\}|\{dir\}/g, (found) =>
-      found === '{dir}' ? dirname(target) : basename(target, extname(target)),
-    );
   const command = {
     ...given,
     cage,
     isOwnCage: given.cage === undefined,
-    output: fill(output),
-    report: fill(report),
+    output: output && filledFor(target, output),
+    report: report && filledFor(target, report),
     ...resolveSettings(layers),
   };
   const reads = filesReadBy(command);

@@ -8,6 +8,7 @@ import { addCageCommands } from './cage-commands.js';
 import { addDiffCommand } from './diff-command.js';
 import { addInspectCommand } from './inspect-command.js';
 import { addRelayCommand } from './relay-command.js';
+import { addThumbnailCommand } from './thumbnail-command.js';
 import { addTransferCommand } from './transfer-command.js';
 
 /** The command with all of its commands; it runs nothing yet. */
@@ -35,6 +36,7 @@ Examples:
   cagecast make head.glb -o cage.glb
   cagecast fit template.glb head.glb -o cage.glb
   cagecast batch 'heads/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
+  cagecast thumbnail painted.glb -o painted.png
 
 Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make, fit or batch finds a cage unfit,
 4 diff finds a change over the limit.`,
@@ -54,6 +56,7 @@ Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make
   addCageCommands(program, io);
   addBatchCommand(program, io);
   addDiffCommand(program, io);
+  addThumbnailCommand(program, io);
   for (const command of program.commands) command.allowExcessArguments(false);
   return program;
 }

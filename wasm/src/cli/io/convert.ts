@@ -4,19 +4,26 @@ import type { toGlb } from '../../formats/to-glb.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
 import type { CagecastError } from '../../index.js';
 import type { ReadOptions } from '../model/reading.js';
+import { quoted } from '../model/text.js';
 import { readBeside } from './files.js';
 
 /**
- * Makes a GLB of a file of another format. Files beside it, such as images, are read as those of a glTF are; without them, it has none.
+ * Makes a GLB of a file of another format. Files beside it, such as images, are read as those of a glTF are; those that are missing are named.
  * @throws {InputError} with a message that does not name the file.
  */
-export async function convert(bytes: Uint8Array, path: string, reading: ReadOptions): Promise<Uint8Array> {
+export async function convert(
+  bytes: Uint8Array,
+  path: string,
+  reading: ReadOptions,
+): Promise<{ glb: Uint8Array; missing: string[] }> {
   // three.js and its loaders, which the command does not load otherwise.
   const formats = createRequire(import.meta.url)('./command-formats.cjs') as { toGlb: typeof toGlb };
   const folder = dirname(path);
   const read = (name: string) => readBeside(resolve(folder, name), folder, reading).catch(() => undefined);
   try {
-    return await formats.toGlb(bytes, { read });
+    const missing: string[] = [];
+    const onMissing = (name: string, reason: string) => missing.push(`${quoted(name)}: ${reason}`);
+    return { glb: await formats.toGlb(bytes, { read, onMissing }), missing };
   } catch (error) {
     throw new InputError((error as CagecastError).reason ?? firstLine(error), { cause: error });
   }

@@ -74,12 +74,28 @@ export async function encodeLike(image: Image, mimeType: string | undefined): Pr
     .toBuffer();
 }
 
+/** The endings of images that can be written; all but the first by sharp. */
+export const imageEndings = ['.png', '.jpg', '.jpeg', '.webp'];
+
+/** Returns what encodes images for a file with one of these endings. @throws {InputError} if sharp is needed and not there. */
+export function encoderFor(path: string): (image: Image) => Promise<Uint8Array> {
+  const type = /\.(jpe?g|webp)$/i.exec(path)?.[1]?.toLowerCase();
+  if (type === undefined) return encodePng;
+  const sharp = loadSharp();
+  if (!sharp) throw new InputError('to write JPEG and WebP, npm install sharp beside cagecast').in(path);
+  return async ({ width, height, data }) => {
+    const image = sharp(data, { raw: { width, height, channels: 4 } });
+    return (type === 'webp' ? image.webp({ quality: kQuality }) : image.jpeg({ quality: kQuality })).toBuffer();
+  };
+}
+
 /** The parts of sharp that are used here. */
 type Sharp = (
   bytes: Uint8Array | Uint8ClampedArray,
   options?: object,
 ) => {
   jpeg(options: { quality: number }): { toBuffer(): Promise<Uint8Array> };
+  webp(options: { quality: number }): { toBuffer(): Promise<Uint8Array> };
   ensureAlpha(): {
     raw(): {
       toBuffer(options: object): Promise<{ data: Uint8Array; info: { width: number; height: number } }>;

@@ -19,10 +19,14 @@ export async function readGltf(
   bytes?: Uint8Array,
 ): Promise<GltfFile> {
   const content = bytes ?? (await naming(path, () => readBytes(path, reading.limits)));
-  const glb = fileKind(content)?.format ? await naming(path, () => convert(content, path, reading)) : content;
-  return openGltf(path, glb, {
+  const isOther = fileKind(content)?.format !== undefined;
+  const { glb, missing } = isOther
+    ? await naming(path, () => convert(content, path, reading))
+    : { glb: content, missing: [] };
+  const file = await openGltf(path, glb, {
     limits: reading.limits,
     readBeside: (name, uri) => readUri(name, uri, dirname(path), reading),
     decodeDraco,
   });
+  return missing.length > 0 ? { ...file, missing } : file;
 }

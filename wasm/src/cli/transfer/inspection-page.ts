@@ -1,4 +1,6 @@
 import { PNG } from 'pngjs';
+import { Picture, type Rgb } from '../../glb/thumbnail/picture.js';
+import { type View, viewAt, views } from '../../glb/thumbnail/views.js';
 import { counted, percent, verdictOf } from '../../inspect/finding.js';
 import { boxOf, pointAt, type Vector } from '../../inspect/geometry.js';
 import { type Scene, sceneOf } from '../../inspect/scene.js';
@@ -6,7 +8,6 @@ import { integer } from '../model/text.js';
 import { kZoneNames } from '../model/zones.js';
 import { adviceOn, holeTable, type InspectionReport, segmentTable } from './inspection.js';
 import type { Run } from './run-transfer.js';
-import { Picture, type Rgb, type View } from './view-picture.js';
 
 /** Pixels along each side of a picture. */
 const kSize = 420;
@@ -27,11 +28,11 @@ const kMaxDrawn = 20000;
 /** How many segments are listed at most. */
 const kMaxSegments = 40;
 
-const views: readonly { name: string; view: View }[] = [
-  { name: 'front', view: { right: [1, 0, 0], up: [0, 1, 0], eye: [0, 0, 1] } },
-  { name: 'its left', view: { right: [0, 0, -1], up: [0, 1, 0], eye: [1, 0, 0] } },
-  { name: 'back', view: { right: [-1, 0, 0], up: [0, 1, 0], eye: [0, 0, -1] } },
-  { name: 'its right', view: { right: [0, 0, 1], up: [0, 1, 0], eye: [-1, 0, 0] } },
+const shownViews: readonly { name: string; view: View }[] = [
+  { name: 'front', view: viewAt(views.front) },
+  { name: 'its left', view: viewAt(views.left) },
+  { name: 'back', view: viewAt(views.back) },
+  { name: 'its right', view: viewAt(views.right) },
 ];
 
 /** Writes an inspection as a self-contained page, with pictures of zones, fit and UVs. */
@@ -66,10 +67,10 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
 ${findings.length > 0 ? `<ol>${findings.map((finding) => `<li><i class="${verdictOf([finding])}"></i>${text(finding.sentence)}.<small>${text(adviceOn(finding))}</small></li>`).join('')}</ol>` : '<p>No problems found.</p>'}
 <h2>Zones</h2>
 <p>${kZoneNames.map((zone, z) => `<span class="key" style="background:rgb(${kZoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>
-<div class="row">${views.map(({ name, view }) => figure(name, drawZones(scene, view))).join('')}</div>
+<div class="row">${shownViews.map(({ name, view }) => figure(name, drawZones(scene, view))).join('')}</div>
 <h2>Fit</h2>
 <p><span class="key" style="background:rgb(${kOutsideColor.join()})"></span>outside the cage: ${percent(placement.outside.exposedArea)} of the exposed area<span class="key" style="background:rgb(${shade(0).join()})"></span>at the cage<span class="key" style="background:rgb(${shade(kFarthest).join()})"></span>${percent(kFarthest)} of the diagonal beneath. Median ${percent(placement.distances.p50)}, 99 % within ${percent(placement.distances.p99)}. Lines: edges of the cage, open edges dark.</p>
-<div class="row">${views.map(({ name, view }) => figure(name, drawFit(scene, view))).join('')}</div>
+<div class="row">${shownViews.map(({ name, view }) => figure(name, drawFit(scene, view))).join('')}</div>
 <h2>UVs</h2>
 <p>${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}; ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that more than once.</p>
 <div class="row" style="max-width: 28rem"><figure>${drawUvs(scene)}<figcaption>the cage in the texture; darker where triangles overlap</figcaption></figure></div>
@@ -91,15 +92,16 @@ function rows([head, ...body]: string[][]): string {
   return `<table>${row(head!, 'th')}${body.map((cells) => row(cells, 'td')).join('')}</table>`;
 }
 
-function figure(name: string, { pixels }: Picture): string {
+function figure(name: string, picture: Picture): string {
   const png = new PNG({ width: kSize, height: kSize });
-  png.data.set(pixels);
+  png.data.set(picture.image().data);
   return `<figure><img alt="${name === 'front' || name === 'back' ? `the ${name}` : `from ${name}`}" src="data:image/png;base64,${PNG.sync.write(png).toString('base64')}"><figcaption>${name}</figcaption></figure>`;
 }
 
 function pictureOf({ targetBox: { min, max } }: Scene, view: View): Picture {
   const middle: Vector = [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, (min[2] + max[2]) / 2];
-  return new Picture(kSize, view, middle, 0.56 * Math.max(max[0] - min[0], max[1] - min[1], max[2] - min[2]));
+  const radius = 0.56 * Math.max(max[0] - min[0], max[1] - min[1], max[2] - min[2]);
+  return new Picture({ size: kSize, view, middle, radius });
 }
 
 function drawTarget(

@@ -1,3 +1,4 @@
+import type { WhichCount } from '../../gltf/extract-file.js';
 import type { ReadModel } from '../../gltf/read-model.js';
 import { partsNamed } from '../../gltf/read-model.js';
 import type { Io } from '../io/io.js';
@@ -18,18 +19,20 @@ export function readTarget(
   ignored: Rules['ignored'],
   bytes?: Uint8Array,
 ): Promise<ReadModel> {
+  return readModel(path, reading, io, { bytes, whichCount: allBut(ignored) });
+}
+
+/** What is drawn, without the parts that are ignored; see `readTarget`. */
+export function allBut(ignored: Rules['ignored']): Exclude<WhichCount, 'cage'> {
   const patterns = ignored.filter(({ pattern }) => pattern !== '');
-  return readModel(path, reading, io, {
-    bytes,
-    whichCount: (parts, file) => {
-      const out = new Set<number>();
-      for (const { pattern, isOptional } of patterns) {
-        const found = partsNamed(pattern, { file, extracted: { parts: [...parts] } });
-        if (found.length === 0 && !isOptional)
-          throw noSuchName(`--ignore ${pattern}`, { file, extracted: { parts: [...parts] } });
-        for (const p of found) out.add(p);
-      }
-      return (p, isDrawn) => (isDrawn || patterns.length < ignored.length) && !out.has(p);
-    },
-  });
+  return (parts, file) => {
+    const out = new Set<number>();
+    for (const { pattern, isOptional } of patterns) {
+      const found = partsNamed(pattern, { file, extracted: { parts: [...parts] } });
+      if (found.length === 0 && !isOptional)
+        throw noSuchName(`--ignore ${pattern}`, { file, extracted: { parts: [...parts] } });
+      for (const p of found) out.add(p);
+    }
+    return (p, isDrawn) => (isDrawn || patterns.length < ignored.length) && !out.has(p);
+  };
 }

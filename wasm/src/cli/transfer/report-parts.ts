@@ -13,13 +13,24 @@ import type { Run } from './run-transfer.js';
 
 export const versions = () => ({ cagecast: CAGECAST_VERSION, node: process.versions.node });
 
-/** What a report says of a target; with the parts that are left out, and those that stay bare by their names. */
-export const targetReport = (file: string, { target: { extracted }, diagonal, bare = [] }: Run) => ({
+/** What a report says of a target; with files that are missing, the parts that are left out, and those that stay bare by their names. */
+export const targetReport = (
+  file: string,
+  {
+    target: {
+      extracted,
+      file: { missing },
+    },
+    diagonal,
+    bare = [],
+  }: Run,
+) => ({
   file,
   vertices: extracted.mesh.positions.length / 3,
   triangles: extracted.mesh.indices.length / 3,
   diagonal: diagonal ?? boxOf(extracted.mesh.positions).diagonal,
   leftOut: extracted.leftOut,
+  ...(missing && { missing }),
   bare,
 });
 
@@ -69,8 +80,13 @@ export const turnedLine = ({ isTurned }: { isTurned?: boolean }): Line =>
 /** How many names a line has at most. */
 const kMaxNames = 12;
 
-/** Says which parts are left out or stay bare without a flag that says so, if there are any. */
-export const leftOutLines = ({ leftOut, bare }: TargetReport): Line[] => [
+/** Says which files are missing that a model names, if there are any. */
+export const missingLine = (missing: readonly string[] = []): Line =>
+  missing.length > 0 && `missing: ${listed(missing, kMaxNames)}`;
+
+/** Says which files are missing, and which parts are left out or stay bare without a flag that says so, if there are any. */
+export const leftOutLines = ({ missing, leftOut, bare }: TargetReport): Line[] => [
+  missingLine(missing),
   leftOut.length > 0 && `left out: ${leftOutText(leftOut)}`,
   bare.length > 0 && `bare by their names, unless --keep names them: ${listed(bare, kMaxNames)}`,
 ];

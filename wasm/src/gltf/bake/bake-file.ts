@@ -1,4 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
+import type { Wrap } from '../../bake/index.js';
 import type { AccessorData } from '../accessors.js';
 import type { Part } from '../extract-file.js';
 import type { GlbWriter } from '../glb-writer.js';
@@ -8,7 +9,7 @@ import { uvLayoutOf } from '../uv-layout.js';
 import { type BakeModel, type Slot, type TextureUse, wrapOf } from './plan.js';
 
 /** Extensions that give a texture another image than its own `source`. */
-const sourceExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
+export const sourceExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
 
 /** The image of a texture. */
 function sourceOf({ source, extensions }: GLTF.ITexture): number | undefined {
@@ -62,14 +63,14 @@ export class FileModel implements BakeModel<number, number> {
   useOf(material: number, slot: Slot): TextureUse<number> | undefined {
     const info = infoOf(this.#material(material), slot);
     if (!info) return undefined;
-    const texture = this.#json.textures?.[info.index];
-    if (!texture) return undefined;
-    const sampler = texture.sampler === undefined ? undefined : this.#json.samplers?.[texture.sampler];
-    return {
-      texture: info.index,
-      ...uvLayoutOf(info),
-      wraps: [wrapOf(sampler?.wrapS), wrapOf(sampler?.wrapT)],
-    };
+    if (!this.#json.textures?.[info.index]) return undefined;
+    return { texture: info.index, ...uvLayoutOf(info), wraps: this.wrapsOf(info.index) };
+  }
+
+  /** How a texture goes on beyond its border. */
+  wrapsOf(texture: number): [Wrap, Wrap] {
+    const { wrapS, wrapT } = this.#json.samplers?.[this.#json.textures![texture]!.sampler ?? -1] ?? {};
+    return [wrapOf(wrapS), wrapOf(wrapT)];
   }
 
   factorOf(material: number, slot: Slot): [number, number, number] {

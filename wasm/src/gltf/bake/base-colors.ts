@@ -37,7 +37,7 @@ export async function baseColorsOf<Material, Texture>(
 }
 
 /** A function that is called once for each value. */
-function remembered<Value, Result>(fn: (value: Value) => Result): typeof fn {
+export function remembered<Value, Result>(fn: (value: Value) => Result): typeof fn {
   const known = new Map<Value, Result>();
   return (value) => {
     if (!known.has(value)) known.set(value, fn(value));
@@ -46,7 +46,7 @@ function remembered<Value, Result>(fn: (value: Value) => Result): typeof fn {
 }
 
 /** Where a part is in its texture; undefined if its UVs say that of none. */
-function laidUvs<Texture>(
+export function laidUvs<Texture>(
   model: BakeModel<unknown, Texture>,
   part: Piece,
   { set, transform }: TextureUse<Texture>,
