@@ -14,7 +14,7 @@ const kPages: [what: string, most: number, script: string][] = [
   ['transfer of cagecast/worker', 3200, "import { transfer } from 'cagecast/worker'; console.log(transfer);"],
   [
     'init and applyTransfer',
-    130_000,
+    142_000,
     `import { init } from 'cagecast';
     import { applyTransfer } from 'cagecast/three';
     console.log(init, applyTransfer);`,
@@ -28,33 +28,32 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'applyTransferAsync',
-    30_000,
+    31_000,
     "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
     'applyTransferAsync, for WebGPURenderer',
-    31_000,
+    32_500,
     "import 'cagecast/three/webgpu'; import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
     'applyTransferAsync, layers and painting',
-    52_000,
+    56_000,
     `import { applyTransferAsync } from 'cagecast/three';
     import { createLayers, createPainter } from 'cagecast/three/paint';
     console.log(applyTransferAsync, createLayers, createPainter);`,
   ],
   [
     'layers, for WebGPURenderer',
-    14_500,
+    17_900,
     "import 'cagecast/three/paint/webgpu'; import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);",
   ],
-  ['layers', 12_400, "import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);"],
-  ['useCagecast', 65_000, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
+  ['layers', 15_400, "import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);"],
+  ['useCagecast', 73_500, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
   ['inspect', 29_500, "import { inspect } from 'cagecast/inspect'; console.log(inspect);"],
   ['bake', 6500, "import { bake } from 'cagecast/bake'; console.log(bake);"],
   ['cagecast of cagecast/gltf', 127_000, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
   ['paintGlb', 188_000, "import { paintGlb } from 'cagecast/glb'; console.log(paintGlb);"],
-  ['thumbnail', 42_000, "import { thumbnail } from 'cagecast/glb'; console.log(thumbnail);"],
   ['makeCage', 3000, "import { makeCage } from 'cagecast/cages'; console.log(makeCage);"],
 ];
 

@@ -61,7 +61,7 @@ test('a name is not given twice; what is undefined is as if it were not there; a
   const copy = layers.add(texture, saved);
   assert.notEqual(copy.id, saved.id);
   layers.set(copy, { ...layer, opacity: 0.25 });
-  assert.equal(layers.undo(), 'changing opacity, tint, blend, visible, region of Layer 2');
+  assert.match(layers.undo()!, /^changing opacity, tint, blend, visible, region, roughness, .* of Layer 2$/);
   layers.remove(copy);
   assert.deepEqual(namesOf(layers), ['Layer 2', 'Layer 1', 'Layer 3']);
 });
@@ -211,7 +211,7 @@ test('what is refused names the argument and its value, changes nothing and leav
     [() => layers.set(layer, { opacity: Number.NaN }), 'opacity is NaN, not a number from 0 to 1'],
     [
       () => layers.set(layer, { blend: 'overlay' as never }),
-      'blend is "overlay", not one of normal, multiply, screen, add',
+      'blend is "overlay", not one of normal, multiply, screen, add, none',
     ],
     [() => layers.set(layer, { tint: 'red' }), 'tint is "red", not a colour such as #ff8800'],
     [() => layers.set(layer, { visible: 1 as never }), 'visible is 1, not true or false'],

@@ -256,15 +256,16 @@ const scenes: Scenes = {
     const [red, blue] = [flat(0xff0000), flat(0x0000ff)];
     let layers: Layers | undefined;
     let painter: Painter | undefined;
-    const Layered = ({ model, items }: { model: THREE.Group; items: Parameters<typeof useLayers>[0] }) => {
-      layers = useLayers(items);
+    type Given = { model: THREE.Group; items: Parameters<typeof useLayers>[0]; baseTint?: string };
+    const Layered = ({ model, items, baseTint }: Given) => {
+      layers = useLayers(items, { baseTint });
       const state = useCagecast(model, { cage: around, layers });
       painter = usePainter(state, { brush: { color: '#00ff00', size: 2, hardness: 1 } });
       return <primitive object={model} />;
     };
     const bottom = { texture: red, name: 'bottom' };
     await stage.show(
-      <Changing from={{ model: one, items: [bottom] as Parameters<typeof useLayers>[0] }}>
+      <Changing from={{ model: one, items: [bottom] } as Given}>
         {(state) => <Layered {...state} />}
       </Changing>,
     );
@@ -273,6 +274,12 @@ const scenes: Scenes = {
     await stage.seen('blue');
     setState({ items: [{ texture: blue, opacity: 1 }, bottom] });
     await stage.seen('red');
+    setState({ items: [bottom, { texture: blue, opacity: 0 }] });
+    await stage.seen('red');
+    setState({ items: [], baseTint: '#0000ff' });
+    await stage.seen('blue');
+    setState({ items: [{ texture: blue, opacity: 1, roughness: 0.2 }], baseTint: '#ffffff' });
+    await until(() => layers!.list[0]?.roughness === 0.2);
     setState({ items: [bottom, { texture: blue, opacity: 0 }] });
     await stage.seen('red');
     equal(layers!.list.length, 2, 'layers');

@@ -1,5 +1,6 @@
 // The page of the tests. Runs in the browser.
 import { init } from 'cagecast';
+import { channelScenes } from './channel-scenes';
 import { layerScenes } from './layer-scenes';
 import { materialScenes } from './material-scenes';
 import { painterScenes } from './painter-scenes';
@@ -7,7 +8,7 @@ import type { Scenes } from './scenes';
 import { sharingScenes } from './sharing-scenes';
 
 await init();
-const scenes: Scenes = { ...materialScenes, ...sharingScenes, ...layerScenes, ...painterScenes };
+const scenes: Scenes = { ...materialScenes, ...sharingScenes, ...layerScenes, ...channelScenes, ...painterScenes };
 Object.assign(globalThis, {
   names: Object.keys(scenes),
   /** Runs a scene. @returns its error, if it fails. */

@@ -2,7 +2,7 @@
 import { MToonMaterial } from '@pixiv/three-vrm';
 import { MToonNodeMaterial } from '@pixiv/three-vrm/nodes';
 import { type Applied, type ApplyOptions, applyTransfer } from 'cagecast/three';
-import { createLayers, createPainter } from 'cagecast/three/paint';
+import { createLayers, createPainter, type Layers } from 'cagecast/three/paint';
 import {
   AmbientLight,
   Box3,
@@ -10,6 +10,7 @@ import {
   CanvasTexture,
   Color,
   type ColorSpace,
+  DataTexture,
   DirectionalLight,
   Group,
   LinearSRGBColorSpace,
@@ -145,6 +146,19 @@ function stripes(): Texture {
     drawing.fillRect(0, 16 * i, 256, 3);
   }
   return Object.assign(new CanvasTexture(canvas), { flipY: false, colorSpace: SRGBColorSpace });
+}
+
+/** A normal map of waves. */
+function waves(side = 128): DataTexture {
+  const data = new Uint8Array(4 * side * side);
+  for (let at = 0; at < side * side; ++at) {
+    const [x, y] = [at % side, Math.floor(at / side)].map((one) => 0.4 * Math.sin((one / side) * 2 * Math.PI * 4));
+    data.set(
+      [x!, y!, Math.sqrt(1 - x! * x! - y! * y!), 1].map((value) => 127.5 + 127.5 * value),
+      4 * at,
+    );
+  }
+  return Object.assign(new DataTexture(data, side, side), { needsUpdate: true });
 }
 
 /** A film of one picture. */
@@ -377,12 +391,30 @@ export const webgpuScenes: Scenes = {
     const looks = () => looksOf(models[0]!, models[1]!);
     const bare = await looks();
     const applied = models.map((model) => painted(model, { texture: halves(0xdd3311, 0x33bb44) }));
-    const now = await looks();
-    const area = paintedIn(now.webgl, bare.webgl);
-    const [before, found] = [meanOf(bare.webgl, bare.webgpu, area), meanOf(now.webgl, now.webgpu, area)];
-    figures.push(`MToon: ${found.toFixed(2)} of 255, bare ${before.toFixed(2)}`);
-    ok(area.length > 500 && found <= before + kMost, [area.length, before, found]);
+    const check = async (what: string): Promise<void> => {
+      const now = await looks();
+      const area = paintedIn(now.webgl, bare.webgl);
+      const [before, found] = [meanOf(bare.webgl, bare.webgpu, area), meanOf(now.webgl, now.webgpu, area)];
+      figures.push(`${what}: ${found.toFixed(2)} of 255, bare ${before.toFixed(2)}`);
+      ok(area.length > 500 && found <= before + kMost, [what, area.length, before, found]);
+    };
+    await check('MToon');
+    const stacks = [webgl, webgpu].map((renderer) => createLayers({ renderer }));
+    const changes: Record<string, (layers: Layers) => unknown> = {
+      tinted: (layers) => layers.setBaseTint('#88ff66'),
+      glow: (layers) => layers.add(clear(0x3355aa, 128), { emissive: 0.7 }),
+      relief: (layers) => layers.add(flat(0), { blend: 'none', normal: waves() }),
+    };
+    for (const [what, change] of Object.entries(changes)) {
+      stacks.forEach((layers, m) => {
+        change(layers);
+        layers.update();
+        applied[m]!.setTexture(layers.texture);
+      });
+      await check(`MToon, ${what}`);
+    }
     for (const one of applied) one.dispose();
+    for (const layers of stacks) layers.dispose();
     equal(meanOf((await looks()).webgpu, bare.webgpu, pixels), 0, 'it, disposed');
   },
 
@@ -423,6 +455,47 @@ export const webgpuScenes: Scenes = {
     for (const painter of painters) {
       painter.dispose();
       painter.layers.dispose();
+    }
+  },
+
+  async 'roughness, metalness, glow, relief and the base tint are seen as by a WebGLRenderer'() {
+    const around = cage();
+    around.geometry.userData = { regions: { left: [[[0, 0], [0.5, 0], [0.5, 1], [0, 1]]] } }; // biome-ignore format: corners
+    for (const [kind, make] of Object.entries(kinds)) {
+      const models = [0, 1].map(() => modelOf(make(new Color(0xbbaa99))));
+      const bare = await looksOf(models[0]!, models[1]!);
+      const stacks = [webgl, webgpu].map((renderer, m) => {
+        const layers = createLayers({ renderer, cage: around });
+        applyTransfer(models[m]!, { cage: around, texture: layers.texture, feather: 0.02 });
+        layers.add(clear(0xcc8844, 200), { name: 'ground' });
+        return layers;
+      });
+      const check = async (what: string, change: (layers: Layers) => void): Promise<void> => {
+        for (const layers of stacks) {
+          change(layers);
+          layers.update();
+        }
+        await same(`${kind}, ${what}`, models[0]!, bare, models[1]!);
+      };
+      await check('a layer', () => {});
+      const program = meanOf((await looksOf(models[0]!, models[1]!)).webgpu, bare.webgpu, pixels);
+      await check('tinted', (layers) => layers.setBaseTint('#88ff66'));
+      await check('glossy metal', (layers) => layers.set(layers.list[0]!, { roughness: 0.2, metalness: 0.9 }));
+      // The renderers themselves differ in what a clear coat leaves of light from below.
+      const emissive = kind === 'physical' ? 0 : 0.7;
+      await check('glow', (layers) => layers.add(flat(0x3355aa), { blend: 'none', emissive, region: 'left' }));
+      await check('relief', (layers) => layers.add(flat(0), { blend: 'none', normal: waves(), normalScale: 0.8 }));
+      await check('without', (layers) => {
+        for (const { id } of layers.list.slice(1)) layers.remove({ id });
+        layers.set(layers.list[0]!, { roughness: null, metalness: null });
+        layers.setBaseTint('#ffffff');
+      });
+      equal(
+        meanOf((await looksOf(models[0]!, models[1]!)).webgpu, bare.webgpu, pixels),
+        program,
+        `${kind}, afterwards`,
+      );
+      for (const layers of stacks) layers.dispose();
     }
   },
 

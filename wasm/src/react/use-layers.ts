@@ -10,13 +10,16 @@ export interface LayerItem extends Omit<NewLayer, 'place' | 'undoable'> {
 }
 
 /** Options of `useLayers`: those of `createLayers`, whose renderer is that of the canvas. */
-export type UseLayersOptions = Omit<LayersOptions, 'renderer'>;
+export interface UseLayersOptions extends Omit<LayersOptions, 'renderer'> {
+  /** By what the model's own colour is multiplied beneath all layers, #rrggbb. Default: that of the stack, white at first. */
+  baseTint?: string | undefined;
+}
 
 /**
  * A stack of layers for models of the canvas, which is drawn before each frame where it has changed, also with `frameloop="demand"`.
  * @param items    The layers, from the lowest to the uppermost, as they are now: one that has changed since is changed, without a step of
  * the undo history. What is painted lies above them. After `layers.load` only textures that are new here are added.
- * @param options  `cage`, for layers within one of its regions, and `size`; another cage or size makes another stack.
+ * @param options  `cage`, for layers within one of its regions, and `size`; another cage or size makes another stack. And `baseTint`.
  * @returns undefined the first time, and afterwards the stack, until the component leaves.
  * @throws {CagecastError} as `createLayers`, and `add` of `Layers`.
  *
@@ -24,8 +27,15 @@ export type UseLayersOptions = Omit<LayersOptions, 'renderer'>;
  * const layers = useLayers([{ texture: stripes }, { texture: cheeks, blend: 'multiply', opacity }]);
  * const { applied } = useCagecast(gltf, { template: 'human-head', layers });
  */
-export function useLayers(items: readonly LayerItem[] = [], { cage, size }: UseLayersOptions = {}): Layers | undefined {
-  return useOwnLayers(items, cage, size);
+export function useLayers(
+  items: readonly LayerItem[] = [],
+  { cage, size, baseTint }: UseLayersOptions = {},
+): Layers | undefined {
+  const layers = useOwnLayers(items, cage, size);
+  useEffect(() => {
+    if (baseTint !== undefined) layers?.setBaseTint(baseTint, kSilent);
+  }, [layers, baseTint]);
+  return layers;
 }
 
 /** As `useLayers`; without items there is no stack. */

@@ -7,6 +7,7 @@ const kShader = /* glsl */ `
 uniform sampler2D source;
 uniform int level;
 uniform float size;
+uniform bool isData;
 out vec4 color;
 
 vec4 texel(ivec2 at) {
@@ -23,28 +24,37 @@ void main() {
   vec4 lower = mix(texel(least), texel(least + ivec2(1, 0)), at.x - float(least.x));
   vec4 upper = mix(texel(least + ivec2(0, 1)), texel(least + 1), at.x - float(least.x));
   vec4 found = mix(lower, upper, at.y - float(least.y));
-  color = found.a > 0.0 ? vec4(encode(min(found.rgb / found.a, 1.0)), found.a) : vec4(0.0);
+  if (isData) color = vec4(found.rgb, 1.0);
+  else color = found.a > 0.0 ? vec4(encode(min(found.rgb / found.a, 1.0)), found.a) : vec4(0.0);
 }
 `;
 
 // By renderer, as what it has drawn with holds it.
 const passes = new WeakMap<WebGLRenderer, Pass<ReturnType<typeof uniforms>>>();
-const uniforms = () => ({ source: { value: null as Texture | null }, level: { value: 0 }, size: { value: 1 } });
+const uniforms = () => ({
+  source: { value: null as Texture | null },
+  level: { value: 0 },
+  size: { value: 1 },
+  isData: { value: false },
+});
 
 /**
  * Reads a premultiplied texture as an image file has it: sRGB, colours not multiplied by alpha, upper row first.
- * @param size Pixels a side of the image. Waits for the GPU.
+ * Waits for the GPU.
+ * @param size    Pixels a side of the image.
+ * @param isData  Whether it has data instead of colours, which are read as they are. Default: false.
  * @internal
  */
-export function readStraight(renderer: WebGLRenderer, source: Texture, size: number): ImageData {
+export function readStraight(renderer: WebGLRenderer, source: Texture, size: number, isData = false): ImageData {
   const target = new WebGLRenderTarget(size, size, { colorSpace: NoColorSpace, depthBuffer: false });
   const pass = passes.get(renderer) ?? new Pass(kShader, uniforms());
   passes.set(renderer, pass);
   pass.uniforms.source.value = source;
   pass.uniforms.size.value = size;
+  pass.uniforms.isData.value = isData;
   // The smallest level with at least as many texels a side.
   const { width } = source.image as { width: number };
-  pass.uniforms.level.value = source.generateMipmaps ? Math.max(0, Math.floor(Math.log2(width / size))) : 0;
+  pass.uniforms.level.value = source.generateMipmaps && !isData ? Math.max(0, Math.floor(Math.log2(width / size))) : 0;
   pass.run(renderer, target, [toTexels(kWhole, size)]);
   pass.uniforms.source.value = null;
   const image = new ImageData(size, size);

@@ -1,7 +1,12 @@
 import { kErased } from '../gpu/erased.js';
+import type { Kind } from './kinds.js';
 
 /** How layers are read. */
 interface Recipe {
+  /** What is drawn of them. */
+  kind: Kind;
+  /** How the normal map of each is sampled, where these are drawn. */
+  reliefs: readonly ('whole' | 'spread')[];
   /** How each layer is sampled, from the lowest. */
   takes: readonly ('whole' | 'spread')[];
   /** Which of them are seen within a region only. */
@@ -56,9 +61,33 @@ vec4 join(vec4 layer, vec4 below, int blend) {
 }
 `;
 
+// What a layer, multiplied by its alpha, makes of what was drawn. The texture of the surface has a pair for roughness and one for
+// metalness: the value, multiplied by how much it covers what is below, and how much that is. Normals are x and y of unit vectors;
+// without any, a byte is 128, which is exactly 0 in `relief`.
+const kMix: Record<Kind, string> = {
+  color: 'color = join(layer, color, blends[#]);',
+  surface: `share = layer.a * values[#].yyww;
+  color = color * (1.0 - share) + vec4(values[#].x, 1.0, values[#].z, 1.0) * share;`,
+  glow: 'color.rgb = color.rgb * (1.0 - layer.a * values[#].y) + layer.rgb * values[#].x;',
+  normals: 'color.xy = mix(color.xy, tilted(relief#, values[#].xy), layer.a);',
+};
+
+const kRelief = /* glsl */ `
+vec2 tilted(vec4 texel, vec2 scale) {
+  vec3 normal = texel.rgb * 2.0 - 1.0;
+  // Some compressed ones have red and green only.
+  if (texel.b == 0.0) normal.z = sqrt(max(0.0, 1.0 - dot(normal.xy, normal.xy)));
+  return normalize(vec3(normal.xy * scale, max(normal.z, 1e-3))).xy;
+}
+
+vec2 relief(vec2 stored) { return (stored * 255.0 - 128.0) / 127.0; }
+vec2 unrelief(vec2 normal) { return (normal * 127.0 + 128.0) / 255.0; }
+`;
+
 /** A shader for exactly these layers: software renderers execute every branch, taken or not. */
-export function fragmentShader({ takes, masked, stroke, hasBelow, hasVideo }: Recipe): string {
+export function fragmentShader({ kind, takes, reliefs, masked, stroke, hasBelow, hasVideo }: Recipe): string {
   const most = Math.max(1, takes.length);
+  const isRelief = kind === 'normals';
   const soak = (take: string): string => `soak = strokeOpacity * ${take}(stroke, 1);
   layer = strokeErases ? erased(layer, soak.a) : layer * (1.0 - soak.a) + soak;`;
   const steps = takes.map(
@@ -67,12 +96,15 @@ export function fragmentShader({ takes, masked, stroke, hasBelow, hasVideo }: Re
   ${index === stroke ? soak(take) : ''}
   ${masked[index] ? `layer *= texture(masks, vec3(gl_FragCoord.xy / float(size), slices[${index}])).r;` : ''}
   layer *= vec4(tints[${index}].rgb, 1.0) * tints[${index}].a;
-  color = join(layer, color, blends[${index}]);`,
+  ${isRelief ? `vec4 relief${index} = ${reliefs[index]}(normals[${index}], 1);` : ''}
+  ${kMix[kind].replaceAll('#', String(index))}`,
   );
   // A tint's alpha is the opacity.
   return /* glsl */ `${hasVideo ? '#define HAS_VIDEO' : ''}
 uniform sampler2D sheets[${most}];
+${isRelief ? `uniform sampler2D normals[${most}];` : ''}
 uniform vec4 tints[${most}];
+uniform vec4 values[${most}];
 uniform int blends[${most}];
 uniform int stored[${most}];
 uniform float slices[${most}];
@@ -83,10 +115,12 @@ uniform float strokeOpacity;
 uniform bool strokeErases;
 uniform int size;
 out vec4 color;
-${kFunctions}${kErased}
+${kFunctions}${kErased}${isRelief ? kRelief : ''}
 void main() {
-  vec4 layer, soak;
-  color = ${hasBelow ? 'texelFetch(below, ivec2(gl_FragCoord.xy), 0)' : 'vec4(0.0)'};${steps.join('')}
+  vec4 layer, soak, share;
+  color = ${hasBelow ? 'texelFetch(below, ivec2(gl_FragCoord.xy), 0)' : 'vec4(0.0)'};
+  ${isRelief && hasBelow ? 'color.xy = relief(color.xy);' : ''}${steps.join('')}
+  ${isRelief ? 'color.xy = unrelief(color.xy);' : ''}
 }
 `;
 }

@@ -3,20 +3,21 @@ import {
   LinearFilter,
   LinearMipmapLinearFilter,
   RepeatWrapping,
-  SRGBColorSpace,
+  type Texture,
   type WebGLRenderer,
+  type WebGLRenderTarget,
 } from 'three';
-import type { Composite } from './composite.js';
 
-/** A copy of a composite that any renderer can show: its texels, as they are. */
+/** A copy of what layers were drawn to that any renderer can show: its texels, as they are. */
 export class CopiedTexture {
   #texels = new Uint8Array(4);
   readonly texture = new DataTexture(this.#texels, 1, 1);
 
-  constructor() {
+  /** @param source  The texture of the target that is copied later. */
+  constructor({ name, colorSpace }: Texture) {
     const { texture } = this;
-    texture.name = 'cagecast layers';
-    texture.colorSpace = SRGBColorSpace;
+    texture.name = name;
+    texture.colorSpace = colorSpace;
     texture.wrapS = texture.wrapT = RepeatWrapping;
     texture.magFilter = LinearFilter;
     texture.minFilter = LinearMipmapLinearFilter;
@@ -27,17 +28,17 @@ export class CopiedTexture {
     texture.needsUpdate = true;
   }
 
-  /** Copies a composite, which has just been drawn. Waits for the GPU of its renderer. */
-  copy(composite: Composite, renderer: WebGLRenderer): void {
+  /** Copies a target, which has just been drawn to. Waits for the GPU of its renderer. */
+  copy(target: WebGLRenderTarget, renderer: WebGLRenderer): void {
     if (renderer.getContext().isContextLost()) return;
     const { texture } = this;
-    const { size } = composite;
+    const { width: size } = target;
     if (texture.image.width !== size) {
       texture.dispose();
       this.#texels = new Uint8Array(4 * size * size);
       texture.image = { data: this.#texels, width: size, height: size };
     }
-    composite.read(renderer, this.#texels);
+    renderer.readRenderTargetPixels(target, 0, 0, size, size, this.#texels);
     texture.needsUpdate = true;
   }
 }

@@ -1,8 +1,6 @@
-import type { Command, History } from './history.js';
+import { type Command, type History, kOneGo } from './history.js';
 import { areSame, type Layer } from './layer.js';
 import type { LayerStack } from './stack.js';
-
-const kOneGo = 600; // milliseconds: equal edits of a layer in quick succession, such as by a held key, become one step
 
 /** Records changes of the layers in the undo history. @internal */
 export class Edits {
@@ -65,13 +63,16 @@ export class Edits {
     return before;
   }
 
-  /** Runs a change of the layers as a step, or as part of the open one. @param name The name of the undo step. */
-  do<Result>(name: string, run: () => Result): Result {
+  /**
+   * Runs a change of the layers as a step, or as part of the open one.
+   * @param name The name of the undo step. @param sideEffect What it does besides, if it becomes a step.
+   */
+  do<Result>(name: string, run: () => Result, sideEffect?: SideEffect): Result {
     if (this.#before) return run();
     this.begin();
     try {
       const result = run();
-      this.end(name);
+      this.end(name, sideEffect);
       return result;
     } catch (error) {
       this.cancel();

@@ -10,6 +10,8 @@ export interface Command {
   redo(): void;
 }
 
+/** Milliseconds: equal edits in quick succession, such as by a held key, become one step. */
+export const kOneGo = 600;
 const kMaxBytes = 128 * 2 ** 20;
 
 /** The undo history, limited to 128 MiB: the oldest commands are dropped first. @internal */

@@ -2,6 +2,7 @@ import type { Texture, WebGLRenderer } from 'three';
 import type { LoadedCage } from '../apply/models.js';
 import { check, kPaint, notA, wrong } from '../errors.js';
 import { readStraight } from '../gpu/straight.js';
+import { BaseTint } from './base-tint.js';
 import { Composite, maxCompositeSize } from './composite.js';
 import { CopiedTexture } from './copied-texture.js';
 import { Edits } from './edits.js';
@@ -12,6 +13,7 @@ import { giveBack, lendRenderer, type OtherRenderer } from './own-renderer.js';
 import { PaintedSheet } from './painted-sheet.js';
 import { checkRegion, type Regions, regionsOf } from './regions.js';
 import { loadLayers, type SavedLayers, saveLayers } from './saved-layers.js';
+import { ShownChannels } from './shown-channels.js';
 import { LayerStack } from './stack.js';
 
 /** Options of `createLayers`. */
@@ -65,10 +67,14 @@ export class Layers extends Emitter<{
   readonly canvas: HTMLElement;
   /** Where another renderer shows the layers. */
   readonly #copied: CopiedTexture | undefined;
+  readonly #channels: ShownChannels;
+  readonly #baseTint = new BaseTint(this.history, () => this.announce());
   #isDisposed = false;
   readonly #regions: Regions | undefined;
   /** Paintings that were loaded, as far as they may be shown again. */
   readonly #loaded: WeakRef<PaintedSheet>[] = [];
+  /** Normal maps that were loaded, which are nobody else's. */
+  readonly #reliefs: WeakRef<Texture>[] = [];
   readonly #restored = (): void => {
     for (const sheet of this.#loaded) sheet.deref()?.restore(this.renderer);
     this.emit('restored', undefined);
@@ -87,8 +93,9 @@ export class Layers extends Emitter<{
     this.#regions = cage && regionsOf(cage);
     this.canvas = renderer.domElement;
     this.renderer = isOther ? lendRenderer() : (renderer as WebGLRenderer);
-    this.#copied = isOther ? new CopiedTexture() : undefined;
     this.composite = new Composite(size, this.#regions);
+    this.#copied = isOther ? new CopiedTexture(this.composite.texture) : undefined;
+    this.#channels = new ShownChannels(this.texture, isOther);
     this.stack.on('change', (layers) => {
       this.composite.set(layers);
       this.announce();
@@ -118,8 +125,7 @@ export class Layers extends Emitter<{
    */
   add(texture: Texture, options: NewLayer = {}): Layer {
     checkTexture(texture, 'texture');
-    if (this.#copied && texture.isRenderTargetTexture)
-      throw wrong('texture is drawn by another renderer than the layers, which cannot read it', kPaint);
+    this.#checkReadable(texture, 'texture');
     const style = this.#readStyle(options, 'options');
     const { name, place, undoable } = options;
     const title = name ?? (texture.name || freeName('Layer', this.list));
@@ -132,7 +138,7 @@ export class Layers extends Emitter<{
   }
 
   /**
-   * Changes opacity, tint, blend mode, visibility or region. Equal changes of a layer in quick succession, as by a slider, are one step.
+   * Changes opacity, tint, blend mode, visibility, region, roughness, metalness, glow or relief. Equal changes of a layer in quick succession, as by a slider, are one step.
    * @throws {CagecastError} `badOption` that names a field and its value, `badArgument` if the layer was removed.
    */
   set(layer: Pick<Layer, 'id'>, style: Partial<Style>, { undoable }: ChangeOptions = {}): void {
@@ -140,6 +146,22 @@ export class Layers extends Emitter<{
     this.#do(`changing ${Object.keys(change).join(', ')} of ${this.#nameOf(layer)}`, undoable, () =>
       this.stack.restyle(layer, change),
     );
+  }
+
+  /** By what the model's own colour is multiplied beneath all layers, #rrggbb. White, the default, changes nothing. */
+  get baseTint(): string {
+    return this.#baseTint.value;
+  }
+
+  /**
+   * Tints the model beneath all layers: its own colour is multiplied by `tint`, in linear light, where it is painted, up to the soft
+   * border. Changes in quick succession, as by a slider, are one step. Overlays, of materials that cannot be painted, do not show it.
+   * @param tint  #rrggbb; white for none.
+   * @throws {CagecastError} `badOption` for another value.
+   */
+  setBaseTint(tint: string, { undoable }: ChangeOptions = {}): void {
+    if (undoable !== false) this.#baseTint.change(tint);
+    else this.#baseTint.set(tint);
   }
 
   /**
@@ -177,12 +199,16 @@ export class Layers extends Emitter<{
   /**
    * Draws the texture again where it has changed. Call it before each frame.
    * @returns whether anything had changed.
-   * Cost: nothing if not; else one pass over what has changed, two with more than eight visible layers.
+   * Cost: nothing if not; else one pass over what has changed, two with more than eight visible layers; as much again if some layer
+   * has roughness or metalness, if one glows, and if one has a normal map. Each of these three is a texture more, of which the shaders of
+   * the models that show the layers are compiled anew when it is needed for the first time.
    */
   update(): boolean {
-    const hasChanged = this.composite.update(this.renderer);
-    if (hasChanged) this.#copied?.copy(this.composite, this.renderer);
-    return hasChanged;
+    const isDrawn = this.composite.update(this.renderer);
+    if (isDrawn) this.#copied?.copy(this.composite.target, this.renderer);
+    const isTinted = this.#channels.tint(this.baseTint);
+    if (isDrawn || isTinted) this.#channels.show(this.composite, this.renderer);
+    return isDrawn || isTinted;
   }
 
   /** Announces that a part of the texture has changed, or that a stroke is in progress. For painters. @internal */
@@ -209,33 +235,43 @@ export class Layers extends Emitter<{
   }
 
   /**
-   * All layers as plain data, for `JSON.stringify`: their order, styles and images; paintings can be painted on again. On any model with
+   * All layers as plain data, for `JSON.stringify`: their order, styles, images and normal maps, and the base tint; paintings can be painted on again. On any model with
    * a cage of the same layout they look the same. A stroke in progress is left out.
    * Cost: draws and reads each layer, at 1024 or 2048 texels a side, and waits for the GPU; then some hundred milliseconds for PNG files.
    */
   save(): Promise<SavedLayers> {
-    return saveLayers(this.renderer, this.list);
+    return saveLayers(this.renderer, this.list, this.baseTint);
   }
 
   /**
-   * Puts saved layers in the place of all that there are, as one step.
+   * Puts saved layers and their base tint in the place of those that there are, as one step.
    * @throws {CagecastError} `badArgument` that names the layer, if it is not what `save` returned; `badOption` for a region that the cage
    * does not have. Then nothing is changed.
    */
   async load(saved: SavedLayers, { undoable }: ChangeOptions = {}): Promise<void> {
-    const layers = await loadLayers(this.renderer, saved, this.#regions);
-    this.#do('loading layers', undoable, () => {
+    const { layers, baseTint } = await loadLayers(this.renderer, saved, this.#regions);
+    const before = this.baseTint;
+    const put = () => {
       for (const { id } of this.list) this.stack.remove(id);
       for (const { name, sheet, style } of layers) this.stack.add(name, sheet, style);
-    });
-    for (const { sheet } of layers) if (sheet instanceof PaintedSheet) this.#loaded.push(new WeakRef(sheet));
+      this.#baseTint.set(baseTint);
+    };
+    const tinting = baseTint !== before ? this.#baseTint.between(before, baseTint) : undefined;
+    if (undoable !== false) this.edits.do('loading layers', put, tinting);
+    else put();
+    for (const { sheet, style } of layers) {
+      if (sheet instanceof PaintedSheet) this.#loaded.push(new WeakRef(sheet));
+      if (style.normal) this.#reliefs.push(new WeakRef(style.normal));
+    }
   }
 
   /** Frees the GPU memory of the texture and of what was painted. Textures that were added are the caller's. */
   dispose(): void {
     for (const { sheet } of this.list) sheet.dispose?.();
     this.renderer.domElement.removeEventListener('webglcontextrestored', this.#restored);
+    for (const relief of this.#reliefs) relief.deref()?.dispose();
     this.composite.dispose();
+    this.#channels.dispose();
     this.#copied?.texture.dispose();
     if (this.#copied && !this.#isDisposed) giveBack();
     this.#isDisposed = true;
@@ -248,7 +284,13 @@ export class Layers extends Emitter<{
   #readStyle(style: Partial<Style>, argument: string): Partial<Style> {
     const given = readStyle(style, argument);
     checkRegion(given.region, this.#regions);
+    this.#checkReadable(given.normal, `${argument}.normal`);
     return given;
+  }
+
+  #checkReadable(texture: Texture | null | undefined, name: string): void {
+    if (this.#copied && texture?.isRenderTargetTexture)
+      throw wrong(`${name} is drawn by another renderer than the layers, which cannot read it`, kPaint);
   }
 
   #nameOf(layer: Pick<Layer, 'id'>): string {

@@ -1,24 +1,32 @@
 import { SRGBColorSpace, Texture, type WebGLRenderer } from 'three';
 import { show } from '../../core/error.js';
 import { fromDataUrl, toPng } from '../canvas.js';
-import { kPaint, notA, wrong } from '../errors.js';
+import { checkColor, kPaint, notA, wrong } from '../errors.js';
 import { kWhole, toTexels } from '../gpu/rect.js';
 import { readStraight } from '../gpu/straight.js';
-import { Composite } from './composite.js';
+import { kWhite } from './base-tint.js';
+import { Composite, maxCompositeSize } from './composite.js';
 import { type Layer, plainStyle, readStyle, type Sheet, type Style } from './layer.js';
+import { sidesOf } from './layer-pass.js';
 import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';
 import { checkRegion, type Regions } from './regions.js';
 import { maxLayers } from './stack.js';
 
 const kVersion = 1;
 
+/** What a layer makes of the surface; as in `Style`, of whose defaults a saved layer says nothing. */
+const kChannels = ['roughness', 'metalness', 'emissive', 'normalScale'] as const;
+type SavedChannels = Partial<Pick<Style, (typeof kChannels)[number]>>;
+
 /** A layer as plain data. */
-export interface SavedLayer extends Style {
+export interface SavedLayer extends Omit<Style, (typeof kChannels)[number] | 'normal'>, SavedChannels {
   name: string;
   /** The data URL of an image file, in the cage's UV space. */
   image: string;
   /** Texels per side of a painting, which can be painted on again. Default: it is no painting. */
   painting?: PaintingSize | undefined;
+  /** The data URL of an image file with its normal map, the first row at v = 0, as glTF has it. Default: it has none. */
+  normal?: string | undefined;
 }
 
 /** Layers as plain data, for `JSON.stringify`. */
@@ -27,22 +35,50 @@ export interface SavedLayers {
   version: typeof kVersion;
   /** From the lowest to the uppermost. */
   layers: SavedLayer[];
+  /** As `Layers.baseTint`. Default: white. */
+  baseTint?: string | undefined;
 }
 
 /** The layers as data. */
-export async function saveLayers(renderer: WebGLRenderer, layers: readonly Layer[]): Promise<SavedLayers> {
-  const saved = layers.map(({ name, sheet, opacity, tint, blend, visible, region }) => {
+export async function saveLayers(
+  renderer: WebGLRenderer,
+  layers: readonly Layer[],
+  baseTint: string,
+): Promise<SavedLayers> {
+  const saved = layers.map(({ name, sheet, opacity, tint, blend, visible, region, normal, ...rest }) => {
     const painting = sheet instanceof PaintedSheet ? sheet.size : undefined;
     return {
       ...{ name, opacity, tint, blend, visible, region },
       ...(painting && { painting }),
+      ...channelsIn(rest),
+      relief: normal && readRelief(renderer, normal),
       pixels: drawn(renderer, sheet, painting, (composite) =>
         readStraight(renderer, composite.texture, composite.size),
       ),
     };
   });
-  const named = async ({ pixels, ...layer }: (typeof saved)[number]) => ({ ...layer, image: await toPng(pixels) });
-  return { version: kVersion, layers: await Promise.all(saved.map(named)) };
+  const named = async ({ pixels, relief, ...layer }: (typeof saved)[number]) => ({
+    ...layer,
+    ...(relief && { normal: await toPng(relief) }),
+    image: await toPng(pixels),
+  });
+  const all = await Promise.all(saved.map(named));
+  return { version: kVersion, layers: all, ...(baseTint !== kWhite && { baseTint }) };
+}
+
+/** Those channels of a layer that are not as by default. */
+function channelsIn(layer: Required<SavedChannels>): SavedChannels {
+  const given = kChannels.filter((name) => layer[name] !== plainStyle[name]);
+  return Object.fromEntries(given.map((name) => [name, layer[name]]));
+}
+
+/** A normal map as an image, as glTF has it. */
+function readRelief(renderer: WebGLRenderer, normal: Texture): ImageData {
+  const size = Math.min(maxCompositeSize, Math.max(...sidesOf(normal)));
+  const image = readStraight(renderer, normal, size, true);
+  // With its last row at v = 0, green means down.
+  if (normal.flipY) for (let at = 1; at < image.data.length; at += 4) image.data[at] = 255 - image.data[at]!;
+  return image;
 }
 
 /** A layer of saved ones. */
@@ -61,8 +97,8 @@ export async function loadLayers(
   renderer: WebGLRenderer,
   saved: SavedLayers,
   regions: Regions | undefined,
-): Promise<LoadedLayer[]> {
-  const { version, layers } = Object(saved) as Partial<SavedLayers>;
+): Promise<{ layers: LoadedLayer[]; baseTint: string }> {
+  const { version, layers, baseTint = kWhite } = Object(saved) as Partial<SavedLayers>;
   if (!Array.isArray(layers)) throw notA('what save returned', 'saved', saved, kPaint);
   if (version !== kVersion) throw wrong(`saved.version is ${show(version)}, not ${kVersion}`, kPaint);
   if (layers.length > maxLayers) throw wrong(`saved.layers are ${layers.length}, more than ${maxLayers}`, kPaint);
@@ -71,19 +107,32 @@ export async function loadLayers(
     if (typeof name !== 'string') throw notA('a name', `saved.layers[${i}].name`, name, kPaint);
     if (painting !== undefined && !paintingSizes.includes(painting))
       throw notA(paintingSizes.join(' or '), `saved.layers[${i}].painting`, painting, kPaint);
-    const style = readStyle(layer, `saved.layers[${i}]`);
+    const { normal: _, ...rest } = layer;
+    const style = readStyle(rest, `saved.layers[${i}]`);
     checkRegion(style.region, regions);
     return { layer, style };
   });
-  return Promise.all(
-    checked.map(async ({ layer: { name, image, painting }, style }, i) => {
-      const bitmap = await fromDataUrl(String(image)).catch((error: Error) => {
-        throw wrong(`saved.layers[${i}].image cannot be read: ${error.message}`, kPaint);
-      });
-      const sheet = new ImageSheet(bitmap);
+  checkColor('saved.baseTint', baseTint);
+  const loaded = await Promise.all(
+    checked.map(async ({ layer: { name, image, painting, normal }, style }, i) => {
+      const sheet = new ImageSheet(await bitmapOf(image, `saved.layers[${i}].image`));
+      if (normal !== undefined) style.normal = reliefOf(await bitmapOf(normal, `saved.layers[${i}].normal`));
       return { name, style, sheet: painting ? paintingOf(renderer, sheet, painting) : sheet };
     }),
   );
+  return { layers: loaded, baseTint };
+}
+
+const bitmapOf = (url: string, name: string): Promise<ImageBitmap> =>
+  fromDataUrl(String(url)).catch((error: Error) => {
+    throw wrong(`${name} cannot be read: ${error.message}`, kPaint);
+  });
+
+/** A normal map with an image of its own. */
+function reliefOf(bitmap: ImageBitmap): Texture {
+  const texture = new Texture(bitmap);
+  texture.addEventListener('dispose', () => bitmap.close());
+  return Object.assign(texture, { flipY: false, generateMipmaps: false, needsUpdate: true });
 }
 
 /** A sheet with an image of its own. */

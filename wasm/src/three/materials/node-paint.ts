@@ -1,4 +1,5 @@
 import type { Material, Matrix3, Texture } from 'three';
+import { type Channels, noChannels } from './channels.js';
 import { kNoPaint } from './paint-shader.js';
 
 /** Where a material is being made for `WebGPURenderer`, as far as it is used here. */
@@ -11,6 +12,9 @@ export interface NodeBuilder {
 /** The methods by which a material is built for `WebGPURenderer`. That copies them from materials that are not its own, too. */
 export interface NodeHooks {
   setupDiffuseColor(this: NodeHooks, builder: NodeBuilder): void;
+  setupVariants(this: NodeHooks, builder: NodeBuilder): void;
+  setupNormal(this: NodeHooks, builder: NodeBuilder): unknown;
+  setupLighting(this: NodeHooks, builder: NodeBuilder): unknown;
   setupObserver(this: NodeHooks, builder: NodeBuilder): { hasNode: boolean };
 }
 
@@ -18,7 +22,11 @@ export interface NodeHooks {
 export interface ShownPaint {
   texture: Texture | null;
   matrix: Matrix3;
+  channels: Channels;
 }
+
+/** What a material shows in the frame that is drawn. */
+export type ShownOn = (material: Material) => ShownPaint;
 
 /** What adds paint to the colour of a surface while a material is built. `cagecast/three/webgpu` has it, which needs `three/tsl`. */
 export interface NodePainter {
@@ -27,7 +35,13 @@ export interface NodePainter {
    * @param shown  What a material shows in the frame that is drawn.
    * @param alone  Whether the paint is all that the material shows.
    */
-  addPaint(built: object, builder: NodeBuilder, shown: (material: Material) => ShownPaint, alone: boolean): void;
+  addPaint(built: object, builder: NodeBuilder, shown: ShownOn, alone: boolean): void;
+  /** The fields of `built` with which the paint's roughness and metalness are seen. */
+  surface(built: object, builder: NodeBuilder, shown: ShownOn): object;
+  /** Those with which its glow is seen. */
+  glow(built: object, builder: NodeBuilder, shown: ShownOn): object;
+  /** The normals with its relief. @param normal  Those without. */
+  relief(normal: unknown, builder: NodeBuilder, shown: ShownOn): unknown;
 }
 
 let painter: NodePainter | undefined;
@@ -64,13 +78,36 @@ export function nodeHooks(
 ): NodeHooks {
   const before = <Name extends keyof NodeHooks>(built: NodeHooks, name: Name): NodeHooks[Name] =>
     own[name] ?? (Object.getPrototypeOf(built) as NodeHooks)[name];
-  const none: ShownPaint = { texture: null, matrix: kNoPaint };
+  const none: ShownPaint = { texture: null, matrix: kNoPaint, channels: noChannels };
+  const now: ShownOn = (material) => shown(material) ?? none;
+  /** Runs a step of building with other fields. */
+  const withFields = <Result>(built: NodeHooks, fields: object | undefined, run: () => Result): Result => {
+    const before = Object.fromEntries(Object.keys(fields ?? {}).map((key) => [key, built[key as keyof NodeHooks]]));
+    try {
+      Object.assign(built, fields);
+      return run();
+    } finally {
+      Object.assign(built, before);
+    }
+  };
   return {
     setupDiffuseColor(builder) {
       before(this, 'setupDiffuseColor').call(this, builder);
       if (!shown(builder.material)) return;
-      if (painter) painter.addPaint(this, builder, (material) => shown(material) ?? none, alone);
+      if (painter) painter.addPaint(this, builder, now, alone);
       else tellOnce();
+    },
+    setupVariants(builder) {
+      const fields = painter?.surface(this, builder, now);
+      withFields(this, fields, () => before(this, 'setupVariants').call(this, builder));
+    },
+    setupNormal(builder) {
+      const normal = before(this, 'setupNormal').call(this, builder);
+      return painter ? painter.relief(normal, builder, now) : normal;
+    },
+    setupLighting(builder) {
+      const fields = painter?.glow(this, builder, now);
+      return withFields(this, fields, () => before(this, 'setupLighting').call(this, builder));
     },
     setupObserver(builder) {
       const observer = before(this, 'setupObserver').call(this, builder);

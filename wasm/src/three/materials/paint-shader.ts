@@ -1,5 +1,7 @@
-import { Matrix3, type Texture, type WebGLProgramParametersWithUniforms } from 'three';
+import { Color, Matrix3, type Texture, type WebGLProgramParametersWithUniforms } from 'three';
 import { checkColorSpace } from '../color-space.js';
+import { addChannels } from './channel-shader.js';
+import { channelsOf } from './channels.js';
 import { withoutFringes } from './fringes.js';
 
 type Shader = Pick<WebGLProgramParametersWithUniforms, 'vertexShader' | 'fragmentShader' | 'uniforms'>;
@@ -33,18 +35,29 @@ const kFragment = `#define CAGECAST_PAINT
 varying vec4 vCagecastPaint;
 uniform sampler2D cagecastMap;
 uniform mat3 cagecastMatrix;
-vec4 cagecastTexel() {
-  vec3 amount = vec3(cagecastMatrix[0].z, cagecastMatrix[1].z, cagecastMatrix[2].z);
-  vec4 texel = texture2D(cagecastMap, (cagecastMatrix * vec3(vCagecastPaint.xy, 1.0)).xy);
-  vec3 linear = mix(pow((texel.rgb + 0.055) / 1.055, vec3(2.4)), texel.rgb / 12.92, vec3(lessThanEqual(texel.rgb, vec3(0.04045))));
-  texel.rgb = mix(texel.rgb, linear, step(abs(amount.z - 1.0), 0.5));
-  texel.rgb /= amount.z > 1.5 ? max(texel.a, 1e-4) : 1.0;
+vec2 cagecastUv() { return (cagecastMatrix * vec3(vCagecastPaint.xy, 1.0)).xy; }
+float cagecastShare() {
   float inside = vCagecastPaint.w - 2.0;
-  float border = amount.y > 0.0 ? smoothstep(0.0, amount.y, inside) : step(-0.5, inside);
-  texel.a *= amount.x * border * step(abs(vCagecastPaint.z), 1e-6);
+  float feather = cagecastMatrix[1].z;
+  float border = feather > 0.0 ? smoothstep(0.0, feather, inside) : step(-0.5, inside);
+  return cagecastMatrix[0].z * border * step(abs(vCagecastPaint.z), 1e-6);
+}
+vec4 cagecastTexel() {
+  float stored = cagecastMatrix[2].z;
+  vec4 texel = texture2D(cagecastMap, cagecastUv());
+  vec3 linear = mix(pow((texel.rgb + 0.055) / 1.055, vec3(2.4)), texel.rgb / 12.92, vec3(lessThanEqual(texel.rgb, vec3(0.04045))));
+  texel.rgb = mix(texel.rgb, linear, step(abs(stored - 1.0), 0.5));
+  texel.rgb /= stored > 1.5 ? max(texel.a, 1e-4) : 1.0;
+  texel.a *= cagecastShare();
   return texel;
 }
-vec3 cagecastPaint(vec3 base) {
+`;
+
+/** What the model's own colour is multiplied by: white costs nothing. */
+const kTinted = `uniform vec3 cagecastTint;
+vec3 cagecastBase() { return mix(vec3(1.0), cagecastTint, cagecastShare()); }
+`;
+const kMixed = `vec3 cagecastPaint(vec3 base) {
   vec4 texel = cagecastTexel();
   return mix(base, texel.rgb, texel.a);
 }
@@ -58,7 +71,7 @@ const kMain = /void\s+main\s*\(\s*(?:void)?\s*\)\s*\{/;
 const kShadeKnown = /^[ \t]*material\.shadingShift = shadingShiftFactor;/m;
 const kPaintShade = `
   vec4 cagecastShade = cagecastTexel();
-  material.shadeColor = mix(material.shadeColor, cagecastShade.rgb * min(shadeColorFactor / max(litFactor, 1e-3), 1.0), cagecastShade.a);
+  material.shadeColor = mix(BASE, cagecastShade.rgb * min(shadeColorFactor / max(litFactor, 1e-3), 1.0), cagecastShade.a);
 `;
 
 /** Whether a fragment shader asks for paint by itself. */
@@ -72,37 +85,66 @@ export const takesPaint = (fragmentShader: string): boolean =>
 export interface PaintUniforms {
   cagecastMap: { value: Texture | null };
   cagecastMatrix: { value: Matrix3 };
+  cagecastTint: { value: Color };
+  cagecastSurface: { value: Texture | null };
+  cagecastGlow: { value: Texture | null };
+  cagecastStrength: { value: number };
+  cagecastNormals: { value: Texture | null };
 }
+
+const kWhite = /* @__PURE__ */ new Color();
 
 export const paintUniforms = (): PaintUniforms => ({
   cagecastMap: { value: null },
   cagecastMatrix: { value: kNoPaint },
+  cagecastTint: { value: kWhite },
+  cagecastSurface: { value: null },
+  cagecastGlow: { value: null },
+  cagecastStrength: { value: 1 },
+  cagecastNormals: { value: null },
 });
 
 /** Makes the uniforms of a material show a paint, or none. The matrix goes on following the paint by `refreshMatrix`. */
-export function setUniforms({ cagecastMap, cagecastMatrix }: PaintUniforms, paint: Paint | undefined): void {
-  cagecastMap.value = paint?.texture ? withoutFringes(paint.texture) : null;
-  cagecastMatrix.value = paint?.texture ? paint.matrix : kNoPaint;
+export function setUniforms(uniforms: PaintUniforms, paint: Paint | undefined): void {
+  const texture = paint?.texture;
+  const { tint, surface, glow, strength, normals } = channelsOf(texture);
+  uniforms.cagecastMap.value = texture ? withoutFringes(texture) : null;
+  uniforms.cagecastMatrix.value = texture ? paint.matrix : kNoPaint;
+  uniforms.cagecastTint.value = tint ?? kWhite;
+  uniforms.cagecastSurface.value = surface ?? null;
+  uniforms.cagecastGlow.value = glow ?? null;
+  uniforms.cagecastStrength.value = strength;
+  uniforms.cagecastNormals.value = normals ?? null;
 }
 
-/**
- * Adds paint to a shader of three.js, before its includes are resolved; nothing if it has paint already.
- * @param alone  Whether the paint is all that the material shows, with the opacity of the material; else it is mixed into its colour.
- */
-export function addPaint(shader: Shader, uniforms: PaintUniforms, alone: boolean): void {
+/** How paint is shown by a material. */
+export interface Showing {
+  /** Whether the paint is all that the material shows, with the opacity of the material; else it is mixed into its colour. */
+  alone: boolean;
+  /** The channels that it shows, as of `variantOf`. */
+  variant: string;
+}
+
+/** Adds paint to a shader of three.js, before its includes are resolved; nothing if it has paint already. */
+export function addPaint(shader: Shader, uniforms: PaintUniforms, { alone, variant }: Showing): void {
   // Another copy of this module may have added its own: this paint came later.
   Object.assign(shader.uniforms, uniforms);
   if (shader.vertexShader.includes(kVertex)) return;
   shader.vertexShader = kVertex + shader.vertexShader.replace(kMain, `$&\n  vCagecastPaint = ${paintAttribute};\n`);
-  if (!asks(shader.fragmentShader)) {
+  const isTinted = variant.includes('tint');
+  const { shader: shown, functions } = addChannels(shader.fragmentShader, variant);
+  shader.fragmentShader = shown;
+  if (!asks(shown)) {
     const mixed = alone
       ? 'vec4 cagecastAlone = cagecastTexel();\n  diffuseColor = vec4(cagecastAlone.rgb, cagecastAlone.a * diffuseColor.a);'
       : 'diffuseColor.rgb = cagecastPaint(diffuseColor.rgb);';
-    shader.fragmentShader = shader.fragmentShader
+    const shade = isTinted ? 'material.shadeColor * cagecastBase()' : 'material.shadeColor';
+    shader.fragmentShader = shown
       .replace(kColorKnown, `  ${mixed}\n$&`)
-      .replace(kShadeKnown, `${kPaintShade}$&`);
+      .replace(kShadeKnown, `${kPaintShade.replace('BASE', shade)}$&`);
   }
-  shader.fragmentShader = kFragment + shader.fragmentShader;
+  const mixes = isTinted ? kTinted + kMixed.replace('mix(base', 'mix(base * cagecastBase()') : kMixed;
+  shader.fragmentShader = kFragment + mixes + functions + shader.fragmentShader;
 }
 
 /** Brings the matrix of a paint up to date: the transform of its texture's UVs, and in its last row how much of the texture shows. */

@@ -1,4 +1,5 @@
 import { Material, type ShaderMaterial, type Mesh as ThreeMesh, UnsignedByteType } from 'three';
+import { channelsOf, type Follower, followChannels, variantOf } from './channels.js';
 import { canBeNodePainted, type NodeHooks, nodeHooks, type ShownPaint } from './node-paint.js';
 import {
   addPaint,
@@ -11,14 +12,14 @@ import {
 } from './paint-shader.js';
 
 /** What is painted, and the meshes that show it. */
-export interface Painting extends Paint {
+export interface Painting extends Paint, Follower {
   /** Greater than those of all paintings before it, which it replaces where it is shown. */
   number: number;
   meshes: ReadonlySet<ThreeMesh>;
+  /** Those that show it. */
+  materials: Set<Material>;
   /** What its materials call for each mesh. One function for all of them, which engines call faster than one for each. */
   refresh: Material['onBeforeRender'];
-  /** The uniforms of its materials. */
-  uniforms: Set<PaintUniforms>;
 }
 
 let paintingCount = 0;
@@ -27,12 +28,15 @@ let paintingCount = 0;
 const kCopy = `cagecast ${Math.random()}`;
 
 /** Makes a painting that is brought up to date once in each frame. */
-export function makePainting(paint: Omit<Painting, 'refresh' | 'number' | 'uniforms'>): Painting {
+export function makePainting(paint: Omit<Painting, 'refresh' | 'number' | 'materials' | 'follow'>): Painting {
   let [last, lastFrame, lastVersion]: [unknown, number, number | undefined] = [undefined, -1, undefined];
   const painting: Painting = {
     ...paint,
     number: ++paintingCount,
-    uniforms: new Set(),
+    materials: new Set(),
+    follow() {
+      for (const material of painting.materials) readPainting(material, patches.get(material)!, painting);
+    },
     refresh(renderer) {
       const { frame } = renderer.info.render;
       if (frame === lastFrame && renderer === last) return;
@@ -40,9 +44,8 @@ export function makePainting(paint: Omit<Painting, 'refresh' | 'number' | 'unifo
       lastFrame = frame;
       refreshMatrix(painting);
       const version = painting.texture?.version;
-      if (version === lastVersion) return;
+      if (version !== lastVersion) painting.follow();
       lastVersion = version;
-      for (const uniforms of painting.uniforms) setUniforms(uniforms, painting);
     },
   };
   return painting;
@@ -68,11 +71,19 @@ interface Patch {
   isQuiet: boolean;
   /** How its shaders read the texture. */
   reading: string;
+  /** The channels that they show. */
+  variant: string;
   /** Whether `WebGPURenderer` has drawn it. */
   hasNodes: boolean;
 }
 
-const kNodeHooks = ['setupDiffuseColor', 'setupObserver'] as const satisfies (keyof NodeHooks)[];
+const kNodeHooks = [
+  'setupDiffuseColor',
+  'setupVariants',
+  'setupNormal',
+  'setupLighting',
+  'setupObserver',
+] as const satisfies (keyof NodeHooks)[];
 const kHooks = ['onBeforeCompile', 'customProgramCacheKey', 'onBeforeRender', ...kNodeHooks] as const;
 type Hooks = Pick<Material & NodeHooks, (typeof kHooks)[number]>;
 
@@ -129,27 +140,25 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
     given: {},
     isQuiet: true,
     reading: '',
+    variant: '',
     hasNodes: false,
   };
   patches.set(material, record);
   // Somebody has replaced or wrapped the hook that was given, or none was given yet.
   if (material.onBeforeCompile !== record.given.onBeforeCompile) unpaint(material, record.painting);
   const isPatched = record.painting;
-  record.painting?.uniforms.delete(record.uniforms);
+  record.painting?.materials.delete(material);
   record.painting = painting;
-  painting.uniforms.add(record.uniforms);
-  setUniforms(record.uniforms, painting);
-  const reading = readingOf(painting);
+  painting.materials.add(material);
+  followChannels(painting);
+  readPainting(material, record, painting);
   if (isPatched) {
-    if (record.hasNodes && reading !== record.reading) material.needsUpdate = true;
-    record.reading = reading;
     if (record.isQuiet && material.onBeforeRender === record.given.onBeforeRender)
       material.onBeforeRender = record.given.onBeforeRender = painting.refresh;
     return;
   }
   // A program that was compiled when it was painted before has the same key, but its uniforms may be gone.
   if (known) material.dispose();
-  record.reading = reading;
 
   const hooks = material as Material & Partial<NodeHooks>;
   const { onBeforeCompile, customProgramCacheKey, onBeforeRender } = hooks;
@@ -160,14 +169,16 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
     customProgramCacheKey() {
       const key = customProgramCacheKey.call(material);
       // By default the key is the text of `onBeforeCompile`, which is not the material's own by now.
-      return record.painting ? `${key}|${onBeforeCompile}|${kCopy}${alone ? ' alone' : ''}${record.reading}` : key;
+      return record.painting
+        ? `${key}|${onBeforeCompile}|${kCopy}${alone ? ' alone' : ''}${record.reading}${record.variant}`
+        : key;
     },
     onBeforeCompile: (shader, renderer) => {
       onBeforeCompile.call(material, shader, renderer);
       if (!record.painting) return;
       // The uniforms of a `ShaderMaterial` are its owner's, who may have given them to several.
       if ('isShaderMaterial' in material) shader.uniforms = Object.create(shader.uniforms);
-      addPaint(shader, record.uniforms, alone);
+      addPaint(shader, record.uniforms, { alone, variant: record.variant });
     },
     onBeforeRender: record.isQuiet
       ? painting.refresh
@@ -181,6 +192,16 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
   material.needsUpdate = true;
 }
 
+/** Makes a material show the texture and the channels that a painting has by now. */
+function readPainting(material: Material, record: Patch, painting: Painting): void {
+  setUniforms(record.uniforms, painting);
+  const [reading, variant] = [readingOf(painting), variantOf(channelsOf(painting.texture))];
+  // Programs that were compiled for other channels are kept for when these come back.
+  if (variant !== record.variant || (record.hasNodes && reading !== record.reading)) material.needsUpdate = true;
+  record.reading = reading;
+  record.variant = variant;
+}
+
 /** What a material shows of its paint in the frame that is drawn, for `WebGPURenderer`, which calls nothing before it draws. */
 function shownOn(material: Material): ShownPaint | undefined {
   const record = patches.get(material);
@@ -189,7 +210,8 @@ function shownOn(material: Material): ShownPaint | undefined {
   refreshMatrix(record.painting);
   setUniforms(record.uniforms, record.painting);
   const { cagecastMap, cagecastMatrix } = record.uniforms;
-  return { texture: cagecastMap.value, matrix: cagecastMatrix.value };
+  const channels = channelsOf(record.painting.texture);
+  return { texture: cagecastMap.value, matrix: cagecastMatrix.value, channels };
 }
 
 /** What of a texture is a part of shaders that `WebGPURenderer` builds. */
@@ -203,8 +225,8 @@ function readingOf({ texture }: Paint): string {
 export function unpaint(material: Material, painting: Painting | undefined): void {
   const record = patches.get(material);
   if (!record || record.painting !== painting) return;
-  painting?.uniforms.delete(record.uniforms);
   record.painting = undefined;
+  painting?.materials.delete(material);
   setUniforms(record.uniforms, undefined);
   for (const name of kHooks) {
     if ((material as Partial<Hooks>)[name] !== record.given[name]) continue;

@@ -19,7 +19,7 @@ import {
 } from 'three';
 import { kMaxRects, Pass } from '../gpu/pass.js';
 import { disjoint, type Rect, toShares, toTexels } from '../gpu/rect.js';
-import type { ActiveStroke } from '../layers/composite.js';
+import type { ActiveStroke } from '../layers/layer-pass.js';
 import { makePaintTarget, type PaintedSheet } from '../layers/painted-sheet.js';
 import type { CageTexels, Capsule, SurfacePoint } from './cage-texels.js';
 import { FillPass } from './fill-pass.js';
