@@ -26,7 +26,10 @@ test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit
   const { page, complaints } = await site.visit();
   await drop(page, [head()]);
   await ready(page);
-  assert.ok(await page.getByTestId('landmarks').isHidden());
+  assert.ok(
+    await page.locator('[data-landmark=nose_tip]').isHidden(),
+    'they are out of the way until they are asked for',
+  );
   await fitted(page);
   const found = await savedCage(page);
   assert.deepEqual(await faults(page), []);

@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
-import { fitted, head, ready } from '../../support/cages';
+import { asset, fitted, head, ready } from '../../support/cages';
 import { difference, look, modelArea } from '../../support/picture';
-import { drop, Site, type Visit } from '../../support/site';
+import { drop, glb, Site, type Visit } from '../../support/site';
 
 let site: Site;
 let visit: Visit;
@@ -324,7 +324,7 @@ test('on the stage, nothing that can be pressed is covered or cut off', async ()
   await page.getByTestId('explain-bubble').waitFor();
   assert.deepEqual(await stageFaults(page, kPhoneSizes), [], 'with an explanation');
   await page.locator('#view').press('Escape');
-  await drop(page, [head()]);
+  await drop(page, [head(), glb('cage.glb', asset('lizard', 'cage.glb'))]);
   await ready(page);
   await page.getByTestId('stage-remedy').waitFor();
   assert.deepEqual(await stageFaults(page), [], 'with a verdict that offers a remedy');

@@ -145,7 +145,7 @@ test('a stroke that goes on while another model comes stays with its cage', asyn
   assert.equal(await settled(page), 'ready', await shownError(page));
   await page.mouse.move(x + 0.6 * width, y + 0.5 * height, { steps: 4 });
   await page.mouse.up();
-  assert.deepEqual(await names(page), ['UV checker']);
+  assert.deepEqual(await names(page), ['Tiger']);
   assert.match((await page.getByTestId('put-away').textContent())!, /One layer of an earlier cage put away/);
   assert.deepEqual(complaints, []);
 });

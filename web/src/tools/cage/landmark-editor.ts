@@ -52,6 +52,8 @@ export class LandmarkEditor {
   readonly #offer: RailTool;
   #dots: LandmarkDots | undefined;
   #fitting: Fitting | undefined;
+  /** Whether the user has asked for it. */
+  #wasAsked = false;
   #target: Model | undefined;
   #state: Spots = { spots: {}, given: {} };
   /** The one that the next click places. */
@@ -102,7 +104,9 @@ export class LandmarkEditor {
   /** Shows the landmarks of a fit; undefined ends. */
   edit(fitting: Fitting | undefined): void {
     const last = this.#fitting;
-    const isNew = fitting !== undefined && !last;
+    const isAsked = fitting !== undefined && fitting === this.#maker.latest;
+    const isNew = isAsked && !this.#wasAsked;
+    this.#wasAsked = isAsked;
     const { target, cage } = this.#session.shown!;
     const isOther = target !== this.#target || fitting?.template !== last?.template;
     // Steps on another model or template do not apply any more.
@@ -130,7 +134,7 @@ export class LandmarkEditor {
     box.getCenter(this.#middle);
     this.#write();
     // What was brought back takes no other tool out of the hand; and beside other models, landmarks are too near each other.
-    if (isNew && fitting === this.#maker.latest && !this.#viewer.stage.crowd) this.#tools.choose(this.#offer);
+    if (isNew && !this.#viewer.stage.crowd) this.#tools.choose(this.#offer);
     if (this.#tools.chosen === this.#offer) {
       if (isNew && fitting.guessed.length > 0) this.#lookAtSpots();
       this.#askForNext();
