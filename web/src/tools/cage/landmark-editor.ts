@@ -126,7 +126,9 @@ export class LandmarkEditor {
     else {
       const before = this.#state;
       this.#state = { spots: used, given, cage: fitted };
-      if (!isOther && fitting !== last && given !== before.given) this.#record('fitting the template', before);
+      const isSame = Object.keys({ ...given, ...before.given }).length === 0; // it was only fitted again
+      if (!isOther && fitting !== last && given !== before.given && !isSame)
+        this.#record('fitting the template', before);
     }
     if (!fitting) return;
     const box = new Box3().setFromArray(target.mesh.positions);
