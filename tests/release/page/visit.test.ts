@@ -99,12 +99,12 @@ for (const { name, ...options } of kScreens) {
     for (const selector of ['#section-nav a', '#view-mode label', '.toggle', '#stage-verdict', '#stage-save'])
       assert.ok((await inside(selector)).every(Boolean), `${selector} is seen without scrolling`);
 
-    await open(page, [figure()]);
+    await open(page, [figure(), glb('cage.glb', asset('lizard', 'cage.glb'))]);
     assert.equal(await verdict(page), 'unfit');
     assert.deepEqual(await inside('#stage-verdict'), [true]);
     assert.equal(await page.locator('#model-verdict').textContent(), 'does not fit');
     assert.ok(await page.getByTestId('status').isHidden(), 'no green "ready"');
-    assert.equal(await page.getByTestId('stage-remedy').textContent(), 'Make a cage');
+    assert.equal(await page.getByTestId('stage-remedy').textContent(), 'Move the cage');
     assert.deepEqual(await faults(page), []);
 
     if (name === 'phone') {
