@@ -180,13 +180,24 @@ describe('without a picture', () => {
     assert.deepEqual((await names(page)).slice(0, 2), before.slice(0, 2));
   });
 
-  test('a cage is made for a model without one, and a template is fitted', async () => {
+  test('a model that is opened alone is fitted a template and painted; so is a cage that is made, and another fit', async () => {
     await drop(page, bust().slice(0, 1));
     await ready();
+    assert.match((await page.locator('#cage-note').textContent())!, /^The template was fitted/);
+    assert.deepEqual(
+      [await page.locator('#texture-name').textContent(), (await names(page)).at(-1)],
+      ['Tiger', 'Tiger'],
+    );
+    assert.ok((await shownCounts(page)).cosmetic > 5000);
+    assert.ok(await page.locator('#swap').isHidden());
+    const paints = page.locator('#paints label');
+    await paints.filter({ hasText: 'Skull' }).click();
+    await page.locator('#texture-name', { hasText: 'Skull' }).waitFor({ state: 'attached' });
     await page.getByTestId('make-cage').click();
     await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
     await ready();
     assert.ok((await shownCounts(page)).cosmetic > 0);
+    assert.deepEqual((await names(page)).at(-1), 'Skull', 'the same paint, drawn for this cage');
     await page.getByTestId('fit-cage').click();
     await page.locator('#cage-note', { hasText: 'was fitted' }).waitFor();
     await ready();

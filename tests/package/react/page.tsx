@@ -6,7 +6,7 @@ import type { Layers, Painter } from 'cagecast/three/paint';
 import { Component, type ReactNode, StrictMode, Suspense, startTransition, useState } from 'react';
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { ball, cage, countOf, equal, flat, kSize, modelOf, ok, type Scenes, white } from '../three/scenes';
+import { ball, cage, countOf, equal, flat, kSize, modelOf, offer, ok, type Scenes, white } from '../three/scenes';
 
 extend(THREE as never);
 
@@ -311,14 +311,4 @@ const scenes: Scenes = {
   },
 };
 
-Object.assign(globalThis, {
-  names: Object.keys(scenes),
-  run: async (name: string): Promise<string | undefined> => {
-    try {
-      await scenes[name]!();
-      return undefined;
-    } catch (error) {
-      return String((error as Error).stack ?? error);
-    }
-  },
-});
+offer(scenes);

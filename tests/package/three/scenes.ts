@@ -26,6 +26,21 @@ import {
 /** Scenes by what they show: each throws an error that says what it found instead. */
 export type Scenes = Record<string, () => void | Promise<void>>;
 
+/** Lets the test that has opened the page run its scenes. */
+export const offer = (scenes: Scenes): unknown =>
+  Object.assign(globalThis, {
+    names: Object.keys(scenes),
+    /** Runs a scene. @returns its error, if it fails. */
+    run: async (name: string): Promise<string | undefined> => {
+      try {
+        await scenes[name]!();
+        return undefined;
+      } catch (error) {
+        return String((error as Error).stack ?? error);
+      }
+    },
+  });
+
 /** @param found  What was found, for the message. */
 export function ok(condition: unknown, found: unknown): asserts condition {
   if (!condition) throw new Error(`found: ${typeof found === 'string' ? found : JSON.stringify(found)}`);

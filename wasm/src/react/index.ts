@@ -1,3 +1,5 @@
+'use client'; // for frameworks that also render on a server
+
 /**
  * Cagecast for react-three-fiber: hooks and a component that paint loaded models, and take the paint off when they leave.
  * @module cagecast/react

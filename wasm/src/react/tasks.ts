@@ -13,7 +13,7 @@ import {
 import { wrong } from './errors.js';
 
 /** Options of a fit and transfer: those of `applyTransfer` but for what is displayed, and a template. */
-export interface PrepareOptions
+export interface FittingOptions
   extends Omit<ApplyOptions, 'texture' | 'material' | 'opacity' | 'feather' | 'result' | 'saved'> {
   /**
    * A cage that is first fitted to the model: the name of one that comes with the package, or its own, as a loaded glTF or a `Template`.
@@ -24,7 +24,8 @@ export interface PrepareOptions
   landmarks?: Landmarks | undefined;
 }
 
-export interface Prepared {
+/** What is ready to be applied to a model. */
+export interface Fitted {
   /** The cage that was fitted or given; undefined if the model has its own. */
   cage: LoadedCage | undefined;
   /** The fit, if there was a template. */
@@ -34,13 +35,13 @@ export interface Prepared {
 
 /** A fit and transfer, done or under way. */
 export class Task {
-  readonly promise: Promise<Prepared>;
+  readonly promise: Promise<Fitted>;
   /** Whether a component wants it that is not mounted yet: React does not tell when it gives such a one up. */
   isKept = false;
   readonly #holders = new Set<Holder>();
   readonly #end: () => void;
 
-  constructor(promise: Promise<Prepared>, end: () => void) {
+  constructor(promise: Promise<Fitted>, end: () => void) {
     this.promise = promise;
     this.#end = end;
   }
@@ -101,7 +102,7 @@ const tasks = new WeakMap<object, Map<string, Task>>();
 const kFailureLasts = 1000;
 
 /** The fit and transfer of a model; it is begun if it is not under way. */
-export function taskOf(model: Loaded, options: PrepareOptions): Task {
+export function taskOf(model: Loaded, options: FittingOptions): Task {
   const owner = (model as { scene?: object } | undefined)?.scene ?? model;
   if (typeof owner !== 'object' || owner === null) throw wrong('model', model, 'a loaded glTF, a scene or a mesh');
   const ofModel = tasks.get(owner) ?? new Map<string, Task>();
@@ -128,9 +129,9 @@ export function taskOf(model: Loaded, options: PrepareOptions): Task {
 
 async function run(
   model: Loaded,
-  { template, landmarks, ...options }: PrepareOptions,
+  { template, landmarks, ...options }: FittingOptions,
   signal: AbortSignal,
-): Promise<Prepared> {
+): Promise<Fitted> {
   if (template === undefined)
     return { cage: options.cage, fit: undefined, saved: await prepareTransfer(model, { ...options, signal }) };
   const loaded = typeof template === 'string' ? await loadTemplate(template) : template;

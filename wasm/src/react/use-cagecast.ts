@@ -1,19 +1,19 @@
 import { use, useEffect, useLayoutEffect, useState } from 'react';
 import { type Applied, type ApplyOptions, applyTransfer, type Loaded } from '../three/index.js';
 import type { Layers } from '../three/painting/index.js';
-import { Holder, type Prepared, type PrepareOptions, taskOf } from './tasks.js';
+import { type Fitted, type FittingOptions, Holder, taskOf } from './tasks.js';
 import { type LayerItem, useOwnLayers } from './use-layers.js';
 
 /** Options of `useCagecast`: those of `applyTransfer`, a template to be fitted, and layers. */
 export interface CagecastOptions
-  extends PrepareOptions,
+  extends FittingOptions,
     Pick<ApplyOptions, 'texture' | 'material' | 'opacity' | 'feather'> {
   /** What to show instead of one `texture`: what `useLayers` returned, or the layers of a stack of its own. */
   layers?: Layers | readonly LayerItem[] | undefined;
 }
 
 /** What a model is painted by. */
-export interface Painted extends Pick<Prepared, 'cage' | 'fit'> {
+export interface Painted extends Pick<Fitted, 'cage' | 'fit'> {
   /** Undefined until the model is in the scene. */
   applied: Applied | undefined;
   /** The stack that is shown; undefined without layers, and until it is made. */
@@ -52,7 +52,7 @@ export function useCagecast(model: Loaded, options: CagecastOptions = {}): Paint
   const own = useOwnLayers(isList(given) ? given : undefined, cage, undefined);
   const layers = isList(given) ? own : given;
   const shown = layers?.texture ?? texture;
-  const [state, setState] = useState<{ of: Prepared['saved']; applied: Applied }>();
+  const [state, setState] = useState<{ of: Fitted['saved']; applied: Applied }>();
   useLayoutEffect(() => {
     const { channel, parts } = preparing;
     const applied = applyTransfer(model, { saved, channel, parts, texture: shown, material, opacity, feather });

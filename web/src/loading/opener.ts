@@ -30,6 +30,8 @@ export class Opener implements Samples {
   #samples: Sample[] = [];
   /** Warnings about the latest files, shown once these are loaded. */
   #warnings: readonly string[] = [];
+  /** The cage whose paints are listed. */
+  #offered: Model | undefined;
   /** The base paint that was chosen last. */
   #chosen: Promise<Paint> | undefined;
 
@@ -135,8 +137,8 @@ export class Opener implements Samples {
     const { shown, checker } = this.#session;
     const cage = asCage(await loading);
     const base = this.#stack.base?.sheet as Paint | undefined;
-    const isMade = base && (base.sample ?? base.drawn ?? (base as Paint) === checker);
-    if (!shown || (base && !isMade) || haveSameUvs(shown.cage, cage)) return shown?.paint ?? checker;
+    const isGiven = base === undefined || base === checker || base.sample || base.drawn;
+    if (shown && (!isGiven || haveSameUvs(shown.cage, cage))) return shown.paint;
     const drawn = this.#drawings.find(base?.drawn ?? '') ?? this.#drawings.firstFor(cage);
     return this.#drawings.draw(drawn, cage).catch(() => checker);
   }
@@ -212,8 +214,8 @@ export class Opener implements Samples {
       if (!own) this.#select.append(new Option('Your own files', kOwn));
       this.#select.value = kOwn;
     }
-    element('swap', HTMLButtonElement).hidden = Boolean(target.sample ?? cage.sample);
     const isMade = madeOf(cage.files[0]!)?.target === target.files[0];
+    element('swap', HTMLButtonElement).hidden = isMade || Boolean(target.sample ?? cage.sample);
     element('hint', HTMLElement).textContent =
       isMade || !target.sample === !cage.sample
         ? 'Choose your own files, or drop them anywhere on the page. They stay on this device.'
@@ -255,13 +257,19 @@ export class Opener implements Samples {
     }
   }
 
-  /** Lists the base paints: the sample's, and the checker. */
+  /** Lists the base paints: at once the sample's, and the checker; those that are drawn once there are pictures of them. */
   async #offerPaints({ cage }: Pick<Shown, 'cage'>): Promise<void> {
+    if (this.#offered !== cage) this.#listPaints(cage, []);
+    this.#offered = cage;
+    const pictures = await this.#drawings.pictures(cage).catch(() => []);
+    if (this.#session.shown?.cage === cage) this.#listPaints(cage, pictures);
+  }
+
+  /** @param pictures  Of the paints that are drawn. */
+  #listPaints(cage: Model, pictures: readonly string[]): void {
     const { checker } = this.#session;
     const sample = sampleOf(cage);
     const drawn = this.#drawings.listFor(cage);
-    const pictures = await this.#drawings.pictures(cage).catch(() => []);
-    if (this.#session.shown?.cage !== cage) return;
     const choices: (Choice & { drawn?: string; load(): Promise<Paint> })[] = [
       ...(sample?.paints ?? []).map((paint) => ({
         title: paint.title,

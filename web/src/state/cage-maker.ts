@@ -61,7 +61,7 @@ export class CageMaker extends Emitter<{
   choices: ((model: CageModel) => { options: MakeOptions; marks?: Uint8Array }) | undefined;
   /** What the last fit that was asked for here came to. */
   latest: Fitting | undefined;
-  /** Cages that nobody has asked for. */
+  /** Fits that nobody has asked for. */
   readonly #unasked = new WeakSet<File>();
   #opening: AbortController | undefined;
 
@@ -151,7 +151,7 @@ export class CageMaker extends Emitter<{
       const { cage, ...how } = isFit ? fitted : await this.#make(context);
       const file = new File([engine.cageGlb({ ...cage, origin: originOf(target) })], cageNameFrom(target.name));
       noteMade(file, { target: target.files[0]!, ...how, fitting: how.fitting });
-      this.#unasked.add(file);
+      if (isFit) this.#unasked.add(file);
       return await this.#workshop.loader.load(file);
     } catch (error) {
       throw new Error(`${target.name}: ${reasonOf(error)}`, { cause: error });

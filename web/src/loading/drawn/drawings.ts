@@ -8,11 +8,12 @@ import type { Drawn, DrawRequest } from './paint-worker';
 import type { Canvas } from './spots';
 
 const kTexels = 1024;
-const kPixels = 96; // of a picture, twice what is shown
+const kPixels = 144; // of a picture, twice what is shown
 
 /** Paints that are drawn for any cage. */
 export class Drawings {
-  readonly #pictures = new WeakMap<Model['mesh'], Promise<readonly string[]>>();
+  /** The pictures that were asked for last. */
+  #pictures: { of: Model['mesh']; urls: Promise<readonly string[]> } | undefined;
 
   /** Those that suit a cage. */
   listFor(cage: Model): readonly DrawnPaint[] {
@@ -37,16 +38,19 @@ export class Drawings {
     return { ...(await loadPaint(new File([file!], `${name}.png`))), name: title, drawn: name };
   }
 
-  /** Pictures of a cage with the paints that suit it, as URLs. */
+  /** Pictures of a cage with the paints that suit it, as URLs, until those of another cage are asked for. */
   pictures(cage: Model): Promise<readonly string[]> {
-    const known = this.#pictures.get(cage.mesh);
-    if (known) return known;
+    const last = this.#pictures;
+    if (last?.of === cage.mesh) return last.urls;
     const names = this.listFor(cage).map(({ name }) => name);
-    const made = ask({ names, canvas: canvasOf(cage), size: kPixels, kind: 'portrait' }).then((files) =>
-      files.map((file) => URL.createObjectURL(file)),
+    const drawn = ask({ names, canvas: canvasOf(cage), size: kPixels, kind: 'portrait' });
+    const urls = drawn.then((files) => files.map((file) => URL.createObjectURL(file)));
+    this.#pictures = { of: cage.mesh, urls };
+    void last?.urls.then(
+      (old) => old.map((url) => URL.revokeObjectURL(url)),
+      () => {}, // there are none
     );
-    this.#pictures.set(cage.mesh, made);
-    return made;
+    return urls;
   }
 }
 

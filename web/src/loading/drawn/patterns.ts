@@ -84,6 +84,12 @@ function onLips(at: Point, frame: Frame): number {
 /** Around the vertical axis: 0 in front, ±1 behind. */
 const around = ([x, , z]: Point): number => Math.atan2(x, z + 0.6) / Math.PI;
 
+/** Where a spot is on a plane that lies about as the surface does, across one of the axes. */
+function flat({ at, normal }: Spot, scale: number): { axis: number; u: number; v: number } {
+  const axis = Math.abs(normal[0]) > 0.7 ? 0 : Math.abs(normal[1]) > 0.7 ? 1 : 2;
+  return { axis, u: at[(axis + 1) % 3]! * scale, v: at[(axis + 2) % 3]! * scale };
+}
+
 const tiger: Pattern =
   (frame) =>
   ({ at }) => {
@@ -226,11 +232,10 @@ const carbon: Pattern =
   (frame) =>
   ({ at, normal }) => {
     const scale = frame.isFace ? 16 : 42;
-    const axis = Math.abs(normal[0]) > 0.7 ? 0 : Math.abs(normal[1]) > 0.7 ? 1 : 2;
-    const [u, v] = [at[(axis + 1) % 3]! * scale, at[(axis + 2) % 3]! * scale];
-    const over1 = (Math.floor(u) + Math.floor(v)) % 4 < 2 !== (Math.floor(v) % 2 === 0);
-    const thread = over1 ? u - Math.floor(u) : v - Math.floor(v);
-    const lit = 0.075 + 0.13 * Math.sin(Math.PI * thread) * (over1 ? 1 : 0.55);
+    const { u, v } = flat({ at, normal }, scale);
+    const isAcross = (Math.floor(u) + Math.floor(v)) % 4 < 2 !== (Math.floor(v) % 2 === 0);
+    const thread = isAcross ? u - Math.floor(u) : v - Math.floor(v);
+    const lit = 0.075 + 0.13 * Math.sin(Math.PI * thread) * (isAcross ? 1 : 0.55);
     const base: Color = [lit, lit * 1.02, lit * 1.08, 1];
     const stripe = 1 - step(0.1, 0.115, Math.abs(Math.abs(at[0]) - 0.24));
     const thin = 1 - step(0.02, 0.03, Math.abs(Math.abs(at[0]) - 0.42));
@@ -241,8 +246,7 @@ const circuit: Pattern =
   (frame) =>
   ({ at, normal }) => {
     const scale = frame.isFace ? 5 : 9;
-    const axis = Math.abs(normal[0]) > 0.72 ? 0 : Math.abs(normal[1]) > 0.72 ? 1 : 2;
-    const [u, v] = [at[(axis + 1) % 3]! * scale, at[(axis + 2) % 3]! * scale];
+    const { axis, u, v } = flat({ at, normal }, scale);
     const [i, j] = [Math.floor(u), Math.floor(v)];
     const [x, y] = [u - i - 0.5, v - j - 0.5];
     // Each cell is joined to those of its neighbours that the edge between them says.
@@ -325,12 +329,12 @@ const scales: Pattern =
       const x = u - Math.floor(u + (r % 2 ? 0.5 : 0)) - (r % 2 ? 0 : 0.5);
       return Math.hypot(x * 1.25, v - r - 1);
     };
-    const [near1, near2] = [within(row), within(row + 1)];
-    const d = near1 < 0.98 ? near1 : near2 * 0.6;
+    const [front, behind] = [within(row), within(row + 1)];
+    const d = front < 0.98 ? front : behind * 0.6;
     const shade = step(0.25, 1, d);
     const tone = clouds(at[0] * 1.6, at[1] * 1.6, at[2] * 1.6);
     const base = over(color('#0b6d72'), color('#2b2f8f'), step(0.35, 0.65, tone));
-    const rim = step(0.84, 0.97, d) * (near1 < 0.98 ? 1 : 0);
+    const rim = step(0.84, 0.97, d) * (front < 0.98 ? 1 : 0);
     return over(over(base, color('#8ff0d4'), 0.75 * (1 - shade)), color('#062a3a'), 0.9 * rim);
   };
 

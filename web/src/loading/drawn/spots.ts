@@ -50,57 +50,72 @@ export function frameOf({ positions, landmarks }: Canvas): Frame {
   return { isFace: eyes !== undefined, origin, unit, mark: (name) => marks.get(name) };
 }
 
+/** The vertices of a cage, in a frame. */
+export const framed = ({ positions }: Canvas, { origin, unit }: Frame): Point[] =>
+  Array.from({ length: positions.length / 3 }, (_, v): Point => {
+    const at = (k: 0 | 1 | 2): number => (positions[3 * v + k]! - origin[k]) / unit;
+    return [at(0), at(1), at(2)];
+  });
+
+/** A point of a picture, in pixels; the middle of the first pixel is 0, 0. */
+export type Place = readonly [x: number, y: number];
+
+/** Where a pixel is in a triangle: the shares of its second and third corner. */
+type Call = (pixel: number, s: number, t: number) => void;
+
 /**
- * Calls a function for each texel of a square texture that a cage covers, and two texels around it.
+ * Calls a function for each pixel of a square picture whose middle is in a triangle.
+ * @param size    Pixels per side.
+ * @param margin  How many pixels beside the triangle count, too.
+ */
+export function eachPixel([p, q, r]: readonly [Place, Place, Place], size: number, margin: number, call: Call): void {
+  const [ux, uy, vx, vy] = [q[0] - p[0], q[1] - p[1], r[0] - p[0], r[1] - p[1]];
+  const area = ux * vy - uy * vx;
+  if (area === 0) return;
+  // A share of 1 is as wide as the triangle is from an edge to the corner opposite to it.
+  const share = (x: number, y: number): number => (margin * Math.hypot(x, y)) / Math.abs(area);
+  const [beyondS, beyondT, beyondEdge] = [share(vx, vy), share(ux, uy), share(vx - ux, vy - uy)];
+  const range = (k: 0 | 1): [number, number] => [
+    Math.max(0, Math.ceil(Math.min(p[k], q[k], r[k]) - margin)),
+    Math.min(size - 1, Math.floor(Math.max(p[k], q[k], r[k]) + margin)),
+  ];
+  const [[left, right], [top, bottom]] = [range(0), range(1)];
+  for (let y = top; y <= bottom; ++y)
+    for (let x = left; x <= right; ++x) {
+      const s = ((x - p[0]) * vy - (y - p[1]) * vx) / area;
+      const t = (ux * (y - p[1]) - uy * (x - p[0])) / area;
+      if (s >= -beyondS && t >= -beyondT && s + t <= 1 + beyondEdge) call(y * size + x, s, t);
+    }
+}
+
+/** A point of a triangle, by the shares of its second and third corner. */
+export const pointIn = ([a, b, c]: readonly [Point, Point, Point], s: number, t: number): Point => {
+  const along = (k: 0 | 1 | 2): number => a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k]);
+  return [along(0), along(1), along(2)];
+};
+
+const kGutter = 2; // texels
+
+/**
+ * Calls a function for each texel of a square texture that a cage covers, and those around it.
  * @param size  Texels per side.
  */
-export function eachSpot(
-  { positions, uvs, indices }: Canvas,
-  frame: Frame,
-  size: number,
-  call: (texel: number, spot: Spot) => void,
-): void {
-  const corner = (v: number): Point =>
-    [0, 1, 2].map((k) => (positions[3 * v + k]! - frame.origin[k]!) / frame.unit) as unknown as Point;
+export function eachSpot(canvas: Canvas, frame: Frame, size: number, call: (texel: number, spot: Spot) => void): void {
+  const { uvs, indices } = canvas;
+  const points = framed(canvas, frame);
   const done = new Uint8Array(size * size);
-  // What is inside of a triangle comes before what is only beside it.
-  for (const margin of [0, 2])
+  const place = (v: number): Place => [uvs[2 * v]! * size - 0.5, uvs[2 * v + 1]! * size - 0.5];
+  // What is in a triangle comes before what is only beside another one.
+  for (const margin of [0, kGutter])
     for (let i = 0; i < indices.length; i += 3) {
-      const vertices = [indices[i]!, indices[i + 1]!, indices[i + 2]!] as const;
-      const [a, b, c] = vertices.map(corner) as [Point, Point, Point];
-      const [p, q, r] = vertices.map((v) => [uvs[2 * v]! * size - 0.5, uvs[2 * v + 1]! * size - 0.5]) as [
-        number[],
-        number[],
-        number[],
-      ];
-      const [ux, uy, vx, vy] = [q[0]! - p[0]!, q[1]! - p[1]!, r[0]! - p[0]!, r[1]! - p[1]!];
-      const area = ux * vy - uy * vx;
-      if (area === 0) continue;
-      const normal = normalOf(a, b, c);
-      // Texels beside it are those near its edges.
-      const reach = [0, 1].map((k) => (margin * Math.hypot(k === 0 ? vx : ux, k === 0 ? vy : uy)) / Math.abs(area));
-      const third = (margin * Math.hypot(vx - ux, vy - uy)) / Math.abs(area);
-      const range = (k: number): [number, number] => [
-        Math.max(0, Math.ceil(Math.min(p[k]!, q[k]!, r[k]!) - margin)),
-        Math.min(size - 1, Math.floor(Math.max(p[k]!, q[k]!, r[k]!) + margin)),
-      ];
-      const [[left, right], [top, bottom]] = [range(0), range(1)];
-      for (let y = top; y <= bottom; ++y)
-        for (let x = left; x <= right; ++x) {
-          const texel = y * size + x;
-          if (done[texel]) continue;
-          const s = ((x - p[0]!) * vy - (y - p[1]!) * vx) / area;
-          const t = (ux * (y - p[1]!) - uy * (x - p[0]!)) / area;
-          if (s < 0 - reach[0]! || t < 0 - reach[1]! || s + t > 1 + third) continue;
-          done[texel] = 1;
-          const r0 = 1 - s - t;
-          const at: Point = [
-            r0 * a[0] + s * b[0] + t * c[0],
-            r0 * a[1] + s * b[1] + t * c[1],
-            r0 * a[2] + s * b[2] + t * c[2],
-          ];
-          call(texel, { at, normal });
-        }
+      const [u, v, w] = [indices[i]!, indices[i + 1]!, indices[i + 2]!];
+      const corners = [points[u]!, points[v]!, points[w]!] as const;
+      const normal = normalOf(...corners);
+      eachPixel([place(u), place(v), place(w)], size, margin, (texel, s, t) => {
+        if (done[texel]) return;
+        done[texel] = 1;
+        call(texel, { at: pointIn(corners, s, t), normal });
+      });
     }
 }
 
