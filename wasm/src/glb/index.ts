@@ -4,5 +4,6 @@
  * @module cagecast/glb
  */
 export { type PaintedGlb, type PaintOptions, paintGlb } from './paint-glb.js';
-export { type Thumbnail, type ThumbnailOptions, thumbnail } from './thumbnail/thumbnail.js';
+export type { Thumbnail, ThumbnailOptions } from './thumbnail/options.js';
+export { thumbnail } from './thumbnail/thumbnail.js';
 export type { Angles, ViewName } from './thumbnail/views.js';

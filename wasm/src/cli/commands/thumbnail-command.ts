@@ -1,5 +1,6 @@
 import { type Command, InvalidArgumentError } from 'commander';
-import { isColor, kLargest, kSize, kSmallest, type Thumbnail, thumbnailOf } from '../../glb/thumbnail/thumbnail.js';
+import { drawFile } from '../../glb/thumbnail/draw-file.js';
+import { isColor, kLargest, kSize, kSmallest, type Thumbnail } from '../../glb/thumbnail/options.js';
 import { type Angles, type ViewName, views } from '../../glb/thumbnail/views.js';
 import { firstLine, InputError, withName } from '../../gltf/input-error.js';
 import type { GltfFile } from '../../gltf/open-gltf.js';
@@ -159,7 +160,7 @@ async function draw(model: string, flags: ThumbnailFlags, cage: Mesh | undefined
   const { ignored } = resolveSettings([{ settings: { ignore } }]).rules;
   const options = { size, view, parts: part, cage, background, decode: decodeImage };
   try {
-    return { ...(await thumbnailOf(file, options, allBut(ignored))), ...(file.missing && { missing: file.missing }) };
+    return { ...(await drawFile(file, options, allBut(ignored))), ...(file.missing && { missing: file.missing }) };
   } catch (error) {
     throw error instanceof InputError && error.message.startsWith(model) ? error : withName(error, model);
   }
