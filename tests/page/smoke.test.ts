@@ -381,7 +381,7 @@ describe('with a picture', () => {
     await page.mouse.move(5, 5);
     assert.equal((await names(page))[0], 'Painting 1');
     assert.ok(difference(bare, await look(page, area)) > 0.002);
-    const { name, bytes } = await saved(page, 'stage-save');
+    const { name, bytes } = await saved(page, 'export-glb');
     assert.equal(name, 'target-painted.glb');
     const zones = primitivesOf(await validModel(bytes)).flatMap((one) => [
       ...(one.getAttribute('_NCZ')?.getArray() ?? []),

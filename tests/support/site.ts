@@ -24,8 +24,13 @@ const kCheapDrawing = `
 export const kNoWebGl = `HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
   apply: (original, canvas, args) => (String(args[0]).startsWith('webgl') ? null : Reflect.apply(original, canvas, args)),
 });`;
-/** The guide is offered at first visits only. */
-const kSecondVisit = `try { localStorage.setItem('cagecast-guide', 'seen') } catch {}`;
+/** The guide is offered at first visits only; all controls are those of Inspect. */
+const kSecondVisit = `try {
+  localStorage.setItem('cagecast-guide', 'seen');
+  localStorage.setItem('cagecast-face', 'inspect');
+} catch {}`;
+/** A script that shows what a first visitor gets: Play. */
+export const kPlay = `try { localStorage.removeItem('cagecast-face') } catch {}`;
 /** Logged by Playwright when service workers are blocked, by Chromium when it reads back what WebGL drew, and by three.js without it. */
 const kExpected =
   /^Service Worker registration blocked by Playwright$|GPU stall due to ReadPixels|Error creating WebGL context/;

@@ -25,11 +25,12 @@ import { offerPutAway } from './panels/put-away-layers';
 import { showResults } from './panels/results';
 import { setUpRules } from './panels/rules';
 import { setUpSaving } from './panels/save-texture';
-import { setUpSectionNav } from './panels/section-nav';
+import { goTo, setUpSectionNav } from './panels/section-nav';
 import { setUpWardrobe } from './panels/set-up-wardrobe';
 import { showStatus } from './panels/status';
 import { recordControls } from './panels/steps';
 import { ThresholdMarks } from './panels/threshold-marks';
+import { face, setUpFaces } from './platform/face';
 import { catchLostFocus } from './platform/lost-focus';
 import { keepOffline } from './platform/offline';
 import { announce, element } from './platform/page';
@@ -72,6 +73,7 @@ const samples = loadSamples();
 for (const early of [samples.then(([first]) => fetchAhead(first!)), init()]) early.catch(() => {});
 removeOtherPoster();
 catchLostFocus();
+setUpFaces();
 await painted();
 
 const session = new Session(new TransferClient(), makeChecker());
@@ -117,8 +119,9 @@ new FitPanel(session, viewer?.stage, maker);
 setUpRules(session);
 new ThresholdMarks(session);
 setUpViewControls(session);
-setUpSectionNav();
+setUpSectionNav(session);
 setUpStageButtons(viewer?.controls, history);
+element('stage-share', HTMLButtonElement).addEventListener('click', () => goTo(element('share', HTMLElement)));
 const live = new Live(session, viewer);
 recordControls(session, live, history);
 const opener = new Opener(session, stack, edits, loader, new Drawings());
@@ -132,6 +135,10 @@ if (wardrobe) opener.takesDrop = (files) => wardrobe.take(files);
 const linked = { session, layers, live, controls: viewer?.controls };
 const exportPanel = new ExportPanel(linked, exportPng);
 stack.on('change', () => exportPanel.refresh());
+// Whoever brings a model wants to see it painted, not compared.
+session.on('transfer', ({ target }) => {
+  if (!target.sample && face() === 'play' && session.view.mode === 'compare') session.setView({ mode: 'result' });
+});
 const restoreWork = beginProjects({
   session,
   stack,

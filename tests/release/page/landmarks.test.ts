@@ -131,7 +131,7 @@ test('with the keyboard alone: a model is opened, a template fitted, a landmark 
     await page.evaluate(() => document.activeElement!.matches('[data-landmark=nose_tip]')),
     'it keeps the focus when the fit has followed',
   );
-  await tabTo('#stage-save');
+  await tabTo('#stage-share');
   const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Enter')]);
   assert.equal(download.suggestedFilename(), 'bust-painted.glb');
   assert.deepEqual(complaints, []);

@@ -96,7 +96,7 @@ for (const { name, ...options } of kScreens) {
           return left >= 0 && right <= innerWidth && top >= 0 && bottom <= innerHeight;
         }),
       );
-    for (const selector of ['#section-nav a', '#view-mode label', '.toggle', '#stage-verdict', '#stage-save'])
+    for (const selector of ['#section-nav a', '#view-mode label', '.toggle', '#stage-verdict', '#stage-share'])
       assert.ok((await inside(selector)).every(Boolean), `${selector} is seen without scrolling`);
 
     await open(page, [figure(), glb('cage.glb', asset('lizard', 'cage.glb'))]);
@@ -121,7 +121,7 @@ for (const { name, ...options } of kScreens) {
       assert.deepEqual(small, [], 'large enough for a finger');
     }
     const box = async (selector: string) => (await page.locator(selector).boundingBox())!;
-    const [head, rail, bar] = [await box('#stage-save'), await box('#tools'), await box('.toolbar')];
+    const [head, rail, bar] = [await box('#stage-share'), await box('#tools'), await box('.toolbar')];
     const seen = await seenModel(page);
     assert.ok(seen.bottom < bar.y, `it ends at ${seen.bottom}, the toolbar begins at ${bar.y}`);
     assert.ok(seen.left > rail.x + rail.width, `it begins at ${seen.left}, the rail ends at ${rail.x + rail.width}`);
@@ -132,7 +132,7 @@ for (const { name, ...options } of kScreens) {
       'and it is large',
     );
 
-    const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('stage-save').click()]);
+    const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('export-glb').click()]);
     assert.equal(download.suggestedFilename(), 'figure-painted.glb');
     assert.deepEqual(complaints, []);
   });

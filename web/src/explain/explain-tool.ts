@@ -33,6 +33,7 @@ export class Explain {
     this.#offer = {
       title: 'Explain',
       key: 'x',
+      face: 'inspect',
       icon: 'M9 9a3 3 0 1 1 4.6 2.5c-1 .7-1.6 1.3-1.6 2.5M12 17.5v.1M21 12a9 9 0 1 1-18 0 9 9 0 0 1 18 0z',
       tool: {
         tap: (spot) => this.pin(spot),

@@ -1,4 +1,4 @@
-import { download } from '../platform/download';
+import { download, handOver, isTouched } from '../platform/download';
 import { announce, element, showError, showNotice } from '../platform/page';
 import type { Session } from '../state/session';
 import { type Code, codeFor } from './code';
@@ -7,7 +7,7 @@ import type { Baked, PaintInto } from './export-messages';
 import { type Linked, linkOf } from './links';
 import { zonesJson } from './zones';
 
-/** The panel “Export”: the model, the zones, code and a link. */
+/** The panel “Share”: the model, the zones, code and a link. */
 export class ExportPanel {
   readonly #session: Session;
   readonly #linked: Linked;
@@ -22,7 +22,7 @@ export class ExportPanel {
     this.#session = session;
     this.#linked = linked;
     this.#png = png;
-    const section = element('export', HTMLElement);
+    const section = element('share', HTMLElement);
     element('export-glb', HTMLButtonElement).addEventListener('click', () => this.#exportGlb());
     element('export-zones', HTMLButtonElement).addEventListener('click', () => {
       download(new Blob([zonesJson(session)], { type: 'application/json' }), `${this.#stem}-zones.json`);
@@ -59,7 +59,7 @@ export class ExportPanel {
 
   #refresh(): void {
     if (!this.#session.shown) return;
-    const kind = document.querySelector<HTMLInputElement>('#export [name=code]:checked')!.value as keyof Code;
+    const kind = document.querySelector<HTMLInputElement>('#share [name=code]:checked')!.value as keyof Code;
     this.#code.textContent = codeFor(this.#session)[kind];
 
     showNotice(
@@ -111,7 +111,7 @@ export class ExportPanel {
       const { shown, rules, choices } = this.#session;
       const into = document.querySelector<HTMLInputElement>('#paint-into :checked')!.value as PaintInto;
       const { glb, baked } = await exportGlb({ ...shown!, rules, choices }, await this.#png(), into);
-      download(glb, `${stem}-painted.${endingOf(shown!.target.name)}`);
+      await handOver(glb, `${stem}-painted.${endingOf(shown!.target.name)}`);
       announce(`Model saved: ${(glb.size / 1e6).toFixed(1)} megabytes.`);
       showNotice('export-note', baked ? bakedNote(baked) : '');
     } catch (error) {
@@ -123,7 +123,13 @@ export class ExportPanel {
 
   #copyLink(): void {
     this.#refresh();
-    if (this.#link.hasAttribute('href')) this.#copy(this.#link.href, 'Link copied.');
+    if (!this.#link.hasAttribute('href')) return;
+    const url = this.#link.href;
+    // Where it cannot be shared, or that was refused, it is copied.
+    const shared = isTouched() && navigator.share ? navigator.share({ url, title: document.title }) : Promise.reject();
+    shared.catch((error?: Error) => {
+      if (error?.name !== 'AbortError') void this.#copy(url, 'Link copied.');
+    });
   }
 
   async #copy(text: string, done: string): Promise<void> {

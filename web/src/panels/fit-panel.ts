@@ -127,14 +127,15 @@ export class FitPanel {
     ];
     content.push(...making.map(buttonFor));
     // What is good needs no remedy on the stage; the findings offer theirs.
-    this.#show(verdict, content, verdict === 'good' ? undefined : (remedies[0] ?? making[0]));
+    const remedy = verdict === 'good' ? undefined : (remedies[0] ?? making[0]);
+    this.#show(verdict, content, remedy, findings.length);
     this.#session.reportInspection(inspection);
   }
 
-  #show(verdict: KnownVerdict, content: HTMLElement[], remedy?: Remedy): void {
+  #show(verdict: KnownVerdict, content: HTMLElement[], remedy?: Remedy, findings = 0): void {
     this.#verdict.textContent = this.#verdict.dataset.verdict = verdict;
     this.#findings.replaceChildren(...content);
-    this.#stageVerdict.show(verdict, remedy);
+    this.#stageVerdict.show(verdict, findings, remedy);
   }
 
   /** Offers to take back what is left out; a click that has left something out gets to undo it. */

@@ -19,12 +19,6 @@ const kSteps: readonly Step[] = [
     view: { mode: 'compare', split: 0.5 },
   },
   {
-    title: 'The cage',
-    text: 'Paint is drawn once for this simple mesh. Every model in a cage like it takes the paint from there.',
-    about: '.toggle:has(#show-cage)',
-    view: { mode: 'result', cage: true },
-  },
-  {
     title: 'Paint',
     text: 'Choose the brush or a sticker, and paint on the model. What must stay bare stays bare.',
     about: '#tools',
@@ -32,12 +26,12 @@ const kSteps: readonly Step[] = [
   },
   {
     title: 'Your own model',
-    text: 'Choose a GLB, glTF or VRM file as Target, or drop it here. If it has no cage, choose Make a cage. Nothing leaves your device.',
+    text: 'Choose a GLB, VRM or other 3D file here, or drop it anywhere: it is painted at once. Nothing leaves your device.',
     about: '#target-file',
   },
 ];
 
-/** A way through the page in four steps, in a box on the stage. Escape ends it. */
+/** A way through the page in three steps, in a box on the stage. Escape ends it. */
 export class Guide {
   readonly #session: Session;
   readonly #before: View;
@@ -58,7 +52,7 @@ export class Guide {
       this.#end();
     });
     document.querySelector('main')!.before(this.#box); // so that it is reached first
-    this.#fill('New here?', 'Four steps show what this page does.', [
+    this.#fill('New here?', 'Three steps show what this page does.', [
       ['No, thanks', () => this.#end()],
       ['Show me', () => this.show(0)],
     ]);

@@ -1,21 +1,28 @@
 import { Visibility, Zone } from 'cagecast';
+import { face, onFace } from '../platform/face';
 import { element } from '../platform/page';
 import type { Choice } from '../state/choices';
 import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
+import { plainNameOf } from '../view/part-names';
 import type { Spot } from '../view/pick';
 import { marksOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
 
 const kMargin = 8; // pixels from the edges of the stage
 
-/** In the views of parts and zones: a click on a part, or Enter for the one at the centre, opens what can be chosen for it. */
+/**
+ * A click on a part, or Enter for the one at the centre, opens what is to be said of it and can be chosen for it: always in Play, in
+ * Inspect in the views of parts and zones.
+ */
 export class PartMenu {
   readonly #session: Session;
   readonly #viewer: Viewer;
   readonly #stage = element('stage', HTMLElement);
   readonly #box = element('part-menu', HTMLElement);
+  readonly #text = element('part-menu-text', HTMLElement);
   #segment: number | undefined;
+  #spot: Spot | undefined;
 
   constructor(session: Session, viewer: Viewer) {
     this.#session = session;
@@ -38,16 +45,23 @@ export class PartMenu {
       });
     session.on('transfer', () => this.#close());
     session.on('zones', () => this.#write());
-    session.on('view', ({ mode }) => mode === 'segments' || mode === 'zones' || this.#close());
+    session.on('view', () => this.#isOffered || this.#close());
+    onFace(() => this.#close());
+  }
+
+  get #isOffered(): boolean {
+    const { mode } = this.#session.view;
+    return face() === 'play' || mode === 'segments' || mode === 'zones';
   }
 
   #open(spot: Spot | undefined, x: number, y: number): void {
-    const { shown, view } = this.#session;
-    if (!spot || !shown || (view.mode !== 'segments' && view.mode !== 'zones')) {
+    const { shown } = this.#session;
+    if (!spot || !shown || !this.#isOffered) {
       this.#close();
       return;
     }
     this.#segment = shown.projection.segments[shown.target.mesh.indices[3 * spot.triangle]!]!;
+    this.#spot = spot;
     this.#viewer.stage.highlight('parts', marksOf(shown, [this.#segment]));
     this.#box.hidden = false;
     this.#write();
@@ -70,15 +84,28 @@ export class PartMenu {
   #write(): void {
     const { shown, classification, locks } = this.#session;
     if (this.#segment === undefined || !shown || !classification) return;
-    element('part-menu-title', HTMLElement).textContent = nameOfPart(shown, this.#segment);
+    const plain = face() === 'play';
+    const primitive = shown.target.mesh.primitives[shown.projection.segmentStats[this.#segment]!.group]!;
+    element('part-menu-title', HTMLElement).textContent = plain ? plainNameOf(primitive) : primitive.name;
     const lock = locks[this.#segment] ?? 'auto';
-    element('part-menu-text', HTMLElement).textContent = paintedPoints(
-      shown,
-      classification.zones,
-      this.#segment,
-      lock,
-    );
+    if (plain) void this.#say();
+    else this.#text.textContent = paintedPoints(shown, classification.zones, this.#segment, lock);
     for (const input of this.#box.querySelectorAll('input')) input.checked = input.value === lock;
+  }
+
+  /** Says why the spot is painted or not. */
+  async #say(): Promise<void> {
+    const spot = this.#spot!;
+    const [{ explain }, { BoundaryLoops }] = await Promise.all([
+      import('../explain/explanation'),
+      import('../explain/boundary-loops'),
+    ]);
+    const { shown, classification, rules, locks, bare } = this.#session;
+    if (spot !== this.#spot || !shown || !classification) return;
+    const loops = new BoundaryLoops(shown.cage.mesh);
+    const facts = { shown, classification, rules, locks, bare, loops };
+    const { verdict, because } = explain(facts, spot.triangle, spot.weights);
+    this.#text.textContent = `${verdict.replace(/:.*/, '')}: ${because}.`;
   }
 }
 
@@ -104,6 +131,6 @@ export function paintedPoints({ projection }: Shown, zones: Uint8Array, segment:
   ].filter(Boolean);
   const bare = reasons.length > 0 ? ` The rest stays bare: ${reasons.join(', ')}.` : '';
   const stretched = uncovered > 0 ? ', stretched where the cage has a hole' : '';
-  const anyway = bare && lock === 'keep' ? ` “Paint anyway” paints it too${stretched}.` : '';
+  const anyway = bare && lock === 'keep' ? ` “Paint it” paints it too${stretched}.` : '';
   return `${painted.toLocaleString('en')} of ${all.toLocaleString('en')} points are painted.${bare}${anyway}`;
 }

@@ -1,4 +1,4 @@
-import { download } from '../platform/download';
+import { handOver } from '../platform/download';
 import { requireGraphics } from '../platform/graphics';
 import { element, showError } from '../platform/page';
 import type { Session } from '../state/session';
@@ -6,6 +6,7 @@ import type { LightName } from '../state/view-state';
 import type { Viewer } from '../view/viewer';
 
 const kPicturePixels = 2; // of a saved picture, per pixel of the page
+const kTurnSeconds = 12; // of a whole turn of the turntable
 
 /** Connects what makes a picture of the model: light, background, turntable, saving, the view in the room. */
 export function setUpPicture(session: Session, viewer: Viewer): void {
@@ -20,21 +21,23 @@ export function setUpPicture(session: Session, viewer: Viewer): void {
     own.checked = true;
     setBackground();
   });
-  turntable.addEventListener('change', () => (viewer.controls.turntable = turntable.checked));
+  turntable.addEventListener('change', () => viewer.controls.turntable(turntable.checked ? kTurnSeconds : undefined));
   session.on('view', (view) => {
     light.value = view.light;
     own.checked = view.background !== '';
     if (view.background) color.value = view.background;
   });
-  element('save-picture', HTMLButtonElement).addEventListener('click', async () => {
+  const picture = element('save-picture', HTMLButtonElement);
+  picture.addEventListener('click', async () => {
     try {
-      download(await screenshot(viewer), 'cagecast.png');
+      await handOver(await screenshot(viewer), 'cagecast.png');
     } catch (error) {
       showError(`The picture could not be saved: ${(error as Error).message}`);
     }
   });
+  offerFilm(session, viewer);
   offerRoom(session, viewer);
-  element('picture', HTMLElement).hidden = false;
+  picture.hidden = element('picture', HTMLElement).hidden = false;
 }
 
 /** What is seen, without controls, as a PNG. @throws Error if the browser cannot draw or encode it. */
@@ -49,6 +52,27 @@ async function screenshot(viewer: Viewer): Promise<Blob> {
   viewer.draw();
   if (!blob) throw new Error('the browser cannot encode the picture');
   return blob;
+}
+
+/** Offers to record a film, where the browser can. */
+function offerFilm(session: Session, viewer: Viewer): void {
+  const button = element('save-film', HTMLButtonElement);
+  const note = button.querySelector('small')!;
+  const told = note.textContent;
+  button.hidden = !('MediaRecorder' in globalThis);
+  button.addEventListener('click', async () => {
+    if (button.ariaBusy || !session.shown) return;
+    button.ariaBusy = 'true';
+    try {
+      const { record } = await import('../export/film');
+      const film = await record(viewer, session.view.background, (left) => (note.textContent = `${left} s left`));
+      await handOver(film, `cagecast.${film.type.startsWith('video/mp4') ? 'mp4' : 'webm'}`);
+    } catch (error) {
+      showError(`The film could not be recorded: ${(error as Error).message}`);
+    }
+    button.ariaBusy = null;
+    note.textContent = told;
+  });
 }
 
 /** Offers to show the model in the room, where the device can. */

@@ -1,12 +1,25 @@
+import { type Face, onFace, showFace } from '../platform/face';
 import { make } from '../platform/make';
 import { element } from '../platform/page';
+import type { Session } from '../state/session';
 
 const kNear = 60; // pixels: a section that starts this close below the bar counts as current
 
-/** Fills the navigation bar with the panel's visible sections, and marks the current one. */
-export function setUpSectionNav(): void {
+/** Fills the navigation bar with the panel's visible sections, and marks the current one. On a phone it opens the sheet in Play. */
+export function setUpSectionNav(session: Session): void {
   const bar = element('section-nav', HTMLElement);
-  const sections = [...document.querySelectorAll<HTMLElement>('.panel > [data-nav]:not([hidden])')];
+  sheet.addEventListener('click', () => openSheet(!isSheetOpen()));
+  // The options of a tool are there once it is chosen; on a phone the stage has most of them.
+  const options = element('tool-options', HTMLElement);
+  const lacking = element('sticker-text', HTMLElement).closest<HTMLElement>('[data-for]')!;
+  new MutationObserver(() => {
+    if (!options.hidden && !(isSheet() && lacking.hidden)) reveal(element('paint', HTMLElement));
+  }).observe(options, { attributeFilter: ['hidden'] });
+  // The keyboard gets to what is in it.
+  element('controls', HTMLElement).addEventListener('focusin', ({ target }) => {
+    if (!(target as Element).closest('.section-bar')) openSheet(true);
+  });
+  const sections = [...document.querySelectorAll<HTMLElement>('.panel > [data-nav]')];
   const links = new Map(sections.map((section) => [section, linkTo(section)]));
   bar.replaceChildren(...links.values());
 
@@ -14,7 +27,8 @@ export function setUpSectionNav(): void {
   const follow = (): void => {
     bar.classList.toggle('more', bar.scrollLeft + bar.clientWidth < bar.scrollWidth - 1);
     const edge = bar.getBoundingClientRect().bottom + kNear;
-    const now = sections.findLast((section) => section.getBoundingClientRect().top <= edge) ?? sections[0];
+    const seen = sections.filter((section) => section.checkVisibility());
+    const now = seen.findLast((section) => section.getBoundingClientRect().top <= edge) ?? seen[0];
     if (now === current) return;
     current = now;
     for (const [section, link] of links) link.ariaCurrent = section === current ? 'true' : null;
@@ -24,14 +38,41 @@ export function setUpSectionNav(): void {
   // On a phone the page scrolls, on a desktop the panel.
   addEventListener('scroll', follow, { capture: true, passive: true });
   addEventListener('resize', follow);
-  follow();
+  // What a model, or the face, does not show has no link.
+  const offer = (): void => {
+    for (const [section, link] of links) link.hidden = !section.checkVisibility();
+    follow();
+  };
+  onFace(offer);
+  session.on('zones', offer);
 }
 
-/** Scrolls to a section of the panel, and moves the focus there. */
-export function goTo(section: HTMLElement): void {
-  if (section instanceof HTMLDetailsElement) section.open = true;
+const sheet = element('sheet', HTMLButtonElement);
+
+/** Whether the panel is a sheet at the lower edge: on a phone, in Play. */
+const isSheet = (): boolean => sheet.checkVisibility();
+
+const isSheetOpen = (): boolean => document.documentElement.dataset.sheet === 'open';
+
+/** Opens or closes the sheet. */
+function openSheet(open: boolean): void {
+  document.documentElement.dataset.sheet = open ? 'open' : 'closed';
+  sheet.ariaExpanded = String(open);
+  sheet.ariaLabel = open ? 'Close the panel' : 'Open the panel';
+}
+
+/** Shows a section of the panel without moving the focus. */
+export function reveal(section: HTMLElement): void {
+  openSheet(true);
   const reduced = matchMedia('(prefers-reduced-motion: reduce)').matches;
   section.scrollIntoView({ behavior: reduced ? 'instant' : 'smooth', block: 'start' });
+}
+
+/** Scrolls to a section of the panel, on the face that has it, and moves the focus there. */
+export function goTo(section: HTMLElement): void {
+  if (section.dataset.in) showFace(section.dataset.in as Face);
+  if (section instanceof HTMLDetailsElement) section.open = true;
+  reveal(section);
   section.tabIndex = -1;
   section.focus({ preventScroll: true });
 }

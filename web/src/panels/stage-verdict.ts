@@ -1,16 +1,23 @@
+import { face, onFace } from '../platform/face';
 import { element } from '../platform/page';
+import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
 import { type KnownVerdict, paintableShare, type Remedy, regionOf } from '../state/verdict';
+import { bareParts } from '../view/part-names';
 import { goTo } from './section-nav';
 
-/** Shows the verdict on the cage on the stage and on the model's card: first, how much of the model can be painted. */
+const kMaxNames = 4;
+
+/** Shows the verdict on the cage on the stage and on the model's card: in Play what stays bare, in Inspect how much is painted. */
 export class StageVerdict {
   readonly #session: Session;
   readonly #box = element('stage-verdict', HTMLElement);
   readonly #text = element('stage-verdict-text', HTMLButtonElement);
+  readonly #hint = element('tap-hint', HTMLElement);
   readonly #button = element('stage-remedy', HTMLButtonElement);
   readonly #card = element('model-verdict', HTMLElement);
   #verdict: KnownVerdict = '';
+  #findings = 0;
   #remedy: Remedy | undefined;
 
   constructor(session: Session) {
@@ -18,11 +25,16 @@ export class StageVerdict {
     this.#text.addEventListener('click', () => goTo(element('fit', HTMLElement)));
     this.#button.addEventListener('click', () => this.#remedy?.run());
     session.on('zones', () => this.#write());
+    onFace(() => this.#write());
   }
 
-  /** @param remedy The first that can be done; without a verdict, only if the cage is not being inspected. */
-  show(verdict: KnownVerdict, remedy?: Remedy): void {
+  /**
+   * @param findings How many there are.
+   * @param remedy   The first that can be done; without a verdict, only if the cage is not being inspected.
+   */
+  show(verdict: KnownVerdict, findings: number, remedy?: Remedy): void {
     this.#verdict = verdict;
+    this.#findings = findings;
     this.#remedy = remedy;
     this.#write();
   }
@@ -31,27 +43,65 @@ export class StageVerdict {
     const verdict = this.#verdict;
     const { shown, classification } = this.#session;
     if (!shown || !classification) return;
-    const { segmentStats } = classification;
-    const region = regionOf(shown, segmentStats);
-    const painted = `${Math.round(100 * paintableShare(segmentStats))} % paintable`;
-    const of = region && `${region[0]!.toUpperCase()}${region.slice(1)}`;
-    const share = of ? `${of}: ${painted}` : painted;
-    const foreign = shown.cage.sample && shown.cage.sample !== shown.target.sample;
-    const unknown = this.#remedy ? 'The cage is not checked yet' : 'Checking the cage…';
-    const texts: Record<KnownVerdict, string> = {
-      '': foreign ? 'The cage is another model’s' : unknown,
-      good: of ? `${of} of the model: ${painted}` : painted,
-      usable: `${share}, with reservations`,
-      unfit: 'The cage does not fit',
-    };
+    const words = (face() === 'play' ? this.#inWords : this.#inNumbers).bind(this);
+    const { stage, card } = words(shown, classification.segmentStats);
     this.#box.hidden = this.#card.hidden = false;
-    this.#text.textContent = texts[verdict];
-    const unchecked = this.#remedy ? 'not checked yet' : 'checking…';
-    this.#card.textContent = verdict === 'unfit' ? 'does not fit' : verdict === '' ? unchecked : share;
+    this.#text.firstChild!.textContent = stage;
+    this.#hint.hidden = verdict === 'unfit' || verdict === '';
+    this.#card.textContent = card;
     this.#box.dataset.verdict = this.#card.dataset.verdict = verdict;
     const leaves = !this.#remedy && document.activeElement === this.#button;
     this.#button.hidden = !this.#remedy;
     if (leaves) this.#text.focus();
     this.#button.textContent = this.#remedy?.title ?? '';
   }
+
+  #inWords(shown: Shown, stats: Stats): Words {
+    const region = regionOf(shown, stats);
+    const ready = region ? `${capital(region)} is ready` : 'Ready';
+    const things = `${this.#findings} ${this.#findings === 1 ? 'thing' : 'things'} to look at`;
+    const bare = bareParts(shown, stats);
+    const more = bare.length > kMaxNames ? [`${bare.length - kMaxNames + 1} more`] : [];
+    const names = [...bare.slice(0, kMaxNames - more.length), ...more];
+    const stays = names.length > 0 ? ` Bare: ${names.join(', ')}.` : '';
+    const card = {
+      '': 'painted',
+      good: ready.toLowerCase(),
+      usable: `${ready.toLowerCase()}, ${things}`,
+      unfit: 'needs another cage',
+    }[this.#verdict];
+    const stage = {
+      '': isForeign(shown) ? 'The cage is another model’s' : 'Painted',
+      good: `${ready}.${stays}`,
+      usable: `${ready}, ${things}.${stays}`,
+      unfit: 'Needs another cage',
+    }[this.#verdict];
+    return { stage, card };
+  }
+
+  #inNumbers(shown: Shown, stats: Stats): Words {
+    const region = regionOf(shown, stats);
+    const painted = `${Math.round(100 * paintableShare(stats))} % paintable`;
+    const of = region && capital(region);
+    const share = of ? `${of}: ${painted}` : painted;
+    const unknown = this.#remedy ? 'The cage is not checked yet' : 'Checking the cage…';
+    const stage = {
+      '': isForeign(shown) ? 'The cage is another model’s' : unknown,
+      good: of ? `${of} of the model: ${painted}` : painted,
+      usable: `${share}, with reservations`,
+      unfit: 'The cage does not fit',
+    }[this.#verdict];
+    const unchecked = this.#remedy ? 'not checked yet' : 'checking…';
+    return { stage, card: { '': unchecked, good: share, usable: share, unfit: 'does not fit' }[this.#verdict] };
+  }
 }
+
+interface Words {
+  stage: string;
+  card: string;
+}
+type Stats = Parameters<typeof bareParts>[1] & Parameters<typeof regionOf>[1];
+
+const isForeign = ({ target, cage }: Shown): boolean => cage.sample !== undefined && cage.sample !== target.sample;
+
+const capital = (text: string): string => `${text[0]!.toUpperCase()}${text.slice(1)}`;

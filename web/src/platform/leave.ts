@@ -1,6 +1,6 @@
 import type { History } from 'cagecast/three/paint';
 
-const kSaving = ['export-glb', 'stage-save', 'save-texture', 'save-project'];
+const kSaving = ['export-glb', 'save-texture', 'save-project'];
 
 /** Warns before the page is left while there is work that was not saved. @param isKept Whether this browser keeps all of it. */
 export function warnBeforeLeaving(history: History, isKept: () => boolean): void {

@@ -2,6 +2,9 @@
 export const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
 export type Mode = (typeof kModes)[number];
 
+/** Those that can be chosen in Play. */
+export const kPlayModes: readonly Mode[] = ['compare', 'result'];
+
 /** The lights to choose from. */
 export const kLightNames = ['studio', 'soft', 'day', 'evening'] as const;
 export type LightName = (typeof kLightNames)[number];

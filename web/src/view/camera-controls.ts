@@ -5,18 +5,24 @@ import { aspectOf, type FreePart, fittingDistance, kFieldOfView, kHome } from '.
 import type { Stage } from './stage';
 
 const kLevel = MathUtils.degToRad(84); // of the views from the front and from the side
+const kAbove = 0.02; // of the view from above: radians, not 0, so that its upper edge is known
 const kNear = 5; // of a camera that looks at one of several models
 const kFar = 12; // the greatest distance of the camera, from one model
 const kFarthest = 60; // and from several
 const kSway = MathUtils.degToRad(40); // amplitude of the idle rotation
 const kSwaySeconds = 16; // its period
 const kLongestFrame = 0.25; // seconds: limits the rotation per frame, so that a slow frame causes no jump
-const kTurnSeconds = 12; // of a whole turn of the turntable
 const kKeyStep = MathUtils.degToRad(6);
 const kKeyNearer = 1 / 1.1; // of the distance
 const kKeyMove = 40; // pixels
 const kRegionMargin = 1.2; // of the distance from which a region is looked at
 const kMiddle = new Vector3(); // of the model
+
+/** Where the camera is beside a model, in radians around it from its front. */
+const kSides = { front: 0, left: Math.PI / 2, right: -Math.PI / 2, back: Math.PI, top: 0 };
+
+/** A side from which the whole model is shown; `all` is where the camera is. */
+export type Side = keyof typeof kSides | 'all';
 
 /** The camera, and how pointers, keys and time move it around what is on the stage. */
 export class CameraControls {
@@ -24,7 +30,7 @@ export class CameraControls {
   readonly #stage: Stage;
   readonly #redraw: () => void;
   readonly #controls: OrbitControls;
-  #free: FreePart = { width: 1, height: 1, top: 0, bottom: 0, fill: 1 };
+  #free: FreePart = { width: 1, height: 1, top: 0, bottom: 0, side: 0, fill: 1 };
   /** The distance at which the whole model is visible, for the current size. */
   #far = 1;
   /** Whether the user moved the camera. */
@@ -44,7 +50,6 @@ export class CameraControls {
     this.#controls.touches.TWO = TOUCH.DOLLY_ROTATE;
     this.#controls.enableDamping = true;
     this.#controls.dampingFactor = 0.12;
-    this.#controls.autoRotateSpeed = 60 / kTurnSeconds;
     this.#controls.zoomToCursor = true;
     this.#controls.maxTargetRadius = 1; // inside the model
     this.#controls.minDistance = 0.8;
@@ -68,11 +73,11 @@ export class CameraControls {
     this.#look({ phi: kHome.phi, theta: this.#stage.front + kHome.theta, radius: this.#far }, kMiddle);
   }
 
-  /** Shows the whole model from its front or its side, or as large as it fits from where the camera is. */
-  face(side: 'front' | 'side' | 'fit'): void {
+  /** Shows the whole model from a side, or as large as it fits from where the camera is. */
+  lookFromSide(side: Side): void {
     this.#markMoved();
     const angle = this.#orbit;
-    if (side !== 'fit') angle.set(1, kLevel, this.#stage.front + (side === 'side' ? Math.PI / 2 : 0));
+    if (side !== 'all') angle.set(1, side === 'top' ? kAbove : kLevel, this.#stage.front + kSides[side]);
     this.#look({ phi: angle.phi, theta: angle.theta, radius: this.#fittingDistance(angle, true) }, kMiddle);
   }
 
@@ -142,10 +147,11 @@ export class CameraControls {
     this.#redraw();
   }
 
-  /** Turns the model round and round, but for while the user turns it. */
-  set turntable(on: boolean) {
+  /** Turns the model round and round, but for while the user turns it. @param seconds Of a turn; undefined ends it. */
+  turntable(seconds: number | undefined): void {
     this.sway(false);
-    this.#controls.autoRotate = on;
+    this.#controls.autoRotate = seconds !== undefined;
+    this.#controls.autoRotateSpeed = 60 / (seconds ?? 60);
     this.#redraw();
   }
 
@@ -184,9 +190,12 @@ export class CameraControls {
       'Shift ArrowUp': () => this.#controls.pan(0, kKeyMove),
       'Shift ArrowDown': () => this.#controls.pan(0, -kKeyMove),
       Home: () => this.home(),
-      '0': () => this.face('fit'),
-      '1': () => this.face('front'),
-      '2': () => this.face('side'),
+      '0': () => this.lookFromSide('all'),
+      '1': () => this.lookFromSide('front'),
+      '2': () => this.lookFromSide('left'),
+      '3': () => this.lookFromSide('right'),
+      '4': () => this.lookFromSide('back'),
+      '5': () => this.lookFromSide('top'),
     };
     const action = actions[event.shiftKey && event.key.startsWith('Arrow') ? `Shift ${event.key}` : event.key];
     if (!action || event.ctrlKey || event.metaKey || event.altKey) return;

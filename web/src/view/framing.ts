@@ -9,7 +9,6 @@ export const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad
 
 const kMargin = 1.03;
 const kMaxPoints = 50_000; // more are sampled evenly
-const kTools = 70; // pixels at either side that tools cover
 
 /** Other models beside the one on the stage. The viewer moves all of them together. */
 export interface Crowd {
@@ -27,9 +26,10 @@ export interface Crowd {
 export interface FreePart {
   width: number;
   height: number;
-  /** What is covered at the upper and at the lower edge. */
+  /** What is covered at the upper and at the lower edge, and at either side. */
   top: number;
   bottom: number;
+  side: number;
   /** Its radius, in radii of a compact model. */
   fill: number;
 }
@@ -43,6 +43,7 @@ export function freePartOf(canvas: HTMLElement): FreePart {
     height: canvas.clientHeight,
     top: value('--stage-top', 0),
     bottom: value('--stage-bottom', 0),
+    side: value('--stage-side', 0),
     fill: value('--stage-fill', 1),
   };
 }
@@ -87,7 +88,7 @@ const mirrored = (name: string): string =>
     .replace(/(^|[\s_.-])l(?=[\s_.-]|$)/, '$1r');
 
 /** The width of what a model may fill. */
-const widthOf = ({ width }: FreePart): number => Math.max(width / 2, width - 2 * kTools);
+const widthOf = ({ width, side }: FreePart): number => Math.max(width / 2, width - 2 * side);
 
 const heightOf = ({ height, top, bottom }: FreePart): number => Math.max(1, height - top - bottom);
 

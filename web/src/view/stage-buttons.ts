@@ -1,21 +1,13 @@
 import type { History } from 'cagecast/three/paint';
 import { element } from '../platform/page';
-import type { CameraControls } from './camera-controls';
+import type { CameraControls, Side } from './camera-controls';
 
-/** Connects the buttons on the stage: the camera, saving, and colour, size, undo and redo beside the rail while one paints. */
+/** Connects the buttons on the stage: the camera, and colour, size, undo and redo beside the rail while one paints. */
 export function setUpStageButtons(controls: CameraControls | undefined, history: History): void {
   for (const button of element('angles', HTMLElement).querySelectorAll('button'))
-    button.addEventListener('click', () => controls?.face(button.dataset.face as 'front' | 'side' | 'fit'));
+    button.addEventListener('click', () => controls?.lookFromSide(button.dataset.side as Side));
 
   // The panel has the same controls; these pass on what is done to them.
-  const [save, exports] = [element('stage-save', HTMLButtonElement), element('export-glb', HTMLButtonElement)];
-  save.addEventListener('click', () => exports.click());
-  const copySave = (): void => {
-    save.disabled = exports.disabled;
-    save.ariaBusy = exports.ariaBusy;
-  };
-  new MutationObserver(copySave).observe(exports, { attributeFilter: ['disabled', 'aria-busy'] });
-  copySave();
   for (const name of ['color', 'size']) {
     const [quick, field] = [element(`quick-${name}`, HTMLInputElement), element(`brush-${name}`, HTMLInputElement)];
     const copy = (from: HTMLInputElement, to: HTMLInputElement): void => {

@@ -172,6 +172,11 @@ export class Stage {
     this.#redraw();
   }
 
+  /** Whether an animation is played. */
+  get isPlaying(): boolean {
+    return this.#mixer !== undefined;
+  }
+
   /** Moves what is played to a time, in milliseconds. */
   animate(now: number): void {
     if (!this.#mixer) return;

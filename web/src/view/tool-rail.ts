@@ -1,3 +1,4 @@
+import { type Face, onFace } from '../platform/face';
 import { element } from '../platform/page';
 import type { Tool } from './pointing';
 import type { Viewer } from './viewer';
@@ -11,6 +12,8 @@ export interface RailTool {
   /** SVG path data of its icon: lines in a 24 × 24 box. */
   icon: string;
   tool: Tool;
+  /** The only face of the page that has it; by default both do. */
+  face?: Face;
   /** Called when it is chosen (true) or another one is; shows or hides its options. */
   onChoose(chosen: boolean): void;
 }
@@ -24,12 +27,15 @@ export class Tools {
 
   constructor(viewer: Viewer, stage: HTMLElement) {
     this.#viewer = viewer;
+    onFace((face) => {
+      if (this.#chosen?.face && this.#chosen.face !== face) this.choose(undefined);
+    });
     this.#add(undefined, 'Turn', 't', 'M20 12a8 8 0 1 1-2.6-5.9M20 3v4h-4');
     stage.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === 'Escape') return this.choose(undefined);
       const found = this.#railTools.find(({ input }) => input.dataset.key === event.key.toLowerCase());
-      if (found && !found.input.closest('label')!.hidden) this.choose(found.offer);
+      if (found && found.input.closest('label')!.checkVisibility()) this.choose(found.offer);
     });
   }
 
@@ -65,6 +71,7 @@ export class Tools {
 
   #add(offer: RailTool | undefined, title: string, key: string, icon: string): void {
     const label = document.createElement('label');
+    if (offer?.face) label.dataset.in = offer.face;
     label.title = `${title} (${key.toUpperCase()})`;
     label.innerHTML =
       `<input type="radio" name="tool"><span><svg viewBox="0 0 24 24" aria-hidden="true" focusable="false"><path d="${icon}"/></svg>` +

@@ -1,6 +1,7 @@
+import { face, onFace, showFace } from '../platform/face';
 import { element } from '../platform/page';
 import type { Session } from '../state/session';
-import { type Mode, showsPaint } from '../state/view-state';
+import { kPlayModes, type Mode, showsPaint } from '../state/view-state';
 import { setUpDivider } from './divider';
 
 /** Connects the controls of the view. */
@@ -16,7 +17,14 @@ export function setUpViewControls(session: Session): void {
   for (const { name, input } of switches)
     input.addEventListener('change', () => session.setView({ [name]: input.checked }));
 
+  const isOfPlay = (): boolean => kPlayModes.includes(session.view.mode);
+  onFace((shown) => {
+    if (shown === 'play')
+      session.setView({ mode: isOfPlay() ? session.view.mode : 'result', paint: true, cage: false });
+  });
   session.on('view', (view) => {
+    // Such as by a link: it is shown with the controls that belong to it.
+    if (face() === 'play' && !(isOfPlay() && view.paint)) showFace('inspect');
     for (const input of modes) {
       input.checked = input.value === view.mode;
       // On a phone the strip has to be scrolled.

@@ -115,7 +115,7 @@ test('while the graphics are lost, that is said, and nothing empty is saved', as
     }, to);
   await change('loseContext');
   assert.match(await shownError(page), /^The browser has reset the graphics\. The picture comes back by itself/);
-  for (const id of ['save-texture', 'stage-save', 'save-picture']) {
+  for (const id of ['save-texture', 'export-glb', 'save-picture']) {
     let isSaved = false;
     page.once('download', () => (isSaved = true));
     await page.getByTestId(id).evaluate((button) => (button as HTMLElement).click());

@@ -72,6 +72,7 @@ export class LandmarkEditor {
     this.#history = history;
     this.#offer = {
       title: 'Marks',
+      face: 'inspect',
       key: 'l',
       icon: 'M12 21c-4-5-6-8-6-11a6 6 0 0 1 12 0c0 3-2 6-6 11zM12 12.5a2.5 2.5 0 1 0 0-5 2.5 2.5 0 0 0 0 5z',
       tool: {
