@@ -16,6 +16,7 @@ import { setUpCagePanel } from './panels/cage-panel';
 import { carryOver } from './panels/carry-over';
 import { FitPanel } from './panels/fit-panel';
 import { LayerList } from './panels/layer-list';
+import { setUpMethod } from './panels/method';
 import { offerGuide } from './panels/offer-guide';
 import { PartMenu } from './panels/part-menu';
 import { PartsTable } from './panels/parts-table';
@@ -102,6 +103,7 @@ if (viewer) {
   painter = setUpPainting(session, viewer, tools, { stack, composite, edits });
   new Explain(session, viewer, tools);
   new PartMenu(session, viewer);
+  setUpMethod(session, viewer);
   setUpCageTools(session, viewer, tools, maker, history);
   setUpPicture(session, viewer);
   png = setUpSaving(viewer, composite);

@@ -11,7 +11,7 @@ after(() => site?.close());
 const kFirstVisit = `if (!sessionStorage.begun) { sessionStorage.begun = 1; localStorage.removeItem('cagecast-guide') }`;
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true };
 
-test('a first visit is offered a way of four steps, which the keyboard can walk, and which is not offered again', async () => {
+test('a first visit is offered a way of three steps, which the keyboard can walk, and which is not offered again', async () => {
   const { page, complaints } = await site.visit(kPhone, kFirstVisit);
   const guide = page.getByTestId('guide');
   await guide.waitFor();
@@ -19,8 +19,8 @@ test('a first visit is offered a way of four steps, which the keyboard can walk,
   assert.deepEqual(await faults(page), []);
   await guide.getByRole('button', { name: 'Show me' }).click();
   const before = await page.locator('#view-mode input:checked').inputValue();
-  for (const [step, seen] of ['divider', 'show-cage', 'tools', 'target-file'].entries()) {
-    assert.match((await guide.textContent())!, new RegExp(`Step ${step + 1} of 4`));
+  for (const [step, seen] of ['divider', 'tools', 'target-file'].entries()) {
+    assert.match((await guide.textContent())!, new RegExp(`Step ${step + 1} of 3`));
     const marked = page.locator('.guided').last();
     assert.ok(await marked.isVisible(), seen);
     const isSeen = await marked.evaluate((element) => {
@@ -29,7 +29,6 @@ test('a first visit is offered a way of four steps, which the keyboard can walk,
     });
     assert.ok(isSeen || seen === 'tools', `${seen} is in view, and nothing is over it`); // between the tools are gaps
     assert.deepEqual(await faults(page), []);
-    assert.equal(await page.locator('#show-cage').isChecked(), step === 1);
     await page.keyboard.press('Enter');
   }
   await guide.waitFor({ state: 'detached' });
@@ -41,9 +40,9 @@ test('a first visit is offered a way of four steps, which the keyboard can walk,
   assert.equal(await page.evaluate(() => localStorage.getItem('cagecast-guide')), 'seen');
   await passed(page, 1500);
   assert.equal(await guide.count(), 0);
-  await page.locator('#about summary').click();
+  await page.locator('#method summary').click();
   await page.getByTestId('show-guide').click();
-  assert.match((await guide.textContent())!, /Step 1 of 4/);
+  assert.match((await guide.textContent())!, /Step 1 of 3/);
   await page.keyboard.press('Escape');
   await guide.waitFor({ state: 'detached' });
   assert.equal(await page.evaluate(() => document.activeElement?.id), 'view');

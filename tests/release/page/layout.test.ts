@@ -4,7 +4,7 @@ import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { asset, fitted, head, ready } from '../../support/cages';
 import { difference, look, modelArea } from '../../support/picture';
-import { drop, glb, Site, type Visit } from '../../support/site';
+import { drop, glb, kPlay, Site, type Visit } from '../../support/site';
 
 let site: Site;
 let visit: Visit;
@@ -129,7 +129,7 @@ test('the Tab key reaches every control, and each has a name', async () => {
   ] as const) {
     assert.equal(await page.getByRole(role, { name }).count(), 1, `${role} ${name}`);
   }
-  for (const label of [/Target/, /Cage/, /Paint/]) {
+  for (const label of [/Open a model/, /Open a cage/, /Open a paint/]) {
     assert.ok((await page.getByLabel(label).and(page.locator('input[type=file]')).count()) === 1, String(label));
   }
 });
@@ -307,6 +307,16 @@ async function stageFaults(page: Page, sizes: readonly (readonly [number, number
   }
   return faults;
 }
+
+test('in Play, nothing that can be pressed on the stage is covered or cut off, with the sheet, too', async () => {
+  const { page } = await site.visit({ hasTouch: true }, kPlay);
+  await page.getByTestId('stage-verdict').waitFor();
+  assert.deepEqual(await stageFaults(page), []);
+  await page.getByRole('radio', { name: 'Brush' }).check({ force: true });
+  assert.deepEqual(await stageFaults(page), [], 'while one paints');
+  await page.locator('#stage-share').click();
+  assert.deepEqual(await stageFaults(page), [], 'with the sheet');
+});
 
 test('on the stage, nothing that can be pressed is covered or cut off', async () => {
   const { page } = (visit = await site.visit({ hasTouch: true }));

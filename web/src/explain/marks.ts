@@ -23,7 +23,7 @@ const kCageColor = '#19b394';
 /** Colours of the spot by zone; cosmetic is in the cage's colour. */
 const kSpotColors = kZones.map(({ name, color }) => (name === 'cosmetic' ? kCageColor : color));
 /** Colours of the ray by outcome, which later steps may overrule. */
-const kRayColors: Record<Path['outcome'], string> = {
+export const kRayColors: Record<Path['outcome'], string> = {
   covered: kCageColor,
   pokesOut: kCageColor,
   hidden: kSpotColors[1]!,
@@ -35,7 +35,8 @@ const kInk = '#14181d';
 const kThick = 0.0028;
 const kThin = 0.0014;
 const kBall = 0.0085;
-const kAway = 0.22; // length of a ray that meets nothing
+/** Length of a ray that meets nothing. */
+export const kAway = 0.22;
 
 /**
  * Draws an explanation in the space of the target: the spot, the closest cage triangle, the ray and what it hit, and the

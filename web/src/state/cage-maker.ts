@@ -80,9 +80,10 @@ export class CageMaker extends Emitter<{
     });
     // Of a good cage, nobody needs to know what was not found.
     session.on('inspected', ({ verdict, findings }) => {
+      // It was a guess what the model is. The first inspection decides: later ones are of what the user has chosen, too.
+      const isGuess = this.#unasked.delete(session.shown!.cage.files[0]!);
       if (findings.some(({ code }) => code === 'cageBackward')) void this.#turnBack();
-      // It was a guess what the model is.
-      else if (verdict === 'unfit' && this.#unasked.delete(session.shown!.cage.files[0]!)) void this.make();
+      else if (verdict === 'unfit' && isGuess) void this.make();
       const missing = (verdict !== 'good' && madeOf(session.shown!.cage.files[0]!)?.fitting?.missing) || [];
       const names = missing.map(readable).join(', ');
       this.emit('notes', { missing: names && `Landmarks that were not found: ${names}.` });

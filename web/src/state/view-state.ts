@@ -1,9 +1,21 @@
-/** View modes; `compare` shows naive and result on either side of a divider. */
-export const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
+/**
+ * View modes; `compare` shows naive and result on either side of a divider, `film` the steps of the method, one after the other.
+ */
+export const kModes = [
+  'compare',
+  'result',
+  'naive',
+  'zones',
+  'segments',
+  'checker',
+  'distance',
+  'stretch',
+  'film',
+] as const;
 export type Mode = (typeof kModes)[number];
 
 /** Those that can be chosen in Play. */
-export const kPlayModes: readonly Mode[] = ['compare', 'result'];
+export const kPlayModes: readonly Mode[] = ['compare', 'result', 'film'];
 
 /** The lights to choose from. */
 export const kLightNames = ['studio', 'soft', 'day', 'evening'] as const;
@@ -14,6 +26,8 @@ export interface View {
   mode: Mode;
   /** Position of the divider in `compare`: 0 at the left edge, 1 at the right. */
   split: number;
+  /** Place in `film`: 0 shows the first step, 4 the last; between two, the next one is wiped over the model from the left. */
+  film: number;
   paint: boolean;
   cage: boolean;
   light: LightName;
@@ -24,6 +38,7 @@ export interface View {
 export const kFirstView: View = {
   mode: 'compare',
   split: 0.5,
+  film: 0,
   paint: true,
   cage: false,
   light: 'studio',
@@ -32,6 +47,9 @@ export const kFirstView: View = {
 
 /** Whether a mode shows paint, which can be switched off. */
 export const showsPaint = (mode: Mode): boolean => mode === 'compare' || mode === 'result' || mode === 'naive';
+
+/** The last place of `film`. */
+export const kLastFrame = 4;
 
 /** Direction and distance of the camera. */
 export interface Angle {

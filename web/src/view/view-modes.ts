@@ -8,24 +8,29 @@ import type { Stage } from './stage';
 
 const kColorings: { [Name in Mode]?: (shown: Shown, classification: Classification) => Coloring } = {
   segments: colorBySegment,
+  film: colorBySegment,
   distance: colorByDistance,
   stretch: colorByStretch,
 };
 
+const kZonesInFilm = 2;
+
 /** Colours the model in the view modes without paint, and shows the legend. */
 export function showViewModes(session: Session, stage: Stage): void {
   /** What the current colours were computed for; a change of the view alone does not recompute them. */
-  let made: { mode: Mode; classification: Classification } | undefined;
+  let made: { mode: Mode; classification: Classification; isOfZones: boolean } | undefined;
 
   const update = (): void => {
     const { shown, classification, view } = session;
     const { mode } = view;
-    if (!shown || !classification || (made?.mode === mode && made.classification === classification)) return;
-    made = { mode, classification };
+    if (!shown || !classification) return;
+    const isOfZones = mode === 'zones' || (mode === 'film' && Math.round(view.film) === kZonesInFilm);
+    if (made?.mode === mode && made.classification === classification && made.isOfZones === isOfZones) return;
+    made = { mode, classification, isOfZones };
     if (mode === 'checker') stage.setChecker(session.checker.texture);
     const coloring = kColorings[mode]?.(shown, classification);
     if (coloring) stage.setColors(coloring.colors);
-    showLegend(mode === 'zones' ? 'zones' : coloring?.scale && { scale: coloring.scale });
+    showLegend(isOfZones ? 'zones' : coloring?.scale && { scale: coloring.scale });
   };
   session.on('zones', update);
   session.on('view', update);

@@ -2,14 +2,16 @@ import { NeutralToneMapping, PCFShadowMap, WebGLRenderer } from 'three';
 import { clearError, showError } from '../platform/page';
 import type { Model } from '../state/model';
 import type { SplitProjection } from '../state/transfers';
-import { kFirstView, showsPaint, type View } from '../state/view-state';
+import { kFirstView, type View } from '../state/view-state';
 import { CameraControls } from './camera-controls';
 import { type Crowd, freePartOf } from './framing';
-import { kLooks, type Look } from './overlay/looks';
+import { type Look, sidesOf } from './overlay/looks';
 import { Pointing } from './pointing';
 import { ScreenSpace } from './screen-space';
 import { Stage } from './stage';
 import { Studio } from './studio';
+
+const kPictureSize = 0.9; // of the view's shorter side
 
 /** Draws what is on the stage whenever something has changed. */
 export class Viewer {
@@ -108,7 +110,7 @@ export class Viewer {
     const { camera } = controls;
     if (!stage.model || this.#isLent) return; // an empty scene is not worth drawing
     this.prepare();
-    const { mode, split, paint, cage } = this.#view;
+    const { left, right, at, cage } = sidesOf(this.#view);
     stage.arrange(camera, controls.shift, cage);
     studio.follow(camera, stage.crowd?.object.position);
     const draw = (look: Look, from: number, to: number): void => {
@@ -120,12 +122,23 @@ export class Viewer {
     // The light moved with the camera. Both sides of the divider share its shadow.
     renderer.shadowMap.needsUpdate = true;
     renderer.setScissorTest(true);
-    const look = (side: keyof typeof kLooks): Look => (paint || !showsPaint(side) ? kLooks[side] : 'bare');
-    if (mode !== 'compare') draw(look(mode), 0, 1);
-    else {
-      if (split > 0) draw(look('naive'), 0, split);
-      if (split < 1) draw(look('result'), split, 1);
-    }
+    if (at > 0) draw(left, 0, at);
+    if (at < 1) draw(right, at, 1);
+  }
+
+  /** Draws what would be seen in another view onto a canvas, cut to its shape. */
+  picture(view: View, canvas: HTMLCanvasElement): void {
+    const { width, height } = this.renderer.domElement;
+    const size = Math.min(width, height) * kPictureSize;
+    const [left, top] = [(width - size) / 2, (height - size) / 2];
+    const before = this.#view;
+    this.#view = view;
+    this.draw();
+    this.#view = before;
+    const context = canvas.getContext('2d')!;
+    context.clearRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(this.renderer.domElement, left, top, size, size, 0, 0, canvas.width, canvas.height);
+    this.redraw();
   }
 
   /** Updates textures, as before each frame. */

@@ -1,4 +1,4 @@
-import type { Mode } from '../../state/view-state';
+import { type Mode, showsPaint, type View } from '../../state/view-state';
 
 /**
  * What the overlay shows: nothing, the paint everywhere, the filtered paint, the zones, a checker, or colours per triangle
@@ -9,8 +9,8 @@ export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'checker' | 'colors';
 /** What can be highlighted: the parts that the user points to, and what is marked to stay bare. */
 export type Highlighted = 'parts' | 'bare';
 
-/** The overlay of each mode other than `compare`. */
-export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
+/** The overlay of each mode with one. */
+const kLooks: Record<Exclude<Mode, 'compare' | 'film'>, Look> = {
   result: 'result',
   naive: 'naive',
   zones: 'zones',
@@ -19,3 +19,25 @@ export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
   distance: 'colors',
   stretch: 'colors',
 };
+
+/** The overlays of `film`. */
+const kFrames = ['bare', 'naive', 'zones', 'colors', 'result'] as const;
+/** The cage is drawn until this place of `film`. */
+const kCageEnds = 2.5;
+
+/** What is to be seen left and right of a place of the view, 0..1, and whether the cage is. */
+export function sidesOf({ mode, split, film, paint, cage }: View): {
+  left: Look;
+  right: Look;
+  at: number;
+  cage: boolean;
+} {
+  if (mode === 'film') {
+    const first = Math.min(Math.floor(film), kFrames.length - 2);
+    return { left: kFrames[first + 1]!, right: kFrames[first]!, at: film - first, cage: film < kCageEnds };
+  }
+  const look = (side: keyof typeof kLooks): Look => (paint || !showsPaint(side) ? kLooks[side] : 'bare');
+  return mode === 'compare'
+    ? { left: look('naive'), right: look('result'), at: split, cage }
+    : { left: look(mode), right: look(mode), at: 1, cage };
+}

@@ -1,0 +1,143 @@
+// Play, what a first visitor gets: a model that is dropped is painted, said in words, changed by a tap, explained, and shared.
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { faults } from '../../support/axe';
+import { head, middleOf, ready } from '../../support/cages';
+import { difference, look, modelArea } from '../../support/picture';
+import { drop, kPlay, Site, settled } from '../../support/site';
+
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+const kDesk = { viewport: { width: 1440, height: 900 } };
+const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true };
+const mode = (page: Page): Promise<string> => page.locator('#view-mode input:checked').inputValue();
+const face = (page: Page): Promise<string | undefined> => page.evaluate(() => document.documentElement.dataset.face);
+
+test('a model that is dropped is painted all over, and the page says what stays bare; a tap says why, and changes it', async () => {
+  const { page, complaints } = await site.visit(kDesk, kPlay);
+  assert.equal(await mode(page), 'compare', 'the sample shows what the page is about');
+  await drop(page, [head()]);
+  await ready(page);
+  await page.locator('#stage-verdict[data-verdict=good], #stage-verdict[data-verdict=usable]').waitFor();
+  assert.equal(await mode(page), 'result');
+  assert.match((await page.locator('#stage-verdict-text').textContent())!, /[Rr]eady.*Bare: .*eyes.*Tap the part/);
+  for (const hidden of ['#zones', '#fit', '#view-mode label:has([value=zones])', '#make-cage', '#code'])
+    assert.ok(!(await page.locator(hidden).isVisible()), hidden);
+
+  const area = await modelArea(page);
+  const before = await look(page, area);
+  const { x, y } = await middleOf(page);
+  await page.mouse.click(x, y);
+  const menu = page.getByTestId('part-menu');
+  await menu.waitFor();
+  await page
+    .getByTestId('part-menu-text')
+    .filter({ hasText: /^(Painted|Not painted): .+\.$/ })
+    .waitFor();
+  assert.deepEqual(await faults(page), []);
+  await menu.getByRole('radio', { name: 'Keep bare' }).check({ force: true });
+  await page
+    .getByTestId('part-menu-text')
+    .filter({ hasText: /^Not painted: you excluded/ })
+    .waitFor();
+  await page.keyboard.press('Escape');
+  assert.ok(difference(before, await look(page, area)) > 0.02, 'the part is bare');
+  await page.getByTestId('undo').click();
+  assert.ok(difference(before, await look(page, area)) < 0.01, 'and painted again');
+  assert.deepEqual(complaints, []);
+});
+
+test('Inspect has everything, is remembered, and comes by itself with what belongs to it', async () => {
+  const { page } = await site.visit(kDesk, kPlay);
+  assert.equal(await face(page), 'play');
+  await page.getByTestId('face').click();
+  assert.equal(await page.evaluate(() => localStorage.getItem('cagecast-face')), 'inspect');
+  await page.locator('#zones').waitFor();
+  await page.getByRole('radio', { name: 'Zones' }).check({ force: true });
+  await page.getByTestId('face').click();
+  assert.deepEqual([await face(page), await mode(page)], ['play', 'result'], 'Play has no view of zones');
+  assert.equal(await page.evaluate(() => localStorage.getItem('cagecast-face')), 'play');
+  await page.locator('#stage-verdict-text').click();
+  assert.equal(await face(page), 'inspect', 'the verdict leads to its reasons');
+
+  const { page: linked } = await site.visit(kDesk, kPlay, '#sample=human&view=zones');
+  assert.deepEqual([await face(linked), await mode(linked)], ['inspect', 'zones']);
+});
+
+test('the film strip leads through the method on the model, is a link, and works with the keyboard', async () => {
+  const { page, complaints } = await site.visit(kDesk, kPlay, '#sample=lizard&view=film&film=2');
+  const text = page.getByTestId('film-text');
+  await text.filter({ hasText: /^A ray/ }).waitFor();
+  await page.locator('#legend').waitFor();
+  const area = await modelArea(page);
+  const pictures = [await look(page, area)];
+  await page.getByTestId('film').focus();
+  await page.keyboard.press('Home');
+  await text.filter({ hasText: /^A simple mesh/ }).waitFor();
+  pictures.push(await look(page, area));
+  for (const step of ['Closest point', 'Parts', 'Result']) {
+    await page.locator('#film-frames').getByRole('button', { name: step }).click();
+    assert.equal(await page.locator('#film-frames [aria-current=step]').textContent(), step);
+    pictures.push(await look(page, area));
+  }
+  pictures.forEach((one, i) =>
+    pictures.slice(i + 1).forEach((other) => assert.ok(difference(one, other) > 0.01, 'each frame is another one')),
+  );
+  const drawn = await page.locator('#film-frames canvas').evaluateAll((all) =>
+    all.map((canvas) => {
+      const { width, height } = canvas as HTMLCanvasElement;
+      const { data } = (canvas as HTMLCanvasElement).getContext('2d')!.getImageData(0, 0, width, height);
+      return data.some((value) => value > 0);
+    }),
+  );
+  assert.deepEqual(drawn, [true, true, true, true, true], 'each has its picture');
+  assert.match((await page.getByTestId('share-link').getAttribute('href'))!, /view=film&film=4/);
+  assert.deepEqual(await faults(page), []);
+  await page.locator('#method > summary').click();
+  assert.equal(await mode(page), 'result', 'closing it ends it');
+  assert.deepEqual(complaints, []);
+});
+
+test('a film of five seconds is saved', async () => {
+  const { page, complaints } = await site.visit(kDesk, kPlay);
+  const before = await page.getByTestId('share-link').getAttribute('href');
+  const waiting = page.waitForEvent('download');
+  await page.getByTestId('save-film').click();
+  const download = await waiting;
+  assert.match(download.suggestedFilename(), /^cagecast\.(webm|mp4)$/);
+  assert.ok((await readFile(await download.path())).length > 5000);
+  await page.getByTestId('share-link').focus();
+  assert.equal(await page.getByTestId('share-link').getAttribute('href'), before, 'the camera is where it was');
+  assert.deepEqual(complaints, []);
+});
+
+test('on a phone the stage fills the screen, and the panel is a sheet: closed, or opened by its tabs, the keyboard and Share', async () => {
+  const { page, complaints } = await site.visit(kPhone, kPlay);
+  const heights = () =>
+    page.evaluate(() => ['stage', 'controls'].map((id) => document.getElementById(id)!.clientHeight));
+  const [stage = 0, panel = 0] = await heights();
+  assert.ok(stage > 0.9 * 844 && panel < 60, `${stage} and ${panel} pixels`);
+  assert.deepEqual(await faults(page), []);
+  await page.locator('#stage-share').click();
+  await page.locator('#share').filter({ visible: true }).waitFor();
+  const [less = 0, more = 0] = await heights();
+  assert.ok(less < 0.6 * 844 && more > 0.4 * 844 && less + more <= 844, `${less} and ${more} pixels`);
+  const share = (await page.locator('#share').boundingBox())!;
+  assert.ok(share.y > less && share.y < 844 - 100, `Share is in view, at ${share.y}`);
+  assert.deepEqual(await faults(page), []);
+  await page.getByTestId('sheet').click();
+  assert.deepEqual(await heights(), [stage, panel]);
+  await page.getByRole('radio', { name: 'Brush' }).check({ force: true });
+  assert.deepEqual(await heights(), [stage, panel], 'the stage has what the brush needs');
+  await page.getByRole('radio', { name: 'Sticker' }).check({ force: true });
+  assert.deepEqual(await heights(), [less, more], 'its text and image are in the sheet');
+  await page.getByTestId('sheet').click();
+  await page.locator('#sample-select').focus();
+  assert.deepEqual(await heights(), [less, more], 'the keyboard gets there');
+  assert.equal(await settled(page), 'ready');
+  assert.deepEqual(complaints, []);
+});
