@@ -107,9 +107,11 @@ test('the Tab key reaches every control, and each has a name', async () => {
     'target-input',
     'cage-input',
     'texture-input',
+    'summary',
     'paint',
     'preset',
     'threshold',
+    'summary',
     'summary',
     'summary',
   ];
