@@ -1,6 +1,6 @@
 import { Quaternion, Vector3 } from 'three';
-import { jointNamed, joints, kToes } from './skeleton';
 import type { Vec3 } from './mesh';
+import { jointNamed, joints, kToes } from './skeleton';
 
 /** Rotations of joints by name, about the figure's own axes at rest, and how far the hips are moved. */
 interface Stance {
@@ -81,7 +81,7 @@ function wave(phase: number): Stance {
   const swing = Math.sin(2 * kTurn * phase);
   set(stance, 'right', 'Shoulder', about(kZ, 0.16));
   set(stance, 'right', 'UpperArm', both(about(kY, -0.3), about(kZ, 0.62 + 0.03 * swing), about(kArm, -0.75)));
-  set(stance, 'right', 'LowerArm', both(about(kArm, -0.6), about(kElbowAxis, 1.72 + 0.3 * swing)));
+  set(stance, 'right', 'LowerArm', both(about(kArm, -0.7), about(kElbowAxis, 1.3 + 0.28 * swing)));
   set(stance, 'right', 'Hand', both(about(kElbowAxis, 0.16 * Math.sin(2 * kTurn * phase - 0.7))));
   curl(stance, 'right', 0.06);
   stance.turns.set('head', both(about(kZ, 0.05 + 0.02 * swing), about(kY, -0.1)));
@@ -135,7 +135,12 @@ function walk(phase: number): Stance {
     set(stance, side, 'UpperLeg', about(kX, -thigh));
     set(stance, side, 'LowerLeg', about(kX, knee));
     set(stance, side, 'Foot', about(kX, -foot));
-    set(stance, side, 'Toes', about(kX, -0.5 * Math.max(0, Math.sin(kTurn * (own - 0.42) * 2.2)) * Number(own % 1 > 0.42 && own % 1 < 0.647)));
+    set(
+      stance,
+      side,
+      'Toes',
+      about(kX, -0.5 * Math.max(0, Math.sin(kTurn * (own - 0.42) * 2.2)) * Number(own % 1 > 0.42 && own % 1 < 0.647)),
+    );
     const forward = side === 'left' ? -swing : swing;
     hang(stance, side, 0.02 + 0.36 * forward, 0.34 + 0.16 * forward);
   }

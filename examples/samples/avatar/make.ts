@@ -11,7 +11,21 @@ import { MeshoptDecoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
 import { clips } from './clips';
 import { atEase, inHead, morphed, morphs, onHead, withJaw } from './face';
-import { type Mesh, type Vec3, border, clip, join, linear, mix, read, reflected, tidy, toLinear, zip } from './mesh';
+import {
+  border,
+  clip,
+  join,
+  linear,
+  type Mesh,
+  mix,
+  read,
+  reflected,
+  smoothstep,
+  tidy,
+  toLinear,
+  type Vec3,
+  zip,
+} from './mesh';
 import { browOf, clothes, dressed, eyeOf, hairOf, isSeen, lashesOf } from './outfit';
 import { joints, weigh } from './skeleton';
 import { type Part, writeAvatar } from './write';
@@ -19,6 +33,8 @@ import { type Part, writeAvatar } from './write';
 const kFolder = 'examples/samples';
 /** Where head and body end, in metres; a strip closes the gap between them. */
 const [kHeadFrom, kBodyTo] = [1.495, 1.479];
+/** Positive on the head; the chin is lower than the neck's end. */
+const isHead = ([, y, z]: Vec3): number => y - kHeadFrom + 0.3 * Math.max(0, z - 0.045);
 const kNeck: Vec3 = [0, 0, -0.02];
 
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS).registerDependencies({ 'meshopt.decoder': MeshoptDecoder });
@@ -53,7 +69,7 @@ function colorsOf(primitive: Primitive): (vertex: number) => Vec3 {
 function skinOf(human: Parts, figure: Parts): Mesh {
   const [top, rest] = [human.get('skin')!, figure.get('skin')!];
   const tone = linear('#d09872');
-  const head = clip(read(top, onHead, colorsOf(top)), ([, y]) => y - kHeadFrom);
+  const head = clip(read(top, onHead, colorsOf(top)), isHead);
   const body = clip(
     read(
       rest,
@@ -73,10 +89,8 @@ function skinOf(human: Parts, figure: Parts): Mesh {
   // The painted hair and brows are pieces of their own here, and the neck's colour fades into the body's.
   const vertices = zipped.vertices.map((vertex) => {
     const p = inHead(vertex.at);
-    const isBrow = p[2] > 0.1 && p[1] > 0.04 && p[1] < 0.14;
-    const fade = Math.min(1, Math.max(0, (-0.36 - p[1]) / 0.14));
-    const isDark = vertex.color[0] < 0.35 && (isBrow || p[1] > 0.14);
-    return { ...vertex, color: mix(isDark ? tone : vertex.color, tone, fade) };
+    const fade = Math.max(smoothstep(0.035, 0.055, p[1]), smoothstep(-0.36, -0.48, p[1]));
+    return { ...vertex, color: mix(vertex.color, tone, fade) };
   });
   return tidy({ ...zipped, vertices });
 }
@@ -112,7 +126,9 @@ async function partsOfAvatar(): Promise<Part[]> {
   const brow = browOf(surfaceOf(skin));
   const lashes = lashesOf();
   const onFace = (mesh: Mesh): Mesh => onJoint(join(mesh, reflected(mesh)), 'head');
-  const all = new Map([...morphs].map(([name, move]) => [name, (vertex: Mesh['vertices'][number]) => morphed(vertex, move)]));
+  const all = new Map(
+    [...morphs].map(([name, move]) => [name, (vertex: Mesh['vertices'][number]) => morphed(vertex, move)]),
+  );
   const jaw = new Map([['jawOpen', withJaw]]);
   const still = new Map<string, never>();
   return [
@@ -127,7 +143,8 @@ async function partsOfAvatar(): Promise<Part[]> {
     { name: 'hair', mesh: onJoint(hairOf(skin), 'head'), roughness: 0.75, moves: still },
     ...Object.entries(clothes).map(([name, { color }]) => {
       const mesh = dressed(skin, name);
-      const dyed = name === 'shoes' ? mesh : { ...mesh, vertices: mesh.vertices.map((v) => ({ ...v, color: linear(color) })) };
+      const dyed =
+        name === 'shoes' ? mesh : { ...mesh, vertices: mesh.vertices.map((v) => ({ ...v, color: linear(color) })) };
       return { name, mesh: dyed, roughness: 0.9, moves: still };
     }),
   ];
@@ -142,4 +159,6 @@ const template = await loadTemplate('human-body');
 const { cage, used, missing } = await fitCage(template, model);
 terminate();
 await writeFile(`${kFolder}/avatar/cage.glb`, cageGlb(cage));
-console.log(`avatar: ${glb.length} bytes, ${Object.keys(used).length} landmarks, missing ${missing.join(', ') || 'none'}`);
+console.log(
+  `avatar: ${glb.length} bytes, ${Object.keys(used).length} landmarks, missing ${missing.join(', ') || 'none'}`,
+);

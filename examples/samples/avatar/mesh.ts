@@ -30,7 +30,8 @@ export const frame = (forward: Vec3, up: Vec3 = [0, 1, 0]): [Vec3, Vec3, Vec3] =
 /** sRGB of #rrggbb as linear values. */
 export const linear = (hex: string): Vec3 =>
   [1, 3, 5].map((at) => toLinear(Number.parseInt(hex.slice(at, at + 2), 16) / 255)) as unknown as Vec3;
-export const toLinear = (value: number): number => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
+export const toLinear = (value: number): number =>
+  value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
 
 export interface Vertex {
   at: Vec3;
@@ -61,7 +62,7 @@ export function read(primitive: Primitive, place: (p: Vec3) => Vec3, colorAt: (v
   const mesh: Mesh = { vertices: [], triangles: [] };
   const names = Array.from({ length: positions.getCount() }, (_, v) => {
     const at = positions.getElement(v, []) as unknown as Vec3;
-    const key = at.map((value) => value.toFixed(6)).join();
+    const key = at.map((value) => Math.round(value * 1e6)).join(); // 0 and -0 are one
     if (!known.has(key)) {
       known.set(key, mesh.vertices.length);
       const placed = place(at);

@@ -6,6 +6,7 @@ import {
   border,
   clip,
   dot,
+  join,
   length,
   linear,
   type Mesh,
@@ -41,7 +42,7 @@ export const trousers: Field = (point) => {
   return Math.min(0.965 - y, y - 0.135, 0.32 - x);
 };
 /** Positive where the shoes are. */
-export const shoes: Field = ([, y, z]) => 0.085 - 0.35 * Math.max(z, 0) - y;
+export const shoes: Field = ([, y, z]) => Math.min(Math.max(0.082 - y, z - 0.04), 0.14 - y);
 
 interface Cloth {
   field: Field;
@@ -54,9 +55,10 @@ interface Cloth {
 export const clothes: Record<string, Cloth> = {
   shirt: { field: shirt, color: '#e9e6df', above: (p) => 0.009 + 0.007 * smoothstep(1.15, 0.95, p[1]), rounds: 12 },
   trousers: { field: trousers, color: '#3d4a63', above: (p) => 0.006 + 0.009 * smoothstep(0.8, 0.2, p[1]), rounds: 14 },
-  shoes: { field: shoes, color: '#b4533c', above: () => 0.007, rounds: 26 },
+  shoes: { field: shoes, color: '#b4533c', above: () => 0.008, rounds: 26 },
 };
 const kThick = 0.004;
+const kSole = 0.009; // height of its upper edge
 
 /** A piece of the skin that is moved outwards, with its borders turned in. */
 function layer(skin: Mesh, field: Field, above: (p: Vec3) => number, rounds: number): Mesh {
@@ -88,7 +90,10 @@ function turnedIn(mesh: Mesh, skinAt: readonly Vec3[]): Mesh {
     const vertex = mesh.vertices[v]!;
     const down = sub(skinAt[v]!, vertex.at);
     const far = length(down);
-    vertices.push(vertex, { ...vertex, at: add(vertex.at, scale(down, Math.min(1, Math.max(kThick, far - 0.001) / far))) });
+    vertices.push(vertex, {
+      ...vertex,
+      at: add(vertex.at, scale(down, Math.min(1, Math.max(kThick, far - 0.001) / far))),
+    });
   }
   const rim = [...edges].flatMap(([a, b]): Mesh['triangles'] => [
     [outer.get(b)!, outer.get(a)!, outer.get(a)! + 1],
@@ -102,18 +107,27 @@ export const dressed = (skin: Mesh, name: string): Mesh => {
   const mesh = layer(skin, field, above, rounds);
   if (name !== 'shoes') return mesh;
   // A sole: flat, and lighter.
-  const sole = linear('#e8e4dc');
-  return {
-    ...mesh,
-    vertices: mesh.vertices.map((vertex) => {
+  const colored = (half: Mesh, color: string): Mesh => ({
+    ...half,
+    vertices: half.vertices.map((vertex) => {
       const [x, y, z] = vertex.at;
-      return { ...vertex, at: [x, Math.max(y, -0.006), z], color: y < 0.012 ? sole : linear(clothes['shoes']!.color) };
+      return { ...vertex, at: [x, Math.max(y, -0.006), z], color: linear(color) };
     }),
-  };
+  });
+  return join(
+    colored(
+      clip(mesh, ([, y]) => y - kSole),
+      clothes['shoes']!.color,
+    ),
+    colored(
+      clip(mesh, ([, y]) => kSole - y),
+      '#e8e4dc',
+    ),
+  );
 };
 
 /** Skin that no gap between clothes shows: all but what is well below them. */
-export const isSeen: Field = (p) => 0.025 - Math.max(shirt(p), trousers(p), shoes(p));
+export const isSeen: Field = (p) => 0.025 - Math.max(shirt(p), trousers(p), 6 * shoes(p));
 
 // ---- hair, brows and lashes ----
 
@@ -178,14 +192,12 @@ export function hairOf(head: Mesh): Mesh {
 function strip(lines: readonly (readonly Vec3[])[], color: Vec3): Mesh {
   const columns = lines[0]!.length;
   const vertices = lines.flat().map((p): Vertex => ({ at: onHead(p), base: onHead(p), color, weights: [] }));
-  const triangles = lines
-    .slice(1)
-    .flatMap((_, row) =>
-      Array.from({ length: columns - 1 }, (_, i) => row * columns + i).flatMap((v): Mesh['triangles'] => [
-        [v, v + columns, v + 1],
-        [v + 1, v + columns, v + columns + 1],
-      ]),
-    );
+  const triangles = lines.slice(1).flatMap((_, row) =>
+    Array.from({ length: columns - 1 }, (_, i) => row * columns + i).flatMap((v): Mesh['triangles'] => [
+      [v, v + columns, v + 1],
+      [v + 1, v + columns, v + columns + 1],
+    ]),
+  );
   return { vertices, triangles };
 }
 const steps = (count: number): number[] => Array.from({ length: count + 1 }, (_, i) => i / count);

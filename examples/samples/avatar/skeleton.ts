@@ -68,14 +68,12 @@ const limb: [name: string, parent: string, at: Vec3, fade: number][] = [
   ['LowerArm', 'UpperArm', kElbow, 0.024],
   ['Hand', 'LowerArm', kWrist, 0.016],
   ...Object.entries(kFingers).flatMap(([finger, points]) =>
-    (finger === 'Thumb' ? kThumb : kPhalanges).map(
-      (bone, i, bones): (typeof limb)[number] => [
-        finger + bone,
-        i === 0 ? 'Hand' : finger + bones[i - 1]!,
-        handAt(points[i]!),
-        0.005,
-      ],
-    ),
+    (finger === 'Thumb' ? kThumb : kPhalanges).map((bone, i, bones): (typeof limb)[number] => [
+      finger + bone,
+      i === 0 ? 'Hand' : finger + bones[i - 1]!,
+      handAt(points[i]!),
+      0.005,
+    ]),
   ),
   ['UpperLeg', 'hips', [0.09, 0.905, -0.005], 0.05],
   ['LowerLeg', 'UpperLeg', [0.107, kKnee, -0.002], 0.03],

@@ -1,4 +1,4 @@
-import { Accessor, Document, type Node, NodeIO, type TypedArray } from '@gltf-transform/core';
+import { type Accessor, Document, type Node, NodeIO, type TypedArray } from '@gltf-transform/core';
 import { EXTMeshoptCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
 import { meshopt } from '@gltf-transform/functions';
 import { MeshoptEncoder } from 'meshoptimizer';
@@ -47,7 +47,11 @@ function primitiveOf(document: Document, { name, mesh, roughness, moves, isThin 
   const weights = mesh.vertices.map((vertex) => strongest(vertex.weights));
   const four = (of: (one: { joint: number; weight: number }) => number): number[] =>
     weights.flatMap((list) => [0, 1, 2, 3].map((i) => (list[i] && list[i].weight > 0 ? of(list[i]) : 0)));
-  const material = document.createMaterial(name).setRoughnessFactor(roughness).setMetallicFactor(0).setDoubleSided(isThin);
+  const material = document
+    .createMaterial(name)
+    .setRoughnessFactor(roughness)
+    .setMetallicFactor(0)
+    .setDoubleSided(isThin);
   const primitive = document
     .createPrimitive()
     .setMaterial(material)
@@ -61,7 +65,10 @@ function primitiveOf(document: Document, { name, mesh, roughness, moves, isThin 
   else
     primitive.setAttribute(
       'COLOR_0',
-      put('VEC4', Uint8Array.from(colors.flatMap((color) => [...color.map((v) => Math.round(255 * v)), 255]))).setNormalized(true),
+      put(
+        'VEC4',
+        Uint8Array.from(colors.flatMap((color) => [...color.map((v) => Math.round(255 * v)), 255])),
+      ).setNormalized(true),
     );
   for (const [morph, move] of moves) {
     const to = mesh.vertices.map(move);
@@ -82,7 +89,12 @@ function primitiveOf(document: Document, { name, mesh, roughness, moves, isThin 
 }
 
 function addClips(document: Document, clips: readonly Clip[], put: Put): void {
-  const nodes = new Map(document.getRoot().listNodes().map((node) => [node.getName(), node]));
+  const nodes = new Map(
+    document
+      .getRoot()
+      .listNodes()
+      .map((node) => [node.getName(), node]),
+  );
   for (const { name, times, stances } of clips) {
     const animation = document.createAnimation(name);
     const input = put('SCALAR', Float32Array.from(times));
@@ -101,9 +113,15 @@ function addClips(document: Document, clips: readonly Clip[], put: Put): void {
           .createAnimationSampler()
           .setInput(put('SCALAR', Float32Array.of(0, times.at(-1)!)))
           .setOutput(put('VEC4', Float32Array.from([...values[0]!, ...values[0]!])));
-        animation.addSampler(sampler).addChannel(
-          document.createAnimationChannel().setTargetNode(nodes.get(joint)!).setTargetPath('rotation').setSampler(sampler),
-        );
+        animation
+          .addSampler(sampler)
+          .addChannel(
+            document
+              .createAnimationChannel()
+              .setTargetNode(nodes.get(joint)!)
+              .setTargetPath('rotation')
+              .setSampler(sampler),
+          );
       }
     }
     const hips = joints[0]!.at;
