@@ -79,6 +79,9 @@ test('Smile moves the mouth of a model that is no VRM, and lets go of it; its cl
   const area = await modelArea(page);
   const weight = (name: string) => page.locator(`#morph-list input[name=${name}]`).inputValue().then(Number);
   const smile = page.getByRole('button', { name: 'Smile' });
+  await page.locator('#view').focus();
+  for (const key of [...Array(8).fill('+'), ...Array(11).fill('Shift+ArrowUp')]) await page.keyboard.press(key); // its face
+  await frames(page, 30);
   const rest = await look(page, area);
   await smile.click();
   await moved(page);
