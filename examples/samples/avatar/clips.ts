@@ -63,13 +63,12 @@ function idle(phase: number): Stance {
   stance.turns.set('neck', both(about(kX, 0.016 * breath), about(kY, 0.05 * Math.sin(kTurn * phase + 0.9))));
   stance.turns.set('head', both(about(kY, 0.06 * Math.sin(kTurn * phase + 0.6)), about(kZ, 0.02 * sway)));
   for (const side of ['left', 'right'] as const) {
-    const away = side === 'left' ? 1 : -1;
     hang(stance, side, 0.03 + 0.012 * breath, 0.2 + 0.02 * breath);
     set(stance, side, 'Shoulder', about(kZ, -0.05 + 0.022 * breath));
     // The feet stay: the leg turns back as far as the hips have turned and moved.
     const lean = Math.asin((0.012 * sway) / 0.84);
     stance.turns.set(`${side}UpperLeg`, both(about(kY, -0.02 * sway), about(kZ, -0.012 * sway - lean)));
-    stance.turns.set(`${side}Foot`, both(about(kZ, lean), about(kY, away * 0)));
+    stance.turns.set(`${side}Foot`, about(kZ, lean));
   }
   stance.hips = [0.012 * sway, -0.001, 0];
   return stance;

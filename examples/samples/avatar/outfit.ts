@@ -1,6 +1,6 @@
 // What the figure has on: pieces of its skin, moved outwards, so that they bend as it does.
 
-import { inHead, kEye, kEyeRadius, kLook, lidEdge, onEye, onHead } from './face';
+import { inHead, kEye, kEyeRadius, kLook, lidEdge, onHead } from './face';
 import {
   add,
   border,
@@ -272,4 +272,3 @@ export function eyeOf(): Mesh {
   );
   return { vertices, triangles };
 }
-export { onEye };

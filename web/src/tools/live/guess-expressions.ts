@@ -109,7 +109,7 @@ function applied(rules: readonly Rule[], names: readonly string[]): Weights | un
 
 /** The weights of an expression by the names of morphs; undefined if none of them tells. @param title  A key of the rules, such as “Smile”. */
 export const guessed = (title: string, names: readonly string[]): Weights | undefined => applied(kRules[title]!, names);
-/** Expressions that may be guessed beside those of `quickTitles`. */
+/** Titles of expressions that are guessed if a file names none. */
 export const moods: readonly string[] = ['Sad', 'Surprised', 'Angry'];
 /** The shapes of a mouth that speaks, by vowel, as far as there are any. */
 export const vowelsOf = (names: readonly string[]): ReadonlyMap<string, Weights> =>
