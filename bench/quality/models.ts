@@ -49,9 +49,11 @@ export function listFiles(): ModelFiles[] {
     cage: `${folder}/${name}/cage.glb`,
     truth: `${folder}/${name}/truth.json`,
   });
-  const samples = readJson<{ name: string }[]>(`${samplesFolder}/index.json`).map(({ name }): ModelFiles => {
+  const listed = readJson<{ name: string; truth?: string }[]>(`${samplesFolder}/index.json`);
+  const samples = listed.flatMap(({ name, truth }): ModelFiles[] => {
     // Named after the model they were spoiled from.
-    return { name, kind: name.includes('-') ? 'spoiled' : 'sample', ...filesOf(samplesFolder, name) };
+    const kind = name.includes('-') ? 'spoiled' : 'sample';
+    return truth ? [{ name, kind, ...filesOf(samplesFolder, name) }] : [];
   });
   const given = foldersOf(assets, 'target.glb', 'cage.glb', 'truth.json').map(
     (name): ModelFiles => ({ name, kind: 'asset', ...filesOf(assets!, name) }),

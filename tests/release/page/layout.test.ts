@@ -274,8 +274,9 @@ const kPhoneSizes = [
 ] as const;
 
 const kStageControls =
-  ':is(.masthead, .stage-head, .quick, .angles, .sticker-bar) :is(button, input), :is(.rail, .toolbar) label, .knob';
-const kStageGroups = '.masthead button, .stage-head > *, .rail, .quick, .angles, .toolbar, .bubble, .sticker-bar';
+  ':is(.masthead, .stage-head, .quick, .angles, .clips, .sticker-bar) :is(button, input, select), :is(.rail, .toolbar) label, .knob';
+const kStageGroups =
+  '.masthead button, .stage-head > *, .rail, .quick, .angles, .clips, .toolbar, .bubble, .sticker-bar';
 
 /** What can be pressed on the stage but is outside the window or covered, and groups of controls that overlap, at all sizes. */
 async function stageFaults(page: Page, sizes: readonly (readonly [number, number])[] = kStageSizes): Promise<string[]> {
@@ -318,6 +319,15 @@ test('in Play, nothing that can be pressed on the stage is covered or cut off, w
   assert.deepEqual(await stageFaults(page), [], 'while one paints');
   await page.locator('#stage-share').click();
   assert.deepEqual(await stageFaults(page), [], 'with the sheet');
+});
+
+test('neither is what plays the clips of a model', async () => {
+  const { page } = (visit = await site.visit({ hasTouch: true }, undefined, '#sample=avatar'));
+  await page.getByTestId('clips').waitFor();
+  await page.getByTestId('stage-verdict').waitFor();
+  assert.deepEqual(await stageFaults(page), []);
+  await page.getByRole('radio', { name: 'Brush' }).check({ force: true });
+  assert.deepEqual(await stageFaults(page), [], 'while one paints');
 });
 
 test('on the stage, nothing that can be pressed is covered or cut off', async () => {

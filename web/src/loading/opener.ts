@@ -1,4 +1,5 @@
 import type { Edits, LayerStack, Sheet } from 'cagecast/three/paint';
+import { onFace } from '../platform/face';
 import { element, showError } from '../platform/page';
 import type { Locks } from '../state/choices';
 import type { Intake } from '../state/intake';
@@ -71,10 +72,16 @@ export class Opener implements Samples {
     return this.#samples;
   }
 
-  /** Fills the list of samples. */
+  /** Fills the list of samples: in Play, without test cases. */
   listSamples(samples: Sample[]): void {
     this.#samples = samples;
-    this.#select.replaceChildren(...samples.map(({ name, title }) => new Option(title, name)));
+    onFace((shown) => {
+      const { value } = this.#select;
+      const offered = samples.filter(({ name, test }) => shown === 'inspect' || !test || name === value);
+      const own = value === kOwn ? [new Option('Your own files', kOwn)] : [];
+      this.#select.replaceChildren(...offered.map(({ name, title }) => new Option(title, name)), ...own);
+      if (value) this.#select.value = value;
+    });
   }
 
   /**
@@ -88,17 +95,21 @@ export class Opener implements Samples {
     this.putAside();
     this.#select.value = name;
     this.#warnings = [];
-    const { target, cage, paints } = sample;
-    const chosen = paint === kChecker ? undefined : (paints.find(({ file }) => paintName(file) === paint) ?? paints[0]);
     const model = async (address: string): Promise<Model> => ({
       ...(await this.#loader.load(await fetchFile(address))),
       sample,
     });
-    this.#session.request(
-      { target: model(target), cage: model(cage), paint: this.#fetchPaint(sample, chosen) },
-      locks,
-      true,
-    );
+    const [target, cage] = [model(sample.target), model(sample.cage)];
+    this.#session.request({ target, cage, paint: this.#firstPaint(sample, paint, cage) }, locks, true);
+  }
+
+  /** The paint a sample opens with: the named one, else its first, else one that is drawn for its cage. */
+  async #firstPaint(sample: Sample, name: string | undefined, loading: Promise<Model>): Promise<Paint> {
+    const { paints } = sample;
+    if (name === kChecker) return this.#session.checker;
+    const own = paints.find(({ file }) => paintName(file) === name) ?? paints[0];
+    if (own) return this.#fetchPaint(sample, own);
+    return this.#drawFor(asCage(await loading), name);
   }
 
   /** Call this before a sample's state replaces the one that is shown. */
@@ -128,8 +139,8 @@ export class Opener implements Samples {
       .find(({ paint }) => paintName(paint.file) === name);
   }
 
-  async #fetchPaint(sample: Sample, paint: Sample['paints'][number] | undefined): Promise<Paint> {
-    return paint ? { ...(await loadPaint(await fetchFile(paint.file), paint.file)), sample } : this.#session.checker;
+  async #fetchPaint(sample: Sample, paint: Sample['paints'][number]): Promise<Paint> {
+    return { ...(await loadPaint(await fetchFile(paint.file), paint.file)), sample };
   }
 
   /** The paint of a cage that comes without one: as the base is drawn, or drawn afresh if that was made for another cage. */
@@ -139,8 +150,13 @@ export class Opener implements Samples {
     const base = this.#stack.base?.sheet as Paint | undefined;
     const isGiven = base === undefined || base === checker || base.sample || base.drawn;
     if (shown && (!isGiven || haveSameUvs(shown.cage, cage))) return shown.paint;
-    const drawn = this.#drawings.find(base?.drawn ?? '') ?? this.#drawings.firstFor(cage);
-    return this.#drawings.draw(drawn, cage).catch(() => checker);
+    return this.#drawFor(cage, base?.drawn);
+  }
+
+  /** Draws the named paint, or what a cage begins with. */
+  #drawFor(cage: Model, name = ''): Promise<Paint> {
+    const drawn = this.#drawings.find(name) ?? this.#drawings.firstFor(cage);
+    return this.#drawings.draw(drawn, cage).catch(() => this.#session.checker);
   }
 
   /** Opens the user's own files. */

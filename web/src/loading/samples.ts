@@ -18,9 +18,8 @@ export async function loadSamples(): Promise<Sample[]> {
     throw new Error('The samples could not be loaded. You can still drop a target and a cage of your own.');
   }
   const address = (path: string): string => new URL(path, kFolder).href;
-  return list.map(({ name, title, target, cage, paints }) => ({
-    name,
-    title,
+  return list.map(({ target, cage, paints, ...rest }) => ({
+    ...rest,
     target: address(target),
     cage: address(cage),
     paints: paints.map((paint) => ({ title: paint.title, file: address(paint.file) })),

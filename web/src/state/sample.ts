@@ -2,8 +2,11 @@
 export interface Sample {
   name: string;
   title: string;
+  /** Whether it is there for tests, and nothing to play with. */
+  test?: boolean;
   target: string;
   cage: string;
+  /** None if it is painted with those that are drawn for any cage. */
   paints: { title: string; file: string }[];
 }
 

@@ -34,6 +34,7 @@ export class Stage {
   #crowd: Crowd | undefined;
   #mixer: AnimationMixer | undefined;
   #played = 0;
+  #paused = false;
   /** The model's vertices in the studio. */
   #points: Float32Array = new Float32Array();
   /** Where the model's space begins if its middle is at the origin. */
@@ -164,6 +165,7 @@ export class Stage {
   play(clip: AnimationClip | undefined): void {
     this.#mixer?.stopAllAction();
     this.#mixer = undefined;
+    this.#paused = false;
     if (clip && this.#model) {
       this.#mixer = new AnimationMixer(this.#model.scene);
       this.#mixer.clipAction(clip).play();
@@ -174,12 +176,19 @@ export class Stage {
 
   /** Whether an animation is played. */
   get isPlaying(): boolean {
-    return this.#mixer !== undefined;
+    return this.#mixer !== undefined && !this.#paused;
+  }
+
+  /** Holds what is played where it is, or goes on. */
+  pause(paused: boolean): void {
+    this.#paused = paused;
+    this.#played = performance.now();
+    this.#redraw();
   }
 
   /** Moves what is played to a time, in milliseconds. */
   animate(now: number): void {
-    if (!this.#mixer) return;
+    if (!this.#mixer || this.#paused) return;
     this.#mixer.update(Math.max(0, now - this.#played) / 1000);
     this.#played = now;
     this.#redraw();

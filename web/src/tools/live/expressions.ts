@@ -1,11 +1,15 @@
 import type { ExtractedMesh } from '../../state/model';
 import { titleOfExpression } from './expression-names';
-import { morphNames } from './morph-names';
+import { guessed, moods, vowelsOf } from './guess-expressions';
+import { morphNames, type Weights } from './morph-names';
 
-/** An expression of a VRM file: weights of morphs, by name. */
+/** What a face can show: weights of morphs, by name. */
 export interface Expression {
   title: string;
-  weights: ReadonlyMap<string, number>;
+  /** Where motion is not wanted, or if it has no sequence. */
+  weights: Weights;
+  /** Shapes that follow each other, at their seconds; it begins and ends at rest. */
+  sequence?: readonly (readonly [at: number, weights: Weights])[];
 }
 
 /** What is said of a morph in the file. */
@@ -32,8 +36,48 @@ interface Loaded {
     | undefined;
 }
 
+const kBlink = [0.09, 0.15, 0.32]; // seconds: shut, still shut, open
+/** What is said, by its vowels; the mouth closes at spaces. Each takes that many seconds. */
+const [kSpeech, kSyllable] = ['ao ie au oea ei o', 0.16];
+
+/** Smile, Blink and Speak first, then what a VRM file calls expressions, or what the names of other files' morphs tell. */
+export function expressionsOf(loaded: Loaded, mesh: ExtractedMesh): Expression[] {
+  const names = [...new Set(mesh.primitives.flatMap(({ mesh }) => morphNames(mesh)))];
+  const own = new Map(vrmExpressions(loaded, mesh).map(({ title, weights }) => [title, weights]));
+  const smile = own.get('Happy') ?? guessed('Smile', names);
+  const blink = own.get('Blink') ?? guessed('Blink', names);
+  const vowels = new Map(vowelsOf(names));
+  for (const [letter, title] of Object.entries({ a: 'Aa', e: 'Ee', i: 'Ih', o: 'Oh', u: 'Ou' }))
+    if (own.has(title)) vowels.set(letter, own.get(title)!);
+  const rest: Weights = new Map();
+  const [first] = vowels.values();
+  const speech = [...kSpeech].map((letter, i) => {
+    const weights = letter === ' ' ? rest : (vowels.get(letter) ?? first!);
+    return [(i + 1) * kSyllable, weights] as const;
+  });
+  for (const title of ['Happy', 'Blink']) own.delete(title); // they are there by the names of all models
+  if (own.size === 0) for (const title of moods) own.set(title, guessed(title, names) ?? rest);
+  const [shut, still, open] = kBlink as [number, number, number];
+  return [
+    ...(smile ? [{ title: 'Smile', weights: smile }] : []),
+    ...(blink
+      ? [
+          {
+            title: 'Blink',
+            weights: blink,
+            sequence: [[shut, blink] as const, [still, blink] as const, [open, rest] as const],
+          },
+        ]
+      : []),
+    ...(first
+      ? [{ title: 'Speak', weights: first, sequence: [...speech, [(speech.length + 1) * kSyllable, rest] as const] }]
+      : []),
+    ...[...own].flatMap(([title, weights]) => (weights.size > 0 ? [{ title, weights }] : [])),
+  ];
+}
+
 /** The expressions of a VRM 0 or VRM 1 file that move morphs; none for other files. */
-export function expressionsOf({ parser }: Loaded, { primitives }: ExtractedMesh): Expression[] {
+function vrmExpressions({ parser }: Loaded, { primitives }: ExtractedMesh): Expression[] {
   const extensions = parser?.json?.extensions as Record<string, unknown> | undefined;
   const named = [...vrm1(extensions?.VRMC_vrm), ...vrm0(extensions?.VRM)];
   if (named.length === 0) return [];

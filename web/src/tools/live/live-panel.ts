@@ -47,9 +47,9 @@ export class Live {
     });
     for (const input of [this.#deform, this.#along]) input.addEventListener('change', () => this.#next());
     this.#moves.addEventListener('change', () => (this.#moves.checked ? this.#start() : this.#stop()));
-    // An animation may drive the same morphs: they exclude each other.
+    // An animation may drive morphs, too: they exclude each other.
     this.#morphs = new Morphs(() => {
-      this.#animations?.stop();
+      this.#animations?.leaveMorphs();
       this.#next();
     });
     this.#animations = viewer && new Animations(viewer.stage, () => this.#leaveMorphs());
@@ -70,7 +70,7 @@ export class Live {
     this.#along.checked = cage;
     this.#morphs.reset();
     if (morphs.size > 0) {
-      this.#animations?.stop();
+      this.#animations?.leaveMorphs();
       this.#morphs.move(morphs);
     }
     this.#next();

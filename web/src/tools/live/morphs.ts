@@ -1,28 +1,34 @@
 import { make } from '../../platform/make';
 import { element } from '../../platform/page';
 import type { ExtractedMesh } from '../../state/model';
+import { ExpressionButtons } from './expression-buttons';
 import { titleOfMorph } from './expression-names';
 import type { Expression } from './expressions';
 import { morphNames, type Weights } from './morph-names';
 
-/** A slider for each morph of a model. */
+/** Buttons for the expressions of a model, and a slider for each of its morphs. */
 export class Morphs {
   readonly #box = element('morphs', HTMLElement);
+  readonly #fold = element('morph-fold', HTMLDetailsElement);
   readonly #list = element('morph-list', HTMLElement);
-  readonly #presets = element('expressions', HTMLElement);
+  readonly #buttons: ExpressionButtons;
   readonly #reset = element('morphs-reset', HTMLButtonElement);
   readonly #onMove: () => void;
   /** The weights in the file. */
   #stored: Weights = new Map();
   #weights = new Map<string, number>();
 
-  /** @param onMove Called when the user moved a slider. */
+  /** @param onMove Called when the user moved a slider, and for each step of an expression. */
   constructor(onMove: () => void) {
     this.#onMove = onMove;
+    this.#buttons = new ExpressionButtons((weights) => {
+      this.#set(weights);
+      onMove();
+    });
     this.#reset.addEventListener('click', () => {
       this.reset();
       // The button is disabled now: keep the focus within the morphs.
-      this.#list.querySelector('input')?.focus({ preventScroll: true });
+      this.#fold.querySelector('summary')!.focus({ preventScroll: true });
       onMove();
     });
   }
@@ -38,7 +44,8 @@ export class Morphs {
     this.#stored = stored;
     this.#weights = new Map(stored);
     this.#list.replaceChildren(...[...stored].map(([name, weight]) => this.#slider(name, weight)));
-    this.#offerPresets(expressions);
+    this.#buttons.offer(expressions, stored);
+    this.#fold.open = expressions.length === 0;
     this.#box.hidden = stored.size === 0;
     element('morph-count', HTMLElement).textContent = String(stored.size);
     this.#reset.disabled = true;
@@ -61,30 +68,17 @@ export class Morphs {
 
   /** Sets the named weights, clamped to the range of their sliders. */
   move(weights: Weights): void {
+    this.#buttons.release();
+    this.#set(weights);
+  }
+
+  #set(weights: Weights): void {
     for (const input of this.#list.querySelectorAll('input')) {
       const weight = weights.get(input.name);
       if (weight === undefined) continue;
       input.valueAsNumber = weight;
       this.#read(input);
     }
-  }
-
-  /** A button for each expression, which shows it instead of any other. */
-  #offerPresets(expressions: readonly Expression[]): void {
-    this.#presets.hidden = expressions.length === 0;
-    this.#presets.replaceChildren(
-      ...expressions.map(({ title, weights }) => {
-        const button = make('button', { type: 'button', ariaPressed: 'false' }, title);
-        button.addEventListener('click', () => {
-          const on = button.ariaPressed !== 'true';
-          const rest = expressions.flatMap((other) => [...other.weights.keys()].map((name) => [name, 0] as const));
-          this.move(new Map([...rest, ...(on ? weights : [])]));
-          button.ariaPressed = String(on);
-          this.#onMove();
-        });
-        return button;
-      }),
-    );
   }
 
   #slider(name: string, weight: number): HTMLElement {
@@ -94,6 +88,7 @@ export class Morphs {
     const title = make('span', { title: name }, titleOfMorph(name));
     const label = make('label', {}, title, input, make('output', { value: weight.toFixed(2) }));
     input.addEventListener('input', () => {
+      this.#buttons.release();
       this.#read(input);
       this.#onMove();
     });
@@ -101,7 +96,6 @@ export class Morphs {
   }
 
   #read(input: HTMLInputElement): void {
-    for (const button of this.#presets.children) button.ariaPressed = 'false';
     this.#weights.set(input.name, input.valueAsNumber);
     (input.nextElementSibling as HTMLOutputElement).value = input.valueAsNumber.toFixed(2);
     this.#reset.disabled = !this.weights;
