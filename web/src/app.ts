@@ -22,6 +22,7 @@ import { ThresholdMarks } from './panels/threshold-marks';
 import { catchLostFocus } from './platform/lost-focus';
 import { announce, element } from './platform/page';
 import { flags } from './platform/shelf';
+import { setUpUndo } from './platform/undo';
 import { CageMaker } from './state/cage-maker';
 import { followPaints } from './state/follow-paints';
 import { PutAwayLayers } from './state/put-away-layers';
@@ -94,6 +95,7 @@ if (!stage) {
   element('open-wardrobe', HTMLButtonElement).hidden = true;
 }
 new LayerList(stack, edits);
+setUpUndo(history); // before what copies its buttons
 showStatus(session, viewer === undefined);
 fadePoster(session, viewer);
 showResults(session);

@@ -11,7 +11,6 @@ import { setUpSaving } from './panels/save-texture';
 import { setUpWardrobe } from './panels/set-up-wardrobe';
 import { recordControls } from './panels/steps';
 import { keepOffline } from './platform/offline';
-import { setUpUndo } from './platform/undo';
 import type { CageMaker } from './state/cage-maker';
 import type { Loader } from './state/model';
 import type { PutAwayLayers } from './state/put-away-layers';
@@ -45,7 +44,6 @@ export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
   const painter =
     stage && setUpPainting(session, stage.viewer, stage.tools, { stack, composite: stage.composite, edits });
   if (stage) new Explain(session, stage.viewer, stage.tools);
-  setUpUndo(history);
   const live = new Live(session, viewer);
   recordControls(session, live, history);
   const saved = stage && setUpSaving(stage.viewer, stage.composite);
