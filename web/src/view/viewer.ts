@@ -178,8 +178,10 @@ export class Viewer {
     if (width === 0 || height === 0 || this.#isLent) return;
     const ratio = Math.min(devicePixelRatio, 2);
     const before = this.renderer.getSize(new Vector2());
-    // Buffers of the same size would be made anew, and all be drawn at once.
-    if (before.x === width && before.y === height && this.renderer.getPixelRatio() === ratio) return this.redraw();
+    if (before.x === width && before.y === height && this.renderer.getPixelRatio() === ratio) {
+      this.redraw(); // buffers of the same size would be made anew
+      return;
+    }
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     this.controls.resize(width, height, freePartOf(this.#canvas));
