@@ -407,6 +407,7 @@ describe('with a picture', () => {
 
   test('what is hidden while it has the focus gives it to the stage', async () => {
     await page.getByTestId('target-input').setInputFiles(glb('x.glb', Buffer.from('x')));
+    await page.locator('#alert-close').waitFor();
     await page.locator('#alert-close').press('Enter');
     assert.equal(await page.evaluate(() => document.activeElement!.id), 'view');
   });

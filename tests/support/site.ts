@@ -147,7 +147,12 @@ export class Site {
 export async function settled(page: Page): Promise<string> {
   // Return the status that was found: it may have changed since.
   const status = await page.waitForFunction(
-    () => ['ready', 'error'].find((status) => status === document.querySelector('[data-testid=status]')?.textContent),
+    () => {
+      const shown = document.querySelector('[data-testid=status]')?.textContent;
+      // What the first picture does without is added when somebody begins to use the page.
+      if (!('complete' in document.documentElement.dataset)) dispatchEvent(new Event('pointermove'));
+      return 'complete' in document.documentElement.dataset && ['ready', 'error'].find((status) => status === shown);
+    },
     undefined,
     { timeout: kPatience },
   );

@@ -1,23 +1,14 @@
 import { init } from 'cagecast';
-import { Edits, History, LayerStack } from 'cagecast/three/paint';
-import type { Texture } from 'three';
-import { Explain } from './explain/explain-tool';
-import { ExportPanel } from './export/export-panel';
-import { exportedPaint } from './export/linked-layers';
-import { followLinks } from './export/links';
+import { type Composite, Edits, History, LayerStack } from 'cagecast/three/paint';
 import { Drawings } from './loading/drawn/drawings';
 import { loaderFor } from './loading/load-model';
 import { makeChecker } from './loading/load-paint';
 import { Opener } from './loading/opener';
 import { fetchAhead, loadSamples } from './loading/samples';
 import { TransferClient } from './loading/transfer-client';
-import { beginProjects } from './panels/begin-projects';
 import { setUpCagePanel } from './panels/cage-panel';
-import { carryOver } from './panels/carry-over';
 import { FitPanel } from './panels/fit-panel';
 import { LayerList } from './panels/layer-list';
-import { setUpMethod } from './panels/method';
-import { offerGuide } from './panels/offer-guide';
 import { PartMenu } from './panels/part-menu';
 import { PartsTable } from './panels/parts-table';
 import { setUpPicture } from './panels/picture-panel';
@@ -25,25 +16,19 @@ import { fadePoster, removeOtherPoster } from './panels/poster';
 import { offerPutAway } from './panels/put-away-layers';
 import { showResults } from './panels/results';
 import { setUpRules } from './panels/rules';
-import { setUpSaving } from './panels/save-texture';
 import { goTo, setUpSectionNav } from './panels/section-nav';
-import { setUpWardrobe } from './panels/set-up-wardrobe';
 import { showStatus } from './panels/status';
-import { recordControls } from './panels/steps';
 import { ThresholdMarks } from './panels/threshold-marks';
 import { face, setUpFaces } from './platform/face';
 import { catchLostFocus } from './platform/lost-focus';
-import { keepOffline } from './platform/offline';
 import { announce, element } from './platform/page';
+import { flags } from './platform/shelf';
 import { setUpUndo } from './platform/undo';
 import { CageMaker } from './state/cage-maker';
 import { followPaints } from './state/follow-paints';
 import { PutAwayLayers } from './state/put-away-layers';
 import { Session } from './state/session';
 import { setUpCageTools } from './tools/cage/set-up-cage-tools';
-import { Live } from './tools/live/live-panel';
-import type { Painter } from './tools/paint/painter';
-import { setUpPainting } from './tools/paint/set-up-painting';
 import { ExactBorders } from './view/exact-borders';
 import { showComposite } from './view/show-composite';
 import { showModel } from './view/show-model';
@@ -69,6 +54,19 @@ function painted(): Promise<unknown> {
   return Promise.race([frames, new Promise((done) => setTimeout(done, 200))]);
 }
 
+/** Shows models, and paint on them, in the view. */
+function setUpStage(viewer: Viewer): { viewer: Viewer; tools: Tools; composite: Composite } {
+  showModel(session, viewer);
+  showViewModes(session, viewer.stage);
+  new ExactBorders(session, viewer.stage);
+  const composite = showComposite(viewer, stack);
+  const tools = new Tools(viewer, element('stage', HTMLElement));
+  new PartMenu(session, viewer);
+  setUpCageTools(session, viewer, tools, maker, history);
+  setUpPicture(session, viewer);
+  return { viewer, tools, composite };
+}
+
 const samples = loadSamples();
 // Start early; errors are reported where the results are awaited.
 for (const early of [samples.then(([first]) => fetchAhead(first!)), init()]) early.catch(() => {});
@@ -86,33 +84,20 @@ const history = new History();
 const edits = new Edits(stack, history);
 const away = new PutAwayLayers(session, stack, edits); // before the paint of a sample goes
 followPaints(session, stack, edits);
-offerPutAway(away, viewer && (() => carryOver(session, away, viewer.renderer)));
+offerPutAway(
+  away,
+  viewer && (async () => (await import('./panels/carry-over')).carryOver(session, away, viewer.renderer)),
+);
 const engine = () => import('cagecast/cages');
 const maker = new CageMaker({ session, loader, engine, announce });
 setUpCagePanel(session, maker);
-let png: (() => Promise<Blob>) | undefined;
-let paint: Texture | undefined;
-let painter: Painter | undefined;
-if (viewer) {
-  showModel(session, viewer);
-  showViewModes(session, viewer.stage);
-  new ExactBorders(session, viewer.stage);
-  const composite = showComposite(viewer, stack);
-  paint = composite.texture;
-  const tools = new Tools(viewer, element('stage', HTMLElement));
-  painter = setUpPainting(session, viewer, tools, { stack, composite, edits });
-  new Explain(session, viewer, tools);
-  new PartMenu(session, viewer);
-  setUpMethod(session, viewer);
-  setUpCageTools(session, viewer, tools, maker, history);
-  setUpPicture(session, viewer);
-  png = setUpSaving(viewer, composite);
-} else {
+const stage = viewer && setUpStage(viewer);
+if (!stage) {
   element('explain', HTMLElement).hidden = true;
   element('open-wardrobe', HTMLButtonElement).hidden = true;
 }
 new LayerList(stack, edits);
-setUpUndo(history);
+setUpUndo(history); // before what copies its buttons
 showStatus(session, viewer === undefined);
 fadePoster(session, viewer);
 showResults(session);
@@ -124,45 +109,47 @@ setUpViewControls(session);
 setUpSectionNav(session);
 setUpStageButtons(viewer?.controls, history);
 element('stage-share', HTMLButtonElement).addEventListener('click', () => goTo(element('share', HTMLElement)));
-const live = new Live(session, viewer);
-recordControls(session, live, history);
-const opener = new Opener(session, stack, edits, loader, new Drawings());
-opener.cageFor = (target) => maker.cageFor(target);
-const { png: exportPng, layers } = exportedPaint(session, stack, edits, opener, png);
-const wardrobe =
-  viewer &&
-  paint &&
-  setUpWardrobe({ session, loader, viewer, stack, paint, png: exportPng, samples: () => opener.samples });
-if (wardrobe) opener.takesDrop = (files) => wardrobe.take(files);
-const linked = { session, layers, live, controls: viewer?.controls };
-const exportPanel = new ExportPanel(linked, exportPng);
-stack.on('change', () => exportPanel.refresh());
 // Whoever brings a model wants to see it painted, not compared.
 session.on('transfer', ({ target }) => {
   if (!target.sample && face() === 'play' && session.view.mode === 'compare') session.setView({ mode: 'result' });
 });
-const restoreWork = beginProjects({
-  session,
-  stack,
-  edits,
-  history,
-  maker,
-  away,
-  opener,
-  loader,
-  painter,
-  live,
-  viewer,
-  wardrobe,
-});
-keepOffline(session);
-offerGuide(session);
+const opener = new Opener(session, stack, edits, loader, new Drawings());
+opener.cageFor = (target) => maker.cageFor(target);
 
+let added: Promise<() => Promise<boolean>> | undefined;
+
+/** Adds all other features. @returns As `addFeatures`. */
+const complete = (): Promise<() => Promise<boolean>> => (added ??= add());
+
+async function add(): Promise<() => Promise<boolean>> {
+  const { addFeatures } = await import('./features');
+  const page = { session, stack, history, edits, away, maker, loader, opener, stage };
+  const open = session.joinLate(() => addFeatures(page));
+  document.documentElement.dataset.complete = ''; // for tests
+  return open;
+}
+
+/** Waits until the first model is judged, or somebody is about to use the page. */
+function judgedOrUsed(): Promise<unknown> {
+  const kUses = ['pointermove', 'pointerdown', 'keydown', 'focusin', 'dragenter'];
+  return Promise.race([
+    new Promise((done) => session.on('inspected', done)),
+    new Promise((done) => session.on('progress', ({ state }) => state === 'failed' && done(state))),
+    ...kUses.map((name) => new Promise((done) => addEventListener(name, done, { once: true }))),
+  ]);
+}
+
+opener.onProject = (file) => void complete().then(() => opener.onProject!(file));
 try {
   opener.listSamples(await samples);
-  const failed = await restoreWork();
-  // The user may have opened files, or work was brought back.
-  if (!followLinks(linked, opener) || (failed && !location.hash)) opener.openSample(opener.samples[0]!.name);
+  const showFirst = (): void => opener.openSample(opener.samples[0]!.name);
+  if (!session.begun && !flags.get('work') && !location.hash) {
+    showFirst();
+    await judgedOrUsed();
+  }
+  const isOpening = await (await complete())();
+  if (!isOpening) showFirst();
 } catch (error) {
   session.fail(error);
+  await complete();
 }

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { likelyTemplate } from '../../../web/src/state/likely-template';
+import { likelyTemplate } from '../../../web/src/state/cage-maker';
 
 test('the template is chosen by the shape: a figure is flat, a car is low, a head is neither', () => {
   for (const [size, template] of [

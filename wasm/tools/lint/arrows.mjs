@@ -26,7 +26,7 @@ const kPackageOrder = [
   'cli',
 ];
 const kCommandOrder = ['model', 'io', 'transfer', 'commands', 'command', 'main'];
-const kPageOrder = ['state', 'platform', 'loading', 'view', 'tools', 'explain', 'export', 'panels', 'app'];
+const kPageOrder = ['state', 'platform', 'loading', 'view', 'tools', 'explain', 'export', 'panels', 'features', 'app'];
 
 /** The orders, by where they hold: of those that hold two files, the first counts. */
 const kOrders = {

@@ -1,53 +1,56 @@
-import { checkGltf, fileKind } from 'cagecast/gltf';
 import { Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { askWorker } from '../platform/ask-worker';
 import { disposeAfterFrame } from '../platform/programs';
 import type { Loader, Model } from '../state/model';
 import { reasonOf } from '../state/wording';
 import { bringNear } from './bring-near';
 import { meshesOf } from './extract-mesh';
-import { companionOf, paths } from './file-paths';
-import type { Converted, FormatsRequest } from './formats-thread';
+import { companionOf } from './file-paths';
 import { readGltfHead } from './gltf-file';
-import { damageOf } from './image-damage';
 
 /**
  * Reads a GLB or glTF model, Draco, meshopt, KTX2 and quantised data included; a model of another format as the GLB that is made of it.
  * @param given      The model.
  * @param renderer   Undefined without WebGL.
- * @param companions Files a model may refer to (a .bin, an .mtl, images), found by name.
+ * @param others     Files a model may refer to (a .bin, an .mtl, images), found by name; undefined for a GLB of the page's own, which
+ *                   is trusted.
  * @throws Error with a message that begins with the file's name.
  */
 export async function loadModel(
   given: File,
   renderer: WebGLRenderer | undefined,
-  companions: readonly File[] = [],
+  others?: readonly File[],
 ): Promise<Model> {
   const urls = new Map<string, string>();
   try {
-    const { file, bytes } = await readAsGltf(given, companions);
+    // The page begins without what judges the files of others.
+    const judge = others && (await import('./given-file'));
+    const companions = others ?? [];
+    const { file, bytes } = judge
+      ? await judge.readAsGltf(given, companions)
+      : { file: given, bytes: await given.arrayBuffer() };
     const head = readGltfHead(bytes);
     const used = [...new Set(head.uris.map((uri) => findCompanion(uri, companions, file)))];
-    checkCost(bytes, used);
+    judge?.checkCost(bytes, used);
     for (const uri of head.uris) urls.set(uri, URL.createObjectURL(findCompanion(uri, companions, file)));
 
     const manager = new LoadingManager().setURLModifier((url) => urls.get(decodeURIComponent(url)) ?? url);
     const loader = new GLTFLoader(manager);
     const release = await addDecoders(loader, manager, head.extensions, renderer);
     try {
-      const gltf = await loader.parseAsync(bytes, '');
-      const scene = await sceneOf(gltf);
+      const loaded = await loader.parseAsync(bytes, '');
+      const scene = await sceneOf(loaded);
       bringNear(scene);
-      const { associations, json } = gltf.parser;
-      const meshes = meshesOf(scene, (mesh) => nameOf(mesh, gltf));
-      const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer());
+      const { associations, json } = loaded.parser;
+      const meshes = meshesOf(scene, (mesh) => nameOf(mesh, loaded));
+      const read = async (uri: string) => (await fetch(manager.resolveURL(uri))).arrayBuffer();
+      const damage = await judge?.damageOf(loaded, read);
       return {
         name: file.name,
         files: [file, ...used],
         scene,
-        loaded: { scene, userData: gltf.userData, parser: { associations, json: { extensions: json.extensions } } },
-        animations: gltf.animations,
+        loaded: { scene, userData: loaded.userData, parser: { associations, json: { extensions: json.extensions } } },
+        animations: loaded.animations,
         ...meshes,
         ...(damage && { damage: `${file.name}: ${damage}` }),
       };
@@ -114,33 +117,6 @@ function nameOf(mesh: Mesh, { parser }: GLTF): string | undefined {
   return name !== undefined && material !== undefined && material !== name && primitives.length > 1
     ? `${name}/${material}`
     : name;
-}
-
-/** Refuses a file that the loader, which trusts it, would take all memory for. @throws Error without the file's name. */
-function checkCost(bytes: ArrayBuffer, companions: readonly File[]): void {
-  try {
-    checkGltf(new Uint8Array(bytes), { otherBytes: companions.reduce((sum, { size }) => sum + size, 0) });
-  } catch (error) {
-    throw new Error(reasonOf(error), { cause: error });
-  }
-}
-
-/** A model and its bytes; those of the GLB that is made of it, if it has another format. @throws Error without the file's name. */
-async function readAsGltf(file: File, companions: readonly File[]): Promise<{ file: File; bytes: ArrayBuffer }> {
-  const bytes = await file.arrayBuffer().catch(() => {
-    throw new Error(
-      `the browser cannot read this file (${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB); it may be too large, or deleted`,
-    );
-  });
-  const kind = fileKind(new Uint8Array(bytes));
-  if (!kind) return { file, bytes };
-  if (!kind.format) throw new Error(`this is ${kind.name}; ${kind.advice}`);
-  const worker = new Worker(new URL('./formats-thread.ts', import.meta.url), { type: 'module' });
-  const withPath = (one: File) => ({ file: one, path: paths.get(one) });
-  const request: FormatsRequest = { model: withPath(file), companions: companions.map(withPath) };
-  const { glb } = await askWorker<Converted>(worker, request);
-  const made = new File([glb], `${file.name.replace(/\.[^.]*$/, '')}.glb`);
-  return { file: made, bytes: await made.arrayBuffer() };
 }
 
 function findCompanion(uri: string, companions: readonly File[], model: File): File {

@@ -1,7 +1,7 @@
 import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
 import { cageModel, withBaseColors } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/paint';
-import { likelyTemplate } from './likely-template';
+import { Box3, Vector3 } from 'three';
 import { type Fitting, kMostAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
@@ -295,6 +295,14 @@ export class CageMaker extends Emitter<{
         : 'The template was fitted: a paint for it fits every model that it was fitted to.';
     return { cage, note, fitting: { ...found, template: name, given } };
   }
+}
+
+/** The template that a model of this shape likely needs, y being up; the user may choose another. */
+export function likelyTemplate(positions: Float32Array): TemplateName {
+  const { x, y, z } = new Box3().setFromArray(positions).getSize(new Vector3());
+  // A figure is flat, whether its arms hang or are stretched out, a car is low; a head is neither.
+  if (z < 0.5 * y) return 'human-body';
+  return y < 0.55 * Math.max(x, z) ? 'car' : 'human-head';
 }
 
 /** The name of a cage's file, from that of a model or of an earlier cage. */

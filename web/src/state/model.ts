@@ -88,7 +88,8 @@ export const originOf = ({ scene: { position } }: Model): [number, number, numbe
 /** Reads models. The page's own is `loadModel`; tests hand in others. */
 export interface Loader {
   /**
-   * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
+   * @param companions Files a .gltf may refer to (its .bin, its images), found by name; undefined for a file of the page's own, which
+   *                   is trusted.
    * @throws Error with a message that begins with the file's name.
    */
   load(file: File, companions?: readonly File[]): Promise<Model>;

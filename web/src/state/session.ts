@@ -8,7 +8,6 @@ import {
   type Timings,
 } from 'cagecast';
 import type { Inspection } from 'cagecast/inspect';
-import { Emitter } from 'cagecast/three/paint';
 import {
   BareMarks,
   bareGroupsOf,
@@ -23,6 +22,7 @@ import { choose, isUpToDate, leavingOut, leftOutBy, moveChoices, projectBy } fro
 import type { Model } from './model';
 import { Pace } from './pace';
 import type { Paint } from './paint';
+import { Replay } from './replay';
 import { Requests } from './requests';
 import { haveSameUvs } from './same-uvs';
 import { kSlots, type Requested, type Scene, type Shown } from './scene';
@@ -72,7 +72,7 @@ interface SessionEvents {
  * The state of the page: the scene, its transfer, the options and the view. Features change it by its methods and follow it
  * by its events; they do not know each other.
  */
-export class Session extends Emitter<SessionEvents> {
+export class Session extends Replay<SessionEvents> {
   /** The paint of models without a paint of their own. */
   readonly checker: Paint;
   /** Gives the paint of a cage that is requested without one; undefined for the one that there is. */
@@ -97,7 +97,7 @@ export class Session extends Emitter<SessionEvents> {
   #painted: Paint | undefined;
 
   constructor(transferer: Transferer, checker: Paint) {
-    super();
+    super('transfer');
     this.checker = checker;
     this.#transferer = transferer;
     transferer.onRetimed = (timings) => this.#setTimings(timings);

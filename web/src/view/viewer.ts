@@ -1,4 +1,4 @@
-import { NeutralToneMapping, PCFShadowMap, WebGLRenderer } from 'three';
+import { NeutralToneMapping, PCFShadowMap, Vector2, WebGLRenderer } from 'three';
 import { clearError, showError } from '../platform/page';
 import type { Model } from '../state/model';
 import type { SplitProjection } from '../state/transfers';
@@ -189,7 +189,13 @@ export class Viewer {
   #resize(): void {
     const { clientWidth: width, clientHeight: height } = this.#canvas.parentElement!;
     if (width === 0 || height === 0 || this.#isLent) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    const ratio = Math.min(devicePixelRatio, 2);
+    const before = this.renderer.getSize(new Vector2());
+    if (before.x === width && before.y === height && this.renderer.getPixelRatio() === ratio) {
+      this.redraw(); // buffers of the same size would be made anew
+      return;
+    }
+    this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     this.controls.resize(width, height, freePartOf(this.#canvas));
     // Resizing cleared the canvas: draw now to avoid flicker.

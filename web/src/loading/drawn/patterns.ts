@@ -31,8 +31,9 @@ function step(from: number, to: number, x: number): number {
 /** A colour over another one. @param share  How much of it, besides its own alpha. */
 function over(below: Color, above: Color, share = 1): Color {
   const alpha = above[3] * share;
+  if (alpha === 0) return below;
+  if (alpha === 1) return above;
   const sum = alpha + below[3] * (1 - alpha);
-  if (sum === 0) return kClear;
   const mix = (k: 0 | 1 | 2): number => (above[k] * alpha + below[k] * below[3] * (1 - alpha)) / sum;
   return [mix(0), mix(1), mix(2), sum];
 }
@@ -45,9 +46,11 @@ function near(
   [wide, high]: readonly [number, number] = [1, 1],
 ): number {
   if (!mark) return 0;
-  return (
-    1 - step(inner, outer, Math.hypot((at[0] - mark[0]) / wide, (at[1] - mark[1]) / high, (at[2] - mark[2]) / 1.5))
-  );
+  const x = (at[0] - mark[0]) / wide;
+  const y = (at[1] - mark[1]) / high;
+  const z = (at[2] - mark[2]) / 1.5;
+  const square = x * x + y * y + z * z;
+  return square >= outer * outer ? 0 : 1 - step(inner, outer, Math.sqrt(square));
 }
 
 /** How near a spot is to a pair of landmarks. */
@@ -59,8 +62,8 @@ function nearPair(
   { shape, moved = [0, 0, 0] }: { shape?: readonly [number, number]; moved?: Point } = {},
 ): number {
   // The one of its own side is the nearer one.
-  const [side, sign] = at[0] > 0 ? ['left', 1] : ['right', -1];
-  const mark = frame.mark(`${name}_${side}`);
+  const sign = at[0] > 0 ? 1 : -1;
+  const mark = frame.pair(name)[sign > 0 ? 0 : 1];
   return near(at, mark && [mark[0] + sign * moved[0], mark[1] + moved[1], mark[2] + moved[2]], range, shape);
 }
 
@@ -119,8 +122,10 @@ const skull: Pattern =
     const [x, y, z] = at;
     const age = clouds(x * 5, y * 5, z * 5);
     let found = over(color('#f3ead6'), color('#b9a888'), 0.7 * step(0.45, 0.75, age));
-    const crack = Math.abs(noise(x * 2.2 + 3, y * 2.2, z * 2.2) - 0.5);
-    found = over(found, color('#6f6149'), (1 - step(0.004, 0.016, crack)) * step(0.5, 1.2, y));
+    if (y > 0.5) {
+      const crack = Math.abs(noise(x * 2.2 + 3, y * 2.2, z * 2.2) - 0.5);
+      found = over(found, color('#6f6149'), (1 - step(0.004, 0.016, crack)) * step(0.5, 1.2, y));
+    }
     found = over(found, color('#0c0a0a'), nearPair(at, frame, 'eye_centre', [0.36, 0.44], { shape: [1.08, 0.94] }));
     const nose = frame.mark('nose_tip');
     if (nose) {
@@ -173,7 +178,7 @@ const makeUp =
     found = over(found, color(cheeks), 0.45 * strength * cheek);
     found = over(found, color(lids), 0.75 * strength * lid);
     found = over(found, color(outer), 0.8 * strength * wing);
-    if (shine) found = over(found, color(shine), lid * step(0.78, 0.92, noise(x * 55, y * 55, z * 55)));
+    if (shine && lid > 0) found = over(found, color(shine), lid * step(0.78, 0.92, noise(x * 55, y * 55, z * 55)));
     return over(found, color(lips), 0.92 * onLips(at, frame));
   };
 

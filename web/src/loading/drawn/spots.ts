@@ -28,6 +28,8 @@ export interface Frame {
   unit: number;
   /** A landmark in the frame; undefined if there is none. */
   mark(name: string): Point | undefined;
+  /** The landmarks of a name, on the left and on the right. */
+  pair(name: string): readonly [left: Point | undefined, right: Point | undefined];
 }
 
 export function frameOf({ positions, landmarks }: Canvas): Frame {
@@ -47,7 +49,14 @@ export function frameOf({ positions, landmarks }: Canvas): Frame {
     : Math.max(...box.map(({ half }) => half));
   const framed = (p: readonly number[]): Point => [0, 1, 2].map((k) => (p[k]! - origin[k]!) / unit) as unknown as Point;
   const marks = new Map(Object.entries(landmarks).map(([name, at]) => [name, framed(at)]));
-  return { isFace: eyes !== undefined, origin, unit, mark: (name) => marks.get(name) };
+  // Made once: a name that is put together for each texel takes longer than all else.
+  const pairs = new Map<string, ReturnType<Frame['pair']>>();
+  const pair: Frame['pair'] = (name) => {
+    const known = pairs.get(name) ?? ([marks.get(`${name}_left`), marks.get(`${name}_right`)] as const);
+    pairs.set(name, known);
+    return known;
+  };
+  return { isFace: eyes !== undefined, origin, unit, mark: (name) => marks.get(name), pair };
 }
 
 /** The vertices of a cage, in a frame. */
@@ -97,7 +106,7 @@ export const pointIn = ([a, b, c]: readonly [Point, Point, Point], s: number, t:
 const kGutter = 2; // texels
 
 /**
- * Calls a function for each texel of a square texture that a cage covers, and those around it.
+ * Calls a function for each texel of a square texture that a cage covers, and those around it. The spot is another one after the call.
  * @param size  Texels per side.
  */
 export function eachSpot(canvas: Canvas, frame: Frame, size: number, call: (texel: number, spot: Spot) => void): void {
@@ -110,11 +119,14 @@ export function eachSpot(canvas: Canvas, frame: Frame, size: number, call: (texe
     for (let i = 0; i < indices.length; i += 3) {
       const [u, v, w] = [indices[i]!, indices[i + 1]!, indices[i + 2]!];
       const corners = [points[u]!, points[v]!, points[w]!] as const;
-      const normal = normalOf(...corners);
+      const at: [number, number, number] = [0, 0, 0];
+      const spot = { at, normal: normalOf(...corners) };
+      const [a, b, c] = corners;
       eachPixel([place(u), place(v), place(w)], size, margin, (texel, s, t) => {
         if (done[texel]) return;
         done[texel] = 1;
-        call(texel, { at: pointIn(corners, s, t), normal });
+        for (let k = 0 as 0 | 1 | 2; k < 3; ++k) at[k] = a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k]);
+        call(texel, spot);
       });
     }
 }

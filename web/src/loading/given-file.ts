@@ -1,0 +1,35 @@
+// What the page needs for files that are not its own: it loads when there is one.
+import { checkGltf, fileKind } from 'cagecast/gltf';
+import { askWorker } from '../platform/ask-worker';
+import { reasonOf } from '../state/wording';
+import { paths } from './file-paths';
+import type { Converted, FormatsRequest } from './formats-thread';
+
+export { damageOf } from './image-damage';
+
+/** Refuses a file that the loader, which trusts it, would take all memory for. @throws Error without the file's name. */
+export function checkCost(bytes: ArrayBuffer, companions: readonly File[]): void {
+  try {
+    checkGltf(new Uint8Array(bytes), { otherBytes: companions.reduce((sum, { size }) => sum + size, 0) });
+  } catch (error) {
+    throw new Error(reasonOf(error), { cause: error });
+  }
+}
+
+/** A model and its bytes; those of the GLB that is made of it, if it has another format. @throws Error without the file's name. */
+export async function readAsGltf(file: File, companions: readonly File[]): Promise<{ file: File; bytes: ArrayBuffer }> {
+  const bytes = await file.arrayBuffer().catch(() => {
+    throw new Error(
+      `the browser cannot read this file (${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB); it may be too large, or deleted`,
+    );
+  });
+  const kind = fileKind(new Uint8Array(bytes));
+  if (!kind) return { file, bytes };
+  if (!kind.format) throw new Error(`this is ${kind.name}; ${kind.advice}`);
+  const worker = new Worker(new URL('./formats-thread.ts', import.meta.url), { type: 'module' });
+  const withPath = (one: File) => ({ file: one, path: paths.get(one) });
+  const request: FormatsRequest = { model: withPath(file), companions: companions.map(withPath) };
+  const { glb } = await askWorker<Converted>(worker, request);
+  const made = new File([glb], `${file.name.replace(/\.[^.]*$/, '')}.glb`);
+  return { file: made, bytes: await made.arrayBuffer() };
+}
