@@ -151,7 +151,8 @@ export async function settled(page: Page): Promise<string> {
       const shown = document.querySelector('[data-testid=status]')?.textContent;
       // What the first picture does without is added when somebody begins to use the page.
       if (!('complete' in document.documentElement.dataset)) dispatchEvent(new Event('pointermove'));
-      return 'complete' in document.documentElement.dataset && ['ready', 'error'].find((status) => status === shown);
+      if (!('complete' in document.documentElement.dataset)) return undefined;
+      return ['ready', 'error'].find((status) => status === shown);
     },
     undefined,
     { timeout: kPatience },

@@ -125,6 +125,10 @@ export class FakeLoader implements Loader {
     return modelOf(file, new Group().add(meshOf({ ...mesh, uvs })), others);
   }
 
+  loadOwn(file: File): Promise<Model> {
+    return this.load(file);
+  }
+
   dispose({ name }: Model): void {
     this.disposed.push(name);
   }

@@ -8,7 +8,7 @@ import { fetchFile } from './samples';
 /** A sample as an avatar. */
 export function sampleEntry(sample: Sample, loader: Loader): Entry {
   const model = async (address: string): Promise<Model> => ({
-    ...(await loader.load(await fetchFile(address))),
+    ...(await loader.loadOwn(await fetchFile(address))),
     sample,
   });
   return { name: sample.title, sample, target: () => model(sample.target), cage: () => model(sample.cage) };

@@ -12,20 +12,20 @@ import { readGltfHead } from './gltf-file';
  * Reads a GLB or glTF model, Draco, meshopt, KTX2 and quantised data included; a model of another format as the GLB that is made of it.
  * @param given      The model.
  * @param renderer   Undefined without WebGL.
- * @param others     Files a model may refer to (a .bin, an .mtl, images), found by name; undefined for a GLB of the page's own, which
- *                   is trusted.
+ * @param companions Files a model may refer to (a .bin, an .mtl, images), found by name.
+ * @param isOwn      Whether it is a GLB of the page's own, which is trusted.
  * @throws Error with a message that begins with the file's name.
  */
 export async function loadModel(
   given: File,
   renderer: WebGLRenderer | undefined,
-  others?: readonly File[],
+  companions: readonly File[] = [],
+  isOwn = false,
 ): Promise<Model> {
   const urls = new Map<string, string>();
   try {
     // The page begins without what judges the files of others.
-    const judge = others && (await import('./given-file'));
-    const companions = others ?? [];
+    const judge = isOwn ? undefined : await import('./given-file');
     const { file, bytes } = judge
       ? await judge.readAsGltf(given, companions)
       : { file: given, bytes: await given.arrayBuffer() };
@@ -78,6 +78,7 @@ export function disposeModel({ cageMesh }: Model): void {
 /** The page's own loader. @param renderer Undefined without WebGL. */
 export const loaderFor = (renderer: WebGLRenderer | undefined): Loader => ({
   load: (file, companions) => loadModel(file, renderer, companions),
+  loadOwn: (file) => loadModel(file, renderer, [], true),
   dispose: disposeModel,
 });
 

@@ -96,7 +96,7 @@ export class Opener implements Samples {
     this.#select.value = name;
     this.#warnings = [];
     const model = async (address: string): Promise<Model> => ({
-      ...(await this.#loader.load(await fetchFile(address))),
+      ...(await this.#loader.loadOwn(await fetchFile(address))),
       sample,
     });
     const [target, cage] = [model(sample.target), model(sample.cage)];

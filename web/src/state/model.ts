@@ -88,11 +88,12 @@ export const originOf = ({ scene: { position } }: Model): [number, number, numbe
 /** Reads models. The page's own is `loadModel`; tests hand in others. */
 export interface Loader {
   /**
-   * @param companions Files a .gltf may refer to (its .bin, its images), found by name; undefined for a file of the page's own, which
-   *                   is trusted.
+   * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
    * @throws Error with a message that begins with the file's name.
    */
   load(file: File, companions?: readonly File[]): Promise<Model>;
+  /** Loads a GLB that comes with the page, and is trusted. */
+  loadOwn(file: File): Promise<Model>;
   /** Frees the GPU memory of a model. */
   dispose(model: Model): void;
 }
