@@ -42,7 +42,7 @@ test('a model that is dropped is painted all over, and the page says what stays 
   await menu.getByRole('radio', { name: 'Keep bare' }).check({ force: true });
   await page
     .getByTestId('part-menu-text')
-    .filter({ hasText: /^Not painted: you excluded/ })
+    .filter({ hasText: /^Not painted: you chose to keep .* bare/ })
     .waitFor();
   await page.keyboard.press('Escape');
   assert.ok(difference(before, await look(page, area)) > 0.02, 'the part is bare');

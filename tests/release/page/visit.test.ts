@@ -236,7 +236,7 @@ test('while one paints, colour, size, undo and redo are on the stage; a part tha
   const { x, width } = (await menu.boundingBox())!;
   assert.ok(x >= 0 && x + width <= 390);
   assert.deepEqual(await faults(page), []);
-  await menu.getByRole('radio', { name: 'Exclude' }).check({ force: true });
+  await menu.getByRole('radio', { name: 'Keep bare' }).check({ force: true });
   assert.match((await menu.locator('#part-menu-text').textContent())!, /^0 of .* the whole part is not painted/);
   assert.deepEqual(
     (await shownParts(page)).filter(({ lock }) => lock !== 'auto').map((part) => [part.name, part.lock]),

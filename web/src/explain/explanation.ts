@@ -274,7 +274,7 @@ function brief(
       if (shown.projection.visibility[vertex] === Visibility.Beyond) return kBeyond;
       return outside > 0 ? 'it lies outside the cage' : 'the cage has a hole over it';
     default: {
-      if (locks[part.segment] === 'exclude') return `you excluded ${part.name}`;
+      if (locks[part.segment] === 'exclude') return `you chose to keep ${part.name} bare`;
       const { culledBy, group } = classification.segmentStats[part.segment]!;
       if (culledBy === 'lock') {
         const isWorn = shown.target.mesh.accessories.includes(group);

@@ -172,7 +172,7 @@ export class FitPanel {
 
   #lockButton(segments: number[], lock: Lock): HTMLButtonElement {
     const them = segments.length === 1 ? 'it' : `all ${segments.length}`;
-    const title = lock === 'keep' ? `Keep ${them}` : `Exclude ${them}`;
+    const title = lock === 'keep' ? `Keep ${them}` : `Keep ${them} bare`;
     return buttonFor({ title, run: () => this.#session.lock(segments, lock) });
   }
 

@@ -131,6 +131,6 @@ export function paintedPoints({ projection }: Shown, zones: Uint8Array, segment:
   ].filter(Boolean);
   const bare = reasons.length > 0 ? ` The rest stays bare: ${reasons.join(', ')}.` : '';
   const stretched = uncovered > 0 ? ', stretched where the cage has a hole' : '';
-  const anyway = bare && lock === 'keep' ? ` “Paint it” paints it too${stretched}.` : '';
+  const anyway = bare && lock === 'keep' ? ` “Paint anyway” paints it too${stretched}.` : '';
   return `${painted.toLocaleString('en')} of ${all.toLocaleString('en')} points are painted.${bare}${anyway}`;
 }

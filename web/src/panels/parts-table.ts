@@ -17,7 +17,7 @@ const kLocks: Record<Choice, string> = {
   auto: 'auto',
   keep: 'keep',
   always: 'paint anyway',
-  exclude: 'exclude',
+  exclude: 'keep bare',
   out: 'leave out',
 };
 

@@ -3,15 +3,15 @@ import type { Shown } from '../state/scene';
 
 /** What parts of avatars, animals and cars are, by words in the names of their meshes and materials. */
 const kKinds: readonly (readonly [name: string, words: RegExp])[] = [
-  ['brows', /brow/],
-  ['lashes', /lash/],
-  ['eyes', /eye(?!lid|_?wear|_?glass)|iris|cornea|sclera|pupil/],
+  ['eyes', /eye(?! ?(brow|lash|lid|wear|glass))|iris|cornea|sclera|pupil/],
   ['teeth', /teeth|tooth|denture|gums?\b/],
   ['tongue', /tongue/],
   ['mouth', /mouth|oral/],
   ['beard', /beard|moustache|mustache/],
   ['hair', /hair|\bfur\b|mane/],
-  ['glasses', /glasses|eye_?wear|goggles/],
+  ['brows', /brow/],
+  ['lashes', /lash/],
+  ['glasses', /glasses|eye ?wear|goggles/],
   ['hat', /\bhat\b|headwear|helmet|\bcap\b/],
   ['shoes', /shoe|boot|footwear|sneaker/],
   ['clothes', /outfit|cloth|shirt|pants|trouser|jeans|\btops?\b|\bbottoms?\b|dress|skirt|jacket|onepiece|uniform/],
