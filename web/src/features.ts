@@ -5,6 +5,7 @@ import { FilmStrip } from './explain/film-strip';
 import { ExportPanel } from './export/export-panel';
 import { exportedPaint } from './export/linked-layers';
 import { followLinks } from './export/links';
+import { Strokes } from './export/strokes';
 import type { Opener } from './loading/opener';
 import { beginProjects } from './panels/begin-projects';
 import { offerGuide } from './panels/offer-guide';
@@ -51,7 +52,13 @@ export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
   const live = new Live(session, viewer);
   recordControls(session, live, history);
   const saved = stage && setUpSaving(stage.viewer, stage.composite);
-  const { png, layers } = exportedPaint(session, stack, edits, opener, saved);
+  const { png, layers } = exportedPaint(
+    session,
+    stack,
+    edits,
+    { opener, strokes: new Strokes(viewer?.renderer) },
+    saved,
+  );
   const wardrobe =
     stage &&
     setUpWardrobe({
@@ -61,7 +68,7 @@ export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
   if (wardrobe) opener.takesDrop = (files) => wardrobe.take(files);
   const linked = { session, layers, live, controls: viewer?.controls };
   const exportPanel = new ExportPanel(linked, png);
-  stack.on('change', () => exportPanel.refresh());
+  for (const event of ['change', 'pictures'] as const) stack.on(event, () => exportPanel.refresh());
   const restoreWork = beginProjects({ ...page, painter, live, viewer, wardrobe });
   keepOffline(session);
   offerGuide(session);

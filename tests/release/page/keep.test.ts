@@ -150,9 +150,7 @@ test('where there is no room, that is said once, and leaving asks', async () => 
   assert.equal(await warns(page), false, 'it is in a file');
 
   // A link has none of it, and says so before it is copied.
-  await page
-    .locator('#link-hint', { hasText: 'leaves out Painting 1 and Painting 2: your own paints stay on this device' })
-    .waitFor();
+  await page.locator('#link-hint', { hasText: 'leaves out Painting 1 and Painting 2: a link has no images' }).waitFor();
   assert.match((await page.getByTestId('share-link').textContent())!, /without your layers/);
 });
 

@@ -5,7 +5,7 @@ import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
 import { head, middleOf, ready } from '../../support/cages';
-import { difference, look, modelArea } from '../../support/picture';
+import { difference, look, modelArea, watch } from '../../support/picture';
 import { drop, kPlay, Site, settled } from '../../support/site';
 
 let site: Site;
@@ -99,6 +99,35 @@ test('the film strip leads through the method on the model, is a link, and works
   assert.deepEqual(await faults(page), []);
   await page.locator('#method > summary').click();
   assert.equal(await mode(page), 'result', 'closing it ends it');
+  assert.deepEqual(complaints, []);
+});
+
+test('a link carries strokes; opened, they are where they were, and are carried on; damaged ones are left out', async () => {
+  const { page } = await site.visit(kDesk, kPlay, '#sample=human&view=result');
+  const area = await modelArea(page);
+  const bare = await look(page, area);
+  await page.getByRole('radio', { name: 'Brush' }).check({ force: true });
+  const { x, y } = await middleOf(page);
+  await page.mouse.move(x - 30, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 30, y + 20, { steps: 5 });
+  await page.mouse.up();
+  const hint = page.locator('#link-hint', { hasText: 'your strokes and stickers' });
+  await page.waitForFunction(() => document.querySelector<HTMLAnchorElement>('#share-link')!.hash.includes('strokes'));
+  await hint.waitFor();
+  await page.getByRole('radio', { name: 'Turn' }).check({ force: true });
+  const painted = await look(page, area);
+  assert.ok(difference(bare, painted) > 0.005, 'a stroke');
+  const { hash } = new URL((await page.getByTestId('share-link').getAttribute('href'))!, site.url);
+  assert.ok(hash.length < 14_000, `${hash.length} characters`);
+
+  const { page: linked, complaints } = await site.visit(kDesk, kPlay, hash);
+  const same = await modelArea(linked);
+  await watch(linked, same, (picture) => difference(picture, painted) < 0.01);
+  await linked.getByTestId('share-link').focus();
+  assert.equal(new URL((await linked.getByTestId('share-link').getAttribute('href'))!, site.url).hash, hash);
+  const { page: damaged } = await site.visit(kDesk, kPlay, hash.replace(/strokes(:|%3A)UklG/, 'strokes$1AAAA'));
+  await watch(damaged, same, (picture) => difference(picture, bare) < 0.01);
   assert.deepEqual(complaints, []);
 });
 

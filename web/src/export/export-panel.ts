@@ -77,8 +77,8 @@ export class ExportPanel {
     element('link-hint', HTMLElement).textContent = !link
       ? 'Links work for samples only, because your own files stay on this device. A project file has them.'
       : omitted.length > 0
-        ? `The link leaves out ${listOf(omitted)}: your own paints stay on this device. A project file has them.`
-        : 'The link opens this sample with its paints, rules, view and camera.';
+        ? `The link leaves out ${listOf(omitted)}: a link has no images of your own, and few strokes. A project file has them.`
+        : 'The link opens this sample with its paints, your strokes and stickers, the view and the camera.';
   }
 
   get #stem(): string {

@@ -7,7 +7,7 @@ const kChoices = ['keep', 'exclude', 'always', 'out'] as const;
 
 /** A layer in a link. */
 export interface LinkedLayer {
-  /** A paint that comes with the page: its path in the folder of samples, or `checker`. */
+  /** A paint that comes with the page: its path in the folder of samples, its name, or `checker`; or strokes as a text. */
   paint: string;
   /** 0..1 */
   opacity: number;

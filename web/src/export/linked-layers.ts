@@ -7,37 +7,40 @@ import { kChecker } from '../state/sample';
 import type { Session } from '../state/session';
 import type { LinkedLayer } from './link';
 import type { LinkedLayers } from './links';
+import { Strokes } from './strokes';
 
 /**
  * The paint to export: the layers for links, and a PNG.
- * @param png Encodes the composite of the layers; by default, without WebGL, the uppermost visible paint.
+ * @param strokes Writes what was painted.
+ * @param png     Encodes the composite of the layers; by default, without WebGL, the uppermost visible paint.
  */
 export function exportedPaint(
   session: Session,
   stack: LayerStack,
   edits: Edits,
-  opener: Opener,
+  { opener, strokes }: { opener: Opener; strokes: Strokes },
   png = () => latestPng(stack),
 ): { png(): Promise<Blob>; layers: LinkedLayers } {
   /** The name of a layer's paint in links; undefined for the user's own. */
   const nameOf = ({ sheet }: Layer): string | undefined => {
     if (sheet === session.checker) return kChecker;
     const name = (sheet as Paint).drawn ?? paintName(sheet.picture ?? '');
-    return opener.has(name) ? name : undefined;
+    return opener.has(name) ? name : (sheet as Paint).linked;
   };
+  const textOf = (layer: Layer): string | undefined => nameOf(layer) ?? strokes.write(layer);
   let requests = 0;
   return {
     png,
     layers: {
       get layers() {
         return stack.layers.flatMap((layer) => {
-          const paint = nameOf(layer);
+          const paint = textOf(layer);
           const { opacity, tint, blend, visible } = layer;
           return paint ? [{ paint, opacity, tint, blend, visible }] : [];
         });
       },
       get omitted() {
-        return stack.layers.flatMap((layer) => (nameOf(layer) ? [] : layer.name));
+        return stack.layers.flatMap((layer) => (textOf(layer) ? [] : layer.name));
       },
       restore(layers) {
         const before = session.shown?.target;
@@ -48,13 +51,17 @@ export function exportedPaint(
           // The sample failed or was cancelled, or another link was followed.
           const target = session.shown?.target;
           if (state !== 'ready' || target === before || request !== requests) return;
-          const known = layers.filter(({ paint }) => opener.has(paint));
+          const known = layers.filter(({ paint }) => opener.has(paint) || Strokes.has(paint));
           // The lowest is the paint the sample opened with, unless that layer was removed.
           const isBase = stack.base !== undefined && nameOf(stack.base) === known[0]?.paint;
           const rest = isBase ? known.slice(1) : known;
           let paints: (Paint | undefined)[];
           try {
-            paints = await Promise.all(rest.map(({ paint }) => opener.paint(paint)));
+            paints = await Promise.all(
+              rest.map(({ paint }) =>
+                Strokes.has(paint) ? Strokes.read(paint).catch(() => undefined) : opener.paint(paint),
+              ),
+            );
           } catch (error) {
             return session.fail(error);
           }

@@ -14,6 +14,8 @@ export interface Paint {
   sample?: Sample;
   /** Its name among the paints that are drawn for any cage; undefined for all others. */
   drawn?: string;
+  /** What links have of strokes that came with a link. */
+  linked?: string;
 }
 
 /** The title of a paint in lists. */
