@@ -11,7 +11,16 @@ const state: LinkState = {
   ],
   rules: { preset: 'paper', threshold: 0.35, weldTolerance: 1e-6, borders: 'cut' },
   locks: { 0: 'exclude', 7: 'keep', 8: 'keep', 12: 'always', 13: 'out' },
-  view: { mode: 'zones', split: 0.5, film: 0, paint: false, cage: true, light: 'evening', background: '#204060' },
+  view: {
+    mode: 'zones',
+    split: 0.5,
+    film: 0,
+    paint: false,
+    cage: true,
+    seeThrough: true,
+    light: 'evening',
+    background: '#204060',
+  },
   shape: { deform: 'twist', amount: -0.5, cage: false, morphs: new Map([['smile, wide', 0.75]]) },
   angle: { turn: -4, tilt: 74, near: 1.331 },
 };

@@ -54,6 +54,7 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
   if (view.mode === 'film') words.set('film', view.film.toFixed(2));
   if (!view.paint) words.set('paint', 'off');
   if (view.cage) words.set('cage', 'on');
+  if (view.seeThrough) words.set('through', 'on');
   if (view.light !== 'studio') words.set('light', view.light);
   if (view.background) words.set('background', view.background.replace('#', ''));
   if (shape && shape.amount !== 0)
@@ -90,6 +91,7 @@ export function readLink(fragment: string): LinkState | undefined {
       film: share(words.get('film'), 0, kLastFrame),
       paint: words.get('paint') !== 'off',
       cage: words.get('cage') === 'on',
+      seeThrough: words.get('through') === 'on',
       light: kLightNames.find((name) => name === words.get('light')) ?? 'studio',
       background: readColor(words.get('background') ?? '') ?? '',
     },

@@ -38,6 +38,7 @@ export class PartMenu {
       event.stopPropagation();
       this.#close();
     });
+    canvas.addEventListener('dblclick', () => this.#close()); // its first click has opened it
     element('part-menu-close', HTMLButtonElement).addEventListener('click', () => this.#close());
     for (const input of this.#box.querySelectorAll('input'))
       input.addEventListener('change', () => {

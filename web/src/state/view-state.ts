@@ -30,6 +30,8 @@ export interface View {
   film: number;
   paint: boolean;
   cage: boolean;
+  /** Whether `zones` shows what lies behind the surface, too. */
+  seeThrough: boolean;
   light: LightName;
   /** What is behind the model, as #rrggbb; empty for the colour of the page. */
   background: string;
@@ -41,6 +43,7 @@ export const kFirstView: View = {
   film: 0,
   paint: true,
   cage: false,
+  seeThrough: false,
   light: 'studio',
   background: '',
 };

@@ -14,6 +14,7 @@ const kSwaySeconds = 16; // its period
 const kLongestFrame = 0.25; // seconds: limits the rotation per frame, so that a slow frame causes no jump
 const kKeyStep = MathUtils.degToRad(6);
 const kKeyNearer = 1 / 1.1; // of the distance
+const kCloser = 0.5; // of the distance, after a double click
 const kKeyMove = 40; // pixels
 const kRegionMargin = 1.2; // of the distance from which a region is looked at
 const kMiddle = new Vector3(); // of the model
@@ -91,6 +92,13 @@ export class CameraControls {
     const { center, radius } = new Box3().setFromPoints([...points]).getBoundingSphere(new Sphere());
     const distance = Math.max(kRegionMargin * radius * this.#fullDistance, this.#controls.minDistance);
     this.#look({ phi: kLevel, theta: front, radius: Math.min(distance, this.#far) }, center);
+  }
+
+  /** Looks at a point of the studio from nearer, and from the same side. */
+  lookCloser(point: Vector3): void {
+    this.#markMoved();
+    const { radius, phi, theta } = this.#orbit;
+    this.#look({ radius: Math.max(radius * kCloser, this.#controls.minDistance), phi, theta }, point);
   }
 
   /** The camera angle chosen by the user; undefined by default. */

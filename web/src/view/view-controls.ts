@@ -8,7 +8,7 @@ import { setUpDivider } from './divider';
 export function setUpViewControls(session: Session): void {
   const strip = element('view-mode', HTMLElement);
   const modes = [...strip.querySelectorAll('input')];
-  const switches = (['paint', 'cage'] as const).map((name) => ({
+  const switches = (['paint', 'cage', 'seeThrough'] as const).map((name) => ({
     name,
     input: element(`show-${name}`, HTMLInputElement),
   }));
@@ -35,6 +35,7 @@ export function setUpViewControls(session: Session): void {
     }
     for (const { name, input } of switches) input.checked = view[name];
     switches[0]!.input.disabled = !showsPaint(view.mode);
+    switches[2]!.input.parentElement!.hidden = view.mode !== 'zones';
     divider.show(view.mode === 'compare', view.split);
   });
   // Browsers keep the state of fields on reload.

@@ -49,6 +49,10 @@ export class Viewer {
     );
     this.controls = new CameraControls(canvas, this.stage, () => this.redraw());
     this.screen = new ScreenSpace(canvas, this.controls, this.stage);
+    canvas.addEventListener('dblclick', ({ clientX, clientY }) => {
+      const spot = this.pointing.tool ? undefined : this.screen.pick(clientX, clientY);
+      if (spot) this.controls.lookCloser(spot.seen);
+    });
     canvas.addEventListener('webglcontextlost', () =>
       showError(
         'The browser has reset the graphics. The picture comes back by itself; if not, save the project and reload the page.',

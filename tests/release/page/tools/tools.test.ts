@@ -236,3 +236,34 @@ test('where no paint is seen, nobody paints: the pointer turns the model again, 
   assert.deepEqual(await names(page), before, 'nothing was painted');
   assert.deepEqual(complaints, []);
 });
+
+test('a sticker is duplicated beside itself, and copied to the other side, where it can be read, too', async () => {
+  const { page, complaints } = await site.visit(
+    { viewport: { width: 1440, height: 900 }, deviceScaleFactor: 0.5 },
+    undefined,
+    '#sample=human&view=result',
+  );
+  const area = await modelArea(page);
+  await page.getByRole('radio', { name: 'Sticker' }).check({ force: true });
+  await set(page, { 'sticker-text': 'F', 'brush-size': '40', 'brush-color': kGreenPaint });
+  const place = at(area, 0.4, 0.72);
+  await page.mouse.click(place.x, place.y);
+  await away(page);
+  const one = await green(page, area);
+  const bar = (await page.locator('.sticker-bar').boundingBox())!;
+  assert.ok(bar.y > place.y && bar.y < place.y + 200, `the bar, at ${bar.y}, is below it, at ${place.y}`);
+  await page.getByRole('button', { name: 'Other side' }).click();
+  await away(page);
+  const two = await green(page, area);
+  assert.ok(two.share > 1.4 * one.share, `${two.share} after ${one.share}`);
+  assert.ok(two.x > one.x + 0.03, 'on the other side');
+  assert.equal(await page.getByTestId('sticker-flip').isChecked(), false, 'not as in a mirror');
+  await page.getByRole('button', { name: 'Duplicate' }).click();
+  await away(page);
+  assert.ok((await green(page, area)).share > 1.2 * two.share);
+  assert.deepEqual(await names(page), ['Stickers 1', 'Painted skull'].slice(0, (await names(page)).length));
+  for (const key of ['z', 'z']) await page.keyboard.press(`Control+${key}`);
+  await away(page);
+  assert.ok(Math.abs((await green(page, area)).share / one.share - 1) < 0.1, 'each is a step');
+  assert.deepEqual(complaints, []);
+});

@@ -50,7 +50,7 @@ export class StickerPainter {
 
   /** A new sticker. */
   make(sticker: Omit<PlacedSticker, 'id'>): PlacedSticker {
-    return { id: ++this.#lastId, ...sticker };
+    return { ...sticker, id: ++this.#lastId };
   }
 
   /** The uppermost sticker at a point of the cage. */

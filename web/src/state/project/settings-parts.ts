@@ -74,7 +74,7 @@ export function settingsParts(session: Session, live: Shaped, controls: Camera |
       isWork: false,
       save: () => ({ ...session.view, angle: controls?.angle }),
       read(saved) {
-        const { mode, split, film, paint, cage, light, background, angle } = objectOf(saved, 'view');
+        const { mode, split, film, paint, cage, seeThrough, light, background, angle } = objectOf(saved, 'view');
         const { turn, tilt, near } = (angle ?? {}) as Record<string, unknown>;
         return {
           shown() {
@@ -84,6 +84,7 @@ export function settingsParts(session: Session, live: Shaped, controls: Camera |
               film: numberOf(film, 0, kLastFrame, 0),
               paint: paint !== false,
               cage: cage === true,
+              seeThrough: seeThrough === true,
               light: oneOf(light, kLightNames),
               background: /^#[0-9a-f]{6}$/i.test(textOf(background, '')) ? (background as string) : '',
             });

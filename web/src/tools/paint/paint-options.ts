@@ -5,6 +5,8 @@ import { element } from '../../platform/page';
 export type Kind = 'brush' | 'eraser' | 'sticker' | 'fill';
 
 // The range of the size slider, as shares of the diagonal of the cage.
+/** A brush with a diameter below this share of the diagonal of the cage is a few texels wide on a painting of the lesser size. */
+const kThin = 0.012;
 const kMinSize = 0.004;
 const kMaxSize = 0.4;
 const kSizeStep = 4; // of the slider, for a key
@@ -34,12 +36,12 @@ export class PaintOptions extends Emitter<{
   readonly #hardness = element('brush-hardness', HTMLInputElement);
   readonly #opacity = element('brush-opacity', HTMLInputElement);
   readonly #mirror = element('brush-mirror', HTMLInputElement);
-  readonly #fine = element('painting-fine', HTMLInputElement);
   readonly #text = element('sticker-text', HTMLInputElement);
   readonly #turn = element('sticker-turn', HTMLInputElement);
   readonly #outline = element('sticker-outline', HTMLInputElement);
   readonly #flip = element('sticker-flip', HTMLInputElement);
   #kind: Kind | undefined;
+  #texels: PaintingSize = paintingSizes[0];
   /** The size of what is not chosen: a legible sticker is far larger than a brush. */
   #otherSize = '85';
   /** Whether fields change that the user did not touch. */
@@ -91,13 +93,13 @@ export class PaintOptions extends Emitter<{
     return this.#mirror.checked;
   }
 
-  /** Texture size of the painting, in texels per side. */
+  /** Texture size of the painting, in texels per side: for a thin brush, the greater one. */
   get texels(): PaintingSize {
-    return paintingSizes[this.#fine.checked ? 1 : 0];
+    return this.#kind === 'brush' && this.size < kThin ? paintingSizes[1] : this.#texels;
   }
 
   set texels(texels: PaintingSize) {
-    this.#fine.checked = texels === paintingSizes[1];
+    this.#texels = texels;
   }
 
   get text(): string {

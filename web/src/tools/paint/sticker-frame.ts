@@ -8,11 +8,17 @@ interface Actions {
   turn(angle: number, scale: number): void;
   end(): void;
   mirror(): void;
+  duplicate(): void;
+  /** Copies it to the other side of the cage. */
+  across(): void;
   remove(): void;
   done(): void;
 }
 
+const kGap = 12; // pixels between the sticker and its bar
 const kBar = `<button type="button" name="mirror">Mirror</button>
+<button type="button" name="duplicate">Duplicate</button>
+<button type="button" name="across">Other side</button>
 <button type="button" name="remove">Remove</button>
 <button type="button" name="done">Done</button>`;
 
@@ -39,7 +45,7 @@ export class StickerFrame {
     this.#bar.ariaLabel = 'Chosen sticker';
     this.#bar.innerHTML = kBar;
     for (const button of this.#bar.querySelectorAll('button'))
-      button.addEventListener('click', actions[button.name as 'mirror' | 'remove' | 'done']);
+      button.addEventListener('click', actions[button.name as 'mirror' | 'duplicate' | 'across' | 'remove' | 'done']);
     element('stage', HTMLElement).append(this.#outline, this.#handle, this.#bar);
     this.#listen();
     this.show(undefined);
@@ -69,6 +75,17 @@ export class StickerFrame {
     this.#center = center!;
     const corner = corners[2]!;
     this.#handle.style.translate = `${corner.x}px ${corner.y}px`;
+    this.#placeBar(Math.max(...corners.map(({ y }) => y)));
+  }
+
+  /** Puts the bar below the sticker, between the controls of the stage. */
+  #placeBar(below: number): void {
+    const { width, height, top, bottom, side } = this.#viewer.controls.free;
+    const { offsetWidth, offsetHeight, style } = this.#bar;
+    const within = (place: number, least: number, most: number): string =>
+      `${Math.max(least, Math.min(place, most))}px`;
+    style.left = within(this.#center.x - offsetWidth / 2, side, width - side - offsetWidth);
+    style.top = within(below + kGap, top + kGap, height - bottom - offsetHeight - kGap);
   }
 
   #listen(): void {

@@ -1,4 +1,6 @@
 import {
+  type CageTexels,
+  type StickerFrame as Frame,
   type PlacedSticker,
   paintingSizes,
   StickerPainter,
@@ -6,6 +8,7 @@ import {
   type StickersSheet,
   type SurfacePoint,
 } from 'cagecast/three/paint';
+import { Vector3 } from 'three';
 import { announce } from '../../platform/page';
 import type { Spot } from '../../view/pick';
 import type { Viewer } from '../../view/viewer';
@@ -61,6 +64,18 @@ export class StickerTool implements PaintTool {
       },
       end: () => this.#end(),
       mirror: () => this.#do('mirroring a sticker', ({ mirrored }) => ({ mirrored: !mirrored })),
+      duplicate: () =>
+        this.#copy('duplicating a sticker', ({ center, right }) => ({
+          point: center.point.clone().addScaledVector(right, kBeside),
+          normal: center.normal,
+        })),
+      // Not mirrored itself: letters stay readable.
+      across: () =>
+        this.#copy(
+          'a sticker on the other side',
+          ({ center }, texels) => texels.mirrored(center),
+          ({ up, angle }) => ({ up: new Vector3(-up.x, up.y, up.z), angle: -angle }),
+        ),
       remove: () => this.remove(),
       done: () => this.#choose(undefined),
     });
@@ -265,6 +280,28 @@ export class StickerTool implements PaintTool {
     this.#end();
   }
 
+  /**
+   * Places another one like the chosen sticker, as an undo step.
+   * @param place   Where, near the surface of the cage.
+   * @param change  What is different.
+   */
+  #copy(
+    name: string,
+    place: (frame: Frame, texels: CageTexels) => SurfacePoint,
+    change: (sticker: PlacedSticker) => Partial<PlacedSticker> = () => ({}),
+  ): void {
+    const { sheet, sticker } = this.#chosen ?? {};
+    const texels = sheet && this.#painter.surfaceOf(sheet.size)?.cageTexels;
+    const frame = sticker && this.#stickers.frameOf(sticker);
+    if (!texels || !frame) return;
+    const { point, normal } = place(frame, texels);
+    const at = texels.nearest(point, normal)?.uv;
+    if (!at) return;
+    const copy = this.#stickers.make({ ...sticker, at, ...change(sticker) });
+    this.#stickers.place(sheet, [...sheet.stickers, copy], name);
+    this.#choose({ sheet, sticker: copy });
+  }
+
   /** Makes the chosen sticker what an option says. @param ended  Whether the user has let go of it. */
   #restyle(field: 'size' | 'angle' | 'opacity' | 'mirrored' | 'picture' | undefined, ended: boolean): void {
     if (!this.#chosen) return;
@@ -281,5 +318,7 @@ export class StickerTool implements PaintTool {
 /** The same for equal texts, which are other objects each time they are written. */
 const keyOf = (value: unknown): unknown =>
   typeof value !== 'object' || value === null ? value : 'image' in value ? value.image : JSON.stringify(value);
+
+const kBeside = 2.2; // halves of its width, from a sticker to its duplicate
 
 const clampSize = (size: number): number => Math.min(1, Math.max(0.004, size));

@@ -1,10 +1,10 @@
 import { type Mode, showsPaint, type View } from '../../state/view-state';
 
 /**
- * What the overlay shows: nothing, the paint everywhere, the filtered paint, the zones, a checker, or colours per triangle
- * corner.
+ * What the overlay shows: nothing, the paint everywhere, the filtered paint, the zones, those with what lies behind the surface, a
+ * checker, or colours per triangle corner.
  */
-export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'checker' | 'colors';
+export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'allZones' | 'checker' | 'colors';
 
 /** What can be highlighted: the parts that the user points to, and what is marked to stay bare. */
 export type Highlighted = 'parts' | 'bare';
@@ -21,12 +21,12 @@ const kLooks: Record<Exclude<Mode, 'compare' | 'film'>, Look> = {
 };
 
 /** The overlays of `film`. */
-const kFrames = ['bare', 'naive', 'zones', 'colors', 'result'] as const;
+const kFrames = ['bare', 'naive', 'allZones', 'colors', 'result'] as const;
 /** The cage is drawn until this place of `film`. */
 const kCageEnds = 2.5;
 
 /** What is to be seen left and right of a place of the view, 0..1, and whether the cage is. */
-export function sidesOf({ mode, split, film, paint, cage }: View): {
+export function sidesOf({ mode, split, film, paint, cage, seeThrough }: View): {
   left: Look;
   right: Look;
   at: number;
@@ -36,7 +36,8 @@ export function sidesOf({ mode, split, film, paint, cage }: View): {
     const first = Math.min(Math.floor(film), kFrames.length - 2);
     return { left: kFrames[first + 1]!, right: kFrames[first]!, at: film - first, cage: film < kCageEnds };
   }
-  const look = (side: keyof typeof kLooks): Look => (paint || !showsPaint(side) ? kLooks[side] : 'bare');
+  const look = (side: keyof typeof kLooks): Look =>
+    side === 'zones' && seeThrough ? 'allZones' : paint || !showsPaint(side) ? kLooks[side] : 'bare';
   return mode === 'compare'
     ? { left: look('naive'), right: look('result'), at: split, cage }
     : { left: look(mode), right: look(mode), at: 1, cage };

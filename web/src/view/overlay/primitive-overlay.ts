@@ -188,6 +188,8 @@ export class PrimitiveOverlay {
       case 'result':
         return [this.#paint];
       case 'zones':
+        return [this.#nothing, ...this.#zoneMaterials, ...this.#hidden.map(() => this.#nothing), this.#clay];
+      case 'allZones':
         return [this.#nothing, ...this.#zoneMaterials, ...this.#hidden, this.#clay];
       case 'checker':
         return kZoneNumbers.map(() => this.#checker);
