@@ -63,7 +63,7 @@ test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit
 
   // By the keyboard, and without the other of the pair; what was not found is asked for.
   await page.locator('#landmark-mirror').uncheck();
-  await page.getByRole('button', { name: 'Side', exact: true }).click();
+  await page.getByRole('button', { name: 'Left', exact: true }).click();
   // At once: what is pressed later is a step of its own.
   await page.locator('[data-landmark=mouth_corner_left]').evaluate((dot: HTMLElement) => {
     dot.focus();
@@ -132,6 +132,8 @@ test('with the keyboard alone: a model is opened, a template fitted, a landmark 
     'it keeps the focus when the fit has followed',
   );
   await tabTo('#stage-share');
+  await page.keyboard.press('Enter');
+  await tabTo('#export-glb');
   const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Enter')]);
   assert.equal(download.suggestedFilename(), 'bust-painted.glb');
   assert.deepEqual(complaints, []);
