@@ -2,6 +2,8 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { likelyTemplate } from '../../../web/src/state/cage-maker';
 
+const box = (size: readonly number[]) => Float32Array.from([3, 3, 3, ...size.map((extent) => 3 + extent)]);
+
 test('the template is chosen by the shape: a figure is flat, a car is low, a head is neither', () => {
   for (const [size, template] of [
     [[1.7, 1.75, 0.35], 'human-body'], // arms stretched out
@@ -12,5 +14,14 @@ test('the template is chosen by the shape: a figure is flat, a car is low, a hea
     [[4.4, 1.4, 1.8], 'car'],
     [[1, 1, 1], 'human-head'],
   ] as const)
-    assert.equal(likelyTemplate(Float32Array.from([3, 3, 3, ...size.map((extent) => 3 + extent)])), template);
+    assert.equal(likelyTemplate(box(size)), template);
+});
+
+test('names tell more than the shape: a figure has bones of arms and legs, a car has wheels', () => {
+  const likely = (bones: string[], parts: string[]) => likelyTemplate(box([1, 1, 1]), { bones, parts });
+  assert.equal(likely(['mixamorig:LeftUpLeg', 'mixamorig:LeftArm'], ['Body']), 'human-body');
+  assert.equal(likely(['J_Bip_L_UpperLeg', 'J_Bip_L_Hand'], []), 'human-body');
+  assert.equal(likely(['Head', 'Neck', 'Jaw'], ['Skin']), 'human-head');
+  assert.equal(likely(['front_leg_l', 'tail'], ['Fur']), 'human-head', 'no arms');
+  assert.equal(likely([], ['body', 'wheel_front_left']), 'car');
 });

@@ -247,7 +247,7 @@ test('while one paints, colour, size, undo and redo are on the stage; a part tha
 
   // By the keyboard, the part at the centre; what is kept says why it stays bare.
   await page.locator('#view').press('Enter');
-  await menu.getByRole('radio', { name: 'Keep' }).check({ force: true });
+  await menu.getByRole('radio', { name: 'Keep', exact: true }).check({ force: true });
   await page.locator('#parts summary').click();
   assert.match((await page.getByTestId('keep-note').textContent())!, /is kept: .* of .* points are painted/);
 });

@@ -1,7 +1,7 @@
 import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
 import { cageModel, withBaseColors } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/paint';
-import { Box3, Vector3 } from 'three';
+import { type Bone, Box3, Vector3 } from 'three';
 import { type Fitting, kMostAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
@@ -73,7 +73,7 @@ export class CageMaker extends Emitter<{
     let shown: { target?: Model; cage?: Model } = {};
     session.on('progress', ({ state }) => void (state !== 'working' && this.#opening?.abort()));
     session.on('transfer', ({ target, cage }) => {
-      if (target !== shown.target) this.emit('template', likelyTemplate(target.mesh.positions));
+      if (target !== shown.target) this.emit('template', likelyTemplate(target.mesh.positions, namesIn(target)));
       shown = { target, cage };
       this.emit('notes', { note: madeOf(cage.files[0]!)?.note ?? '', missing: '' });
       this.emit('fitting', this.isOthers ? undefined : madeOf(cage.files[0]!)?.fitting);
@@ -143,16 +143,23 @@ export class CageMaker extends Emitter<{
       const engine = await this.#workshop.engine();
       const model = await withBaseColors(cageModel(target.loaded), target.loaded);
       const context = { engine, model, options };
-      const fitted = await this.#fit(context, likelyTemplate(target.mesh.positions), {}).catch((error) => {
-        abort.signal.throwIfAborted();
-        if (error.code !== 'badModel') throw error;
-        return undefined;
-      });
-      const isFit = fitted?.fitting && fitted.fitting.guessed.length === 0;
-      const { cage, ...how } = isFit ? fitted : await this.#make(context);
+      const { positions } = target.mesh;
+      // Figures of toys have heads like others, but not bodies.
+      const likely = new Set([likelyTemplate(positions, namesIn(target)), likelyTemplate(positions)]);
+      let fitted: Result | undefined;
+      for (const template of likely)
+        fitted ??= await this.#fit(context, template, {}).then(
+          (result) => (result.fitting!.guessed.length === 0 ? result : undefined),
+          (error) => {
+            abort.signal.throwIfAborted();
+            if (error.code !== 'badModel') throw error;
+            return undefined;
+          },
+        );
+      const { cage, ...how } = fitted ?? (await this.#make(context));
       const file = new File([engine.cageGlb({ ...cage, origin: originOf(target) })], cageNameFrom(target.name));
       noteMade(file, { target: target.files[0]!, ...how, fitting: how.fitting });
-      if (isFit) this.#unasked.add(file);
+      if (fitted) this.#unasked.add(file);
       return await this.#workshop.loader.load(file);
     } catch (error) {
       throw new Error(`${target.name}: ${reasonOf(error)}`, { cause: error });
@@ -297,8 +304,28 @@ export class CageMaker extends Emitter<{
   }
 }
 
-/** The template that a model of this shape likely needs, y being up; the user may choose another. */
-export function likelyTemplate(positions: Float32Array): TemplateName {
+/** Words in names of bones, meshes and materials that tell what a model is; figures have bones of both. */
+const kOfCars = /wheel|windshield|windscreen|bumper|\bty?re|\btire/i;
+const kOfFigures = [/thigh|leg|shin|calf|knee/i, /arm|elbow|hand|shoulder/i];
+
+/** The names in a model: those of its bones, its meshes and their materials. */
+function namesIn({ scene, mesh }: Model): { bones: string[]; parts: string[] } {
+  const bones: string[] = [];
+  scene.traverse((object) => void ((object as Bone).isBone && bones.push(object.name)));
+  const parts = mesh.primitives.flatMap(({ name, mesh }) => [name, ...[mesh.material].flat().map(({ name }) => name)]);
+  return { bones, parts };
+}
+
+/**
+ * The template that a model likely needs; the user may choose another.
+ * @param positions 3 each, y being up: its shape decides if no names do.
+ */
+export function likelyTemplate(
+  positions: Float32Array,
+  { bones, parts }: { bones: readonly string[]; parts: readonly string[] } = { bones: [], parts: [] },
+): TemplateName {
+  if (kOfFigures.every((words) => bones.some((name) => words.test(name)))) return 'human-body';
+  if (parts.some((name) => kOfCars.test(name))) return 'car';
   const { x, y, z } = new Box3().setFromArray(positions).getSize(new Vector3());
   // A figure is flat, whether its arms hang or are stretched out, a car is low; a head is neither.
   if (z < 0.5 * y) return 'human-body';

@@ -1,5 +1,6 @@
 import { Vector3 } from 'three';
 import { askWorker } from '../../platform/ask-worker';
+import { likelyTemplate } from '../../state/cage-maker';
 import type { Model } from '../../state/model';
 import type { Paint } from '../../state/paint';
 import { loadPaint } from '../load-paint';
@@ -23,7 +24,10 @@ export class Drawings {
 
   /** What a cage that has no paint yet is painted with. */
   firstFor(cage: Model): DrawnPaint {
-    const name = 'bumper_front' in landmarksOf(cage) ? 'carbon' : 'tiger';
+    const landmarks = landmarksOf(cage);
+    const isCar = 'bumper_front' in landmarks || likelyTemplate(cage.mesh.positions) === 'car';
+    // Without a face to be drawn for, stripes are but lines.
+    const name = isCar ? 'carbon' : Object.keys(landmarks).length > 0 ? 'tiger' : 'flowers';
     return drawnPaints.find((one) => one.name === name)!;
   }
 
