@@ -1,5 +1,5 @@
-/** What a placeholder stands for may be any text. */
-const kPlaceholder = /\{(\d)\}/;
+/** What {0} stands for may be any text, {n0} a number only. */
+const kPlaceholder = /\{(n?\d)\}/g;
 const kSentences = /(?<=[.!?…])\s+/;
 const kNumber = /^[≥<]?\s?\d[\d,]*(\.\d+)?( ?[%×°])?$/;
 const kKept = 2000; // answers
@@ -15,7 +15,7 @@ interface Pattern {
 }
 
 /**
- * Translates English texts of the page. Keys are texts, in which {0}, {1} … stand for what varies; `" "`, `", "`, `": "` and `"."` say
+ * Translates English texts of the page. Keys are texts, in which {0}, {1} … stand for what varies, {n0} for a number; `" "`, `", "`, `": "` and `"."` say
  * what joins and ends sentences, items of a list and what is said of something, and `"1,234.5"` how numbers are written.
  */
 export class Dictionary {
@@ -29,7 +29,7 @@ export class Dictionary {
     this.#texts = new Map(Object.entries(entries));
     this.#onLeft = onLeft;
     this.#patterns = [...this.#texts]
-      .filter(([text]) => kPlaceholder.test(text))
+      .filter(([text]) => text.search(kPlaceholder) >= 0)
       .map(([text, to]) => patternOf(text, to))
       // Those that say more come first.
       .sort((a, b) => b.form.source.length - a.form.source.length);
@@ -61,6 +61,7 @@ export class Dictionary {
     if (said.length > 0 && !said.includes(undefined)) return join();
     return (
       this.#fill(text) ??
+      this.#list(text) ??
       this.#afterColon(text) ??
       this.#withoutEnd(text) ??
       (said.some((one) => one !== undefined) ? join() : undefined)
@@ -76,7 +77,7 @@ export class Dictionary {
       const values = new Map(
         slots.map(({ name, isQuoted }, i) => [name, isQuoted ? found[i + 1]! : this.#value(found[i + 1]!)]),
       );
-      return to.replace(/\{(\d)\}/g, (_, name: string) => values.get(name) ?? '');
+      return to.replace(kPlaceholder, (_, name: string) => values.get(name) ?? '');
     }
     return undefined;
   }
@@ -84,8 +85,8 @@ export class Dictionary {
   /** Of words that a full stop or dots follow, as they do when they end a sentence or are still being done. */
   #withoutEnd(text: string): string | undefined {
     const [, words = '', end = ''] = /^(.+?)([.…])$/.exec(text) ?? [];
-    const said = words && this.#say(words);
-    return said && said + (this.#texts.get(end) ?? end);
+    const said = words === '' ? undefined : this.#say(words);
+    return said === undefined ? undefined : said + (this.#texts.get(end) ?? end);
   }
 
   /** Of a file, or of something that has a name: what is said of it. */
@@ -97,16 +98,24 @@ export class Dictionary {
     return undefined;
   }
 
+  /** A list of which every item is known. */
+  #list(text: string): string | undefined {
+    const items = text.split(', ');
+    const said = items.length > 1 ? items.map((item) => this.#say(item)) : [undefined];
+    return said.includes(undefined) ? undefined : said.join(this.#texts.get(', ') ?? ', ');
+  }
+
   /** What a placeholder stands for: words of the page or a list of them, a number, or a name. */
   #value(words: string): string {
-    const items = words.split(', ');
-    const said = items.map((item) => this.#say(item));
-    if (items.length === 1 || said.includes(undefined)) {
-      const whole = this.#say(words);
-      if (whole !== undefined) return whole;
-    }
-    items.forEach((item, i) => said[i] === undefined && this.#onLeft(item));
-    return items.map((item, i) => said[i] ?? item).join(this.#texts.get(', ') ?? ', ');
+    const known = this.#list(words) ?? this.#say(words);
+    if (known !== undefined) return known;
+    const items = words.split(', ').map((item) => this.#say(item) ?? this.#leave(item));
+    return items.join(this.#texts.get(', ') ?? ', ');
+  }
+
+  #leave(words: string): string {
+    this.#onLeft(words);
+    return words;
   }
 
   #number(text: string): string | undefined {
@@ -117,11 +126,21 @@ export class Dictionary {
 }
 
 function patternOf(text: string, to: string): Pattern {
-  const pieces = text.split(/\{\d\}/);
-  const slots = [...text.matchAll(/\{(\d)\}/g)].map(({ 1: name, index }) => ({
-    name: name!,
+  const slots = [...text.matchAll(kPlaceholder)].map(({ 1: name = '', index }) => ({
+    name,
     isQuoted: /[“"]/.test(text[index - 1] ?? ''),
   }));
-  const form = new RegExp(`^${pieces.map((piece) => piece.replace(/[.*+?^${}()|[\]\\]/g, '\\$&')).join('(.+?)')}$`);
-  return { piece: pieces.reduce((longest, one) => (one.length > longest.length ? one : longest)), form, slots, to };
+  // Every other one is a placeholder's name.
+  const pieces = text.split(kPlaceholder);
+  const form = pieces.map((piece, i) =>
+    i % 2 === 0 ? piece.replace(/[.*+?^${}()|[\]\\]/g, '\\$&') : piece[0] === 'n' ? '([\\d.,]+)' : '(.+?)',
+  );
+  const words = pieces.filter((_, i) => i % 2 === 0);
+  return {
+    piece: words.reduce((longest, one) => (one.length > longest.length ? one : longest)),
+    // A full stop that the key lacks is not part of what varies.
+    form: new RegExp(`^${form.join('')}${pieces.at(-1) === '' ? '(?<![.…])' : ''}$`),
+    slots,
+    to,
+  };
 }
