@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { Dictionary } from '../../../web/src/state/dictionary';
+import { Dictionary } from '../../../web/src/platform/dictionary';
 import { inRepository } from '../../support/site';
 
 const entries = (language: string): Record<string, string> =>

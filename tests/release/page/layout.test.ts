@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { PNG } from 'pngjs';
 import { asset, fitted, head, ready } from '../../support/cages';
+import { stageFaults } from '../../support/page/stage-faults';
 import { difference, look, modelArea } from '../../support/picture';
 import { drop, glb, kPlay, Site, type Visit } from '../../support/site';
-import { stageFaults } from '../../support/stage-faults';
 
 let site: Site;
 let visit: Visit;

@@ -1,4 +1,4 @@
-import { Dictionary } from '../state/dictionary';
+import { Dictionary } from './dictionary';
 
 /** Where texts are, besides the text itself. */
 const kAttributes = ['aria-label', 'aria-valuetext', 'aria-roledescription', 'title', 'placeholder', 'alt'];

@@ -2,9 +2,9 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
+import { stageFaults } from '../../../support/page/stage-faults';
+import { kLanguages } from '../../../support/page/words';
 import { kPlay, Site } from '../../../support/site';
-import { stageFaults } from '../../../support/stage-faults';
-import { kLanguages } from '../../../support/words';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

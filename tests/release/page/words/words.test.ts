@@ -4,8 +4,8 @@ import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../../support/axe';
 import { fitted, head, middleOf, ready } from '../../../support/cages';
+import { dictionaryOf, kCollectTexts, kLanguages, type Language, textsOf } from '../../../support/page/words';
 import { drop, glb, kPlay, Site, settled } from '../../../support/site';
-import { dictionaryOf, kCollectTexts, kLanguages, type Language, textsOf } from '../../../support/words';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

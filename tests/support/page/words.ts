@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import type { Page } from 'playwright-core';
-import { Dictionary } from '../../web/src/state/dictionary';
-import { inRepository } from './site';
+import { Dictionary } from '../../../web/src/platform/dictionary';
+import { inRepository } from '../site';
 
 /** Languages that the page is translated to. */
 export const kLanguages = ['de', 'ja'] as const;
