@@ -148,7 +148,7 @@ export async function settled(page: Page): Promise<string> {
   // Return the status that was found: it may have changed since.
   const status = await page.waitForFunction(
     () => {
-      const shown = document.querySelector('[data-testid=status]')?.textContent;
+      const shown = document.querySelector<HTMLElement>('[data-testid=status]')?.dataset.state;
       // What the first picture does without is added when somebody begins to use the page.
       if (!('complete' in document.documentElement.dataset)) dispatchEvent(new Event('pointermove'));
       if (!('complete' in document.documentElement.dataset)) return undefined;

@@ -20,6 +20,7 @@ import { goTo, setUpSectionNav } from './panels/section-nav';
 import { showStatus } from './panels/status';
 import { ThresholdMarks } from './panels/threshold-marks';
 import { face, setUpFaces } from './platform/face';
+import { setUpLanguage } from './platform/language';
 import { catchLostFocus } from './platform/lost-focus';
 import { announce, element } from './platform/page';
 import { flags } from './platform/shelf';
@@ -72,6 +73,7 @@ const samples = loadSamples();
 for (const early of [samples.then(([first]) => fetchAhead(first!)), init()]) early.catch(() => {});
 removeOtherPoster();
 catchLostFocus();
+setUpLanguage();
 setUpFaces();
 await painted();
 

@@ -213,6 +213,7 @@ export class Opener implements Samples {
     for (const [slot, name] of Object.entries(names)) {
       const label = element(`${slot}-name`, HTMLElement);
       label.textContent = label.title = name;
+      label.translate = !name.includes('.'); // the names of files are their owner's
     }
     const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`;
     const { leftOut } = target.mesh;

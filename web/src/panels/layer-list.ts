@@ -210,6 +210,7 @@ function showLayer(item: HTMLElement, controls: Controls, layer: Layer, selected
   item.classList.toggle('selected', selected);
   item.querySelector('img')!.src = layer.sheet.picture ?? kNoPicture;
   item.querySelector('.name')!.textContent = choose.title = name;
+  choose.translate = !name.includes('.'); // the names of files are their owner's
   choose.setAttribute('aria-pressed', String(selected));
   grip.setAttribute('aria-label', `Reorder ${name} with the up and down keys`);
   remove.setAttribute('aria-label', `Remove ${name}`);

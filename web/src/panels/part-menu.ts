@@ -87,7 +87,9 @@ export class PartMenu {
     if (this.#segment === undefined || !shown || !classification) return;
     const plain = face() === 'play';
     const primitive = shown.target.mesh.primitives[shown.projection.segmentStats[this.#segment]!.group]!;
-    element('part-menu-title', HTMLElement).textContent = plain ? plainNameOf(primitive) : primitive.name;
+    const title = element('part-menu-title', HTMLElement);
+    title.textContent = plain ? plainNameOf(primitive) : primitive.name;
+    title.translate = plain; // else it is the file's own
     const lock = locks[this.#segment] ?? 'auto';
     if (plain) void this.#say();
     else this.#text.textContent = paintedPoints(shown, classification.zones, this.#segment, lock);

@@ -24,6 +24,8 @@ const kLocks: Record<Choice, string> = {
 /** Segments that share a row, and their sums. */
 interface Entry {
   name: string;
+  /** How many it stands for, if more than one. */
+  pieces: string;
   segments: number[];
   points: number;
   area: number;
@@ -115,8 +117,8 @@ export class PartsTable {
   }
 
   #row(entry: Entry, colors: readonly Rgb[]): Row {
-    const { name, segments, points, lock } = entry;
-    const head = make('th', { scope: 'row' }, name);
+    const { name, pieces, segments, points, lock } = entry;
+    const head = make('th', { scope: 'row' }, make('span', { translate: false }, name), pieces);
     head.prepend(swatchOf(segments.slice(0, kMaxColors).map((segment) => colors[segment]!)));
     const choice = this.#select(entry);
     const [cover, verdict] = [make('td'), make('td')];
@@ -127,8 +129,8 @@ export class PartsTable {
     return { segments, row, cover, verdict, choice };
   }
 
-  #select({ name, segments, lock }: Entry): HTMLSelectElement {
-    const select = make('select', { name: 'lock', ariaLabel: `Override for ${name}` });
+  #select({ name, pieces, segments, lock }: Entry): HTMLSelectElement {
+    const select = make('select', { name: 'lock', ariaLabel: `Override for ${name}${pieces}` });
     for (const [value, text] of Object.entries(kLocks)) select.add(new Option(text, value, false, value === lock));
     select.addEventListener('change', () => this.#session.lock(segments, select.value as Choice));
     return select;
@@ -152,6 +154,7 @@ function entriesOf(shown: Shown, locks: Locks): Entry[] {
     const key = coveredArea > 0 ? `segment ${segment}` : `group ${group} ${exposedArea > 0} ${lock}`;
     const entry = entries.get(key) ?? {
       name: shown.target.mesh.primitives[group]!.name,
+      pieces: '',
       segments: [],
       points: 0,
       area: 0,
@@ -175,7 +178,7 @@ function named(entries: Entry[]): Entry[] {
     const namesakes = entries.filter(({ name }) => name === entry.name);
     const number = namesakes.length > 1 ? ` ${namesakes.indexOf(entry) + 1}` : '';
     const pieces = entry.segments.length > 1 ? `, ${entry.segments.length} pieces` : '';
-    return { ...entry, name: `${entry.name}${number}${pieces}` };
+    return { ...entry, name: `${entry.name}${number}`, pieces };
   });
 }
 

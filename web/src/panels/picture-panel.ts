@@ -58,7 +58,6 @@ async function screenshot(viewer: Viewer): Promise<Blob> {
 function offerFilm(session: Session, viewer: Viewer): void {
   const button = element('save-film', HTMLButtonElement);
   const note = button.querySelector('small')!;
-  const told = note.textContent;
   button.hidden = !('MediaRecorder' in globalThis);
   button.addEventListener('click', async () => {
     if (button.ariaBusy || !session.shown) return;
@@ -71,7 +70,7 @@ function offerFilm(session: Session, viewer: Viewer): void {
       showError(`The film could not be recorded: ${(error as Error).message}`);
     }
     button.ariaBusy = null;
-    note.textContent = told;
+    note.textContent = 'five seconds';
   });
 }
 

@@ -5,7 +5,7 @@ import { kReading, type Progress, type Session } from '../state/session';
 const kBlind =
   'WebGL 2 is not available in this browser, so there is no 3D view. The transfer works all the same; see the numbers in the panel.';
 
-/** The text of the status badge, also read by tests. */
+/** The text of the status badge; tests read its attribute. */
 type Status = 'loading' | 'working' | 'ready' | 'error';
 
 /** Shows progress and errors. @param blind Whether there is no view, for lack of WebGL. */

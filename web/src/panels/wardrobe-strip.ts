@@ -61,6 +61,7 @@ export class WardrobeStrip {
   readonly #list: HTMLOListElement;
   readonly #all: HTMLInputElement;
   readonly #export: HTMLButtonElement;
+  #said = '';
   readonly #cards = new Map<Avatar, HTMLLIElement>();
 
   constructor(page: WardrobePage) {
@@ -172,7 +173,7 @@ export class WardrobeStrip {
     note.hidden = taking.length === ready.length || ready.length < 2;
     const text = `${taking.length} of ${ready.length} avatars take this paint; the cages of the others differ.`;
     const said = note.querySelector('p')!;
-    if (!note.hidden && said.textContent !== text) said.textContent = text;
+    if (!note.hidden && this.#said !== text) said.textContent = this.#said = text;
     for (const control of [element('wardrobe-input', HTMLInputElement), element('wardrobe-sample', HTMLSelectElement)])
       control.disabled = avatars.length >= kMaxAvatars;
     this.#export.disabled = taking.length === 0;

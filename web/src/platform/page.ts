@@ -8,21 +8,23 @@ export function element<T extends HTMLElement>(id: string, type: new () => T): T
 const alertBox = element('alert', HTMLElement);
 const alertText = element('error', HTMLElement);
 const summary = element('summary', HTMLElement);
+/** The error that is shown, as it was written. */
+let error = '';
 
 /** Shows an error until the next request, or until it is dismissed. */
 export function showError(message: string): void {
-  alertText.textContent = message;
+  alertText.textContent = error = message;
   alertBox.hidden = false;
 }
 
 /** Shows an error below those that are shown. */
 export function addError(message: string): void {
-  showError(`${alertText.textContent}\n${message}`.trim());
+  showError(`${error}\n${message}`.trim());
 }
 
 export function clearError(): void {
   alertBox.hidden = true;
-  alertText.textContent = '';
+  alertText.textContent = error = '';
 }
 
 let announcing: ReturnType<typeof setTimeout> | undefined;

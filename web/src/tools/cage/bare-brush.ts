@@ -99,10 +99,9 @@ export class BareBrush {
     const marks = this.#stroke?.marks ?? this.#session.bare;
     if (marks) this.#tools.offer(this.#offer, true);
     this.#viewer.stage.highlight('bare', this.#isChosen ? marks : undefined);
-    const count = marks?.reduce((sum, mark) => sum + mark, 0) ?? 0;
-    element('bare-count', HTMLElement).textContent =
-      count === 0 ? '' : `${count.toLocaleString('en')} triangle${count === 1 ? ' stays' : 's stay'} bare.`;
-    element('bare-clear', HTMLButtonElement).disabled = count === 0;
+    const count = countOf(marks);
+    element('bare-count', HTMLElement).textContent = count;
+    element('bare-clear', HTMLButtonElement).disabled = count === '';
     const size = `${((200 * this.#radius) / this.#diagonal).toPrecision(2)} % of the model`;
     element('bare-size-value', HTMLOutputElement).value = size;
     this.#size.setAttribute('aria-valuetext', size);
@@ -183,8 +182,14 @@ export class BareBrush {
     const put = (to: Uint8Array | undefined): void => this.#session.setBare(to);
     put(marks);
     this.#history.add(new BareStep(name, before, marks, put));
-    announce(element('bare-count', HTMLElement).textContent || 'Nothing is marked.');
+    announce(countOf(marks) || 'Nothing is marked.');
   }
+}
+
+/** Says how many triangles are marked; empty if none is. */
+function countOf(marks: Uint8Array | undefined): string {
+  const count = marks?.reduce((sum, mark) => sum + mark, 0) ?? 0;
+  return count === 0 ? '' : `${count.toLocaleString('en')} triangle${count === 1 ? ' stays' : 's stay'} bare.`;
 }
 
 /** The triangles that come as near to a point as `radius`. */

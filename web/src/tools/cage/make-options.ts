@@ -101,7 +101,7 @@ export class MakeOptionsPanel {
     this.#usual = bare.map((isBare) => !isBare);
     const rows = primitives.map(({ name, firstTriangle, triangleCount }, part) => {
       const input = make('input', { type: 'checkbox', checked: this.#usual[part]! });
-      const row = make('label', { className: 'check' }, input, name);
+      const row = make('label', { className: 'check' }, input, make('span', { translate: false }, name));
       const show = (): void => {
         const marks = new Uint8Array(target.mesh.indices.length / 3);
         this.#viewer.stage.highlight('parts', marks.fill(1, firstTriangle, firstTriangle + triangleCount));

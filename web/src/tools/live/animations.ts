@@ -5,6 +5,12 @@ import type { Stage } from '../../view/stage';
 const movesMorphs = ({ tracks }: AnimationClip): boolean =>
   tracks.some(({ name }) => name.endsWith('.morphTargetInfluences'));
 
+function optionOf(name: string, index: number): HTMLOptionElement {
+  const option = new Option(name || `Animation ${index + 1}`, String(index));
+  option.translate = name === '';
+  return option;
+}
+
 /** A bar on the stage that plays a model's animations. The first starts by itself, unless the user prefers reduced motion. */
 export class Animations {
   readonly #stage: Stage;
@@ -35,7 +41,7 @@ export class Animations {
   offer(clips: readonly AnimationClip[]): void {
     this.#clips = clips;
     element('clips', HTMLElement).hidden = clips.length === 0;
-    const names = clips.map(({ name }, index) => new Option(name || `Animation ${index + 1}`, String(index)));
+    const names = clips.map(({ name }, index) => optionOf(name, index));
     this.#select.replaceChildren(new Option('At rest', '-1'), ...names);
     const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
     this.#select.value = clips.length > 0 && !still ? '0' : '-1';

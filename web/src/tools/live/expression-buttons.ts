@@ -37,7 +37,11 @@ export class ExpressionButtons {
     this.#box.hidden = expressions.length === 0;
     this.#box.replaceChildren(
       ...expressions.map((expression) => {
-        const button = make('button', { type: 'button', ariaPressed: 'false' }, expression.title);
+        const button = make(
+          'button',
+          { type: 'button', ariaPressed: 'false', value: expression.title },
+          expression.title,
+        );
         button.addEventListener('click', () => this.#press(expression));
         return button;
       }),
@@ -65,7 +69,8 @@ export class ExpressionButtons {
 
   #mark(): void {
     const titles = [this.#held?.title, this.#playing?.title];
-    for (const button of this.#box.children) button.ariaPressed = String(titles.includes(button.textContent));
+    for (const button of this.#box.querySelectorAll('button'))
+      button.ariaPressed = String(titles.includes(button.value));
   }
 
   #step(now: number): void {
