@@ -278,7 +278,7 @@ describe('without a picture', () => {
     await page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
     await page.getByTestId('kept-note').filter({ hasText: 'Your work is kept on this device' }).waitFor();
     await page.reload();
-    await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+    await page.getByTestId('ask').filter({ hasText: 'Your last work is back.' }).waitFor();
     await ready();
     assert.deepEqual(await state(), changed);
     assert.deepEqual(await faults(page), []);
