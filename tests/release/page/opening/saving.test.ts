@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { saved } from '../../../support/saved';
-import { Site, settled, shownError } from '../../../support/site';
+import { passed, Site, settled, shownError } from '../../../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -45,11 +45,9 @@ test('a bake whose worker fails, ends without a word, or never answers leaves a 
   await page.unroute(kWorker);
   await page.route(kWorker, (route) => route.fulfill({ contentType: 'text/javascript', body: kSilent }));
   await begin(page);
-  await page.waitForFunction(async () =>
-    ((await navigator.locks.query()).held ?? []).some(({ name }) => name!.startsWith('cagecast worker')),
-  );
+  while ((await page.evaluate('window.workers.length')) !== 2) await passed(page, 100);
   await page.getByTestId('progress').waitFor();
-  await page.evaluate(() => new Promise((done) => setTimeout(done, 1500)));
+  await passed(page, 4000); // it was seen to live
   await page.evaluate('window.workers.at(-1).terminate()');
   await says(/^target\.glb: the browser has ended a worker, likely for lack of memory/);
 

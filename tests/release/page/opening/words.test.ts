@@ -18,15 +18,15 @@ async function words(page: Page): Promise<string[]> {
     )
     .evaluateAll((all) =>
       all
-        .filter((one) => !['ask', 'summary', 'time-first'].includes(one.id))
-        .map((one) => `${one.id || one.className}: ${one.checkVisibility() ? one.textContent : ''}`),
+        .filter((one) => one.checkVisibility() && !['ask', 'summary', 'time-first'].includes(one.id))
+        .map((one) => `${one.id || one.className}: ${one.textContent}`),
     );
 }
 
 const notes = (page: Page): Promise<string[]> =>
   page
     .locator('#cage-note, #cage-missing, #landmarks, .landmark-spots button, #export-note, #put-away, #borders-note')
-    .evaluateAll((all) => all.filter((one) => one.checkVisibility() && one.textContent).map((one) => one.id));
+    .evaluateAll((all) => all.filter((one) => one.checkVisibility() && (one.textContent || one.ariaLabel)).map((one) => one.id));
 
 async function work(page: Page): Promise<void> {
   await drop(page, [head()]);
