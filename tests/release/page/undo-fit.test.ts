@@ -250,7 +250,7 @@ test('undo does not affect the paint of a model opened since', async () => {
   assert.equal(await settled(page), 'ready');
   assert.match(await undoTitle(), /replacing /);
   await page.keyboard.press('Control+z');
-  await page.getByTestId('ask').waitFor({ state: 'hidden' });
+  await page.getByTestId('layer-list').getByText('Tiger stripes').waitFor();
   assert.equal(await settled(page), 'ready');
   assert.deepEqual(await names(page), after);
   assert.match(await undoTitle(), /^Undo$/, 'as after a reload');
