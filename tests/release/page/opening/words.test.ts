@@ -26,7 +26,9 @@ async function words(page: Page): Promise<string[]> {
 const notes = (page: Page): Promise<string[]> =>
   page
     .locator('#cage-note, #cage-missing, #landmarks, .landmark-spots button, #export-note, #put-away, #borders-note')
-    .evaluateAll((all) => all.filter((one) => one.checkVisibility() && (one.textContent || one.ariaLabel)).map((one) => one.id));
+    .evaluateAll((all) =>
+      all.filter((one) => one.checkVisibility() && (one.textContent || one.ariaLabel)).map((one) => one.id),
+    );
 
 async function work(page: Page): Promise<void> {
   await drop(page, [head()]);
