@@ -175,10 +175,12 @@ describe('without a picture', () => {
 
   test('layers of another cage are put away, and brought back', async () => {
     const before = await names(page);
-    await choose('sample-select', 'car');
+    await page.getByTestId('cage-input').setInputFiles(glb('other-cage.glb', asset('car', 'cage.glb')));
+    await ready();
     await page.getByTestId('put-away').filter({ hasText: '2 layers of earlier cages put away.' }).waitFor();
     await page.locator('#bring-back').click();
     assert.deepEqual((await names(page)).slice(0, 2), before.slice(0, 2));
+    await choose('sample-select', 'car');
   });
 
   test('a model that is opened alone is fitted a template and painted; so is a cage that is made, and another fit', async () => {
@@ -278,7 +280,7 @@ describe('without a picture', () => {
     await page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
     await page.getByTestId('kept-note').filter({ hasText: 'Your work is kept on this device' }).waitFor();
     await page.reload();
-    await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+    await page.getByTestId('ask').filter({ hasText: 'Your last work is back.' }).waitFor();
     await ready();
     assert.deepEqual(await state(), changed);
     assert.deepEqual(await faults(page), []);

@@ -6,6 +6,7 @@ import { makeChecker } from './loading/load-paint';
 import { Opener } from './loading/opener';
 import { fetchAhead, loadSamples } from './loading/samples';
 import { TransferClient } from './loading/transfer-client';
+import { watchOver } from './loading/watch-over';
 import { setUpCagePanel } from './panels/cage-panel';
 import { FitPanel } from './panels/fit-panel';
 import { LayerList } from './panels/layer-list';
@@ -69,6 +70,7 @@ function setUpStage(viewer: Viewer): { viewer: Viewer; tools: Tools; composite: 
 }
 
 const samples = loadSamples();
+watchOver('The samples', samples, () => location.reload());
 // Start early; errors are reported where the results are awaited.
 for (const early of [samples.then(([first]) => fetchAhead(first!)), init()]) early.catch(() => {});
 removeOtherPoster();

@@ -65,7 +65,7 @@ export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
       ...{ session, loader: page.loader, viewer: stage.viewer, stack, paint: stage.composite.texture, png },
       samples: () => opener.samples,
     });
-  if (wardrobe) opener.takesDrop = (files) => wardrobe.take(files);
+  opener.wardrobe = wardrobe;
   const linked = { session, layers, live, controls: viewer?.controls };
   const exportPanel = new ExportPanel(linked, png);
   for (const event of ['change', 'pictures'] as const) stack.on(event, () => exportPanel.refresh());

@@ -11,6 +11,7 @@ import { STLExporter } from 'three/addons/exporters/STLExporter.js';
 import { USDZExporter } from 'three/addons/exporters/USDZExporter.js';
 import { fails, ok } from '../../support/command.js';
 import { isOverlay, primitivesOf, unpackGlb, validate } from '../../support/gltf.js';
+import { fbxOf, flipped } from '../../support/models.js';
 import { io, png, workplace, write } from './workplace.js';
 
 const { cage, target } = workplace('formats');
@@ -25,41 +26,6 @@ function sceneOf({ positions, indices, uvs }: Arrays, isUpright = false): Group 
   const mesh = new Mesh(geometry, new MeshStandardMaterial({ name: 'skin' }));
   mesh.name = 'head';
   return new Group().add(mesh);
-}
-
-const flipped = (uvs: Float32Array): Float32Array => uvs.map((x, i) => (i % 2 === 0 ? x : 1 - x));
-
-/** A node of an FBX of text: its line, and what is in it. Its depth is told by tabs. */
-const fbxNode = (line: string, ...inside: string[]): string =>
-  `${line} {\n${inside.map((one) => one.replace(/^/gm, '\t')).join('\n')}\n}`;
-
-/** An FBX of text. */
-function fbxOf({ positions, indices, uvs }: Arrays): string {
-  const array = (name: string, values: ArrayLike<number>) =>
-    fbxNode(`${name}: *${values.length}`, `a: ${Array.from(values).join(',')}`);
-  // The last corner of a polygon is the complement of its vertex.
-  const corners = Array.from(indices, (v, i) => (i % 3 === 2 ? -v - 1 : v));
-  const layer = fbxNode(
-    'LayerElementUV: 0',
-    'Version: 101',
-    'Name: "UVMap"',
-    'MappingInformationType: "ByPolygonVertex"',
-    'ReferenceInformationType: "IndexToDirect"',
-    array('UV', flipped(uvs!)),
-    array('UVIndex', indices),
-  );
-  const geometry = [array('Vertices', positions), array('PolygonVertexIndex', corners), 'GeometryVersion: 124', layer];
-  return [
-    '; FBX 7.4.0 project file',
-    fbxNode('FBXHeaderExtension: ', 'FBXHeaderVersion: 1003', 'FBXVersion: 7400'),
-    fbxNode(
-      'Objects: ',
-      fbxNode('Geometry: 10, "Geometry::head", "Mesh"', ...geometry),
-      fbxNode('Model: 20, "Model::head", "Mesh"', 'Version: 232'),
-    ),
-    fbxNode('Connections: ', 'C: "OO",20,0', 'C: "OO",10,20'),
-    '',
-  ].join('\n');
 }
 
 /** A file of each format, and whether it has UVs. */

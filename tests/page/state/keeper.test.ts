@@ -87,7 +87,7 @@ async function tab(browser: FakeBrowser, memory: Partial<Flags> = {}, fragment =
     startOver: () => (isOver = true),
   };
   const keeper = new Keeper({ project, session, history }, shelf, {
-    offer: (offer) => offers.push(offer),
+    offer: (offer) => offer && offers.push(offer),
     note: (text) => notes.push(text),
     error: (text) => errors.push(text),
   });
@@ -126,6 +126,11 @@ async function tab(browser: FakeBrowser, memory: Partial<Flags> = {}, fragment =
       await keeper.save();
     },
     act: () => history.add(step('stroke')),
+    /** Opens files in place of what is shown. */
+    replace(target: string, cage: string): void {
+      page.open(target, cage);
+      keeper.replaceBy(session.requested.target!);
+    },
     close,
     fragment,
     /** Does what the last offer offers. */
@@ -238,17 +243,64 @@ test('own files that give way are put aside as they are at that moment, and what
   await page.keeper.restore();
   await page.work('bust');
   page.session.setRules({ threshold: 0.7 }); // which is not stored yet
-  void page.keeper.putAside();
-  page.open('car.glb', 'car-cage.glb');
+  page.replace('car.glb', 'car-cage.glb');
+  page.session.setRules({ threshold: 0.8 }); // while the other one is being loaded
   await page.ready();
-  await until(() => page.offer === 'Your last work is put aside.');
+  await until(() => page.offer === 'Replaced bust.');
+  assert.equal(page.history.last!.name, 'replacing bust');
+  assert.deepEqual(page.kept, ['bust-cage.glb bust.glb']);
   page.session.setRules({ threshold: 0.2 });
-  page.act();
-  await page.take();
-  assert.equal(page.offer, 'Your last work is back. What was here is put aside.');
-  assert.deepEqual([page.shown[0], page.session.rules.threshold], ['bust.glb', 0.7]);
-  await page.take();
-  assert.deepEqual([page.shown[0], page.session.rules.threshold], ['car.glb', 0.2]);
+  page.history.undo();
+  await until(() => page.shown[0] === 'bust.glb');
+  await page.ready();
+  await quiet();
+  assert.equal(page.session.rules.threshold, 0.8);
+  assert.equal(page.history.last, undefined, 'as after a reload');
+
+  // Of several, the last one is held; what was only looked at is nothing to bring back.
+  for (const name of ['car', 'lizard']) {
+    page.replace(`${name}.glb`, `${name}-cage.glb`);
+    await page.ready();
+    await quiet();
+  }
+  assert.equal(page.offer, 'Replaced car.');
+  page.history.undo();
+  await until(() => page.shown[0] === 'car.glb');
+  await quiet();
+  assert.equal(page.history.undo(), undefined);
+});
+
+test('a model that replaces another and fails, or is cancelled, or cannot be taken back, loses nothing', async () => {
+  const page = await tab(new FakeBrowser());
+  await page.keeper.restore();
+  await page.work('bust');
+  page.replace('broken.glb', 'car-cage.glb');
+  await page.failed();
+  await quiet();
+  assert.deepEqual([page.offers.length, page.history.last!.name], [0, 'stroke']);
+  page.replace('car.glb', 'car-cage.glb');
+  await page.ready();
+  await quiet();
+  assert.equal(page.offer, 'Replaced bust.');
+  page.loader.gate.hold();
+  page.history.undo();
+  await quiet();
+  page.session.cancel();
+  page.loader.gate.open();
+  await quiet();
+  assert.deepEqual([page.shown[0], page.history.last!.name], ['car.glb', 'replacing bust']);
+  page.history.undo();
+  await until(() => page.shown[0] === 'bust.glb');
+});
+
+test('without a store, too, what was replaced can be taken back', async () => {
+  const page = await tab(new FakeBrowser());
+  await page.work('bust');
+  page.replace('car.glb', 'car-cage.glb');
+  await page.ready();
+  await quiet();
+  page.history.undo();
+  await until(() => page.shown[0] === 'bust.glb');
 });
 
 test('where there is no room, that is said once, and work is not said to be put aside as a whole', async () => {
@@ -265,20 +317,15 @@ test('where there is no room, that is said once, and work is not said to be put 
   assert.equal(page.errors.length, 1);
   assert.match(page.errors[0]!, /^Your work is not kept on this device: there is no room left/);
   assert.equal(page.keeper.isKept, false);
-  await page.keeper.putAside();
-  assert.match(
-    page.offer!,
-    /is put aside\. Its last changes could not be kept: there is no room left for this page\.$/,
-  );
+  page.replace('car.glb', 'car-cage.glb');
+  await page.ready();
+  await quiet();
+  assert.match(page.offer!, /^Replaced bust\. It could not be kept on this device: there is no room left/);
   browser.isFull = false;
-  await page.take();
-  assert.equal(page.session.rules.threshold, 0.5);
-
-  const none = await tab(Object.assign(new FakeBrowser(), { isFull: true }));
-  await none.keeper.restore();
-  await none.work('bust');
-  await none.keeper.putAside();
-  assert.match(none.offer!, /^Your last work could not be put aside: there is no room left/);
+  page.history.undo();
+  await until(() => page.shown[0] === 'bust.glb');
+  await quiet();
+  assert.equal(page.session.rules.threshold, 0.7, 'the page itself has all of it');
 });
 
 test('a tab beside one that has the latest work offers the one before; starting over offers the tab’s own', async () => {
@@ -348,8 +395,10 @@ test('a project that takes long to open leaves the work before it as it was', as
   await page.keeper.save(); // as when people pause: it is neither the one nor the other
   page.transferer.gate.open();
   assert.equal(await opening, true);
-  assert.deepEqual([page.offer, page.session.rules.threshold], ['Your last work is put aside.', 0.2]);
-  await page.take();
+  assert.deepEqual([page.offer, page.session.rules.threshold], ['Replaced bust.', 0.2]);
+  page.history.undo();
+  await until(() => page.session.rules.preset === 'default');
+  await quiet();
   assert.deepEqual([page.session.rules.preset, page.session.rules.threshold], ['default', 0.7]);
 });
 

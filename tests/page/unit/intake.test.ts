@@ -10,11 +10,7 @@ for (const [files, roles, warning] of [
   ['cage.glb', { cage: 'cage.glb' }],
   ['body.vrm body-Cage.glb skin.png', { target: 'body.vrm', cage: 'body-Cage.glb', texture: 'skin.png' }],
   ['a.glb b.glb', { unclear: 'a.glb b.glb' }],
-  [
-    'cage-a.glb cage-b.glb',
-    { unclear: 'cage-a.glb cage-b.glb' },
-    'cage-a.glb and cage-b.glb are both named as cages; the one with more triangles is used as the target.',
-  ],
+  ['cage-a.glb cage-b.glb', { unclear: 'cage-a.glb cage-b.glb' }],
   ['a.glb cage.glb notes.txt c.glb', { target: 'a.glb', cage: 'cage.glb' }, ignored('notes.txt and 1 more were')],
   ['skin.jpeg other.webp', { texture: 'other.webp' }, ignored('skin.jpeg was')],
   ['scene.gltf scene.bin skin.png', { target: 'scene.gltf' }], // the image belongs to the model

@@ -101,6 +101,7 @@ test('folders can be dropped; empty ones and files that are too large are report
       await writeFile(path.join(folder, 'pair', name, 'scene.bin'), bytes.subarray(28 + length));
     }
     await dropFolder('pair');
+    await page.getByRole('button', { name: 'Only pair/second/scene.gltf' }).click();
     await page.locator('#target-name', { hasText: 'scene.gltf' }).waitFor();
     assert.equal(await settled(page), 'ready', await shownError(page));
     assert.equal((await shownCounts(page)).cosmetic, cosmetic);

@@ -105,7 +105,7 @@ test('a reload in the middle of a painting brings everything back, files include
   const before = await state(page);
   assert.ok(before.painted > 0 && before.layers.includes('Painting 1') && before.overrides.length === 1);
   await page.reload();
-  const line = page.getByTestId('kept');
+  const line = page.getByTestId('ask');
   await line.filter({ hasText: 'Your last work is back.' }).waitFor();
   assert.deepEqual(await state(page), before);
   assert.notEqual(await page.evaluate('posterLeft'), 'ready', 'the picture of the sample does not lie over the work');
@@ -132,7 +132,7 @@ test('a reload in the middle of a painting brings everything back, files include
   const other = await page.context().newPage();
   await other.goto(site.url);
   assert.equal(await settled(other), 'ready', await shownError(other));
-  assert.ok(await other.getByTestId('kept').isHidden());
+  assert.ok(await other.getByTestId('ask').isHidden());
   await other.close();
   assert.deepEqual(complaints, []);
 });
@@ -213,7 +213,7 @@ test('the works of open tabs are kept however many there are, and a work whose f
   await page.getByTestId('threshold').fill('0.7');
   await waitFor(page, 'a');
   await page.reload();
-  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  await page.getByTestId('ask').filter({ hasText: 'Your last work is back.' }).waitFor();
   assert.equal(await settled(page), 'ready', await shownError(page));
   assert.equal(await page.locator('#target-name').textContent(), 'a.glb');
   assert.equal(await page.getByTestId('threshold').inputValue(), '0.7');

@@ -22,6 +22,7 @@ interface Exported {
  * current options and locks. Runs in a temporary worker.
  * @param texture A PNG in the cage's UVs.
  * @param into    Paint as an overlay, or in the model's own textures where it has some.
+ * @param signal  Ends it.
  * @returns The file, with a summary if paint was baked into textures.
  * @throws Error that begins with the file's name.
  */
@@ -29,6 +30,7 @@ export async function exportGlb(
   { target, cage, rules, choices, projection }: Exported,
   texture: Blob,
   into: PaintInto,
+  signal?: AbortSignal,
 ): Promise<{ glb: Blob; baked?: Baked }> {
   const files = await Promise.all(target.files.map(async (file) => ({ name: file.name, bytes: await read(file) })));
   const request: ExportRequest = {
@@ -41,8 +43,10 @@ export async function exportGlb(
   };
   const worker = new Worker(new URL('./export-worker.ts', import.meta.url), { type: 'module' });
   const transfer = files.map(({ bytes }) => bytes);
-  const { glb, baked } = await askWorker<ExportAnswer>(worker, request, transfer).catch((cause: Error) => {
-    throw new Error(`${target.name}: ${cause.message}`, { cause });
+  const { glb, baked } = await askWorker<ExportAnswer>(worker, request, transfer, signal).catch((cause: Error) => {
+    // What fails in one way may do in the other.
+    const advice = into === 'texture' ? '. Save it with the paint as an overlay, or by “cagecast bake”' : '';
+    throw new Error(`${target.name}: ${cause.message}${advice}`, { cause });
   });
   return { glb: new Blob([glb], { type: 'model/gltf-binary' }), ...(baked && { baked }) };
 }

@@ -42,6 +42,7 @@ export class ExportPanel {
       input.addEventListener('change', () => this.#refresh());
     for (const event of ['zones', 'view', 'paint'] as const) session.on(event, () => this.refresh());
     session.on('transfer', () => this.#offerTextures());
+    session.on('leave', () => (element('copy-note', HTMLElement).textContent = ''));
     const buttons = section.querySelectorAll<HTMLButtonElement>('.actions button');
     for (const button of buttons) button.disabled = true;
     session.on('zones', () => buttons.forEach((button) => (button.disabled = false)));
@@ -103,20 +104,28 @@ export class ExportPanel {
     const button = element('export-glb', HTMLButtonElement);
     // Not disabled, so that it keeps the focus.
     if (button.ariaBusy) return;
+    const session = this.#session;
+    if (session.isReplacing) return showNotice('export-note', 'Something else is coming. Save the model then.');
     button.ariaBusy = 'true';
     showNotice('export-note', '');
+    const abort = new AbortController();
+    const { signal } = abort;
+    const done = session.work('Saving the model', 0.1, { abort: () => abort.abort() });
     try {
       const { exportGlb } = await import('./export-glb');
       const stem = this.#stem;
-      const { shown, rules, choices } = this.#session;
+      const { shown, rules, choices } = session;
       const into = document.querySelector<HTMLInputElement>('#paint-into :checked')!.value as PaintInto;
-      const { glb, baked } = await exportGlb({ ...shown!, rules, choices }, await this.#png(), into);
+      const { glb, baked } = await exportGlb({ ...shown!, rules, choices }, await this.#png(), into, signal);
+      signal.throwIfAborted();
       await handOver(glb, `${stem}-painted.${endingOf(shown!.target.name)}`);
       announce(`Model saved: ${(glb.size / 1e6).toFixed(1)} megabytes.`);
       showNotice('export-note', baked ? bakedNote(baked) : '');
     } catch (error) {
-      showError(error instanceof Error ? error.message : String(error));
+      if (signal.aborted) showNotice('export-note', 'The model was not saved.');
+      else showError(error instanceof Error ? error.message : String(error));
     } finally {
+      done();
       button.ariaBusy = null;
     }
   }

@@ -59,7 +59,7 @@ export function followLinks(linked: Linked, opener: Opener): boolean {
       if (angle) controls?.lookFrom(angle);
       return true;
     }
-    opener.putAside();
+    opener.onReplace?.();
     session.setRules(state.rules);
     session.setView(state.view);
     opener.openSample(state.sample, state.layers?.[0]?.paint, state.locks);

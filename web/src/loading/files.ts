@@ -48,9 +48,10 @@ export function setUpFiles(onFiles: (intake: Intake) => void, takes: (dropped: r
     const input = element(`${role}-input`, HTMLInputElement);
     const tile = element(`${role}-file`, HTMLElement);
     const give = (files: File[]): void => {
-      const isProject = files.some(({ name }) => kProject.test(name));
-      if (isProject) onFiles(sortFiles(files));
-      const main = isProject
+      const models = files.filter(({ name }) => kModel.test(name));
+      const isMixed = files.some(({ name }) => kProject.test(name)) || (role === 'target' && models.length > 1);
+      if (isMixed && !takes(files)) onFiles(sortFiles(files));
+      const main = isMixed
         ? undefined
         : (files.find((file) => (role === 'texture' ? kImage : kModel).test(file.name)) ?? files[0]);
       if (main) onFiles({ [role]: main, unclear: [], warnings: [], all: files });

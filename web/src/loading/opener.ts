@@ -10,11 +10,14 @@ import { haveSameUvs } from '../state/same-uvs';
 import { kChecker, type Sample, type Samples } from '../state/sample';
 import type { Requested, Shown } from '../state/scene';
 import { kReading, type Session } from '../state/session';
+import type { WardrobeOfPage } from '../state/wardrobe/kept';
 import type { Drawings } from './drawn/drawings';
 import { setUpFiles } from './files';
 import { loadPaint } from './load-paint';
 import { type Choice, offerPaints } from './paint-picker';
 import { fetchFile, paintName } from './samples';
+import { tellApart } from './tell-apart';
+import { watchOverSample } from './watch-over';
 
 const kOwn = 'own';
 
@@ -26,8 +29,8 @@ export class Opener implements Samples {
   readonly #select = element('sample-select', HTMLSelectElement);
   readonly #loader: Loader;
   readonly #drawings: Drawings;
-  /** Whether what was dropped on the page is for somebody else, who takes it. */
-  takesDrop: (files: readonly File[]) => boolean = () => false;
+  /** Takes several models. */
+  wardrobe: Pick<WardrobeOfPage, 'take'> | undefined;
   #samples: Sample[] = [];
   /** Warnings about the latest files, shown once these are loaded. */
   #warnings: readonly string[] = [];
@@ -40,8 +43,8 @@ export class Opener implements Samples {
   cageFor: ((target: Model) => Promise<Model>) | undefined;
   /** Opens a saved project. */
   onProject: ((file: File) => void) | undefined;
-  /** Puts the user's own files aside, or a cage made for them, before a sample takes their place. */
-  onReplace: (() => void) | undefined;
+  /** Is told of each target that is requested, and before that of what else changes with it: then undefined. */
+  onReplace: ((target?: Promise<Model>) => void) | undefined;
 
   constructor(session: Session, stack: LayerStack, edits: Edits, loader: Loader, drawings: Drawings) {
     this.#session = session;
@@ -52,7 +55,7 @@ export class Opener implements Samples {
     this.#loader = loader;
     setUpFiles(
       (intake) => this.#open(intake),
-      (dropped) => this.takesDrop(dropped),
+      (files) => this.wardrobe?.take(files) ?? false,
     );
     this.#select.addEventListener('change', () => this.openSample(this.#select.value));
     element('swap', HTMLButtonElement).addEventListener('click', () => session.swap());
@@ -92,7 +95,6 @@ export class Opener implements Samples {
   openSample(name: string, paint?: string, locks: Locks = {}): void {
     const sample = this.#samples.find((candidate) => candidate.name === name);
     if (!sample) return;
-    this.putAside();
     this.#select.value = name;
     this.#warnings = [];
     const model = async (address: string): Promise<Model> => ({
@@ -100,7 +102,9 @@ export class Opener implements Samples {
       sample,
     });
     const [target, cage] = [model(sample.target), model(sample.cage)];
-    this.#session.request({ target, cage, paint: this.#firstPaint(sample, paint, cage) }, locks, true);
+    const requested = { target, cage, paint: this.#firstPaint(sample, paint, cage) };
+    this.#request(requested, locks, true);
+    watchOverSample(this.#session, sample.title, requested, () => this.openSample(name, paint, locks));
   }
 
   /** The paint a sample opens with: the named one, else its first, else one that is drawn for its cage. */
@@ -112,10 +116,9 @@ export class Opener implements Samples {
     return this.#drawFor(asCage(await loading), name);
   }
 
-  /** Call this before a sample's state replaces the one that is shown. */
-  putAside(): void {
-    const { shown } = this.#session;
-    if (shown && !(shown.target.sample && shown.cage.sample)) this.onReplace?.();
+  #request(requested: Requested, locks?: Locks, together?: boolean): void {
+    if (requested.target) this.onReplace?.(requested.target);
+    this.#session.request(requested, locks, together);
   }
 
   /** Loads a paint of any sample. @param name By `paintName`. @returns Undefined if there is none. */
@@ -169,23 +172,20 @@ export class Opener implements Samples {
     const load = (file: File): Promise<Model> => this.#loader.load(file, all);
     if (target) requested.target = load(target);
     if (cage) requested.cage = load(cage);
-    const [one, other] = unclear;
-    if (one && other) {
-      // Their names do not tell them apart: the cage is the one with fewer triangles.
-      const pair = Promise.all([load(one), load(other)]).then((models) =>
-        models.sort((a, b) => b.mesh.indices.length - a.mesh.indices.length),
-      );
-      requested.target = pair.then(([larger]) => larger!);
-      requested.cage = pair.then(([, smaller]) => smaller!);
+    if (unclear.length > 0) {
+      const open = (target: File, cage?: File): void =>
+        this.#open({ target, cage, texture, unclear: [], warnings, all });
+      void tellApart(unclear, open, this.wardrobe && (() => this.wardrobe!.take(all, true)));
+      return;
     }
     if (requested.target && !requested.cage) requested.cage = this.#cageOf(requested.target);
     if (texture) requested.paint = loadPaint(texture);
-    if (texture && !target && !cage && !one && this.#session.isMakingCage) {
+    if (texture && !target && !cage && this.#session.isMakingCage) {
       void this.#use(requested.paint!, (paint) => this.#session.reportPaint(paint));
       return;
     }
     this.#warnings = warnings;
-    this.#session.request(requested);
+    this.#request(requested);
   }
 
   /** The cage of a target that was opened alone: its own, one that the user has opened before, or one that is fitted or made. */

@@ -33,13 +33,23 @@ export function fetchAhead({ target, cage, paints }: Sample): void {
   for (const address of [target, cage, ...paints.slice(0, 1).map(({ file }) => file)]) begun.set(address, ask(address));
 }
 
-const ask = (address: string): Promise<Response | undefined> => fetch(address).catch(() => undefined);
+const ask = (address: string, options: RequestInit = {}): Promise<Response | undefined> =>
+  fetch(address, options).catch(() => undefined);
+
+/** What was asked for and has not come. */
+const awaited = new Set<string>();
 
 /** Fetches one file of a sample. @throws Error that names it. */
 export async function fetchFile(address: string): Promise<File> {
   const name = new URL(address).pathname.split('/').slice(-2).join('/');
-  const response = await (begun.get(address) ?? ask(address));
+  const ahead = begun.get(address);
   begun.delete(address); // a response body can be read only once
-  if (!response?.ok) throw new Error(`${name}: the file could not be loaded`);
-  return new File([await response.blob()], name.split('/').at(-1)!);
+  // Browsers let a second request wait for the first one's answer, unless it goes past their cache.
+  const asked = ahead ?? ask(address, awaited.has(address) ? { cache: 'reload' } : {});
+  awaited.add(address);
+  const response = await asked;
+  const body = response?.ok ? await response.blob().catch(() => undefined) : undefined;
+  if (!body) throw new Error(`${name}: the file could not be loaded`);
+  awaited.delete(address);
+  return new File([body], name.split('/').at(-1)!);
 }

@@ -3,6 +3,7 @@ import { readLink } from '../export/link';
 import { loadPaint } from '../loading/load-paint';
 import type { Opener } from '../loading/opener';
 import { paintName } from '../loading/samples';
+import { ask } from '../platform/ask';
 import { download } from '../platform/download';
 import { pack, unpack } from '../platform/pack';
 import { announce, element, showError } from '../platform/page';
@@ -12,7 +13,7 @@ import type { CageMaker } from '../state/cage-maker';
 import type { Loader } from '../state/model';
 import { barePart } from '../state/project/bare-part';
 import { cagePart } from '../state/project/cage-part';
-import { Keeper, type Offer } from '../state/project/keeper';
+import { Keeper } from '../state/project/keeper';
 import { type LayersOfPage, layersPart } from '../state/project/layers-part';
 import { Project } from '../state/project/project';
 import { scenePart } from '../state/project/scene-part';
@@ -46,6 +47,8 @@ interface Projects {
   readonly isKept: boolean;
 }
 
+const kBrief = 10_000; // milliseconds
+
 export function setUpProjects(page: ProjectOfPage): Projects {
   const { session, stack, history, live, viewer, wardrobe } = page;
   const samples = page.opener;
@@ -62,15 +65,21 @@ export function setUpProjects(page: ProjectOfPage): Projects {
   ];
   for (const part of parts) project.add(part);
   const shelf = shelfOf((fragment) => readLink(fragment) !== undefined);
+  let close = (): void => {};
   const keeper = new Keeper({ project, session, history }, shelf, {
-    offer: showOffer,
+    offer(offer) {
+      close();
+      if (!offer) return;
+      const { text, action, isBrief } = offer;
+      close = ask({ text, answers: action ? [action] : [], ...(isBrief && { lasts: kBrief }) });
+    },
     note: (text) => void (element('kept-note', HTMLElement).textContent = text),
     error: showError,
   });
   document.addEventListener('visibilitychange', () => document.hidden && void keeper.save());
   // A link that was copied is in the address bar; it is not another's, which would be opened instead of the work.
   addEventListener('hashchange', () => project.touch());
-  page.opener.onReplace = () => void keeper.putAside();
+  page.opener.onReplace = (target) => (target ? keeper.replaceBy(target) : keeper.putAside());
   const touch = (): void => project.touch();
   for (const event of ['zones', 'rules', 'view', 'paint'] as const) session.on(event, touch);
   for (const event of ['change', 'select'] as const) stack.on(event, touch);
@@ -112,17 +121,4 @@ export function setUpProjects(page: ProjectOfPage): Projects {
       return keeper.isKept;
     },
   };
-}
-
-function showOffer({ text, action }: Offer): void {
-  const [box, button] = [element('kept', HTMLElement), element('kept-action', HTMLButtonElement)];
-  box.querySelector('p')!.textContent = text;
-  button.hidden = action === undefined;
-  button.textContent = action?.title ?? '';
-  button.onclick = () => {
-    // What follows says its own.
-    box.hidden = true;
-    action?.run();
-  };
-  box.hidden = false;
 }

@@ -10,7 +10,7 @@ export function offerPutAway(away: PutAwayLayers, carryOver: (() => Promise<void
   const back = element('bring-back', HTMLButtonElement);
   const carry = element('carry-over', HTMLButtonElement);
   away.on('change', () => {
-    const { length } = away.layers;
+    const { length } = away.offered;
     carry.hidden = !carryOver || !away.earlier;
     back.hidden = length === 0;
     offer.hidden = carry.hidden && back.hidden;

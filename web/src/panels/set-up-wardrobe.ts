@@ -30,10 +30,10 @@ export function setUpWardrobe(page: Omit<WardrobePage, 'onChange'>): WardrobeOfP
     loaded?.then((opened) => opened.close(), failed);
   });
   const wardrobe: WardrobeOfPage = {
-    take(files) {
+    take(files, isAsked = false) {
       const wasOpen = !strip.hidden;
       const { length } = modelsAmong(files).targets;
-      if (length < (wasOpen ? 1 : kSeveral)) return false;
+      if (length < (wasOpen || isAsked ? 1 : kSeveral)) return false;
       open().then((opened) => opened.add(files, !wasOpen), failed);
       return true;
     },

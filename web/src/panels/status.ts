@@ -28,6 +28,8 @@ export function showStatus(session: Session, blind: boolean): void {
   });
   session.on('progress', (progress) => {
     bar.show(progress);
+    // What is said of the model that is shown is not said of the one that is awaited.
+    document.documentElement.toggleAttribute('data-leaving', session.isLeaving);
     switch (progress.state) {
       case 'working':
         // Keep messages about the files while later stages run.

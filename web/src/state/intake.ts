@@ -5,7 +5,7 @@ export interface Intake {
   texture?: File | undefined;
   /** A saved project: everything at once. */
   project?: File | undefined;
-  /** Two models of which either may be the target. */
+  /** Two models whose names do not say which is a cage, or whether any is. */
   unclear: File[];
   /** Warnings to show. */
   warnings: string[];
@@ -16,7 +16,7 @@ export interface Intake {
 export const kModel = /\.(glb|gltf|vrm|fbx|obj|ply|stl|usd[acz]?)$/i;
 const kForeign = /\.(blend|dae)$/i;
 export const kProject = /\.cagecast$/i;
-const kCage = /cage/i;
+export const kCage = /cage/i;
 export const kImage = /\.(png|jpe?g|webp)$/i;
 
 /** The models among files: those that are named as cages, and the others. */
@@ -47,12 +47,7 @@ export function sortFiles(all: readonly File[]): Intake {
   else if (models.length > 1) intake.unclear = models.slice(0, 2);
   else intake.target = others.find(({ name }) => kForeign.test(name)) ?? (images.length > 0 ? undefined : others[0]);
 
-  const [one, other] = intake.unclear;
-  if (one && other && cages.length > 0)
-    intake.warnings.push(
-      `${one.name} and ${other.name} are both named as cages; the one with more triangles is used as the target.`,
-    );
-  const used = [intake.target, intake.cage, intake.texture, one, other];
+  const used = [intake.target, intake.cage, intake.texture, ...intake.unclear];
   const [left, ...more] = (withImages ? models : all).filter((file) => !used.includes(file));
   if (left)
     intake.warnings.push(

@@ -25,6 +25,8 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
   #away: readonly Layer[] = [];
   /** The mesh of the cage that each layer was painted for; not known of those from before the page was opened. */
   readonly #meshes = new WeakMap<Sheet, Model['mesh']>();
+  /** The target on which each was drawn. */
+  readonly #targets = new WeakMap<Sheet, Model>();
 
   constructor(session: Session, stack: LayerStack, edits: Edits) {
     super();
@@ -35,9 +37,21 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
     stack.on('change', () => this.emit('change', undefined));
   }
 
-  /** Those that are offered. Undoing brings them back too, and redoing puts them away again. */
+  /** All that are away. Undoing brings them back too, and redoing puts them away again. */
   get layers(): readonly Layer[] {
     return this.#away.filter(({ id }) => this.#stack.layers.every((layer) => layer.id !== id));
+  }
+
+  /** Those that are offered: of this target, or for its cage. */
+  get offered(): readonly Layer[] {
+    return this.layers.filter(
+      ({ sheet }) => this.#targets.get(sheet) === this.#last?.target || this.#isForCage({ sheet }),
+    );
+  }
+
+  #isForCage({ sheet }: Pick<Layer, 'sheet'>): boolean {
+    const mesh = this.#meshes.get(sheet);
+    return mesh !== undefined && haveSameUvs({ mesh }, this.#last!.cage);
   }
 
   /** The paint that was put away last, if the current target is the one that it was drawn on, and nothing is drawn since. */
@@ -61,16 +75,16 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
   /** Offers others instead. */
   show(layers: readonly Layer[]): void {
     this.#away = layers;
+    // Those of a project are of its model.
+    for (const { sheet } of layers)
+      if (this.#last && !this.#targets.has(sheet)) this.#targets.set(sheet, this.#last.target);
     this.emit('change', undefined);
   }
 
   /** Brings back as many as there is room for. @throws Error if there is room for none. */
   bringBack(): void {
-    const all = this.layers;
-    const own = all.filter(({ sheet }) => {
-      const mesh = this.#meshes.get(sheet);
-      return mesh && haveSameUvs({ mesh }, this.#last!.cage);
-    });
+    const all = this.offered;
+    const own = all.filter((layer) => this.#isForCage(layer));
     // Without any room, the stack says so.
     const room = Math.max(1, maxLayers - this.#stack.layers.length);
     this.#edits.do('bringing layers back', () => {
@@ -105,7 +119,10 @@ export class PutAwayLayers extends Emitter<{ change: undefined }> {
       this.emit('change', undefined);
       return;
     }
-    for (const { sheet } of old) this.#meshes.set(sheet, before.cage.mesh);
+    for (const { sheet } of old) {
+      this.#meshes.set(sheet, before.cage.mesh);
+      this.#targets.set(sheet, before.target);
+    }
     const kept = [...this.layers, ...old].slice(-maxLayers);
     this.#edits.do('putting layers away', () => {
       for (const { id } of old) this.#stack.remove(id);

@@ -52,6 +52,8 @@ export type Progress =
 /** Events, in the order in which they occur when a model is opened. */
 interface SessionEvents {
   progress: Progress;
+  /** Another target is about to take the place of this one: all is still as it was. */
+  leave: Shown;
   /** Another target, cage or projection is shown. `zones` follows at once, then `paint` if it changed. */
   transfer: Shown;
   /** The model moved and has a new projection. `zones` follows at once. */
@@ -160,6 +162,16 @@ export class Session extends Replay<SessionEvents> {
   keepTarget(): boolean {
     if (!this.#working) this.#requests.abort('target');
     return !this.#requests.isOtherTarget;
+  }
+
+  /** Whether something is being loaded or made that takes the place of what is shown. */
+  get isReplacing(): boolean {
+    return this.#working && (!this.#work || this.#work.makesCage === true);
+  }
+
+  /** Whether another target is being loaded. */
+  get isLeaving(): boolean {
+    return this.#working && this.#requests.isOtherTarget;
   }
 
   /** Whether a cage is being made for the current target. */
@@ -344,6 +356,7 @@ export class Session extends Replay<SessionEvents> {
       }
       // Too late to cancel from here on.
       this.#working = false;
+      if (before && scene.target !== before.target) this.emit('leave', before);
       this.#locks = this.#locksFor(scene, projection);
       if (scene.target !== before?.target) this.#moved = false;
       this.#shown = { ...scene, projection };

@@ -7,6 +7,12 @@ export function showModel(session: Session, viewer: Viewer): void {
     viewer.setTarget(target, projection);
     viewer.stage.setCage(cage);
   });
+  let isLeaving = false;
+  // What is marked on the model goes when another one is awaited, and comes back if that fails.
+  session.on('progress', () => {
+    if (session.isLeaving !== isLeaving) viewer.redraw();
+    isLeaving = session.isLeaving;
+  });
   session.on('frame', (projection) => {
     viewer.stage.setProjection(projection);
     viewer.stage.followCage();

@@ -98,7 +98,7 @@ test('marked spots stay bare, and the made cage has a hole there; marks are eras
   await kept(page);
   const before = await shownCounts(page);
   await page.reload();
-  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  await page.getByTestId('ask').filter({ hasText: 'Your last work is back.' }).waitFor();
   await ready(page);
   assert.deepEqual(await shownCounts(page), before);
   await page.locator('#tools input[data-key=n]').waitFor({ state: 'attached' }); // its tool is there at once

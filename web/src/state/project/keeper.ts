@@ -1,4 +1,5 @@
 import type { Command, History } from 'cagecast/three/paint';
+import type { Model } from '../model';
 import type { Session } from '../session';
 import { type Files, filesIn, kVersion, type Project, type Snapshot } from './project';
 import type { Shelf, Work, WorkStore } from './shelf';
@@ -12,11 +13,34 @@ const kOwnPatience = 1000; // until the page that was reloaded has let go of its
 export interface Offer {
   text: string;
   action?: { title: string; run(): void };
+  /** Whether it goes after a while. */
+  isBrief?: boolean;
+}
+
+/** A scene that gives way to another: as it is saved, without what the page holds to show it. */
+interface Former {
+  name: string;
+  snapshot: Snapshot;
+  files: Promise<ReadonlyMap<string, File>>;
+  slot: string;
+}
+
+/** The step that brings a scene back. */
+class Replacing implements Command {
+  readonly bytes = 0;
+
+  constructor(
+    readonly name: string,
+    readonly undo: () => void,
+  ) {}
+
+  redo(): void {} // the steps of what comes back replace this one
 }
 
 /** How people hear of it. */
 interface KeeperView {
-  offer(offer: Offer): void;
+  /** Undefined takes the last one away. */
+  offer(offer: Offer | undefined): void;
   /** Whether work is kept on this device. */
   note(text: string): void;
   error(text: string): void;
@@ -49,6 +73,9 @@ export class Keeper {
   #timer: ReturnType<typeof setTimeout> | undefined;
   #since: number | undefined;
   #saving: Promise<void> | undefined;
+  /** The target that was requested in place of the one that is shown, and what that was if that is known already. */
+  #coming: { target?: Promise<Model>; former?: Former | undefined } = {};
+  #replacing: Replacing | undefined;
   /** How many states are being opened. */
   #opening = 0;
   /** Why the work was not stored when that was tried last. */
@@ -64,6 +91,18 @@ export class Keeper {
     this.#shelf = shelf;
     this.#view = view;
     project.onTouch(() => this.#touch());
+    history.on('change', () => {
+      if (!this.#replacing || history.last === this.#replacing) return;
+      this.#replacing = undefined;
+      view.offer(undefined);
+    });
+    session.on('leave', () => {
+      const { target, former } = this.#coming;
+      this.#coming = {};
+      if (!target || target !== session.requested.target) return;
+      const missed = former ?? this.#former();
+      if (missed) void this.#giveWay(missed);
+    });
   }
 
   /** Whether nothing would be lost by leaving now. */
@@ -112,30 +151,70 @@ export class Keeper {
     this.#shelf.startOver();
   }
 
-  /** Opens a project. The work before it stays in its slot, as it was. @returns and @throws like `Project.open`. */
+  /** Opens a project. What it replaces stays in its slot, as it was. @returns and @throws like `Project.open`. */
   async open(parts: Record<string, unknown>, files: Files): Promise<boolean> {
     await this.save();
-    const { isKept } = this;
+    const former = this.#former();
     if (!(await this.#open(parts, files))) return false;
-    this.#leaveSlot(isKept);
+    this.#leaveSlot(former);
     return true;
   }
 
-  /** Stores the state as it is now, before something else takes its place, which is stored in another slot. */
-  async putAside(): Promise<void> {
-    if (this.#opening > 0) return; // what is opened knows its slot
+  /** Takes the state as it is now for what the next target replaces: it changes before that is shown. */
+  putAside(): void {
+    this.#coming = { former: this.#former() };
+  }
+
+  /** Once this target is shown, what it replaced can be brought back. */
+  replaceBy(target: Promise<Model>): void {
+    this.#coming.target = target;
+  }
+
+  /** The scene as it is now; undefined if nobody would miss it. */
+  #former(): Former | undefined {
     const snapshot = this.#project.snapshot();
-    let isKept = true;
+    if (!snapshot) return undefined;
+    // What was only looked at is no work that is missed.
+    if (!this.#project.isTouched && this.#history.last === this.#begin && !this.#kept) return undefined;
+    // Made now: paintings may be gone later.
+    const all = [...snapshot.files].map(async ([key, make]): Promise<[string, File]> => {
+      const made = await make();
+      const file = made instanceof File ? made : new File([made], 'painting');
+      this.#project.know(file, key);
+      return [key, file];
+    });
+    const files = Promise.all(all).then((entries) => new Map(entries));
+    files.catch(() => {}); // reported where it is awaited
+    const make = (key: string) => async () => (await files).get(key)!;
+    const { name, sample } = this.#session.shown!.target;
+    return {
+      name: sample?.title ?? name.replace(/\.\w+$/, ''),
+      snapshot: { ...snapshot, files: new Map([...snapshot.files.keys()].map((key) => [key, make(key)])) },
+      files,
+      slot: this.#slot,
+    };
+  }
+
+  /** Stores a scene that is being replaced, and goes on in another slot once the other one is shown. */
+  async #giveWay(former: Former): Promise<void> {
+    const shown = new Promise<void>((done) => {
+      const end = this.#session.on('progress', ({ state }) => {
+        if (state === 'working') return;
+        end();
+        done();
+      });
+    });
     this.#opening++;
     try {
       clearTimeout(this.#timer);
       await this.#saving;
-      if (snapshot && this.#isWork(snapshot) && this.#store) await this.#put(snapshot, this.#store);
-      isKept = this.#has(snapshot);
+      const { snapshot } = former;
+      if (this.#store && JSON.stringify(snapshot.parts) !== this.#kept?.all) await this.#put(snapshot, this.#store);
+      await shown;
     } finally {
       this.#opening--;
     }
-    this.#leaveSlot(isKept);
+    this.#leaveSlot(former);
   }
 
   /** Opens a state. Nothing is stored meanwhile: it would be the models that are shown with settings of those to come. */
@@ -150,27 +229,60 @@ export class Keeper {
     }
   }
 
-  /** Goes on in a new slot, and offers to bring back what was in the last one. @param isKept Whether that is all of the work. */
-  #leaveSlot(isKept: boolean): void {
-    const before = this.#kept && this.#slot;
+  /** Goes on in a new slot. @param former What was in the last one. */
+  #leaveSlot(former: Former | undefined): void {
+    const isKept = this.#has(former?.snapshot);
     this.#moveTo(newSlot());
     void this.#shelf.hold(this.#slot, 0);
-    this.#begin = this.#history.last;
     this.#kept = this.#first = undefined;
+    this.#begin = this.#history.last;
+    this.#view.note('');
+    if (former) this.#offerUndo(former, isKept);
     this.#touch();
-    if (before) this.#offerBack(kAside, before, isKept);
-    else if (!isKept && this.#failure)
-      this.#view.offer({ text: `Your last work could not be put aside: ${this.#failure}.` });
   }
 
-  /** Offers to bring back the work of a slot. @param isWhole Whether all of it is there. */
-  #offerBack(text: string, slot: string, isWhole = true): void {
+  /** Makes it an undo step that a scene was replaced: there is one at most, which holds the scene. */
+  #offerUndo(former: Former, isKept: boolean): void {
+    const step = new Replacing(`replacing ${former.name}`, () => void this.#bringBack(former, step, isKept));
+    this.#history.forget((command) => command instanceof Replacing);
+    this.#history.add(step);
+    this.#begin = this.#replacing = step;
+    const rest = isKept || !this.#failure ? '' : ` It could not be kept on this device: ${this.#failure}.`;
+    const action = { title: 'Undo', run: () => void this.#history.undo() };
+    this.#view.offer({ text: `Replaced ${former.name}.${rest}`, action, isBrief: true });
+  }
+
+  async #bringBack({ snapshot, files, slot }: Former, step: Replacing, isKept: boolean): Promise<void> {
+    try {
+      if (await this.#open(snapshot.parts, filesIn(await files)))
+        return this.#goOnIn(slot, isKept && this.#store ? this.#shelf.fragment : undefined);
+    } catch (error) {
+      this.#session.fail(error);
+    }
+    // It is still what was done last.
+    this.#history.forget((command) => command === step);
+    this.#history.add(step);
+    this.#begin = step;
+  }
+
+  /** Goes on in the slot of a work that was just brought back. @param fragment With which it is stored there; undefined if it is not. */
+  #goOnIn(slot: string, fragment: string | undefined): void {
+    this.#moveTo(slot);
+    this.#shelf.flags.set('slot', slot);
+    this.#begin = this.#history.last;
+    const { parts, work } = this.#project.snapshot()!;
+    this.#kept = fragment === undefined ? undefined : { all: JSON.stringify(parts), work, fragment };
+    this.#first = undefined;
+    if (this.#kept) this.#view.note(kKept);
+  }
+
+  /** Offers to bring back the work of a slot. */
+  #offerBack(text: string, slot: string): void {
     const back = async (): Promise<void> => {
       const work = (await this.#store!.works()).find((one) => one.slot === slot);
       if (work) await this.#show(work);
     };
-    const rest = isWhole || !this.#failure ? '' : ` Its last changes could not be kept: ${this.#failure}.`;
-    this.#view.offer({ text: text + rest, action: { title: 'Bring it back', run: () => void back() } });
+    this.#view.offer({ text, action: { title: 'Bring it back', run: () => void back() } });
   }
 
   /** Goes on in another slot. Only the last one is still held, so that the works of others give way to newer ones. */
@@ -209,10 +321,7 @@ export class Keeper {
   async #show(work: Work, yields = false): Promise<boolean> {
     await this.save();
     const { isKept } = this;
-    // What was only looked at is no work that is missed.
-    const isMissed = this.#history.last !== this.#begin;
-    const before = isMissed ? this.#kept && this.#slot : undefined;
-    const lost = isMissed && !before && !isKept && this.#failure;
+    const former = this.#former();
     // If it takes the page down, the next one does not try by itself.
     this.#shelf.flags.set('work', 'opening');
     try {
@@ -229,14 +338,10 @@ export class Keeper {
         this.#offerBack('Your last work is kept.', work.slot);
         return false;
       }
-      this.#moveTo(work.slot);
-      this.#shelf.flags.set('slot', work.slot);
-      const { parts, work: now } = this.#project.snapshot()!;
-      this.#kept = { all: JSON.stringify(parts), work: now, fragment: work.fragment };
-      const text = `Your last work is back.${lost ? ` What was here could not be kept: ${lost}.` : ''}`;
-      if (before && before !== work.slot) this.#offerBack(`${text} What was here is put aside.`, before, isKept);
-      else this.#view.offer({ text, action: { title: 'Start over', run: () => void this.startOver() } });
-      this.#view.note(kKept);
+      this.#goOnIn(work.slot, work.fragment);
+      const action = { title: 'Start over', run: () => void this.startOver() };
+      if (former) this.#offerUndo(former, isKept);
+      else this.#view.offer({ text: 'Your last work is back.', action });
       return true;
     } catch (error) {
       this.#view.offer({ text: `Your last work could not be brought back: ${messageOf(error)}.` });
@@ -258,7 +363,7 @@ export class Keeper {
   #isWork({ parts, work }: Snapshot): boolean {
     if (this.#kept) return JSON.stringify(parts) !== this.#kept.all || this.#shelf.fragment !== this.#kept.fragment;
     // What the page or a link opened is no work.
-    if (!this.#project.isTouched && !this.#history.last) this.#first = work;
+    if (!this.#project.isTouched && this.#history.last === this.#begin) this.#first = work;
     return work !== this.#first;
   }
 

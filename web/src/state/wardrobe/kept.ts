@@ -27,8 +27,8 @@ export const kAlone: KeptWardrobe = { at: 0, all: false, avatars: [] };
 
 /** The wardrobe, as the rest of the page sees it. */
 export interface WardrobeOfPage {
-  /** Adds dropped files. @returns False if they are not for it. */
-  take(files: readonly File[]): boolean;
+  /** Adds dropped files. @param isAsked Whether people want that. @returns False if they are not for it. */
+  take(files: readonly File[], isAsked?: boolean): boolean;
   /** What a project has of it. */
   readonly kept: KeptWardrobe;
   restore(kept: KeptWardrobe): void;

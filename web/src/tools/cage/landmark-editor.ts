@@ -212,7 +212,7 @@ export class LandmarkEditor {
     if (!this.#dots || !this.#fitting) return;
     const { x, y } = this.#viewer.screen.center;
     const nearer = this.#viewer.screen.rayAt(x, y).direction.multiplyScalar(-0.015 * this.#size);
-    const names = Object.keys(this.spots);
+    const names = this.#session.isLeaving ? [] : Object.keys(this.spots);
     this.#dots.show(
       names.map((name) => ({ at: this.#at(name), color: this.#colorOf(name) })),
       nearer,

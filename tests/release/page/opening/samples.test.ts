@@ -1,0 +1,83 @@
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import type { Page, Route } from 'playwright-core';
+import { faults } from '../../../support/axe';
+import { kNoWebGl, Site, settled, shownError } from '../../../support/site';
+
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+const kHuman = /\/human\/target\.glb/;
+
+/** Answers only when the test lets it. */
+async function hang(page: Page, address: RegExp): Promise<Route[]> {
+  const held: Route[] = [];
+  await page.route(address, (route) => void held.push(route));
+  return held;
+}
+
+test('a sample that does not come is said to after ten seconds, and can be asked for again; it may come meanwhile', async () => {
+  const { page } = await site.visit({}, kNoWebGl);
+  const box = page.getByTestId('ask');
+  const held = await hang(page, kHuman);
+  await page.clock.install();
+  const choose = async (): Promise<void> => {
+    await page.getByTestId('sample-select').selectOption('human');
+    await page.clock.runFor(9_000);
+    assert.ok(await box.isHidden());
+    await page.clock.runFor(2_000);
+    await box.filter({ hasText: /^Human.*: still waiting for the server\./ }).waitFor();
+  };
+  await choose();
+  assert.deepEqual(await faults(page), []);
+  await held.splice(0)[0]!.continue();
+  await box.waitFor({ state: 'hidden' });
+  assert.equal(await settled(page), 'ready', await shownError(page));
+
+  await page.getByTestId('sample-select').selectOption('lizard');
+  assert.equal(await settled(page), 'ready');
+  await choose();
+  await page.unroute(kHuman);
+  await box.getByRole('button', { name: 'Try again' }).click();
+  await page.locator('#target-name', { hasText: 'target.glb' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.equal(await page.getByTestId('sample-select').inputValue(), 'human');
+  assert.ok(await box.isHidden());
+
+  // Whoever cancels is not told any more.
+  await hang(page, /\/lizard\/cage\.glb/);
+  await page.getByTestId('sample-select').selectOption('lizard');
+  await page.getByTestId('cancel').click();
+  await page.clock.runFor(11_000);
+  assert.ok(await box.isHidden());
+});
+
+test('a sample that fails can be asked for again', async () => {
+  const { page } = await site.visit({}, kNoWebGl);
+  const box = page.getByTestId('ask');
+  await page.route(kHuman, (route) => route.abort());
+  await page.getByTestId('sample-select').selectOption('human');
+  await box.filter({ hasText: /^Human.*: not loaded\./ }).waitFor();
+  assert.equal(await settled(page), 'error');
+  assert.equal(await shownError(page), 'human/target.glb: the file could not be loaded');
+  assert.equal(await page.getByTestId('sample-select').inputValue(), 'lizard', 'what is shown');
+  await page.unroute(kHuman);
+  await box.getByRole('button', { name: 'Try again' }).click();
+  await page.locator('#status[data-state=ready]').waitFor({ state: 'attached' });
+  assert.equal(await page.getByTestId('sample-select').inputValue(), 'human');
+  assert.ok(await box.isHidden());
+  assert.equal(await shownError(page), '');
+});
+
+test('so can the list of samples', async () => {
+  const { page } = await site.visit({}, async (page) => {
+    await page.addInitScript(kNoWebGl);
+    await page.route(/\/samples\/index\.json/, (route) => route.abort());
+  });
+  await page.getByTestId('ask').filter({ hasText: 'The samples: not loaded.' }).waitFor();
+  await page.unroute(/\/samples\/index\.json/);
+  await page.getByRole('button', { name: 'Try again' }).click();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.waitForFunction(() => document.querySelector<HTMLSelectElement>('#sample-select')!.options.length > 2);
+});
