@@ -1,6 +1,6 @@
 import { Document, NodeIO } from '@gltf-transform/core';
-import type { Mesh as Arrays } from 'cagecast';
 import { KHRTextureTransform } from '@gltf-transform/extensions';
+import type { Mesh as Arrays } from 'cagecast';
 import { PNG } from 'pngjs';
 import { BoxGeometry, type BufferGeometry, SphereGeometry } from 'three';
 import type { Upload } from './site';
