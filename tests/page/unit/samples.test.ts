@@ -11,6 +11,7 @@ import type { Sample } from '../../../web/src/state/sample';
 const file = (name: string): string => `examples/samples/${name}`;
 const samples: Sample[] = JSON.parse(readFileSync(file('index.json'), 'utf8'));
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS).registerDependencies({ 'meshopt.decoder': MeshoptDecoder });
+await MeshoptDecoder.ready;
 
 test('the list of samples names files that are there, and marks those that are cases for tests', () => {
   for (const { target, cage, paints } of samples)
