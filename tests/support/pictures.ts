@@ -3,7 +3,7 @@
 import { mkdir, writeFile } from 'node:fs/promises';
 import { type Accessor, NodeIO } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
-import { drop, glb, inRepository, Site, settled, type Upload } from './site';
+import { drop, glb, inRepository, kPlay, Site, settled, type Upload } from './site';
 
 const kFolder = inRepository('docs/pictures');
 const kModels = ['Lizard head', 'Human bust', 'Saloon car'];
@@ -75,16 +75,17 @@ async function fillWardrobe(page: Page): Promise<void> {
   await page.locator('#view-mode input[value=result]').check({ force: true });
 }
 
-/** The whole page on two screens. */
+/** The whole page on two screens: a figure in Play, and a wardrobe. */
 async function desktopAndPhone(site: Site): Promise<void> {
   const shots: string[] = [];
   for (const [width, height, colorScheme] of [
     [1440, 900, 'light'],
-    [390, 900, 'dark'],
+    [390, 844, 'dark'],
   ] as const) {
-    const { page } = await site.visit({ viewport: { width, height }, deviceScaleFactor: 1, colorScheme });
-    if (width < 600) await choose(page, 'Human bust');
-    else await fillWardrobe(page);
+    const isPhone = width < 600;
+    const options = { viewport: { width, height }, deviceScaleFactor: 1, colorScheme, hasTouch: isPhone };
+    const { page } = await site.visit(options, kPlay, isPhone ? '#sample=avatar&view=result' : '');
+    if (!isPhone) await fillWardrobe(page);
     await rest(page);
     shots.push(dataUri(await page.screenshot({ type: 'png' })));
   }
@@ -121,39 +122,21 @@ async function share(site: Site): Promise<void> {
   await sheet.screenshot({ path: `${kFolder}/share.jpg`, type: 'jpeg', quality: 85 });
 }
 
-/** Each model in the modes that are not about paint. */
-async function modes(site: Site): Promise<void> {
-  const shown = {
-    zones: 'zones',
-    segments: 'parts',
-    checker: 'UV checker',
-    distance: 'distance to the cage',
-    stretch: 'stretch',
-  };
-  const rows: string[] = [];
-  const { page } = await site.visit({ viewport: { width: 900, height: 520 }, deviceScaleFactor: 1 });
+/** The steps of the method, as the film strip shows them. */
+async function steps(site: Site): Promise<void> {
+  const { page } = await site.visit({ viewport: { width: 900, height: 640 }, deviceScaleFactor: 1 }, kPlay);
+  await page.locator('#method > summary').click();
   await hideControls(page);
-  for (const model of kModels) {
-    await choose(page, model);
-    const row: string[] = [];
-    for (const mode of Object.keys(shown)) {
-      await page.locator(`#view-mode input[value=${mode}]`).check({ force: true });
-      await rest(page);
-      row.push(dataUri(await page.locator('#stage').screenshot({ type: 'png' })));
-    }
-    rows.push(
-      row
-        .map(
-          (shot) =>
-            `<img src="${shot}" style="width:264px;height:214px;object-fit:cover;object-view-box:inset(6% 25% 17% 25%)">`,
-        )
-        .join(''),
+  const shots: string[] = [];
+  for (const step of ['Cage', 'Closest point', 'Rays', 'Parts', 'Result']) {
+    await page.locator('#film-frames').getByRole('button', { name: step }).click();
+    await rest(page);
+    const shot = dataUri(await page.locator('#stage').screenshot({ type: 'png' }));
+    shots.push(
+      `<div style="text-align:center">${step}<br><img src="${shot}" style="width:264px;height:264px;object-fit:cover;object-view-box:inset(4% 18% 8% 12%)"></div>`,
     );
   }
-  const heads = Object.values(shown)
-    .map((head) => `<b style="width:264px;text-align:center">${head}</b>`)
-    .join('');
-  await compose(site, 'modes', [heads, ...rows].map((row) => `<div style="display:flex">${row}</div>`).join(''));
+  await compose(site, 'steps', `<div style="display:flex">${shots.join('')}</div>`);
 }
 
 /** The stories of an eye, and of a spot that the model hides. */
@@ -208,7 +191,7 @@ async function choose(page: Page, model: string): Promise<void> {
 
 async function hideControls(page: Page): Promise<void> {
   await page.addStyleTag({
-    content: '.panel, .toolbar, .rail, .legend, .stage-head, .angles, .quick, header { opacity: 0 }',
+    content: '.panel, .toolbar, .rail, .legend, .stage-head, .angles, .clips, .quick, header { opacity: 0 }',
   });
 }
 
@@ -230,7 +213,7 @@ const wanted = process.argv.slice(2);
 const site = await Site.open('real');
 try {
   await mkdir(kFolder, { recursive: true });
-  for (const take of [first, compare, share, desktopAndPhone, modes, why, borders])
+  for (const take of [first, compare, share, desktopAndPhone, steps, why, borders])
     if (wanted.length === 0 || wanted.includes(take.name)) await take(site);
 } finally {
   await site.close();

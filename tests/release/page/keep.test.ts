@@ -173,7 +173,7 @@ async function keptFiles(page: Page): Promise<string[]> {
 
 test('the works of open tabs are kept however many there are, and a work whose files were dropped is kept whole again', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
-  const filesOf = (name: string): string => `${name}-cage.glb ${name}.glb tiger.png`;
+  const filesOf = (name: string): string => `${name}-cage.glb ${name}.glb flowers.png`;
   const waitFor = async (page: Page, ...wanted: string[]): Promise<void> => {
     for (const end = Date.now() + 60_000; ; await page.evaluate(() => new Promise(requestAnimationFrame))) {
       const found = await keptFiles(page);

@@ -218,7 +218,7 @@ export class Opener implements Samples {
     const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`;
     const { leftOut } = target.mesh;
     const others = leftOut.length > 0 ? ` Left out: ${leftOut.join(', ')}.` : '';
-    element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.${others}`;
+    element('sizes', HTMLElement).textContent = `Model ${size(target)}, cage ${size(cage)}.${others}`;
     this.#describeOrigin({ target, cage });
     void this.#offerPaints({ cage });
   }
@@ -237,8 +237,8 @@ export class Opener implements Samples {
       isMade || !target.sample === !cage.sample
         ? 'Choose your own files, or drop them anywhere on the page. They stay on this device.'
         : target.sample
-          ? 'The cage is yours, but the target is still the sample’s. Add the target that your cage was made for.'
-          : 'The target is yours, but the cage is still the sample’s. Add the cage that was made for your target, or make one.';
+          ? 'The cage is yours, but the model is still the sample’s. Add the model that your cage was made for.'
+          : 'The model is yours, but the cage is a sample’s. Add the cage that was made for your model, or make one.';
   }
 
   /** Sets the base paint, as an undo step. */

@@ -15,7 +15,7 @@ export async function loadSamples(): Promise<Sample[]> {
   const response = await fetch(new URL('index.json', kFolder)).catch(() => undefined);
   const list: Sample[] | undefined = response?.ok ? await response.json().catch(() => undefined) : undefined;
   if (!Array.isArray(list) || list.length === 0) {
-    throw new Error('The samples could not be loaded. You can still drop a target and a cage of your own.');
+    throw new Error('The samples could not be loaded. You can still drop a model of your own.');
   }
   const address = (path: string): string => new URL(path, kFolder).href;
   return list.map(({ target, cage, paints, ...rest }) => ({

@@ -39,11 +39,14 @@ export function showStatus(session: Session, blind: boolean): void {
         showNotice('stage-notice', blind ? kBlind : '');
         return show('ready');
       case 'waiting':
-        showNotice('stage-notice', `Now add a ${progress.missing.join(' and a ')}.`);
+        showNotice(
+          'stage-notice',
+          `Now add a ${progress.missing.map((slot) => (slot === 'target' ? 'model' : slot)).join(' and a ')}.`,
+        );
         return show('loading');
       case 'failed':
         showError(progress.error.message);
-        if (!session.shown) showNotice('stage-notice', 'Nothing to show yet. Drop a target and its cage here.');
+        if (!session.shown) showNotice('stage-notice', 'Nothing to show yet. Drop a model here.');
         return show('error');
     }
   });
