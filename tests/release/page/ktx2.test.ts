@@ -82,7 +82,7 @@ test('KTX2 textures work under the content security policy, are saved unchanged,
     for (const painted of kPaints[kind]!) {
       await page
         .getByTestId('layer-list')
-        .getByRole('checkbox', { name: 'Show Tiger' })
+        .getByRole('checkbox', { name: 'Show Flowers' })
         .setChecked(painted, { force: true });
       const document = await validModel((await saved(page, 'export-glb')).bytes);
       assert.equal(

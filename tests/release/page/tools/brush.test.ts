@@ -145,7 +145,7 @@ test('a stroke that goes on while another model comes stays with its cage', asyn
   assert.equal(await settled(page), 'ready', await shownError(page));
   await page.mouse.move(x + 0.6 * width, y + 0.5 * height, { steps: 4 });
   await page.mouse.up();
-  assert.deepEqual(await names(page), ['Tiger']);
+  assert.deepEqual(await names(page), ['Flowers']);
   await page.getByTestId('ask').getByRole('button', { name: 'Undo' }).click();
   await page.getByTestId('layer-list').getByText('Painting 1').waitFor();
   assert.deepEqual(complaints, []);
