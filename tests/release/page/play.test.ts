@@ -68,6 +68,19 @@ test('Inspect has everything, is remembered, and comes by itself with what belon
   assert.deepEqual([await face(linked), await mode(linked)], ['inspect', 'zones']);
 });
 
+test('the side that is seen becomes the front', async () => {
+  const { page } = await site.visit(kDesk, kPlay, '#sample=lizard&view=result');
+  const area = await modelArea(page);
+  await page.locator('#angles').getByRole('button', { name: 'Left' }).click();
+  const left = await look(page, area);
+  await page.locator('#more > summary').click();
+  await page.getByTestId('set-front').click();
+  await page.locator('#angles').getByRole('button', { name: 'Back' }).click();
+  assert.ok(difference(left, await look(page, area)) > 0.02);
+  await page.locator('#angles').getByRole('button', { name: 'Front' }).click();
+  assert.ok(difference(left, await look(page, area)) < 0.01);
+});
+
 test('the film strip leads through the method on the model, is a link, and works with the keyboard', async () => {
   const { page, complaints } = await site.visit(kDesk, kPlay, '#sample=lizard&view=film&film=2');
   const text = page.getByTestId('film-text');

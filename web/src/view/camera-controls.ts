@@ -1,7 +1,7 @@
 import { Box3, MathUtils, MOUSE, PerspectiveCamera, Sphere, Spherical, TOUCH, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import type { Angle } from '../state/view-state';
-import { aspectOf, type FreePart, fittingDistance, kFieldOfView, kHome } from './framing';
+import { aspectOf, type FreePart, fittingDistance, kFieldOfView, kHome, setFrontOf } from './framing';
 import type { Stage } from './stage';
 
 const kLevel = MathUtils.degToRad(84); // of the views from the front and from the side
@@ -92,6 +92,12 @@ export class CameraControls {
     const { center, radius } = new Box3().setFromPoints([...points]).getBoundingSphere(new Sphere());
     const distance = Math.max(kRegionMargin * radius * this.#fullDistance, this.#controls.minDistance);
     this.#look({ phi: kLevel, theta: front, radius: Math.min(distance, this.#far) }, center);
+  }
+
+  /** Makes the side that is seen the model's front. */
+  takeFront(): void {
+    if (this.#stage.model) setFrontOf(this.#stage.model, this.#orbit.theta);
+    this.lookFromSide('front');
   }
 
   /** Looks at a point of the studio from nearer, and from the same side. */

@@ -57,6 +57,11 @@ export function frontOf({ loaded }: Pick<Model, 'loaded'>): number {
   return front;
 }
 
+/** Makes another side the front of a model. @param front As `frontOf`. */
+export function setFrontOf({ loaded }: Pick<Model, 'loaded'>, front: number): void {
+  fronts.set(loaded, front);
+}
+
 const fronts = new WeakMap<object, number>();
 
 /** Figures are turned by less than this, in radians, by how they stand. */

@@ -6,6 +6,7 @@ import type { CameraControls, Side } from './camera-controls';
 export function setUpStageButtons(controls: CameraControls | undefined, history: History): void {
   for (const button of element('angles', HTMLElement).querySelectorAll('button'))
     button.addEventListener('click', () => controls?.lookFromSide(button.dataset.side as Side));
+  element('set-front', HTMLButtonElement).addEventListener('click', () => controls?.takeFront());
 
   // The panel has the same controls; these pass on what is done to them.
   for (const name of ['color', 'size']) {
