@@ -34,8 +34,8 @@ export class Opener implements Samples {
   #samples: Sample[] = [];
   /** Warnings about the latest files, shown once these are loaded. */
   #warnings: readonly string[] = [];
-  /** The cage whose paints are listed. */
-  #offered: Model | undefined;
+  /** The cage whose paints are listed, and the pictures of those that are drawn, once they are there. */
+  #offered: { cage: Model; pictures: readonly string[] } | undefined;
   /** The base paint that was chosen last. */
   #chosen: Promise<Paint> | undefined;
 
@@ -276,14 +276,16 @@ export class Opener implements Samples {
 
   /** Lists the base paints: at once the sample's, and the checker; those that are drawn once there are pictures of them. */
   async #offerPaints({ cage }: Pick<Shown, 'cage'>): Promise<void> {
-    if (this.#offered !== cage) this.#listPaints(cage, []);
-    this.#offered = cage;
+    if (this.#offered?.cage !== cage) this.#offered = { cage, pictures: [] };
+    const offered = this.#offered;
+    this.#listPaints(offered);
     const pictures = await this.#drawings.pictures(cage).catch(() => []);
-    if (this.#session.shown?.cage === cage) this.#listPaints(cage, pictures);
+    if (offered !== this.#offered || offered.pictures === pictures) return;
+    offered.pictures = pictures;
+    this.#listPaints(offered);
   }
 
-  /** @param pictures  Of the paints that are drawn. */
-  #listPaints(cage: Model, pictures: readonly string[]): void {
+  #listPaints({ cage, pictures }: { cage: Model; pictures: readonly string[] }): void {
     const { checker } = this.#session;
     const sample = sampleOf(cage);
     const drawn = this.#drawings.listFor(cage);
