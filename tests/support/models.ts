@@ -298,7 +298,7 @@ function meshOf(document: Document, geometry: BufferGeometry, withUvs: boolean) 
 export const flipped = (uvs: Float32Array): Float32Array => uvs.map((x, i) => (i % 2 === 0 ? x : 1 - x));
 
 /** A node of an FBX of text: its line, and what is in it. Its depth is told by tabs. */
-const fbxNode = (line: string, ...inside: string[]): string =>
+export const fbxNode = (line: string, ...inside: string[]): string =>
   `${line} {\n${inside.map((one) => one.replace(/^/gm, '\t')).join('\n')}\n}`;
 
 /** An FBX of text. */

@@ -11,7 +11,7 @@ import { STLExporter } from 'three/addons/exporters/STLExporter.js';
 import { USDZExporter } from 'three/addons/exporters/USDZExporter.js';
 import { fails, ok } from '../../support/command.js';
 import { isOverlay, primitivesOf, unpackGlb, validate } from '../../support/gltf.js';
-import { fbxOf, flipped } from '../../support/models.js';
+import { fbxNode, fbxOf, flipped } from '../../support/models.js';
 import { io, png, workplace, write } from './workplace.js';
 
 const { cage, target } = workplace('formats');
