@@ -18,34 +18,46 @@ async function compare(site: Site): Promise<void> {
   await page.screenshot({ path: `${kFolder}/compare.jpg`, type: 'jpeg', quality: 88, clip });
 }
 
-/** What the page shows until it has drawn the first picture itself: that one, in a square 1.3 times what is sure to be seen. */
+/**
+ * What the page shows until it has drawn the first picture itself, on a desk and on a phone: that one, in a square as large as the
+ * stylesheet shows it.
+ */
 async function first(site: Site): Promise<void> {
-  const { page } = await site.visit({ viewport: { width: 1440, height: 900 }, deviceScaleFactor: 2 });
-  await page.addStyleTag({
-    content:
-      '* { background: none !important; box-shadow: none !important } .panel, header, #stage > :not(canvas) { opacity: 0 }',
-  });
-  await rest(page);
-  const clip = (await page.locator('#view').boundingBox())!;
-  const shot = dataUri(await page.screenshot({ type: 'png', omitBackground: true, clip }));
-  const webp = await page.evaluate(
-    async ({ shot, width, height, pixels }) => {
-      const image = new Image();
-      image.src = shot;
-      await image.decode();
-      const free = height - 96; // what the toolbar leaves
-      const side = 1.3 * Math.min(free, width);
-      const canvas = document.createElement('canvas');
-      canvas.width = canvas.height = pixels;
-      const context = canvas.getContext('2d')!;
-      context.imageSmoothingQuality = 'high';
-      context.scale(pixels / side, pixels / side);
-      context.drawImage(image, (side - width) / 2, (side - free) / 2, width, height);
-      return canvas.toDataURL('image/webp', 0.82);
-    },
-    { shot, ...clip, pixels: 1200 },
-  );
-  await writeFile(`${kFolder}/first.webp`, Buffer.from(webp.split(',')[1]!, 'base64'));
+  for (const [name, viewport, deviceScaleFactor] of [
+    ['first', { width: 1440, height: 900 }, 2],
+    ['first-phone', { width: 390, height: 844 }, 3],
+  ] as const) {
+    const { page } = await site.visit({ viewport, deviceScaleFactor }, kPlay);
+    await page.addStyleTag({
+      content:
+        '* { background: none !important; box-shadow: none !important } .panel, header, #stage > :not(canvas) { opacity: 0 }',
+    });
+    await rest(page);
+    const clip = (await page.locator('#view').boundingBox())!;
+    const shot = dataUri(await page.screenshot({ type: 'png', omitBackground: true, clip }));
+    const webp = await page.evaluate(
+      async ({ shot, width, height, pixels }) => {
+        const image = new Image();
+        image.src = shot;
+        await image.decode();
+        const style = getComputedStyle(document.querySelector('#view')!);
+        const [top = 0, bottom = 0, fill = 1] = ['top', 'bottom', 'fill'].map((name) =>
+          parseFloat(style.getPropertyValue(`--stage-${name}`)),
+        );
+        const free = height - top - bottom; // what controls leave
+        const side = (1.118 / fill) * Math.min(free, width);
+        const canvas = document.createElement('canvas');
+        canvas.width = canvas.height = pixels;
+        const context = canvas.getContext('2d')!;
+        context.imageSmoothingQuality = 'high';
+        context.scale(pixels / side, pixels / side);
+        context.drawImage(image, (side - width) / 2, (side - free) / 2 - top, width, height);
+        return canvas.toDataURL('image/webp', 0.82);
+      },
+      { shot, ...clip, pixels: 1200 },
+    );
+    await writeFile(`${kFolder}/${name}.webp`, Buffer.from(webp.split(',')[1]!, 'base64'));
+  }
 }
 
 /** Busts of other shapes. */
@@ -129,7 +141,7 @@ async function steps(site: Site): Promise<void> {
   await hideControls(page);
   const shots: string[] = [];
   for (const step of ['Cage', 'Closest point', 'Rays', 'Parts', 'Result']) {
-    await page.locator('#film-frames').getByRole('button', { name: step }).click();
+    await page.locator('#steps').getByRole('button', { name: step }).click();
     await rest(page);
     const shot = dataUri(await page.locator('#stage').screenshot({ type: 'png' }));
     shots.push(

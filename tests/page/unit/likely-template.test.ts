@@ -24,4 +24,6 @@ test('names tell more than the shape: a figure has bones of arms and legs, a car
   assert.equal(likely(['Head', 'Neck', 'Jaw'], ['Skin']), 'human-head');
   assert.equal(likely(['front_leg_l', 'tail'], ['Fur']), 'human-head', 'no arms');
   assert.equal(likely([], ['body', 'wheel_front_left']), 'car');
+  assert.equal(likely([], ['Tire_FL']), 'car');
+  assert.equal(likely([], ['tree', 'centre', 'tired_face']), 'human-head');
 });

@@ -14,7 +14,7 @@ const state: LinkState = {
   view: {
     mode: 'zones',
     split: 0.5,
-    film: 0,
+    step: 0,
     paint: false,
     cage: true,
     seeThrough: true,

@@ -20,10 +20,11 @@ test('parts have plain names, by their materials or else their meshes; names tha
     part('Windshield'),
     part('Tire_FL'),
     part('BeardStyle_2'),
+    part('centre'),
     part('node_17'),
   ].map(plainNameOf);
   const expected = ['teeth', 'eyes', 'eyes', 'brows', 'lashes', 'glasses', 'clothes', 'shoes', 'windows', 'wheels'];
-  assert.deepEqual(names, [...expected, 'beard', 'node_17']);
+  assert.deepEqual(names, [...expected, 'beard', 'centre', 'node_17']);
 });
 
 test('parts that are mostly bare are named once, those that are known first; what lies beyond the cage or is left out is not', () => {

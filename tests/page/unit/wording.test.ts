@@ -7,6 +7,10 @@ import { inRepository } from '../../support/site';
 
 test('findings are said in the words of the page: parts, the model', () => {
   assert.equal(forPeople('Half of the target is bare'), 'Half of the model is bare');
+  assert.equal(
+    forPeople('Of “Target_Body” and "segment 2" of the target'),
+    'Of “Target_Body” and "segment 2" of the model',
+  );
   assert.equal(forPeople('Of 2 segments with the shape of "eye", 1 is'), 'Of 2 parts with the shape of "eye", 1 is');
 });
 

@@ -82,25 +82,25 @@ test('the side that is seen becomes the front', async () => {
 });
 
 test('the film strip leads through the method on the model, is a link, and works with the keyboard', async () => {
-  const { page, complaints } = await site.visit(kDesk, kPlay, '#sample=lizard&view=film&film=2');
-  const text = page.getByTestId('film-text');
+  const { page, complaints } = await site.visit(kDesk, kPlay, '#sample=lizard&view=steps&step=2');
+  const text = page.getByTestId('step-text');
   await text.filter({ hasText: /^A ray/ }).waitFor();
   await page.locator('#legend').waitFor();
   const area = await modelArea(page);
   const pictures = [await look(page, area)];
-  await page.getByTestId('film').focus();
+  await page.getByTestId('step').focus();
   await page.keyboard.press('Home');
   await text.filter({ hasText: /^A simple mesh/ }).waitFor();
   pictures.push(await look(page, area));
   for (const step of ['Closest point', 'Parts', 'Result']) {
-    await page.locator('#film-frames').getByRole('button', { name: step }).click();
-    assert.equal(await page.locator('#film-frames [aria-current=step]').textContent(), step);
+    await page.locator('#steps').getByRole('button', { name: step }).click();
+    assert.equal(await page.locator('#steps [aria-current=step]').textContent(), step);
     pictures.push(await look(page, area));
   }
   pictures.forEach((one, i) =>
     pictures.slice(i + 1).forEach((other) => assert.ok(difference(one, other) > 0.01, 'each frame is another one')),
   );
-  const drawn = await page.locator('#film-frames canvas').evaluateAll((all) =>
+  const drawn = await page.locator('#steps canvas').evaluateAll((all) =>
     all.map((canvas) => {
       const { width, height } = canvas as HTMLCanvasElement;
       const { data } = (canvas as HTMLCanvasElement).getContext('2d')!.getImageData(0, 0, width, height);
@@ -108,7 +108,7 @@ test('the film strip leads through the method on the model, is a link, and works
     }),
   );
   assert.deepEqual(drawn, [true, true, true, true, true], 'each has its picture');
-  assert.match((await page.getByTestId('share-link').getAttribute('href'))!, /view=film&film=4/);
+  assert.match((await page.getByTestId('share-link').getAttribute('href'))!, /view=steps&step=4/);
   assert.deepEqual(await faults(page), []);
   await page.locator('#method > summary').click();
   assert.equal(await mode(page), 'result', 'closing it ends it');

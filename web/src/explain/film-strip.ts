@@ -10,7 +10,7 @@ import { BoundaryLoops } from './boundary-loops';
 import { kAway, kRayColors } from './marks';
 import { type Path, pathOf } from './path';
 
-/** The frames, one for each step of the method; what they show is in `kFrames` of the view. */
+/** The frames, one for each step of the method; what they show is in `kSteps` of the view. */
 const kSteps: readonly { title: string; text: string }[] = [
   {
     title: 'Cage',
@@ -44,8 +44,8 @@ export class FilmStrip {
   readonly #session: Session;
   readonly #viewer: Viewer;
   readonly #card = element('method', HTMLDetailsElement);
-  readonly #slider = element('film', HTMLInputElement);
-  readonly #text = element('film-text', HTMLElement);
+  readonly #slider = element('step', HTMLInputElement);
+  readonly #text = element('step-text', HTMLElement);
   readonly #frames = kSteps.map(({ title }, at) => {
     const picture = make('canvas', { width: 120, height: 120 });
     picture.ariaHidden = 'true';
@@ -60,55 +60,55 @@ export class FilmStrip {
   constructor(session: Session, viewer: Viewer) {
     this.#session = session;
     this.#viewer = viewer;
-    element('film-frames', HTMLElement).append(...this.#frames.map(({ button }) => button));
+    element('steps', HTMLElement).append(...this.#frames.map(({ button }) => button));
     this.#slider.addEventListener('input', () => this.#show(Number(this.#slider.value)));
     this.#card.addEventListener('toggle', () => {
       if (this.#card.open) void this.#takePictures();
-      else if (session.view.mode === 'film') session.setView({ mode: 'result' });
+      else if (session.view.mode === 'steps') session.setView({ mode: 'result' });
     });
     session.on('transfer', () => this.#forget());
     session.on('frame', () => this.#forget());
     session.on('zones', () => this.#card.open && void this.#takePictures());
-    session.on('view', ({ mode, film }) => this.#follow(mode === 'film' ? film : undefined));
-    const { mode, film } = session.view;
-    this.#follow(mode === 'film' ? film : undefined);
+    session.on('view', ({ mode, step }) => this.#follow(mode === 'steps' ? step : undefined));
+    const { mode, step } = session.view;
+    this.#follow(mode === 'steps' ? step : undefined);
     if (this.#card.open) void this.#takePictures();
   }
 
   #forget(): void {
     this.#paths = undefined;
     this.#draw(undefined);
-    const { mode, film } = this.#session.view;
-    if (mode === 'film') this.#draw(Math.round(film));
+    const { mode, step } = this.#session.view;
+    if (mode === 'steps') this.#draw(Math.round(step));
   }
 
-  #show(film: number): void {
+  #show(step: number): void {
     cancelAnimationFrame(this.#going);
-    this.#session.setView({ mode: 'film', film });
+    this.#session.setView({ mode: 'steps', step });
   }
 
   /** Moves to a frame. */
   #goTo(at: number): void {
-    const from = this.#session.view.mode === 'film' ? this.#session.view.film : Math.max(0, at - 1);
+    const from = this.#session.view.mode === 'steps' ? this.#session.view.step : Math.max(0, at - 1);
     if (matchMedia('(prefers-reduced-motion: reduce)').matches) {
       this.#show(at);
       return;
     }
     const begun = performance.now();
-    const step = (now: number): void => {
+    const move = (now: number): void => {
       const share = Math.min(1, Math.max(0, now - begun) / (1000 * kSeconds));
       this.#show(from + (at - from) * share * share * (3 - 2 * share));
-      if (share < 1) this.#going = requestAnimationFrame(step);
+      if (share < 1) this.#going = requestAnimationFrame(move);
     };
-    step(begun);
+    move(begun);
   }
 
-  /** @param film Undefined while the stage shows something else. */
-  #follow(film: number | undefined): void {
-    const at = film === undefined ? undefined : Math.round(film);
-    if (film !== undefined) {
+  /** @param step Undefined while the stage shows something else. */
+  #follow(step: number | undefined): void {
+    const at = step === undefined ? undefined : Math.round(step);
+    if (step !== undefined) {
       this.#card.open = true;
-      this.#slider.value = String(film);
+      this.#slider.value = String(step);
     }
     for (const [i, { button }] of this.#frames.entries()) button.ariaCurrent = i === at ? 'step' : null;
     const { title, text } = kSteps[at ?? kLast]!;
@@ -156,7 +156,7 @@ export class FilmStrip {
   async #takePictures(): Promise<void> {
     await this.#viewer.drawn();
     const { view } = this.#session;
-    this.#frames.forEach(({ picture }, film) => this.#viewer.picture({ ...view, mode: 'film', film }, picture));
+    this.#frames.forEach(({ picture }, step) => this.#viewer.picture({ ...view, mode: 'steps', step }, picture));
   }
 }
 

@@ -105,7 +105,8 @@ export class ExportPanel {
     // Not disabled, so that it keeps the focus.
     if (button.ariaBusy) return;
     const session = this.#session;
-    if (session.isReplacing) return showNotice('export-note', 'Something else is coming. Save the model then.');
+    if (session.isReplacing)
+      return showNotice('export-note', 'Another model or cage is on its way. Save once it is there.');
     button.ariaBusy = 'true';
     showNotice('export-note', '');
     const abort = new AbortController();

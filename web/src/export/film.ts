@@ -33,13 +33,14 @@ export async function record(viewer: Viewer, background: string, onSecond: (left
   const isDark = matchMedia('(prefers-color-scheme: dark)').matches;
   studio.setBackground(background || (isDark ? '#20252d' : '#eef1f4'));
   if (turns) controls.turntable(kSeconds);
-  recorder.start();
-  for (let left = kSeconds; left > 0 && recorder.state === 'recording'; left--) {
+  let left = kSeconds;
+  const clock = setInterval(() => (--left > 0 ? onSecond(left) : recorder.stop()), 1000);
+  try {
+    recorder.start();
     onSecond(left);
-    await new Promise((done) => setTimeout(done, 1000));
-  }
-  if (recorder.state === 'recording') recorder.stop();
-  await ended.finally(() => {
+    await ended;
+  } finally {
+    clearInterval(clock);
     studio.setBackground(background);
     if (turns) {
       controls.turntable(undefined);
@@ -47,6 +48,6 @@ export async function record(viewer: Viewer, background: string, onSecond: (left
       else controls.home();
     }
     for (const track of recorder.stream.getTracks()) track.stop();
-  });
+  }
   return new Blob(chunks, { type: mimeType.split(';')[0]! });
 }

@@ -1,7 +1,7 @@
 import { type Choice, kMaxWeld, type Locks, type Rules } from '../state/choices';
 import { type ChosenShape, kDeforms } from '../state/deform';
 import type { Angle } from '../state/view-state';
-import { kLastFrame, kLightNames, kModes, type Mode, type View } from '../state/view-state';
+import { kLastStep, kLightNames, kModes, type Mode, type View } from '../state/view-state';
 
 const kChoices = ['keep', 'exclude', 'always', 'out'] as const;
 
@@ -51,7 +51,7 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
   }
   words.set('view', view.mode);
   if (view.mode === 'compare') words.set('split', view.split.toFixed(3));
-  if (view.mode === 'film') words.set('film', view.film.toFixed(2));
+  if (view.mode === 'steps') words.set('step', view.step.toFixed(2));
   if (!view.paint) words.set('paint', 'off');
   if (view.cage) words.set('cage', 'on');
   if (view.seeThrough) words.set('through', 'on');
@@ -88,7 +88,7 @@ export function readLink(fragment: string): LinkState | undefined {
     view: {
       mode: kModes.includes(mode) ? mode : 'compare',
       split: share(words.get('split'), 0.5),
-      film: share(words.get('film'), 0, kLastFrame),
+      step: share(words.get('step'), 0, kLastStep),
       paint: words.get('paint') !== 'off',
       cage: words.get('cage') === 'on',
       seeThrough: words.get('through') === 'on',

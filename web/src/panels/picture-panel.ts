@@ -21,7 +21,8 @@ export function setUpPicture(session: Session, viewer: Viewer): void {
     own.checked = true;
     setBackground();
   });
-  turntable.addEventListener('change', () => viewer.controls.turntable(turntable.checked ? kTurnSeconds : undefined));
+  const turn = (): void => viewer.controls.turntable(turntable.checked ? kTurnSeconds : undefined);
+  turntable.addEventListener('change', turn);
   session.on('view', (view) => {
     light.value = view.light;
     own.checked = view.background !== '';
@@ -35,7 +36,7 @@ export function setUpPicture(session: Session, viewer: Viewer): void {
       showError(`The picture could not be saved: ${(error as Error).message}`);
     }
   });
-  offerFilm(session, viewer);
+  offerFilm(session, viewer, turn);
   offerRoom(session, viewer);
   picture.hidden = element('picture', HTMLElement).hidden = false;
 }
@@ -54,8 +55,8 @@ async function screenshot(viewer: Viewer): Promise<Blob> {
   return blob;
 }
 
-/** Offers to record a film, where the browser can. */
-function offerFilm(session: Session, viewer: Viewer): void {
+/** Offers to record a film, where the browser can. @param ended Called after it. */
+function offerFilm(session: Session, viewer: Viewer, ended: () => void): void {
   const button = element('save-film', HTMLButtonElement);
   const note = button.querySelector('small')!;
   button.hidden = !('MediaRecorder' in globalThis);
@@ -69,6 +70,7 @@ function offerFilm(session: Session, viewer: Viewer): void {
     } catch (error) {
       showError(`The film could not be recorded: ${(error as Error).message}`);
     }
+    ended();
     button.ariaBusy = null;
     note.textContent = 'five seconds';
   });

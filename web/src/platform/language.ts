@@ -8,7 +8,8 @@ const kDictionaries: Record<string, () => string> = {
 const kKey = 'cagecast-language';
 const kParameter = 'lang';
 
-const isOffered = (language: string | null): language is string => language === 'en' || language! in kDictionaries;
+const isOffered = (language: string | null): language is string =>
+  language === 'en' || Object.hasOwn(kDictionaries, language ?? '');
 
 /** The language that the address asks for, that was chosen last, or that the browser prefers. */
 function wanted(): string {

@@ -305,7 +305,7 @@ export class CageMaker extends Emitter<{
 }
 
 /** Words in names of bones, meshes and materials that tell what a model is; figures have bones of both. */
-const kOfCars = /wheel|windshield|windscreen|bumper|\bty?re|\btire/i;
+const kOfCars = /wheel|windshield|windscreen|bumper|(?<![a-z])(tyre|tire)s?(?![a-z])/i;
 const kOfFigures = [/thigh|leg|shin|calf|knee/i, /arm|elbow|hand|shoulder/i];
 
 /** The names in a model: those of its bones, its meshes and their materials. */

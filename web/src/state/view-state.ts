@@ -1,5 +1,5 @@
 /**
- * View modes; `compare` shows naive and result on either side of a divider, `film` the steps of the method, one after the other.
+ * View modes; `compare` shows naive and result on either side of a divider, `steps` the steps of the method, one after the other.
  */
 export const kModes = [
   'compare',
@@ -10,12 +10,12 @@ export const kModes = [
   'checker',
   'distance',
   'stretch',
-  'film',
+  'steps',
 ] as const;
 export type Mode = (typeof kModes)[number];
 
 /** Those that can be chosen in Play. */
-export const kPlayModes: readonly Mode[] = ['compare', 'result', 'film'];
+export const kPlayModes: readonly Mode[] = ['compare', 'result', 'steps'];
 
 /** The lights to choose from. */
 export const kLightNames = ['studio', 'soft', 'day', 'evening'] as const;
@@ -26,8 +26,8 @@ export interface View {
   mode: Mode;
   /** Position of the divider in `compare`: 0 at the left edge, 1 at the right. */
   split: number;
-  /** Place in `film`: 0 shows the first step, 4 the last; between two, the next one is wiped over the model from the left. */
-  film: number;
+  /** Place in `steps`: 0 shows the first step, 4 the last; between two, the next one is wiped over the model from the left. */
+  step: number;
   paint: boolean;
   cage: boolean;
   /** Whether `zones` shows what lies behind the surface, too. */
@@ -40,7 +40,7 @@ export interface View {
 export const kFirstView: View = {
   mode: 'compare',
   split: 0.5,
-  film: 0,
+  step: 0,
   paint: true,
   cage: false,
   seeThrough: false,
@@ -51,8 +51,8 @@ export const kFirstView: View = {
 /** Whether a mode shows paint, which can be switched off. */
 export const showsPaint = (mode: Mode): boolean => mode === 'compare' || mode === 'result' || mode === 'naive';
 
-/** The last place of `film`. */
-export const kLastFrame = 4;
+/** The last place of `steps`. */
+export const kLastStep = 4;
 
 /** Direction and distance of the camera. */
 export interface Angle {

@@ -16,7 +16,7 @@ const kKinds: readonly (readonly [name: string, words: RegExp])[] = [
   ['shoes', /shoe|boot|footwear|sneaker/],
   ['clothes', /outfit|cloth|shirt|pants|trouser|jeans|\btops?\b|\bbottoms?\b|dress|skirt|jacket|onepiece|uniform/],
   ['windows', /window|windshield|windscreen|\bglass\b/],
-  ['wheels', /wheel|ty?re\b|tires?\b|\brims?\b/],
+  ['wheels', /wheel|\btyres?\b|\btires?\b|\brims?\b/],
   ['seats', /seat|interior|dashboard|steering/],
   ['lights', /lights?\b|lamps?\b/],
 ];

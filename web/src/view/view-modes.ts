@@ -8,12 +8,12 @@ import type { Stage } from './stage';
 
 const kColorings: { [Name in Mode]?: (shown: Shown, classification: Classification) => Coloring } = {
   segments: colorBySegment,
-  film: colorBySegment,
+  steps: colorBySegment,
   distance: colorByDistance,
   stretch: colorByStretch,
 };
 
-const kZonesInFilm = 2;
+const kZonesStep = 2; // of `steps`
 
 /** Colours the model in the view modes without paint, and shows the legend. */
 export function showViewModes(session: Session, stage: Stage): void {
@@ -24,7 +24,7 @@ export function showViewModes(session: Session, stage: Stage): void {
     const { shown, classification, view } = session;
     const { mode } = view;
     if (!shown || !classification) return;
-    const isOfZones = mode === 'zones' || (mode === 'film' && Math.round(view.film) === kZonesInFilm);
+    const isOfZones = mode === 'zones' || (mode === 'steps' && Math.round(view.step) === kZonesStep);
     if (made?.mode === mode && made.classification === classification && made.isOfZones === isOfZones) return;
     made = { mode, classification, isOfZones };
     if (mode === 'checker') stage.setChecker(session.checker.texture);

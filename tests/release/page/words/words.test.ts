@@ -39,7 +39,7 @@ async function play(page: Page): Promise<void> {
   for (const _ of [1, 2, 3]) await guide.locator('.strong').click();
   await page.getByTestId('stage-verdict').waitFor();
   await openAll(page);
-  const frames = page.locator('#film-frames button');
+  const frames = page.locator('#steps button');
   for (let step = 0; step < 5; ++step) await frames.nth(step).click();
   await page.locator('#method > summary').click();
   for (const key of ['b', 's']) await page.locator('#view').press(key);

@@ -1,7 +1,7 @@
 import { kMaxWeld, knownLocks } from '../choices';
 import { type ChosenShape, type Deform, kDeforms } from '../deform';
 import type { Session } from '../session';
-import { type Angle, kLastFrame, kLightNames, kModes } from '../view-state';
+import { type Angle, kLastStep, kLightNames, kModes } from '../view-state';
 import { listOf, locksOf, numberOf, objectOf, oneOf, textOf } from './checks';
 import type { Contribution } from './project';
 
@@ -74,14 +74,14 @@ export function settingsParts(session: Session, live: Shaped, controls: Camera |
       isWork: false,
       save: () => ({ ...session.view, angle: controls?.angle }),
       read(saved) {
-        const { mode, split, film, paint, cage, seeThrough, light, background, angle } = objectOf(saved, 'view');
+        const { mode, split, step, paint, cage, seeThrough, light, background, angle } = objectOf(saved, 'view');
         const { turn, tilt, near } = (angle ?? {}) as Record<string, unknown>;
         return {
           shown() {
             session.setView({
               mode: oneOf(mode, kModes),
               split: numberOf(split, 0, 1, 0.5),
-              film: numberOf(film, 0, kLastFrame, 0),
+              step: numberOf(step, 0, kLastStep, 0),
               paint: paint !== false,
               cage: cage === true,
               seeThrough: seeThrough === true,

@@ -10,7 +10,7 @@ export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'allZones' | 'checker
 export type Highlighted = 'parts' | 'bare';
 
 /** The overlay of each mode with one. */
-const kLooks: Record<Exclude<Mode, 'compare' | 'film'>, Look> = {
+const kLooks: Record<Exclude<Mode, 'compare' | 'steps'>, Look> = {
   result: 'result',
   naive: 'naive',
   zones: 'zones',
@@ -20,21 +20,21 @@ const kLooks: Record<Exclude<Mode, 'compare' | 'film'>, Look> = {
   stretch: 'colors',
 };
 
-/** The overlays of `film`. */
-const kFrames = ['bare', 'naive', 'allZones', 'colors', 'result'] as const;
-/** The cage is drawn until this place of `film`. */
+/** The overlays of `steps`. */
+const kSteps = ['bare', 'naive', 'allZones', 'colors', 'result'] as const;
+/** The cage is drawn until this place of `steps`. */
 const kCageEnds = 2.5;
 
 /** What is to be seen left and right of a place of the view, 0..1, and whether the cage is. */
-export function sidesOf({ mode, split, film, paint, cage, seeThrough }: View): {
+export function sidesOf({ mode, split, step, paint, cage, seeThrough }: View): {
   left: Look;
   right: Look;
   at: number;
   cage: boolean;
 } {
-  if (mode === 'film') {
-    const first = Math.min(Math.floor(film), kFrames.length - 2);
-    return { left: kFrames[first + 1]!, right: kFrames[first]!, at: film - first, cage: film < kCageEnds };
+  if (mode === 'steps') {
+    const first = Math.min(Math.floor(step), kSteps.length - 2);
+    return { left: kSteps[first + 1]!, right: kSteps[first]!, at: step - first, cage: step < kCageEnds };
   }
   const look = (side: keyof typeof kLooks): Look =>
     side === 'zones' && seeThrough ? 'allZones' : paint || !showsPaint(side) ? kLooks[side] : 'bare';
