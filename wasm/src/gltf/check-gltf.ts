@@ -1,8 +1,11 @@
+import type { GLTF } from '@gltf-transform/core';
 import { type ErrorDetails, show } from '../core/error.js';
 import { CagecastError } from '../index.js';
 import { checkGeometry } from './check-geometry.js';
+import { checkRest } from './check-rest.js';
+import { isDataUri, readDataUri } from './data-uri.js';
 import { InputError } from './input-error.js';
-import { checkBytes, checkLimits, defaultLimits, type ReadLimits } from './limits.js';
+import { checkBytes, checkImages, checkLimits, defaultLimits, type ReadLimits } from './limits.js';
 import { parseGltf } from './parse.js';
 
 /** Options of `checkGltf`. */
@@ -16,23 +19,16 @@ export interface CheckOptions {
 /**
  * Checks a GLB or glTF file before anything else reads it: its references, the ranges of its data, and what decoding and showing it
  * would cost. Loaders such as GLTFLoader and glTF-Transform trust a file, and a kilobyte can demand all memory. Takes about as long
- * as parsing its JSON. It decodes nothing: values of vertices and indices are not checked.
+ * as parsing its JSON. It decodes nothing: values of vertices and indices are not checked, and of images only the size that they say
+ * to have.
  * @param bytes  The whole file.
  * @throws {CagecastError} `badArgument` that names the element, the value and the limit.
  */
 export function checkGltf(bytes: Uint8Array, { limits = {}, otherBytes = 0, ...others }: CheckOptions = {}): void {
-  const wrong = (text: string, details?: ErrorDetails) => new CagecastError('badArgument', 'checkGltf', text, details);
-  if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`, { argument: 'bytes' });
-  for (const name in others) throw wrong(`${name} is not an option`);
-  const isCount = (value: unknown): value is number => typeof value === 'number' && value >= 0;
-  const all = { ...defaultLimits };
-  for (const name in limits) {
-    const value = limits[name as keyof ReadLimits] ?? all[name as keyof ReadLimits];
-    if (!(name in all && isCount(value)))
-      throw wrong(`limits.${name} = ${show(value)} is not a number ≥ 0 of one of ${Object.keys(all).join(', ')}`);
-    all[name as keyof ReadLimits] = value;
-  }
-  if (!isCount(otherBytes)) throw wrong(`otherBytes = ${show(otherBytes)} is not a number ≥ 0`);
+  requireBytes('checkGltf', bytes);
+  for (const name in others) throw wrong('checkGltf', `${name} is not an option`);
+  const all = limitsOf('checkGltf', limits);
+  if (!isCount(otherBytes)) throw wrong('checkGltf', `otherBytes = ${show(otherBytes)} is not a number ≥ 0`);
   try {
     const fileBytes = bytes.byteLength + otherBytes;
     checkBytes(fileBytes, all);
@@ -41,8 +37,68 @@ export function checkGltf(bytes: Uint8Array, { limits = {}, otherBytes = 0, ...o
       uri === undefined ? (b === 0 ? binary?.byteLength : undefined) : byteLength,
     );
     checkGeometry(json, sizes);
+    checkRest(json);
     checkLimits(json, fileBytes, all);
+    checkImages(imagesIn(json, binary), fileBytes, all);
   } catch (error) {
-    throw error instanceof InputError ? wrong(error.message, { cause: error }) : error;
+    throw error instanceof InputError ? wrong('checkGltf', error.message, { cause: error }) : error;
+  }
+}
+
+/**
+ * Checks an image before anything decodes it: a kilobyte can stand for gigabytes. It is refused if it would take more than 256 MiB and
+ * more than `expansion` times its size. For images beside a glTF, and for paints. What has another format passes.
+ * @param bytes  The whole file.
+ * @throws {CagecastError} `badArgument` that names the pixels and the limit.
+ */
+export function checkImage(bytes: Uint8Array, { limits = {} }: Pick<CheckOptions, 'limits'> = {}): void {
+  requireBytes('checkImage', bytes);
+  try {
+    checkImages([['it', bytes]], bytes.byteLength, limitsOf('checkImage', limits));
+  } catch (error) {
+    throw error instanceof InputError ? wrong('checkImage', error.message, { cause: error }) : error;
+  }
+}
+
+type Function = 'checkGltf' | 'checkImage';
+
+const wrong = (where: Function, text: string, details?: ErrorDetails) =>
+  new CagecastError('badArgument', where, text, details);
+
+function requireBytes(where: Function, bytes: unknown): void {
+  if (!(bytes instanceof Uint8Array))
+    throw wrong(where, `bytes is ${show(bytes)}, not a Uint8Array`, { argument: 'bytes' });
+}
+
+const isCount = (value: unknown): value is number => typeof value === 'number' && value >= 0;
+
+/** All limits. @throws {CagecastError} */
+function limitsOf(where: Function, given: NonNullable<CheckOptions['limits']>): ReadLimits {
+  const all = { ...defaultLimits };
+  for (const name in given) {
+    const value = given[name as keyof ReadLimits] ?? all[name as keyof ReadLimits];
+    if (!(name in all && isCount(value)))
+      throw wrong(
+        where,
+        `limits.${name} = ${show(value)} is not a number ≥ 0 of one of ${Object.keys(all).join(', ')}`,
+      );
+    all[name as keyof ReadLimits] = value;
+  }
+  return all;
+}
+
+/** The images in a GLB or in data URIs, by their names in messages. */
+function* imagesIn(
+  { images = [], bufferViews = [], buffers = [] }: GLTF.IGLTF,
+  binary: Uint8Array | undefined,
+): Generator<[name: string, bytes: Uint8Array]> {
+  for (const [i, { uri, bufferView }] of images.entries()) {
+    const name = `images[${i}]`;
+    const view = bufferViews[bufferView ?? -1];
+    const source = view ? buffers[view.buffer]?.uri : uri;
+    const whole = source === undefined ? binary : isDataUri(source) ? readDataUri(name, source) : undefined;
+    if (!whole || !(view || uri)) continue;
+    const { byteOffset = 0, byteLength = whole.length } = view ?? {};
+    yield [name, whole.subarray(byteOffset, byteOffset + byteLength)];
   }
 }

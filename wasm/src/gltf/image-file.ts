@@ -50,3 +50,48 @@ export function ktx2Problem(bytes: Uint8Array): string | undefined {
   if (depth !== 0 || layers !== 0 || faces !== 1) return 'it is not a single picture';
   return width! % 4 === 0 && height! % 4 === 0 ? undefined : `it has ${width} × ${height} pixels, not multiples of 4`;
 }
+
+/** The pixels that a PNG, JPEG, WebP, KTX2 or AVIF file says to have; undefined if it does not say it. */
+export function imageSize(bytes: Uint8Array): { width: number; height: number } | undefined {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  try {
+    const [width, height] = sizes[imageType(bytes) ?? 'image/avif'](view);
+    return { width, height };
+  } catch {
+    return undefined; // it ends before
+  }
+}
+
+const u24 = (view: DataView, at: number): number => view.getUint16(at, true) | (view.getUint8(at + 2) << 16);
+
+type Size = [width: number, height: number];
+
+const sizes = {
+  'image/png': (view: DataView): Size => [view.getUint32(16), view.getUint32(20)],
+  'image/jpeg': jpegSize,
+  'image/webp': (view: DataView): Size => {
+    const kind = view.getUint32(12);
+    if (kind === 0x56503858) return [u24(view, 24) + 1, u24(view, 27) + 1]; // "VP8X"
+    if (kind === 0x56503820) return [view.getUint16(26, true) & 0x3fff, view.getUint16(28, true) & 0x3fff]; // "VP8 "
+    const bits = view.getUint32(21, true); // "VP8L"
+    return [(bits & 0x3fff) + 1, ((bits >> 14) & 0x3fff) + 1];
+  },
+  'image/ktx2': (view: DataView): Size => [view.getUint32(20, true), view.getUint32(24, true)],
+  // The first box "ispe", which is in the header.
+  'image/avif': (view: DataView): Size => {
+    if (view.getUint32(4) !== 0x66747970) throw new RangeError('not AVIF'); // "ftyp"
+    let at = 8;
+    while (view.getUint32(at) !== 0x69737065) ++at;
+    return [view.getUint32(at + 8), view.getUint32(at + 12)];
+  },
+};
+
+/** The frame header of a JPEG, after other segments. */
+function jpegSize(view: DataView): Size {
+  for (let at = 2; ; at += 2 + view.getUint16(at + 2)) {
+    while (view.getUint8(at + 1) === 0xff) ++at; // fill bytes
+    const marker = view.getUint8(at + 1);
+    const isFrame = marker >= 0xc0 && marker <= 0xcf && ![0xc4, 0xc8, 0xcc].includes(marker);
+    if (isFrame) return [view.getUint16(at + 7), view.getUint16(at + 5)];
+  }
+}

@@ -17,7 +17,7 @@ import type { Piece } from './pieces.js';
 export { type BakeOptions, bake } from './bake/bake-document.js';
 export type { MaskSources } from './bake/mask-sources.js';
 export type { BakeReport, ImageCodec, Paints } from './bake/plan.js';
-export { type CheckOptions, checkGltf } from './check-gltf.js';
+export { type CheckOptions, checkGltf, checkImage } from './check-gltf.js';
 export {
   addCage,
   cageModel,

@@ -1,6 +1,8 @@
 import type { GLTF } from '@gltf-transform/core';
 import { bytesOf, dracoOf, meshoptView, topNodes } from './check-geometry.js';
+import { imageSize } from './image-file.js';
 import { InputError } from './input-error.js';
+import { instancing } from './instancing.js';
 import { isMarked } from './overlay.js';
 import { hasTriangles } from './pieces.js';
 
@@ -12,12 +14,18 @@ export interface ReadLimits {
   nesting: number;
   /** How often the scene shows the same positions: nodes that share a mesh, primitives that share an accessor. Default: 1000 */
   instances: number;
+  /** Parts of the scene: nodes, and primitives as often as nodes show them. Default: 20,000 */
+  parts: number;
   /**
-   * Elements of attributes and indices that are not in the file: those without bytes are zero. Attributes of a primitive whose
-   * positions are in the file are not counted. Default: 1,000,000
+   * Elements of accessors that are not in the file: those without bytes are zero. Attributes of a primitive whose positions are in the
+   * file are not counted. Default: 1,000,000
    */
   implied: number;
-  /** How many times larger than its files the data may become when it is decoded, from 32 MiB on. Default: 100 */
+  /**
+   * How many times larger than its files the data may become when it is decoded and shown: geometry from 32 MiB on, images from 256 MiB
+   * on. What is used more than once is counted more than once: instances, attributes and morph targets that share bytes, the joints
+   * of each skinned node. Default: 100
+   */
   expansion: number;
 }
 
@@ -26,12 +34,14 @@ export const defaultLimits: Readonly<ReadLimits> = {
   bytes: 2 ** 30,
   nesting: 1000,
   instances: 1000,
+  parts: 20_000,
   implied: 1_000_000,
   expansion: 100,
 };
 
-/** Data of up to this many bytes may be decoded from any file. */
+/** Geometry, and images, of up to this many bytes may be decoded from any file. */
 const kFreeBytes = 2 ** 25;
+const kFreeImageBytes = 2 ** 28;
 
 /** The error of a file that exceeds a limit. @param what  What exceeds it, with the number. */
 export function exceeds(what: string, limit: keyof ReadLimits, { [limit]: value }: ReadLimits): InputError {
@@ -68,16 +78,49 @@ export function checkNesting(text: Uint8Array, limits: ReadLimits): void {
  */
 export function checkLimits(json: GLTF.IGLTF, fileBytes: number, limits: ReadLimits): void {
   checkNodeDepth(json, limits);
-  const shown = checkInstances(json, limits);
+  checkParts(json, limits);
   checkImplied(json, limits);
-  const decoded = shown + decodedBytes(json);
-  if (decoded > Math.max(kFreeBytes, limits.expansion * fileBytes)) {
+  const decoded = checkInstances(json, limits) + decodedBytes(json) + sharedBytes(json);
+  checkExpansion('decodes', decoded, Math.max(kFreeBytes, limits.expansion * fileBytes), fileBytes, limits);
+}
+
+function checkExpansion(what: string, bytes: number, most: number, fileBytes: number, limits: ReadLimits): void {
+  if (bytes > most)
     throw exceeds(
-      `decodes to ${decoded.toLocaleString('en')} bytes, ${Math.round(decoded / fileBytes).toLocaleString('en')} times its size`,
+      `${what} to ${bytes.toLocaleString('en')} bytes, ${Math.round(bytes / fileBytes).toLocaleString('en')} times its size`,
       'expansion',
       limits,
     );
+}
+
+/**
+ * Checks what decoding images costs, by the sizes that they say to have.
+ * @param images  Their bytes, or the first of them, by what messages call them.
+ * @param fileBytes  Of the images, and of the file that they are in.
+ * @throws {InputError}
+ */
+export function checkImages(
+  images: Iterable<[name: string, bytes: Uint8Array]>,
+  fileBytes: number,
+  limits: ReadLimits,
+): void {
+  const most = Math.max(kFreeImageBytes, limits.expansion * fileBytes);
+  let decoded = 0;
+  for (const [name, bytes] of images) {
+    const { width, height } = imageSize(bytes) ?? { width: 0, height: 0 };
+    decoded += 4 * width * height;
+    const size = `${name} has ${width.toLocaleString('en')} × ${height.toLocaleString('en')} pixels`;
+    checkExpansion(`${size}; up to it, images decode`, decoded, most, fileBytes, limits);
   }
+}
+
+function checkParts({ nodes = [], meshes = [] }: GLTF.IGLTF, limits: ReadLimits): void {
+  let parts = 0;
+  nodes.forEach(({ mesh }, n) => {
+    parts += 1 + (mesh === undefined ? 0 : meshes[mesh]!.primitives.length);
+    if (parts > limits.parts)
+      throw exceeds(`nodes[${n}] is part ${parts.toLocaleString('en')} of the scene`, 'parts', limits);
+  });
 }
 
 function checkNodeDepth({ nodes = [] }: GLTF.IGLTF, limits: ReadLimits): void {
@@ -90,8 +133,13 @@ function checkNodeDepth({ nodes = [] }: GLTF.IGLTF, limits: ReadLimits): void {
 
 /** @returns the bytes of all positions and corners, counted as often as the scene shows them. */
 function checkInstances({ accessors = [], meshes = [], nodes = [] }: GLTF.IGLTF, limits: ReadLimits): number {
-  const nodesOf = new Map<number, number>();
-  for (const { mesh } of nodes) if (mesh !== undefined) nodesOf.set(mesh, (nodesOf.get(mesh) ?? 0) + 1);
+  const [nodesOf, drawnOf] = [new Map<number, number>(), new Map<number, number>()];
+  for (const { mesh, extensions } of nodes) {
+    if (mesh === undefined) continue;
+    const [places] = Object.values(instancesOf(extensions));
+    nodesOf.set(mesh, (nodesOf.get(mesh) ?? 0) + 1);
+    drawnOf.set(mesh, (drawnOf.get(mesh) ?? 0) + (places === undefined ? 1 : (accessors[places]?.count ?? 0)));
+  }
   // Overlays show the positions of their bases once more, so they are counted by themselves.
   const [uses, overlaid] = [new Map<number, number>(), new Map<number, number>()];
   let bytes = 0;
@@ -105,13 +153,15 @@ function checkInstances({ accessors = [], meshes = [], nodes = [] }: GLTF.IGLTF,
         throw exceeds(`the positions of meshes[${mesh}] are in ${all} places of the scene`, 'instances', limits);
       counts.set(positions, all);
       const vertices = accessors[positions]!.count;
-      bytes += count * (12 * vertices + 4 * (indices === undefined ? vertices : accessors[indices]!.count));
+      bytes +=
+        drawnOf.get(mesh)! * (12 * vertices + 4 * (indices === undefined ? vertices : accessors[indices]!.count));
     }
   }
   return bytes;
 }
 
-function checkImplied({ accessors = [], meshes = [] }: GLTF.IGLTF, limits: ReadLimits): void {
+function checkImplied(json: GLTF.IGLTF, limits: ReadLimits): void {
+  const { accessors = [], meshes = [] } = json;
   const used = new Map<number, string>();
   meshes.forEach(({ primitives }, m) =>
     primitives.forEach((primitive, p) => {
@@ -125,9 +175,17 @@ function checkImplied({ accessors = [], meshes = [] }: GLTF.IGLTF, limits: ReadL
       if (primitive.indices !== undefined) used.set(primitive.indices, `${place}.indices`);
     }),
   );
+  json.nodes?.forEach(({ extensions }, n) => {
+    for (const accessor of Object.values(instancesOf(extensions))) used.set(accessor, `nodes[${n}], ${instancing}`);
+  });
+  json.animations?.forEach(({ samplers = [] }, a) =>
+    samplers.forEach(({ input, output }, i) => {
+      for (const accessor of [input, output]) used.set(accessor, `animations[${a}].samplers[${i}]`);
+    }),
+  );
   let implied = 0;
   for (const [number, place] of used) {
-    const { bufferView, count } = accessors[number]!;
+    const { bufferView, count } = accessors[number] ?? { bufferView: 0, count: 0 };
     if (bufferView === undefined) implied += count;
     if (implied > limits.implied)
       throw exceeds(
@@ -143,3 +201,36 @@ function decodedBytes({ accessors = [], bufferViews = [] }: GLTF.IGLTF): number 
   const views = bufferViews.map((view) => meshoptView(view)).map((view) => (view ? view.count * view.byteStride : 0));
   return [...views, ...accessors.map((accessor) => accessor.count * bytesOf(accessor))].reduce((sum, n) => sum + n, 0);
 }
+
+/**
+ * What a viewer makes of what is used again: an array for each name that an attribute has, and for each morph target; matrices for the
+ * joints of each skinned node; and the mesh's name for each part.
+ */
+function sharedBytes({ accessors = [], meshes = [], nodes = [], skins = [] }: GLTF.IGLTF): number {
+  const known = new Set<string>();
+  let bytes = 0;
+  const add = (accessor: number | undefined) => {
+    const found = accessors[accessor ?? -1];
+    if (found) bytes += found.count * bytesOf(found);
+  };
+  for (const { attributes, targets = [] } of meshes.flatMap(({ primitives }) => primitives)) {
+    for (const [semantic, accessor] of Object.entries(attributes)) {
+      if (!known.has(`${accessor} ${semantic}`)) add(accessor);
+      known.add(`${accessor} ${semantic}`);
+    }
+    for (const accessor of targets.flatMap((target) => Object.values(target))) add(accessor);
+  }
+  for (const { mesh, skin } of nodes) {
+    if (skin !== undefined) bytes += kJointBytes * (skins[skin]?.joints.length ?? 0);
+    const { name = '', primitives = [] } = meshes[mesh ?? -1] ?? {};
+    bytes += 2 * name.length * primitives.length;
+  }
+  return bytes;
+}
+
+/** A joint's matrix, and that of its bind pose. */
+const kJointBytes = 128;
+
+/** The accessors by which a node draws its mesh many times. */
+const instancesOf = (extensions: GLTF.INode['extensions']): Record<string, number> =>
+  (extensions?.[instancing] as { attributes?: Record<string, number> } | undefined)?.attributes ?? {};

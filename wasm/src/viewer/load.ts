@@ -1,4 +1,4 @@
-import { Cache, type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from 'three';
+import { Cache, type Light, type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from 'three';
 import type { GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { checkGltf } from '../gltf/check-gltf.js';
 import type { CagecastError } from '../index.js';
@@ -32,7 +32,10 @@ export async function readModel(loader: GLTFLoader, attribute: string, { url, bl
     checkCost(new Uint8Array(bytes));
     // Beside a blob or a data address there is nothing.
     const folder = /^(blob|data):/.test(url) ? '' : new URL('.', url).href;
-    return await loader.parseAsync(bytes, folder);
+    const gltf = await loader.parseAsync(bytes, folder);
+    // The stage has lights of its own; thousands of others would keep shaders from being compiled.
+    gltf.scene.traverse((object) => (object as Partial<Light>).isLight && object.layers.disableAll());
+    return gltf;
   } catch (cause) {
     throw new Error(`${attribute}: ${url} cannot be read (${(cause as Error).message})`, { cause });
   }

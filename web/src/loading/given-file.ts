@@ -1,5 +1,5 @@
 // What the page needs for files that are not its own: it loads when there is one.
-import { checkGltf, fileKind } from 'cagecast/gltf';
+import { checkGltf, checkImage, fileKind } from 'cagecast/gltf';
 import { askWorker } from '../platform/ask-worker';
 import { reasonOf } from '../state/wording';
 import { paths } from './file-paths';
@@ -8,11 +8,22 @@ import type { Converted, FormatsRequest } from './formats-thread';
 export { damageOf } from './image-damage';
 
 /** Refuses a file that the loader, which trusts it, would take all memory for. @throws Error without the file's name. */
-export function checkCost(bytes: ArrayBuffer, companions: readonly File[]): void {
+export async function checkCost(bytes: ArrayBuffer, companions: readonly File[]): Promise<void> {
   try {
     checkGltf(new Uint8Array(bytes), { otherBytes: companions.reduce((sum, { size }) => sum + size, 0) });
+    for (const companion of companions) checkImage(new Uint8Array(await companion.arrayBuffer()));
   } catch (error) {
     throw new Error(reasonOf(error), { cause: error });
+  }
+}
+
+/** Refuses a picture whose pixels would take all memory. @throws Error that names the file. */
+export async function checkPicture(file: File): Promise<void> {
+  const bytes = await file.arrayBuffer().catch(() => new ArrayBuffer(0)); // what decodes it says what is wrong
+  try {
+    checkImage(new Uint8Array(bytes));
+  } catch (error) {
+    throw new Error(`${file.name}: ${reasonOf(error)}`, { cause: error });
   }
 }
 

@@ -1,4 +1,4 @@
-import { Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
+import { Group, type Light, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { disposeAfterFrame } from '../platform/programs';
 import type { Loader, Model } from '../state/model';
@@ -31,7 +31,7 @@ export async function loadModel(
       : { file: given, bytes: await given.arrayBuffer() };
     const head = readGltfHead(bytes);
     const used = [...new Set(head.uris.map((uri) => findCompanion(uri, companions, file)))];
-    judge?.checkCost(bytes, used);
+    await judge?.checkCost(bytes, used);
     for (const uri of head.uris) urls.set(uri, URL.createObjectURL(findCompanion(uri, companions, file)));
 
     const manager = new LoadingManager().setURLModifier((url) => urls.get(decodeURIComponent(url)) ?? url);
@@ -87,6 +87,8 @@ async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
   const nodes: Object3D[] = scene ? [] : await parser.getDependencies('node');
   const root = scene ?? new Group().add(...nodes.filter((node) => !node.parent));
   root.traverse((object) => {
+    // The stage has lights of its own; thousands of others would keep shaders from being compiled.
+    if ((object as Partial<Light>).isLight) object.layers.disableAll();
     // An extension that the loader does not know.
     if (object.userData['gltfExtensions']?.KHR_node_visibility?.visible === false) object.visible = false;
     const matrix: number[] | undefined = parser.json.nodes?.[parser.associations.get(object)?.nodes ?? -1]?.matrix;

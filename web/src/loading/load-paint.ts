@@ -6,20 +6,26 @@ const kLargest = maxCompositeSize;
 
 /**
  * Reads an image to paint with.
- * @param picture URL of the image; an object URL of the file by default.
+ * @param picture URL of an image of the page's own, which is trusted; an object URL of the file by default.
  * @throws Error that names the file.
  */
-export async function loadPaint(file: File, picture = URL.createObjectURL(file)): Promise<Paint> {
-  const bitmap = await readImage(file);
+export async function loadPaint(file: File, picture?: string): Promise<Paint> {
+  const bitmap = await (picture === undefined ? readImage(file) : decode(file));
   const texture = new Texture(bitmap);
   // glTF's UV origin is the upper left corner of the image.
   texture.flipY = false;
   texture.needsUpdate = true;
-  return { name: file.name, texture: prepare(texture), picture, file };
+  return { name: file.name, texture: prepare(texture), picture: picture ?? URL.createObjectURL(file), file };
 }
 
 /** Reads an image, reduced in size if it is very large. @throws Error that names the file. */
 export async function readImage(file: File): Promise<ImageBitmap> {
+  const { checkPicture } = await import('./given-file');
+  await checkPicture(file);
+  return decode(file);
+}
+
+async function decode(file: File): Promise<ImageBitmap> {
   let bitmap: ImageBitmap;
   try {
     bitmap = await createImageBitmap(file, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });

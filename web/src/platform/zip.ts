@@ -76,12 +76,15 @@ export async function unzip(file: Blob): Promise<Map<string, Blob> | undefined> 
   if (end?.getUint32(0, true) !== 0x06054b50) return undefined;
   const list = await view(end.getUint32(16, true), last);
   const found = new Map<string, Blob>();
+  let total = 0;
   for (let at = 0; at + kEntry <= list.byteLength; ) {
     const [size, length] = [list.getUint32(at + 24, true), list.getUint16(at + 28, true)];
     const isStored = list.getUint32(at, true) === 0x02014b50 && list.getUint16(at + 10, true) === 0;
     const next = at + kEntry + length;
     const from = list.getUint32(at + 42, true) + kHead + length;
-    if (!isStored || next > list.byteLength || from + size > last) return undefined;
+    total += size;
+    // Files that share their bytes would make a large project of a small file.
+    if (!isStored || next > list.byteLength || from + size > last || total > file.size) return undefined;
     const name = new TextDecoder().decode(new Uint8Array(list.buffer, at + kEntry, length));
     found.set(name, file.slice(from, from + size));
     at = next;

@@ -2,7 +2,7 @@ import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
-import { imageIsWhole, imageType, pngLength } from '../../gltf/image-file.js';
+import { imageIsWhole, imageSize, imageType, pngLength } from '../../gltf/image-file.js';
 import { firstLine, InputError, naming } from '../../gltf/input-error.js';
 import type { ReadOptions } from '../model/reading.js';
 import { readBeside, readBytes } from './files.js';
@@ -26,7 +26,11 @@ export async function decodeImage(bytes: Uint8Array): Promise<Image> {
   if (type === undefined) throw new InputError('is not a PNG, JPEG or WebP image');
   if (type === 'image/ktx2') throw new InputError('is a KTX2 image, which cannot be baked; convert it to PNG');
   if (!imageIsWhole(bytes)) throw new InputError('is truncated: the image is incomplete');
-  if (type === 'image/png') return decodePng(bytes);
+  // The header comes first: nothing is decoded that is too large.
+  const { width, height } = imageSize(bytes) ?? { width: 0, height: 0 };
+  if (width === 0 || height === 0 || width > mostTexels || height > mostTexels)
+    throw new InputError(`has ${width} × ${height} pixels; both must be from 1 to ${mostTexels}`);
+  if (type === 'image/png') return decodePng(bytes, width, height);
   const sharp = loadSharp();
   if (!sharp)
     throw new InputError(
@@ -40,12 +44,7 @@ export async function decodeImage(bytes: Uint8Array): Promise<Image> {
   }
 }
 
-function decodePng(bytes: Uint8Array): Image {
-  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  // The header comes first: nothing is decoded that is too large.
-  const [width, height] = bytes.byteLength < 24 ? [0, 0] : [view.getUint32(16), view.getUint32(20)];
-  if (width === 0 || height === 0 || width > mostTexels || height > mostTexels)
-    throw new InputError(`has ${width} × ${height} pixels; both must be from 1 to ${mostTexels}`);
+function decodePng(bytes: Uint8Array, width: number, height: number): Image {
   try {
     const { data } = PNG.sync.read(Buffer.from(bytes.subarray(0, pngLength(bytes))));
     return { width, height, data };

@@ -76,7 +76,7 @@ export function layersPart({ session, stack, edits, away, samples, painter, imag
     if (!file) return { paint: kChecker };
     return { file: keep(file), ...(sample && { paint: images.nameOf(picture) }), ...(drawn && { drawn }) };
   };
-  const readSheet = async (saved: unknown, files: Files): Promise<Sheet | Paint> => {
+  const readSheet = async (saved: unknown, files: Files, taken: Set<unknown>): Promise<Sheet | Paint> => {
     const { size, file, paint, drawn } = objectOf(saved, 'paint');
     if (paint === kChecker) return session.checker;
     if (size === undefined) {
@@ -88,6 +88,8 @@ export function layersPart({ session, stack, edits, away, samples, painter, imag
     if (!painter) throw new Error('paintings need WebGL, which is not available in this browser');
     const side = paintingSizes.find((one) => one === size) ?? damaged('a painting has an unknown size');
     const packed = files(file);
+    if (taken.has(packed)) damaged('two layers have one painting');
+    taken.add(packed);
     const sheet = painter.sheetOf(side, await images.unpack(packed, 4 * side * side));
     states.set(sheet, packed);
     return sheet;
@@ -98,12 +100,12 @@ export function layersPart({ session, stack, edits, away, samples, painter, imag
       style: { opacity, tint, blend, visible },
       sheet: saveSheet(sheet, keep),
     }));
-  const readAll = async (saved: unknown, files: Files): Promise<ReadLayer[]> => {
+  const readAll = async (saved: unknown, files: Files, taken: Set<unknown>): Promise<ReadLayer[]> => {
     const layers: ReadLayer[] = [];
     // One at a time: each takes memory while it is read.
     for (const one of listOf(saved ?? [], maxLayers, 'layers')) {
       const { name, style, sheet } = objectOf(one, 'layer');
-      layers.push({ name: textOf(name, 'Layer'), style: styleOf(style), sheet: await readSheet(sheet, files) });
+      layers.push({ name: textOf(name, 'Layer'), style: styleOf(style), sheet: await readSheet(sheet, files, taken) });
     }
     return layers;
   };
@@ -118,7 +120,8 @@ export function layersPart({ session, stack, edits, away, samples, painter, imag
     }),
     async read(saved, files) {
       const { layers, away: putAway, base } = objectOf(saved, 'layers');
-      const [all, others] = [await readAll(layers, files), await readAll(putAway, files)];
+      const taken = new Set<unknown>(); // each painting takes memory of its own
+      const [all, others] = [await readAll(layers, files, taken), await readAll(putAway, files, taken)];
       return {
         ready() {
           for (const { id } of stack.layers) stack.remove(id);
