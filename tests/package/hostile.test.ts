@@ -1,12 +1,23 @@
 // Files that strangers may send: each is refused with one clear line, or read at a cost in proportion to its size.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { execFileSync, spawnSync } from 'node:child_process';
+import {
+  chmodSync,
+  existsSync,
+  mkdirSync,
+  readdirSync,
+  readFileSync,
+  rmSync,
+  statSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { before, describe, test } from 'node:test';
 import type { GLTF } from '@gltf-transform/core';
-import { checkGltf } from 'cagecast/gltf';
+import { checkGltf, checkImage } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
-import { fails, ok, run } from '../support/command.js';
+import { fails, kProgram, ok, run } from '../support/command.js';
+import { costlyFiles, jpegOf, pngOf } from '../support/costly-files.js';
 import { type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from '../support/gltf.js';
 import { temporaryFolder } from '../support/temporary.js';
 
@@ -60,6 +71,15 @@ const zones = (count: number) =>
     accessors.push({ componentType: 5121, type: 'SCALAR', count });
     meshes[0]!.primitives[0]!.attributes['_NCZ'] = accessors.length - 1;
   });
+
+/** Triangles as large as the model, one behind the other. */
+function layered(layers: number) {
+  const corners = Array.from({ length: layers }, (_, n) => [-1, -1, n / 1e4, 1, -1, n / 1e4, 0, 1, n / 1e4]);
+  return {
+    positions: Float32Array.from(corners.flat()),
+    indices: Uint16Array.from({ length: 3 * layers }, (_, i) => i),
+  };
+}
 
 const greedy: Record<string, [bytes: () => Uint8Array, message: RegExp]> = {
   'positions that are not in the file': [
@@ -126,6 +146,35 @@ describe('a file that demands too much', () => {
       assert.ok(!existsSync('never.glb'));
     });
 
+  for (const [name, { bytes, refusal }] of Object.entries(costlyFiles).filter((one) => one[1].refusal))
+    test(name, () => assert.throws(() => checkGltf(bytes()), refused(refusal!)));
+
+  test('triangles in hundreds of layers: neither a cage nor a picture is made, and the report says why', async () => {
+    const layers = 300;
+    writeFileSync('layers.glb', glbOf(layered(layers)));
+    await fails(
+      1,
+      /model has its triangles in too many layers: their area is \d+ times/,
+      'make layers.glb -o made.glb',
+    );
+    const often = /cannot be drawn: its triangles cover the picture more than 64 times/;
+    await fails(1, often, 'thumbnail layers.glb -o layers.png');
+    assert.equal((await run('inspect layers.glb --cage cage.glb --html layers.html')).status, 3);
+    assert.match(readFileSync('layers.html', 'utf8'), often);
+    assert.deepEqual(['made.glb', 'layers.png'].filter(existsSync), []);
+  });
+
+  test('a picture of billions of pixels is refused, one of a camera is not', () => {
+    const [pixels, few] = [jpegOf(65_500, 65_500), pngOf(8192, 8192)];
+    assert.throws(() => checkImage(pixels), {
+      message: /^checkImage: it has 65,500 × 65,500 pixels; up to it, images decode to [\d,]+ bytes/,
+    });
+    checkImage(few);
+    checkImage(Buffer.concat([jpegOf(11_648, 8736), Buffer.alloc(5e6)]));
+    for (const other of ['', 'GIF89a', '\xff\xd8\xff\xc0', 'RIFF....WEBP', '\x89PNG\r\n\x1a\n'])
+      checkImage(Buffer.from(other, 'latin1'));
+  });
+
   test('what stays within the limits is read, and limits can be set', async () => {
     const { length } = whole;
     const { count } = unpackGlb(whole).json.accessors![0]!;
@@ -147,7 +196,7 @@ describe('a file that demands too much', () => {
       [
         whole,
         { limits: { vertices: 3 } },
-        /limits\.vertices = 3 .* one of bytes, nesting, instances, implied, expansion/,
+        /limits\.vertices = 3 .* one of bytes, nesting, instances, parts, implied, expansion/,
       ],
       [whole, { limit: { instances: 0 } }, /^checkGltf: limit is not an option$/],
       ...[Number.NaN, -1, '9999999'].map((otherBytes): [Uint8Array, object, RegExp] => [
@@ -275,4 +324,67 @@ describe('names', () => {
     for (const pattern of ['abca', 'ab*bcab', 'b*', 'abc*cab'])
       assert.equal((await keep('short.glb', pattern)).status, 1, pattern);
   });
+});
+
+describe('what is written', () => {
+  const line = 'transfer good.glb --cage cage.glb';
+  before(() => writeFileSync('good.glb', whole));
+
+  test('goes to no name that somebody could plant a link at', async () => {
+    mkdirSync('planted');
+    writeFileSync('victim.txt', 'mine');
+    for (const name of ['out.glb', 'report.json']) symlinkSync(at('victim.txt'), `planted/.${name}.${process.pid}.tmp`);
+    for (let i = 0; i < 2; ++i) await ok(`${line} -o planted/out.glb --report planted/report.json`);
+    assert.equal(readFileSync('victim.txt', 'utf8'), 'mine');
+    assert.deepEqual(
+      readdirSync('planted').filter((name) => !name.endsWith('.tmp')),
+      ['out.glb', 'report.json'],
+    );
+  });
+
+  test('has its name in any length, and the permissions of what it replaces', async () => {
+    const name = `${'ü'.repeat(120)}.glb`; // 244 bytes, of 255
+    await ok(`${line} -o ${name}`);
+    chmodSync(name, 0o600);
+    await ok(`${line} -o ${name}`);
+    assert.equal(statSync(name).mode & 0o777, 0o600);
+  });
+
+  test('stays below the folder that is named, whatever the name of a target', async () => {
+    mkdirSync('up/out', { recursive: true });
+    for (const name of ['...glb', '..glb', '.glb']) writeFileSync(`up/${name}`, whole);
+    const batch = 'batch up/...glb up/..glb up/.glb --cage cage.glb -o {dir}/out/{name}';
+    assert.equal((await run(`${batch}/x.glb`)).status, 0);
+    assert.deepEqual(readdirSync('up'), ['...glb', '..glb', '.glb', 'out']);
+    assert.deepEqual(readdirSync('up/out'), ['...glb', '..glb', '.glb']);
+  });
+});
+
+test('a configuration that is a link shows nothing of what it leads to', async () => {
+  mkdirSync('with-model');
+  writeFileSync('with-model/head.glb', whole);
+  for (const secret of ['root:x:0:0', '{"password": "hunter2"}', '{"threshold": "hunter2"}']) {
+    writeFileSync('secret.json', secret);
+    rmSync('with-model/cagecast.config.json', { force: true });
+    symlinkSync(at('secret.json'), 'with-model/cagecast.config.json');
+    const { status, stdout, stderr } = await run('inspect with-model/head.glb --cage cage.glb');
+    assert.equal(status, 1);
+    assert.match(
+      stderr,
+      /config\.json: is a link to what is no configuration; --config shows what is wrong with it\n$/,
+    );
+    assert.doesNotMatch(stdout + stderr, /root|password|hunter2/);
+    await fails(1, /secret\.json: /, 'inspect with-model/head.glb --cage cage.glb --config secret.json');
+  }
+  writeFileSync('secret.json', '{"threshold": 0.4}');
+  await ok('inspect with-model/head.glb --cage cage.glb');
+});
+
+test('a folder that goes away is a plain error', () => {
+  mkdirSync('gone');
+  const command = `cd gone && rmdir ../gone && "${process.execPath}" "${kProgram}" inspect a.glb --cage b.glb`;
+  const { status, stderr } = spawnSync('sh', ['-c', command], { encoding: 'utf8' });
+  assert.equal(status, 1);
+  assert.match(stderr, /the current folder is gone; change to another one\n$/);
+  assert.doesNotMatch(stderr, /unexpectedly|\n.*\n/);
 });

@@ -23,17 +23,25 @@ constexpr double kMaxDiagonalsAway = 1e6;
 constexpr double kMinDiagonal = 1e-37;
 constexpr double kMaxCoordinate = 0x1p125;
 
-bool hasArea(const MeshView& mesh, double diagonal) {
-  const auto corner = [&](std::size_t i) { return &mesh.positions[std::size_t{3} * mesh.indices[i]]; };
-  const auto edge = [&](std::size_t i, std::size_t j) { return length(Vec3::from(corner(j)) - Vec3::from(corner(i))); };
-  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-    // Its height counts by the size of the mesh: the searches scale that to 1, and take floats.
-    const double longest = std::max({edge(i, i + 1), edge(i + 1, i + 2), edge(i + 2, i)});
-    const Vec3 normal = cagecast::areaNormal(corner(i), corner(i + 1), corner(i + 2));
-    if (length(normal) > kMinModelHeight * diagonal * longest) return true;
+/// What the triangles of a mesh have together.
+struct Area {
+  double sum = 0;
+  bool hasHeight = false;  ///< Whether one of them is more than a needle.
+
+  Area(const MeshView& mesh, double diagonal) {
+    const auto corner = [&](std::size_t i) { return &mesh.positions[std::size_t{3} * mesh.indices[i]]; };
+    const auto edge = [&](std::size_t i, std::size_t j) {
+      return length(Vec3::from(corner(j)) - Vec3::from(corner(i)));
+    };
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+      // A height counts by the size of the mesh: the searches scale that to 1, and take floats.
+      const double longest = std::max({edge(i, i + 1), edge(i + 1, i + 2), edge(i + 2, i)});
+      const double twice = length(cagecast::areaNormal(corner(i), corner(i + 1), corner(i + 2)));
+      hasHeight = hasHeight || twice > kMinModelHeight * diagonal * longest;
+      sum += 0.5 * twice;
+    }
   }
-  return false;
-}
+};
 
 /// Whether a base colour is one that can be read.
 bool isGood(const BaseColor& color, bool hasUvs) {
@@ -55,11 +63,16 @@ Status checkMesh(const MeshView& mesh, Argument argument) noexcept {
     status.argument = argument;
     return status;
   }
-  if (mesh.indices.size() / 3 > kMaxModelTriangles || mesh.positions.size() / 3 > kMaxModelVertices)
+  const bool isModel = argument == Argument::model;
+  if (mesh.indices.size() / 3 > (isModel ? kMaxModelTriangles : kMaxCageTriangles) ||
+      mesh.positions.size() / 3 > (isModel ? kMaxModelVertices : kMaxCageVertices))
     return fault(Code::tooDetailed);
   const Bounds bounds = boundsOf(mesh);
   const double diagonal = bounds.diagonal();
-  if (!hasArea(mesh, diagonal)) return fault(Code::flatMesh);
+  const Area area(mesh, diagonal);
+  if (!area.hasHeight) return fault(Code::flatMesh);
+  if (const double layers = area.sum / (diagonal * diagonal); layers > kMaxLayers)
+    return Status{.code = Code::tooManyLayers, .argument = argument, .value = static_cast<float>(layers)};
   if (diagonal < kMinDiagonal) return fault(Code::tooSmall);
   const double limit = std::min(kMaxCoordinate, kMaxDiagonalsAway * diagonal);
   for (const std::uint32_t v : mesh.indices)

@@ -50,9 +50,11 @@ std::string nearestTo(const std::vector<Landmark>& landmarks, std::size_t at) {
       ->name;
 }
 
-std::string limitOf(Code code) {
-  switch (code) {
-    case Code::tooDetailed: return std::to_string(kMaxModelTriangles);
+std::string limitOf(const Status& status) {
+  const bool isModel = status.argument == Argument::model;
+  switch (status.code) {
+    case Code::tooDetailed: return std::to_string(isModel ? kMaxModelTriangles : kMaxCageTriangles);
+    case Code::tooManyLayers: return text("%g", kMaxLayers);
     case Code::tooManyLandmarks: return std::to_string(kMaxLandmarks);
     case Code::tooFewLandmarks: return std::to_string(kMinLandmarks);
     case Code::landmarkAway: return text("%g %%", 100 * kMaxLandmarkOff);
@@ -90,8 +92,9 @@ std::string valueOf(std::string_view name, const Status& status, const Call& cal
   if (name == "value") return text("%.3g", value);
   if (name == "percent") return text("%.1f %%", 100 * value);
   if (name == "reach") return text("%.1f %%", 100 * static_cast<double>(call.reach));
-  if (name == "limit") return limitOf(status.code);
-  if (name == "most vertices") return std::to_string(kMaxModelVertices);
+  if (name == "limit") return limitOf(status);
+  if (name == "most vertices")
+    return std::to_string(status.argument == Argument::model ? kMaxModelVertices : kMaxCageVertices);
   if (name == "triangles") return std::to_string(mesh.indices.size() / 3);
   if (name == "vertices") return std::to_string(mesh.positions.size() / 3);
   if (name == "group") return at < mesh.groups.size() ? std::to_string(mesh.groups[at]) : "0";

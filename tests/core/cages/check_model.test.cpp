@@ -59,6 +59,13 @@ TEST_CASE("whatever is wrong with a model is said in a sentence", "[cages][check
        Code::tooDetailed, [](auto& m) { m.indices.resize(3 * (kMaxModelTriangles + 1), 0); }},
       {"model has 1 triangles and 6000001 vertices, at most 2000000 and 6000000 are allowed; simplify it first",
        Code::tooDetailed, [](auto& m) { m.positions.resize(3 * (kMaxModelVertices + 1), 0); }},
+      {"model has its triangles in too many layers: their area is 125 times the square of its diagonal, at most 50 "
+       "times "
+       "are allowed; leave out copies that lie in each other",
+       Code::tooManyLayers,
+       [](auto& m) {
+         for (int copies = 0; copies < 499; ++copies) m.indices.insert(m.indices.end(), {0, 1, 2});
+       }},
       {"model.groups[1] = 1, but there are 1 parts", Code::partOutOfRange,
        [](auto& m) {
          m.groups = {0, 1, 1};

@@ -322,6 +322,8 @@ TEST_CASE("what cannot be fitted is said in a sentence", "[cages][fit]") {
        [](Heads& h) { h.own.resize(3); }},
       {"template.uvs is missing: the texture is drawn in the cage's UVs, 2 per vertex", Code::missingUvs,
        Argument::from, [](Heads& h) { h.cage.uvs.clear(); }},
+      {"template has 20001 triangles and ", Code::tooDetailed, Argument::from,
+       [](Heads& h) { h.cage.indices.resize(std::size_t{3} * 20'001, 0); }},
       {"landmarks: only 4 joints are known, too few for a skeleton of 6 bones; give more of them, or landmarks on the "
        "skin",
        Code::tooFewJoints, given,

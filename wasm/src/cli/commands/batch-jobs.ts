@@ -164,9 +164,13 @@ export function placeholderFault(...written: readonly (string | undefined)[]): s
 /** A path for a target, with the name of its file and its folder in the placeholders. */
 export const filledFor = (target: string, path: string): string =>
   // In one pass and by a function: names may hold `{dir}`, or `$&`.
-  path.replace(/\{name\}|\{dir\}/g, (found) =>
-    found === '{dir}' ? dirname(target) : basename(target, extname(target)),
-  );
+  path.replace(/\{name\}|\{dir\}/g, (found) => (found === '{dir}' ? dirname(target) : nameOf(target)));
+
+/** The name of a file without its ending. That of `...glb` is whole: `..` would lead to another folder. */
+function nameOf(path: string): string {
+  const name = basename(path, extname(path));
+  return /^\.*$/.test(name) ? basename(path) : name;
+}
 
 /** @throws {InputError} if something is missing or wrong. */
 function jobOf({ layersFor: _, results: __, ...given }: JobDefaults & { target: string }, layers: Layer[]): Job {

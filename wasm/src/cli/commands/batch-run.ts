@@ -1,10 +1,10 @@
 import { existsSync, readdirSync, rmSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
-import { basename, dirname, join } from 'node:path';
+import { dirname, join } from 'node:path';
 import { Worker } from 'node:worker_threads';
 import type { Verdict } from '../../inspect/index.js';
 import type { Io } from '../io/io.js';
-import { canonicalPath } from '../io/output.js';
+import { canonicalPath, isTemporary } from '../io/output.js';
 import type { TransferCommand } from '../model/sources.js';
 import { jsonText, oneLine } from '../model/text.js';
 import { isWorse, kVerdicts } from '../transfer/inspection.js';
@@ -135,7 +135,6 @@ function removeLeftovers(paths: readonly string[]): void {
     const real = canonicalPath(path);
     const folder = dirname(real);
     if (!existsSync(folder)) continue;
-    for (const name of readdirSync(folder))
-      if (name.startsWith(`.${basename(real)}.`) && name.endsWith('.tmp')) rmSync(join(folder, name), { force: true });
+    for (const name of readdirSync(folder)) if (isTemporary(name, real)) rmSync(join(folder, name), { force: true });
   }
 }

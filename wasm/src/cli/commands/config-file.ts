@@ -1,8 +1,9 @@
 import { lstatSync } from 'node:fs';
+import { realpath } from 'node:fs/promises';
 import { basename, dirname, extname, join, relative, resolve } from 'node:path';
 import { matcher } from '../../core/patterns.js';
 import { InputError, naming } from '../../gltf/input-error.js';
-import { readBeside, readBytes, standard } from '../io/files.js';
+import { isOutside, readBeside, readBytes, standard } from '../io/files.js';
 import { isObject, parseObject, refuseUnknown } from '../model/json.js';
 import type { ReadOptions } from '../model/reading.js';
 import { kSettingNames, type Layer, type Settings, settingsOf } from '../model/settings.js';
@@ -65,12 +66,16 @@ export class Configuration {
     const shown = relative('.', path).startsWith('..') ? path : relative('.', path);
     const folder = dirname(path);
     return naming(shown, async () => {
-      // The file itself may be a link to anywhere.
-      const bytes =
-        this.#given === undefined
-          ? await readBeside(path, folder, { ...this.#reading, allowOutside: true })
-          : await readBytes(path, this.#reading.limits);
-      return { path: shown, ...parseConfig(new TextDecoder().decode(bytes), folder) };
+      if (this.#given !== undefined)
+        return { path: shown, ...parseConfig(await readBytes(path, this.#reading.limits), folder) };
+      // The file itself may be a link to anywhere. What it leads to may be secret, which an error would print.
+      const bytes = await readBeside(path, folder, { ...this.#reading, allowOutside: true });
+      try {
+        return { path: shown, ...parseConfig(bytes, folder) };
+      } catch (error) {
+        if (!isOutside(await realpath(path), await realpath(folder))) throw error;
+        throw new InputError('is a link to what is no configuration; --config shows what is wrong with it');
+      }
     });
   }
 }
@@ -84,7 +89,8 @@ function isThere(path: string): boolean {
   }
 }
 
-function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
+function parseConfig(bytes: Uint8Array, folder: string): Omit<ConfigFile, 'path'> {
+  const text = new TextDecoder().decode(bytes);
   const all = parseObject(text);
   refuseUnknown(all, [...kSettingNames, 'characters']);
   const { characters = {} } = all;

@@ -1,9 +1,12 @@
+import { randomBytes } from 'node:crypto';
 import {
   accessSync,
-  chmodSync,
+  closeSync,
   constants,
+  fchmodSync,
   fstatSync,
   lstatSync,
+  openSync,
   readlinkSync,
   realpathSync,
   renameSync,
@@ -31,9 +34,11 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
   try {
     for (const { path, data } of files.filter(({ path }) => streamOf(path) === undefined)) {
       const real = canonicalPath(path);
-      const temporary = join(dirname(real), `.${basename(real)}.${process.pid}.tmp`);
+      const temporary = temporaryPath(real);
+      // Exclusively: nobody else has the name, and no link that was planted there is followed.
+      const file = writing(path, () => openSync(temporary, 'wx'));
       written.push({ path, temporary });
-      writing(path, () => writeAs(real, temporary, data));
+      writing(path, () => writeAs(real, file, data));
     }
     for (const { path, data } of files) {
       const stream = streamOf(path);
@@ -99,12 +104,28 @@ export function writeStandard(data: Uint8Array | string): void {
 
 const isPipe = (found: Stats): boolean => found.isFIFO() || found.isSocket();
 
-/** Writes a file under a temporary name, with the permissions of the file that it will replace, if there is one. */
-function writeAs(path: string, temporary: string, data: Uint8Array | string): void {
-  const before = refuseFolder(path);
-  const mode = before && before.mode & 0o777;
-  writeFileSync(temporary, data, { mode: mode ?? 0o666 });
-  if (mode !== undefined) chmodSync(temporary, mode); // the umask of the process does not apply to chmod
+/** Characters of a file's name that its temporary one begins with: with the rest, it stays a name that systems allow. */
+const kNameLength = 50;
+
+/** A name beside a file that nobody can foresee. */
+const temporaryPath = (path: string): string =>
+  join(dirname(path), `${temporaryPrefix(path)}${randomBytes(8).toString('hex')}.tmp`);
+
+const temporaryPrefix = (path: string): string => `.${[...basename(path)].slice(0, kNameLength).join('')}.`;
+
+/** Whether a name is a temporary one of a file. */
+export const isTemporary = (name: string, path: string): boolean =>
+  name.startsWith(temporaryPrefix(path)) && /^[0-9a-f]{16}\.tmp$/.test(name.slice(temporaryPrefix(path).length));
+
+/** Writes to a file that is open under its temporary name, with the permissions of the one that it will replace, if there is one. */
+function writeAs(path: string, file: number, data: Uint8Array | string): void {
+  try {
+    const before = refuseFolder(path);
+    if (before) fchmodSync(file, before.mode & 0o777); // before anybody could read what is in it
+    writeFileSync(file, data);
+  } finally {
+    closeSync(file);
+  }
 }
 
 /** What is known of a file, if it exists. A folder is no file that could be replaced. */

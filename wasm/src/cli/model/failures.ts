@@ -1,5 +1,6 @@
 import { firstLine, InputError } from '../../gltf/input-error.js';
 import { CagecastError } from '../../index.js';
+import { reasons } from '../io/files.js';
 
 /** What the command ends with if it does not end with 0. */
 export const kExit = {
@@ -15,8 +16,11 @@ export const kExit = {
 /** Arguments that cannot be used together. */
 export class UsageError extends InputError {}
 
-/** What an error says of what went wrong. Others than those of files and of the package are defects. */
-export const messageOf = (error: unknown): string =>
-  error instanceof InputError || error instanceof CagecastError
-    ? error.message
-    : `failed unexpectedly (${firstLine(error)}); please report it`;
+/** What an error says of what went wrong. Others than those of files, of the system and of the package are defects. */
+export function messageOf(error: unknown): string {
+  if (error instanceof InputError || error instanceof CagecastError) return error.message;
+  const { syscall, path, code = '' } = error as NodeJS.ErrnoException;
+  if (syscall === 'uv_cwd') return 'the current folder is gone; change to another one';
+  if (syscall) return `${path ?? syscall}: ${reasons[code] ?? firstLine(error)}`;
+  return `failed unexpectedly (${firstLine(error)}); please report it`;
+}

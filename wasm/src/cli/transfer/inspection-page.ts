@@ -1,6 +1,7 @@
 import { PNG } from 'pngjs';
 import { Picture, type Rgb } from '../../glb/thumbnail/picture.js';
 import { type View, viewAt, views } from '../../glb/thumbnail/views.js';
+import { InputError } from '../../gltf/input-error.js';
 import { counted, percent, verdictOf } from '../../inspect/finding.js';
 import { boxOf, pointAt, type Vector } from '../../inspect/geometry.js';
 import { type Scene, sceneOf } from '../../inspect/scene.js';
@@ -67,10 +68,10 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
 ${findings.length > 0 ? `<ol>${findings.map((finding) => `<li><i class="${verdictOf([finding])}"></i>${text(finding.sentence)}.<small>${text(adviceOn(finding))}</small></li>`).join('')}</ol>` : '<p>No problems found.</p>'}
 <h2>Zones</h2>
 <p>${kZoneNames.map((zone, z) => `<span class="key" style="background:rgb(${kZoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>
-<div class="row">${shownViews.map(({ name, view }) => figure(name, drawZones(scene, view))).join('')}</div>
+<div class="row">${shownViews.map(({ name, view }) => figure(name, () => drawZones(scene, view))).join('')}</div>
 <h2>Fit</h2>
 <p><span class="key" style="background:rgb(${kOutsideColor.join()})"></span>outside the cage: ${percent(placement.outside.exposedArea)} of the exposed area<span class="key" style="background:rgb(${shade(0).join()})"></span>at the cage<span class="key" style="background:rgb(${shade(kFarthest).join()})"></span>${percent(kFarthest)} of the diagonal beneath. Median ${percent(placement.distances.p50)}, 99 % within ${percent(placement.distances.p99)}. Lines: edges of the cage, open edges dark.</p>
-<div class="row">${shownViews.map(({ name, view }) => figure(name, drawFit(scene, view))).join('')}</div>
+<div class="row">${shownViews.map(({ name, view }) => figure(name, () => drawFit(scene, view))).join('')}</div>
 <h2>UVs</h2>
 <p>${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}; ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that more than once.</p>
 <div class="row" style="max-width: 28rem"><figure>${drawUvs(scene)}<figcaption>the cage in the texture; darker where triangles overlap</figcaption></figure></div>
@@ -92,9 +93,14 @@ function rows([head, ...body]: string[][]): string {
   return `<table>${row(head!, 'th')}${body.map((cells) => row(cells, 'td')).join('')}</table>`;
 }
 
-function figure(name: string, picture: Picture): string {
+function figure(name: string, draw: () => Picture): string {
   const png = new PNG({ width: kSize, height: kSize });
-  png.data.set(picture.image().data);
+  try {
+    png.data.set(draw().image().data);
+  } catch (error) {
+    if (!(error instanceof InputError)) throw error;
+    return `<figure><figcaption>${name}: ${text(error.message)}</figcaption></figure>`;
+  }
   return `<figure><img alt="${name === 'front' || name === 'back' ? `the ${name}` : `from ${name}`}" src="data:image/png;base64,${PNG.sync.write(png).toString('base64')}"><figcaption>${name}</figcaption></figure>`;
 }
 

@@ -1,5 +1,5 @@
 import { type Drawn, extract, extractDrawn, type WhichCount } from '../../gltf/extract-file.js';
-import { InputError } from '../../gltf/input-error.js';
+import { InputError, naming } from '../../gltf/input-error.js';
 import { type GltfFile, openGltf } from '../../gltf/open-gltf.js';
 import { CagecastError, type Mesh } from '../../index.js';
 import { partsOf } from '../locks.js';
@@ -41,7 +41,7 @@ export async function drawFile(
     samples: kSamples,
     background: background === undefined ? undefined : colorOf(background),
   });
-  drawSurfaces(picture, view, surfaces);
+  naming(file.path, () => drawSurfaces(picture, view, surfaces));
   return { ...picture.image(), framed: what, undecoded };
 }
 

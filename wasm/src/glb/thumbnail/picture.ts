@@ -1,4 +1,5 @@
 import { colorByte, type Image, linearOf } from '../../bake/image.js';
+import { InputError } from '../../gltf/input-error.js';
 import type { Vector } from '../../inspect/geometry.js';
 import type { View } from './views.js';
 
@@ -30,6 +31,10 @@ export interface Framing {
 const kGrid = 256;
 /** What is blended over a surface may lie so much behind it, in samples: the same triangle from another corner on. */
 const kTie = 1e-3;
+/** How often triangles may cover the whole picture. Figures with hair in many layers stay below 10; a hostile file need not. */
+const kMostLayers = 64;
+/** Samples of each triangle that do not count: a million small triangles are no reason to stop. */
+const kFreeSamples = 16;
 /** The share of light that what is seen from the side has. */
 const kAmbient = 0.35;
 
@@ -57,6 +62,8 @@ export class Picture {
   readonly #scale: number;
   readonly #byteOf = colorByte();
   readonly #color = new Float32Array(4);
+  /** Samples that may still be looked at. */
+  #left: number;
 
   constructor({ size, view, middle, radius, samples = 1, background = [] }: Framing) {
     this.#samples = samples;
@@ -64,6 +71,7 @@ export class Picture {
     this.#colors = new Uint8ClampedArray(4 * this.#side ** 2);
     if (background.length > 0) for (let i = 0; i < this.#colors.length; i += 4) this.#colors.set(background, i);
     this.#depths = new Float32Array(this.#side ** 2).fill(-Infinity);
+    this.#left = kMostLayers * this.#side ** 2;
     this.#view = view;
     this.#middle = middle;
     this.#scale = this.#side / 2 / (radius || 1);
@@ -90,6 +98,7 @@ export class Picture {
   /**
    * Draws a projected triangle. A sample on an edge that two triangles share belongs to exactly one of them.
    * @param blends  Whether its colours are laid over what is there, in linear light; then it hides nothing.
+   * @throws {InputError} once triangles cover the whole picture too often.
    */
   fill(p: Vector, second: Vector, third: Vector, shade: Shade, blends = false): void {
     const isTurned = cross(p, second, third) < 0;
@@ -97,11 +106,17 @@ export class Picture {
     const area = cross(p, q, r);
     if (!(area > 0)) return;
     const last = this.#side - 1;
-    const [left, right] = [within(p[0], q[0], r[0], last), within(p[1], q[1], r[1], last)];
+    const [columns, rows] = [within(p[0], q[0], r[0], last), within(p[1], q[1], r[1], last)];
+    const samples = Math.max(0, columns[1] + 1 - columns[0]) * Math.max(0, rows[1] + 1 - rows[0]);
+    this.#left -= Math.max(0, samples - kFreeSamples);
+    if (this.#left < 0)
+      throw new InputError(
+        `cannot be drawn: its triangles cover the picture more than ${kMostLayers} times; leave out what lies in many layers`,
+      );
     const [ofP, ofQ, ofR] = [new Edge(q, r), new Edge(r, p), new Edge(p, q)];
     const slack = blends ? kTie : 0;
-    for (let row = right[0]; row <= right[1]; ++row) {
-      for (let column = left[0]; column <= left[1]; ++column) {
+    for (let row = rows[0]; row <= rows[1]; ++row) {
+      for (let column = columns[0]; column <= columns[1]; ++column) {
         const [wp, wq, wr] = [ofP.at(column, row), ofQ.at(column, row), ofR.at(column, row)];
         if (wp < ofP.least || wq < ofQ.least || wr < ofR.least) continue;
         const [s, t] = [wq / area, wr / area];
