@@ -144,8 +144,9 @@ export class CageMaker extends Emitter<{
       const model = await withBaseColors(cageModel(target.loaded), target.loaded);
       const context = { engine, model, options };
       const { positions } = target.mesh;
-      // Figures of toys have heads like others, but not bodies.
-      const likely = new Set([likelyTemplate(positions, namesIn(target)), likelyTemplate(positions)]);
+      const named = likelyTemplate(positions, namesIn(target));
+      // A figure that the body does not fit, such as a toy, gets a cage of its own: a head's would leave the rest bare.
+      const likely = named === 'human-body' ? [named] : new Set([named, likelyTemplate(positions)]);
       let fitted: Result | undefined;
       for (const template of likely)
         fitted ??= await this.#fit(context, template, {}).then(
