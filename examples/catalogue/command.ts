@@ -1,5 +1,5 @@
-import { open } from 'node:fs/promises';
-import { Failure } from './failure.ts';
+import { type FileHandle, open } from 'node:fs/promises';
+import { asFailure, Failure, meaningOf } from './failure.ts';
 import { type Catalogue, openCatalogue } from './jobs.ts';
 
 /** Runs a program of this folder. What it cannot do is said in one sentence, and the exit code is 2. @param run  Returns the exit code. */
@@ -8,8 +8,7 @@ export async function command(run: (catalogue: Catalogue) => Promise<number>): P
   try {
     process.exitCode = await run(catalogue);
   } catch (error) {
-    if (!(error instanceof Failure)) throw error;
-    console.error(error.message);
+    console.error(asFailure(error).message);
     process.exitCode = 2;
   } finally {
     await catalogue.close();
@@ -17,12 +16,14 @@ export async function command(run: (catalogue: Catalogue) => Promise<number>): P
 }
 
 /** The lines of a file, one by one: it may be larger than the memory. @throws {Failure} if it cannot be read. */
-export async function* linesOf(path: string): AsyncGenerator<string> {
+export async function* linesOf(
+  path: string,
+  opened: () => Promise<FileHandle> = () => open(path),
+): AsyncGenerator<string> {
   try {
-    const file = await open(path);
+    const file = await opened();
     yield* file.readLines();
   } catch (error) {
-    const { code } = error as NodeJS.ErrnoException;
-    throw code ? new Failure('missing', `${path}: ${code}`) : error;
+    throw (error as NodeJS.ErrnoException).code ? new Failure('missing', `${path} ${meaningOf(error)}`) : error;
   }
 }

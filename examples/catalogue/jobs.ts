@@ -1,44 +1,27 @@
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
-import { type Job, Queue } from 'bullmq';
+import { Job, Queue } from 'bullmq';
 import { Redis } from 'ioredis';
-import { type Reason, reasonOf } from './failure.ts';
+import { asFailure, publicOf, type Reason, reasonOf, redisTrouble } from './failure.ts';
 import { kinds } from './kinds/index.ts';
 import type { Facts } from './kinds/kind.ts';
+import { patiently, tellTrouble } from './patience.ts';
 import { settings } from './settings.ts';
-import { shown } from './storage.ts';
+import { checkedDone, checkedJob, type Done, isRecord, type JobData, type Written } from './shape.ts';
+import { isThere, shown } from './storage.ts';
 
 const { version } = JSON.parse(readFileSync(new URL(import.meta.resolve('cagecast/package.json')), 'utf8'));
-
-/** What a job is to do, as it is kept in Redis. */
-export interface JobData {
-  kind: string;
-  /** Where each input is, and the hash of its bytes. */
-  inputs: Record<string, { place: string; sha256: string }>;
-  settings: Record<string, unknown>;
-  /** A URL for PUT; by default a file in the output folder, named by the job's key. */
-  output?: string;
-}
-
-/** What a job that is done leaves in Redis. */
-export interface Done {
-  facts: Facts;
-  output?: string;
-  ms: number;
-  cpuMs: number;
-}
 
 export type CatalogueJob = Job<JobData, Done>;
 
 /** A line of the results. */
-export interface Result extends Facts {
+export interface Result extends Facts, Partial<Written> {
   key: string;
   kind: string;
   status: 'done' | 'failed';
   /** Where its inputs are, by name, without the signatures of URLs. */
   inputs: Record<string, string>;
   settings: Record<string, unknown>;
-  output?: string;
   ms?: number;
   cpuMs?: number;
   reason?: Reason;
@@ -46,9 +29,10 @@ export interface Result extends Facts {
 }
 
 /**
- * Identifies a job by all that its result depends on: content, not names. Whoever asks for the same again gets the same job.
+ * Identifies a job by all that its result depends on: content, not names, and the place of its output if that is an address. Whoever
+ * asks for the same again gets the same job.
  */
-export function keyOf({ kind, inputs, settings }: JobData): string {
+export function keyOf({ kind, inputs, settings, output }: JobData): string {
   const sorted = (value: unknown): unknown =>
     Array.isArray(value)
       ? value.map(sorted)
@@ -58,8 +42,20 @@ export function keyOf({ kind, inputs, settings }: JobData): string {
             .sort(([a], [b]) => (String(a) < String(b) ? -1 : 1))
         : value;
   const hashes = Object.entries(inputs).map(([name, { sha256 }]) => [name, sha256]);
-  const all = JSON.stringify([version, kind, kinds[kind]!.version, hashes.sort(), sorted(settings)]);
+  const place = output === undefined ? [] : [addressOf(output)];
+  const all = JSON.stringify([version, kind, kinds[kind]!.version, hashes.sort(), sorted(settings), ...place]);
   return `${kind}-${createHash('sha256').update(all).digest('hex').slice(0, 32)}`;
+}
+
+/** What of a signed address is the same every night: all but what looks like a signature. */
+export function addressOf(output: string): string {
+  const url = new URL(output);
+  for (const name of [...url.searchParams.keys()])
+    if (/^(x-amz|x-goog)-|sig|token|expir|key|credential|policy|date|^(s[eprtv]|spr|sk[a-z]+)$/i.test(name))
+      url.searchParams.delete(name);
+  url.searchParams.sort();
+  url.hash = '';
+  return url.href;
 }
 
 /** Where a job's output is written in the output folder: spread over folders, which slow down with too many files. */
@@ -70,8 +66,10 @@ export function connect(): Redis {
   const redis = new Redis(settings.redis, {
     maxRetriesPerRequest: null,
     retryStrategy: (times) => Math.min(100 * times, 2000),
+    reconnectOnError: ({ message }) => message.startsWith('READONLY'), // its name may lead to the master by now
   });
-  redis.on('error', () => {}); // it tries again
+  redis.on('error', (error) => tellTrouble(redisTrouble(error) ?? asFailure(error).message));
+  redis.on('ready', () => tellTrouble(''));
   return redis;
 }
 
@@ -84,9 +82,21 @@ export interface Catalogue {
   close(): Promise<void>;
 }
 
+/** A job that is no JSON in Redis is one without data: `checkedJob` says so. */
+class JobQueue extends Queue<JobData, Done> {
+  override async getJob(id: string): Promise<CatalogueJob | undefined> {
+    try {
+      return await super.getJob(id);
+    } catch (error) {
+      if (!(error instanceof SyntaxError)) throw error;
+      return new Job(this, 'broken', {}, {}, id) as unknown as CatalogueJob;
+    }
+  }
+}
+
 export function openCatalogue(): Catalogue {
   const redis = connect();
-  const queue = new Queue<JobData, Done>(queueName, {
+  const queue = new JobQueue(queueName, {
     connection: redis,
     prefix: settings.prefix,
     defaultJobOptions: {
@@ -105,29 +115,40 @@ export function openCatalogue(): Catalogue {
 /** The hash that counts for each job how often it was started and neither done nor failed: it killed its worker. */
 export const startsKey = `${settings.prefix}:${queueName}:starts`;
 
-/** A finished job as a line of the results. */
-export function resultOf(
-  { id, data, returnvalue, failedReason, progress }: CatalogueJob,
-  status: Result['status'],
-): Result {
-  const { kind, inputs, settings } = data;
-  const places = Object.entries(inputs).map(([name, { place }]) => [name, shown(place)]);
-  const common = { key: id!, kind, inputs: Object.fromEntries(places), settings };
-  // A job that failed before it was done still has the reason.
-  if (status === 'done') {
-    const { facts, ...rest } = returnvalue;
-    return { ...common, status, ...facts, ...rest };
+/** A finished job as a line of the results. One that is not as it should be has failed. */
+export function resultOf(job: CatalogueJob, status: Result['status']): Result {
+  const common = { key: String(job.id), kind: '', inputs: {}, settings: {} };
+  try {
+    const { kind, inputs, settings } = checkedJob(job).data;
+    const places = Object.entries(inputs).map(([name, { place }]) => [name, shown(place)]);
+    Object.assign(common, publicOf({ kind, inputs: Object.fromEntries(places), settings }));
+    // A job that failed before it was done still has the reason.
+    if (status === 'done') {
+      const { facts, ...rest } = checkedDone(job.returnvalue);
+      return { ...facts, ...common, status, ...rest };
+    }
+  } catch (error) {
+    const { reason, message } = asFailure(error);
+    return { ...common, status: 'failed', reason, error: message };
   }
-  const facts = progress instanceof Object ? (progress as Facts) : {};
-  return { ...common, status, ...facts, reason: reasonOf(failedReason), error: failedReason };
+  const facts = isRecord(job.progress) ? (job.progress as Facts) : {};
+  const error = publicOf(String(job.failedReason ?? 'unexpected: no reason is known'));
+  return { ...facts, ...common, status, reason: reasonOf(error), error };
+}
+
+/** A result as it is now: one whose output is gone or was changed has failed. */
+export async function presentResult(result: Result): Promise<Result> {
+  if (result.status !== 'done' || (await isThere(result))) return result;
+  return { ...result, status: 'failed', reason: 'lost', error: `lost: ${result.output} is gone, or is another file` };
 }
 
 /** The results of all jobs that are done or failed, as far as Redis has them, page by page. */
 export async function* finishedJobs({ queue }: Catalogue): AsyncGenerator<Result> {
   const page = 1000;
   for (const [state, status] of [['completed', 'done'] as const, ['failed', 'failed'] as const])
-    for (let at = 0, jobs: CatalogueJob[] = []; at === 0 || jobs.length === page; at += page) {
-      jobs = await queue.getJobs([state], at, at + page - 1, true);
+    for (let at = 0, ids: string[] = []; at === 0 || ids.length === page; at += page) {
+      ids = await patiently(() => queue.getRanges([state], at, at + page - 1, true));
+      const jobs = await Promise.all(ids.map((id) => patiently(() => queue.getJob(id))));
       for (const job of jobs) if (job) yield resultOf(job, status);
     }
 }

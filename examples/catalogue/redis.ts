@@ -3,6 +3,7 @@ import { once } from 'node:events';
 import { mkdirSync } from 'node:fs';
 import { type AddressInfo, createServer } from 'node:net';
 import { Redis } from 'ioredis';
+import { Failure } from './failure.ts';
 
 /** A Redis server of this machine, which keeps everything in a file. */
 export interface OwnRedis {
@@ -21,7 +22,13 @@ export async function startRedis(folder: string, port?: number): Promise<OwnRedi
   const ended = once(server, 'exit');
   const redis = new Redis(own, '127.0.0.1', { maxRetriesPerRequest: null, retryStrategy: () => 50 });
   redis.on('error', () => {}); // until it listens
-  await Promise.race([redis.ping(), ended.then(() => Promise.reject(new Error('redis-server did not start')))]);
+  const failed = () => {
+    throw new Failure(
+      'missing',
+      `redis-server does not start in ${folder}: apt-get install redis-server, or set REDIS_URL`,
+    );
+  };
+  await Promise.race([redis.ping(), ended.then(failed, failed)]);
   redis.disconnect();
   return {
     url: `redis://127.0.0.1:${own}`,

@@ -6,10 +6,12 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs, promisify } from 'node:util';
 import { command } from './command.ts';
-import { reasons } from './failure.ts';
-import type { Catalogue, CatalogueJob, JobData, Result } from './jobs.ts';
+import { Failure, reasons } from './failure.ts';
+import type { Catalogue, CatalogueJob, Result } from './jobs.ts';
+import { patiently } from './patience.ts';
 import { collectResults, readResults } from './results.ts';
 import { fromCaller } from './settings.ts';
+import { checkedJob, type JobData } from './shape.ts';
 import { read, write } from './storage.ts';
 
 const cli = fileURLToPath(new URL('cli.js', import.meta.resolve('cagecast')));
@@ -27,21 +29,22 @@ export interface ReportOptions {
   forget?: boolean | undefined;
 }
 
-/** Writes the results and the report about them. */
+/** Writes the results and the report about them. @returns how many jobs are done, and have failed */
 export async function report(
   catalogue: Catalogue,
   { worst = 12, before, forget }: ReportOptions = {},
-): Promise<string> {
+): Promise<{ done: number; failed: number }> {
   const began = Date.now();
   const earlier = new Map<string, string>();
   if (before !== undefined)
     for await (const result of readResults(before)) earlier.set(nameOf(result), outcomeOf(result));
   const [counts, failures] = [new Map<string, number>(), new Map<string, number>()];
   const [changes, dead]: [string[][], string[][]] = [[], []];
-  let [worstOnes, cpuMs, all]: [Result[], number, number] = [[], 0, 0];
+  let [worstOnes, cpuMs]: [Result[], number] = [[], 0];
+  const counted = { done: 0, failed: 0 };
   await collectResults(catalogue, (result) => {
     const outcome = outcomeOf(result);
-    ++all;
+    ++counted[result.status];
     cpuMs += result.cpuMs ?? 0;
     if (result.verdict) counts.set(result.verdict, (counts.get(result.verdict) ?? 0) + 1);
     if (result.reason) failures.set(result.reason, (failures.get(result.reason) ?? 0) + 1);
@@ -57,12 +60,14 @@ export async function report(
   const shown = worstFirst(worstOnes).slice(0, worst);
   const figures: string[] = [];
   for (const result of shown)
-    figures.push(await figure(result, (await catalogue.queue.getJob(result.key)) as CatalogueJob | undefined));
+    figures.push(
+      await figure(result, (await patiently(() => catalogue.queue.getJob(result.key))) as CatalogueJob | undefined),
+    );
   const sorted = (map: Map<string, number>) => [...map].sort(([, a], [, b]) => b - a);
   await write(
     'report.html',
     page([
-      `<p>${all} jobs; ${(cpuMs / 1000).toFixed(1)} s of processor time. Each of them is a line in <a href="results.jsonl">results.jsonl</a>.</p>`,
+      `<p>${counted.done + counted.failed} jobs: ${counted.done} done, ${counted.failed} failed; ${(cpuMs / 1000).toFixed(1)} s of processor time. Each of them is a line in <a href="results.jsonl">results.jsonl</a>.</p>`,
       section(
         'Verdicts',
         table(
@@ -83,8 +88,9 @@ export async function report(
     ]),
   );
   // What was done since then is not in the results yet.
-  while (forget && (await catalogue.queue.clean(Date.now() - began, chunk, 'completed')).length === chunk);
-  return 'report.html';
+  const clean = () => patiently(() => catalogue.queue.clean(Date.now() - began, chunk, 'completed'));
+  while (forget && (await clean()).length === chunk);
+  return counted;
 }
 
 const legend = '<p>Grey may be painted; blue is occluded, orange uncovered, pink culled.</p>';
@@ -104,7 +110,7 @@ async function figure(result: Result, job: CatalogueJob | undefined): Promise<st
   const { key, inputs, verdict, findings = [], error } = result;
   const title = text(`${verdict}: ${inputs['target']} in ${inputs['cage']}`);
   const why = text(error?.replace(/^unfit: /, '') ?? findings.join(', '));
-  const drawn = job && (await inspection(job.data).catch(() => undefined));
+  const drawn = job && (await inspection(job).catch(() => undefined));
   if (!drawn) return `<article><h3>${title}</h3><p>${why}</p></article>`;
   await write(`worst/${key}.html`, drawn);
   const pictures = drawn.match(/<img [^>]*src="data:image\/png;base64,[^"]*"[^>]*>/g) ?? [];
@@ -112,7 +118,8 @@ async function figure(result: Result, job: CatalogueJob | undefined): Promise<st
 }
 
 /** The page of `cagecast inspect --html` for a job. */
-async function inspection({ inputs, settings }: JobData): Promise<string> {
+async function inspection(job: CatalogueJob): Promise<string> {
+  const { inputs, settings }: JobData = checkedJob(job).data;
   const folder = await mkdtemp(join(tmpdir(), 'catalogue-'));
   try {
     for (const name of ['target', 'cage'])
@@ -155,17 +162,15 @@ ${sections.join('\n')}
 </html>
 `;
 
-if (import.meta.filename === process.argv[1]) {
-  const { values } = parseArgs({
-    options: { before: { type: 'string' }, worst: { type: 'string' }, forget: { type: 'boolean' } },
-  });
+if (import.meta.filename === process.argv[1])
   await command(async (catalogue) => {
-    const name = await report(catalogue, {
-      forget: values.forget,
-      before: values.before && fromCaller(values.before),
-      ...(values.worst && { worst: Number(values.worst) }),
+    const { values } = parseArgs({
+      options: { before: { type: 'string' }, worst: { type: 'string' }, forget: { type: 'boolean' } },
     });
-    console.log(`wrote ${name} and results.jsonl`);
+    const worst = Number(values.worst ?? 12);
+    if (!(worst >= 0)) throw new Failure('broken', `--worst is "${values.worst}", not a number ≥ 0`);
+    const before = values.before && fromCaller(values.before);
+    const { done, failed } = await report(catalogue, { forget: values.forget, before, worst });
+    console.log(`wrote report.html and results.jsonl: ${done} done, ${failed} failed`);
     return 0;
   });
-}

@@ -1,7 +1,7 @@
 import { type ChildProcess, fork } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { Failure, type Reason } from './failure.ts';
+import { Failure, meaningOf, type Reason } from './failure.ts';
 import type { Answer } from './kinds/kind.ts';
 import { settings } from './settings.ts';
 
@@ -67,7 +67,12 @@ export class Sandbox {
       child.once('error', failed);
       child.once('exit', () => {
         if (this.#child === child) this.#child = undefined;
-        failed(new Failure('unexpected', `the process of a job does not start: ${this.#said.trim()}`));
+        failed(
+          new Failure(
+            'unexpected',
+            `the process of a job does not start: ${/^.*Error.*$/m.exec(this.#said)?.[0] ?? this.#said.trim()}`,
+          ),
+        );
       });
     });
     return (this.#child = child);
@@ -88,7 +93,7 @@ export class Sandbox {
             ? tooMuch
             : new Failure('crash', `its process died (${signal ?? `exit code ${code}`})`),
         );
-      const lost = (error: Error) => end(new Failure('crash', `its process cannot be reached (${error.message})`));
+      const lost = (error: Error) => end(new Failure('crash', `its process cannot be reached: ${meaningOf(error)}`));
       const late = new Failure('limit', `more than ${task.seconds} s (CATALOGUE_SECONDS, or "seconds" of its kind)`);
       const timer = setTimeout(() => end(late), task.seconds * 1000);
       const watch = setInterval(() => memoryOf(child) > settings.memory && end(tooMuch), watchMs);

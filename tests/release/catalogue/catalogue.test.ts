@@ -1,172 +1,21 @@
 import assert from 'node:assert/strict';
-import { type ChildProcess, spawn } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { once } from 'node:events';
-import {
-  existsSync,
-  mkdirSync,
-  mkdtempSync,
-  readdirSync,
-  readFileSync,
-  rmSync,
-  statSync,
-  writeFileSync,
-} from 'node:fs';
-import { createServer, type Server } from 'node:http';
-import type { AddressInfo } from 'node:net';
-import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
+import { existsSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
-import { type OwnRedis, startRedis } from '../../../examples/catalogue/redis.ts';
-import { ball } from '../../package/scenes.js';
-import { glbOf } from '../../support/glb.js';
 import { validate } from '../../support/gltf.js';
+import * as recipe from './recipe.ts';
+import { filesOf, folder, inputs, objects, outputs, results, run, submit, workers } from './recipe.ts';
 
-const recipe = resolve('examples/catalogue');
-const folder = mkdtempSync(join(tmpdir(), 'cagecast-catalogue-'));
-const [inputs, outputs] = [join(folder, 'inputs'), join(folder, 'outputs')];
-let redis: OwnRedis;
-
-/** The parts of the recipe, which read the environment when they are loaded. */
-async function loadRecipe() {
-  const [jobs, submission, report, status] = await Promise.all([
-    import('../../../examples/catalogue/jobs.ts'),
-    import('../../../examples/catalogue/submit.ts'),
-    import('../../../examples/catalogue/report.ts'),
-    import('../../../examples/catalogue/status.ts'),
-  ]);
-  return { ...jobs, ...submission, ...report, ...status };
-}
-let parts: Awaited<ReturnType<typeof loadRecipe>>;
-let catalogue: ReturnType<typeof parts.openCatalogue>;
-
-/** Submits lines of a manifest. @returns what the command says. */
-async function submit(...lines: object[]): Promise<string[]> {
-  const path = join(folder, 'manifest.jsonl');
-  writeFileSync(path, lines.map((line) => `${JSON.stringify(line)}\n`).join(''));
-  const summary = await parts.submit(path, catalogue);
-  return [parts.describe(summary), ...summary.errors];
-}
-
-/** Runs a program of the recipe. @returns its exit code, and the lines that it printed. */
-async function run(program: string, ...args: string[]): Promise<[code: number, ...lines: string[]]> {
-  const child = spawn(process.execPath, ['--import', 'tsx', program, ...args], { cwd: recipe });
-  let text = '';
-  for (const stream of [child.stdout, child.stderr]) stream.on('data', (chunk) => (text += chunk));
-  const [code] = await once(child, 'close');
-  return [code, ...text.trim().split('\n').sort()];
-}
-
-/** Workers that are started again when they die, as Kubernetes does. */
-const workers = new Set<ChildProcess>();
-let isEnding = false;
-function startWorker(): void {
-  const args = ['--import', 'tsx', 'worker.ts'];
-  const worker = spawn(process.execPath, args, { cwd: recipe, stdio: ['ignore', 'ignore', 'inherit'] });
-  workers.add(worker);
-  worker.once('exit', () => {
-    workers.delete(worker);
-    if (!isEnding) startWorker();
-  });
-}
-
-interface Line {
-  key: string;
-  kind: string;
-  status: string;
-  reason?: string;
-  error?: string;
-  output?: string;
-  verdict?: string;
-  inputs: Record<string, string>;
-}
-
-/** Waits until nothing is left to do, and reads the results. */
-async function results(): Promise<Line[]> {
-  await parts.untilDone(catalogue);
-  await parts.report(catalogue, { worst: 1 });
-  const lines = readFileSync(join(outputs, 'results.jsonl'), 'utf8').trim().split('\n');
-  return lines.map((line) => JSON.parse(line));
-}
-
-/** A server of objects: signed addresses, an upload, and some that are wrong. */
-let store: Server;
-let origin = '';
-const objects = new Map<string, Buffer>();
-const asked: string[] = [];
-async function startStore(): Promise<void> {
-  store = createServer(async (request, response) => {
-    const { pathname, searchParams } = new URL(request.url!, origin);
-    asked.push(`${request.method} ${pathname}`);
-    const isFirst = asked.indexOf(asked.at(-1)!) === asked.length - 1;
-    if (pathname === '/busy.glb' && isFirst) response.writeHead(503).end();
-    else if (pathname === '/to-other.glb') response.writeHead(302, { location: 'http://169.254.169.254/key' }).end();
-    else if (pathname === '/around.glb') response.writeHead(302, { location: '/around.glb?signature=s' }).end();
-    else if (pathname === '/endless.glb') {
-      for (; !response.destroyed; await setTimeout(10)) response.write(Buffer.alloc(1e6));
-    } else if (searchParams.get('signature') !== 's') response.writeHead(403).end();
-    else if (request.method === 'PUT') {
-      const chunks: Buffer[] = [];
-      for await (const chunk of request) chunks.push(chunk as Buffer);
-      objects.set(pathname, Buffer.concat(chunks));
-      response.end();
-    } else response.end(objects.get(pathname));
-  }).listen(0, '127.0.0.1');
-  await new Promise((done) => store.once('listening', done));
-  origin = `http://127.0.0.1:${(store.address() as AddressInfo).port}`;
-}
-
-before(async () => {
-  mkdirSync(inputs);
-  const sphere = (radius: number) => glbOf(ball([0, 0, 0], () => radius, 12, 16));
-  writeFileSync(join(inputs, 'cage.glb'), sphere(1.1));
-  writeFileSync(join(inputs, 'small-cage.glb'), sphere(0.4));
-  writeFileSync(join(inputs, 'large.glb'), Buffer.alloc(3e6));
-  writeFileSync(join(inputs, 'broken.glb'), sphere(1).subarray(0, 999));
-  writeFileSync(join(folder, 'secret.glb'), 'not yours');
-  for (let i = 0; i < 20; ++i) writeFileSync(join(inputs, `${i}.glb`), sphere(1 + i / 1000));
-  await startStore();
-  redis = await startRedis(join(folder, 'redis'));
-  Object.assign(process.env, {
-    REDIS_URL: redis.url,
-    CATALOGUE_PREFIX: 'test',
-    CATALOGUE_INPUTS: inputs,
-    CATALOGUE_OUTPUTS: outputs,
-    CATALOGUE_HOSTS: new URL(origin).host,
-    CATALOGUE_KINDS: resolve('tests/release/catalogue/kinds.ts'),
-    CATALOGUE_CONCURRENCY: '1',
-    CATALOGUE_PORT: '0',
-    CATALOGUE_LOCK: '1500',
-    CATALOGUE_BACKOFF: '50',
-    CATALOGUE_SECONDS: '60',
-    CATALOGUE_MEMORY: '600',
-    CATALOGUE_INPUT_SIZE: '2',
-  });
-  for (let i = 0; i < 3; ++i) startWorker();
-  parts = await loadRecipe();
-  catalogue = parts.openCatalogue();
-});
-after(async () => {
-  isEnding = true;
-  for (const worker of workers) worker.kill('SIGKILL');
-  store?.close();
-  store?.closeAllConnections();
-  await catalogue?.close();
-  await redis?.stop('SIGKILL');
-  rmSync(folder, { recursive: true, force: true });
-});
+before(() => recipe.open(3));
+after(() => recipe.close());
 
 const targets = Array.from({ length: 20 }, (_, i) => `${i}.glb`);
 const manifest = [
   { kind: 'transfer', target: targets, cage: 'cage.glb' },
   { kind: 'slow', target: targets, settings: { ms: 150 } },
 ];
-
-const filesOf = (place: string): string[] =>
-  readdirSync(place, { recursive: true, withFileTypes: true })
-    .filter((entry) => entry.isFile())
-    .map((entry) => join(entry.parentPath, entry.name));
 
 describe('the catalogue', () => {
   test('gives each result once, although a worker is killed and Redis is restarted', async () => {
@@ -175,9 +24,7 @@ describe('the catalogue', () => {
     for (const end = Date.now() + 120_000; written() < 4 && Date.now() < end; ) await setTimeout(20);
     assert.ok(written() >= 4);
     [...workers][0]!.kill('SIGKILL');
-    await redis.stop('SIGKILL');
-    await setTimeout(500);
-    redis = await startRedis(join(folder, 'redis'), Number(new URL(redis.url).port));
+    await recipe.restartRedis(500);
 
     const lines = await results();
     assert.equal(lines.length, 40);
@@ -203,7 +50,7 @@ describe('the catalogue', () => {
   });
 
   test('keeps bad jobs with their reasons in the dead-letter list, and does all others', async () => {
-    const at = (path: string) => `${origin}${path}`;
+    const at = (path: string) => `${recipe.origin}${path}`;
     const bytes = readFileSync(join(inputs, '7.glb'));
     objects.set('/busy.glb', bytes).set('/good.glb', bytes);
     const known = (path: string) => ({ place: at(path), sha256: createHash('sha256').update(bytes).digest('hex') });
@@ -238,7 +85,7 @@ describe('the catalogue', () => {
       { kind: 'inspect', target: '1.glb', cage: 'cage.glb', colour: 'red' },
     );
     assert.deepEqual(said, [
-      '17 new jobs, 0 known, 3 lines that cannot be used',
+      '17 new jobs, 0 known, 3 that cannot be used',
       'line 18: "kind" is "paint"; there are: inspect, transfer, slow, hang, hog, die, kill',
       'line 19: refused: ../secret.glb is outside the input folder',
       'line 20: "colour" is unknown; inputs: target, cage',
@@ -246,7 +93,7 @@ describe('the catalogue', () => {
     const lines = await results();
     const dead = lines.filter(({ status }) => status === 'failed');
     const reasons = dead.map(
-      ({ key, reason, inputs }) => `${key.split('-')[0]} ${inputs['target']!.replace(origin, '')} ${reason}`,
+      ({ key, reason, inputs }) => `${key.split('-')[0]} ${inputs['target']!.replace(recipe.origin, '')} ${reason}`,
     );
     assert.deepEqual(reasons.sort(), [
       'die 1.glb crash',
@@ -268,14 +115,14 @@ describe('the catalogue', () => {
     assert.match(dead.find(({ key }) => key.startsWith('kill'))!.error!, /a worker died on it 3 times/);
     assert.equal(lines.length, 57);
     assert.equal(lines.filter(({ status }) => status === 'done').length, 42);
-    assert.equal(asked.filter((one) => one === 'GET /busy.glb').length, 2);
-    assert.equal(lines.find(({ output }) => output?.startsWith(origin))!.output, `${origin}/out.glb`);
+    assert.equal(recipe.asked.filter((one) => one === 'GET /busy.glb').length, 2);
+    assert.equal(lines.find(({ output }) => output?.startsWith(recipe.origin))!.output, `${recipe.origin}/out.glb`);
     writeFileSync(join(folder, 'out.glb'), objects.get('/out.glb')!);
     assert.deepEqual(await validate(join(folder, 'out.glb')), []);
   });
 
   test('tells its state as a page, as metrics and as a report with pictures, without the signatures of addresses', async () => {
-    const { address, close } = await parts.serveStatus(catalogue);
+    const { address, close } = await recipe.parts.serveStatus(recipe.catalogue);
     try {
       const page = (name: string) => `${address}/${name}`;
       const get = async (address: string) => (await fetch(address)).text();
@@ -301,8 +148,8 @@ describe('the catalogue', () => {
 
   test('forgets jobs in Redis, but not that they were done', async () => {
     await results();
-    await parts.report(catalogue, { worst: 0, forget: true });
-    assert.deepEqual(await catalogue.queue.getJobCounts('completed', 'failed'), { completed: 0, failed: 15 });
+    await recipe.parts.report(recipe.catalogue, { worst: 0, forget: true });
+    assert.deepEqual(await recipe.catalogue.queue.getJobCounts('completed', 'failed'), { completed: 0, failed: 15 });
     assert.deepEqual(await submit(...manifest), ['0 new jobs, 40 known']);
     assert.equal((await results()).length, 58);
   });
@@ -327,13 +174,13 @@ describe('the catalogue', () => {
     assert.deepEqual(await run('submit.ts', file('empty.jsonl', { ...bad, target: [] }), '--wait'), [
       1,
       '0 done, 0 failed',
-      '0 new jobs, 0 known, 1 lines that cannot be used',
+      '0 new jobs, 0 known, 1 that cannot be used',
       'line 1: "target" is an empty list',
     ]);
 
     const missing = join(folder, 'yesterdy.jsonl');
-    assert.deepEqual(await run('submit.ts', missing), [2, `missing: ${missing}: ENOENT`]);
-    assert.deepEqual(await run('report.ts', '--before', missing), [2, `missing: ${missing}: ENOENT`]);
+    assert.deepEqual(await run('submit.ts', missing), [2, `missing: ${missing} is not there`]);
+    assert.deepEqual(await run('report.ts', '--before', missing), [2, `missing: ${missing} is not there`]);
     const cutOff = join(folder, 'cut-off.jsonl');
     writeFileSync(cutOff, readFileSync(join(outputs, 'results.jsonl')).subarray(0, -50));
     assert.deepEqual(await run('report.ts', '--before', cutOff), [
@@ -342,7 +189,7 @@ describe('the catalogue', () => {
     ]);
     assert.deepEqual(await run('dead.ts', '--reason', 'brokn', '--retry'), [
       2,
-      '--reason is "brokn"; there are: broken, unfit, limit, missing, refused, network, crash, unexpected',
+      'broken: --reason is "brokn"; there are: broken, unfit, limit, missing, lost, refused, network, crash, unexpected',
     ]);
     assert.equal((await run('dead.ts', '--reason', 'broken')).length, 4);
   });

@@ -10,7 +10,7 @@ import { setTimeout } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { Document, NodeIO } from '@gltf-transform/core';
-import { startRedis } from './redis.ts';
+import { startRedis } from '../redis.ts';
 
 const { values } = parseArgs({ options: { jobs: { type: 'string' }, detail: { type: 'string' } } });
 const [most, detail] = [Number(values.jobs ?? 2000), Number(values.detail ?? 12)];
@@ -24,9 +24,9 @@ Object.assign(process.env, {
   CATALOGUE_CONCURRENCY: '1',
   CATALOGUE_LOCK: '5000',
 });
-const { openCatalogue } = await import('./jobs.ts');
-const { submit, untilDone } = await import('./submit.ts');
-const { collectResults } = await import('./results.ts');
+const { openCatalogue } = await import('../jobs.ts');
+const { submit, untilDone } = await import('../submit.ts');
+const { collectResults } = await import('../results.ts');
 const catalogue = openCatalogue();
 
 /** A sphere as a GLB. */

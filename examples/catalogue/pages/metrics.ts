@@ -1,8 +1,10 @@
 import { type Queue, QueueEvents } from 'bullmq';
 import { Counter, Gauge, Histogram, Registry } from 'prom-client';
-import { reasonOf } from './failure.ts';
-import { connect, type Done, type JobData, queueName } from './jobs.ts';
-import { settings } from './settings.ts';
+import { reasonOf } from '../failure.ts';
+import { connect, queueName } from '../jobs.ts';
+import { patiently } from '../patience.ts';
+import { settings } from '../settings.ts';
+import { checkedDone, type Done, type JobData } from '../shape.ts';
 
 /**
  * The metrics of all workers together, from the events of the queue: counted since this process began, as Prometheus expects, and
@@ -38,12 +40,12 @@ export async function watch(
 
   const redis = connect();
   // From the last event until now: one that comes while this connects counts.
-  const [last] = await redis.xrevrange(queue.toKey('events'), '+', '-', 'COUNT', 1);
+  const [last] = await patiently(() => redis.xrevrange(queue.toKey('events'), '+', '-', 'COUNT', 1));
   const lastEventId = last?.[0] ?? '0-0';
   const events = new QueueEvents(queueName, { connection: redis, prefix: settings.prefix, lastEventId });
   events.on('error', () => {}); // it tries again
   events.on('completed', ({ returnvalue }) => {
-    const { facts, ms, cpuMs } = returnvalue as unknown as Done;
+    const { facts, ms, cpuMs } = doneOf(returnvalue);
     done.inc({ verdict: facts.verdict ?? 'none' });
     duration.observe(ms / 1000);
     cpu.observe(cpuMs / 1000);
@@ -61,4 +63,13 @@ export async function watch(
       redis.disconnect();
     },
   };
+}
+
+/** What an event says of a job that is done; whatever it says. */
+function doneOf(value: unknown): Done {
+  try {
+    return checkedDone(value);
+  } catch {
+    return { facts: {}, ms: 0, cpuMs: 0 };
+  }
 }
