@@ -68,7 +68,11 @@ export function connect(): Redis {
     retryStrategy: (times) => Math.min(100 * times, 2000),
     reconnectOnError: ({ message }) => message.startsWith('READONLY'), // its name may lead to the master by now
   });
-  redis.on('error', (error) => tellTrouble(redisTrouble(error) ?? asFailure(error).message));
+  redis.on('error', (error) => {
+    const failure = asFailure(error);
+    if (failure.reason === 'refused') throw failure; // a wrong password stays wrong
+    tellTrouble(redisTrouble(error) ?? failure.message);
+  });
   redis.on('ready', () => tellTrouble(''));
   return redis;
 }

@@ -1,6 +1,6 @@
 import { join } from 'node:path';
 import { linesOf } from './command.ts';
-import { Failure } from './failure.ts';
+import { Failure, meaningOf } from './failure.ts';
 import { type Catalogue, finishedJobs, presentResult, type Result } from './jobs.ts';
 import { settings } from './settings.ts';
 import { isRecord, type Written } from './shape.ts';
@@ -35,14 +35,15 @@ function parse(text: string): Result | undefined {
 /** The results in the output folder; none before the first night. */
 async function* ownResults(): AsyncGenerator<Result> {
   const file = await openOutput(resultsFile).catch((error: NodeJS.ErrnoException) => {
-    if (error.code !== 'ENOENT') throw error;
+    if (error.code !== 'ENOENT')
+      throw new Failure('refused', `${resultsFile} in the output folder ${meaningOf(error)}`);
   });
   if (!file) return;
   const path = join(settings.outputs, resultsFile);
-  yield* readResults(
-    path,
-    linesOf(path, async () => file),
-  );
+  const lines = linesOf(path, async () => file);
+  // One that was lost may be there again: whoever asks looks.
+  for await (const { reason, error, ...result } of readResults(path, lines))
+    yield reason === 'lost' ? { ...result, status: 'done' } : { ...result, ...(reason && { reason, error: error! }) };
 }
 
 /** What jobs wrote that were done, as told by the results in the output folder: Redis may have forgotten them. */

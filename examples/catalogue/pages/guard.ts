@@ -18,7 +18,7 @@ const refuse = (response: Response, status: number, text: string) =>
 
 /** Whether a Host header is ours. Any name can be made to lead here; an IP address cannot, nor can localhost. */
 function isOwn(host: string): boolean {
-  const name = URL.canParse(`http://${host}`) ? new URL(`http://${host}`).hostname : '';
+  const name = /^[^\s/?#@]+$/.test(host) && URL.canParse(`http://${host}`) ? new URL(`http://${host}`).hostname : '';
   return isIP(name.replace(/^\[|\]$/g, '')) > 0 || name === 'localhost' || settings.names.includes(name);
 }
 

@@ -10,6 +10,11 @@ export default {
     await setTimeout(Number(ms));
     return { facts: { bytes: target!.length }, output: Buffer.alloc(target!.length, 'x') };
   }),
+  /** Fails with a text, or tells it as a fact. */
+  tell: kind(async (_, { text, isFact }) => {
+    if (!isFact) throw new Error(String(text));
+    return { facts: { verdict: String(text), [String(text)]: text } };
+  }),
   hang: {
     ...kind(async () => {
       for (;;);

@@ -1,5 +1,5 @@
 // The recipe with a Redis, folders, a server of objects and workers of its own, for the tests of one file.
-import { type ChildProcess, spawn } from 'node:child_process';
+import { type ChildProcess, execFile, spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer, type Server } from 'node:http';
@@ -7,7 +7,7 @@ import type { AddressInfo } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { setTimeout } from 'node:timers/promises';
-import { Redis } from '../../../examples/catalogue/node_modules/ioredis/built/index.js';
+import { promisify } from 'node:util';
 import { type OwnRedis, startRedis } from '../../../examples/catalogue/redis.ts';
 import { ball } from '../../package/scenes.js';
 import { glbOf } from '../../support/glb.js';
@@ -43,24 +43,30 @@ export async function submit(...lines: (object | string)[]): Promise<string[]> {
   return [parts.describe(summary), ...summary.errors];
 }
 
-/** Runs a program of the recipe. @returns its exit code, and the lines that it printed. */
-export async function run(program: string, ...args: string[]): Promise<[code: number, ...lines: string[]]> {
-  return runWith({}, program, ...args);
-}
-
-/** Runs it with other variables. */
-export async function runWith(
-  env: Record<string, string>,
+/** Starts a program of the recipe. @returns what it has printed until now, and its exit code when it has ended. */
+export function start(
   program: string,
-  ...args: string[]
-): Promise<[code: number, ...lines: string[]]> {
+  args: string[],
+  env: Record<string, string> = {},
+): { child: ChildProcess; text: () => string; ended: Promise<number> } {
   const options = { cwd: home, env: { ...process.env, ...env } };
-  // By its whole path, as it would be told from a module of the test itself.
   const child = spawn(process.execPath, ['--import', 'tsx', join(home, program), ...args], options);
   let text = '';
   for (const stream of [child.stdout, child.stderr]) stream.on('data', (chunk) => (text += chunk));
-  const [code] = await once(child, 'close');
-  return [code, ...text.trim().split('\n').sort()];
+  return { child, text: () => text, ended: once(child, 'close').then(([code]) => code) };
+}
+
+/** Runs a program of the recipe. @returns its exit code, and the lines that it printed. */
+export async function run(program: string, ...args: string[]): Promise<[code: number, ...lines: string[]]> {
+  const { text, ended } = start(program, args);
+  const code = await ended;
+  return [code, ...text().trim().split('\n').sort()];
+}
+
+/** Waits for something, two minutes at most. */
+export async function until(what: () => boolean | Promise<boolean>): Promise<void> {
+  for (const end = Date.now() + 120_000; !(await what()); await setTimeout(50))
+    if (Date.now() > end) throw new Error(`in vain: ${what}`);
 }
 
 /** Workers that are started again when they die, as Kubernetes does. What they say is kept. */
@@ -176,7 +182,7 @@ export async function close(): Promise<void> {
   await stopWorkers();
   store?.close();
   store?.closeAllConnections();
-  await catalogue?.close();
+  await Promise.race([catalogue?.close(), setTimeout(5000)]); // a Redis that a test left busy does not answer
   await redis?.stop('SIGKILL');
   rmSync(folder, { recursive: true, force: true });
 }
@@ -189,14 +195,9 @@ export async function restartRedis(ms: number): Promise<void> {
 }
 
 /** Asks Redis on a connection of its own. */
-export async function ask(...command: [string, ...string[]]): Promise<unknown> {
-  const client = new Redis(redis.url);
-  client.on('error', () => {}); // what it is asked may end it
-  try {
-    return await client.call(...command);
-  } finally {
-    client.disconnect();
-  }
+export async function ask(...command: string[]): Promise<string> {
+  const { stdout } = await promisify(execFile)('redis-cli', ['-p', new URL(redis.url).port, ...command]);
+  return stdout.trim();
 }
 
 export const filesOf = (place: string): string[] =>
