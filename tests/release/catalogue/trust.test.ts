@@ -22,7 +22,7 @@ function fetchAs(
   }: { method?: string; headers?: Record<string, string>; body?: string } = {},
 ): Promise<Answer> {
   return new Promise((resolve, reject) => {
-    const asked = request(address, { method, headers }, async (response) => {
+    const asked = request(address, { method, headers, agent: false }, async (response) => {
       let text = '';
       for await (const chunk of response) text += chunk;
       resolve({ status: response.statusCode!, text, headers: response.headers });
