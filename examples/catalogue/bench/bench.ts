@@ -80,11 +80,11 @@ async function sizes() {
 }
 
 console.table([await throughput(1, 200), await throughput(2, 200), await throughput(3, 200)]);
-console.table([await sizes()]);
 // Nothing of before counts in the night.
 await catalogue.redis.flushall();
 rmSync(stage.outputs, { recursive: true });
 console.table(await disaster(stage, { jobs: most, fullMs: 6000, frozenMs: 2.5 * lockMs }));
+console.table([await sizes()]);
 await catalogue.close();
 await stage.redis.stop();
 rmSync(folder, { recursive: true, force: true });
