@@ -2,7 +2,7 @@
 import { parseArgs } from 'node:util';
 import { command } from './command.ts';
 import { Failure, reasons } from './failure.ts';
-import { resultOf, startsKey } from './jobs.ts';
+import { resultOf, retry, startsKey } from './jobs.ts';
 import { patiently } from './patience.ts';
 
 await command(async ({ queue, redis }) => {
@@ -17,7 +17,7 @@ await command(async ({ queue, redis }) => {
     console.log(JSON.stringify({ key, reason, error, inputs, tried: job.attemptsStarted }));
     if (!values.retry) continue;
     await patiently(() => redis.hdel(startsKey, key));
-    await patiently(() => job.retry('failed', { resetAttemptsMade: true }));
+    await retry(job, 'failed');
   }
   return 0;
 });

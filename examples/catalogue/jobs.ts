@@ -119,6 +119,16 @@ export function openCatalogue(): Catalogue {
 /** The hash that counts for each job how often it was started and neither done nor failed: it killed its worker. */
 export const startsKey = `${settings.prefix}:${queueName}:starts`;
 
+/** Lets a job that is finished be done again. */
+export async function retry(job: CatalogueJob, from: 'failed' | 'completed'): Promise<void> {
+  try {
+    await patiently(() => job.retry(from, { resetAttemptsMade: true }));
+  } catch (error) {
+    // Another program was faster, or the answer of Redis was lost and it was asked twice.
+    if (!/is not in the|Missing key/.test((error as Error).message)) throw error;
+  }
+}
+
 /** A finished job as a line of the results. One that is not as it should be has failed. */
 export function resultOf(job: CatalogueJob, status: Result['status']): Result {
   const common = { key: String(job.id), kind: '', inputs: {}, settings: {} };

@@ -2,7 +2,7 @@ import { linesOf } from './command.ts';
 import { withoutSecrets } from './failure.ts';
 import { kinds } from './kinds/index.ts';
 import { settings as limits } from './settings.ts';
-import { isRecord, type JobData } from './shape.ts';
+import { isAddress, isRecord, type JobData } from './shape.ts';
 import { hashOf, read } from './storage.ts';
 
 /** A line of a manifest, read: its jobs, or what is wrong with it. */
@@ -90,7 +90,7 @@ async function dataOf(line: Line, hashes: Map<string, Promise<string>>): Promise
   const known = typeof kind === 'string' && Object.hasOwn(kinds, kind) ? kinds[kind] : undefined;
   if (!known) throw new Error(`"kind" is ${JSON.stringify(kind)}; there are: ${Object.keys(kinds).join(', ')}`);
   if (!isRecord(settings)) throw new Error('"settings" is not an object');
-  if (output !== undefined && (typeof output !== 'string' || !URL.canParse(output) || !/^https?:\/\//i.test(output)))
+  if (output !== undefined && !isAddress(output))
     throw new Error('"output" is not a URL; without one, it is written to the output folder');
   const stranger = Object.keys(given).find((name) => !Object.hasOwn(known.inputs, name));
   if (stranger !== undefined)

@@ -12,12 +12,11 @@ export function tellTrouble(trouble: string): void {
   console.error(`${new Date().toISOString()} ${trouble ? `${trouble}. Waiting …` : 'Redis answers again'}`);
 }
 
-/**
- * Asks Redis, again and again until it answers.
- * @param isEnding  Whether nobody waits for the answer any more.
- * @throws what is no trouble that passes.
- */
-export async function patiently<T>(ask: () => Promise<T>, isEnding = () => false): Promise<T> {
+/** Whether Redis does not answer at the moment. */
+export const isInTrouble = (): boolean => told !== '';
+
+/** Asks Redis, again and again until it answers. @throws what is no trouble that passes. */
+export async function patiently<T>(ask: () => Promise<T>): Promise<T> {
   for (let hasWaited = false; ; hasWaited = true) {
     try {
       const answer = await ask();
@@ -25,7 +24,7 @@ export async function patiently<T>(ask: () => Promise<T>, isEnding = () => false
       return answer;
     } catch (error) {
       const trouble = redisTrouble(error);
-      if (trouble === undefined || isEnding()) throw error;
+      if (trouble === undefined) throw error;
       tellTrouble(trouble);
       await setTimeout(pauseMs * (1 + Math.random()));
     }

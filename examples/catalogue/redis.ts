@@ -20,6 +20,7 @@ export async function startRedis(folder: string, port?: number): Promise<OwnRedi
   const args = Object.entries(options).flatMap(([name, value]) => [`--${name}`, String(value)]);
   const server = spawn('redis-server', args, { stdio: 'ignore' });
   const ended = once(server, 'exit');
+  process.once('exit', () => server.kill()); // it would go on alone
   const redis = new Redis(own, '127.0.0.1', { maxRetriesPerRequest: null, retryStrategy: () => 50 });
   redis.on('error', () => {}); // until it listens
   const failed = () => {

@@ -31,6 +31,9 @@ export interface Done extends Partial<Written> {
 export const isRecord = (value: unknown): value is Record<string, unknown> =>
   typeof value === 'object' && value !== null && !Array.isArray(value);
 
+export const isAddress = (value: unknown): value is string =>
+  typeof value === 'string' && /^https?:\/\//i.test(value) && URL.canParse(value);
+
 const isHash = (value: unknown) => typeof value === 'string' && /^[0-9a-f]{64}$/.test(value);
 
 /**
@@ -48,8 +51,7 @@ export function checkedJob({ id, data }: { id?: string | undefined; data: unknow
   if (!isRecord(inputs) || !Object.values(inputs).every(isInput))
     throw wrong('its "inputs" have not all a place and a sha256');
   if (!isRecord(settings)) throw wrong('its "settings" are no object');
-  if (output !== undefined && (typeof output !== 'string' || !/^https?:\/\//i.test(output)))
-    throw wrong('its "output" is no address');
+  if (output !== undefined && !isAddress(output)) throw wrong('its "output" is no address');
   if (typeof id !== 'string' || !id.startsWith(`${kind}-`) || !/^[0-9a-f]{32}$/.test(id.slice(kind.length + 1)))
     throw wrong('its id is not its kind, "-" and 32 hexadecimal digits');
   return { key: id, data: data as unknown as JobData };

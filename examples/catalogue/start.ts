@@ -36,8 +36,10 @@ const summary = await submit(here('samples.jsonl'), catalogue);
 console.log(describe(summary));
 for (const error of summary.errors) console.log(`  ${error}`);
 await untilDone(catalogue, onTerminal);
-await report(catalogue);
-console.log(`\nreport   ${address}/files/report.html\nresults  ${address}/files/results.jsonl`);
+const { done, failed } = await report(catalogue);
+console.log(
+  `\n${done} done, ${failed} failed\nreport   ${address}/files/report.html\nresults  ${address}/files/results.jsonl`,
+);
 if (!values.once) {
   console.log('Ctrl-C ends all of it.');
   await Promise.race([once(process, 'SIGINT'), once(process, 'SIGTERM')]);

@@ -4,7 +4,7 @@ import { setTimeout } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
 import { command } from './command.ts';
 import { Failure } from './failure.ts';
-import { addressOf, type Catalogue, type CatalogueJob, keyOf, presentResult, resultOf } from './jobs.ts';
+import { addressOf, type Catalogue, type CatalogueJob, keyOf, presentResult, resultOf, retry } from './jobs.ts';
 import { readManifest } from './manifest.ts';
 import { patiently } from './patience.ts';
 import { doneBefore } from './results.ts';
@@ -96,7 +96,7 @@ async function prepare(
   await patiently(() => job.updateData(data)); // URLs that are signed anew
   if (state === 'left') return 'again';
   const from = job.returnvalue === null || job.returnvalue === undefined ? 'failed' : 'completed';
-  await patiently(() => job.retry(from, { resetAttemptsMade: true })).catch(alreadyRetried);
+  await retry(job, from);
   return state === 'lost' ? 'lost' : 'again';
 }
 
@@ -128,11 +128,6 @@ function isJobOf(job: CatalogueJob, key: string): boolean {
   } catch {
     return false;
   }
-}
-
-/** Another program was faster, or the answer of Redis was lost and it was asked twice. */
-function alreadyRetried(error: Error): void {
-  if (!/is not in the|Missing key/.test(error.message)) throw error;
 }
 
 /** Waits until no job is left. */

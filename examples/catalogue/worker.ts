@@ -3,7 +3,7 @@ import { UnrecoverableError, Worker } from 'bullmq';
 import { asFailure, Failure, publicOf, redisTrouble, withoutSecrets } from './failure.ts';
 import { type CatalogueJob, connect, outputOf, queueName, startsKey } from './jobs.ts';
 import { kinds } from './kinds/index.ts';
-import { patiently, tellTrouble } from './patience.ts';
+import { isInTrouble, patiently, tellTrouble } from './patience.ts';
 import { Sandbox } from './sandbox.ts';
 import { settings } from './settings.ts';
 import { checkedJob, type Done, type JobData, type Written } from './shape.ts';
@@ -94,7 +94,7 @@ function makePatient(worker: Worker<JobData, Done>): void {
   const original = calls.retryIfFailed?.bind(worker);
   if (!original)
     throw new Failure('unexpected', 'this version of BullMQ is not supported: npm ci installs one that is');
-  calls.retryIfFailed = (ask, options) => original(() => patiently(ask, () => worker.closing !== undefined), options);
+  calls.retryIfFailed = (ask, options) => original(() => patiently(ask), options);
 }
 
 await removeLeftovers();
@@ -130,7 +130,7 @@ let isEnding = false;
 for (const signal of ['SIGINT', 'SIGTERM'] as const)
   process.on(signal, async () => {
     // Without Redis there is nobody to tell of the jobs that it has: they will be started again.
-    if (!isEnding && redis.status === 'ready') {
+    if (!isEnding && redis.status === 'ready' && !isInTrouble()) {
       isEnding = true;
       await worker.close(); // when the jobs that it has are done
     }

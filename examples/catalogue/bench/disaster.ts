@@ -150,6 +150,7 @@ function whatIsThere({ folder, outputs }: Stage, files: string[]): Figures {
     keys: new Set(lines.map(({ key }) => key)).size,
     files: files.length,
     filesAsTold: done.filter(({ output, outputSha256 }) => hashes.get(join(outputs, output)) === outputSha256).length,
+    jobMs: Math.round(done.reduce((sum, { cpuMs }) => sum + cpuMs, 0) / done.length),
     unfinished: filesOf(join(outputs, '.unfinished')).length,
     reasons: JSON.stringify(reasons),
     escaped: filesOf(folder).filter((path) => path.includes('escaped')).length,
