@@ -86,7 +86,7 @@ describe('the catalogue', () => {
     );
     assert.deepEqual(said, [
       '17 new jobs, 0 known, 3 that cannot be used',
-      'line 18: "kind" is "paint"; there are: inspect, transfer, slow, hang, hog, die, kill',
+      'line 18: "kind" is "paint"; there are: inspect, transfer, slow, tell, hang, hog, die, kill',
       'line 19: refused: ../secret.glb is outside the input folder',
       'line 20: "colour" is unknown; inputs: target, cage',
     ]);
