@@ -156,5 +156,4 @@ if (!isNewEnough(process.version)) fail(`Cagecast needs Node ${kNodes}; this is 
 installSystemPackages(kPurposes[purpose]);
 installNpmPackages();
 if (purpose === 'test:all') installNpmPackages('tests/release/hosts/', ['install', '--no-save']);
-if (purpose === 'test:all' || purpose === 'catalogue')
-  installNpmPackages('examples/catalogue/', ['install', '--no-save']);
+if (purpose === 'test:all' || purpose === 'catalogue') installNpmPackages('examples/catalogue/');

@@ -24,7 +24,10 @@ async function workshop() {
   const points = (n: number) => Object.fromEntries([...'abcdef'].slice(0, n).map((name) => [name, [0, 0, 0] as const]));
   const engine = {
     cageGlb,
-    loadTemplate: async (name: string) => (state.tried.push(name), { landmarks: points(6) }),
+    async loadTemplate(name: string) {
+      state.tried.push(name);
+      return { landmarks: points(6) };
+    },
     makeCage: async (_: object, { signal }: { signal: AbortSignal }) => gate.wait(signal).then(box),
     refineCage: async (cage: Cage) => ({ ...cage, positions: cage.positions.map((x) => (state.moves ? x * 1.1 : x)) }),
     async fitCage(_: object, __: object, given: object, { signal }: { signal: AbortSignal }) {
