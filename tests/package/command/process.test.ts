@@ -110,6 +110,41 @@ test('a glTF gets its name after what it has beside it', () => {
   );
 });
 
+test('files that vanish or shrink while they are read are plain errors', () => {
+  const happens = (what: string) =>
+    write(
+      'happens.mjs',
+      `import fs from 'node:fs';
+      import { syncBuiltinESMExports } from 'node:module';
+      const { open } = fs.promises;
+      fs.promises.open = async (path, ...how) => {
+        if (!String(path).includes('short-lived')) return open(path, ...how);
+        ${what}
+      };
+      syncBuiltinESMExports();`,
+    );
+  const gone = 'fs.rmSync(path, { force: true }); return open(path, ...how);';
+  const gonePart = 'const file = await open(path, ...how); fs.rmSync(path, { force: true }); return file;';
+  const shrinks =
+    'const file = await open(path, ...how); const { stat } = file; file.stat = async () => { const found = await stat.call(file); fs.truncateSync(path, 100); return found; }; return file;';
+  const noFolder = 'fs.rmSync("folder", { recursive: true, force: true }); return open(path, ...how);';
+  const node = ['--import', pathToFileURL('happens.mjs').href];
+  for (const [what, says] of [
+    [gone, /short-lived\.glb: no such file/],
+    [gonePart, undefined], // it is open already
+    [shrinks, /short-lived\.glb: is truncated|short-lived\.glb: .*100 bytes/],
+    [noFolder, /short-lived\.glb: no such file/],
+  ] as const) {
+    mkdirSync('folder', { recursive: true });
+    write('folder/short-lived.glb', glb);
+    happens(what);
+    const single = cagecastProcess(['inspect', 'folder/short-lived.glb', '--cage', 'cage.glb'], { node });
+    assert.equal(single.status, says ? 1 : 0, single.stderr);
+    if (says) assert.match(single.stderr, says);
+    assert.doesNotMatch(single.stderr, /unexpectedly/);
+  }
+});
+
 test('a template and a file of another user are found and refused', (context) => {
   const closed = mkdtempSync(join(tmpdir(), 'cagecast-closed-'));
   context.after(() => rmSync(closed, { recursive: true }));
