@@ -23,6 +23,17 @@
 namespace cagecast {
 namespace {
 
+/// The work that a call may do, in tests of a few triangles: so much, and so much for each point and triangle of the target
+/// and each of its poses. Real models take 10 to 50 for each; in copies that lie in each other by the thousand, a
+/// ray meets them all.
+constexpr std::uint64_t kFreeWork = std::uint64_t{1} << 28, kWorkForEach = 1 << 11;
+
+std::uint64_t mostWork(const Scene& scene) {
+  const MeshView& target = scene.targetMesh;
+  const std::size_t poses = target.poses.size() / target.positions.size();
+  return kFreeWork + kWorkForEach * (1 + poses) * (scene.points.count + target.indices.size() / 3);
+}
+
 /// Steps 1 to 3: where points lie on the cage, and whether it covers them.
 void projectAndMark(const Scene& scene, PointData& data, Timings& times) {
   timed(times.project, [&] { projectPoints(scene, data); });
@@ -114,6 +125,7 @@ Status project(const Meshes& meshes, const TransferOptions& options, Workspace& 
 
   Scene scene(meshes.cage, meshes.target, options, *arena);
   if (const Status status = timed(times.weld, [&] { return scene.load(); }); !status.ok()) return status;
+  arena->limitWork(mostWork(scene));
   PointData points(scene.points, options, *arena);
   bool* isOuter = nullptr;
   if (options.steps.projection == ProjectionMode::nearestPoint) {
@@ -140,6 +152,7 @@ Status project(const Meshes& meshes, const TransferOptions& options, Workspace& 
   out.peakBytes =
       arena->peak() + bytesOf(out.uvs, out.cornerUvs, out.visibility, out.triangles, out.distances, out.segments,
                               out.segmentStats, out.recovery, out.hiddenBy, out.hiders, out.holeShares);
+  if (arena->isExhausted()) return {Code::tooComplex, Argument::target};
   return arena->failed() ? Status{Code::outOfMemory} : Status{};
 }
 

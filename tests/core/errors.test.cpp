@@ -330,6 +330,21 @@ TEST_CASE("a weld tolerance that nearly all vertices lie within is an error that
   CHECK(call.transfer().ok());
 }
 
+TEST_CASE("cage triangles that lie in each other by the thousand end the call, and the next one works", "[errors]") {
+  Call usual;
+  usual.options = {};
+  for (const std::size_t layers : {100u, 40'000u}) {
+    Call call = usual;
+    for (std::size_t i = 1; i < layers; ++i)
+      call.cage.indices.insert(call.cage.indices.end(), usual.cage.indices.begin(), usual.cage.indices.end());
+    call.target = scenes::box({}, {1, 1, 1}, 60);
+    const Status status = call.transfer();
+    CAPTURE(layers, call.text(status));
+    CHECK(status.code == (layers == 100 ? Code::ok : Code::tooComplex));
+    CHECK(usual.transfer().ok());
+  }
+}
+
 TEST_CASE("splitting says what is wrong with its arrays", "[errors][seams]") {
   const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 5};
   const std::vector<float> uvs(12);

@@ -20,6 +20,7 @@ import { fails, kProgram, ok, run } from '../support/command.js';
 import { costlyFiles, jpegOf, pngOf } from '../support/costly-files.js';
 import { type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from '../support/gltf.js';
 import { temporaryFolder } from '../support/temporary.js';
+import { ball } from './scenes.js';
 
 const { folder, at } = temporaryFolder('hostile');
 const whole = glbOf(tetrahedron(0.9), 'ball');
@@ -162,6 +163,19 @@ describe('a file that demands too much', () => {
     assert.equal((await run('inspect layers.glb --cage cage.glb --html layers.html')).status, 3);
     assert.match(readFileSync('layers.html', 'utf8'), often);
     assert.deepEqual(['made.glb', 'layers.png'].filter(existsSync), []);
+  });
+
+  test('a hundred thousand triangles in one place end the call, not the process', async () => {
+    const corners = { positions: Float32Array.of(0, 0, 0, 0.5, 0, 0, 0, 0.5, 0) };
+    writeFileSync('stack.glb', glbOf({ ...corners, indices: Uint16Array.from({ length: 450_000 }, (_, i) => i % 3) }));
+    const whole = ball([0, 0, 0], () => 1, 8, 10);
+    writeFileSync('ball.glb', glbOf({ ...whole, indices: whole.indices.subarray(30) })); // with a hole
+    for (const line of ['transfer', 'inspect'])
+      await fails(
+        1,
+        /target or cage has triangles that lie in each other, in thousands of layers/,
+        `${line} stack.glb --cage ball.glb`,
+      );
   });
 
   test('a picture of billions of pixels is refused, one of a camera is not', () => {

@@ -37,7 +37,8 @@ void hide(const Header* header) { __asan_poison_memory_region(header, sizeof(Hea
 
 void Arena::restart() noexcept {
   rewind({0, 0});
-  failed_ = false;
+  failed_ = isExhausted_ = false;
+  workLeft_ = UINT64_MAX;
   peak_ = 0;
 }
 
@@ -88,7 +89,8 @@ void Arena::restart() noexcept {
     release();
     addBlock(all);
   }
-  failed_ = false;
+  failed_ = isExhausted_ = false;
+  workLeft_ = UINT64_MAX;
   peak_ = 0;
 }
 

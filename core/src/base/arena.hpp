@@ -6,11 +6,12 @@
 
 namespace cagecast {
 
-/// The working memory of a call: a stack of arrays in a few large blocks, which are kept for the next call.
+/// The working memory of a call: a stack of arrays in a few large blocks, which are kept for the next call. It also
+/// counts the work of the call, which may have a limit.
 ///
-/// Running out of memory is sticky: from then on `allocate` returns null and `failed()` stays true until `restart`. A
-/// step allocates all its arrays, checks `failed()` once and returns; the steps after it do the same, so only the end
-/// of a call has to report it.
+/// Running out of memory or of work is sticky: from then on `allocate` returns null and `failed()` stays true until
+/// `restart`. A step allocates all its arrays, checks `failed()` once and returns; the steps after it do the same, so
+/// only the end of a call has to report it.
 ///
 /// With AddressSanitizer, every array is an allocation of its own: reading past an array, or an array that was given
 /// back, ends the program.
@@ -57,13 +58,25 @@ class Arena {
     Mark mark_;
   };
 
-  /// Empties the stack for a new call, and forgets that memory ran out. What the last call needed in several blocks
-  /// becomes one.
+  /// Empties the stack for a new call, and forgets that memory or work ran out. What the last call needed in several
+  /// blocks becomes one.
   void restart() noexcept;
   /// Gives all memory back to the system.
   void release() noexcept;
 
-  /// Whether memory has run out since `restart`.
+  /// Limits the work from now on, in tests of a few triangles against a ray or a point. Default: no limit.
+  void limitWork(std::uint64_t work) noexcept { workLeft_ = work; }
+  [[nodiscard]] std::uint64_t workLeft() const noexcept { return workLeft_; }
+  /// Counts work that was done. If it is more than what was left, the call has failed.
+  void spend(std::uint64_t work) noexcept {
+    isExhausted_ = isExhausted_ || work > workLeft_;
+    failed_ = failed_ || isExhausted_;
+    workLeft_ -= work < workLeft_ ? work : workLeft_;
+  }
+  /// Whether the work has run out since `restart`.
+  [[nodiscard]] bool isExhausted() const noexcept { return isExhausted_; }
+
+  /// Whether memory or work has run out since `restart`.
   [[nodiscard]] bool failed() const noexcept { return failed_; }
   /// Reports that memory ran out elsewhere: for arrays of the result, which are not in the arena.
   void fail() noexcept { failed_ = true; }
@@ -93,7 +106,9 @@ class Arena {
   std::byte* newest_ = nullptr;  ///< With AddressSanitizer, the array allocated last.
   std::size_t peak_ = 0;
   std::size_t limit_;
+  std::uint64_t workLeft_ = UINT64_MAX;
   bool failed_ = false;
+  bool isExhausted_ = false;
 };
 
 }  // namespace cagecast

@@ -36,10 +36,14 @@ constexpr auto kLanes = [] {
   return table;
 }();
 
+/// The work that a candidate makes for the caller, in tests of a leaf against a point.
+constexpr std::uint64_t kCandidate = 16;
+
 }  // namespace
 
 ClosestPointSearch::ClosestPointSearch(const CageTree& tree, double diagonal, Arena& arena) noexcept
     : tree_(tree),
+      arena_(arena),
       slack_(slackOf(tree, diagonal)),
       growth_(1 + static_cast<float>(kRelativeSlack)),
       fixedSlack_(fixedSlack(slack_, kRelativeSlack)),
@@ -176,6 +180,7 @@ void ClosestPointSearch::search(const float* positions, std::uint32_t count) noe
       *known = leaves[--leafCount];
   }
   searchLeaves(leaves, leafCount);
+  arena_.spend(std::uint64_t{count} * leafCount);
 
   // The leaf closest to the last point is likely to be close to the next group.
   std::uint32_t nearest = 0;
@@ -220,6 +225,7 @@ std::uint32_t ClosestPointSearch::candidates(std::uint32_t i, std::uint32_t* fou
   std::uint32_t* leaves;
   const std::uint32_t leafCount = listLeaves(box, box, splat(limits_[i]), leaves);
   for (std::uint32_t j = 0; j < leafCount; ++j) takeFrom(tree_.leaves[leaves[j]]);
+  arena_.spend(std::uint64_t{kCandidate} * count);
   if (count == 0) {
     // A needle, whose distance in floats is arbitrary, seemed nearer than its box is: take the nearest of every leaf.
     for (std::uint32_t leaf = 0; leaf < tree_.leafCount; ++leaf) {

@@ -28,6 +28,7 @@ class ClosestPointSearch {
   void widen(double more, double distance) noexcept;
 
   /// Searches for 1 to `kGroup` points, which should be close together.
+  /// Counts its work by `Arena::spend`.
   /// @param positions  As in `Points`. They must stay until the last call of `candidates`.
   void search(const float* positions, std::uint32_t count) noexcept;
 
@@ -63,6 +64,7 @@ class ClosestPointSearch {
   void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
 
   const CageTree& tree_;
+  Arena& arena_;                               ///< Counts the work.
   double slack_;                               ///< The s of `kRelativeSlack`.
   float growth_;                               ///< 1 + r
   float fixedSlack_;                           ///< s² · (1 + 1/r)

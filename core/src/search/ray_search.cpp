@@ -23,10 +23,14 @@ float looseEnd(double end) { return static_cast<float>(end + 1e-6 * std::abs(end
 /// Times a loose end of at least 0, an end that is not beyond the exact one.
 constexpr float kStrictEnd = 0.999996f;
 
+/// The work of a test in double precision, in tests of a leaf in single precision.
+constexpr std::uint64_t kExactTest = 64;
+
 }  // namespace
 
 RaySearch::RaySearch(const RayTree& tree, double from, Arena& arena) noexcept
     : tree_(tree),
+      arena_(arena),
       from_(from),
       boxFrom_(static_cast<float>(from)),
       limits_{static_cast<float>(from > 0 ? from / 2 : from * 2), static_cast<float>(from > 0 ? from * 2 : from / 2)},
@@ -67,13 +71,17 @@ void RaySearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find, std
     hit[i] = false;
     list[i] = static_cast<std::uint16_t>(i);
   }
-  if (count > 0) visit(tree_.nodes[0], lists_, count, lists_ + count + 1);
+  work_ = 0;
+  if (count > 0 && !arena_.failed()) visit(tree_.nodes[0], lists_, count, lists_ + count + 1);
+  arena_.spend(work_);
 }
 
 /// Traces rays through a node.
 /// @param rays  A list of rays with room for one more. It may be overwritten.
 /// @param free  Where lists may be written: after `rays`.
 void RaySearch::visit(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* free) noexcept {
+  work_ += count;
+  if (work_ > arena_.workLeft()) return;
   const std::ptrdiff_t room = lists_ + kListRoom - kLastRoom - free;
   if (count > 1 && room < 4 * static_cast<std::ptrdiff_t>(count + 1)) {
     visit(node, rays + count / 2, count - count / 2, free);
@@ -198,6 +206,7 @@ void RaySearch::decide(const RayLeaf& leaf, std::uint32_t first, const std::uint
       open &= verdict.open;
     }
     for (; open != 0; open &= open - 1) {
+      work_ += kExactTest;
       const double distance = hitDistance(leaf, std::countr_zero(open), ray);
       if (!(distance > from_ && distance <= ray.end)) continue;
       hit_[id] = true;
@@ -223,6 +232,7 @@ void RaySearch::listSegments(const RayLeaf& leaf, std::uint32_t first, const std
           hits_->segmentOf(tree_.corners[std::size_t{3} * (first + static_cast<std::uint32_t>(lane))]);
       if (hits_->has(id, segment)) continue;
       if ((verdict.hit >> lane & 1u) == 0) {
+        work_ += kExactTest;
         const double distance = hitDistance(leaf, lane, ray);
         if (!(distance > from_ && distance <= ray.end)) continue;
       }

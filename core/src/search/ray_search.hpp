@@ -32,6 +32,7 @@ class RaySearch {
     all,      ///< All segments of the target that it hits, unless it hits its own.
   };
 
+  /// If the work runs out (`Arena::spend`), what is found is incomplete.
   /// @param rays         At most `kMaxRays`.
   /// @param[out] hit     1 per ray.
   /// @param[out] hitsAt  If not null, with `Find::any`: 1 per ray that hits anything, a corner of what it hits.
@@ -59,6 +60,8 @@ class RaySearch {
   void listSegments(const RayLeaf& leaf, std::uint32_t first, const std::uint16_t* rays, std::uint32_t count) noexcept;
 
   const RayTree& tree_;
+  Arena& arena_;            ///< Counts the work.
+  std::uint64_t work_ = 0;  ///< Of this search.
   double from_;
   float boxFrom_;         ///< `from` for the tests of boxes.
   HitLimits limits_;      ///< `from` for the tests of triangles.

@@ -51,5 +51,10 @@ export type CoreCode =
   | 'bordersTooComplex'
   /** More vertices of the target lie within `weldTolerance` of each other than the limit, an average of 2000. */
   | 'weldToleranceTooLarge'
+  /**
+   * Rays and searches met more triangles than a limit, which follows from the size of the target: triangles of target
+   * or cage lie in each other in thousands of layers.
+   */
+  | 'tooComplex'
   /** There is not enough memory for the call or its result; nothing was computed. */
   | 'outOfMemory';
