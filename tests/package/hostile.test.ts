@@ -17,7 +17,7 @@ import type { GLTF } from '@gltf-transform/core';
 import { checkGltf, checkImage } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { fails, kProgram, ok, run } from '../support/command.js';
-import { costlyFiles, jpegOf, pngOf } from '../support/costly-files.js';
+import { costlyFiles, fbxOfZeros, jpegOf, pngOf } from '../support/costly-files.js';
 import { type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from '../support/gltf.js';
 import { temporaryFolder } from '../support/temporary.js';
 import { ball } from './scenes.js';
@@ -176,6 +176,29 @@ describe('a file that demands too much', () => {
         /target or cage has triangles that lie in each other, in thousands of layers/,
         `${line} stack.glb --cage ball.glb`,
       );
+  });
+
+  test('files of other formats that say or stand for more than they have', async () => {
+    const ply = (format: string, vertices: number) =>
+      `ply\nformat ${format} 1.0\nelement vertex ${vertices}\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n`;
+    const files: Record<string, [bytes: Uint8Array, message: RegExp]> = {
+      'zeros.fbx': [
+        fbxOfZeros(1e8),
+        /its arrays decompress to more than 33,554,432 bytes; the limit "expansion" is 100/,
+      ],
+      'liar.fbx': [fbxOfZeros(1e8, 3), /its arrays decompress to more than/],
+      'said.fbx': [fbxOfZeros(8, 2 ** 31), /its arrays decompress to more than 33,554,432 bytes/],
+      'groups.obj': [
+        Buffer.from(`v 0 0 0\nv 1 0 0\nv 0 1 0\n${'g a\nf 1 2 3\n'.repeat(30_000)}`),
+        /has 30,000 groups; the limit "parts" is 20,000/,
+      ],
+      'text.ply': [Buffer.from(`${ply('ascii', 2e9)}0 0 0\n`), /is a PLY file without any triangle/],
+      'binary.ply': [Buffer.from(ply('binary_little_endian', 2e9)), /is a PLY file, but cannot be read/],
+    };
+    for (const [name, [bytes, message]] of Object.entries(files)) {
+      writeFileSync(name, bytes);
+      await fails(1, message, `inspect ${name} --cage cage.glb`);
+    }
   });
 
   test('a picture of billions of pixels is refused, one of a camera is not', () => {

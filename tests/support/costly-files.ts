@@ -113,6 +113,34 @@ export function ktx2Of(width: number, height: number): Buffer {
   return bytes;
 }
 
+/** A binary FBX with an array of as many bytes, all zero, which are hardly any once they are compressed. @param said  Its length in the file. */
+export function fbxOfZeros(bytes: number, said = bytes / 8): Buffer {
+  const word = (value: number) => Buffer.from(new Uint32Array([value]).buffer);
+  const packed = deflateSync(Buffer.alloc(bytes), { level: 9 });
+  const array = Buffer.concat([Buffer.from('d'), word(said), word(1), word(packed.length), packed]);
+  const record = (
+    name: string,
+    at: number,
+    properties: readonly Buffer[],
+    inner: (at: number) => Buffer = () => none,
+  ) => {
+    const length = properties.reduce((sum, one) => sum + one.length, 0);
+    const begin = at + 13 + name.length + length;
+    const body = inner(begin);
+    const head = [word(begin + body.length), word(properties.length), word(length), Buffer.from([name.length])];
+    return Buffer.concat([...head, Buffer.from(name), ...properties, body]);
+  };
+  const none = Buffer.alloc(0);
+  const start = Buffer.concat([Buffer.from('Kaydara FBX Binary  \0\x1a\0', 'latin1'), word(7400)]);
+  const objects = record('Objects', start.length, [], (at) =>
+    Buffer.concat([
+      record('Geometry', at, [], (inside) => Buffer.concat([record('Vertices', inside, [array]), Buffer.alloc(13)])),
+      Buffer.alloc(13),
+    ]),
+  );
+  return Buffer.concat([start, objects, Buffer.alloc(13 + 160)]);
+}
+
 /** By what is costly: the file, and what it is refused with, unless it is shown all the same. */
 export const costlyFiles: Record<string, { bytes: () => Buffer; refusal?: RegExp }> = {
   'two million instances drawn by the graphics card, whose places are not in the file': {

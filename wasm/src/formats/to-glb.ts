@@ -1,8 +1,10 @@
 import type { BufferGeometry, Object3D } from 'three';
 import { Group, Mesh, MeshStandardMaterial } from 'three';
 import { show } from '../core/error.js';
+import { defaultLimits, exceeds } from '../gltf/checks/read-limits.js';
 import { type Format, fileKind } from '../gltf/kinds.js';
 import { CagecastError } from '../index.js';
+import { checkFbx } from './check-fbx.js';
 import { kNotFound, withFiles } from './images.js';
 import { sceneGlb } from './scene-glb.js';
 
@@ -73,6 +75,7 @@ const textOf = (bytes: Uint8Array): string => new TextDecoder().decode(bytes);
 /** What reads each format. */
 const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Object3D>> = {
   async fbx(bytes, { read, onMissing }) {
+    await checkFbx(bytes);
     const { FBXLoader } = await import('three/addons/loaders/FBXLoader.js');
     return withFiles(read, async () => new FBXLoader().parse(bufferOf(bytes), ''), onMissing);
   },
@@ -82,6 +85,9 @@ const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Obj
       import('three/addons/loaders/MTLLoader.js'),
     ]);
     const text = textOf(bytes);
+    const groups = text.match(/^\s*(?:g|o|usemtl)\s/gm)?.length ?? 0;
+    if (groups > defaultLimits.parts)
+      throw exceeds(`has ${groups.toLocaleString('en')} groups`, 'parts', defaultLimits);
     const libraries = [...text.matchAll(/^\s*mtllib\s+(.+?)\s*$/gm)].map(([, name]) => name!);
     const names = libraries.map((name) => name.replaceAll('\\', '/'));
     const found = await Promise.all(names.map(read));

@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { type MeshoptView, meshoptView } from './check-geometry.js';
+import { type MeshoptView, meshoptView } from './checks/check-geometry.js';
 
 /** The numbers of an accessor. Those of glTF-Transform are such, too. */
 export interface AccessorData {

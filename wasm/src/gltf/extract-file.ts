@@ -18,7 +18,7 @@ import { kSceneOrigin, type Origin } from '../parts/origin.js';
 import { type MorphedPart, type MorphTarget, posesOf } from '../parts/poses.js';
 import { placeMeshes, type Skin } from '../parts/skin.js';
 import { type AccessorData, decodeFloats } from './accessors.js';
-import { topNodes } from './check-geometry.js';
+import { topNodes } from './checks/check-geometry.js';
 import { InputError, naming } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';
 import { localMatrix } from './matrix.js';

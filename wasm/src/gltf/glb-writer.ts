@@ -3,7 +3,7 @@ import type { MeshoptEncoder } from 'meshoptimizer/encoder';
 import { show } from '../core/error.js';
 import { joinBytes, packGlb, paddedLength } from '../parts/glb.js';
 import { type AccessorData, type ArrayData, componentTypeOf } from './accessors.js';
-import { type MeshoptView, meshoptExtensions, meshoptView } from './check-geometry.js';
+import { type MeshoptView, meshoptExtensions, meshoptView } from './checks/check-geometry.js';
 import { isDataUri, stemOf } from './data-uri.js';
 import { imageType } from './image-file.js';
 import { InputError } from './input-error.js';

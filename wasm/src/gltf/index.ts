@@ -17,7 +17,8 @@ import type { Piece } from './pieces.js';
 export { type BakeOptions, bake } from './bake/bake-document.js';
 export type { MaskSources } from './bake/mask-sources.js';
 export type { BakeReport, ImageCodec, Paints } from './bake/plan.js';
-export { type CheckOptions, checkGltf, checkImage } from './check-gltf.js';
+export { type CheckOptions, checkGltf, checkImage } from './checks/check-gltf.js';
+export type { ReadLimits } from './checks/read-limits.js';
 export {
   addCage,
   cageModel,
@@ -31,7 +32,6 @@ export {
   withBaseColors,
 } from './document/document-cages.js';
 export { type FileKind, type Format, fileKind } from './kinds.js';
-export type { ReadLimits } from './limits.js';
 export type { LeftOut, PartsOption };
 
 /** The ranges of a part of a document in the arrays of a result, and its name. */

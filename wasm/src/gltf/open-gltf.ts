@@ -1,10 +1,11 @@
 import type { GLTF } from '@gltf-transform/core';
 import { type AccessorData, decodeAccessors } from './accessors.js';
-import { checkGeometry, dracoOf } from './check-geometry.js';
-import { checkRest } from './check-rest.js';
+import { checkGeometry, dracoOf } from './checks/check-geometry.js';
+import { checkRest } from './checks/check-rest.js';
+import { checkLimits } from './checks/limits.js';
+import { checkBytes, defaultLimits, exceeds, type ReadLimits } from './checks/read-limits.js';
 import { isDataUri, readDataUri } from './data-uri.js';
 import { firstLine, InputError } from './input-error.js';
-import { checkBytes, checkLimits, defaultLimits, exceeds, type ReadLimits } from './limits.js';
 import { parseGltf } from './parse.js';
 
 /** A glTF file as it is, and its accessors decoded. */

@@ -1,9 +1,10 @@
 import type { GLTF } from '@gltf-transform/core';
 import { show } from '../core/error.js';
-import { checkLists } from './check-geometry.js';
+import { checkLists } from './checks/check-geometry.js';
+import { checkNesting } from './checks/limits.js';
+import type { ReadLimits } from './checks/read-limits.js';
 import { InputError } from './input-error.js';
 import { adviceOn } from './kinds.js';
-import { checkNesting, type ReadLimits } from './limits.js';
 
 /** The JSON of a GLB or glTF file, and the GLB's bytes. @throws {InputError} with a message that does not name the file. */
 export function parseGltf(bytes: Uint8Array, limits: ReadLimits): { json: GLTF.IGLTF; binary: Uint8Array | undefined } {

@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { dracoOf } from './check-geometry.js';
+import { dracoOf } from './checks/check-geometry.js';
 import { instancing } from './instancing.js';
 import { isOfTransfer, isOverlay } from './overlay.js';
 

@@ -3,7 +3,7 @@ import type { CutTarget } from '../api/cut-borders.js';
 import type { TransferResult } from '../api/result.js';
 import { applySplit, ruleOf, splitSkin } from '../parts/blend.js';
 import type { PreparedPart } from '../parts/prepare.js';
-import { dracoOf } from './check-geometry.js';
+import { dracoOf } from './checks/check-geometry.js';
 import { removeAttributes, removeOverlays } from './earlier-in-file.js';
 import type { Extracted, Part } from './extract-file.js';
 import { type Form, GlbWriter } from './glb-writer.js';

@@ -1,6 +1,6 @@
 import { Cache, type Light, type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from 'three';
 import type { GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { checkGltf } from '../gltf/check-gltf.js';
+import { checkGltf } from '../gltf/checks/check-gltf.js';
 import type { CagecastError } from '../index.js';
 
 /** A file, and where it came from. */

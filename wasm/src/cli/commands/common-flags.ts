@@ -1,7 +1,7 @@
 // Flags that several commands have, as commander parses them.
 import { type Command, InvalidArgumentError, Option } from 'commander';
 import { optionFlags } from '../../generated/options.js';
-import { defaultLimits, type ReadLimits } from '../../gltf/limits.js';
+import { defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 import { standard } from '../io/files.js';
 import type { ReadOptions } from '../model/reading.js';
 import { colorAttributes, holdsColors, kChoices, kSettingNames, type Layer, type Settings } from '../model/settings.js';

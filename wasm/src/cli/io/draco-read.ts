@@ -2,7 +2,7 @@ import { type GLTF, type JSONDocument, Logger, NodeIO } from '@gltf-transform/co
 import { EXTMeshoptCompression, KHRDracoMeshCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import type { AccessorData } from '../../gltf/accessors.js';
-import { meshoptView } from '../../gltf/check-geometry.js';
+import { meshoptView } from '../../gltf/checks/check-geometry.js';
 import { createDracoDecoder } from './draco.js';
 
 const geometryExtensions = [KHRMeshQuantization, EXTMeshoptCompression, KHRDracoMeshCompression];

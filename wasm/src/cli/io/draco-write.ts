@@ -2,7 +2,7 @@ import { type Accessor, Document, type GLTF, Logger, NodeIO, type TypedArray } f
 import { KHRDracoMeshCompression } from '@gltf-transform/extensions';
 import wasmBinary from 'draco3dgltf/draco_encoder.wasm';
 import createEncoderModule from 'draco3dgltf/draco_encoder_gltf_nodejs.js';
-import { dracoOf } from '../../gltf/check-geometry.js';
+import { dracoOf } from '../../gltf/checks/check-geometry.js';
 import type { GlbWriter } from '../../gltf/glb-writer.js';
 import type { GltfFile } from '../../gltf/open-gltf.js';
 import { dracoExtension, unmarkDraco } from '../../gltf/output/draco-marks.js';

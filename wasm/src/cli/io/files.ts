@@ -1,9 +1,9 @@
 import { constants } from 'node:fs';
 import { type FileHandle, open, readdir, realpath, stat } from 'node:fs/promises';
 import { basename, dirname, isAbsolute, relative, resolve } from 'node:path';
+import { checkBytes, defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 import { decodedUri } from '../../gltf/data-uri.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
-import { checkBytes, defaultLimits, type ReadLimits } from '../../gltf/limits.js';
 import type { ReadOptions } from '../model/reading.js';
 
 /** The name of the standard input and output. */

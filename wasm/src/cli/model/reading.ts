@@ -1,4 +1,4 @@
-import { defaultLimits, type ReadLimits } from '../../gltf/limits.js';
+import { defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 
 /** How files are read. */
 export interface ReadOptions {

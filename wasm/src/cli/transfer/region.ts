@@ -1,5 +1,5 @@
 import { basename } from 'node:path';
-import { dracoOf, meshoptView } from '../../gltf/check-geometry.js';
+import { dracoOf, meshoptView } from '../../gltf/checks/check-geometry.js';
 import type { Form } from '../../gltf/glb-writer.js';
 import { naming } from '../../gltf/input-error.js';
 import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/overlay.js';

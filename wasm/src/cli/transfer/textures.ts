@@ -1,7 +1,7 @@
 import { basename } from 'node:path';
+import type { ReadLimits } from '../../gltf/checks/read-limits.js';
 import { partOf, primitivePath } from '../../gltf/extract-file.js';
 import { InputError, naming } from '../../gltf/input-error.js';
-import type { ReadLimits } from '../../gltf/limits.js';
 import { type Paint, paintOf, tileAt } from '../../gltf/overlay.js';
 import type { ReadModel } from '../../gltf/read-model.js';
 import { readBytes } from '../io/files.js';

@@ -1,6 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import { joinBytes, paddedLength } from '../../parts/glb.js';
-import { bytesOf, meshoptView } from '../check-geometry.js';
+import { bytesOf, meshoptView } from '../checks/check-geometry.js';
 
 /** Where the indices or the values of a sparse accessor are. */
 interface Slot {

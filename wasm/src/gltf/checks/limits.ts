@@ -1,57 +1,14 @@
 import type { GLTF } from '@gltf-transform/core';
+import { imageSize } from '../image-file.js';
+import { instancing } from '../instancing.js';
+import { isMarked } from '../overlay.js';
+import { hasTriangles } from '../pieces.js';
 import { bytesOf, dracoOf, meshoptView, topNodes } from './check-geometry.js';
-import { imageSize } from './image-file.js';
-import { InputError } from './input-error.js';
-import { instancing } from './instancing.js';
-import { isMarked } from './overlay.js';
-import { hasTriangles } from './pieces.js';
-
-/** What reading a glTF file may cost. A few bytes can otherwise demand all memory and hours. */
-export interface ReadLimits {
-  /** Bytes of the file, of its buffers together, and of each image beside it. Default: 2^30 */
-  bytes: number;
-  /** Levels of its JSON, and of nodes below each other. Default: 1000 */
-  nesting: number;
-  /** How often the scene shows the same positions: nodes that share a mesh, primitives that share an accessor. Default: 1000 */
-  instances: number;
-  /** Parts of the scene: nodes, and primitives as often as nodes show them. Default: 20,000 */
-  parts: number;
-  /**
-   * Elements of accessors that are not in the file: those without bytes are zero. Attributes of a primitive whose positions are in the
-   * file are not counted. Default: 1,000,000
-   */
-  implied: number;
-  /**
-   * How many times larger than its files the data may become when it is decoded and shown: geometry from 32 MiB on, images from 256 MiB
-   * on. What is used more than once is counted more than once: instances, attributes and morph targets that share bytes, the joints
-   * of each skinned node. Default: 100
-   */
-  expansion: number;
-}
-
-/** The limits that hold if no others are given. */
-export const defaultLimits: Readonly<ReadLimits> = {
-  bytes: 2 ** 30,
-  nesting: 1000,
-  instances: 1000,
-  parts: 20_000,
-  implied: 1_000_000,
-  expansion: 100,
-};
+import { exceeds, type ReadLimits } from './read-limits.js';
 
 /** Geometry, and images, of up to this many bytes may be decoded from any file. */
 const kFreeBytes = 2 ** 25;
 const kFreeImageBytes = 2 ** 28;
-
-/** The error of a file that exceeds a limit. @param what  What exceeds it, with the number. */
-export function exceeds(what: string, limit: keyof ReadLimits, { [limit]: value }: ReadLimits): InputError {
-  return new InputError(`${what}; the limit "${limit}" is ${value.toLocaleString('en')}`);
-}
-
-/** Checks the size of a file. @throws {InputError} */
-export function checkBytes(bytes: number, limits: ReadLimits): void {
-  if (bytes > limits.bytes) throw exceeds(`has more than ${limits.bytes.toLocaleString('en')} bytes`, 'bytes', limits);
-}
 
 /** Checks how deep JSON is nested, before it is parsed. @throws {InputError} */
 export function checkNesting(text: Uint8Array, limits: ReadLimits): void {

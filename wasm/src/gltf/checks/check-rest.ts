@@ -1,6 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
+import { InputError } from '../input-error.js';
 import { isObject, requireList } from './check-geometry.js';
-import { InputError } from './input-error.js';
 
 /**
  * Checks the shape of what a glTF has besides geometry, as far as it is read here: names, animations, materials, instances.

@@ -1,12 +1,13 @@
 import type { GLTF } from '@gltf-transform/core';
-import { type ErrorDetails, show } from '../core/error.js';
-import { CagecastError } from '../index.js';
+import { type ErrorDetails, show } from '../../core/error.js';
+import { CagecastError } from '../../index.js';
+import { isDataUri, readDataUri } from '../data-uri.js';
+import { InputError } from '../input-error.js';
+import { parseGltf } from '../parse.js';
 import { checkGeometry } from './check-geometry.js';
 import { checkRest } from './check-rest.js';
-import { isDataUri, readDataUri } from './data-uri.js';
-import { InputError } from './input-error.js';
-import { checkBytes, checkImages, checkLimits, defaultLimits, type ReadLimits } from './limits.js';
-import { parseGltf } from './parse.js';
+import { checkImages, checkLimits } from './limits.js';
+import { checkBytes, defaultLimits, type ReadLimits } from './read-limits.js';
 
 /** Options of `checkGltf`. */
 export interface CheckOptions {
