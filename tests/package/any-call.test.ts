@@ -7,37 +7,12 @@ import { inspect, suggest } from 'cagecast/inspect';
 import fc from 'fast-check';
 import { optionFlags } from '../../wasm/src/generated/options.js';
 import { tetrahedron } from '../support/gltf.js';
+import { mesh, resultOf, runs, validOptions } from './any.js';
 
-const { CAGECAST_RUNS = 150, CAGECAST_SEED = 1 } = process.env;
-const runs = { numRuns: Number(CAGECAST_RUNS), seed: Number(CAGECAST_SEED) };
 const [cage, target] = [tetrahedron(1), tetrahedron(0.9)];
 const usual = () => [...transfer(cage, target).zones];
 
 before(init);
-
-/** Mostly on a grid, where coincidences are frequent. */
-const coordinate = fc.oneof(
-  { weight: 8, arbitrary: fc.integer({ min: -32, max: 32 }).map((value) => value / 16) },
-  { weight: 1, arbitrary: fc.float({ noNaN: true, min: -1000, max: 1000 }) },
-);
-
-/** A mesh with nothing wrong in it. */
-const mesh = fc.integer({ min: 3, max: 14 }).chain((vertices) => {
-  const numbers = (count: number) => fc.array(coordinate, { minLength: count, maxLength: count });
-  return fc.record({
-    positions: numbers(3 * vertices).map((all) => Float32Array.from(all)),
-    uvs: numbers(2 * vertices).map((all) => Float32Array.from(all)),
-    indices: fc
-      .array(fc.integer({ min: 0, max: vertices - 1 }), { minLength: 3, maxLength: 60 })
-      .map((all) => Uint32Array.from(all.slice(0, all.length - (all.length % 3)))),
-    groups: fc.option(
-      fc
-        .array(fc.integer({ min: 0, max: 2 }), { minLength: vertices, maxLength: vertices })
-        .map((all) => Uint32Array.from(all)),
-      { nil: undefined },
-    ),
-  });
-});
 
 /** What someone may put where a number, an array or an object belongs. */
 const junk = fc.oneof(
@@ -47,28 +22,6 @@ const junk = fc.oneof(
   fc.float32Array({ maxLength: 12 }),
   fc.array(fc.double(), { maxLength: 12 }),
   fc.anything({ maxDepth: 2 }),
-);
-
-const share = fc.double({ min: 0, max: 1, noNaN: true });
-const validOptions = fc.record(
-  {
-    preset: fc.constantFrom('default' as const, 'paper' as const),
-    threshold: share,
-    minCovered: share,
-    seams: fc.constantFrom('vertex' as const, 'corner' as const),
-    weldTolerance: share.map((value) => value / 100),
-    pokeThrough: share.map((value) => value / 100),
-    steps: fc.record(
-      {
-        interiorSamples: fc.boolean(),
-        recheck: fc.boolean(),
-        holes: fc.boolean(),
-        floor: fc.boolean(),
-      },
-      { requiredKeys: [] },
-    ),
-  },
-  { requiredKeys: [] },
 );
 
 /** The names that mean something in an object, each with anything for a value. */
@@ -95,22 +48,8 @@ function outcomeOf<T>(call: () => T): T | undefined {
   }
 }
 
-/** The result of a call in which nothing can be wrong but a cage that is flat. */
-function resultOf<T>(call: () => T): T | undefined {
-  try {
-    return call();
-  } catch (error) {
-    if ((error as CagecastError).code !== 'noUsableCageTriangle') throw error;
-    return undefined;
-  }
-}
-
-const plain = ({ timings: _, peakBytes: __, ...rest }: ReturnType<typeof transfer> | ReturnType<typeof project>) =>
-  rest;
-
 describe('for any valid scene and options', () => {
-  test('a transfer is consistent, the same again, and the same into the arrays of another', () => {
-    const other = transfer(cage, target);
+  test('a transfer is consistent', () => {
     fc.assert(
       fc.property(mesh, mesh, validOptions, (cage, target, options) => {
         const result = resultOf(() => transfer(cage, target, options));
@@ -125,16 +64,12 @@ describe('for any valid scene and options', () => {
         assert.ok(result.segments.every((segment) => segment < result.segmentStats.length));
         for (const { area, exposedArea, coveredArea } of result.segmentStats)
           assert.ok(coveredArea <= exposedArea && exposedArea <= area * (1 + 1e-9));
-        assert.deepEqual(plain(transfer(cage, target, options)), plain(result));
-        const copy = structuredClone(plain(result));
-        assert.deepEqual(plain(transfer(cage, target, { ...options, reuse: other })), copy);
       }),
       runs,
     );
   });
 
-  test('projecting and classifying is transferring, with locks too, and the same into the results of others', () => {
-    const kept = { project: project(cage, target), classify: classify(project(cage, target)) };
+  test('projecting and classifying is transferring, with locks too', () => {
     const lock = fc.constantFrom(undefined, 'keep' as const, 'exclude' as const);
     fc.assert(
       fc.property(mesh, mesh, validOptions, lock, (cage, target, { threshold, minCovered, steps, ...first }, lock) => {
@@ -144,8 +79,6 @@ describe('for any valid scene and options', () => {
         if (!result) return;
         const projection = project(cage, target, first);
         const classified = classify(projection, classifying);
-        assert.deepEqual(plain(project(cage, target, { ...first, reuse: kept.project })), plain(projection));
-        assert.deepEqual(classify(kept.project, { ...classifying, reuse: kept.classify }), classified);
         assert.deepEqual(classified.zones, result.zones);
         assert.deepEqual(classified.cosmeticTriangles, result.cosmeticTriangles);
         assert.deepEqual(classified.segmentStats, result.segmentStats);
