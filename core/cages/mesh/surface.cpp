@@ -152,11 +152,12 @@ std::vector<RayHit> Surface::trace(std::span<const SurfaceRay> rays, double from
     const auto scale = static_cast<double>(trees.units.scale);
     RaySearch search(trees.tree.rays, from * scale, trees.arena);
     checkMemory(trees.arena);
-    std::vector<Ray> chunk(RaySearch::kMaxRays);
-    std::vector<RayDirection> directions(RaySearch::kMaxRays);
-    const auto hit = std::make_unique<bool[]>(RaySearch::kMaxRays);
-    for (std::size_t first = 0; first < rays.size(); first += RaySearch::kMaxRays) {
-      const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(RaySearch::kMaxRays, rays.size() - first));
+    const std::size_t most = std::min<std::size_t>(RaySearch::kMaxRays, rays.size());
+    std::vector<Ray> chunk(most);
+    std::vector<RayDirection> directions(most);
+    const auto hit = std::make_unique<bool[]>(most);
+    for (std::size_t first = 0; first < rays.size(); first += most) {
+      const auto count = static_cast<std::uint32_t>(std::min(most, rays.size() - first));
       for (std::uint32_t i = 0; i < count; ++i) {
         const Vec3 origin = trees.scaled(rays[first + i].origin);
         const double exact[3] = {origin.x, origin.y, origin.z};
