@@ -22,6 +22,10 @@ class Hash {
   void add(const TransferResult& result) {
     add(result.projection.uvs, result.zones.zones, result.projection.triangles, result.projection.segments);
   }
+  void addBytes(const void* values, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(values);
+    for (std::size_t i = 0; i < size; ++i) hash_ = (hash_ ^ bytes[i]) * 0x100000001b3u;
+  }
   [[nodiscard]] std::string text() const {
     std::ostringstream out;
     out << std::hex << std::setw(16) << std::setfill('0') << hash_;
@@ -31,8 +35,7 @@ class Hash {
  private:
   template <typename T>
   void addOne(const Array<T>& values) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-    for (std::size_t i = 0; i < values.size() * sizeof(T); ++i) hash_ = (hash_ ^ bytes[i]) * 0x100000001b3u;
+    addBytes(values.data(), values.size() * sizeof(T));
   }
 
   std::uint64_t hash_ = 0xcbf29ce484222325u;
