@@ -29,8 +29,14 @@ export interface Opening {
   limits?: ReadLimits;
   /** Reads a file beside it. @throws {InputError} that begins with `name`. Default: there are none. */
   readBeside?(name: string, uri: string): Promise<Uint8Array>;
-  /** Decodes the accessors of a file that Draco compresses. Default: such a file is refused. */
-  decodeDraco?(json: GLTF.IGLTF, buffers: readonly (Uint8Array | undefined)[]): Promise<AccessorData[]>;
+  /**
+   * Decodes the accessors of a file that Draco compresses. `checkCost` judges a glTF by the limits. Default: such a file is refused.
+   */
+  decodeDraco?(
+    json: GLTF.IGLTF,
+    buffers: readonly (Uint8Array | undefined)[],
+    checkCost: (json: GLTF.IGLTF) => void,
+  ): Promise<AccessorData[]>;
 }
 
 /**
@@ -54,9 +60,10 @@ export async function openGltf(
     checkGeometry(json, sizes);
     checkRest(json);
     const all = sizes.reduce<number>((sum, size) => sum + (size ?? 0), content.byteLength - (binary?.byteLength ?? 0));
-    checkLimits(json, all, limits);
+    const checkCost = (judged: GLTF.IGLTF) => checkLimits(judged, all, limits);
+    checkCost(json);
     const isDraco = json.meshes?.some(({ primitives }) => primitives.some(dracoOf)) ?? false;
-    const accessors = await (isDraco ? decodeDraco : decodeAccessors)(json, buffers);
+    const accessors = await (isDraco ? decodeDraco(json, buffers, checkCost) : decodeAccessors(json, buffers));
     return { path, json, buffers, accessors, readUri };
   } catch (error) {
     if (error instanceof InputError) throw error.in(path);
