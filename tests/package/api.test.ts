@@ -228,7 +228,7 @@ describe('transfer', () => {
 describe('project and classify', () => {
   before(init);
 
-  // That together they are a transfer is tested in any-call.test.ts.
+  // That together they are a transfer is tested in any/call.test.ts.
   test('a projection has what can be decided later', () => {
     for (const { cage, target } of [head(8), soup(9)]) {
       const projection = project(cage, target);

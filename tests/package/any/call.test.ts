@@ -5,8 +5,8 @@ import { before, describe, test } from 'node:test';
 import { CagecastError, classify, cutBorders, init, type Mesh, project, splitVertices, transfer } from 'cagecast';
 import { inspect, suggest } from 'cagecast/inspect';
 import fc from 'fast-check';
-import { optionFlags } from '../../wasm/src/generated/options.js';
-import { tetrahedron } from '../support/gltf.js';
+import { optionFlags } from '../../../wasm/src/generated/options.js';
+import { tetrahedron } from '../../support/gltf.js';
 import { mesh, resultOf, runs, validOptions } from './any.js';
 
 const [cage, target] = [tetrahedron(1), tetrahedron(0.9)];

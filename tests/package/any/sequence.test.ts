@@ -18,9 +18,9 @@ import {
 } from 'cagecast';
 import { inspect, suggest } from 'cagecast/inspect';
 import fc from 'fast-check';
-import { tetrahedron } from '../support/gltf.js';
+import { tetrahedron } from '../../support/gltf.js';
+import { head } from '../scenes.js';
 import { mesh, plain, runs, validOptions } from './any.js';
-import { head } from './scenes.js';
 
 before(init);
 
@@ -93,9 +93,9 @@ interface Kept {
 type Call = (reuse?: object) => unknown;
 
 function faulty(cage: Mesh, target: Mesh, fault: Step['fault']): [Mesh, Mesh] {
-  const with0 = (array: Uint32Array | Float32Array, value: number) => array.map((x, i) => (i === 0 ? value : x));
-  if (fault === 'index') return [cage, { ...target, indices: with0(Uint32Array.from(target.indices), 1e6) }];
-  if (fault === 'position') return [cage, { ...target, positions: with0(target.positions, NaN) as Float32Array }];
+  const [indices, positions] = [Uint32Array.from(target.indices), Float32Array.from(target.positions)];
+  if (fault === 'index') return [cage, { ...target, indices: indices.fill(1e6, 0, 1) }];
+  if (fault === 'position') return [cage, { ...target, positions: positions.fill(NaN, 0, 1) }];
   if (fault === 'cage') return [{ ...cage, positions: new Float32Array(cage.positions.length) }, target];
   return [cage, target];
 }
