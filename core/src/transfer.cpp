@@ -23,9 +23,9 @@
 namespace cagecast {
 namespace {
 
-/// The work that a call may do, in tests of a few triangles: so much, and so much for each point and triangle of the target
-/// and each of its poses. Real models take 10 to 50 for each; in copies that lie in each other by the thousand, a
-/// ray meets them all.
+/// The work that a call may do, in tests of a few triangles: so much, and so much for each point and triangle of the
+/// target and each of its poses. Real models take 10 to 90 for each; in copies that lie in each other by the thousand,
+/// a ray meets them all.
 constexpr std::uint64_t kFreeWork = std::uint64_t{1} << 28, kWorkForEach = 1 << 11;
 
 std::uint64_t mostWork(const Scene& scene) {

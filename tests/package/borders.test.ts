@@ -24,8 +24,8 @@ import {
   Vector3,
 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { richFile } from '../support/files/rich.js';
 import { glbOf } from '../support/gltf.js';
-import { richFile } from '../support/rich-files.js';
 import { head } from './scenes.js';
 
 before(init);

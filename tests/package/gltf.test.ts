@@ -11,6 +11,7 @@ import { type CagecastOptions, cagecast, type PartRange } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { Vector3 } from 'three';
 import { loadFileLayer } from '../support/file-layer.js';
+import { richFile } from '../support/files/rich.js';
 import {
   assertNear,
   assertTransferred,
@@ -21,7 +22,6 @@ import {
   storedUv,
   validate,
 } from '../support/gltf.js';
-import { richFile } from '../support/rich-files.js';
 import { ball, cagedFigure, head, isOfCage, modelFolders } from './scenes.js';
 
 const files = await loadFileLayer();

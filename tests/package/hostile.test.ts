@@ -17,7 +17,7 @@ import type { GLTF } from '@gltf-transform/core';
 import { checkGltf, checkImage } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { fails, kProgram, ok, run } from '../support/command.js';
-import { costlyFiles, fbxOfZeros, jpegOf, pngOf } from '../support/costly-files.js';
+import { costlyFiles, fbxOfZeros, jpegOf, pngOf } from '../support/files/costly.js';
 import { type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from '../support/gltf.js';
 import { temporaryFolder } from '../support/temporary.js';
 import { ball } from './scenes.js';

@@ -11,12 +11,13 @@ namespace cagecast::cages {
 inline constexpr std::size_t kMaxModelTriangles = 2'000'000;
 inline constexpr std::size_t kMaxModelVertices = 6'000'000;
 
-/// Triangles and vertices of a cage: the time of fitting one grows with the power 1.5 to 2 of them, to half a minute here.
+/// Triangles and vertices of a cage: the time of fitting one grows with the power 1.5 to 2 of them, to half a minute
+/// here.
 inline constexpr std::size_t kMaxCageTriangles = 20'000;
 inline constexpr std::size_t kMaxCageVertices = 60'000;
 
-/// The area of all triangles of a mesh, in squares of its diagonal: a figure in clothes with hair has 3, a car 2, a tree of leaves perhaps 20.
-/// Each point of space is searched through all layers of triangles there.
+/// The area of all triangles of a mesh, in squares of its diagonal: a figure in clothes with hair has 3, a car 2, a
+/// tree of leaves perhaps 20. Each point of space is searched through all layers of triangles there.
 inline constexpr double kMaxLayers = 50;
 
 /// Each landmark is compared with where all others put it: the time grows with the cube of their number.

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { costlyFiles, jpegOf, webpOf } from '../../../support/costly-files';
+import { costlyFiles, jpegOf, webpOf } from '../../../support/files/costly';
 import { glbOf, tetrahedron } from '../../../support/glb';
 import { glb, Site, settled, shownError, type Visit } from '../../../support/site';
 

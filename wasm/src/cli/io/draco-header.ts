@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { dracoOf } from '../../gltf/check-geometry.js';
+import { dracoOf } from '../../gltf/checks/check-geometry.js';
 
 /** Reads numbers of a stream one after the other; beyond its end all are 0. */
 class Cursor {

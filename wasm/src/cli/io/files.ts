@@ -4,6 +4,7 @@ import { basename, dirname, isAbsolute, relative, resolve } from 'node:path';
 import { checkBytes, defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 import { decodedUri } from '../../gltf/data-uri.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
+import { reasons } from '../model/failures.js';
 import type { ReadOptions } from '../model/reading.js';
 
 /** The name of the standard input and output. */
@@ -111,16 +112,6 @@ async function readAll(file: FileHandle, limits: ReadLimits): Promise<Uint8Array
     checkBytes(length, limits);
   }
 }
-
-/** What keeps a file from being read or written. */
-export const reasons: Readonly<Record<string, string>> = {
-  ENOENT: 'no such file',
-  ENOTDIR: 'no such file',
-  EISDIR: 'is a folder, not a file',
-  EACCES: 'cannot be read: permission denied',
-  ELOOP: 'is a link that leads back to itself',
-  ENAMETOOLONG: 'its name is too long',
-};
 
 /** Whether a path leads to a folder. @throws {InputError} if it leads nowhere. */
 export async function isFolder(path: string): Promise<boolean> {

@@ -18,8 +18,8 @@ import {
 import { basename, dirname, join, resolve } from 'node:path';
 import { isatty } from 'node:tty';
 import { firstLine, InputError } from '../../gltf/input-error.js';
-import { UsageError } from '../model/failures.js';
-import { reasons, standard } from './files.js';
+import { reasons, UsageError } from '../model/failures.js';
+import { standard } from './files.js';
 import type { Io } from './io.js';
 
 /**

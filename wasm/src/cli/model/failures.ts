@@ -1,6 +1,5 @@
 import { firstLine, InputError } from '../../gltf/input-error.js';
 import { CagecastError } from '../../index.js';
-import { reasons } from '../io/files.js';
 
 /** What the command ends with if it does not end with 0. */
 export const kExit = {
@@ -15,6 +14,16 @@ export const kExit = {
 
 /** Arguments that cannot be used together. */
 export class UsageError extends InputError {}
+
+/** What keeps a file from being read or written. */
+export const reasons: Readonly<Record<string, string>> = {
+  ENOENT: 'no such file',
+  ENOTDIR: 'no such file',
+  EISDIR: 'is a folder, not a file',
+  EACCES: 'cannot be read: permission denied',
+  ELOOP: 'is a link that leads back to itself',
+  ENAMETOOLONG: 'its name is too long',
+};
 
 /** What an error says of what went wrong. Others than those of files, of the system and of the package are defects. */
 export function messageOf(error: unknown): string {

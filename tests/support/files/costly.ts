@@ -1,7 +1,7 @@
 // Files of less than a megabyte that would cost a viewer gigabytes or minutes, each in another way.
 import { deflateSync } from 'node:zlib';
 import type { GLTF } from '@gltf-transform/core';
-import { type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from './glb';
+import { type Glb, glbOf, packGlb, tetrahedron, unpackGlb } from '../glb';
 
 /** Changes the GLB of a tetrahedron, whose positions, UVs and indices are accessors 0, 1 and 2. */
 export function changedGlb(change: (json: Required<GLTF.IGLTF>, glb: Glb) => void): Buffer {

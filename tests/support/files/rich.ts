@@ -1,7 +1,7 @@
 import type { Mesh } from 'cagecast';
 import { Vector3 } from 'three';
-import { random } from '../package/scenes.js';
-import { GlbMaker } from './glb.js';
+import { random } from '../../package/scenes.js';
+import { GlbMaker } from '../glb.js';
 
 /**
  * A target with attributes of all kinds, each its own at every vertex, and morph targets; skinned, or mirrored by its node.
