@@ -6,7 +6,8 @@ import type { Plugin } from 'vite';
 const kPicture = fileURLToPath(new URL('../docs/pictures/share.jpg', import.meta.url));
 
 /**
- * Gives the page the picture, title and text that messengers and social networks show for a link to it (Open Graph).
+ * Gives the page the picture, title and text that messengers and social networks show for a link to it (Open Graph), and
+ * its canonical address.
  * The protocol wants whole URLs: set CAGECAST_URL to the address at which the page will be. Without it, the picture is named as a
  * file beside the page, which some readers understand.
  */
@@ -26,7 +27,7 @@ export function share(address = process.env['CAGECAST_URL']): Plugin {
         meta('og:type', 'website'),
         meta('og:title', /<title>(.*?)<\/title>/.exec(html)?.[1] ?? ''),
         meta('og:description', description),
-        ...(address ? [meta('og:url', address)] : []),
+        ...(address ? [meta('og:url', address), { tag: 'link', attrs: { rel: 'canonical', href: address } }] : []),
         meta('og:image', picture),
         meta('og:image:width', '1200'),
         meta('og:image:height', '630'),

@@ -1,7 +1,7 @@
 // Installs what the project needs and this machine lacks: Debian packages by apt, npm packages by the lock file.
 // Uses nothing but Node, because it is the first thing that runs. A second run finds everything there and says nothing.
 //
-//   node wasm/tools/setup.mjs start | format | lint | test | test:all | clang | bench | pictures | docs | catalogue
+//   node wasm/tools/setup.mjs start | format | lint | test | test:all | clang | bench | pictures | docs | catalogue | release
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -78,6 +78,7 @@ const kPurposes = {
   bench: [...kAllTests, 'libembree-dev', 'qemu-user', 'g++-aarch64-linux-gnu'],
   pictures: [...kPage, 'chromium'],
   docs: ['doxygen'],
+  release: [...kTests, 'doxygen'],
   catalogue: ['redis-server'],
 };
 
@@ -155,5 +156,6 @@ if (!(purpose in kPurposes)) fail(`usage: node wasm/tools/setup.mjs ${Object.key
 if (!isNewEnough(process.version)) fail(`Cagecast needs Node ${kNodes}; this is ${process.versions.node}.`);
 installSystemPackages(kPurposes[purpose]);
 installNpmPackages();
-if (purpose === 'test:all') installNpmPackages('tests/release/hosts/', ['install', '--no-save']);
+if (purpose === 'test:all' || purpose === 'release')
+  installNpmPackages('tests/release/hosts/', ['install', '--no-save']);
 if (purpose === 'test:all' || purpose === 'catalogue') installNpmPackages('examples/catalogue/');
