@@ -69,3 +69,18 @@ test('a project is a ZIP that holds its files; what is none, or not whole, or of
   );
   await assert.rejects(withText('{"version": 1, "parts": {}, "files": 7}'), /no list of files/);
 });
+
+test('a project file whose files share their bytes is none: a kilobyte could be gigabytes', async () => {
+  const bytes = new Uint8Array(
+    await (await zip([{ name: 'painting', blob: new Blob(['x'.repeat(1000)]) }])).arrayBuffer(),
+  );
+  const view = new DataView(bytes.buffer);
+  const [end, list] = [bytes.length - 22, view.getUint32(bytes.length - 6, true)];
+  const sharing = (count: number) => {
+    const last = bytes.slice(end);
+    new DataView(last.buffer).setUint16(10, count, true);
+    return new Blob([bytes.slice(0, list), ...Array.from({ length: count }, () => bytes.slice(list, end)), last]);
+  };
+  assert.equal((await unzip(sharing(1)))?.size, 1);
+  assert.equal(await unzip(sharing(40)), undefined);
+});
