@@ -79,7 +79,8 @@ test('a project file whose files share their bytes is none: a kilobyte could be 
   const sharing = (count: number) => {
     const last = bytes.slice(end);
     new DataView(last.buffer).setUint16(10, count, true);
-    return new Blob([bytes.slice(0, list), ...Array.from({ length: count }, () => bytes.slice(list, end)), last]);
+    const entries = Array.from({ length: count }, (_, n) => bytes.slice(list, end).fill(65 + n, 46, 47)); // each has a name
+    return new Blob([bytes.slice(0, list), ...entries, last]);
   };
   assert.equal((await unzip(sharing(1)))?.size, 1);
   assert.equal(await unzip(sharing(40)), undefined);
