@@ -199,6 +199,12 @@ describe('a file that demands too much', () => {
       writeFileSync(name, bytes);
       await fails(1, message, `inspect ${name} --cage cage.glb`);
     }
+    for (const [name, limit, message] of [
+      ['zeros.fbx', 'expansion=1000000', /is an FBX file without any triangle/],
+      ['groups.obj', 'parts=29999', /has 30,000 groups; the limit "parts" is 29,999/],
+    ] as const) {
+      await fails(1, message, `inspect ${name} --cage cage.glb --limit ${limit}`);
+    }
   });
 
   test('a picture of billions of pixels is refused, one of a camera is not', () => {

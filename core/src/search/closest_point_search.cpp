@@ -228,6 +228,7 @@ std::uint32_t ClosestPointSearch::candidates(std::uint32_t i, std::uint32_t* fou
   arena_.spend(std::uint64_t{kCandidate} * count);
   if (count == 0) {
     // A needle, whose distance in floats is arbitrary, seemed nearer than its box is: take the nearest of every leaf.
+    arena_.spend(tree_.leafCount);
     for (std::uint32_t leaf = 0; leaf < tree_.leafCount; ++leaf) {
       limits_[i] = std::numeric_limits<float>::max();
       takeFrom(tree_.leaves[leaf]);

@@ -32,7 +32,7 @@ void projectPoints(const Scene& scene, PointData& data) noexcept {
   const double start = scene.length(kRayStart);
   for (std::uint32_t i = 0; i < points.count; ++i) {
     const std::uint32_t member = i % ClosestPointSearch::kGroup;
-    if (member == 0 && arena.failed()) return;  // Of work.
+    if (member == 0 && arena.failed()) return;  // The work has run out.
     if (member == 0) search.search(points.at(i), std::min(ClosestPointSearch::kGroup, points.count - i));
     const Vec3 p = points.exactly(i);
     const std::uint32_t only = search.onlyCandidate(member);

@@ -1,9 +1,10 @@
 // Streams of Draco that strangers may send: each ends with one clear line, within the memory and time of a small file.
 import assert from 'node:assert/strict';
-import { writeFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { type GLTF, NodeIO } from '@gltf-transform/core';
 import { KHRDracoMeshCompression } from '@gltf-transform/extensions';
+import { checkGltf } from 'cagecast/gltf';
 import draco from 'draco3dgltf';
 import { fails, ok, run } from '../../support/command.js';
 import { glbOf, packGlb, tetrahedron, unpackGlb } from '../../support/gltf.js';
@@ -97,6 +98,7 @@ describe('a stream of Draco', () => {
       /target\.glb: decodes to [\d,]+ bytes, [\d,]+ times its size; the limit "expansion" is 100\n$/,
       line,
     );
+    assert.throws(() => checkGltf(readFileSync('target.glb')), /the limit "expansion" is 100/);
     // The same behind what the stream says of itself.
     const said = [0, 1, 4, ...Buffer.from('name'), 2, 1, 2, 0];
     const flagged = Uint8Array.from(stream, (byte, i) => (i === 10 ? 0x80 : byte));

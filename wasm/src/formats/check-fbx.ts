@@ -1,4 +1,4 @@
-import { defaultLimits, exceeds } from '../gltf/checks/read-limits.js';
+import { exceeds, type ReadLimits } from '../gltf/checks/read-limits.js';
 
 /** Arrays of up to this many bytes may be in any file. */
 const kFreeBytes = 2 ** 25;
@@ -11,17 +11,13 @@ const kValues: Record<string, number> = { Y: 2, C: 1, I: 4, F: 4, D: 8, L: 8 };
  * zeros. Cost: that of decompressing them.
  * @throws {InputError} that names the bytes and the limit. What is no binary FBX, or a damaged one, is left to the loader.
  */
-export async function checkFbx(bytes: Uint8Array): Promise<void> {
-  const most = Math.max(kFreeBytes, defaultLimits.expansion * bytes.length);
+export async function checkFbx(bytes: Uint8Array, limits: ReadLimits): Promise<void> {
+  const most = Math.max(kFreeBytes, limits.expansion * bytes.length);
   let all = 0;
   for (const { size, packed } of arraysOf(bytes)) {
     all += Math.max(size, packed ? await inflatedSize(packed, most - all) : 0);
     if (all > most)
-      throw exceeds(
-        `its arrays decompress to more than ${most.toLocaleString('en')} bytes`,
-        'expansion',
-        defaultLimits,
-      );
+      throw exceeds(`its arrays decompress to more than ${most.toLocaleString('en')} bytes`, 'expansion', limits);
   }
 }
 

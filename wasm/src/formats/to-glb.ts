@@ -1,7 +1,7 @@
 import type { BufferGeometry, Object3D } from 'three';
 import { Group, Mesh, MeshStandardMaterial } from 'three';
 import { show } from '../core/error.js';
-import { defaultLimits, exceeds } from '../gltf/checks/read-limits.js';
+import { defaultLimits, exceeds, type ReadLimits } from '../gltf/checks/read-limits.js';
 import { type Format, fileKind } from '../gltf/kinds.js';
 import { CagecastError } from '../index.js';
 import { checkFbx } from './check-fbx.js';
@@ -22,10 +22,16 @@ export interface Companions {
    * @param reason  For people: "it was not found".
    */
   onMissing?: ((name: string, reason: string) => void) | undefined;
+  /** Limits other than the default ones: `expansion` for an FBX, `parts` for an OBJ. */
+  limits?: Partial<Pick<ReadLimits, 'expansion' | 'parts'>> | undefined;
 }
 
 /** What the readers of the formats call. */
-type Beside = Required<{ [Name in keyof Companions]: NonNullable<Companions[Name]> }>;
+interface Beside {
+  read: NonNullable<Companions['read']>;
+  onMissing: NonNullable<Companions['onMissing']>;
+  limits: ReadLimits;
+}
 
 /**
  * Makes a GLB of a model in another format: FBX 7 or newer, OBJ with its MTL, PLY, STL, USDZ or USD, as three.js reads it.
@@ -46,7 +52,7 @@ type Beside = Required<{ [Name in keyof Companions]: NonNullable<Companions[Name
  */
 export async function toGlb(
   bytes: Uint8Array,
-  { read = async () => undefined, onMissing = () => {} }: Companions = {},
+  { read = async () => undefined, onMissing = () => {}, limits }: Companions = {},
 ): Promise<Uint8Array> {
   const wrong = (text: string, cause?: unknown) =>
     new CagecastError('badArgument', 'toGlb', text, { argument: 'bytes', cause });
@@ -61,7 +67,9 @@ export async function toGlb(
     told.add(name);
   };
   try {
-    glb = await sceneGlb(await readers[kind.format](bytes, { read, onMissing: tellOnce }));
+    glb = await sceneGlb(
+      await readers[kind.format](bytes, { read, onMissing: tellOnce, limits: { ...defaultLimits, ...limits } }),
+    );
   } catch (error) {
     throw wrong(`is ${kind.name}, but cannot be read (${(error as Error).message.split('\n', 1)[0]})`, error);
   }
@@ -74,20 +82,19 @@ const textOf = (bytes: Uint8Array): string => new TextDecoder().decode(bytes);
 
 /** What reads each format. */
 const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Object3D>> = {
-  async fbx(bytes, { read, onMissing }) {
-    await checkFbx(bytes);
+  async fbx(bytes, { read, onMissing, limits }) {
+    await checkFbx(bytes, limits);
     const { FBXLoader } = await import('three/addons/loaders/FBXLoader.js');
     return withFiles(read, async () => new FBXLoader().parse(bufferOf(bytes), ''), onMissing);
   },
-  async obj(bytes, { read, onMissing }) {
+  async obj(bytes, { read, onMissing, limits }) {
     const [{ OBJLoader }, { MTLLoader }] = await Promise.all([
       import('three/addons/loaders/OBJLoader.js'),
       import('three/addons/loaders/MTLLoader.js'),
     ]);
     const text = textOf(bytes);
     const groups = text.match(/^\s*(?:g|o|usemtl)\s/gm)?.length ?? 0;
-    if (groups > defaultLimits.parts)
-      throw exceeds(`has ${groups.toLocaleString('en')} groups`, 'parts', defaultLimits);
+    if (groups > limits.parts) throw exceeds(`has ${groups.toLocaleString('en')} groups`, 'parts', limits);
     const libraries = [...text.matchAll(/^\s*mtllib\s+(.+?)\s*$/gm)].map(([, name]) => name!);
     const names = libraries.map((name) => name.replaceAll('\\', '/'));
     const found = await Promise.all(names.map(read));

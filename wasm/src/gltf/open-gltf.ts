@@ -2,6 +2,7 @@ import type { GLTF } from '@gltf-transform/core';
 import { type AccessorData, decodeAccessors } from './accessors.js';
 import { checkGeometry, dracoOf } from './checks/check-geometry.js';
 import { checkRest } from './checks/check-rest.js';
+import { withDracoCounts } from './checks/draco-header.js';
 import { checkLimits } from './checks/limits.js';
 import { checkBytes, defaultLimits, exceeds, type ReadLimits } from './checks/read-limits.js';
 import { isDataUri, readDataUri } from './data-uri.js';
@@ -29,14 +30,8 @@ export interface Opening {
   limits?: ReadLimits;
   /** Reads a file beside it. @throws {InputError} that begins with `name`. Default: there are none. */
   readBeside?(name: string, uri: string): Promise<Uint8Array>;
-  /**
-   * Decodes the accessors of a file that Draco compresses. `checkCost` judges a glTF by the limits. Default: such a file is refused.
-   */
-  decodeDraco?(
-    json: GLTF.IGLTF,
-    buffers: readonly (Uint8Array | undefined)[],
-    checkCost: (json: GLTF.IGLTF) => void,
-  ): Promise<AccessorData[]>;
+  /** Decodes the accessors of a file that Draco compresses. Default: such a file is refused. */
+  decodeDraco?(json: GLTF.IGLTF, buffers: readonly (Uint8Array | undefined)[]): Promise<AccessorData[]>;
 }
 
 /**
@@ -60,10 +55,9 @@ export async function openGltf(
     checkGeometry(json, sizes);
     checkRest(json);
     const all = sizes.reduce<number>((sum, size) => sum + (size ?? 0), content.byteLength - (binary?.byteLength ?? 0));
-    const checkCost = (judged: GLTF.IGLTF) => checkLimits(judged, all, limits);
-    checkCost(json);
+    checkLimits(withDracoCounts(json, buffers), all, limits);
     const isDraco = json.meshes?.some(({ primitives }) => primitives.some(dracoOf)) ?? false;
-    const accessors = await (isDraco ? decodeDraco(json, buffers, checkCost) : decodeAccessors(json, buffers));
+    const accessors = await (isDraco ? decodeDraco : decodeAccessors)(json, buffers);
     return { path, json, buffers, accessors, readUri };
   } catch (error) {
     if (error instanceof InputError) throw error.in(path);

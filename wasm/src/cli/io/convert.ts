@@ -23,7 +23,7 @@ export async function convert(
   try {
     const missing: string[] = [];
     const onMissing = (name: string, reason: string) => missing.push(`${quoted(name)}: ${reason}`);
-    return { glb: await formats.toGlb(bytes, { read, onMissing }), missing };
+    return { glb: await formats.toGlb(bytes, { read, onMissing, limits: reading.limits }), missing };
   } catch (error) {
     throw new InputError((error as CagecastError).reason ?? firstLine(error), { cause: error });
   }

@@ -4,7 +4,6 @@ import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import type { AccessorData } from '../../gltf/accessors.js';
 import { meshoptView } from '../../gltf/checks/check-geometry.js';
 import { createDracoDecoder } from './draco.js';
-import { withDracoCounts } from './draco-header.js';
 
 const geometryExtensions = [KHRMeshQuantization, EXTMeshoptCompression, KHRDracoMeshCompression];
 const geometryExtensionNames: string[] = geometryExtensions.map((extension) => extension.EXTENSION_NAME);
@@ -12,14 +11,11 @@ const geometryExtensionNames: string[] = geometryExtensions.map((extension) => e
 /**
  * Decodes accessors, those in streams of Draco too, by glTF-Transform. It gets no more of the file than its meshes, so that nothing else can
  * make it fail.
- * @param checkCost  Throws if what the streams say to hold is too much.
  */
 export async function decodeDraco(
   json: GLTF.IGLTF,
   buffers: readonly (Uint8Array | undefined)[],
-  checkCost: (json: GLTF.IGLTF) => void,
 ): Promise<AccessorData[]> {
-  checkCost(withDracoCounts(json, buffers));
   const { asset, bufferViews = [], accessors = [], meshes = [] } = json;
   const used = new Set(json.extensionsUsed?.filter((name) => geometryExtensionNames.includes(name)));
   used.add('KHR_draco_mesh_compression');

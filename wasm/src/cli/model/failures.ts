@@ -28,7 +28,7 @@ export const reasons: Readonly<Record<string, string>> = {
 /** What an error says of what went wrong. Others than those of files, of the system and of the package are defects. */
 export function messageOf(error: unknown): string {
   if (error instanceof InputError || error instanceof CagecastError) return error.message;
-  const { syscall, path, code = '' } = error as NodeJS.ErrnoException;
+  const { syscall, path, code = '' } = (error ?? {}) as NodeJS.ErrnoException;
   if (syscall === 'uv_cwd') return 'the current folder is gone; change to another one';
   if (syscall) return `${path ?? syscall}: ${reasons[code] ?? firstLine(error)}`;
   return `failed unexpectedly (${firstLine(error)}); please report it`;

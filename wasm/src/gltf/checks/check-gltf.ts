@@ -6,6 +6,7 @@ import { InputError } from '../input-error.js';
 import { parseGltf } from '../parse.js';
 import { checkGeometry } from './check-geometry.js';
 import { checkRest } from './check-rest.js';
+import { withDracoCounts } from './draco-header.js';
 import { checkImages, checkLimits } from './limits.js';
 import { checkBytes, defaultLimits, type ReadLimits } from './read-limits.js';
 
@@ -39,8 +40,12 @@ export function checkGltf(bytes: Uint8Array, { limits = {}, otherBytes = 0, ...o
     );
     checkGeometry(json, sizes);
     checkRest(json);
-    checkLimits(json, fileBytes, all);
-    checkImages(imagesIn(json, binary), fileBytes, all);
+    const buffers = (json.buffers ?? []).map(({ uri }, b) => {
+      if (uri === undefined) return b === 0 ? binary : undefined;
+      return isDataUri(uri) ? readDataUri(`buffers[${b}]`, uri) : undefined;
+    });
+    checkLimits(withDracoCounts(json, buffers), fileBytes, all);
+    checkImages(imagesIn(json, buffers), fileBytes, all);
   } catch (error) {
     throw error instanceof InputError ? wrong('checkGltf', error.message, { cause: error }) : error;
   }
@@ -61,12 +66,12 @@ export function checkImage(bytes: Uint8Array, { limits = {} }: Pick<CheckOptions
   }
 }
 
-type Function = 'checkGltf' | 'checkImage';
+type Caller = 'checkGltf' | 'checkImage';
 
-const wrong = (where: Function, text: string, details?: ErrorDetails) =>
+const wrong = (where: Caller, text: string, details?: ErrorDetails) =>
   new CagecastError('badArgument', where, text, details);
 
-function requireBytes(where: Function, bytes: unknown): void {
+function requireBytes(where: Caller, bytes: unknown): void {
   if (!(bytes instanceof Uint8Array))
     throw wrong(where, `bytes is ${show(bytes)}, not a Uint8Array`, { argument: 'bytes' });
 }
@@ -74,7 +79,7 @@ function requireBytes(where: Function, bytes: unknown): void {
 const isCount = (value: unknown): value is number => typeof value === 'number' && value >= 0;
 
 /** All limits. @throws {CagecastError} */
-function limitsOf(where: Function, given: NonNullable<CheckOptions['limits']>): ReadLimits {
+function limitsOf(where: Caller, given: NonNullable<CheckOptions['limits']>): ReadLimits {
   const all = { ...defaultLimits };
   for (const name in given) {
     const value = given[name as keyof ReadLimits] ?? all[name as keyof ReadLimits];
@@ -88,18 +93,17 @@ function limitsOf(where: Function, given: NonNullable<CheckOptions['limits']>): 
   return all;
 }
 
-/** The images in a GLB or in data URIs, by their names in messages. */
+/** The images in buffers and in data URIs, by their names in messages. */
 function* imagesIn(
-  { images = [], bufferViews = [], buffers = [] }: GLTF.IGLTF,
-  binary: Uint8Array | undefined,
+  { images = [], bufferViews = [] }: GLTF.IGLTF,
+  buffers: readonly (Uint8Array | undefined)[],
 ): Generator<[name: string, bytes: Uint8Array]> {
   for (const [i, { uri, bufferView }] of images.entries()) {
     const name = `images[${i}]`;
     const view = bufferViews[bufferView ?? -1];
-    const source = view ? buffers[view.buffer]?.uri : uri;
-    const whole = source === undefined ? binary : isDataUri(source) ? readDataUri(name, source) : undefined;
-    if (!whole || !(view || uri)) continue;
-    const { byteOffset = 0, byteLength = whole.length } = view ?? {};
-    yield [name, whole.subarray(byteOffset, byteOffset + byteLength)];
+    const { byteOffset = 0, byteLength = 0 } = view ?? {};
+    const stored = view && buffers[view.buffer]?.subarray(byteOffset, byteOffset + byteLength);
+    const bytes = stored ?? (uri !== undefined && isDataUri(uri) ? readDataUri(name, uri) : undefined);
+    if (bytes) yield [name, bytes];
   }
 }

@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { dracoOf } from '../../gltf/checks/check-geometry.js';
+import { dracoOf } from './check-geometry.js';
 
 /** Reads numbers of a stream one after the other; beyond its end all are 0. */
 class Cursor {
@@ -27,16 +27,17 @@ class Cursor {
   }
 }
 
-/** Skips names with values, and others below them. */
+/** Skips metadata: names with values, then other metadata with names, each followed by what is below it. */
 function skipMetadata(cursor: Cursor): void {
-  for (let entries = cursor.number(); entries > 0 && !cursor.isOver; --entries) {
-    cursor.skip(cursor.byte());
-    cursor.skip(cursor.number());
-  }
-  for (let below = cursor.number(); below > 0 && !cursor.isOver; --below) {
-    cursor.skip(cursor.byte());
-    skipMetadata(cursor);
-  }
+  let left = 0; // of other metadata, in the order of the stream
+  do {
+    for (let entries = cursor.number(); entries > 0 && !cursor.isOver; --entries) {
+      cursor.skip(cursor.byte()); // its name
+      cursor.skip(cursor.number()); // its value
+    }
+    left += cursor.number();
+    if (left > 0) cursor.skip(cursor.byte()); // the name of the next
+  } while (left-- > 0 && !cursor.isOver);
 }
 
 /**
@@ -47,18 +48,19 @@ function countsOf(stream: Uint8Array): { points: number; faces: number } {
   const cursor = new Cursor(stream);
   cursor.skip(5); // "DRACO"
   if (cursor.byte() !== 2 || cursor.byte() !== 2) return { points: 0, faces: 0 }; // The decoder refuses other versions.
-  cursor.skip(1);
+  cursor.skip(1); // the kind of geometry
   const isEdgebreaker = cursor.byte() === 1;
-  cursor.skip(1);
-  if (cursor.byte() & 0x80) {
+  cursor.skip(1); // the lower byte of the flags
+  const hasMetadata = (cursor.byte() & 0x80) !== 0;
+  if (hasMetadata) {
     for (let attributes = cursor.number(); attributes > 0 && !cursor.isOver; --attributes) {
-      cursor.number();
+      cursor.number(); // of which attribute
       skipMetadata(cursor);
     }
     skipMetadata(cursor);
   }
   if (isEdgebreaker) {
-    cursor.skip(1);
+    cursor.skip(1); // how triangles are walked
     return { points: cursor.number(), faces: cursor.number() };
   }
   const faces = cursor.number();
