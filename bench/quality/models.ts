@@ -4,17 +4,13 @@ import { gunzipSync } from 'node:zlib';
 import type { Mesh } from 'cagecast';
 import type { CageModel, Landmarks, Template } from 'cagecast/cages';
 import { output, root } from '../native.js';
+import { type Labels, labelsOf, readJson } from '../public/labels.js';
+import { type ModelFiles as LabelledFiles, readModel } from '../public/models.js';
 import { readCage, readTarget } from '../read-glb.js';
 import { readScene } from '../scene-file.js';
 
-/** What is known of each vertex of a target, as a 1 for yes; see examples/samples/README.md. */
-export interface Truth {
-  /** Must not be painted. */
-  ncz: Uint8Array;
-  /** Not scored. */
-  ignore: Uint8Array;
-  /** Its cage says nothing about it. */
-  offCage: Uint8Array;
+/** What is known of each vertex of a target. */
+export interface Truth extends Labels {
   /** 1 the left eyeball, 2 the right one, 3 the lashes, 0 anything else. */
   eyes: Uint8Array;
 }
@@ -29,12 +25,11 @@ export interface Model {
 }
 
 /** The files of a model. */
-export type ModelFiles = Pick<Model, 'name' | 'kind'> & { target: string; cage: string; truth: string };
+export type ModelFiles = LabelledFiles & Pick<Model, 'kind'>;
 
 const samplesFolder = `${root}examples/samples`;
 const assets = process.env['CAGECAST_ASSETS'];
 
-const readJson = <T>(path: string): T => JSON.parse(readFileSync(path, 'utf8')) as T;
 const foldersOf = (folder: string | undefined, ...files: string[]): string[] =>
   folder !== undefined && existsSync(folder)
     ? readdirSync(folder)
@@ -47,9 +42,10 @@ export function listFiles(): ModelFiles[] {
   const filesOf = (folder: string, name: string) => ({
     target: `${folder}/${name}/target.glb`,
     cage: `${folder}/${name}/cage.glb`,
-    truth: `${folder}/${name}/truth.json`,
+    labels: `${folder}/${name}/truth.json`,
   });
-  const listed = readJson<{ name: string; truth?: string }[]>(`${samplesFolder}/index.json`);
+  const index = readFileSync(`${samplesFolder}/index.json`, 'utf8');
+  const listed = JSON.parse(index) as { name: string; truth?: string }[];
   const samples = listed.flatMap(({ name, truth }): ModelFiles[] => {
     // Named after the model they were spoiled from.
     const kind = name.includes('-') ? 'spoiled' : 'sample';
@@ -85,34 +81,27 @@ export async function loadModels(only?: readonly string[]): Promise<Model[]> {
  * @throws {Error} if its truth is not of its target.
  */
 export async function loadFiles(files: ModelFiles): Promise<Model> {
-  const { parts, joints, ...target } = await readTarget(files.target);
-  const { positions, indices, uvs } = await readCage(files.cage);
-  const truth = truthOf(readJson(files.truth));
-  if (target.positions.length / 3 !== truth.ncz.length)
-    throw new Error(`${files.target} has ${target.positions.length / 3} vertices, its truth ${truth.ncz.length}`);
-  return { name: files.name, kind: files.kind, truth, scene: { cage: { positions, indices, uvs }, target } };
+  const { name, scene, labels } = await readModel(files);
+  return { name, kind: files.kind, scene, truth: { ...labels, eyes: eyesOf(readJson(files.labels), labels) } };
 }
 
-/** Per vertex: a string of 0 and 1, or an array of them. */
-type Labels = string | number[];
-
-interface TruthFile {
-  ncz: Labels;
-  ignore: Labels;
-  offCage?: Labels;
+type TruthFile = Record<string, unknown> & {
   parts?: { name: string; firstVertex: number; vertexCount: number }[];
-}
+};
 
-function truthOf(file: TruthFile): Truth {
-  const labelsOf = (labels: Labels): Uint8Array => Uint8Array.from(labels as number[]);
-  const ncz = labelsOf(file.ncz);
+/** Which vertices are of eyeballs and lashes, by the names of parts. */
+function eyesOf(file: TruthFile, { ncz }: Labels): Uint8Array {
   const eyes = new Uint8Array(ncz.length);
   for (const { name, firstVertex, vertexCount } of file.parts ?? []) {
     const what = /lash/i.test(name) ? 3 : /^l.*eye|eye.*(_l|left)$/i.test(name) ? 1 : /eye/i.test(name) ? 2 : 0;
     if (!/brow/i.test(name)) eyes.fill(what, firstVertex, firstVertex + vertexCount);
   }
-  const offCage = file.offCage ? labelsOf(file.offCage) : new Uint8Array(ncz.length);
-  return { ncz, ignore: labelsOf(file.ignore), offCage, eyes };
+  return eyes;
+}
+
+function truthOf(file: TruthFile, path: string, target: CageModel): Truth {
+  const labels = labelsOf(file, path, target);
+  return { ...labels, eyes: eyesOf(file, labels) };
 }
 
 /** The models of tests/core/scenes/traps.cpp, which the reference writes. */
@@ -187,13 +176,14 @@ export async function loadFigures(only?: readonly string[]): Promise<Figure[]> {
 /** Reads a figure by the name of its folder. */
 export async function loadFigure(name: string, folder = `${assets}/${name}`): Promise<Figure> {
   const [cage, landmarks] = [`${folder}/cage.glb`, `${folder}/landmarks.json`];
+  const target = await readTarget(`${folder}/target.glb`);
   const isHead = /head|face|bust|human|lizard|suzanne/.test(name) && !/body/.test(name);
   return {
     name,
     kind: isHead ? 'head' : /body|avatar|figure/.test(name) ? 'body' : 'prop',
-    target: await readTarget(`${folder}/target.glb`),
+    target,
     ...(existsSync(cage) && { cage: await readCage(cage) }),
-    truth: truthOf(readJson(`${folder}/truth.json`)),
+    truth: truthOf(readJson(`${folder}/truth.json`), `${folder}/truth.json`, target),
     landmarks: existsSync(landmarks) ? readJson(landmarks) : {},
     isNamed: !/fused|suzanne/.test(name),
   };
@@ -206,6 +196,7 @@ type PersonLandmarks = Record<'head' | 'body', Record<string, { position: [numbe
 async function loadPerson(folder: string, file: string): Promise<Figure> {
   const kind = file.startsWith('body') ? 'body' : 'head';
   const isFused = file === 'head_fused.glb';
+  const target = await readTarget(`${folder}/${file}`);
   const known = readJson<PersonLandmarks>(`${folder}/landmarks.json`);
   const truth: TruthFile & { source?: Source } = isFused
     ? (JSON.parse(gunzipSync(readFileSync(`${folder}/truth_fused.json.gz`)).toString()) as TruthFile)
@@ -213,8 +204,8 @@ async function loadPerson(folder: string, file: string): Promise<Figure> {
   return {
     name: `${folder.split('/').at(-1)}_${file.replace('.glb', '')}`,
     kind,
-    target: await readTarget(`${folder}/${file}`),
-    truth: truthOf(truth),
+    target,
+    truth: truthOf(truth, `${folder}: truth of ${file}`, target),
     landmarks: Object.fromEntries([
       ...Object.entries(known[kind]).map(([name, { position }]) => [name, position]),
       ...Object.entries(kind === 'body' ? known.joints : {}).map(([name, position]) => [`joint_${name}`, position]),

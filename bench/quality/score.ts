@@ -1,4 +1,5 @@
 import { cutBorders, type Mesh, project, type TransferResult } from 'cagecast';
+import { applySplit } from 'cagecast/parts';
 import {
   boxOf,
   doubleAreaNormal,
@@ -8,8 +9,8 @@ import {
   type Vector,
   vertexAreas,
 } from '../../wasm/src/inspect/geometry.js';
-import { applySplit } from '../../wasm/src/parts/blend.js';
-import type { Model, Truth } from './models.js';
+import type { Labels } from '../public/labels.js';
+import type { Model } from './models.js';
 
 /** What a way to transfer paints: of a result, or made up. */
 export type Decision = Pick<TransferResult, 'zones' | 'cosmeticTriangles'>;
@@ -31,7 +32,7 @@ export interface PictureScore {
 }
 
 /** Scores zones, by area. */
-export function score(target: Mesh, truth: Truth, zones: Uint8Array): Score {
+export function score(target: Mesh, truth: Labels, zones: Uint8Array): Score {
   const sums = tally(
     truth,
     vertexAreas(target),
@@ -61,7 +62,7 @@ export function pictureScore({ scene, truth }: Model, pixels: Uint32Array, decis
 
 /** Adds up weights of what must not be painted, and of what is to be: all of them, and the painted ones. */
 function tally(
-  { ignore, ncz, offCage }: Truth,
+  { ignore, ncz, offCage }: Labels,
   weights: ArrayLike<number>,
   vertexOf: (i: number) => number,
   isPainted: (i: number) => boolean,
