@@ -141,6 +141,7 @@ ul { padding-left: 1.2rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.35rem 0.8rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
 th:first-child { text-align: left; padding-left: 0; }
+@media (max-width: 30rem) { th, td { padding: 0.35rem; font-size: 0.85rem; } }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 18rem), 1fr)); gap: 1rem; margin-top: 1rem; }
 figure { margin: 0; }
 figure img { width: 100%; height: auto; border-radius: 6px; background: color-mix(in srgb, currentColor 8%, transparent); }
@@ -181,7 +182,7 @@ ${kStyle}
 <h2>Summary</h2>
 <p>${kSummary}</p>
 ${tableHtml(summaryCells(results))}
-${listHtml(kMeasures)}
+${listHtml(kMeasures).replace(/<li>([^:]+)/g, '<li><strong>$1</strong>')}
 <p>In the pictures:</p>
 <ul class="legend">${legend.join('')}</ul>
 ${models.join('\n')}

@@ -1,7 +1,7 @@
 // Installs what the project needs and this machine lacks: Debian packages by apt, npm packages by the lock file.
 // Uses nothing but Node, because it is the first thing that runs. A second run finds everything there and says nothing.
 //
-//   node wasm/tools/setup.mjs start | format | lint | test | test:all | clang | bench | pictures | docs | catalogue | release
+//   node wasm/tools/setup.mjs start | format | lint | test | test:all | clang | bench | bench:public | pictures | docs | catalogue | release
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -54,6 +54,13 @@ const kNeeds = {
   clang: { what: 'Clang 14 or newer (clang++)', there: command('clang++') },
   'libclang-rt-dev': { what: "Clang's sanitizers and libFuzzer", there: linksFuzzTarget },
   lld: { what: 'LLD (ld.lld)', there: command('ld.lld') },
+  'python3-numpy': {
+    what: 'Python 3 with NumPy (or the path of one in the environment variable PYTHON)',
+    there: () =>
+      [process.env.PYTHON, 'python3', 'python', '/usr/bin/python3'].some(
+        (program) => program && spawnSync(program, ['-c', 'import numpy']).status === 0,
+      ),
+  },
 };
 const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev', 'libeigen3-dev'];
 const kTests = [
@@ -67,7 +74,7 @@ const kTests = [
   'clang-format',
 ];
 // Valgrind counts instructions, which a test holds against a budget.
-const kAllTests = [...kTests, 'clang-tidy', 'valgrind', 'redis-server'];
+const kAllTests = [...kTests, 'clang-tidy', 'valgrind', 'redis-server', 'python3-numpy'];
 const kPurposes = {
   start: kPage,
   format: ['clang-format'],
@@ -76,6 +83,7 @@ const kPurposes = {
   'test:all': kAllTests,
   clang: [...kAllTests, 'clang', 'libclang-rt-dev', 'lld'],
   bench: [...kAllTests, 'libembree-dev', 'qemu-user', 'g++-aarch64-linux-gnu'],
+  'bench:public': [...kPage, 'python3-numpy'],
   pictures: [...kPage, 'chromium'],
   docs: ['doxygen'],
   release: [...kTests, 'doxygen'],
