@@ -48,7 +48,7 @@ function perVertex(value: unknown, what: string, target: CageModel): Uint8Array 
     throw new Error(
       `${what} has ${value.length} values; the target has ${vertices} vertices, and one each is expected`,
     );
-  const wrong = [...(value as string)].findIndex((label) => Number(label) !== 0 && Number(label) !== 1);
+  const wrong = [...(value as unknown[])].findIndex((label) => ![0, 1, '0', '1'].includes(label as number));
   if (wrong >= 0) throw new Error(`${what}[${wrong}] is ${JSON.stringify(value[wrong])}; 0 or 1 is expected`);
   return Uint8Array.from(value as unknown as number[]);
 }

@@ -12,6 +12,16 @@ export interface Method {
   command: [program: string, ...args: string[]];
 }
 
+/** How a method is run. */
+export interface RunOptions {
+  /** That are timed, after one that is not. */
+  runs: number;
+  /** Seconds until it is ended. */
+  timeout: number;
+  /** Is given what it prints beside its replies. */
+  say?: (text: string) => void;
+}
+
 /** What a method found for a model, or why it did not. */
 export type Outcome = { zones: Uint8Array; seconds: number[]; memory?: number } | { failed: string };
 
@@ -80,7 +90,7 @@ export async function run(
   { command: [program, ...args] }: Method,
   folder: string,
   vertices: number,
-  { runs, timeout }: { runs: number; timeout: number },
+  { runs, timeout, say }: RunOptions,
 ): Promise<Outcome> {
   rmSync(`${folder}/zones.npy`, { force: true });
   const isPosix = process.platform !== 'win32';
@@ -94,37 +104,42 @@ export async function run(
       // All of them have ended.
     }
   };
+  process.once('exit', stop);
   let isLate = false;
   const timer = setTimeout(() => {
     isLate = true;
     stop();
   }, 1000 * timeout);
   try {
-    const ask = asker(child);
+    const ask = asker(child, say);
     await ask('{"ready": true}');
     const before = resetPeak(child.pid);
     const reply = await ask('{"seconds": [0.012]}', JSON.stringify({ folder, runs }));
-    const memory = before === undefined ? undefined : peak(child.pid)! - before;
+    const after = peak(child.pid);
     return {
       seconds: secondsOf(reply['seconds']),
       zones: zonesOf(`${folder}/zones.npy`, vertices),
-      ...(memory !== undefined && { memory }),
+      ...(before !== undefined && after !== undefined && { memory: after - before }),
     };
   } catch (error) {
     return { failed: isLate ? `took more than ${timeout} s` : (error as Error).message };
   } finally {
     clearTimeout(timer);
+    process.off('exit', stop);
     stop();
   }
 }
 
 /** What sends a line to a program, if there is one, and waits for a line of JSON. It throws what is wrong. */
-function asker(child: ChildProcessWithoutNullStreams) {
+function asker(child: ChildProcessWithoutNullStreams, say?: RunOptions['say']) {
   let said = '';
   let failure: string | undefined;
   child.on('error', (error) => (failure = `cannot be started: ${error.message}`));
   child.stdin.on('error', () => {}); // a program that has ended: its exit code says so
-  child.stderr.setEncoding('utf8').on('data', (text: string) => (said = (said + text).slice(-2000)));
+  child.stderr.setEncoding('utf8').on('data', (text: string) => {
+    said = (said + text).slice(-2000);
+    say?.(text);
+  });
   const ended = new Promise<string>((done) =>
     child.on('close', (code, signal) => done(signal ? `was ended by ${signal}` : `ended with exit code ${code}`)),
   );

@@ -124,7 +124,7 @@ export function markdown(results: Results): string {
 
 const escaped = (text: string): string => text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
 
-const tableHtml = ([head, rows]: Cells): string => `<div class="wide"><table>
+const tableHtml = ([head, rows]: Cells): string => `<div class="wide" tabindex="0"><table>
 <tr>${head.map((cell) => `<th scope="col">${escaped(cell)}</th>`).join('')}</tr>
 ${rows.map(([name, ...cells]) => `<tr><th scope="row">${escaped(name!)}</th>${cells.map((cell) => `<td>${escaped(cell)}</td>`).join('')}</tr>`).join('\n')}
 </table></div>`;
@@ -141,7 +141,8 @@ ul { padding-left: 1.2rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.35rem 0.8rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
 th:first-child { text-align: left; padding-left: 0; }
-@media (max-width: 30rem) { th, td { padding: 0.35rem; font-size: 0.85rem; } }
+th:last-child, td:last-child { padding-right: 0; }
+@media (max-width: 30rem) { th, td { padding: 0.35rem 0.3rem; font-size: 0.85rem; } }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 18rem), 1fr)); gap: 1rem; margin-top: 1rem; }
 figure { margin: 0; }
 figure img { width: 100%; height: auto; border-radius: 6px; background: color-mix(in srgb, currentColor 8%, transparent); }

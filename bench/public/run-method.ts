@@ -66,5 +66,6 @@ try {
     say({ seconds: await measure(method, folder, runs) });
   }
 } catch (error) {
+  console.error(error);
   say({ error: String(error) });
 }

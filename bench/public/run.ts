@@ -21,6 +21,9 @@ import { markdown, page, type Results, type Row, summaryOf } from './report.js';
 
 const kSamples = ['lizard', 'human', 'car', 'human-fused'].map((name) => `${root}examples/samples/${name}`);
 
+/** The picture that is not of a method. */
+const kTruth = 'truth';
+
 /** The command line does not make sense. */
 class Misuse extends Error {}
 
@@ -48,7 +51,7 @@ async function main(): Promise<void> {
   const methods: Method[] = [];
   for (const text of (values.method ?? kIncluded).flatMap((list) => list.split(',')).filter(Boolean)) {
     const method = methodOf(text, here);
-    methods.push({ ...method, name: nameFor(method.name, methods) });
+    methods.push({ ...method, name: nameFor(method.name, [{ name: kTruth }, ...methods]) });
   }
   const folders = positionals.map((folder) => resolve(here, folder));
   const { models, skipped } = findModels(folders.length > 0 ? folders : kSamples);
@@ -60,36 +63,43 @@ async function main(): Promise<void> {
     models: {},
     skipped,
   };
+  const say = (text: string): void => void process.stderr.write(text);
   const pictures: Record<string, Record<string, Buffer>> = {};
   const folder = mkdtempSync(join(tmpdir(), 'cagecast-bench-'));
-  try {
-    for (const files of models) {
-      const model = await readModel(files).catch((error: Error) => void skipped.push(error.message));
-      if (!model) {
-        console.error(`skipped ${skipped.at(-1)}`);
+  process.on('exit', () => rmSync(folder, { recursive: true }));
+  process.on('SIGINT', () => process.exit(130)); // which ends the method, too
+  for (const files of models) {
+    const model = await readModel(files).catch((error: Error) => void skipped.push(error.message));
+    if (!model) {
+      console.error(`skipped ${skipped.at(-1)}`);
+      continue;
+    }
+    const { name, scene, labels } = model;
+    const vertices = scene.target.positions.length / 3;
+    writeArrays(folder, scene);
+    const rows: Record<string, Row> = {};
+    pictures[name] = {};
+    const show = async (what: string, zones?: Uint8Array): Promise<void> => {
+      try {
+        pictures[name]![what] = await draw(scene.target, labels, zones);
+      } catch (error) {
+        console.error(`${name}: no picture of ${what}: ${(error as Error).message}`);
+      }
+    };
+    await show(kTruth);
+    for (const method of methods) {
+      console.error(`${name}: ${method.name}`);
+      const outcome = await run(method, folder, vertices, { runs, timeout, say });
+      if ('failed' in outcome) {
+        rows[method.name] = outcome;
+        console.error(`${name}: ${method.name} failed: ${outcome.failed}`);
         continue;
       }
-      const { name, scene, labels } = model;
-      const vertices = scene.target.positions.length / 3;
-      writeArrays(folder, scene);
-      const rows: Record<string, Row> = {};
-      pictures[name] = { truth: await draw(scene.target, labels) };
-      for (const method of methods) {
-        console.error(`${name}: ${method.name}`);
-        const outcome = await run(method, folder, vertices, { runs, timeout });
-        if ('failed' in outcome) {
-          rows[method.name] = outcome;
-          console.error(`${name}: ${method.name} failed: ${outcome.failed}`);
-          continue;
-        }
-        const { zones, seconds, ...memory } = outcome;
-        rows[method.name] = { ...score(scene.target, labels, zones), seconds: median(seconds), ...memory };
-        pictures[name][method.name] = await draw(scene.target, labels, zones);
-      }
-      results.models[name] = { vertices, triangles: scene.target.indices.length / 3, methods: rows };
+      const { zones, seconds, ...memory } = outcome;
+      rows[method.name] = { ...score(scene.target, labels, zones), seconds: median(seconds), ...memory };
+      await show(method.name, zones);
     }
-  } finally {
-    rmSync(folder, { recursive: true });
+    results.models[name] = { vertices, triangles: scene.target.indices.length / 3, methods: rows };
   }
   if (Object.keys(results.models).length === 0) throw new Error('no model was measured');
   const output = resolve(here, values.output ?? `${root}build/bench/public`);

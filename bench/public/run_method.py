@@ -5,6 +5,7 @@ import json
 import os
 import sys
 import time
+import traceback
 
 replies = sys.stdout
 sys.stdout = sys.stderr  # what a method prints must not get among the replies
@@ -51,4 +52,5 @@ try:
         request = json.loads(line)
         say({"seconds": measure(method, request["folder"], request["runs"])})
 except Exception as error:
+    traceback.print_exc()
     say({"error": f"{type(error).__name__}: {error}"})
