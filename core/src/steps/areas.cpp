@@ -68,7 +68,8 @@ void sumAreas(const Scene& scene, const InteriorSamples& samples, PointData& dat
     stats[s].beyondArea = unit.area(beyond) * toInput;
     stats[s].exposedArea = unit.area(exposed) * toInput;
     stats[s].coveredArea = unit.area(covered) * toInput;
-    stats[s].depth = covered > 0 ? static_cast<double>(sums[s].depth) / static_cast<double>(covered) : 0;
+    // Rounding may take it beyond the whole.
+    stats[s].depth = covered > 0 ? std::min(1.0, static_cast<double>(sums[s].depth) / static_cast<double>(covered)) : 0;
   }
 }
 
