@@ -37,6 +37,8 @@ constexpr double kNeedle = 1e-6;
 /// Points are searched for together if they are within this many edges of the first: those farther apart have different
 /// triangles near them, and each would be tested against all.
 constexpr double kGroupEdges = 2;
+/// How far from the centre points are searched from, in diagonals: `sceneSize` allows for eight.
+constexpr double kReach = 6;
 
 /// Whether each triangle is a needle; none of them, if all are.
 std::vector<bool> needlesIn(const TriangleMesh& mesh, double diagonal) {
@@ -100,8 +102,13 @@ Surface::~Surface() = default;
 
 std::vector<SurfacePoint> Surface::closest(std::span<const Vec3> points) const {
   Trees& trees = *trees_;
-  const Arena::Scope scope(trees.arena);
   const std::uint32_t triangleCount = trees.cage.count;
+  if (triangleCount == 0) {
+    std::vector<SurfacePoint> out;
+    for (const Vec3& p : points) out.push_back({0, trees.centre, {1, 0, 0}, length(p - trees.centre), 0});
+    return out;
+  }
+  const Arena::Scope scope(trees.arena);
   auto* found = trees.arena.allocate<std::uint32_t>(triangleCount);
   auto* candidates = trees.arena.allocate<Candidate>(triangleCount);
   // The search takes floats; the slack allows for the rounding of the points.
@@ -110,11 +117,13 @@ std::vector<SurfacePoint> Surface::closest(std::span<const Vec3> points) const {
   std::vector<SurfacePoint> out(points.size());
   constexpr std::uint32_t kGroup = ClosestPointSearch::kGroup;
   float group[4 * kGroup] = {};
+  const double most = kReach * trees.units.diagonal;
+  const auto inReach = [&](const Vec3& p) { return length(p) > most ? most / length(p) * p : p; };
   for (std::size_t first = 0, next = 0; first < points.size(); first = next) {
-    const Vec3 start = trees.scaled(points[first]);
+    const Vec3 start = inReach(trees.scaled(points[first]));
     std::uint32_t count = 0;
     for (; next < points.size() && count < kGroup; ++next, ++count) {
-      const Vec3 p = trees.scaled(points[next]);
+      const Vec3 p = inReach(trees.scaled(points[next]));
       if (length(p - start) > kGroupEdges * trees.edge) break;
       group[4 * count] = static_cast<float>(p.x);
       group[4 * count + 1] = static_cast<float>(p.y);
@@ -144,7 +153,8 @@ SurfacePoint Surface::closest(const Vec3& point) const { return closest(std::spa
 
 std::vector<RayHit> Surface::trace(std::span<const SurfaceRay> rays, double from) const {
   Trees& trees = *trees_;
-  std::vector<RayHit> out(rays.size());
+  std::vector<RayHit> out(rays.size(), {std::numeric_limits<double>::infinity(), 0});
+  if (trees.cage.count == 0) return out;
   std::vector<Vec3> hitPoints;
   std::vector<std::size_t> hitRays;
   {
@@ -174,10 +184,7 @@ std::vector<RayHit> Surface::trace(std::span<const SurfaceRay> rays, double from
       }
       search.search(chunk.data(), count, hit.get(), RaySearch::Find::nearest);
       for (std::uint32_t i = 0; i < count; ++i) {
-        if (!hit[i]) {
-          out[first + i].distance = std::numeric_limits<double>::infinity();
-          continue;
-        }
+        if (!hit[i]) continue;
         out[first + i].distance = chunk[i].end / scale;
         hitRays.push_back(first + i);
         hitPoints.push_back(rays[first + i].origin + out[first + i].distance * rays[first + i].direction);

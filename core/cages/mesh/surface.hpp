@@ -30,10 +30,12 @@ struct RayHit {
 };
 
 /// A mesh that closest points and rays are searched on, with the trees of `core/src/search`. It keeps a copy of what it
-/// needs. Points and origins may be up to four diagonals away from it.
+/// needs. Points and origins may be up to four diagonals away from it; for a point that is farther, as over a cage that
+/// has shrunk to nothing, the result is only about the closest.
 class Surface {
  public:
-  /// @param mesh  At least one triangle with an area; positions at most 1e6 diagonals from the origin.
+  /// @param mesh  At least one triangle; positions at most 1e6 diagonals from the origin. If all triangles are as small
+  /// as rounding, its centre is the closest point of all, and no ray meets it.
   explicit Surface(const TriangleMesh& mesh);
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;

@@ -178,7 +178,8 @@ Placed* sortAlongCurve(const MeshView& target, const Units& units, Site* sites, 
   const int levels = vertexCount < (1u << 13) ? 6 : vertexCount < (1u << 18) ? 8 : 10;
   float side = 0;
   for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
-  const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
+  // A pose may be next to a single point, whose cells would be more than a float can count.
+  const float cells = side > 0x1p-100f ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
   const HilbertCurve curve(levels);
   const Digits digits(3 * levels);
   std::uint32_t counts[Digits::kMaxValues];
