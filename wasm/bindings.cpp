@@ -189,6 +189,7 @@ class Calls {
 // Fields that follow from others are for reading only.
 double coverageOf(const SegmentStats& stats) { return stats.coverage(); }
 double scoreOf(const SegmentStats& stats) { return stats.score(); }
+double confidenceOf(const SegmentStats& stats) { return stats.confidence(); }
 bool isCulled(const SegmentStats& stats) { return stats.culled(); }
 template <typename T>
 void ignore(SegmentStats& /*stats*/, T /*value*/) {}
@@ -237,6 +238,7 @@ EMSCRIPTEN_BINDINGS(cagecast) {
       .field("group", &SegmentStats::group)
       .field("ratios", &SegmentStats::ratios)
       .field("score", &scoreOf, &ignore<double>)
+      .field("confidence", &confidenceOf, &ignore<double>)
       .field("culled", &isCulled, &ignore<bool>)
       .field("culledBy", &SegmentStats::culledBy);
   value_object<HoleShare>("HoleShare")

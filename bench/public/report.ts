@@ -1,4 +1,4 @@
-import { percent } from '../quality/report.js';
+import { percent } from '../percent.js';
 import type { Score } from '../quality/score.js';
 import { mean } from '../statistics.js';
 import { table } from '../table.js';

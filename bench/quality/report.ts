@@ -1,6 +1,8 @@
+import { percent } from '../percent.js';
 import { mean } from '../statistics.js';
 import { table } from '../table.js';
 import type { CageQuality, CageResults } from './cages.js';
+import { surenessTable } from './confidence.js';
 import type { FitScore } from './fit-score.js';
 import { meanError, missedCageGoals, missedGoals } from './goals.js';
 import { kShift, kThresholds, type Quality } from './measure.js';
@@ -15,13 +17,6 @@ export interface QualityResults {
   cages: CageResults;
 }
 
-/** A share as a text. */
-export const percent = (share: number): string => {
-  if (!Number.isFinite(share)) return '–';
-  // What is not all of it must not be rounded to all of it, nor something to nothing.
-  const rounded = Math.min(Math.max(100 * share, share > 0 ? 0.01 : 0), share < 1 ? 99.99 : 100);
-  return `${Number(rounded.toFixed(2))} %`;
-};
 const byArea = ({ suppressed, kept }: Score): string => `${percent(suppressed)} · ${percent(kept)}`;
 const worst = (scores: Record<string, Score>): string =>
   byArea({
@@ -147,6 +142,10 @@ export function qualityReport({ date, machine, models, cages }: QualityResults):
     '## `default` without one step',
     'Suppressed · kept, where that differs. `groups`: all vertices in one group; the others: that option as in `paper`.',
     stepTable(models),
+    '## Confidence',
+    `Verdicts of \`default\` on segments that are right, by their \`confidence\`: under the model's cage, and under the same cage moved
+along each axis, both ways, by a share of the target's diagonal. A segment is to be culled if most of its labelled area must not be painted.`,
+    surenessTable(Object.values(models).map(({ sureness }) => sureness)),
     ...cageSections(cages),
   ];
   return `${parts.map((part) => part.trim()).join('\n\n')}\n`;

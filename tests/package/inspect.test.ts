@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { init, type Mesh, project, transfer } from 'cagecast';
-import { type FindingCode, type Inspection, inspect, suggest } from 'cagecast/inspect';
+import { type FindingCode, type Inspection, inspect, suggest, surestThreshold } from 'cagecast/inspect';
 import { ball, head, join3d, within } from './scenes.js';
 
 before(init);
@@ -31,6 +31,20 @@ const diagonal = (() => {
 })();
 
 describe('inspect', () => {
+  test('each segment says how sure its verdict is, as the transfer does, and the surest threshold is far from all coverages', () => {
+    const { segmentStats } = transfer(cage, target);
+    const { segments } = look({});
+    assert.deepEqual(
+      segments.map(({ confidence }) => confidence),
+      segmentStats.map(({ confidence }) => confidence),
+    );
+    for (const { score, confidence } of segmentStats) assert.equal(confidence, 1 - Math.min(score, 1 / score) ** 4 / 2);
+    const of = (...coverages: number[]) => coverages.map((coverage) => ({ coverage, exposedArea: 1 }));
+    assert.equal(surestThreshold(of(0.1, 0.8, 0.9)), Math.sqrt(0.1 * 0.8));
+    assert.equal(surestThreshold([...of(0.1, 0.8), { coverage: 0.3, exposedArea: 1e-5 }]), Math.sqrt(0.1 * 0.8));
+    assert.equal(surestThreshold([]), 0.5);
+  });
+
   test('a part that hides more than a third of the rest is named, with what leaves it out', () => {
     const visor = ball([0, 0, 0], () => 1.12, 12, 24);
     const on = join3d(target, visor);

@@ -1,6 +1,7 @@
 // Verdicts on segments: the numbers of docs/method.md, each from both sides; thresholds and locks.
 
 #include <algorithm>
+#include <limits>
 
 #include "checks.hpp"
 #include "scenes/traps.hpp"
@@ -92,6 +93,25 @@ TEST_CASE("a segment below the threshold is culled, one at it is not", "[classif
     CHECK(segment.culled() == isCulled);
     const Zone covered = isCulled ? Zone::culled : Zone::cosmetic;
     CHECK(copied(result.zones.zones) == std::vector{covered, covered, covered, Zone::uncovered});
+  }
+}
+
+TEST_CASE("a verdict is the surer, the farther the score is from 1, and sure where a lock decides", "[classify]") {
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  struct Case {
+    double score;
+    CulledBy culledBy;
+    double confidence;
+  };
+  for (const auto& [score, culledBy, confidence] :
+       {Case{1, CulledBy::none, 0.5}, Case{2, CulledBy::none, 1 - 1.0 / 32},
+        Case{0.5, CulledBy::coverage, 1 - 1.0 / 32}, Case{0, CulledBy::coverage, 1}, Case{kEndless, CulledBy::none, 1},
+        Case{0.99, CulledBy::none, 1}, Case{0.99, CulledBy::lock, 1}, Case{1.01, CulledBy::lock, 1}}) {
+    INFO("score " << score);
+    SegmentStats stats;
+    stats.ratios.floor = score;
+    stats.culledBy = culledBy;
+    CHECK(stats.confidence() == Approx(confidence));
   }
 }
 

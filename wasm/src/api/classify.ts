@@ -92,7 +92,7 @@ function checkSegment(segment: SegmentStats, s: number): SegmentStats {
     throw wrong(`.segmentStats[${s}] is not { points, area, exposedArea, coveredArea, … }`, s);
   // Fields that `classify` computes may be missing.
   const ratios = { threshold: Infinity, floor: Infinity, depth: Infinity, hole: Infinity };
-  const computed = { ratios, coverage: 0, score: Infinity, culled: false, culledBy: 'none' as const };
+  const computed = { ratios, coverage: 0, score: Infinity, confidence: 1, culled: false, culledBy: 'none' as const };
   return { points, area, beyondArea, exposedArea, coveredArea, depth, group, ...computed };
 }
 

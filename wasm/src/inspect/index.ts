@@ -29,6 +29,7 @@ import { checkSegments, hasArea, type Segment, segmentsOf } from './segments.js'
 import { checkTopology, type Topology, topologyOf } from './topology.js';
 import { checkUvs, type UvLayout, uvLayoutOf } from './uv.js';
 
+export { surestThreshold } from './surest-threshold.js';
 export type {
   Finding,
   FindingCode,

@@ -13,13 +13,15 @@ const kMuchCulled = 0.3;
 const kMinCosmetic = 0.02;
 
 /** A connected component of the target. */
-export interface Segment extends Omit<SegmentStats, 'depth' | 'ratios' | 'score'> {
+export interface Segment extends Omit<SegmentStats, 'depth' | 'ratios' | 'score' | 'confidence'> {
   /** Its number in `result.segments`. */
   segment: number;
   /** The part of its first vertex. */
   part: string;
   /** The ratio of actual to required area: kept from 1 on, unless a lock decides. `null` if no area is required. */
   score: number | null;
+  /** How sure the verdict is, from 0.5 to 1; as in `SegmentStats`. */
+  confidence: number;
 }
 
 /** Whether a segment is more than a vertex without a triangle, of which files may have hundreds of thousands. */
@@ -31,7 +33,10 @@ export function segmentsOf({ parts, result }: Pick<Scene, 'parts' | 'result'>): 
   const partOfSegment = new Uint32Array(result.segmentStats.length);
   for (let v = result.segments.length - 1; v >= 0; --v) partOfSegment[result.segments[v]!] = partOf[v]!;
   return result.segmentStats.map(
-    ({ points, group, area, beyondArea, exposedArea, coveredArea, coverage, score, culled, culledBy }, s) => ({
+    (
+      { points, group, area, beyondArea, exposedArea, coveredArea, coverage, score, confidence, culled, culledBy },
+      s,
+    ) => ({
       segment: s,
       part: parts[partOfSegment[s]!]?.name ?? '',
       group,
@@ -42,6 +47,7 @@ export function segmentsOf({ parts, result }: Pick<Scene, 'parts' | 'result'>): 
       coveredArea,
       coverage,
       score: Number.isFinite(score) ? score : null,
+      confidence,
       culled,
       culledBy,
     }),
