@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t after(std::uint32_t k) { return (k + 1) % 3; }
 
 /// Whether no point is ahead of a corner along a direction.
-bool areBehind(Vec3 direction, Vec3 corner, Hull hull) {
+bool isBehind(Vec3 direction, Vec3 corner, Hull hull) {
   return std::all_of(hull.begin(), hull.end(), [&](Vec3 p) { return dot(p - corner, direction) <= 0; });
 }
 
@@ -24,8 +24,8 @@ class ClosestFeature {
   /// Whether the points are closest to a corner: they are behind it along both of its edges.
   [[nodiscard]] bool isCorner(std::uint32_t k) const noexcept {
     const std::uint32_t next = after(k), last = after(next);
-    return areBehind(corners_[next] - corners_[k], corners_[k], hull_) &&
-           areBehind(corners_[last] - corners_[k], corners_[k], hull_);
+    return isBehind(corners_[next] - corners_[k], corners_[k], hull_) &&
+           isBehind(corners_[last] - corners_[k], corners_[k], hull_);
   }
   /// Whether the points are closest to the edge from a corner to the next one, ends included: they are beyond it, and
   /// at an end with an obtuse angle also behind that along the other edge there. All of this holds between such points
@@ -33,10 +33,10 @@ class ClosestFeature {
   [[nodiscard]] bool isEdge(std::uint32_t k) const noexcept {
     const Vec3 start = corners_[k], end = corners_[after(k)], opposite = corners_[after(after(k))];
     const Vec3 along = end - start;
-    if (!areBehind(cross(normal_, along), start, hull_)) return false;
+    if (!isBehind(cross(normal_, along), start, hull_)) return false;
     const bool isObtuseAtStart = dot(along, opposite - start)<0, isObtuseAtEnd = dot(along, opposite - end)> 0;
-    return (!isObtuseAtStart || areBehind(opposite - start, start, hull_)) &&
-           (!isObtuseAtEnd || areBehind(opposite - end, end, hull_));
+    return (!isObtuseAtStart || isBehind(opposite - start, start, hull_)) &&
+           (!isObtuseAtEnd || isBehind(opposite - end, end, hull_));
   }
 
  private:

@@ -1,6 +1,9 @@
 // The only file of the core that handles exceptions: nanoflann and std::vector throw when memory runs out.
 #include "input/merge_near.hpp"
 
+// Under a name of its own: a program may have another version, or other flags for it, and linkers mix what headers
+// define.
+#define nanoflann cagecast_nanoflann
 #include <nanoflann.hpp>
 
 #include <algorithm>

@@ -10,12 +10,12 @@ namespace cagecast {
 namespace {
 
 template <typename... Values>
-constexpr double firstOf(Values... values) {
+constexpr double lowest(Values... values) {
   const double all[] = {static_cast<double>(values)...};
   return all[0];
 }
 template <typename... Values>
-constexpr double lastOf(Values... values) {
+constexpr double highest(Values... values) {
   const double all[] = {static_cast<double>(values)...};
   return all[sizeof...(values) - 1];
 }
@@ -42,7 +42,7 @@ constexpr bool areInOrder(Values... values) {
 // clang-format off
 #define CAGECAST_ENTRY(stage, path, field, kind, range)                                                 \
   {Option::field, Stage::stage, path #field,                                                            \
-   CAGECAST_SCOPE_##kind return firstOf range; }(), CAGECAST_SCOPE_##kind return lastOf range; }(),     \
+   CAGECAST_SCOPE_##kind return lowest range; }(), CAGECAST_SCOPE_##kind return highest range; }(),     \
    CAGECAST_NAMES_##kind(range), [](const TransferOptions& options) {                                   \
      static_assert(CAGECAST_SCOPE_##kind return areInOrder range; }(), "not the enumerators of " #kind);
 #define CAGECAST_OPTION(stage, name, kind, standard, paper, range, text) \

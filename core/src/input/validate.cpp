@@ -18,7 +18,7 @@ constexpr float kMaxCoordinate = 0x1p125f;
 /// half of that distance counts as the scene's size if it is larger.
 constexpr float kSizePerDistance = 0.5f;
 
-struct Box {
+struct Bounds {
   float low[4];  ///< x, y, z; the fourth is of no use.
   float high[4];
 
@@ -63,7 +63,7 @@ std::size_t firstNonFinite(std::span<const float> values) {
 
 /// Finds the box around positions.
 /// @return false if any is not finite.
-bool bound(std::span<const float> positions, Box& box) {
+bool bound(std::span<const float> positions, Bounds& box) {
   // Four vertices fill three vectors. Which lane holds which axis repeats after that.
   Rows rows[3];
   const float* p = positions.data();
@@ -103,7 +103,7 @@ std::size_t firstStray(std::span<const std::uint32_t> indices, std::size_t limit
   return static_cast<std::size_t>(std::find_if(indices.begin(), indices.end(), isStray) - indices.begin());
 }
 
-Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
+Status checkMesh(const MeshView& mesh, Argument argument, Bounds& box) {
   const auto fault = [argument](Code code, std::size_t at = 0) {
     return Status{code, argument, static_cast<std::uint32_t>(std::min<std::size_t>(at, UINT32_MAX))};
   };
@@ -135,13 +135,13 @@ std::size_t firstTooLarge(std::span<const float> positions, double limit) {
 /// Checks the poses of a target.
 /// @param limit  The greatest coordinate.
 /// @param box    Around the positions; grows to contain those of the poses.
-Status checkPoses(const MeshView& target, double limit, Box& box) {
+Status checkPoses(const MeshView& target, double limit, Bounds& box) {
   if (target.poses.empty()) return {};
   const auto fault = [](Code code, std::size_t at) {
     return Status{code, Argument::target, static_cast<std::uint32_t>(std::min<std::size_t>(at, UINT32_MAX))};
   };
   if (target.poses.size() % target.positions.size() != 0) return fault(Code::poseCountMismatch, target.poses.size());
-  Box posed;
+  Bounds posed;
   if (!bound(target.poses, posed)) return fault(Code::badPose, firstNonFinite(target.poses));
   for (int k = 0; k < 3; ++k) {
     if (static_cast<double>(std::max(-posed.low[k], posed.high[k])) > limit)
@@ -180,7 +180,7 @@ bool areRecords(const Hiders& hiders, std::size_t vertexCount, std::size_t segme
 }  // namespace
 
 Status checkArrays(const MeshView& mesh, Argument argument) noexcept {
-  Box box;
+  Bounds box;
   return checkMesh(mesh, argument, box);
 }
 
@@ -207,8 +207,8 @@ Status checkProjection(const ProjectionView& projection, std::span<const std::ui
 }
 
 Status checkMeshes(const MeshView& cage, const MeshView& target, Units& units) noexcept {
-  Box cageBox;
-  Box targetBox;
+  Bounds cageBox;
+  Bounds targetBox;
   if (const Status status = checkMesh(cage, Argument::cage, cageBox); !status.ok()) return status;
   if (const Status status = checkMesh(target, Argument::target, targetBox); !status.ok()) return status;
   // A target that is a single point has no size; then the cage's serves.
@@ -217,13 +217,13 @@ Status checkMeshes(const MeshView& cage, const MeshView& target, Units& units) n
   if (size > 0) std::frexp(size, &exponent);
   const double scale = std::ldexp(1.0, std::clamp(1 - exponent, -126, 127));
   const double limit = std::min(static_cast<double>(kMaxProportion) / scale, static_cast<double>(kMaxCoordinate));
-  const Box restBox = targetBox;
+  const Bounds restBox = targetBox;
   if (const Status status = checkPoses(target, limit, targetBox); !status.ok()) return status;
   float sceneSize = 0;
   for (int k = 0; k < 3; ++k) {
     const auto scaled = [scale](float x) { return static_cast<float>(static_cast<double>(x) * scale); };
     for (const bool ofCage : {true, false}) {
-      const Box& box = ofCage ? cageBox : targetBox;
+      const Bounds& box = ofCage ? cageBox : targetBox;
       if (static_cast<double>(std::max(-box.low[k], box.high[k])) <= limit) continue;
       const std::size_t at = firstTooLarge((ofCage ? cage : target).positions, limit);
       return {Code::tooLarge, ofCage ? Argument::cage : Argument::target, static_cast<std::uint32_t>(at)};

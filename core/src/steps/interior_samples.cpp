@@ -6,7 +6,7 @@
 namespace cagecast {
 namespace {
 
-using Box = BoundaryLoops::Box;
+using LoopBox = BoundaryLoops::Box;
 
 /// docs/method.md, step 7: a small segment has fewer points than this.
 constexpr std::uint32_t kFewPoints = 32;
@@ -17,7 +17,7 @@ constexpr double kLargeEdge = 0.06;
 
 bool isSmall(const SegmentStats& segment) { return segment.points < kFewPoints; }
 
-bool areWithin(double distance, const Box& a, const Box& b) {
+bool areWithin(double distance, const LoopBox& a, const LoopBox& b) {
   for (int k = 0; k < 3; ++k) {
     if (a.low[k] - distance > b.high[k] || b.low[k] > a.high[k] + distance) return false;
   }
@@ -42,9 +42,9 @@ struct Corners {
 /// @return Whether there is any.
 bool findSampledSegments(const Scene& scene, const PointData& data, const Array<SegmentStats>& stats, bool* isSampled) {
   const Arena::Scope scope(scene.arena);
-  auto* boxes = scene.arena.allocate<Box>(stats.size());
+  auto* boxes = scene.arena.allocate<LoopBox>(stats.size());
   if (scene.arena.failed()) return false;
-  std::fill(boxes, boxes + stats.size(), Box{});
+  std::fill(boxes, boxes + stats.size(), LoopBox{});
   for (std::uint32_t i = 0; i < data.points.count; ++i) {
     const std::uint32_t s = data.segments[i];
     if (!isSmall(stats[s])) continue;
@@ -57,7 +57,7 @@ bool findSampledSegments(const Scene& scene, const PointData& data, const Array<
   const BoundaryLoops& loops = scene.loops;
   bool isAny = false;
   for (std::uint32_t s = 0; s < stats.size(); ++s) {
-    const auto isNear = [&](const Box& loop) { return areWithin(scene.length(kNearHole), boxes[s], loop); };
+    const auto isNear = [&](const LoopBox& loop) { return areWithin(scene.length(kNearHole), boxes[s], loop); };
     isSampled[s] = isSmall(stats[s]) && boxes[s].diagonal() >= scene.length(kLargeEdge) &&
                    std::any_of(loops.boxes, loops.boxes + loops.count, isNear);
     isAny = isAny || isSampled[s];

@@ -20,7 +20,7 @@ constexpr double kMoves = 1e-4;
 constexpr double kMaxDeeperOfMoved = 0.05;
 
 /// What is known of the points at rest, and becomes known in poses.
-struct Found {
+struct Known {
   PointData& data;
   const Array<SegmentStats>& stats;
   HiderRecords& records;
@@ -65,7 +65,7 @@ struct MovedBox {
 
 /// Why an occluded point is looked at in a pose.
 enum Reason : std::uint8_t {
-  kNone = 0,
+  kNoReason = 0,
   kHidden = 1,  ///< It may be painted, if it is seen.
   kAtLoop = 2,  ///< It may explain a hole, if it is bare.
 };
@@ -73,18 +73,18 @@ enum Reason : std::uint8_t {
 /// Finds the occluded points that are looked at in a pose.
 /// @param[out] reasons  1 per point: a sum of `Reason`.
 /// @return Whether there is any.
-bool findReasons(const Scene& scene, const Found& known, const MovedBox& moved, std::uint8_t* reasons) {
+bool findReasons(const Scene& scene, const Known& known, const MovedBox& moved, std::uint8_t* reasons) {
   const auto& [data, stats, records] = known;
   const double deepest = scene.length(TypicalDepth(stats).mean()) + kMaxDeeperOfMoved * moved.diagonal();
   bool isAny = false;
   for (std::uint32_t p = 0; p < data.points.count; ++p) {
-    reasons[p] = kNone;
+    reasons[p] = kNoReason;
     if (data.visibility[p] != Visibility::occluded || !moved.contains(data.points.exactly(p))) continue;
     const bool isHidden = stats[data.segments[p]].coveredArea > 0 &&
                           static_cast<double>(data.distances[p]) <= deepest && !known.isFree(p);
     const bool isAtLoop = scene.options.steps.holes && scene.loops.touches(data.cageTriangles[p]);
-    reasons[p] = static_cast<std::uint8_t>((isHidden ? kHidden : kNone) | (isAtLoop ? kAtLoop : kNone));
-    isAny = isAny || reasons[p] != kNone;
+    reasons[p] = static_cast<std::uint8_t>((isHidden ? kHidden : kNoReason) | (isAtLoop ? kAtLoop : kNoReason));
+    isAny = isAny || reasons[p] != kNoReason;
   }
   return isAny;
 }
@@ -171,7 +171,7 @@ class PoseTest {
 };
 
 /// Finds the points that are seen in one pose.
-void findInPose(const Scene& scene, const Found& known, std::span<const float> pose) {
+void findInPose(const Scene& scene, const Known& known, std::span<const float> pose) {
   Arena& arena = scene.arena;
   const Arena::Scope scope(arena);
   const auto& [data, stats, records] = known;
@@ -192,7 +192,7 @@ void findInPose(const Scene& scene, const Found& known, std::span<const float> p
   std::fill(isChosen, isChosen + count, false);
   std::fill(found, found + count, 0u);
   for (std::size_t v = 0; v < vertexCount; ++v) {
-    if (reasons[data.points.ofVertex[v]] != kNone) isChosen[posed.scene.points.ofVertex[v]] = true;
+    if (reasons[data.points.ofVertex[v]] != kNoReason) isChosen[posed.scene.points.ofVertex[v]] = true;
   }
   std::uint32_t chosenCount = 0;
   for (std::uint32_t p = 0; p < count; ++p) {
