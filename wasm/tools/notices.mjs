@@ -26,7 +26,7 @@ export function noticesOf(root, inputs, build) {
     packages.add(`${path.slice(0, start)}node_modules/${scope.startsWith('@') ? `${scope}/${name}` : scope}`);
   }
   const header = readFileSync(join(build, 'core/nanoflann/nanoflann.hpp'), 'utf8');
-  const meshoptimizer = readFileSync(join(build, '_deps/meshoptimizer-src/LICENSE.md'), 'utf8');
+  const meshoptimizer = readFileSync(join(build, '_deps/cagecast_meshoptimizer-src/LICENSE.md'), 'utf8');
   const notices = [...packages].sort().map((folder) => noticeOf(join(root, folder)));
   return `Cagecast contains the following third-party software.\n${rule}${[
     ...notices,

@@ -1,5 +1,7 @@
 #include "linear/sparse_system.hpp"
 
+// Under a name of its own, as nanoflann in the core.
+#define Eigen cagecast_Eigen
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <tuple>

@@ -1,6 +1,10 @@
 #include "make/steps.hpp"
 
-#include <meshoptimizer.h>
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -11,6 +15,12 @@
 #include "mesh/bounds.hpp"
 #include "mesh/disjoint_sets.hpp"
 #include "mesh/progress.hpp"
+
+// Of this file alone: a program may have another version of meshoptimizer, and linkers mix what has one name.
+#define MESHOPTIMIZER_API static
+namespace {
+#include <simplifier.cpp>
+}
 
 namespace cagecast::cages {
 

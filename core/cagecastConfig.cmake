@@ -1,0 +1,10 @@
+include(${CMAKE_CURRENT_LIST_DIR}/cagecastTargets.cmake)
+# The library cagecast::cages is a component: it may not have been built.
+foreach(component IN LISTS cagecast_FIND_COMPONENTS)
+  if(TARGET cagecast::${component})
+    set(cagecast_${component}_FOUND TRUE)
+  elseif(cagecast_FIND_REQUIRED_${component})
+    set(cagecast_FOUND FALSE)
+    set(cagecast_NOT_FOUND_MESSAGE "cagecast::${component} is not installed there. Cagecast installs cagecast::cagecast and, if it is built with -DCAGECAST_CAGES=ON, cagecast::cages.")
+  endif()
+endforeach()
