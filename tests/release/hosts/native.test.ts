@@ -1,72 +1,136 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { after, describe, test } from 'node:test';
+import { cpSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { resolve } from 'node:path';
+import { describe, test } from 'node:test';
+import { temporaryFolder } from '../../support/temporary.ts';
 
-const prefix = mkdtempSync(join(tmpdir(), 'cagecast-native-'));
-after(() => rmSync(prefix, { recursive: true, force: true }));
+const { at } = temporaryFolder('native');
+
+const call = (command: string, ...args: string[]) => spawnSync(command, args, { encoding: 'utf8' });
 
 function run(command: string, ...args: string[]): string {
-  const { status, stdout, stderr } = spawnSync(command, args, { encoding: 'utf8' });
+  const { status, stdout, stderr } = call(command, ...args);
   assert.equal(status, 0, `${command} ${args.join(' ')}:\n${stdout}${stderr}`);
   return stdout;
 }
 
 // The same answer as examples/node/arrays.js prints.
 const expected = /^vertex 0: u = 0\.25, v = 0\.25, may be painted\nvertex 1: u = 0\.5, v = 0\.25, may be painted\n/;
+const expectedOfCages = 'a cage of 600 triangles; 8 of 8 vertices may be painted\n';
 
-/** Configures and builds a project in a folder below build/, which the next run finds again. */
-function build(source: string, folder: string, ...options: string[]): string {
-  const out = join('build', folder);
-  // Unoptimised, and several files as one: this is about finding and linking the library.
-  const quick = ['-DCMAKE_BUILD_TYPE=Debug', '-DCMAKE_UNITY_BUILD=ON'];
-  run('cmake', '-S', source, '-B', out, '-G', 'Ninja', '--log-level=WARNING', ...quick, ...options);
+/** Configures a project. Hardly optimised, and several files as one: this is about finding and linking libraries. */
+const configure = (source: string, out: string, ...options: string[]) =>
+  call('cmake', '-S', source, '-B', out, '-G', 'Ninja', '-DCMAKE_UNITY_BUILD=ON', ...options);
+
+function build(source: string, out: string, ...options: string[]): string {
+  const { status, stdout, stderr } = configure(source, out, '-DCMAKE_CXX_FLAGS=-O1', ...options);
+  assert.equal(status, 0, `cmake -S ${source}:\n${stdout}${stderr}`);
   run('cmake', '--build', out, '-j2');
   return out;
 }
 
-/** Builds the example with the sources, as a project with flags and folders of its own would. */
-const buildWithSources = () =>
-  build(
-    'examples/native',
-    'example-sources',
-    '-DCMAKE_DISABLE_FIND_PACKAGE_cagecast=ON',
-    '-DCMAKE_CXX_FLAGS=-fno-exceptions -fno-rtti -ffast-math -Wconversion',
-    '-DCMAKE_INSTALL_INCLUDEDIR=headers',
-  );
+/** A folder outside of the repository with the files of a program. */
+function project(name: string, files: Record<string, string>): string {
+  mkdirSync(at(name));
+  for (const [file, text] of Object.entries(files)) writeFileSync(at(name, file), text);
+  return at(name);
+}
 
-describe('examples/native', () => {
-  test('uses the sources, by add_subdirectory, in a project without exceptions and with fast-math', () => {
-    const out = buildWithSources();
-    assert.match(run(join(out, 'example')), expected);
+const lists = (...lines: string[]) =>
+  ['cmake_minimum_required(VERSION 3.25)', 'project(user LANGUAGES CXX)', ...lines].join('\n');
+const page = readFileSync('docs/cpp.md', 'utf8');
+const block = (kind: string) => new RegExp(`\`\`\`${kind}\n([^]*?)\`\`\``).exec(page)![1]!;
+
+/** Builds and runs the examples, in a folder outside of the repository, with the libraries in another. */
+function useInstalled(prefix: string): void {
+  const source = `${prefix}-user`;
+  cpSync('examples/native', source, { recursive: true });
+  const out = build(source, `${source}/build`, `-DCMAKE_PREFIX_PATH=${prefix}`);
+  assert.ok(readFileSync(`${out}/CMakeCache.txt`, 'utf8').includes(`cagecast_DIR:PATH=${prefix}`));
+  assert.match(run(`${out}/example`), expected);
+  assert.equal(run(`${out}/cages`), expectedOfCages);
+}
+
+describe('both libraries', () => {
+  // A project with flags and folders of its own. What it builds stays for the next run, and is what the next test installs.
+  const fetched = resolve('build/native-fetched');
+
+  test('come by FetchContent, as docs/cpp.md shows, into a project without exceptions and with fast-math', () => {
+    const source = project('fetched', { 'CMakeLists.txt': block('cmake'), 'main.cpp': block('cpp') });
+    build(
+      source,
+      fetched,
+      '--fresh',
+      `-DFETCHCONTENT_SOURCE_DIR_CAGECAST=${process.cwd()}`,
+      '-DCMAKE_CXX_FLAGS=-O1 -fno-exceptions -fno-rtti -ffast-math -Wconversion',
+      '-DCMAKE_INSTALL_INCLUDEDIR=headers',
+    );
+    assert.equal(run(`${fetched}/hello`), expectedOfCages);
     // What a consumer does not ask for is not built.
-    const targets = run('cmake', '--build', out, '--target', 'help');
-    assert.doesNotMatch(targets, /cagecast_tests|cagecast_bench/);
+    assert.doesNotMatch(run('cmake', '--build', fetched, '--target', 'help'), /cagecast_tests|cagecast_bench/);
   });
 
-  test('builds one library, the core, in a project that adds its folder as the README says', () => {
-    const lines = [
-      'cmake_minimum_required(VERSION 3.25)',
-      'project(user LANGUAGES CXX)',
-      `add_subdirectory("${process.cwd()}" cagecast)`,
-    ];
-    writeFileSync(join(prefix, 'CMakeLists.txt'), lines.join('\n'));
-    const out = join(prefix, 'build');
-    run('cmake', '-S', prefix, '-B', out, '-G', 'Ninja', '--log-level=WARNING');
-    assert.deepEqual(run('ninja', '-C', out, '-n').match(/\w+(?=\.a$)/gm), ['libcagecast']);
+  test('are installed, and found by find_package', () => {
+    run('cmake', '--install', `${fetched}/_deps/cagecast-build`, '--component', 'cagecast', '--prefix', at('static'));
+    assert.ok(readdirSync(at('static/headers/cagecast')).includes('cages.hpp'));
+    useInstalled(at('static'));
   });
 
-  test('uses the installed library, by find_package', () => {
-    const sources = buildWithSources();
-    run('cmake', '--install', join(sources, 'cagecast'), '--component', 'cagecast', '--prefix', prefix);
-    const headers = readdirSync(join(prefix, 'headers', 'cagecast'));
-    assert.ok(headers.includes('transfer.hpp'));
-    // Of a library that is not installed.
-    assert.ok(!headers.includes('cages.hpp'));
-    const out = build('examples/native', 'example-installed', `-DCMAKE_PREFIX_PATH=${prefix}`, '--fresh');
-    assert.ok(readFileSync(join(out, 'CMakeCache.txt'), 'utf8').includes(`cagecast_DIR:PATH=${prefix}`));
-    assert.match(run(join(out, 'example')), expected);
+  test('define no names of the libraries that are compiled in', () => {
+    for (const name of ['cagecast', 'cagecast_cages']) {
+      const names = run('nm', '--demangle', '--defined-only', '--extern-only', at('static/lib', `lib${name}.a`));
+      const foreign = names
+        .split('\n')
+        .filter((line) => /^[0-9a-f]+ /.test(line) && !/cagecast|std::|__gnu|DW\.ref/.test(line));
+      assert.deepEqual(foreign, []);
+    }
   });
+
+  test('are installed as shared libraries; without cages, asking for these is an error that says why', () => {
+    const out = resolve('build/native-shared');
+    const options = ['-DCAGECAST_TESTS=OFF', '-DBUILD_SHARED_LIBS=ON'];
+    build('.', out, ...options, '-DCAGECAST_CAGES=ON');
+    run('cmake', '--install', out, '--prefix', at('shared'));
+    useInstalled(at('shared'));
+
+    build('.', out, ...options, '-DCAGECAST_CAGES=OFF');
+    run('cmake', '--install', out, '--prefix', at('core'));
+    assert.ok(!readdirSync(at('core/include/cagecast')).includes('cages.hpp'));
+    const find = (components: string) =>
+      configure(
+        project(`find${components}`, { 'CMakeLists.txt': lists(`find_package(cagecast REQUIRED ${components})`) }),
+        at(`find${components}`, 'build'),
+        `-DCMAKE_PREFIX_PATH=${at('core')}`,
+      );
+    assert.equal(find('').status, 0);
+    assert.match(find('COMPONENTS cages').stderr.replace(/\s+/g, ' '), /cagecast::cages is not installed there/);
+  });
+});
+
+describe('the core', () => {
+  test('is the one library of a project that adds its folder', () => {
+    const source = project('added', { 'CMakeLists.txt': lists(`add_subdirectory("${process.cwd()}" cagecast)`) });
+    assert.equal(configure(source, at('added/build')).status, 0);
+    assert.deepEqual(run('ninja', '-C', at('added/build'), '-n').match(/\w+(?=\.a$)/gm), ['libcagecast']);
+  });
+
+  for (const compiler of ['g++', 'clang++'])
+    test(`gives the same bits as two files, by ${compiler}`, { skip: call(compiler, '--version').status !== 0 }, () => {
+      const folder = at(compiler);
+      run(process.execPath, 'core/amalgamate.mjs', folder);
+      const flags = ['-std=c++20', '-O2', '-ffp-contract=off', '-Wall', '-Wextra', '-Werror'];
+      const files = (...names: string[]) => names.map((name) => `${folder}/${name}`);
+      run(compiler, ...flags, '-c', ...files('cagecast.cpp'), '-o', ...files('cagecast.o'));
+
+      const main = readFileSync('examples/native/main.cpp', 'utf8');
+      writeFileSync(`${folder}/main.cpp`, main.replace('<cagecast/transfer.hpp>', '"cagecast.hpp"'));
+      run(compiler, ...flags, ...files('main.cpp', 'cagecast.o'), '-o', ...files('main'));
+      assert.match(run(`${folder}/main`), expected);
+
+      const lane = ['tests/release/lanes/lane.cpp', 'tests/core/scenes/scenes.cpp', '-Icore/include', '-Itests/core'];
+      run(compiler, ...flags, ...lane, ...files('cagecast.o'), '-o', ...files('lane'));
+      const golden = ['hash', 'hash-default', 'hash-borders'].map((name) => `tests/core/golden/${name}.txt`);
+      assert.equal(run(`${folder}/lane`).trim(), golden.map((file) => readFileSync(file, 'utf8').trim()).join(' '));
+    });
 });
