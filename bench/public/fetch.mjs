@@ -77,10 +77,19 @@ async function fetchModel(model, to) {
   return `is in ${home}${sha256 ? '' : `; its SHA-256, which the list does not know, is ${found}`}`;
 }
 
-const { values, positionals } = parseArgs({
-  allowPositionals: true,
-  options: { list: { type: 'boolean' }, to: { type: 'string' }, models: { type: 'string' } },
-});
+function readOptions() {
+  try {
+    return parseArgs({
+      allowPositionals: true,
+      options: { list: { type: 'boolean' }, to: { type: 'string' }, models: { type: 'string' } },
+    });
+  } catch (error) {
+    console.error(error.message);
+    process.exit(2);
+  }
+}
+
+const { values, positionals } = readOptions();
 const { models } = JSON.parse(readFileSync(values.models ?? new URL('models.json', import.meta.url), 'utf8'));
 if (values.list || positionals.length === 0)
   for (const { name, title, author, licence } of models)

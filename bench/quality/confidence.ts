@@ -5,9 +5,9 @@ import { table } from '../table.js';
 import type { Model, Truth } from './models.js';
 import { shifted } from './score.js';
 
-/** Verdicts on segments, and how many are wrong, by how sure they are. */
-export interface Sureness {
-  /** A class begins at this confidence and ends at that of the next one. */
+/** Verdicts on segments whose confidence is in a range, and how many of them are wrong. */
+export interface ConfidenceClass {
+  /** The range begins here, and ends where that of the next class begins. */
   from: number;
   verdicts: number;
   wrong: number;
@@ -18,7 +18,7 @@ export const kShifts: readonly number[] = [0, 0.005, 0.01, 0.02];
 const kClasses: readonly number[] = [0.5, 0.7, 0.8, 0.9, 0.99, 0.999];
 
 /** Counts, for each of `kShifts`, the verdicts of `default` on the segments of a model. */
-export function surenessOf({ scene, truth }: Model): Sureness[][] {
+export function confidenceOf({ scene, truth }: Model): ConfidenceClass[][] {
   return kShifts.map((shift) => {
     const classes = kClasses.map((from) => ({ from, verdicts: 0, wrong: 0 }));
     const ways =
@@ -49,16 +49,23 @@ function labelsOf(target: Mesh, truth: Truth, segments: Uint32Array, count: numb
   return Array.from(ncz, (area, s) => (area + skin[s]! > 0 ? area > skin[s]! : undefined));
 }
 
-/** A row for each class of confidence: right verdicts over all models. */
-export function surenessTable(models: readonly Sureness[][][]): string {
-  const rightOf = (classes: readonly Sureness[]): string => {
-    const sum = (value: (one: Sureness) => number): number => classes.reduce((total, one) => total + value(one), 0);
-    const [verdicts, wrong] = [sum((one) => one.verdicts), sum((one) => one.wrong)];
-    return verdicts === 0 ? '–' : `${verdicts - wrong} of ${verdicts}: ${percent(1 - wrong / verdicts)}`;
-  };
+/** How many verdicts of some classes are right, over all models, for each of `kShifts`. */
+export function rightVerdicts(models: readonly ConfidenceClass[][][], isIn: (from: number) => boolean) {
+  return kShifts.map((_, i) => {
+    const classes = models.flatMap((model) => model[i]!.filter(({ from }) => isIn(from)));
+    const sum = (of: (one: ConfidenceClass) => number): number => classes.reduce((total, one) => total + of(one), 0);
+    const verdicts = sum((one) => one.verdicts);
+    return { verdicts, right: verdicts - sum((one) => one.wrong) };
+  });
+}
+
+/** A row for each class. */
+export function confidenceTable(models: readonly ConfidenceClass[][][]): string {
   const row = (name: string, isIn: (from: number) => boolean): string[] => [
     name,
-    ...kShifts.map((_, i) => rightOf(models.flatMap((model) => model[i]!.filter(({ from }) => isIn(from))))),
+    ...rightVerdicts(models, isIn).map(({ verdicts, right }) =>
+      verdicts === 0 ? '–' : `${right} of ${verdicts}: ${percent(right / verdicts)}`,
+    ),
   ];
   return table(
     ['confidence', ...kShifts.map((shift) => (shift === 0 ? 'own cage' : `moved by ${percent(shift)}`))],

@@ -1,5 +1,7 @@
+import { percent } from '../percent.js';
 import { mean } from '../statistics.js';
 import type { CageResults } from './cages.js';
+import { kShifts, rightVerdicts } from './confidence.js';
 import type { FitScore, Spread } from './fit-score.js';
 import { kShift, type Quality } from './measure.js';
 import type { Score } from './score.js';
@@ -16,6 +18,8 @@ const kGoals = {
   shifted: { suppressed: 0.97, kept: 0.97 },
   /** The share of the painted area whose texture is smeared. */
   smear: 0.01,
+  /** Of the verdicts with at least this confidence, the share that is right, however far the cage is moved. */
+  confidence: { from: 0.9, right: 0.9 },
   /** Made cages, by kind; only models whose parts have names. */
   made: {
     head: { suppressed: 0.995, kept: 0.995, charts: 2 },
@@ -79,6 +83,11 @@ export function missedGoals(results: Readonly<Record<string, Quality>>): string[
     missed.atMost(`${name}, smeared area`, quality.smear.corner, kGoals.smear);
     missed.atMost(`${name}, smeared area, borders cut`, quality.smear.cut, kGoals.smear);
   }
+  const classes = Object.values(results).map(({ confidence }) => confidence);
+  rightVerdicts(classes, (from) => from >= kGoals.confidence.from).forEach(({ verdicts, right }, i) => {
+    const what = `verdicts with a confidence of ${kGoals.confidence.from} and more, cages moved by ${percent(kShifts[i]!)}: right`;
+    missed.atLeast(what, right / verdicts, kGoals.confidence.right);
+  });
   return missed.lines;
 }
 

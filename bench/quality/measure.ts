@@ -1,5 +1,5 @@
 import { classify, type PresetOptions, presetOptions, project, type TransferOptions, transfer, Zone } from 'cagecast';
-import { type Sureness, surenessOf } from './confidence.js';
+import { type ConfidenceClass, confidenceOf } from './confidence.js';
 import type { Model } from './models.js';
 import {
   type Decision,
@@ -29,8 +29,8 @@ export interface Quality {
   /** `default` with the cage moved by 1 % of the diagonal, by axis and sign. */
   shifted: Record<string, Score>;
   smear: Smear;
-  /** By how far the cage is moved. */
-  sureness: Sureness[][];
+  /** Verdicts by their confidence, for each distance by which the cage is moved. */
+  confidence: ConfidenceClass[][];
 }
 
 export const kThresholds: readonly number[] = [1, 2, 3, 4, 5, 6, 7, 8, 9].map((tenths) => tenths / 10);
@@ -68,7 +68,7 @@ export function measure(model: Model): Quality {
       ),
     ),
     smear: smear(scene, transfer(cage, target)),
-    sureness: surenessOf(model),
+    confidence: confidenceOf(model),
   };
 }
 

@@ -2,7 +2,7 @@ import { percent } from '../percent.js';
 import { mean } from '../statistics.js';
 import { table } from '../table.js';
 import type { CageQuality, CageResults } from './cages.js';
-import { surenessTable } from './confidence.js';
+import { confidenceTable } from './confidence.js';
 import type { FitScore } from './fit-score.js';
 import { meanError, missedCageGoals, missedGoals } from './goals.js';
 import { kShift, kThresholds, type Quality } from './measure.js';
@@ -145,7 +145,7 @@ export function qualityReport({ date, machine, models, cages }: QualityResults):
     '## Confidence',
     `Verdicts of \`default\` on segments that are right, by their \`confidence\`: under the model's cage, and under the same cage moved
 along each axis, both ways, by a share of the target's diagonal. A segment is to be culled if most of its labelled area must not be painted.`,
-    surenessTable(Object.values(models).map(({ sureness }) => sureness)),
+    confidenceTable(Object.values(models).map(({ confidence }) => confidence)),
     ...cageSections(cages),
   ];
   return `${parts.map((part) => part.trim()).join('\n\n')}\n`;

@@ -43,6 +43,8 @@ describe('inspect', () => {
     assert.equal(surestThreshold(of(0.1, 0.8, 0.9)), Math.sqrt(0.1 * 0.8));
     assert.equal(surestThreshold([...of(0.1, 0.8), { coverage: 0.3, exposedArea: 1e-5 }]), Math.sqrt(0.1 * 0.8));
     assert.equal(surestThreshold([]), 0.5);
+    for (const bad of [undefined, {}, [null], [{ coverage: 'all', exposedArea: 1 }]])
+      assert.throws(() => surestThreshold(bad as never), { code: 'badArgument', argument: 'segmentStats' });
   });
 
   test('a part that hides more than a third of the rest is named, with what leaves it out', () => {

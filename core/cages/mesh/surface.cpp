@@ -37,6 +37,8 @@ constexpr double kNeedle = 1e-6;
 /// Points are searched for together if they are within this many edges of the first: those farther apart have different
 /// triangles near them, and each would be tested against all.
 constexpr double kGroupEdges = 2;
+/// A mesh with a smaller diagonal is a point: a float does not hold what would scale it.
+constexpr double kPoint = 1e-30;
 /// How far from the centre points are searched from, in diagonals: `sceneSize` allows for eight.
 constexpr double kReach = 6;
 
@@ -71,6 +73,7 @@ Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
   const Bounds bounds = boundsOf(mesh);
   trees.centre = bounds.middle();
   const double diagonal = bounds.diagonal();
+  if (diagonal < kPoint) return;
   int exponent = 0;
   std::frexp(diagonal, &exponent);
   trees.units.scale = static_cast<float>(std::ldexp(1.0, 1 - exponent));

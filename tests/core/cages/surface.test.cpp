@@ -81,6 +81,27 @@ TEST_CASE("a ray meets the first triangle on its way", "[cages][surface]") {
   CHECK(std::isinf(hits[2].distance));
 }
 
+TEST_CASE("a surface that has shrunk to a point is searched, too", "[cages][surface]") {
+  const Vec3 points[] = {{2, 0, 0}, {0, 0, -3}, {0, 1, 0}};
+  for (const double size : {0.0, 1e-300, 1e-31, 1e-29, 1e-16}) {
+    INFO("size " << size);
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    const Surface surface(mesh);
+    const std::vector<SurfacePoint> found = surface.closest(points);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      CHECK(found[i].triangle == 0);
+      CHECK(found[i].distance == Approx(length(points[i])));
+      CHECK(length(found[i].position) <= 1e-15);
+      CHECK(std::isfinite(found[i].height));
+      CHECK(found[i].weights[0] + found[i].weights[1] + found[i].weights[2] == Approx(1));
+    }
+    const SurfaceRay rays[] = {{{1, 1, 1}, {0, 0, 1}}};
+    CHECK(std::isinf(surface.trace(rays)[0].distance));
+  }
+}
+
 TEST_CASE("needles around a pole do not lead a search astray", "[cages][surface]") {
   // Corners at the pole that differ by rounding only.
   constexpr std::uint32_t kRings = 16, kSectors = 32;

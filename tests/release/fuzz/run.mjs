@@ -3,7 +3,7 @@
 //   node tests/release/fuzz/run.mjs [--seconds N] [target …]        default: 60 seconds each, all targets
 //
 // Inputs that reach new code are kept in build/fuzz/corpus-TARGET, for the next run; those that break a promise in
-// build/fuzz/found. Once it is mended, such an input belongs into tests/release/fuzz/corpus/TARGET, which `npm test` replays.
+// build/fuzz/found. Once it is mended, such an input belongs into tests/release/fuzz/corpus/TARGET, which `npm run test:all` replays.
 
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, readdirSync } from 'node:fs';

@@ -1,4 +1,5 @@
-import type { SegmentStats } from '../index.js';
+import { show } from '../core/error.js';
+import { CagecastError, type SegmentStats } from '../index.js';
 
 /** Coverages below this count as this. */
 const kLeast = 0.05;
@@ -13,8 +14,18 @@ const kMinArea = 1e-4;
  *
  * @param segmentStats  Of a result of `transfer` or `project`, with any threshold.
  * @returns a number in 0.05..1, to be passed as `threshold`; 0.5, the default, if nothing of the target is exposed.
+ * @throws {CagecastError} `badArgument` if `segmentStats` is not that of a result.
  */
 export function surestThreshold(segmentStats: readonly Pick<SegmentStats, 'coverage' | 'exposedArea'>[]): number {
+  const isStats =
+    Array.isArray(segmentStats) && segmentStats.every((one) => one?.coverage >= 0 && one.exposedArea >= 0);
+  if (!isStats)
+    throw new CagecastError(
+      'badArgument',
+      'surestThreshold',
+      `segmentStats is ${show(segmentStats)}; pass result.segmentStats of a transfer`,
+      { argument: 'segmentStats' },
+    );
   const exposed = segmentStats.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
   const coverages = segmentStats
     .filter(({ exposedArea }) => exposedArea > kMinArea * exposed)

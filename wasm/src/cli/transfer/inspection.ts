@@ -123,16 +123,17 @@ const kFates: Record<Segment['culledBy'], string> = {
 export function segmentTable(segments: readonly Segment[], most: number): string[][] {
   const largest = [...segments].sort((a, b) => b.exposedArea - a.exposedArea || a.segment - b.segment);
   return [
-    ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
-    ...largest.slice(0, most).map(({ segment, part, points, exposedArea, coveredArea, coverage, score, culledBy }) => [
-      part,
-      String(segment),
-      integer(points),
-      short(exposedArea),
-      short(coveredArea),
-      coverage.toFixed(3),
-      score === null ? '∞' : Number(score.toPrecision(2)).toString(), // endless if it needs no area
-      kFates[culledBy],
+    ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', 'confidence', ''],
+    ...largest.slice(0, most).map((segment) => [
+      segment.part,
+      String(segment.segment),
+      integer(segment.points),
+      short(segment.exposedArea),
+      short(segment.coveredArea),
+      segment.coverage.toFixed(3),
+      segment.score === null ? '∞' : Number(segment.score.toPrecision(2)).toString(), // endless if it needs no area
+      segment.confidence.toFixed(2),
+      kFates[segment.culledBy],
     ]),
   ];
 }
