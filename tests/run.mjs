@@ -46,6 +46,7 @@ const kSuites = {
     tests: 'tests/page',
   },
   tidy: { needs: [], of: ['core', 'wasm'], run: () => lint(['tidy']) },
+  docs: { needs: ['wasm'], of: ['core/include', 'wasm', 'docs'], run: makeDocs },
   twins: { needs: ['twins'], of: ['core', 'tests/core'], run: () => ctest('twins') },
   lanes: { needs: ['twins', 'scalar'], of: ['core', 'tests/release/lanes'], run: compareLanes },
   budgets: { needs: ['bench', 'wasm'], of: ['core', 'wasm', 'web'], tests: 'tests/release/budgets' },
@@ -131,6 +132,11 @@ async function lint(steps) {
   const { status, output } = await run(process.execPath, ['wasm/tools/lint/run.mjs', ...steps]);
   const failed = matches(output, /^lint \w+ +FAILED/gm) || Number(status !== 0);
   return { passed: matches(output, /^lint \w+ +ok/gm), failed };
+}
+
+async function makeDocs() {
+  const { status } = await run('npm', ['run', '--silent', 'docs']);
+  return { passed: Number(status === 0), failed: Number(status !== 0) };
 }
 
 async function ctest(preset) {

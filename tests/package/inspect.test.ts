@@ -485,5 +485,5 @@ test('the guide explains every finding, and none that does not exist', () => {
     [...readFileSync(file, 'utf8').matchAll(pattern)].map(([, name]) => name).sort();
   const codesOfType = named('wasm/src/inspect/finding.ts', /^ {2}\| '(\w+)'/gm);
   assert.ok(codesOfType.length >= 20);
-  assert.deepEqual(named('docs/guides.md', /^\| `(\w+)` \|/gm), codesOfType);
+  assert.deepEqual(named('docs/tooling.md', /^\| `(\w+)` \|/gm), codesOfType);
 });

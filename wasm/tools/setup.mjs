@@ -74,7 +74,7 @@ const kTests = [
   'clang-format',
 ];
 // Valgrind counts instructions, which a test holds against a budget.
-const kAllTests = [...kTests, 'clang-tidy', 'valgrind', 'redis-server', 'python3-numpy'];
+const kAllTests = [...kTests, 'clang-tidy', 'doxygen', 'valgrind', 'redis-server', 'python3-numpy'];
 const kPurposes = {
   start: kPage,
   format: ['clang-format'],

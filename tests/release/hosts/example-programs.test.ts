@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { after, describe, test } from 'node:test';
 import { validate } from '../../support/gltf.js';
 
@@ -10,8 +10,10 @@ const folder = mkdtempSync(join(tmpdir(), 'cagecast-examples-'));
 const sample = 'examples/samples/lizard';
 after(() => rmSync(folder, { recursive: true, force: true }));
 
-function node(...args: string[]): string {
-  const { status, stdout, stderr } = spawnSync(process.execPath, args, { encoding: 'utf8' });
+const node = (...args: string[]): string => nodeIn('.', ...args);
+
+function nodeIn(cwd: string, ...args: string[]): string {
+  const { status, stdout, stderr } = spawnSync(process.execPath, args, { cwd, encoding: 'utf8' });
   assert.equal(status, 0, stderr);
   return stdout;
 }
@@ -33,5 +35,32 @@ describe('examples', () => {
       /^\d+\.\d ms$/m,
     );
     assert.deepEqual(await validate(out), []);
+  });
+});
+
+describe('the quick start', () => {
+  const blocks = (page: string, kind: string) =>
+    [...readFileSync(page, 'utf8').matchAll(new RegExp(`\`\`\`${kind}\n([^]*?)\`\`\``, 'g'))].map(([, text]) => text!);
+
+  test('of docs/three.md is the example three', () => {
+    assert.equal(blocks('docs/three.md', 'js')[0], readFileSync('examples/three/main.js', 'utf8'));
+  });
+
+  test('of docs/tooling.md inspects, paints and draws a sample, by the command and in code', async () => {
+    const user = join(folder, 'tooling');
+    mkdirSync(join(user, 'node_modules'), { recursive: true });
+    symlinkSync(resolve('.'), join(user, 'node_modules/cagecast'));
+    for (const file of ['target.glb', 'cage.glb', 'paint-tiger.png']) cpSync(join(sample, file), join(user, file));
+    const commands = [...blocks('docs/tooling.md', 'sh')[0]!.matchAll(/^npx cagecast ([^#\n]*)/gm)];
+    assert.equal(commands.length, 3);
+    for (const [, line] of commands) nodeIn(user, resolve('dist/cli.js'), ...line!.trim().split(/\s+/));
+    assert.deepEqual(await validate(join(user, 'painted.glb')), []);
+    const painted = readFileSync(join(user, 'painted.glb'));
+    assert.equal(readFileSync(join(user, 'painted.png')).toString('latin1', 1, 4), 'PNG');
+
+    writeFileSync(join(user, 'paint.mjs'), blocks('docs/tooling.md', 'js')[0]!);
+    nodeIn(user, 'paint.mjs');
+    assert.deepEqual(await validate(join(user, 'painted.glb')), []);
+    assert.notDeepEqual(readFileSync(join(user, 'painted.glb')), painted); // without the UVs and zones that the command adds
   });
 });
