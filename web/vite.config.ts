@@ -2,9 +2,9 @@ import { cp, readFile } from 'node:fs/promises';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { defineConfig, type Plugin } from 'vite';
-import { basis } from './basis';
-import { precache } from './precache';
-import { share } from './share';
+import { basis } from './basis.ts';
+import { precache } from './precache.ts';
+import { share } from './share.ts';
 
 const kRepository = fileURLToPath(new URL('..', import.meta.url));
 const kSamples = path.join(kRepository, 'examples/samples');
