@@ -1,4 +1,5 @@
 import { readFileSync } from 'node:fs';
+import { basename } from 'node:path';
 import type { CageModel } from 'cagecast/cages';
 import { matcher } from '../../wasm/src/core/patterns.js';
 
@@ -13,6 +14,8 @@ export interface Labels {
 }
 
 const kFields = ['ncz', 'ignore', 'offCage'] as const;
+/** What else a labels.json may hold. */
+const kOthers = ['parts', '$schema'];
 /** How many names a message lists at most. */
 const kMaxNames = 20;
 
@@ -33,6 +36,11 @@ export function readJson<T = Record<string, unknown>>(path: string): T {
  * @throws {Error} that names the file, the field, the value and what is expected.
  */
 export function labelsOf(file: Readonly<Record<string, unknown>>, path: string, target: CageModel): Labels {
+  // The samples' truth.json has more, for tests.
+  const unknown =
+    basename(path) === 'labels.json' && Object.keys(file).find((key) => ![...kFields, ...kOthers].includes(key));
+  if (unknown)
+    throw new Error(`${path}: there is no field ${JSON.stringify(unknown)}; there are ${kFields.join(', ')}`);
   if (file['ncz'] === undefined) throw new Error(`${path}: ncz is missing; it says what must not be painted`);
   const labels = kFields.map((field) => [field, perVertex(file[field] ?? [], `${path}: ${field}`, target)]);
   return Object.fromEntries(labels) as Labels;
@@ -44,6 +52,10 @@ function perVertex(value: unknown, what: string, target: CageModel): Uint8Array 
   if (isByName) return byName(value as string[], what, target);
   if (typeof value !== 'string' && !Array.isArray(value))
     throw new Error(`${what} is ${JSON.stringify(value)}; a string or an array is expected`);
+  if (typeof value === 'string' && /[^01]/.test(value))
+    throw new Error(
+      `${what} is ${JSON.stringify(value)}; names belong in brackets, [${JSON.stringify(value)}], else there is a 0 or a 1 for each vertex`,
+    );
   if (value.length !== vertices)
     throw new Error(
       `${what} has ${value.length} values; the target has ${vertices} vertices, and one each is expected`,

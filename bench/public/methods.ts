@@ -1,6 +1,6 @@
 import { type ChildProcessWithoutNullStreams, spawn, spawnSync } from 'node:child_process';
-import { existsSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { basename, extname, resolve } from 'node:path';
+import { accessSync, constants, existsSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { basename, delimiter, extname, resolve } from 'node:path';
 import { createInterface } from 'node:readline';
 import { fileURLToPath } from 'node:url';
 import type { Mesh } from 'cagecast';
@@ -10,6 +10,8 @@ import { npyOf, readNpy } from './npy.js';
 export interface Method {
   name: string;
   command: [program: string, ...args: string[]];
+  /** Where it is started. */
+  folder: string;
 }
 
 /** How a method is run. */
@@ -40,13 +42,14 @@ export function findPython(): string {
   python ??= all.find((program) => spawnSync(program, ['-c', 'import numpy']).status === 0);
   if (python !== undefined) return python;
   throw new NoSuchMethod(
-    `methods in Python need Python 3 with NumPy; ${all.join(', ')} ${all.length > 1 ? 'have' : 'has'} none: python3 -m pip install numpy, or name a Python that has it by PYTHON=…`,
+    `methods in Python need Python 3 with NumPy; tried ${all.join(', ')}: install NumPy for one, or name a Python that has it by PYTHON=…`,
   );
 }
 
 /**
- * A method by what the command line says of it: a name of those included, a file of Python or JavaScript, or a program.
- * @param folder  Where relative paths start.
+ * A method by what the command line says of it: a name of those included, a file of Python or JavaScript, or a program with arguments;
+ * before it there may be a name for the tables and `=`.
+ * @param folder  Where relative paths start, and the method itself.
  * @throws {NoSuchMethod}
  */
 export function methodOf(text: string, folder: string): Method {
@@ -57,17 +60,31 @@ export function methodOf(text: string, folder: string): Method {
     at('run-method.ts'),
     file,
   ];
-  if (kIncluded.includes(text)) return { name: text, command: node(at(`methods/${text}.ts`)) };
-  const [first = '', ...args] = text.split(' ');
-  const file = resolve(folder, first);
-  if (!existsSync(file) || !statSync(file).isFile())
+  if (kIncluded.includes(text)) return { name: text, command: node(at(`methods/${text}.ts`)), folder };
+  const [, label, what = ''] = /^(?:([\w.-]+)=)?(.*)$/s.exec(text)!;
+  const [first = '', ...args] = (what.match(/"[^"]*"|'[^']*'|\S+/g) ?? []).map((word) =>
+    word.replace(/^(["'])(.*)\1$/s, '$2'),
+  );
+  const isFile = (path: string): boolean => existsSync(path) && statSync(path).isFile();
+  const inPath = /[\\/]/.test(first)
+    ? []
+    : (process.env['PATH'] ?? '').split(delimiter).map((one) => resolve(one, first));
+  const file = [resolve(folder, first), ...inPath].find(isFile);
+  if (file === undefined || first === '')
     throw new NoSuchMethod(
-      `--method: there is no method and no file ${JSON.stringify(first)}; included are ${kIncluded.join(', ')}`,
+      `--method: there is no method, file or program ${JSON.stringify(first)}; included are ${kIncluded.join(', ')}`,
     );
-  const name = basename(file, extname(file));
-  if (/\.py$/.test(file)) return { name, command: [findPython(), at('run_method.py'), file] };
-  if (/\.[cm]?[jt]s$/.test(file)) return { name, command: node(file) };
-  return { name, command: [file, ...args] };
+  const name = label ?? basename(file, extname(file));
+  if (/\.py$/.test(file)) return { name, command: [findPython(), at('run_method.py'), file], folder };
+  if (/\.[cm]?[jt]s$/.test(file)) return { name, command: node(file), folder };
+  try {
+    accessSync(file, constants.X_OK);
+  } catch {
+    throw new NoSuchMethod(
+      `--method: ${file} may not be run (chmod +x allows it), and does not end in .py, .js, .mjs or .ts`,
+    );
+  }
+  return { name, command: [file, ...args], folder };
 }
 
 /** Writes the arrays of a model, as methods read them. */
@@ -87,14 +104,14 @@ export function writeArrays(folder: string, meshes: Record<'cage' | 'target', Me
  * @param vertices  Of the target.
  */
 export async function run(
-  { command: [program, ...args] }: Method,
+  { command: [program, ...args], folder: cwd }: Method,
   folder: string,
   vertices: number,
   { runs, timeout, say }: RunOptions,
 ): Promise<Outcome> {
   rmSync(`${folder}/zones.npy`, { force: true });
   const isPosix = process.platform !== 'win32';
-  const child = spawn(program, args, { detached: isPosix });
+  const child = spawn(program, args, { cwd, detached: isPosix });
   const stop = (): void => {
     try {
       // A program may have started others, which keep its output open.

@@ -1,4 +1,4 @@
-import { existsSync, readdirSync, statSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync, statSync } from 'node:fs';
 import { basename, resolve } from 'node:path';
 import type { Mesh } from 'cagecast';
 import { readCage, readTarget } from '../read-glb.js';
@@ -21,15 +21,15 @@ export interface LabelledModel {
 
 const kLabels = ['labels.json', 'truth.json'] as const;
 
-/** Folders that are models, or have models in them. @return A sentence for each folder that is no model. */
+/** The command line does not make sense. */
+export class Misuse extends Error {}
+
+/** Folders that are models, or have models in them. @return A sentence for each folder that is no model. @throws {Misuse} */
 export function findModels(folders: readonly string[]): { models: ModelFiles[]; skipped: string[] } {
   const models: ModelFiles[] = [];
   const skipped: string[] = [];
   for (const folder of folders.map((path) => resolve(path))) {
-    if (!existsSync(folder) || !statSync(folder).isDirectory()) {
-      skipped.push(`${folder}: there is no such folder`);
-      continue;
-    }
+    if (!existsSync(folder) || !statSync(folder).isDirectory()) throw new Misuse(`there is no folder ${folder}`);
     const names = readdirSync(folder, { withFileTypes: true }).filter((entry) => entry.isDirectory());
     const candidates = existsSync(`${folder}/target.glb`)
       ? [folder]
@@ -43,7 +43,7 @@ export function findModels(folders: readonly string[]): { models: ModelFiles[]; 
           ? `has no ${kLabels.join(' or ')}, which says what must not be painted`
           : existsSync(`${path}/cage.glb`)
             ? undefined
-            : `has no cage.glb; make one by: npx cagecast make ${path}/target.glb -o ${path}/cage.glb (or fit a template: npx cagecast fit human-head …)`;
+            : `has no cage.glb; make one, in the folder of the project, by: npx cagecast make ${path}/target.glb -o ${path}/cage.glb (or fit a template: npx cagecast fit human-head …)`;
       if (missing !== undefined) skipped.push(`${path}: ${missing}`);
       else
         models.push({
@@ -69,6 +69,8 @@ export async function readModel({ name, ...files }: ModelFiles): Promise<Labelle
     read.catch((error: Error) => {
       throw new Error(`${path}: ${error.message}`);
     });
+  for (const file of [files.target, files.cage])
+    if (readFileSync(file).toString('latin1', 0, 4) !== 'glTF') throw new Error(`${file}: is no GLB file`);
   const model = await of(files.target, readTarget(files.target));
   const { positions, indices, uvs } = await of(files.cage, readCage(files.cage));
   if (uvs === undefined) throw new Error(`${files.cage}: has no UVs; the texture is drawn in them`);

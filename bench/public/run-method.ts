@@ -50,7 +50,9 @@ async function measure(method: MethodModule, folder: string, runs: number): Prom
   }
   const isTyped = ArrayBuffer.isView(zones) && !(zones instanceof DataView);
   if (!isTyped && !Array.isArray(zones))
-    throw new Error(`zones() returned ${zones === null ? 'null' : typeof zones}; an array is expected`);
+    throw new Error(
+      `zones() returned ${zones === null ? 'null' : typeof zones}; an array is expected${zones === undefined ? ': is a return missing?' : ''}`,
+    );
   writeFileSync(`${folder}/zones.npy`, npyOf(isTyped ? (zones as Uint8Array) : Float64Array.from(zones!)));
   return seconds;
 }

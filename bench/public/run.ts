@@ -1,11 +1,4 @@
-// Runs methods that find zones over labelled models: README.md.
-//
-//   npm run bench:public -- [FOLDER …] [options]
-//     FOLDER                a model, or a folder of models; default: the labelled samples of the project
-//     --method a,./b.py     names of methods that are included, and files of others; default: all that are included
-//     --runs N              timed runs, after one that is not; default: 5
-//     --timeout SECONDS     for a method and a model; default: 300
-//     --output FOLDER       for results.html, results.md and results.json; default: build/bench/public
+// Runs methods that find zones over labelled models: README.md. What the command line may say is in kHelp.
 
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -15,7 +8,7 @@ import { kMachine, root } from '../native.js';
 import { score } from '../quality/score.js';
 import { median } from '../statistics.js';
 import { kIncluded, type Method, methodOf, NoSuchMethod, run, writeArrays } from './methods.js';
-import { findModels, nameFor, readModel } from './models.js';
+import { findModels, Misuse, nameFor, readModel } from './models.js';
 import { draw } from './pictures.js';
 import { markdown, page, type Results, type Row, summaryOf } from './report.js';
 
@@ -24,16 +17,21 @@ const kSamples = ['lizard', 'human', 'car', 'human-fused'].map((name) => `${root
 /** The picture that is not of a method. */
 const kTruth = 'truth';
 
-/** The command line does not make sense. */
-class Misuse extends Error {}
+const kHelp = `npm run bench:public -- [FOLDER …] [options]
+  FOLDER                a model, or a folder of models; default: the labelled samples of the project
+  --method a,./b.py     names of methods that are included, and files or programs of others; default: ${kIncluded.join(',')}
+  --runs N              timed runs, after one that is not; default: 5
+  --timeout SECONDS     for a method and a model; default: 300
+  --output FOLDER       for results.html, results.md and results.json, which are overwritten; default: build/bench/public`;
 
 function readOptions() {
   const text = { type: 'string' } as const;
-  const options = { method: { ...text, multiple: true }, runs: text, timeout: text, output: text } as const;
+  const help = { type: 'boolean' } as const;
+  const options = { method: { ...text, multiple: true }, runs: text, timeout: text, output: text, help } as const;
   try {
     return parseArgs({ allowPositionals: true, options });
   } catch (error) {
-    throw new Misuse((error as Error).message);
+    throw new Misuse(`${(error as Error).message}\n${kHelp}`);
   }
 }
 
@@ -45,6 +43,7 @@ function positive(option: string, text: string): number {
 
 async function main(): Promise<void> {
   const { values, positionals } = readOptions();
+  if (values.help) return console.log(kHelp);
   // npm runs scripts in the folder of the project, wherever it is called.
   const here = process.env['INIT_CWD'] ?? process.cwd();
   const [runs, timeout] = [positive('runs', values.runs ?? '5'), positive('timeout', values.timeout ?? '300')];

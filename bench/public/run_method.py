@@ -28,6 +28,8 @@ def measure(method, folder, runs):
         zones = method.zones(*own)
         if run > 0:
             seconds.append(time.perf_counter() - began)
+    if zones is None:
+        raise TypeError("zones() returned None; is a return missing?")
     zones = numpy.asarray(zones)
     if zones.dtype == object:
         raise TypeError("zones() returned what is no array of numbers")

@@ -72,7 +72,23 @@ test('methods in JavaScript, in Python and of a program find zones', async () =>
   }
   assert.throws(
     () => methodOf('nobody.py', '/'),
-    /no method and no file "nobody.py"; included are naive, paper, default/,
+    /no method, file or program "nobody.py"; included are naive, paper, default/,
+  );
+});
+
+test('a method may have a name, arguments, a path with spaces, and a program that is found as others are', () => {
+  mkdirSync(at('own methods'));
+  const file = write('own methods/mine.py', 'def zones(cage, target): return []');
+  const { name, command } = methodOf('far="own methods/mine.py"', folder);
+  assert.deepEqual([name, command.at(-1)], ['far', file]);
+  const shell = methodOf(`sh -c 'echo "hello"' ./a`, folder);
+  assert.deepEqual([shell.name, ...shell.command.slice(1)], ['sh', '-c', 'echo "hello"', './a']);
+  assert.match(shell.command[0], /^\/.*\/sh$/);
+  assert.equal(shell.folder, folder); // so that its arguments may be relative paths
+  writeFileSync(at('plain'), '');
+  assert.throws(
+    () => methodOf('plain', folder),
+    /plain may not be run \(chmod \+x allows it\), and does not end in \.py/,
   );
 });
 
@@ -83,14 +99,15 @@ test('what is wrong with a method is said in a sentence', async () => {
   for (const [name, text, expected] of [
     ['short.mjs', zones('return new Uint8Array(3)'), /^zones has the shape \(3\); 4 values are expected/],
     ['half.mjs', zones('return [0, 0, 0.5, 1]'), /^zones\[2\] is 0.5; whole numbers or booleans/],
-    ['nothing.mjs', zones(''), /^Error: zones\(\) returned undefined; an array is expected/],
+    ['nothing.mjs', zones(''), /^Error: zones\(\) returned undefined; an array is expected: is a return missing/],
     ['throws.mjs', zones('throw new TypeError("no UVs")'), /^TypeError: no UVs/],
     ['ends.mjs', zones('process.exit(3)'), /^ended with exit code 3 before it replied/],
     ['hangs.mjs', zones('for (;;);'), /^took more than 3 s/],
     ['other.mjs', 'export const zone = 1;', /exports no function called zones/],
     ['text.py', 'def zones(cage, target): return ["a"] * 4', /^zones is of the type <U1; whole numbers/],
     ['flat.py', 'def zones(cage, target): return target["positions"]*0', /^zones has the shape \(4, 3\); 4 values/],
-    ['none.py', 'def zones(cage, target): pass', /^TypeError: zones\(\) returned what is no array/],
+    ['none.py', 'def zones(cage, target): pass', /^TypeError: zones\(\) returned None; is a return missing/],
+    ['object.py', 'def zones(cage, target): return [None] * 4', /^TypeError: zones\(\) returned what is no array/],
     ['broken.py', 'def zones(', /^SyntaxError/],
     ['exits.py', 'import os\nos.abort()', /^was ended by SIGABRT before it replied/],
     ['talks.sh', script('echo hello'), /^printed "hello"; a line such as \{"ready": true\} is expected/],
@@ -106,7 +123,7 @@ test('what is wrong with a method is said in a sentence', async () => {
     const outcome = await find(methodOf(write(name, text), '/'), expected.source.includes('took more') ? 3 : 60);
     assert.match('failed' in outcome ? outcome.failed : 'found zones', expected, name);
   }
-  const absent = await find({ name: 'absent', command: [at('absent')] });
+  const absent = await find({ name: 'absent', command: [at('absent')], folder });
   assert.match('failed' in absent ? absent.failed : '', /^cannot be started: .*ENOENT/);
 });
 
@@ -121,12 +138,14 @@ test('labels are per vertex or by names, and an error says where it is', () => {
   for (const [file, expected] of [
     [{}, 'ncz is missing; it says what must not be painted'],
     [{ ncz: ['Teeth'] }, 'ncz: nothing is named "Teeth"; there are Head, Skin, EyeLeft'],
+    [{ ncz: '0000', ignor: [] }, 'there is no field "ignor"; there are ncz, ignore, offCage'],
+    [{ ncz: '*eye*' }, 'ncz is "*eye*"; names belong in brackets, ["*eye*"], else there is a 0 or a 1 for each vertex'],
     [{ ncz: '00110' }, 'ncz has 5 values; the target has 4 vertices, and one each is expected'],
     [{ ncz: '0000', ignore: [0, 0, 2, 0] }, 'ignore[2] is 2; 0 or 1 is expected'],
     [{ ncz: [0, null, 0, 0] }, 'ncz[1] is null; 0 or 1 is expected'],
     [{ ncz: '0000', offCage: 7 }, 'offCage is 7; a string or an array is expected'],
   ] as const)
-    assert.throws(() => labels(file), new RegExp(`^Error: a/labels.json: ${expected.replace(/[[\]]/g, '\\$&')}$`));
+    assert.throws(() => labels(file), new RegExp(`^Error: a/labels.json: ${expected.replace(/[[\]*]/g, '\\$&')}$`));
   assert.throws(() => readJson(write('bad.json', '{"ncz"')), /bad\.json: /);
   const { properties } = readJson<{ properties: object }>('bench/public/labels.schema.json');
   assert.deepEqual(Object.keys(properties), ['ncz', 'ignore', 'offCage', 'parts']);
@@ -137,6 +156,8 @@ test('a run makes a table and a page with pictures; what cannot be measured is t
   mkdirSync(at('models', 'bald'));
   for (const file of ['target.glb', 'truth.json']) copyFileSync(`${kLizard}/${file}`, at('models', 'bald', file));
   symlinkSync(kLizard, at('models', 'lizard'));
+  mkdirSync(at('models', 'text'));
+  for (const file of ['target.glb', 'cage.glb', 'labels.json']) write(`models/text/${file}`, '{}');
   const example = /```py\n([\s\S]*?)```/.exec(kReadme)![1]!;
   const [mine, bad] = [write('mine.py', example), write('bad<b>.mjs', 'export const zones = () => []')];
   const args = [
@@ -152,7 +173,11 @@ test('a run makes a table and a page with pictures; what cannot be measured is t
   const { status, stderr } = await started('--import', 'tsx', 'bench/public/run.ts', ...args);
   assert.equal(status, 1, stderr);
   assert.match(stderr, /skipped .*nothing: has no target.glb/);
-  assert.match(stderr, /skipped .*bald: has no cage.glb; make one by: npx cagecast make/);
+  assert.match(
+    stderr,
+    /skipped .*bald: has no cage.glb; make one, in the folder of the project, by: npx cagecast make/,
+  );
+  assert.match(stderr, /skipped .*text\/target.glb: is no GLB file/);
   assert.match(stderr, /lizard: bad<b> failed: zones has the shape \(0\); 4141 values/);
   const { models, summary } = JSON.parse(readFileSync(at('out', 'results.json'), 'utf8'));
   assert.deepEqual(Object.keys(models), ['lizard']);
@@ -168,8 +193,15 @@ test('a run makes a table and a page with pictures; what cannot be measured is t
   assert.equal(page.match(/<img src="data:image\/png;base64,/g)!.length, 4, 'truth and three methods');
   assert.match(page, /forbidden paint[\s\S]*bad&#60;b&#62; failed/);
   assert.doesNotMatch(page, /<script|https?:/);
-  const wrong = await started('--import', 'tsx', 'bench/public/run.ts', '--runs', 'many');
-  assert.deepEqual([wrong.status, wrong.stderr], [2, '--runs is "many"; a whole number above 0 is expected\n']);
+  for (const [args, expected] of [
+    [['--runs', 'many'], /^--runs is "many"; a whole number above 0 is expected\n$/],
+    [[at('nowhere')], /^there is no folder .*nowhere\n$/],
+    [['--methods', 'a'], /Unknown option '--methods'[\s\S]*--method a,\.\/b\.py {2}/],
+  ] as const) {
+    const wrong = await started('--import', 'tsx', 'bench/public/run.ts', ...args);
+    assert.equal(wrong.status, 2);
+    assert.match(wrong.stderr, expected);
+  }
 });
 
 test('methods are ordered by the lesser of both; a model that one fails at counts as 0', () => {
