@@ -61,6 +61,7 @@ const common = {
   format: 'esm',
   target: 'es2022',
   minify: true,
+  lineLimit: 500, // so that Node shows little of the file above an uncaught error
   charset: 'utf8', // the text that is the WebAssembly module in two bytes a character at most, not in escapes of four
   legalComments: 'none', // THIRD-PARTY-NOTICES.txt has them
   sourcemap: shipped ? 'linked' : false,

@@ -126,7 +126,7 @@ test('errors are one line that names the file, and write nothing', async () => {
   const fit = (path: string, flags = '') => `fit ${path} ${human} -o never.glb${flags}`;
   for (const [line, message] of [
     ['make missing.glb -o never.glb', /missing\.glb: no such file/],
-    ['make no.json -o never.glb', /no\.json: is neither a GLB nor a glTF file|no\.json: is /],
+    ['make no.json -o never.glb', /no\.json: is neither a GLB or glTF file nor one of FBX|no\.json: is /],
     ['fit human-head missing.glb -o never.glb', /missing\.glb: no such file/],
     [fit('human'), /human: no such file, and no template of the package: there are human-head, /],
     [fit('bare.glb'), /bare\.glb: has no landmarks in the extras .*; give at least 4 .*--template-landmarks T\.json/],

@@ -195,7 +195,7 @@ test('what is no model is named as what it is, with what to do', async () => {
       'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n',
       /is a PLY file without any triangle/,
     ],
-    ['nothing.glb', 'nothing', /is neither a GLB nor a glTF file/],
+    ['nothing.glb', 'nothing', /is neither a GLB or glTF file nor one of FBX/],
   ];
   for (const [name, text, message] of files) {
     write(name, text);

@@ -107,7 +107,7 @@ const patched = (offset: number, ...values: number[]) => {
 };
 const wrongBytes: [bytes: Uint8Array | string, message: RegExp][] = [
   ['', /the file is empty/],
-  ['hello, world\n', /is neither a GLB nor a glTF file/],
+  ['hello, world\n', /is neither a GLB or glTF file nor one of FBX/],
   ['{"hello": 1}', /is JSON but not glTF/],
   ['null', /is JSON but not glTF/],
   [whole.subarray(0, 10), /is truncated: a GLB has at least 20 bytes, this one 10/],

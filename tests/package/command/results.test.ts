@@ -8,7 +8,7 @@ import { PNG } from 'pngjs';
 import { fails, json, ok, run } from '../../support/command.js';
 import { type GlbMaker, glbOf } from '../../support/gltf.js';
 import { ball, cagedFigure, head, isOfCage, kCagedParts, within } from '../scenes.js';
-import { io, modelsLike, workplace, write, writeChanged, writeMade } from './workplace.js';
+import { inRepository, io, modelsLike, workplace, write, writeChanged, writeMade } from './workplace.js';
 
 const models = modelsLike(/lizard|misaligned/);
 const { groups } = head(1, 10).target;
@@ -168,6 +168,11 @@ test('a line says why next to nothing may be painted, and what helps', async () 
     [
       'transfer hidden.glb --cage cage.glb --exclude shell',
       /^nothing .*: most of "body" is hidden by "shell"; try --ignore "shell", or /m,
+    ],
+    [
+      // Its eyes and teeth are hidden by the skin, and most of the skin by itself.
+      `transfer ${inRepository('examples/samples/human/target.glb')} --cage ${inRepository('examples/samples/lizard/cage.glb')}`,
+      /^only 1\.\d % .*: most of "skin" is hidden by other surfaces; leave out /m,
     ],
     [
       'transfer target.glb --cage half.glb --preset paper',

@@ -370,10 +370,10 @@ test('the command writes PNGs, JPEGs and WebPs of several models, and says what 
   assert.equal(made!.framed, 'cage');
   assert.deepEqual([...readFileSync('side.jpg').subarray(0, 2)], [0xff, 0xd8]);
   write('broken.glb', 'glTF');
-  const { status, stdout: lines } = await run('thumbnail broken.glb target.glb --size 16 -o {name}-16.png');
+  const { status, stdout: lines } = await run('thumbnail broken.glb target.glb --size 16 -o new/{name}-16.png');
   assert.equal(status, 1);
-  assert.match(lines, /^broken\.glb: .*\nwrote target-16\.png: 16 × 16, of target\.glb\n$/);
-  assert.ok(!existsSync('broken-16.png') && existsSync('target-16.png'));
+  assert.match(lines, /^broken\.glb: .*\nwrote new\/target-16\.png: 16 × 16, of target\.glb\n$/);
+  assert.ok(!existsSync('new/broken-16.png') && existsSync('new/target-16.png'));
   await fails(1, /broken\.glb: /, 'thumbnail broken.glb -o out.png');
   await fails(1, /target\.glb: .*nothing is named "nose"/, 'thumbnail target.glb --part nose -o out.png');
   writeChanged('textured.glb', glbOf(target), (file) => {

@@ -45,6 +45,13 @@ const distFiles = () =>
 after(() => rmSync(user, { recursive: true, force: true }));
 
 describe('the packed package', () => {
+  test('has short lines, as Node shows the one of an error that nobody catches', () => {
+    for (const name of distFiles().filter((one) => one.endsWith('.js'))) {
+      const lines = readFileSync(join(installed, 'dist', name), 'utf8').split('\n');
+      assert.ok(Math.max(...lines.map(({ length }) => length)) < 3000, name);
+    }
+  });
+
   test('needs nothing else', () => {
     const manifest = JSON.parse(readFileSync(join(installed, 'package.json'), 'utf8')) as Record<string, unknown>;
     for (const name of ['dependencies', 'optionalDependencies', 'bundledDependencies'])

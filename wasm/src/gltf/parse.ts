@@ -16,9 +16,14 @@ export function parseGltf(bytes: Uint8Array, limits: ReadLimits): { json: GLTF.I
   try {
     json = JSON.parse(new TextDecoder().decode(text)) as GLTF.IGLTF | null;
   } catch (cause) {
-    throw new InputError(isGlb ? 'its JSON is damaged' : (adviceOn(bytes) ?? 'is neither a GLB nor a glTF file'), {
-      cause,
-    });
+    throw new InputError(
+      isGlb
+        ? 'its JSON is damaged'
+        : (adviceOn(bytes) ?? 'is neither a GLB or glTF file nor one of FBX (7 or newer), OBJ, PLY, STL or USD'),
+      {
+        cause,
+      },
+    );
   }
   if (json?.asset?.version === undefined) throw new InputError('is JSON but not glTF: it has no asset.version');
   const { version } = json.asset;

@@ -76,7 +76,9 @@ export function bareOf(
       (v) => areas[v]!,
     );
   const stats = segmentStats[largest(segments)];
-  const hider = zone === 1 ? hiderOf(target, concerned, partOf) : undefined;
+  const part = largest(partOf);
+  const ofPart = (v: number): boolean => partOf[v] === part;
+  const hider = zone === 1 ? hiderOf(target, concerned.filter(ofPart), partOf) : undefined;
   return {
     share,
     cause:
@@ -89,7 +91,7 @@ export function bareOf(
             : zone === 1
               ? 'hidden'
               : causeOf(stats),
-    part: parts[largest(partOf)]?.name ?? '',
+    part: parts[part]?.name ?? '',
     hider: parts[hider ?? -1]?.name ?? '',
     coverage: stats?.coverage ?? 0,
   };
@@ -163,7 +165,8 @@ const kAdvice: Record<Cause, string> = {
   exchanged: 'exchange them',
   elsewhere: 'put both in the same place and unit',
   uncovered: 'fit the cage around it',
-  hidden: 'leave out what hides it, or set a smaller occlusionReach if that lies outside the cage',
+  hidden:
+    'leave out what hides it, or set a smaller occlusionReach if that lies outside the cage; inspect() says whether the cage fits',
   threshold: 'set a lower threshold, or a lock that keeps it',
   floor: 'set a lower minCovered, or a lock that keeps it',
   depth: 'fit the cage more closely, or set a lock that keeps it',

@@ -71,6 +71,6 @@ function parse(text: Uint8Array, binary: boolean): GltfJson {
   throw new Error(
     binary
       ? 'the GLB is damaged: its JSON cannot be read'
-      : 'this is not a GLB or glTF file; models must be GLB or glTF, paints PNG, JPEG or WebP',
+      : 'this is no model that can be opened: GLB, glTF, VRM, FBX 7 or newer, OBJ, PLY, STL or USD; paints are PNG, JPEG or WebP',
   );
 }

@@ -1,8 +1,7 @@
-import { mkdirSync } from 'node:fs';
-import { dirname } from 'node:path';
 import { parentPort } from 'node:worker_threads';
 import type { Verdict } from '../../inspect/index.js';
 import { Io } from '../io/io.js';
+import { makeFolder } from '../io/output.js';
 import { messageOf } from '../model/failures.js';
 import type { TransferCommand } from '../model/sources.js';
 import { cachedReading } from '../transfer/models.js';
@@ -32,7 +31,7 @@ export function serveBatch(): void {
     const answer = (outcome: object) =>
       parentPort!.postMessage({ ms: Math.round(performance.now() - began), ...outcome });
     try {
-      makeFolders(command);
+      for (const path of [command.output, command.report]) if (path !== undefined) makeFolder(path);
       const { report } = await transferToFile(command, io, readCage);
       const { cage, counts, triangles, note, verdict, findings } = report;
       const inspected = verdict && { verdict, findings: findings!.map(({ code }) => code) };
@@ -42,15 +41,4 @@ export function serveBatch(): void {
       answer({ status: 'failed', error: messageOf(error) });
     }
   });
-}
-
-/** Makes the folders that a job writes to: with `{name}` and `{dir}` in paths there may be many. */
-function makeFolders({ output, report }: TransferCommand): void {
-  for (const path of [output, report]) {
-    try {
-      if (path !== undefined) mkdirSync(dirname(path), { recursive: true });
-    } catch {
-      // What writes the file says what is wrong.
-    }
-  }
 }

@@ -10,7 +10,7 @@ import { standard } from '../io/files.js';
 import { filesOf } from '../io/glob.js';
 import { decodeImage, encoderFor, imageEndings } from '../io/images.js';
 import type { Io } from '../io/io.js';
-import { writeFiles } from '../io/output.js';
+import { makeFolder, writeFiles } from '../io/output.js';
 import { readGltf } from '../io/read-gltf.js';
 import { kExit, UsageError } from '../model/failures.js';
 import type { ReadOptions } from '../model/reading.js';
@@ -46,7 +46,7 @@ const kHelp = `
 Shown: base colours with their textures, vertex colours, alpha, overlays of paint, in a light from the eye; skins in their bind pose.
 Hidden nodes, cages and markers are left out. A texture that cannot be decoded is not shown; the summary says so.
 face is the head from the front, if a joint is called so. front is +z, of a VRM 0 -z.
-If one of several models cannot be used, the others are drawn, and the exit code is 1.
+If one of several models cannot be used, the others are drawn, and the exit code is 1. Folders of paths with {name} or {dir} are made.
 
 Examples:
   cagecast thumbnail painted.vrm --view face --size 512 -o painted.png
@@ -100,6 +100,7 @@ export function addThumbnailCommand(program: Command, io: Io): void {
     const outputs = models.map((model) => filledFor(model, output));
     if (new Set(outputs).size < outputs.length)
       throw new UsageError(`${output} is written for several models; use {name} or {dir} in its path`);
+    for (const one of outputs) if (one !== output) makeFolder(one);
     return perform(io, flags, { inputs: [...models, cage], outputs }, () => drawAll(models, flags, io));
   });
 }

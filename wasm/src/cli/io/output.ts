@@ -6,6 +6,7 @@ import {
   fchmodSync,
   fstatSync,
   lstatSync,
+  mkdirSync,
   openSync,
   readlinkSync,
   realpathSync,
@@ -103,6 +104,15 @@ export function writeStandard(data: Uint8Array | string): void {
 }
 
 const isPipe = (found: Stats): boolean => found.isFIFO() || found.isSocket();
+
+/** Makes the folder of a file that is to be written: with `{name}` and `{dir}` in paths there may be many. */
+export function makeFolder(path: string): void {
+  try {
+    mkdirSync(dirname(path), { recursive: true });
+  } catch {
+    // What writes the file says what is wrong.
+  }
+}
 
 /** Characters of a file's name that its temporary one begins with: with the rest, it stays a name that systems allow. */
 const kNameLength = 50;
