@@ -89,7 +89,7 @@ test('figures dropped together get the template of the first; a stroke is on all
   const names = ['one', 'two', 'three', 'four', 'five', 'six'];
   await drop(page, [...names.slice(0, 2).map(figure), broken, ...names.slice(2).map(figure)]);
   const dropped = await avatars(page, 6);
-  assert.match(await shownError(page), /^broken\.glb: this is not a GLB or glTF file/);
+  assert.match(await shownError(page), /^broken\.glb: this is no model that can be opened/);
   assert.match(dropped[0]!, /^one, /);
   for (const label of dropped.slice(1)) assert.match(label, /, no cage$/);
   await page.locator('#alert-close').click();

@@ -132,7 +132,7 @@ for (const language of kLanguages)
     await page.locator('#language').selectOption('en');
     await page.locator('html[lang=en]').waitFor();
     assert.equal(await page.locator('#target-file .role').textContent(), 'Open a model');
-    assert.match((await page.getByTestId('error').textContent())!, /^poem\.glb: this is not a GLB/);
+    assert.match((await page.getByTestId('error').textContent())!, /^poem\.glb: this is no model/);
     await page.reload();
     await settled(page);
     assert.equal(await page.locator('#language').inputValue(), 'en', 'it is remembered');
