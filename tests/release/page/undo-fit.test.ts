@@ -248,7 +248,7 @@ test('undo does not affect the paint of a model opened since', async () => {
   assert.notDeepEqual(after, before);
   await page.getByTestId('sample-select').selectOption('human');
   assert.equal(await settled(page), 'ready');
-  assert.match(await undoTitle(), /replacing /);
+  await page.locator('#undo[title*="replacing "]').waitFor({ state: 'attached' }); // once the work is stored
   await page.keyboard.press('Control+z');
   await page.getByTestId('layer-list').getByText('Tiger stripes').waitFor();
   assert.equal(await settled(page), 'ready');
