@@ -4,6 +4,7 @@ import { basename, delimiter, extname, resolve } from 'node:path';
 import { createInterface } from 'node:readline';
 import { fileURLToPath } from 'node:url';
 import type { Mesh } from 'cagecast';
+import { Misuse } from './misuse.js';
 import { npyOf, readNpy } from './npy.js';
 
 /** What finds zones: a program that speaks the protocol of README.md. */
@@ -31,17 +32,14 @@ const at = (name: string): string => fileURLToPath(new URL(name, import.meta.url
 /** The names of the methods that are included. */
 export const kIncluded: readonly string[] = ['naive', 'paper', 'default'];
 
-/** A method that cannot be used, and why. */
-export class NoSuchMethod extends Error {}
-
 let python: string | undefined;
-/** The Python that has NumPy: of the environment variable PYTHON, or the first that does. @throws {NoSuchMethod} */
+/** The Python that has NumPy: of the environment variable PYTHON, or the first that does. @throws {Misuse} */
 export function findPython(): string {
   const { PYTHON } = process.env;
   const all = PYTHON ? [PYTHON] : ['python3', 'python', '/usr/bin/python3'];
   python ??= all.find((program) => spawnSync(program, ['-c', 'import numpy']).status === 0);
   if (python !== undefined) return python;
-  throw new NoSuchMethod(
+  throw new Misuse(
     `methods in Python need Python 3 with NumPy; tried ${all.join(', ')}: install NumPy for one, or name a Python that has it by PYTHON=…`,
   );
 }
@@ -50,7 +48,7 @@ export function findPython(): string {
  * A method by what the command line says of it: a name of those included, a file of Python or JavaScript, or a program with arguments;
  * before it there may be a name for the tables and `=`.
  * @param folder  Where relative paths start, and the method itself.
- * @throws {NoSuchMethod}
+ * @throws {Misuse}
  */
 export function methodOf(text: string, folder: string): Method {
   const node = (file: string): Method['command'] => [
@@ -71,7 +69,7 @@ export function methodOf(text: string, folder: string): Method {
     : (process.env['PATH'] ?? '').split(delimiter).map((one) => resolve(one, first));
   const file = [resolve(folder, first), ...inPath].find(isFile);
   if (file === undefined || first === '')
-    throw new NoSuchMethod(
+    throw new Misuse(
       `--method: there is no method, file or program ${JSON.stringify(first)}; included are ${kIncluded.join(', ')}`,
     );
   const name = label ?? basename(file, extname(file));
@@ -80,7 +78,7 @@ export function methodOf(text: string, folder: string): Method {
   try {
     accessSync(file, constants.X_OK);
   } catch {
-    throw new NoSuchMethod(
+    throw new Misuse(
       `--method: ${file} may not be run (chmod +x allows it), and does not end in .py, .js, .mjs or .ts`,
     );
   }

@@ -3,6 +3,7 @@ import { basename, resolve } from 'node:path';
 import type { Mesh } from 'cagecast';
 import { readCage, readTarget } from '../read-glb.js';
 import { type Labels, labelsOf, readJson } from './labels.js';
+import { Misuse } from './misuse.js';
 
 /** The files of a model. */
 export interface ModelFiles {
@@ -20,9 +21,6 @@ export interface LabelledModel {
 }
 
 const kLabels = ['labels.json', 'truth.json'] as const;
-
-/** The command line does not make sense. */
-export class Misuse extends Error {}
 
 /** Folders that are models, or have models in them. @return A sentence for each folder that is no model. @throws {Misuse} */
 export function findModels(folders: readonly string[]): { models: ModelFiles[]; skipped: string[] } {

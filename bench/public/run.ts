@@ -7,8 +7,9 @@ import { parseArgs } from 'node:util';
 import { kMachine, root } from '../native.js';
 import { score } from '../quality/score.js';
 import { median } from '../statistics.js';
-import { kIncluded, type Method, methodOf, NoSuchMethod, run, writeArrays } from './methods.js';
-import { findModels, Misuse, nameFor, readModel } from './models.js';
+import { kIncluded, type Method, methodOf, run, writeArrays } from './methods.js';
+import { Misuse } from './misuse.js';
+import { findModels, nameFor, readModel } from './models.js';
 import { draw } from './pictures.js';
 import { markdown, page, type Results, type Row, summaryOf } from './report.js';
 
@@ -114,5 +115,5 @@ async function main(): Promise<void> {
 
 await main().catch((error: Error) => {
   console.error(error.message);
-  process.exit(error instanceof Misuse || error instanceof NoSuchMethod ? 2 : 1);
+  process.exit(error instanceof Misuse ? 2 : 1);
 });
