@@ -20,7 +20,7 @@ import {
 import { delimiter, dirname, join, relative, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
-import { noticesOf } from './notices.mjs';
+import { noticesOf, partsOf } from './notices.mjs';
 
 const root = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
 const at = (...parts) => join(root, ...parts);
@@ -137,7 +137,8 @@ async function buildPackage() {
     const outfile = join(fresh, name);
     const entryPoints = [at('wasm/src', entry)];
     const { metafile } = await build({ ...common, ...options, entryPoints, outfile, platform });
-    for (const path of Object.keys(metafile.inputs)) bundled.add(path);
+    for (const { inputs } of Object.values(metafile.outputs))
+      for (const [path, { bytesInOutput }] of Object.entries(inputs)) if (bytesInOutput > 0) bundled.add(path);
     if (existsSync(`${outfile}.map`)) tidyMap(`${outfile}.map`);
   };
   await bundle('index.ts', 'index.js', 'neutral', { ...eager, plugins: [wasmModules('wasm-inline.ts')] });
@@ -153,7 +154,9 @@ async function buildPackage() {
     run(process.execPath, [tsc, '-p', at('wasm/tsconfig.types.json'), '--outDir', fresh]);
     for (const name of readdirSync(fresh, { recursive: true }))
       if (name.endsWith('.d.ts')) widenTypes(join(fresh, name));
-    writeFileSync(join(fresh, 'THIRD-PARTY-NOTICES.txt'), noticesOf(root, bundled, at('build', preset)));
+    const parts = partsOf(root, bundled, at('build', preset), findEmscripten());
+    writeFileSync(join(fresh, 'THIRD-PARTY-NOTICES.txt'), noticesOf(parts));
+    writeFileSync(at('build', preset, 'parts.json'), JSON.stringify(parts)); // for the release
   }
   rmSync(out, { recursive: true, force: true });
   renameSync(fresh, out);
