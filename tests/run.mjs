@@ -30,7 +30,7 @@ const kSuites = {
     always: true,
     needs: [],
     of: [''],
-    run: () => lint(['arrows', 'limits', 'generated', 'docs', 'format', 'biome']),
+    run: () => lint(['arrows', 'limits', 'pins', 'generated', 'docs', 'format', 'biome']),
   },
   core: { always: true, needs: ['native'], of: ['core', 'tests/core'], run: () => ctest('release') },
   package: {

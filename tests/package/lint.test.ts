@@ -112,6 +112,26 @@ test('pages name and link to what is there, in the words of the project', () => 
     assert.match(found, fault);
 });
 
+test('workflows and examples take from elsewhere what they name by its content', () => {
+  const [commit, digest] = ['0'.repeat(40), `sha256:${'0'.repeat(64)}`];
+  const good = {
+    '.github/workflows/good.yml': `uses: ./.github/workflows/ci.yml\nuses: a/b@${commit} # v1\ncontainer: debian:12@${digest}\n`,
+    'examples/catalogue/deploy/good.yaml': `image: redis:7@${digest}\n- image: catalogue\n# image: redis:7\n`,
+    'examples/Dockerfile': `FROM --platform=linux/amd64 node:22@${digest} AS base\n`,
+  };
+  assert.equal(faultsIn('pins', treeOf('pinned', good)), '');
+  const bad = {
+    '.github/workflows/bad.yml':
+      'uses: a/b@v1\n- uses: a/b@main\ncontainer: debian:12\ncontainer: { image: debian:12 }\nrun: git clone https://a/b\n',
+    'examples/a/compose.yaml': `image: redis:7-bookworm\nimage: redis@sha256:abc\n`,
+    'examples/a/Dockerfile': 'FROM node:22\n',
+    'examples/a/get.sh': 'git clone --branch v1 https://a/b\n',
+  };
+  const found = faultsIn('pins', treeOf('floating', bad));
+  for (const [path, text] of Object.entries(bad))
+    for (const i of text.trimEnd().split('\n').keys()) assert.ok(found.includes(`${path}:${i + 1}: `), found);
+});
+
 test('generated files are fresh', () => {
   const root = treeOf('generated', {});
   const listed = spawnSync('git', ['ls-files', 'core/include', 'wasm', 'docs'], { cwd: repository, encoding: 'utf8' });
