@@ -1,43 +1,56 @@
-// Makes a release: tests, builds, packs, checks the package, makes the site, publishes, and tags.
+// Makes what a release consists of, from a commit whose tests are all green. Publishing and tagging is left to the workflow "release", whose
+// jobs with permissions run none of this.
 //
-//   npm run release                 all of it; the workflow "release" calls it, as only there the package gets its provenance
-//   npm run release -- --dry-run    all but publishing and tagging
-//   … --tested                      without the tests, which ran before
+//   npm run release                 tests, builds, packs, checks the package, and makes the site; ends at what keeps this version back
+//   npm run release -- --dry-run    tells that, and goes on
+//   … --tested COMMIT               without the tests: all of them were green on this commit, which must be the one that is here
 //
-// What it makes is in build/release-files: the package, its list of parts (SBOM, CycloneDX), and the site: the page, with the documentation
-// in docs/. The site works from any folder of any server, and its address is "homepage" of package.json.
+// What it makes is in build/release-files: the package, its list of parts (SBOM, CycloneDX), the hashes of both, and the site: the page, with
+// the documentation in docs/. The site works from any folder of any server, and its address is "homepage" of package.json.
 
 import { execFileSync, spawnSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { basename, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
+import { sbomOf } from './sbom.mjs';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
 const out = join(root, 'build/release-files');
-const { values } = parseArgs({ options: { 'dry-run': { type: 'boolean' }, tested: { type: 'boolean' } } });
+const { values } = parseArgs({ options: { 'dry-run': { type: 'boolean' }, tested: { type: 'string' } } });
 const isDry = values['dry-run'] ?? false;
-const { name, version, homepage } = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
+const manifest = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
+const { version, homepage } = manifest;
 const tag = `v${version}`;
+const commitOf = (name) => textOf('git', 'rev-parse', '--verify', `${name}^{commit}`);
 
-/** What is compiled into the WebAssembly modules: npm does not know of it. */
-const kCompiled = [
-  { name: 'nanoflann', version: '1.4.3', license: 'BSD-2-Clause', url: 'https://github.com/jlblancoc/nanoflann' },
-  { name: 'meshoptimizer', version: '0.22', license: 'MIT', url: 'https://github.com/zeux/meshoptimizer' },
-  { name: 'eigen', version: '3.4.0', license: 'MPL-2.0', url: 'https://eigen.tuxfamily.org' },
-];
+/** Ends with what keeps this version back; a dry run tells it and goes on. */
+function stopAt(faults) {
+  for (const fault of faults) console.log(`${isDry ? 'Would stop here' : 'Not released'}: ${fault}`);
+  if (faults.length > 0 && !isDry) process.exit(1);
+}
 
-/** What keeps a version from being released; a dry run tells it and goes on. */
-function checkVersion() {
+/** What keeps the version from being released. */
+function faultsOfVersion() {
   const faults = [];
   const changes = readFileSync(join(root, 'CHANGELOG.md'), 'utf8');
   if (!new RegExp(`^## ${version.replaceAll('.', '\\.')} \\(\\d{4}-\\d{2}-\\d{2}\\)$`, 'm').test(changes))
     faults.push(`CHANGELOG.md has no line "## ${version} (YYYY-MM-DD)"`);
+  if (!readFileSync(join(root, 'CMakeLists.txt'), 'utf8').includes(`project(cagecast VERSION ${version} `))
+    faults.push(`CMakeLists.txt has another version than package.json, ${version}`);
+  // A tag of this very commit is that of a run that did not come to its end.
+  if (textOf('git', 'tag', '--list', tag) && commitOf(tag) !== commitOf('HEAD'))
+    faults.push(`the tag ${tag} is there already; raise "version" in package.json and CMakeLists.txt`);
+  return faults;
+}
+
+/** Whether what is here is the commit whose tests were green. */
+function faultsOfCommit(tested) {
+  const faults = [];
+  if (commitOf('HEAD') !== tested) faults.push(`the tests were of ${tested}, and this is ${commitOf('HEAD')}`);
   if (textOf('git', 'status', '--porcelain')) faults.push('there are changes that are not committed');
-  if (textOf('git', 'tag', '--list', tag))
-    faults.push(`the tag ${tag} is there already; raise "version" in package.json`);
-  for (const fault of faults) console.log(`${isDry ? 'Would stop here' : 'Not released'}: ${fault}`);
-  if (faults.length > 0 && !isDry) process.exit(1);
+  return faults;
 }
 
 /** Packs the package. @returns its file. */
@@ -50,23 +63,14 @@ function pack() {
   return join(out, filename);
 }
 
-/** The parts that the package is made of and with, from the lock file. */
-function writeParts() {
-  const bom = JSON.parse(textOf('npm', 'sbom', '--sbom-format', 'cyclonedx', '--package-lock-only'));
-  // The same for the same lock file: neither the time nor a random number.
-  delete bom.serialNumber;
-  delete bom.metadata.timestamp;
-  for (const { name, version, license, url } of kCompiled)
-    bom.components.push({
-      type: 'library',
-      'bom-ref': `${name}@${version}`,
-      name,
-      version,
-      licenses: [{ license: { id: license } }],
-      externalReferences: [{ type: 'website', url }],
-    });
-  writeFileSync(join(out, 'sbom.cdx.json'), `${JSON.stringify(bom, null, 2)}\n`);
-  console.log(`sbom.cdx.json: ${bom.components.length} parts`);
+/** The list of what the package contains, which the build knows, and the hashes of it and of the package. */
+function describe(file) {
+  const parts = JSON.parse(readFileSync(join(root, 'build/wasm/parts.json'), 'utf8'));
+  const list = join(out, 'sbom.cdx.json');
+  writeFileSync(list, `${JSON.stringify(sbomOf(manifest, parts, readFileSync(file)), null, 2)}\n`);
+  console.log(`sbom.cdx.json: ${parts.length} parts`);
+  const hash = (path) => createHash('sha256').update(readFileSync(path)).digest('hex');
+  writeFileSync(join(out, 'SHA256SUMS'), [file, list].map((path) => `${hash(path)}  ${basename(path)}\n`).join(''));
 }
 
 /** The page, with the documentation in docs/. */
@@ -81,12 +85,6 @@ function makeSite() {
     0,
   );
   console.log(`site: ${files.length} files, ${(bytes / 1e6).toFixed(1)} MB, for ${homepage}`);
-}
-
-function publish(file) {
-  run('npm', 'publish', file, '--access', 'public', '--provenance');
-  run('git', 'tag', '--annotate', tag, '--message', `${name} ${version}`);
-  run('git', 'push', 'origin', tag);
 }
 
 const environment = { ...process.env, CAGECAST_URL: homepage };
@@ -105,15 +103,18 @@ const textOf = (program, ...args) =>
     stdio: ['ignore', 'pipe', 'inherit'],
   }).trim();
 
-checkVersion();
-if (!values.tested) run('node', 'tests/run.mjs');
+const tested = commitOf(values.tested ?? 'HEAD');
+stopAt([...faultsOfVersion(), ...faultsOfCommit(tested)]);
+if (!values.tested) {
+  run('npm', 'run', 'test:all');
+  stopAt(faultsOfCommit(tested)); // which may have changed in that hour
+}
 run('node', 'wasm/tools/build.mjs');
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
 const file = pack();
 run('npx', 'publint', 'run', file, '--strict');
 run('node', '--import', 'tsx', '--test', '--test-reporter=dot', 'tests/release/hosts/package.test.ts');
-writeParts();
+describe(file);
 makeSite();
-if (isDry) console.log(`All but publishing is done: ${out}`);
-else publish(file);
+console.log(`All is made: ${out}`);
