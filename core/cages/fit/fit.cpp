@@ -189,6 +189,7 @@ class Fit {
       const Progress finding = partOf(progress_, 0, kLandmarksEnd);
       if (const Status status = findLandmarks(model_, finding, found); !status.ok()) return status;
     }
+    if (found.areSeveralHeads && given.size() < kMinLandmarks) return {Code::noFit, Argument::model};
     pairs_ = pairLandmarks(from_, given, found.landmarks, out.missing);
     Status status = checkJoints(pairs_.to, boundsOf(model_.mesh));
     if (status.ok()) status = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);

@@ -16,6 +16,8 @@ namespace {
 
 /// A shape is an eyeball, or the front of one, if it fits a sphere this well; else the middle of its box serves.
 constexpr double kBall = 0.12;
+/// The sizes of two eyes differ by at most this share.
+constexpr double kAlike = 0.15;
 
 /// The ball of an eye: a sphere if it is one (a front half's box has its middle too far to the front), else about the
 /// middle of the box if it is flat or bulges. The residual is a sphere's in any case.
@@ -91,6 +93,29 @@ std::array<double, 2> seen(const Surface& surface, const TriangleMesh& part, con
   return out;
 }
 
+/// The balls of eyes. Pieces whose boxes meet are one: an iris lies in its eyeball.
+/// @param piece  Per triangle, as of `connectedPieces`.
+std::vector<Sphere> ballsOf(const TriangleMesh& eyes, const std::vector<std::uint32_t>& piece, std::uint32_t count) {
+  constexpr std::uint32_t kMaxPieces = 200;  // Each is compared with each.
+  if (count > kMaxPieces) return {};
+  std::vector<Bounds> balls;
+  for (const TriangleMesh& one : split(eyes, piece, count)) {
+    Bounds box = boundsOf(one);
+    const auto meeting = [&] {
+      return std::find_if(balls.begin(), balls.end(), [&](const Bounds& ball) { return ball.distance(box) == 0; });
+    };
+    for (auto ball = meeting(); ball != balls.end(); ball = meeting()) {
+      box.add(ball->low);
+      box.add(ball->high);
+      balls.erase(ball);  // What is larger now may meet others.
+    }
+    balls.push_back(box);
+  }
+  std::vector<Sphere> out;
+  for (const Bounds& box : balls) out.push_back({box.middle(), 0.5 * box.size().y, 0});
+  return out;
+}
+
 /// A component that may be an eye.
 struct Candidate {
   TriangleMesh mesh;
@@ -99,6 +124,22 @@ struct Candidate {
   Sphere ball;
   std::optional<std::array<double, 2>> seen = {};  ///< What `seen` gives, once it is needed.
 };
+
+/// The candidate that is nearest to another one and as large and as round as an eye beside an eye.
+std::optional<std::size_t> nearestLike(const std::vector<Candidate>& candidates, std::size_t of) {
+  const Sphere& ball = candidates[of].ball;
+  std::optional<std::size_t> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const Sphere& other = candidates[c].ball;
+    const double distance = length(other.centre - ball.centre);
+    const bool isLike = std::abs(other.radius - ball.radius) < kAlike * ball.radius && other.residual <= 2 * kBall;
+    if (c == of || !isLike || !(distance > ball.radius) || distance >= least) continue;
+    nearest = c;
+    least = distance;
+  }
+  return nearest;
+}
 
 /// The components that are about as large and as round as an eye.
 std::vector<Candidate> eyeCandidates(const Figure& figure, double diagonal) {
@@ -165,6 +206,9 @@ std::optional<Eyes> findNamedEyes(const Figure& figure) {
   // Whole components go to one side: a bulging iris may be a component of its own.
   std::uint32_t count = 0;
   const std::vector<std::uint32_t> component = connectedPieces(all, count);
+  Eyes eyes;
+  eyes.areOfSeveralHeads = haveSeveralHeads(ballsOf(all, component, count));
+  if (eyes.areOfSeveralHeads) return eyes;
   std::vector<double> sums(count), areas(count);
   for (std::size_t t = 0; t < component.size(); ++t) {
     const double area = length(areaNormal(all, all.triangles[t]));
@@ -179,7 +223,6 @@ std::optional<Eyes> findNamedEyes(const Figure& figure) {
   }
   const TriangleMesh first = subset(all, isFirst), second = subset(all, isSecond);
   if (first.empty() || second.empty()) return std::nullopt;
-  Eyes eyes;
   const Sphere one = ballOf(first), other = ballOf(second);
   eyes.centres = {one.centre, other.centre};
   eyes.radius = std::min(one.radius, other.radius);
@@ -243,7 +286,6 @@ std::optional<Eyes> findJointedEyes(const Figure& figure, const std::vector<Land
 }
 
 std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane) {
-  constexpr double kAlike = 0.15;  // Difference of sizes.
   const double diagonal = diagonalOf(figure.mesh);
   std::vector<Candidate> candidates = eyeCandidates(figure, diagonal);
   const Vec3 across = cross(plane.left, kUp);
@@ -254,7 +296,7 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
     return *candidate.seen;
   };
   std::optional<Eyes> best;
-  std::array<std::uint32_t, 2> components{};
+  std::array<std::size_t, 2> chosen{};
   double most = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     for (std::size_t k = i + 1; k < candidates.size(); ++k) {
@@ -277,9 +319,18 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
       best->centres = {first.centre, second.centre};
       best->radius = 0.5 * (first.radius + second.radius);
       best->confidence = residual < kBall ? 0.85 : 0.6;
-      components = {candidates[i].component, candidates[k].component};
+      chosen = {i, k};
     }
   if (!best) return best;
+  // Of two heads beside each other, the eyes of one mirror those of the other.
+  std::vector<Sphere> balls;
+  for (const std::size_t c : chosen) balls.push_back(candidates[c].ball);
+  for (const std::size_t c : chosen) {
+    const std::optional<std::size_t> other = nearestLike(candidates, c);
+    if (other && *other != chosen[0] && *other != chosen[1]) balls.push_back(candidates[*other].ball);
+  }
+  best->areOfSeveralHeads = haveSeveralHeads(balls);
+  if (best->areOfSeveralHeads) return best;
   // What lies within the eyeballs belongs to them: pupils, corneas.
   const Eyes eyes = *best;
   std::vector<bool> inside(figure.componentCount, true);
@@ -289,7 +340,7 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
       const double distance = std::min(length(p - eyes.centres[0]), length(p - eyes.centres[1]));
       if (distance > 1.15 * eyes.radius) inside[figure.components[t]] = false;
     }
-  for (const std::uint32_t component : components) inside[component] = true;
+  for (const std::size_t c : chosen) inside[candidates[c].component] = true;
   for (const std::uint32_t component : figure.components) best->triangles.push_back(inside[component]);
   orient(figure, *best);
   return best;

@@ -17,6 +17,7 @@ struct Eyes {
   double radius = 0;
   double confidence = 0;
   bool isNamed = false;              ///< Whether a name says so: of parts, or of what closes them.
+  bool areOfSeveralHeads = false;    ///< Then nothing else is known of them.
   std::vector<bool> triangles = {};  ///< Of the figure: which belong to an eye. Empty if they are part of the skin.
 
   [[nodiscard]] Vec3 middle() const { return 0.5 * (centres[0] + centres[1]); }
@@ -29,6 +30,10 @@ struct Sphere {
   double residual = 0;  ///< Typical distance of the points from it, as a share of the radius.
 };
 Sphere fitSphere(const std::vector<Vec3>& points);
+
+/// Whether balls are eyes of several heads beside each other: two pairs of them, each level and about as far apart as
+/// the other's, with more than the width of a head between them.
+bool haveSeveralHeads(std::vector<Sphere> balls);
 
 /// The eyes by the names of parts.
 std::optional<Eyes> findNamedEyes(const Figure& figure);

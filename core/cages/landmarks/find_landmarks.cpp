@@ -73,13 +73,17 @@ void findLandmarksOf(const Figure& figure, const Model& model, const Eyes& eyes,
 /// eyes are. Hints and joints say where to look first.
 /// @param figure  Or its head. @param model  That it was read from.
 /// @param goOn  Gets shares from 0 to 1 on the way.
+/// @param[out] areSeveral  Whether there are several heads beside each other; then none is looked for.
 /// @return false if `goOn` cancelled it.
-bool findHead(const Figure& figure, const Model& model, const auto& goOn, std::optional<Head>& head) {
+bool findHead(const Figure& figure, const Model& model, const auto& goOn, std::optional<Head>& head, bool& areSeveral) {
   std::optional<Eyes> hinted = findHintedEyes(figure, model.hints);
   bool isCancelled = false;
   /// @return whether the search has ended.
   const auto makeHeadOf = [&](std::optional<Eyes> eyes, const std::vector<Landmark>& painted = {}) {
-    if (!eyes || (hinted && !areAt(*eyes, *hinted))) return false;
+    if (!eyes) return false;
+    areSeveral = eyes->areOfSeveralHeads;
+    if (areSeveral) return true;
+    if (hinted && !areAt(*eyes, *hinted)) return false;
     eyes->isNamed = eyes->isNamed || hinted;
     head = makeHead(figure, *eyes, joined(model.hints, painted));
     if (!head) return false;
@@ -150,7 +154,7 @@ Status find(const Model& given, const Progress& progress, FoundLandmarks& out) {
   out.rig = rig.name;
   std::optional<Head> head;
   const auto goOnFinding = [&](float share) { return goOn(0.9f * share); };
-  if (!findHead(headOf(figure, model), model, goOnFinding, head) || !goOn(0.9f)) return kAborted;
+  if (!findHead(headOf(figure, model), model, goOnFinding, head, out.areSeveralHeads) || !goOn(0.9f)) return kAborted;
   if (head)
     for (const Spot& spot : head->spots)
       if (spot.confidence >= kSure)

@@ -120,7 +120,8 @@ struct FoundLandmarks {
   std::vector<std::string> missing;  ///< Names that were looked for in vain, or that are too uncertain: ask for these.
   std::string
       rig;  ///< "VRM", "Mixamo", "Ready Player Me", "Roblox R15", "VRoid", "Rigify", "other"; "unknown" or empty.
-  Kind kind = Kind::prop;  ///< What the model seems to be.
+  Kind kind = Kind::prop;        ///< What the model seems to be.
+  bool areSeveralHeads = false;  ///< Whether heads stand beside each other. Then none of their landmarks is given.
 };
 
 /// Finds the landmarks of a head or a figure by part names, joint names, shape and base colours.

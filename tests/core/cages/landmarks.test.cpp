@@ -24,6 +24,18 @@ OwnedModel plainHead(const std::string& left = "l-eye", const std::string& right
   return out;
 }
 
+/// Two of them, the second moved by `way` and `size` times as large.
+OwnedModel twoHeads(const std::string& left, const std::string& right, const Vec3& way, double size) {
+  OwnedModel out = plainHead(left, right);
+  const auto place = [&](const TriangleMesh& mesh) {
+    return mapped(mesh, [&](const Vec3& p) { return size * p + way; });
+  };
+  out.add("skin", place(ellipsoid({0, 0, 0}, {0.7, 1, 0.85}, 16)));
+  out.add(left, place(sphere({0.25, 0.1, 0.72}, 0.13, 12)));
+  out.add(right, place(sphere({-0.25, 0.1, 0.72}, 0.13, 12)));
+  return out;
+}
+
 FoundLandmarks found(const OwnedModel& owned) {
   FoundLandmarks out;
   const Model model = owned.model();
@@ -105,6 +117,29 @@ TEST_CASE("eyes are found by name and by shape, whatever way the head faces", "[
     REQUIRE(placeOf(of.landmarks, name));
     CHECK(length(*placeOf(of.landmarks, name) - turned({x, 0.1, 0.72})) < 0.02);
   }
+}
+
+TEST_CASE("of heads beside each other none is taken for the face", "[cages][landmarks]") {
+  // Named eyes are found wherever they are; others where they mirror each other.
+  const auto [eye, way, size] =
+      GENERATE(std::tuple{"eye", Vec3{1.6, 0, 0}, 1.0}, std::tuple{"eye", Vec3{6, 0.2, 0}, 0.8},
+               std::tuple{"eye", Vec3{1, 0, -2}, 1.0}, std::tuple{"eye", Vec3{0, 0, -4}, 0.8},
+               std::tuple{"mesh", Vec3{1.6, 0, 0}, 1.0}, std::tuple{"mesh", Vec3{6, 0, 0}, 1.0});
+  CAPTURE(eye, way.x, way.z, size);
+  const FoundLandmarks of = found(twoHeads(eye, eye, way, size));
+  CHECK(of.areSeveralHeads);
+  CHECK_FALSE(placeOf(of.landmarks, "eye_centre_left"));
+}
+
+TEST_CASE("a second pair of eyes on one head is no second head", "[cages][landmarks]") {
+  const auto [way, size] =
+      GENERATE(std::pair{Vec3{0, 0.35, -0.1}, 1.0}, std::pair{Vec3{0, 0, 0.02}, 0.6}, std::pair{Vec3{0, 0, 0.2}, 1.0});
+  OwnedModel head = plainHead();
+  for (const double x : {0.25, -0.25})
+    head.add(x > 0 ? "l-eye" : "r-eye", sphere(Vec3{x, 0.1, 0.72} + way, size * 0.13, 12));
+  const FoundLandmarks of = found(head);
+  CHECK_FALSE(of.areSeveralHeads);
+  CHECK(placeOf(of.landmarks, "eye_centre_left"));
 }
 
 TEST_CASE("a face is looked for in what the joints of a head hold", "[cages][landmarks]") {
