@@ -96,7 +96,8 @@ describe('a head', () => {
     };
     await assert.rejects(fitCage(await loadTemplate('human-head'), twice), {
       code: 'badModel',
-      message: /^fitCage: model: the template does not fit it; if there are several figures in it, leave out all but one/,
+      message:
+        /^fitCage: model: the template does not fit it; if there are several figures in it, leave out all but one/,
     });
   });
 });
