@@ -4,10 +4,14 @@
 //   npm run test:all             those, and all others
 //
 //   SUITE …                      only these, by name; the table below has them
+//   --others                     only those that npm test leaves out
 //   --changed                    only those of the folders with changes that are not committed
+//   --record                     notes on which files those that take longest have passed; the record is committed
+//   --unless-recorded            without those that have passed on the files that are here, as their record says
 
 import { spawn, spawnSync } from 'node:child_process';
-import { readdirSync, statSync } from 'node:fs';
+import { createHash } from 'node:crypto';
+import { existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
 import { join } from 'node:path';
 import { run as runTests } from 'node:test';
@@ -22,12 +26,14 @@ if (!process.execArgv.includes('tsx')) process.execArgv.push('--import', 'tsx');
 const kMaxPerFile = 20 * 60_000;
 
 /**
- * The suites. `always`: `npm test` runs it. `needs`: what is built for it. `of`: the folders whose changes ask for it. `tests`: a folder
- * of tests for Node; else `run` returns how many passed and failed.
+ * The suites. `always`: `npm test` runs it. `setup`: what is installed for it, if it is not what `npm test` needs. `needs`: what is built for
+ * it. `of`: the folders whose changes ask for it. `tests`: a folder of tests for Node; else `run` returns how many passed and failed.
+ * `record`: where it is noted on which files of which `folders` the suite has passed.
  */
 const kSuites = {
   lint: {
     always: true,
+    setup: 'lint',
     needs: [],
     of: [''],
     run: () => lint(['arrows', 'limits', 'pins', 'generated', 'docs', 'format', 'biome']),
@@ -45,16 +51,32 @@ const kSuites = {
     of: ['wasm', 'web', 'tests/page', 'tests/support'],
     tests: 'tests/page',
   },
-  tidy: { needs: [], of: ['core', 'wasm'], run: () => lint(['tidy']) },
-  docs: { needs: ['wasm'], of: ['core/include', 'wasm', 'docs'], run: makeDocs },
+  tidy: { setup: 'tidy', needs: [], of: ['core', 'wasm'], run: () => lint(['tidy']) },
+  docs: { setup: 'docs', needs: ['wasm'], of: ['core/include', 'wasm', 'docs'], run: makeDocs },
   twins: { needs: ['twins'], of: ['core', 'tests/core'], run: () => ctest('twins') },
   lanes: { needs: ['twins', 'scalar'], of: ['core', 'tests/release/lanes'], run: compareLanes },
-  budgets: { needs: ['bench', 'wasm'], of: ['core', 'wasm', 'web'], tests: 'tests/release/budgets' },
-  hosts: { needs: ['wasm'], of: ['wasm', 'examples', 'tests/release/hosts'], tests: 'tests/release/hosts' },
+  budgets: { setup: 'budgets', needs: ['bench', 'wasm'], of: ['core', 'wasm', 'web'], tests: 'tests/release/budgets' },
+  hosts: {
+    setup: 'hosts',
+    needs: ['wasm'],
+    of: ['wasm', 'examples', 'tests/release/hosts'],
+    tests: 'tests/release/hosts',
+  },
   cages: { needs: ['wasm'], of: ['core', 'wasm', 'tests/release/cages'], tests: 'tests/release/cages' },
-  quality: { needs: ['wasm'], of: ['core', 'wasm', 'bench', 'tests/release/quality'], tests: 'tests/release/quality' },
-  catalogue: { needs: ['wasm'], of: ['wasm', 'examples'], tests: 'tests/release/catalogue' },
-  visits: { needs: ['wasm', 'site'], of: ['wasm', 'web', 'tests/release/page'], tests: 'tests/release/page' },
+  quality: {
+    setup: 'quality',
+    needs: ['wasm'],
+    of: ['core', 'wasm', 'bench', 'tests/release/quality'],
+    tests: 'tests/release/quality',
+  },
+  catalogue: { setup: 'catalogue', needs: ['wasm'], of: ['wasm', 'examples'], tests: 'tests/release/catalogue' },
+  visits: {
+    needs: ['wasm', 'site'],
+    of: ['wasm', 'web', 'tests/release/page'],
+    tests: 'tests/release/page',
+    record: 'tests/release/page/passed.json',
+    folders: ['web', 'wasm/src/three', 'tests/release/page', 'tests/support'],
+  },
 };
 
 /** What suites need, and how it is built. Different ones are built at the same time. */
@@ -172,18 +194,49 @@ async function testFolders(folders) {
   return counts;
 }
 
-/** The suites that the command line asks for. */
-function chosenSuites() {
-  const options = { all: { type: 'boolean' }, changed: { type: 'boolean' } };
+/** A hash of the files of some folders that git knows or would add, but for the record itself. */
+function hashOf({ folders, record }) {
+  const list = spawnSync('git', ['ls-files', '--cached', '--others', '--exclude-standard', '--', ...folders], {
+    cwd: root,
+    encoding: 'utf8',
+  });
+  const hash = createHash('sha256');
+  for (const name of [...new Set(list.stdout.split('\n'))].sort())
+    if (name !== '' && name !== record && existsSync(join(root, name)))
+      hash.update(`${name}\0`).update(readFileSync(join(root, name)));
+  return hash.digest('hex');
+}
+
+/** Whether a suite has passed on the files that are here. */
+function isRecorded(suite) {
+  if (suite.record === undefined || !existsSync(join(root, suite.record))) return false;
+  return JSON.parse(readFileSync(join(root, suite.record), 'utf8')).files === hashOf(suite);
+}
+
+/** What the command line asks for. */
+function readArguments() {
+  const flag = { type: 'boolean' };
+  const options = { all: flag, others: flag, changed: flag, record: flag, 'unless-recorded': flag };
   const { values, positionals } = parseArgs({ options, allowPositionals: true });
   const unknown = positionals.find((name) => !(name in kSuites));
   if (unknown) {
     console.error(`no suite "${unknown}"; there are: ${Object.keys(kSuites).join(', ')}`);
     process.exit(2);
   }
+  return { values, positionals };
+}
+
+/** The suites that the arguments ask for. */
+function chosenSuites({ values, positionals }) {
   const names = Object.keys(kSuites);
   if (positionals.length > 0) return names.filter((name) => positionals.includes(name));
-  const suites = names.filter((name) => values.all || kSuites[name].always);
+  let suites = names.filter((name) => values.all || Boolean(kSuites[name].always) !== Boolean(values.others));
+  if (values['unless-recorded']) {
+    const recorded = suites.filter((name) => isRecorded(kSuites[name]));
+    for (const name of recorded)
+      console.log(`${name}: left out, as ${kSuites[name].record} says that it passed on just these files`);
+    suites = suites.filter((name) => !recorded.includes(name));
+  }
   if (!values.changed) return suites;
   const { stdout } = spawnSync('git', ['status', '--porcelain', '--untracked-files=all'], {
     cwd: root,
@@ -196,8 +249,15 @@ function chosenSuites() {
   return suites.filter((name) => kSuites[name].of.some((folder) => changed.some((file) => file.startsWith(folder))));
 }
 
-const chosen = chosenSuites();
+const given = readArguments();
+const chosen = chosenSuites(given);
 const rows = [];
+const setup = new Set(chosen.map((name) => kSuites[name].setup ?? 'test'));
+if (
+  setup.size > 0 &&
+  spawnSync(process.execPath, ['wasm/tools/setup.mjs', ...setup], { cwd: root, stdio: 'inherit' }).status !== 0
+)
+  process.exit(1);
 
 /** Adds what some work came to; where it throws, its suites have failed. */
 async function add(names, work) {
@@ -244,8 +304,12 @@ console.log('');
 // A suite that ran nothing has not passed.
 for (const row of rows) if (row.passed === 0 && row.failed === 0) row.failed = 1;
 rows.sort((a, b) => chosen.indexOf(a.name) - chosen.indexOf(b.name));
-for (const { name, passed, failed, skipped = 0 } of rows)
+for (const { name, passed, failed, skipped = 0 } of rows) {
+  const suite = kSuites[name];
+  if (given.values.record && failed === 0 && suite.record !== undefined)
+    writeFileSync(join(root, suite.record), `${JSON.stringify({ files: hashOf(suite) })}\n`);
   console.log(`${name.padEnd(9)} ${passed} passed, ${failed} failed, ${skipped} skipped`);
+}
 const sum = (field) => rows.reduce((total, row) => total + (row[field] ?? 0), 0);
 console.log(`\nall: ${sum('passed')} passed, ${sum('failed')} failed, ${sum('skipped')} skipped`);
 process.exit(sum('failed') === 0 ? 0 : 1);

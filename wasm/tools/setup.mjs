@@ -1,7 +1,7 @@
 // Installs what the project needs and this machine lacks: Debian packages by apt, npm packages by the lock file.
 // Uses nothing but Node, because it is the first thing that runs. A second run finds everything there and says nothing.
 //
-//   node wasm/tools/setup.mjs start | format | lint | test | test:all | clang | bench | bench:public | pictures | docs | catalogue | release
+//   node wasm/tools/setup.mjs PURPOSE …      a suite of tests, or what `kPurposes` has
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -73,21 +73,29 @@ const kTests = [
   'libegl1',
   'clang-format',
 ];
-// Valgrind counts instructions, which a test holds against a budget.
-const kAllTests = [...kTests, 'clang-tidy', 'doxygen', 'valgrind', 'redis-server', 'python3-numpy'];
+const kClang = ['clang', 'libclang-rt-dev', 'lld'];
+/** Folders with npm packages of their own. */
+const kHosts = 'tests/release/hosts/';
+const kCatalogue = 'examples/catalogue/';
+
+/** What each purpose needs: system packages, and folders of npm packages beside the project's own. */
 const kPurposes = {
   start: kPage,
   format: ['clang-format'],
   lint: ['clang-format'],
   test: kTests,
-  'test:all': kAllTests,
-  clang: [...kAllTests, 'clang', 'libclang-rt-dev', 'lld'],
-  bench: [...kAllTests, 'libembree-dev', 'qemu-user', 'g++-aarch64-linux-gnu'],
+  tidy: [...kTests, 'clang-tidy'],
+  docs: [...kPage, 'doxygen'],
+  budgets: [...kTests, 'valgrind'], // which counts instructions
+  hosts: [...kTests, kHosts],
+  quality: [...kTests, 'python3-numpy'],
+  catalogue: [...kPage, 'redis-server', kCatalogue],
+  fuzz: [...kTests, ...kClang],
+  mutants: [...kTests, ...kClang],
+  bench: [...kTests, 'valgrind', 'libembree-dev', 'qemu-user', 'g++-aarch64-linux-gnu'],
   'bench:public': [...kPage, 'python3-numpy'],
   pictures: [...kPage, 'chromium'],
-  docs: ['doxygen'],
-  release: [...kTests, 'doxygen'],
-  catalogue: ['redis-server'],
+  release: [...kTests, 'doxygen', kHosts],
 };
 
 function fail(message) {
@@ -102,7 +110,7 @@ function isNewEnough(version) {
 }
 
 function installSystemPackages(names) {
-  const missing = [...new Set(names)].filter((name) => !kNeeds[name].there());
+  const missing = names.filter((name) => !kNeeds[name].there());
   if (missing.length === 0) return;
   const list = missing.map((name) => `  ${kNeeds[name].what}  (Debian: ${name})`).join('\n');
   const asRoot = process.getuid?.() === 0 ? [] : command('sudo')() ? ['sudo'] : null;
@@ -159,11 +167,13 @@ function installNpmPackages(folder = '', args = ['ci']) {
   writeFileSync(stamp, lock);
 }
 
-const purpose = process.argv[2];
-if (!(purpose in kPurposes)) fail(`usage: node wasm/tools/setup.mjs ${Object.keys(kPurposes).join(' | ')}`);
+const purposes = process.argv.slice(2);
+const unknown = purposes.find((purpose) => !(purpose in kPurposes));
+if (purposes.length === 0 || unknown !== undefined)
+  fail(`usage: node wasm/tools/setup.mjs ${Object.keys(kPurposes).join(' | ')}`);
 if (!isNewEnough(process.version)) fail(`Cagecast needs Node ${kNodes}; this is ${process.versions.node}.`);
-installSystemPackages(kPurposes[purpose]);
+const needs = [...new Set(purposes.flatMap((purpose) => kPurposes[purpose]))];
+installSystemPackages(needs.filter((name) => name in kNeeds));
 installNpmPackages();
-if (purpose === 'test:all' || purpose === 'release')
-  installNpmPackages('tests/release/hosts/', ['install', '--no-save']);
-if (purpose === 'test:all' || purpose === 'catalogue') installNpmPackages('examples/catalogue/');
+if (needs.includes(kHosts)) installNpmPackages(kHosts, ['install', '--no-save']);
+if (needs.includes(kCatalogue)) installNpmPackages(kCatalogue);

@@ -111,8 +111,10 @@ std::vector<Sphere> ballsOf(const TriangleMesh& eyes, const std::vector<std::uin
     }
     balls.push_back(box);
   }
-  std::vector<Sphere> out;
-  for (const Bounds& box : balls) out.push_back({box.middle(), 0.5 * box.size().y, 0});
+  std::vector<Sphere> out(balls.size());
+  std::transform(balls.begin(), balls.end(), out.begin(), [](const Bounds& box) {
+    return Sphere{box.middle(), 0.5 * box.size().y, 0};
+  });
   return out;
 }
 
@@ -323,8 +325,7 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
     }
   if (!best) return best;
   // Of two heads beside each other, the eyes of one mirror those of the other.
-  std::vector<Sphere> balls;
-  for (const std::size_t c : chosen) balls.push_back(candidates[c].ball);
+  std::vector<Sphere> balls = {candidates[chosen[0]].ball, candidates[chosen[1]].ball};
   for (const std::size_t c : chosen) {
     const std::optional<std::size_t> other = nearestLike(candidates, c);
     if (other && *other != chosen[0] && *other != chosen[1]) balls.push_back(candidates[*other].ball);
