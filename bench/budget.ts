@@ -24,6 +24,8 @@ export interface Budget {
   instructions: Record<Preset, Record<Processor, InstructionCount>>;
   /** Bytes of each file, gzipped, as last recorded. */
   gz: Record<string, number>;
+  /** How much of each the project may have: lines, exported names, words (`wasm/tools/lint/scale.mjs`). */
+  scale: Record<string, number>;
 }
 
 /** By which share counts and sizes may exceed what is recorded. */
@@ -86,6 +88,7 @@ export async function recordBudget(): Promise<Budget> {
     aarch64: await countInstructions('aarch64', preset),
   });
   const budget: Budget = {
+    ...(await readBudget()),
     scene,
     instructions: { paper: await both('paper'), default: await both('default') },
     gz: await measureSizes(),

@@ -141,3 +141,21 @@ test('generated files are fresh', () => {
   appendFileSync(join(root, 'wasm/src/generated/options.ts'), '// edited by hand\n');
   assert.match(faultsIn('generated', root), /options\.ts/);
 });
+
+test('the project weighs no more than its budget says', () => {
+  const flag = (name: string) => `| \`--${name}\` | It is a flag. |\n`;
+  const tree = {
+    'package.json': '{ "exports": { ".": { "types": "./dist/index.d.ts" }, "./part.wasm": "./dist/part.wasm" } }',
+    'wasm/src/index.ts': "// A comment.\n\nexport const a = 1;\nexport { b, type C } from './b.js';\n",
+    'docs/cli.md': `## cagecast batch\n\n${flag('own')}\nAlso: [what is shared](#what-is-shared).\n\n## What is shared\n\n${flag('other')}`,
+  };
+  const counts = { 'lines of code': 2, 'exported values': 2, 'flags of batch': 2, 'entries of the package': 1 };
+  const faultsWith = (scale: Record<string, number>, name: string): string =>
+    faultsIn('scale', treeOf(name, { ...tree, 'bench/budget.json': JSON.stringify({ scale }) }));
+  assert.equal(faultsWith(counts, 'as heavy'), '');
+  for (const [name, count] of Object.entries(counts))
+    assert.match(
+      faultsWith({ ...counts, [name]: count - 1 }, `${name}, heavier`),
+      new RegExp(`  ${name}: ${count}, more`),
+    );
+});
