@@ -99,6 +99,22 @@ test('files are formatted, functions short, folders small', () => {
   for (const fault of [/web\/src\/ has 26 files/, /list\.cpp has 451 lines/]) assert.match(faults.limits, fault);
 });
 
+test('no pattern repeats what repeats itself', () => {
+  const bad = ['/(a+)*/', '/^(\\s*(#[^\\n]*|v [^\\n]*))*x/', "new RegExp('(?:x|[)]y{2,})+')"];
+  const good = ['/(a{2})*/', '/([*+])+/', '/(\\(+)?/', '/(?<=x+)y*/', "new RegExp('a+b+')"];
+  const faults = faultsIn(
+    'patterns',
+    treeOf('patterns', {
+      'wasm/src/bad.ts': `export const all = [\n${bad.join(',\n')},\n];\n`,
+      'web/src/good.ts': `export const all = [${good}];\n`,
+      'examples/page.js': 'export const one = /(.*,)*/;\n',
+    }),
+  );
+  for (const [line, pattern] of bad.entries()) assert.ok(faults.includes(`wasm/src/bad.ts:${line + 2} `), pattern);
+  assert.match(faults, /examples\/page\.js:1 /);
+  assert.doesNotMatch(faults, /good/);
+});
+
 test('pages name and link to what is there, in the words of the project', () => {
   const text = '# Here\n[gone](gone.md)\n[there](#there)\nSee `core/src/steps/gone.cpp`.\nThe rims of the cage.\n';
   const found = faultsIn('docs', treeOf('pages', { 'README.md': text + '\n'.repeat(151) }));

@@ -11,9 +11,9 @@ export interface FileKind {
   advice?: string;
 }
 
-/** A kind, and how its files begin, a byte per character. */
+/** A kind, and what knows its files by how they begin, a byte per character. */
 interface Known extends FileKind {
-  begins: RegExp;
+  begins: { test(start: string): boolean };
 }
 
 /** As many bytes say what a file is. */
@@ -25,11 +25,7 @@ const kinds: readonly Known[] = [
   { name: 'a USD file', begins: /^(PXR-USDC|#usda )/, format: 'usd' },
   { name: 'a PLY file', begins: /^ply\r?\n/, format: 'ply' },
   { name: 'an STL file', begins: /^solid[^\n]*\n\s*facet /, format: 'stl' },
-  {
-    name: 'an OBJ file',
-    begins: /^(\xef\xbb\xbf)?(\s*(#[^\n]*|(mtllib|o|g|s|usemtl) [^\n]*))*\s*v\s+-?[\d.]+/,
-    format: 'obj',
-  },
+  { name: 'an OBJ file', begins: { test: beginsAsObj }, format: 'obj' },
   {
     name: 'a Blender file',
     begins: /^(BLENDER|\(\xb5\/\xfd)/, // or compressed
@@ -58,6 +54,15 @@ const kinds: readonly Known[] = [
     advice: 'a model is needed here; images are textures',
   },
 ];
+
+/** Whether the first line of an OBJ that is more than a comment or a name is a vertex. */
+function beginsAsObj(start: string): boolean {
+  for (const line of start.replace(/^\xef\xbb\xbf/, '').split('\n')) {
+    const text = line.trim();
+    if (text !== '' && !/^(#|(mtllib|o|g|s|usemtl) )/.test(text)) return /^v\s+-?[\d.]/.test(text);
+  }
+  return false;
+}
 
 const binaryStl: FileKind = { name: 'an STL file', format: 'stl' };
 /** Bytes of a binary STL: before its triangles, and of each. */

@@ -5,7 +5,7 @@ import { show } from '../core/error.js';
 /** The part that an outer cage is of. */
 const kCage = /^(?:TransferTarget_)?(.+)_OuterCage(?:[._]?\d+)?$/i;
 const kPrefix = /^TransferTarget_/i;
-const kEnding = /(_Geo)?([._]?\d+)?$/i;
+const kEnding = /(_Geo)?([._]?(?<!\d)\d+)?$/i;
 
 type Names = readonly (string | undefined)[];
 

@@ -1,7 +1,7 @@
 // Checks how the sources look: `npm run lint`, and the first thing that `npm test` does.
 //
 //   node wasm/tools/lint/run.mjs [step …] [--root FOLDER]
-//     step      arrows, limits, pins, scale, generated, docs, format, biome, tidy; all but the last, which takes a minute, if none is named
+//     step      arrows, limits, patterns, pins, scale, generated, docs, format, biome, tidy; all but the last, which takes a minute, if none is named
 //     --root    another tree than this repository, such as a test's
 
 import { execFile } from 'node:child_process';
@@ -13,6 +13,7 @@ import { checkArrows } from './arrows.mjs';
 import { checkDocs } from './docs.mjs';
 import { isCpp, listFiles } from './files.mjs';
 import { checkLimits } from './limits.mjs';
+import { checkPatterns } from './patterns.mjs';
 import { checkPins } from './pins.mjs';
 import { checkScale } from './scale.mjs';
 import { checkTidy } from './tidy.mjs';
@@ -42,6 +43,7 @@ const biome = join(repository, 'node_modules/@biomejs/biome/bin/biome');
 const kSteps = {
   arrows: (root, files) => checkArrows(root, files),
   limits: (root, files) => checkLimits(root, files),
+  patterns: (root, files) => checkPatterns(root, files),
   pins: (root, files) => checkPins(root, files),
   scale: (root, files) => checkScale(root, files),
   generated: (root) => {

@@ -35,7 +35,7 @@ export function entriesOf(files: readonly File[], loader: Loader): Entry[] {
   const others = files.filter((file) => !cages.includes(file) && !targets.includes(file));
   return targets.map((file) => {
     const cage =
-      cages.find((other) => stem(other).replace(/[-_. ]*cage[-_. ]*/, '') === stem(file)) ??
+      cages.find((other) => stem(other).replace(/(?<![-_. ])[-_. ]*cage[-_. ]*/, '') === stem(file)) ??
       (cages.length === 1 ? cages[0] : undefined);
     const kept = {
       name: nameOf(file.name),

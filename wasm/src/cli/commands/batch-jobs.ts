@@ -229,7 +229,7 @@ function refuseClashes(jobs: Job[], { results }: JobDefaults, manifest?: string)
   }
   for (const job of jobs.filter(({ error }) => error === undefined)) {
     const { target, output } = job.command;
-    const buffer = output && /\.gltf$/i.test(output) ? [output.replace(/\w+$/, 'bin')] : [];
+    const buffer = output && /\.gltf$/i.test(output) ? [output.replace(/gltf$/i, 'bin')] : [];
     for (const path of [...writtenBy(job), ...buffer]) {
       const real = canonicalPath(path);
       const other = written.get(real);

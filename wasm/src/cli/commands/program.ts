@@ -65,5 +65,7 @@ Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make
 const inOneLine = (text: string): string =>
   text
     .replace(/^error: /, '')
-    .replace(/\s*\n\s*/g, ' ')
+    .split('\n')
+    .map((line) => line.trim())
+    .join(' ')
     .trim();
