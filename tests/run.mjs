@@ -36,7 +36,7 @@ const kSuites = {
     setup: 'lint',
     needs: [],
     of: [''],
-    run: () => lint(['arrows', 'limits', 'pins', 'scale', 'generated', 'docs', 'format', 'biome']),
+    run: () => lint(['arrows', 'limits', 'patterns', 'pins', 'scale', 'generated', 'docs', 'format', 'biome']),
   },
   core: { always: true, needs: ['native'], of: ['core', 'tests/core'], run: () => ctest('release') },
   package: {

@@ -177,6 +177,8 @@ async function bundleEntries(bundle) {
   const alone = { ...reading('cagecast-cages'), plugins: [wasmModules('wasm-file.ts')] };
   await bundle('cages/cages-thread.ts', 'cages-thread.js', 'neutral', alone);
   await bundle('cages/sync.ts', 'cages-sync.js', 'neutral', alone);
+  // Workers have no import map, so three.js is in it, of the version whose loaders are guarded.
+  await bundle('formats/formats-thread.ts', 'formats-thread.js', 'neutral', { sourcemap: false });
 }
 
 /** Options for a script that reads a WebAssembly file beside it. */
@@ -208,21 +210,6 @@ async function bundleCommand(bundle) {
     banner: { js: banner.join('\n') },
     loader: { '.wasm': 'binary' },
     plugins: [wasmModules('wasm-inline.ts')],
-  });
-  // What the command requires for files of other formats: three.js and its loaders. Of the index it needs the errors.
-  await bundle('formats/to-glb.ts', 'command-formats.cjs', 'node', {
-    format: 'cjs',
-    target: 'node20',
-    sourcemap: false,
-    plugins: [
-      {
-        name: 'errors',
-        setup: ({ onResolve }) =>
-          onResolve({ filter: /\/index\.js$/ }, ({ importer }) =>
-            importer.includes('formats') ? { path: at('wasm/src/core/error.ts') } : undefined,
-          ),
-      },
-    ],
   });
 }
 

@@ -113,8 +113,12 @@ export function ktx2Of(width: number, height: number): Buffer {
   return bytes;
 }
 
-/** A binary FBX with an array of as many bytes, all zero, which are hardly any once they are compressed. @param said  Its length in the file. */
-export function fbxOfZeros(bytes: number, said = bytes / 8): Buffer {
+/**
+ * A binary FBX with an array of as many bytes, all zero, which are hardly any once they are compressed.
+ * @param said  Its length in the file.
+ * @param hasLengths  Whether records say how long their properties are.
+ */
+export function fbxOfZeros(bytes: number, said = bytes / 8, hasLengths = true): Buffer {
   const word = (value: number) => Buffer.from(new Uint32Array([value]).buffer);
   const packed = deflateSync(Buffer.alloc(bytes), { level: 9 });
   const array = Buffer.concat([Buffer.from('d'), word(said), word(1), word(packed.length), packed]);
@@ -127,7 +131,8 @@ export function fbxOfZeros(bytes: number, said = bytes / 8): Buffer {
     const length = properties.reduce((sum, one) => sum + one.length, 0);
     const begin = at + 13 + name.length + length;
     const body = inner(begin);
-    const head = [word(begin + body.length), word(properties.length), word(length), Buffer.from([name.length])];
+    const listed = word(hasLengths ? length : 0);
+    const head = [word(begin + body.length), word(properties.length), listed, Buffer.from([name.length])];
     return Buffer.concat([...head, Buffer.from(name), ...properties, body]);
   };
   const none = Buffer.alloc(0);

@@ -1,18 +1,18 @@
-import type { BufferGeometry, Object3D } from 'three';
-import { Group, Mesh, MeshStandardMaterial } from 'three';
-import { show } from '../core/error.js';
-import { defaultLimits, exceeds, type ReadLimits } from '../gltf/checks/read-limits.js';
+import { isRecord, show } from '../core/error.js';
+import { exceeds } from '../gltf/checks/read-limits.js';
+import { firstLine, InputError } from '../gltf/input-error.js';
 import { type Format, fileKind } from '../gltf/kinds.js';
 import { CagecastError } from '../index.js';
-import { checkFbx } from './check-fbx.js';
-import { kNotFound, withFiles } from './images.js';
-import { sceneGlb } from './scene-glb.js';
+import { checks } from './checks/index.js';
+import { type FormatLimits, limitsOf } from './limits.js';
+import type { Answer } from './protocol.js';
+import { spawn } from './spawn-formats.js';
 
 /** Reads a file beside a model. */
 export interface Companions {
   /**
    * The bytes of a file that the model names: the materials of an OBJ (MTL), images. Undefined if it is not there: then its
-   * material has no image. Default: there are none.
+   * material has no image. Called once for each. Default: there are none.
    * @param name  As it stands in the model, with slashes.
    */
   read?: ((name: string) => Promise<Uint8Array | undefined>) | undefined;
@@ -22,15 +22,10 @@ export interface Companions {
    * @param reason  For people: "it was not found".
    */
   onMissing?: ((name: string, reason: string) => void) | undefined;
-  /** Limits other than the default ones: `expansion` for an FBX, `parts` for an OBJ. */
-  limits?: Partial<Pick<ReadLimits, 'expansion' | 'parts'>> | undefined;
-}
-
-/** What the readers of the formats call. */
-interface Beside {
-  read: NonNullable<Companions['read']>;
-  onMissing: NonNullable<Companions['onMissing']>;
-  limits: ReadLimits;
+  /** Limits other than the default ones. */
+  limits?: Partial<FormatLimits> | undefined;
+  /** Cancels the call: its promise rejects with the signal's reason, and its thread ends at once. */
+  signal?: AbortSignal | undefined;
 }
 
 /**
@@ -41,96 +36,185 @@ interface Beside {
  * materials do not have. Units and axes stay as the loader gives them; where a format has no up axis, y is up. Vertices that are alike
  * become one.
  *
- * Needs three.js; only the loader of the given format is imported. Cost: that of the loader, and linear in the vertices.
+ * The GLB is valid: triangles with corners that are not there, or not at finite places, are left out; what else is not a finite number
+ * gets its default, and factors are brought within 0 … 1.
+ *
+ * The file is read in a worker of its own, which ends afterwards, within limits of time and memory, after a look at what it says of
+ * itself. three.js is in the worker's script. Cost: that of the loader, linear in the vertices, and a tenth of a second for the worker.
  * @param bytes  The whole file. Its content says which format it is.
- * @throws {CagecastError} `badArgument` that says what the file is, or why it cannot be read.
+ * @throws {CagecastError} `badArgument` that says what the file is, or why it cannot be read, with the limit that it exceeds;
+ * `badOption`; `unsupported` if this host cannot start a worker.
  *
  * @example
  * import { toGlb } from 'cagecast/formats';
  *
  * const glb = await toGlb(await readFile('head.obj'), { read: (name) => readFile(`models/${name}`).catch(() => undefined) });
  */
-export async function toGlb(
-  bytes: Uint8Array,
-  { read = async () => undefined, onMissing = () => {}, limits }: Companions = {},
-): Promise<Uint8Array> {
+export async function toGlb(bytes: Uint8Array, companions: Companions = {}): Promise<Uint8Array> {
   const wrong = (text: string, cause?: unknown) =>
     new CagecastError('badArgument', 'toGlb', text, { argument: 'bytes', cause });
   if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`);
+  const limits = checkedLimits(bytes.length, companions.limits);
+  companions.signal?.throwIfAborted();
   const kind = fileKind(bytes);
   if (kind?.format === undefined)
     throw wrong(kind ? `is ${kind.name}; ${kind.advice}` : 'is neither FBX, OBJ, PLY, STL nor USDZ');
   let glb: Uint8Array | undefined;
-  const told = new Set<string>();
-  const tellOnce: typeof onMissing = (name, reason) => {
-    if (!told.has(name)) onMissing(name, reason);
-    told.add(name);
-  };
   try {
-    glb = await sceneGlb(
-      await readers[kind.format](bytes, { read, onMissing: tellOnce, limits: { ...defaultLimits, ...limits } }),
-    );
+    if (bytes.length > limits.bytes) throw exceeds(`it has ${bytes.length} bytes`, 'bytes', limits);
+    await checks[kind.format](bytes, limits);
+    glb = await readInWorker(bytes, kind.format, limits, companions);
   } catch (error) {
-    throw wrong(`is ${kind.name}, but cannot be read (${(error as Error).message.split('\n', 1)[0]})`, error);
+    if (!(error instanceof InputError)) throw error;
+    throw wrong(`is ${kind.name}, but cannot be read (${error.message})`, error);
   }
   if (!glb) throw wrong(`is ${kind.name} without any triangle`);
   return glb;
 }
 
-const bufferOf = (bytes: Uint8Array): ArrayBuffer => Uint8Array.from(bytes).buffer;
-const textOf = (bytes: Uint8Array): string => new TextDecoder().decode(bytes);
+function checkedLimits(bytes: number, given: Partial<FormatLimits> = {}): FormatLimits {
+  const bad = (text: string) => new CagecastError('badOption', 'toGlb', text, { argument: 'limits' });
+  if (!isRecord(given)) throw bad(`limits is ${show(given)}, not an object`);
+  const limits = limitsOf(bytes, given);
+  for (const [name, value] of Object.entries(limits))
+    if (typeof value !== 'number' || !(value >= 0)) throw bad(`limits.${name} is ${show(value)}, not a number ≥ 0`);
+  return limits;
+}
 
-/** What reads each format. */
-const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Object3D>> = {
-  async fbx(bytes, { read, onMissing, limits }) {
-    await checkFbx(bytes, limits);
-    const { FBXLoader } = await import('three/addons/loaders/FBXLoader.js');
-    return withFiles(read, async () => new FBXLoader().parse(bufferOf(bytes), ''), onMissing);
-  },
-  async obj(bytes, { read, onMissing, limits }) {
-    const [{ OBJLoader }, { MTLLoader }] = await Promise.all([
-      import('three/addons/loaders/OBJLoader.js'),
-      import('three/addons/loaders/MTLLoader.js'),
-    ]);
-    const text = textOf(bytes);
-    const groups = text.match(/^\s*(?:g|o|usemtl)\s/gm)?.length ?? 0;
-    if (groups > limits.parts) throw exceeds(`has ${groups.toLocaleString('en')} groups`, 'parts', limits);
-    const libraries = [...text.matchAll(/^\s*mtllib\s+(.+?)\s*$/gm)].map(([, name]) => name!);
-    const names = libraries.map((name) => name.replaceAll('\\', '/'));
-    const found = await Promise.all(names.map(read));
-    for (const [i, library] of found.entries()) if (!library) onMissing(names[i]!, kNotFound);
-    const materials = found.flatMap((library) => (library ? [textOf(library)] : [])).join('\n');
-    return withFiles(
-      read,
-      async () => {
-        const creator = new MTLLoader().parse(materials, '');
-        creator.preload();
-        return new OBJLoader().setMaterials(creator).parse(text);
-      },
-      onMissing,
-    );
-  },
-  async ply(bytes) {
-    const { PLYLoader } = await import('three/addons/loaders/PLYLoader.js');
-    const geometry = new PLYLoader().parse(bufferOf(bytes));
-    return geometry.index ? meshOf(geometry) : new Group(); // of points
-  },
-  async stl(bytes) {
-    const { STLLoader } = await import('three/addons/loaders/STLLoader.js');
-    // Its normals are those of the triangles, which glTF has without them.
-    return meshOf(new STLLoader().parse(bufferOf(bytes)).deleteAttribute('normal'));
-  },
-  async usd(bytes, { read, onMissing }) {
-    const { USDLoader } = await import('three/addons/loaders/USDLoader.js');
-    return withFiles(
-      read,
-      () => new Promise<Group>((resolve, reject) => new USDLoader().parse(bufferOf(bytes), '', resolve, reject)),
-      onMissing,
-    );
-  },
-};
+/** Megabytes that the heap of a thread in Node may have beside what `memory` says, and at most. */
+const [kSpareHeap, kMostHeap] = [256, 4096];
 
-function meshOf(geometry: BufferGeometry): Object3D {
-  const material = new MeshStandardMaterial({ roughness: 0.9, vertexColors: geometry.hasAttribute('color') });
-  return new Group().add(new Mesh(geometry, material));
+/**
+ * Has a worker read a file, whatever its loader does with it, and ends it.
+ * @throws {InputError} that says what is wrong with the file; {CagecastError} if there can be no worker.
+ */
+function readInWorker(
+  bytes: Uint8Array,
+  format: Format,
+  limits: FormatLimits,
+  { read = async () => undefined, onMissing = () => {}, signal }: Companions,
+): Promise<Uint8Array | undefined> {
+  return new Promise((resolve, reject) => {
+    let end = () => {};
+    const settle = (finish: () => void) => {
+      end();
+      end = () => {};
+      finish();
+    };
+    const fail = (error: unknown) => settle(() => reject(error));
+    const clock = new Clock(limits.seconds, () =>
+      fail(exceeds(`its loader takes more than ${limits.seconds.toLocaleString('en')} seconds`, 'seconds', limits)),
+    );
+    const files = new FilesBeside(read, limits);
+    const told = new Set<string>();
+    const onAnswer = async (answer: Answer) => {
+      if ('begun' in answer) clock.run();
+      else if ('missing' in answer) {
+        const [name, reason] = answer.missing;
+        if (told.has(name)) return;
+        told.add(name);
+        onMissing(name, reason);
+      } else if ('ask' in answer) {
+        clock.stop();
+        const found = await files.find(answer.name);
+        clock.run();
+        thread.post({ ask: answer.ask, found }, []);
+      } else if ('wrong' in answer) fail(new InputError(answer.wrong));
+      else settle(() => resolve(answer.glb));
+    };
+    const onFailure = (message: string) => {
+      // What the heap of a thread in Node ends with.
+      if (/memory limit/.test(message)) fail(exceeds('its loader takes all memory that it may have', 'memory', limits));
+      else fail(unsupported(`the worker failed (${message})`));
+    };
+    const heap = Math.min(kMostHeap, kSpareHeap + Math.ceil((2 * limits.memory) / 2 ** 20));
+    let thread: ReturnType<typeof spawn>;
+    try {
+      thread = spawn((answer) => void onAnswer(answer).catch(fail), onFailure, heap);
+    } catch (cause) {
+      reject(unsupported(`this host cannot start the worker (${firstLine(cause)})`, cause));
+      return;
+    }
+    const onAbort = () => fail(signal!.reason);
+    end = () => {
+      clock.stop();
+      signal?.removeEventListener('abort', onAbort);
+      thread.terminate();
+    };
+    signal?.addEventListener('abort', onAbort);
+    if (signal?.aborted) return onAbort();
+    thread.setBusy(true);
+    const own = Uint8Array.from(bytes);
+    thread.post({ bytes: own, format, limits }, [own.buffer]);
+  });
+}
+
+const unsupported = (reason: string, cause?: unknown): CagecastError =>
+  new CagecastError('unsupported', 'toGlb', `${reason}; other formats are only read in one`, { cause });
+
+/** Tells when something has run for some seconds, breaks not counted. */
+class Clock {
+  readonly #onEnd: () => void;
+  #left: number;
+  #began = 0;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  #stops = 0;
+
+  constructor(seconds: number, onEnd: () => void) {
+    this.#left = 1000 * seconds;
+    this.#onEnd = onEnd;
+  }
+
+  /** Goes on, once each break has ended. */
+  run(): void {
+    if (this.#stops > 0) --this.#stops;
+    if (this.#stops > 0) return;
+    this.#began = performance.now();
+    // Longer ones end at once.
+    this.#timer = setTimeout(this.#onEnd, Math.min(this.#left, 2 ** 31 - 1));
+  }
+
+  stop(): void {
+    if (this.#stops++ > 0) return;
+    clearTimeout(this.#timer);
+    this.#left -= performance.now() - this.#began;
+  }
+}
+
+/** The files beside a model, counted. */
+class FilesBeside {
+  readonly #read: NonNullable<Companions['read']>;
+  readonly #limits: FormatLimits;
+  readonly #found = new Map<string, Promise<Uint8Array | undefined>>();
+  #bytes = 0;
+
+  constructor(read: NonNullable<Companions['read']>, limits: FormatLimits) {
+    this.#read = read;
+    this.#limits = limits;
+  }
+
+  /** Reads each once. @throws {InputError} if there are too many, or too large ones. */
+  find(name: string): Promise<Uint8Array | undefined> {
+    const known = this.#found.get(name);
+    if (known) return known;
+    const { files, bytes } = this.#limits;
+    if (this.#found.size >= files)
+      throw exceeds(`it names more than ${files.toLocaleString('en')} files beside it`, 'files', this.#limits);
+    const found = this.#content(name).then((content) => {
+      this.#bytes += content?.length ?? 0;
+      if (this.#bytes > bytes)
+        throw exceeds(`the files beside it have more than ${bytes.toLocaleString('en')} bytes`, 'bytes', this.#limits);
+      return content;
+    });
+    this.#found.set(name, found);
+    return found;
+  }
+
+  async #content(name: string): Promise<Uint8Array | undefined> {
+    try {
+      return await this.#read(name);
+    } catch {
+      return undefined; // as one that is not there
+    }
+  }
 }

@@ -13,9 +13,9 @@ export type Reply =
   | { id: number; error: ConstructorParameters<typeof CagecastError> }
   | { id: number; progress: [share: number, stage: string] };
 
-/** A worker on some host. */
-export interface Thread {
-  post(request: Request, move: ArrayBuffer[]): void;
+/** A worker on some host, and what it is sent. */
+export interface Thread<Message = Request> {
+  post(message: Message, move: ArrayBuffer[]): void;
   /** Ends it at once, even during a call. */
   terminate(): void;
   /** Says whether there is work: an idle worker must not keep a process alive. */

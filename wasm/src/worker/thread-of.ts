@@ -1,19 +1,23 @@
 import { nodeModule } from '../core/node.js';
 import type { Reply, Request, Thread } from './protocol.js';
 
-type OnReply = (reply: Reply) => void;
 type OnFailure = (message: string) => void;
 
 /** A worker of a browser, Deno or Bun as a thread. @param url  Of a file in the folder where the script should be. */
-export function threadOf(start: () => Worker, url: string, onReply: OnReply, onFailure: OnFailure): Thread {
+export function threadOf<Message = Request, Answer = Reply>(
+  start: () => Worker,
+  url: string,
+  onReply: (reply: Answer) => void,
+  onFailure: OnFailure,
+): Thread<Message> {
   const worker = startFromAnywhere(start, url);
-  worker.onmessage = ({ data }: MessageEvent<Reply>) => onReply(data);
+  worker.onmessage = ({ data }: MessageEvent<Answer>) => onReply(data);
   worker.onerror = (event) => {
     event.preventDefault();
     onFailure(event.message ?? `its script could not be loaded; without a bundler that finds it, it is ${url}`);
   };
   return {
-    post: (request, move) => worker.postMessage(request, move),
+    post: (message, move) => worker.postMessage(message, move),
     terminate: () => worker.terminate(),
     setBusy: () => undefined,
   };
@@ -31,36 +35,44 @@ function startFromAnywhere(start: () => Worker, url: string): Worker {
   }
 }
 
-/** Starts a worker thread in Node. @throws Error if this is another host. */
-export function threadOfNode(url: string, onReply: OnReply, onFailure: OnFailure): Thread {
+/** Starts a worker thread in Node. @param megabytes  Of its heap, at most. @throws Error if this is another host. */
+export function threadOfNode<Message = Request, Answer = Reply>(
+  url: string,
+  onReply: (reply: Answer) => void,
+  onFailure: OnFailure,
+  megabytes?: number,
+): Thread<Message> {
   const threads = nodeModule('node:worker_threads');
   if (!threads)
     throw new Error(
       'it has no workers, nor process.getBuiltinModule, as Node 20.16 has; cagecast and cagecast/cages/sync need none',
     );
+  const resourceLimits = megabytes === undefined ? {} : { maxOldGenerationSizeMb: megabytes };
   // Do not inherit the flags of this process: some, such as --input-type, are invalid for a file, and none is needed.
-  const worker = new threads.Worker(new URL(url), { execArgv: [] });
+  const worker = new threads.Worker(new URL(url), { execArgv: [], resourceLimits });
   worker.on('message', onReply);
   worker.on('error', (error) => onFailure(error.message));
   worker.unref();
   return {
-    post: (request, move) => worker.postMessage(request, move),
+    post: (message, move) => worker.postMessage(message, move),
     terminate: () => void worker.terminate(),
     setBusy: (busy) => (busy ? worker.ref() : worker.unref()),
   };
 }
 
-type Post = (message: Reply, move?: ArrayBuffer[]) => void;
+type Post<Answer> = (message: Answer, move?: ArrayBuffer[]) => void;
 
-/** In a worker: listens to requests. @param serve  Answers one by means of `post`. */
-export function listen(serve: (request: Request, post: Post) => Promise<void>): void {
+/** In a worker: listens to messages. @param serve  Answers one by means of `post`. */
+export function listen<Message = Request, Answer = Reply>(
+  serve: (message: Message, post: Post<Answer>) => Promise<void>,
+): void {
   const port = typeof postMessage === 'function' ? undefined : nodeModule('node:worker_threads')?.parentPort;
   if (port)
-    port.on('message', (request: Request) => void serve(request, (reply, move) => port.postMessage(reply, move)));
+    port.on('message', (message: Message) => void serve(message, (reply, move) => port.postMessage(reply, move)));
   else
     addEventListener(
       'message',
-      ({ data }: MessageEvent<Request>) =>
+      ({ data }: MessageEvent<Message>) =>
         void serve(data, (reply, move = []) => postMessage(reply, { transfer: move })),
     );
 }

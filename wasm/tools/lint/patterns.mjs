@@ -28,7 +28,7 @@ export function patternsIn(path, text) {
   const source = ts.createSourceFile(path, text, ts.ScriptTarget.Latest);
   const found = [];
   const visit = (node) => {
-    const { line } = source.getLineAndCharacterOfPosition(node.pos);
+    const { line } = source.getLineAndCharacterOfPosition(node.getStart(source));
     const [, pattern, flags] = /^\/(.*)\/(\w*)$/s.exec(literalOf(node) ?? '') ?? [];
     if (pattern !== undefined) found.push({ at: `${path}:${line + 1}`, pattern, flags });
     ts.forEachChild(node, visit);

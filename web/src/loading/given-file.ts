@@ -1,9 +1,7 @@
 // What the page needs for files that are not its own: it loads when there is one.
 import { checkGltf, checkImage, fileKind } from 'cagecast/gltf';
-import { askWorker } from '../platform/ask-worker';
 import { reasonOf } from '../state/wording';
-import { paths } from './file-paths';
-import type { Converted, FormatsRequest } from './formats-thread';
+import { companionOf } from './file-paths';
 
 export { damageOf } from './image-damage';
 
@@ -27,8 +25,16 @@ export async function checkPicture(file: File): Promise<void> {
   }
 }
 
-/** A model and its bytes; those of the GLB that is made of it, if it has another format. @throws Error without the file's name. */
-export async function readAsGltf(file: File, companions: readonly File[]): Promise<{ file: File; bytes: ArrayBuffer }> {
+/**
+ * A model and its bytes; those of the GLB that is made of it, if it has another format.
+ * @param signal  Ends the reading.
+ * @throws Error without the file's name.
+ */
+export async function readAsGltf(
+  file: File,
+  companions: readonly File[],
+  signal: AbortSignal | undefined,
+): Promise<{ file: File; bytes: ArrayBuffer }> {
   const bytes = await file.arrayBuffer().catch(() => {
     throw new Error(
       `the browser cannot read this file (${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB); it may be too large, or deleted`,
@@ -37,10 +43,12 @@ export async function readAsGltf(file: File, companions: readonly File[]): Promi
   const kind = fileKind(new Uint8Array(bytes));
   if (!kind) return { file, bytes };
   if (!kind.format) throw new Error(`this is ${kind.name}; ${kind.advice}`);
-  const worker = new Worker(new URL('./formats-thread.ts', import.meta.url), { type: 'module' });
-  const withPath = (one: File) => ({ file: one, path: paths.get(one) });
-  const request: FormatsRequest = { model: withPath(file), companions: companions.map(withPath) };
-  const { glb } = await askWorker<Converted>(worker, request);
+  const read = async (name: string) => {
+    const found = companionOf(name, companions, file);
+    return found && new Uint8Array(await found.arrayBuffer());
+  };
+  const { toGlb } = await import('cagecast/formats');
+  const glb = (await toGlb(new Uint8Array(bytes), { read, signal })) as Uint8Array<ArrayBuffer>;
   const made = new File([glb], `${file.name.replace(/\.[^.]*$/, '')}.glb`);
-  return { file: made, bytes: await made.arrayBuffer() };
+  return { file: made, bytes: glb.buffer };
 }

@@ -14,6 +14,7 @@ import { readGltfHead } from './gltf-file';
  * @param renderer   Undefined without WebGL.
  * @param companions Files a model may refer to (a .bin, an .mtl, images), found by name.
  * @param isOwn      Whether it is a GLB of the page's own, which is trusted.
+ * @param signal     Ends the reading of a model of another format.
  * @throws Error with a message that begins with the file's name.
  */
 export async function loadModel(
@@ -21,13 +22,14 @@ export async function loadModel(
   renderer: WebGLRenderer | undefined,
   companions: readonly File[] = [],
   isOwn = false,
+  signal?: AbortSignal,
 ): Promise<Model> {
   const urls = new Map<string, string>();
   try {
     // The page begins without what judges the files of others.
     const judge = isOwn ? undefined : await import('./given-file');
     const { file, bytes } = judge
-      ? await judge.readAsGltf(given, companions)
+      ? await judge.readAsGltf(given, companions, signal)
       : { file: given, bytes: await given.arrayBuffer() };
     const head = readGltfHead(bytes);
     const used = [...new Set(head.uris.map((uri) => findCompanion(uri, companions, file)))];
@@ -77,7 +79,7 @@ export function disposeModel({ cageMesh }: Model): void {
 
 /** The page's own loader. @param renderer Undefined without WebGL. */
 export const loaderFor = (renderer: WebGLRenderer | undefined): Loader => ({
-  load: (file, companions) => loadModel(file, renderer, companions),
+  load: (file, companions, signal) => loadModel(file, renderer, companions, false, signal),
   loadOwn: (file) => loadModel(file, renderer, [], true),
   dispose: disposeModel,
 });

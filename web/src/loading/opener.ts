@@ -39,6 +39,9 @@ export class Opener implements Samples {
   /** The base paint that was chosen last. */
   #chosen: Promise<Paint> | undefined;
 
+  /** Ends the reading of the files that are asked for. */
+  readonly #reading = new Map<'target' | 'cage', AbortController>();
+
   /** Gives a cage to a model that was opened alone. */
   cageFor: ((target: Model) => Promise<Model>) | undefined;
   /** Opens a saved project. */
@@ -68,6 +71,7 @@ export class Opener implements Samples {
       if (state !== 'failed' && this.#warnings.length > 0) showError(this.#warnings.join(' '));
       this.#warnings = [];
     });
+    session.on('cancel', () => this.#endReading('target', 'cage'));
     stack.on('change', () => session.shown && this.#describe(session.shown));
   }
 
@@ -97,6 +101,7 @@ export class Opener implements Samples {
     if (!sample) return;
     this.#select.value = name;
     this.#warnings = [];
+    this.#endReading('target', 'cage');
     const model = async (address: string): Promise<Model> => ({
       ...(await this.#loader.loadOwn(await fetchFile(address))),
       sample,
@@ -169,9 +174,14 @@ export class Opener implements Samples {
       return;
     }
     const requested: Requested = {};
-    const load = (file: File): Promise<Model> => this.#loader.load(file, all);
-    if (target) requested.target = load(target);
-    if (cage) requested.cage = load(cage);
+    const load = (slot: 'target' | 'cage', file: File): Promise<Model> => {
+      this.#endReading(slot);
+      const abort = new AbortController();
+      this.#reading.set(slot, abort);
+      return this.#loader.load(file, all, abort.signal);
+    };
+    if (target) requested.target = load('target', target);
+    if (cage) requested.cage = load('cage', cage);
     if (unclear.length > 0) {
       const open = (target: File, cage?: File): void =>
         this.#open({ target, cage, texture, unclear: [], warnings, all });
@@ -186,6 +196,11 @@ export class Opener implements Samples {
     }
     this.#warnings = warnings;
     this.#request(requested);
+  }
+
+  /** Nobody waits for these files any more. */
+  #endReading(...slots: readonly ('target' | 'cage')[]): void {
+    for (const slot of slots) this.#reading.get(slot)?.abort();
   }
 
   /** The cage of a target that was opened alone: its own, one that the user has opened before, or one that is fitted or made. */

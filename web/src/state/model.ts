@@ -89,9 +89,10 @@ export const originOf = ({ scene: { position } }: Model): [number, number, numbe
 export interface Loader {
   /**
    * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
+   * @param signal Ends the reading of a model of another format, which may take long.
    * @throws Error with a message that begins with the file's name.
    */
-  load(file: File, companions?: readonly File[]): Promise<Model>;
+  load(file: File, companions?: readonly File[], signal?: AbortSignal): Promise<Model>;
   /** Loads a GLB that comes with the page, and is trusted. */
   loadOwn(file: File): Promise<Model>;
   /** Frees the GPU memory of a model. */

@@ -52,6 +52,8 @@ export type Progress =
 /** Events, in the order in which they occur when a model is opened. */
 interface SessionEvents {
   progress: Progress;
+  /** What was being done is cancelled by the user. `progress` follows at once. */
+  cancel: undefined;
   /** Another target is about to take the place of this one: all is still as it was. */
   leave: Shown;
   /** Another target, cage or projection is shown. `zones` follows at once, then `paint` if it changed. */
@@ -292,6 +294,7 @@ export class Session extends Replay<SessionEvents> {
     this.#endWork('cancelled');
     this.#requests.abort(...kSlots);
     this.#abortRules();
+    this.emit('cancel', undefined);
     this.emit('progress', this.#shown ? { state: 'ready' } : { state: 'waiting', missing: ['target', 'cage'] });
   }
 

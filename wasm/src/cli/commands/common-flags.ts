@@ -1,5 +1,6 @@
 // Flags that several commands have, as commander parses them.
 import { type Command, InvalidArgumentError, Option } from 'commander';
+import { type FormatLimits, formatDefaults } from '../../formats/limits.js';
 import { optionFlags } from '../../generated/options.js';
 import { defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 import { standard } from '../io/files.js';
@@ -25,7 +26,7 @@ export interface ReadFlags {
   allowOutside?: boolean;
   /** Names of parts of the target that are left out. */
   ignore?: string[];
-  limit?: Partial<ReadLimits>;
+  limit?: Partial<ReadLimits & FormatLimits>;
 }
 
 /** The flags that say what is printed. */
@@ -155,7 +156,9 @@ const kReadFlags = [
     '--limit <NAME=VALUE>',
     `what reading a file may cost; may be repeated (default: ${Object.entries(defaultLimits)
       .map(([name, value]) => `${name}=${value}`)
-      .join(', ')})`,
+      .join(', ')}; of other formats also ${Object.entries(formatDefaults)
+      .map(([name, value]) => (typeof value === 'number' ? `${name}=${value}` : `${name}, ${value}`))
+      .join('; ')})`,
     limitOf,
   ),
 ];
@@ -274,10 +277,12 @@ function regionOf(text: string, before: Region[] = []): Region[] {
   return [...before, { cage, texture }];
 }
 
-function limitOf(text: string, before: Partial<ReadLimits> = {}): Partial<ReadLimits> {
+type Limits = NonNullable<ReadFlags['limit']>;
+
+function limitOf(text: string, before: Limits = {}): Limits {
   const [name = '', value = ''] = text.split('=', 2);
-  if (!Object.hasOwn(defaultLimits, name))
-    throw new InvalidArgumentError(`There are the limits ${Object.keys(defaultLimits).join(', ')}.`);
+  const names = Object.keys({ ...defaultLimits, ...formatDefaults });
+  if (!names.includes(name)) throw new InvalidArgumentError(`There are the limits ${names.join(', ')}.`);
   if (!/^\d+$/.test(value)) throw new InvalidArgumentError(`A limit is a whole number, such as ${name}=5000.`);
   return { ...before, [name]: Number(value) };
 }

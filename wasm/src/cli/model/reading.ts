@@ -1,8 +1,9 @@
+import type { FormatLimits } from '../../formats/limits.js';
 import { defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 
 /** How files are read. */
 export interface ReadOptions {
-  limits: ReadLimits;
+  limits: ReadLimits & Partial<FormatLimits>;
   /** Whether files may be read that are not in the folder of the glTF that refers to them. */
   allowOutside: boolean;
 }

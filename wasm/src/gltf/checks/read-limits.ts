@@ -34,7 +34,11 @@ export const defaultLimits: Readonly<ReadLimits> = {
 };
 
 /** The error of a file that exceeds a limit. @param what  What exceeds it, with the number. */
-export function exceeds(what: string, limit: keyof ReadLimits, { [limit]: value }: ReadLimits): InputError {
+export function exceeds<Limit extends string>(
+  what: string,
+  limit: Limit,
+  { [limit]: value }: Record<Limit, number>,
+): InputError {
   return new InputError(`${what}; the limit "${limit}" is ${value.toLocaleString('en')}`);
 }
 

@@ -1,12 +1,15 @@
 import type { GLTF, vec4 } from '@gltf-transform/core';
 import { type Material, Matrix4, type Mesh, type Object3D, type SkinnedMesh } from 'three';
-import { packGlb, paddedLength } from '../parts/glb.js';
+import { packGlb, paddedLength } from '../../parts/glb.js';
 import { attributesOf, boundsOf, cornersOf } from './geometry.js';
-import { MaterialWriter } from './materials.js';
+import { MaterialWriter, named } from './materials.js';
 
-/** Writes what is drawn of a scene as a GLB; nothing if it has no triangle. */
-export async function sceneGlb(scene: Object3D): Promise<Uint8Array | undefined> {
-  const writer = new SceneWriter();
+/**
+ * Writes what is drawn of a scene as a GLB; nothing if it has no triangle.
+ * @param check  Told the bytes of the GLB as they become more; throws if they are too many.
+ */
+export function sceneGlb(scene: Object3D, check: (bytes: number) => void): Uint8Array<ArrayBuffer> | undefined {
+  const writer = new SceneWriter(check);
   scene.updateMatrixWorld(true);
   const root = writer.addNode(scene);
   writer.addSkins();
@@ -17,12 +20,19 @@ const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4', 16: 'MAT4' } as co
 const componentTypes = { Float32Array: 5126, Uint32Array: 5125, Uint16Array: 5123 } as const;
 type Values = Float32Array | Uint32Array | Uint16Array;
 
+const areFinite = (numbers: readonly number[]): boolean => numbers.every((x) => Number.isFinite(x));
+
 class SceneWriter {
+  readonly #check: (bytes: number) => void;
   readonly #json: GLTF.IGLTF = { asset: { version: '2.0', generator: `Cagecast ${CAGECAST_VERSION}` } };
   readonly #chunks: Uint8Array[] = [];
   #length = 0;
   readonly #nodes = new Map<Object3D, number>();
   readonly #materials = new MaterialWriter(this.#json, (bytes) => this.#addView(bytes));
+
+  constructor(check: (bytes: number) => void) {
+    this.#check = check;
+  }
 
   get hasTriangles(): boolean {
     return this.#json.meshes !== undefined;
@@ -30,12 +40,14 @@ class SceneWriter {
 
   /** Adds an object and all below it. @returns the number of its node. */
   addNode(object: Object3D): number {
-    const { name, position, quaternion, scale } = object;
+    const { name, position, scale } = object;
+    const rotation = object.quaternion.clone().normalize().toArray() as vec4;
     const node: GLTF.INode = {
-      ...(name !== '' && { name }),
-      ...(position.lengthSq() > 0 && { translation: position.toArray() }),
-      ...(quaternion.w !== 1 && { rotation: quaternion.clone().normalize().toArray() as vec4 }),
-      ...(!(scale.x === 1 && scale.y === 1 && scale.z === 1) && { scale: scale.toArray() }),
+      ...named(name),
+      ...(position.lengthSq() > 0 && areFinite(position.toArray()) && { translation: position.toArray() }),
+      ...(rotation[3] !== 1 && areFinite(rotation) && { rotation }),
+      ...(!(scale.x === 1 && scale.y === 1 && scale.z === 1) &&
+        areFinite(scale.toArray()) && { scale: scale.toArray() }),
     };
     const number = (this.#json.nodes ??= []).push(node) - 1;
     this.#nodes.set(object, number);
@@ -48,10 +60,12 @@ class SceneWriter {
     return number;
   }
 
-  #addMesh({ name, geometry, material, morphTargetDictionary, morphTargetInfluences }: Mesh): number | undefined {
+  #addMesh(mesh: Mesh): number | undefined {
+    const { name, geometry, material, morphTargetDictionary, morphTargetInfluences } = mesh;
     const corners = cornersOf(geometry);
-    if (corners === undefined || corners.length === 0) return undefined;
-    const { attributes, targets, indices } = attributesOf(geometry, corners);
+    if (corners === undefined || !(corners.kept?.includes(1) ?? corners.indices.length > 0)) return undefined;
+    const joints = (mesh as Partial<SkinnedMesh>).skeleton?.bones.length ?? 0;
+    const { attributes, targets, indices } = attributesOf(geometry, corners, joints);
     const own = Object.fromEntries(
       Object.entries(attributes).map(([semantic, { values, size }]) => [
         semantic,
@@ -60,12 +74,15 @@ class SceneWriter {
     );
     const deltas = targets.map((target) => ({ POSITION: this.#addAccessor(target, 3, true) }));
     const materials = [material].flat();
+    const { kept } = corners;
     const groups =
       Array.isArray(material) && geometry.groups.length > 0
         ? geometry.groups
         : [{ start: 0, count: Infinity, materialIndex: 0 }];
     const primitives = groups.flatMap(({ start, count, materialIndex = 0 }): GLTF.IMeshPrimitive[] => {
-      const some = indices.subarray(start, Math.min(indices.length, start + count));
+      const end = Math.min(indices.length, start + count);
+      const all = indices.subarray(start, Math.max(start, end - ((end - start) % 3)));
+      const some = kept ? all.filter((_, i) => kept[Math.floor((start + i) / 3)] === 1) : all;
       if (some.length < 3) return [];
       return [
         {
@@ -78,28 +95,30 @@ class SceneWriter {
     });
     if (primitives.length === 0) return undefined;
     const names = Object.keys(morphTargetDictionary ?? {});
-    const mesh: GLTF.IMesh = {
-      ...((geometry.name || name) !== '' && { name: geometry.name || name }),
+    const weights = deltas.map((_, t) => morphTargetInfluences?.[t] ?? 0);
+    const written: GLTF.IMesh = {
+      ...named(geometry.name || name),
       primitives,
-      ...(deltas.length > 0 && { weights: deltas.map((_, t) => morphTargetInfluences?.[t] ?? 0) }),
+      ...(deltas.length > 0 && { weights: weights.map((weight) => (Number.isFinite(weight) ? weight : 0)) }),
       ...(deltas.length === names.length && names.length > 0 && { extras: { targetNames: names } }),
     };
-    return (this.#json.meshes ??= []).push(mesh) - 1;
+    return (this.#json.meshes ??= []).push(written) - 1;
   }
 
   #materialOf(material: Material | undefined): { material?: number } {
-    return material ? { material: this.#materials.add(material) } : {};
+    // Some names, such as "constructor", lead a loader to what is none.
+    return material?.isMaterial ? { material: this.#materials.add(material) } : {};
   }
 
   /** Adds the skins of all meshes, once all bones have their nodes. */
   addSkins(): void {
     for (const [object, number] of this.#nodes) {
       const { skeleton, bindMatrix, isSkinnedMesh } = object as SkinnedMesh;
-      if (!isSkinnedMesh || this.#json.nodes![number]!.mesh === undefined) continue;
+      if (!isSkinnedMesh || !skeleton || this.#json.nodes![number]!.mesh === undefined) continue;
       const joints = skeleton.bones.map((bone) => this.#nodes.get(bone));
       if (joints.length === 0 || joints.includes(undefined)) continue;
       const inverses = skeleton.boneInverses.flatMap((inverse) =>
-        new Matrix4().multiplyMatrices(inverse, bindMatrix).toArray(),
+        affine(new Matrix4().multiplyMatrices(inverse, bindMatrix)),
       );
       const inverseBindMatrices = this.#addAccessor(Float32Array.from(inverses), 16);
       const skin = { joints: joints as number[], inverseBindMatrices };
@@ -107,7 +126,7 @@ class SceneWriter {
     }
   }
 
-  async finish(root: number): Promise<Uint8Array> {
+  finish(root: number): Uint8Array<ArrayBuffer> {
     this.#json.scene = 0;
     this.#json.scenes = [{ nodes: [root] }];
     this.#json.buffers = [{ byteLength: this.#length }];
@@ -129,6 +148,15 @@ class SceneWriter {
     const view = { buffer: 0, byteOffset: this.#length, byteLength: bytes.byteLength };
     this.#chunks.push(bytes, new Uint8Array(paddedLength(bytes.byteLength) - bytes.byteLength));
     this.#length += paddedLength(bytes.byteLength);
+    this.#check(this.#length);
     return (this.#json.bufferViews ??= []).push(view) - 1;
   }
+}
+
+/** The numbers of a matrix as glTF has those of joints: none that is not finite, and its last row is 0, 0, 0, 1. */
+function affine(matrix: Matrix4): number[] {
+  const numbers = matrix.toArray();
+  if (!areFinite(numbers.map(Math.fround))) return new Matrix4().toArray();
+  for (const [at, value] of [0, 0, 0, 1].entries()) numbers[4 * at + 3] = value;
+  return numbers;
 }

@@ -1,4 +1,4 @@
-import type { GLTF, vec3, vec4 } from '@gltf-transform/core';
+import type { GLTF, vec2, vec3, vec4 } from '@gltf-transform/core';
 import {
   ClampToEdgeWrapping,
   type Color,
@@ -9,7 +9,7 @@ import {
   type Vector2,
   type Wrapping,
 } from 'three';
-import { imageType } from '../gltf/image-file.js';
+import { imageType } from '../../gltf/image-file.js';
 import type { ImageBytes } from './images.js';
 
 /** What materials of three.js may have. */
@@ -33,6 +33,16 @@ const kWebp = 'EXT_texture_webp';
 /** Of materials that say nothing of it. */
 const kRoughness = 0.9;
 
+/** A number, or what stands for one that is none. */
+const finite = (value: unknown, otherwise: number): number =>
+  typeof value === 'number' && Number.isFinite(value) ? value : otherwise;
+/** A factor, as glTF has them. */
+const factor = (value: unknown, otherwise: number): number => Math.min(1, Math.max(0, finite(value, otherwise)));
+const colorOf = (color: Color | undefined, otherwise: number): vec3 =>
+  (color?.isColor ? color.toArray() : [otherwise, otherwise, otherwise]).map((x) => factor(x, otherwise)) as vec3;
+/** A name, of what may be anything. */
+export const named = (name: unknown): { name?: string } => (typeof name === 'string' && name !== '' ? { name } : {});
+
 /** Writes materials, and the bytes of their images, to the JSON of a glTF. */
 export class MaterialWriter {
   readonly #json: GLTF.IGLTF;
@@ -50,24 +60,24 @@ export class MaterialWriter {
     const known = this.#materials.get(material);
     if (known !== undefined) return known;
     const look = material as Material & Look;
-    const { name, opacity, transparent, alphaTest, side } = look;
+    const { opacity, transparent, alphaTest, side } = look;
     const baseColorTexture = this.#texture(look.map);
     const normalTexture = this.#texture(look.normalMap);
     const emissiveTexture = this.#texture(look.emissiveMap);
-    const emissive = look.emissive?.toArray() ?? [0, 0, 0];
+    const emissive = colorOf(look.emissive, 0);
     const written: GLTF.IMaterial = {
-      ...(name !== '' && { name }),
+      ...named(look.name),
       pbrMetallicRoughness: {
-        baseColorFactor: [...(look.color?.toArray() ?? [1, 1, 1]), opacity] as vec4,
-        metallicFactor: look.metalness ?? 0,
-        roughnessFactor: look.roughness ?? kRoughness,
+        baseColorFactor: [...colorOf(look.color, 1), factor(opacity, 1)] as vec4,
+        metallicFactor: factor(look.metalness, 0),
+        roughnessFactor: factor(look.roughness, kRoughness),
         ...(baseColorTexture && { baseColorTexture }),
       },
-      ...(normalTexture && { normalTexture: { ...normalTexture, scale: look.normalScale?.x ?? 1 } }),
-      ...(emissive.some((x) => x > 0) && { emissiveFactor: emissive.map((x) => Math.min(1, x)) as vec3 }),
+      ...(normalTexture && { normalTexture: { ...normalTexture, scale: finite(look.normalScale?.x, 1) } }),
+      ...(emissive.some((x) => x > 0) && { emissiveFactor: emissive }),
       ...(emissiveTexture && { emissiveTexture }),
       ...(transparent && { alphaMode: 'BLEND' as const }),
-      ...(alphaTest > 0 && { alphaMode: 'MASK' as const, alphaCutoff: alphaTest }),
+      ...(alphaTest > 0 && { alphaMode: 'MASK' as const, alphaCutoff: finite(alphaTest, 0.5) }),
       ...(side === DoubleSide && { doubleSided: true }),
     };
     const number = (this.#json.materials ??= []).push(written) - 1;
@@ -90,11 +100,12 @@ export class MaterialWriter {
     if (type === 'image/webp') this.#use(kWebp);
     const image = type === 'image/webp' ? { extensions: { [kWebp]: { source } } } : { source };
     const index = (this.#json.textures ??= []).push({ ...image, ...(sampler !== undefined && { sampler }) }) - 1;
-    const { repeat, offset } = texture;
-    if (repeat.x === 1 && repeat.y === 1 && offset.x === 0 && offset.y === 0) return { index };
+    const scale = texture.repeat.toArray().map((x) => finite(x, 1)) as vec2;
+    const [u, v] = texture.offset.toArray().map((x) => finite(x, 0)) as vec2;
+    if (scale[0] === 1 && scale[1] === 1 && u === 0 && v === 0) return { index };
     this.#use(kTransform);
     // Its v points down.
-    const transform = { scale: repeat.toArray(), offset: [offset.x, 1 - repeat.y - offset.y] };
+    const transform = { scale, offset: [u, 1 - scale[1] - v] };
     return { index, extensions: { [kTransform]: transform } };
   }
 

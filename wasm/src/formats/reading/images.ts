@@ -1,5 +1,5 @@
 import { ImageLoader } from 'three';
-import { imageType } from '../gltf/image-file.js';
+import { imageIsWhole, imageSize, imageType } from '../../gltf/image-file.js';
 
 /** Why a file beside a model is missing. */
 export const kNotFound = 'it was not found';
@@ -10,10 +10,8 @@ export interface ImageBytes {
 }
 
 /**
- * Calls a loader whose images are read as bytes, and not decoded: there need be no page. Loaders ask for images while they parse, which
- * they do at once: only so long three's own way is replaced.
+ * Calls a loader whose images are read as bytes, and not decoded: there need be no page.
  * @param read  Reads a file beside the model.
- * @param parse  Calls the loader, before it first waits for anything.
  * @param onMissing  Called for each image that there is not, or that a GLB cannot hold.
  */
 export async function withFiles<Scene>(
@@ -21,40 +19,38 @@ export async function withFiles<Scene>(
   parse: () => Promise<Scene>,
   onMissing: (name: string, reason: string) => void,
 ): Promise<Scene> {
-  const { load } = ImageLoader.prototype;
-  const { warn } = console;
-  const page = globalThis as { window?: object };
-  const { window } = page;
-  const images: Promise<unknown>[] = [];
+  /** Of each address, however many materials have it. */
+  const images = new Map<string, Promise<Uint8Array | string>>();
   ImageLoader.prototype.load = (url, onLoad) => {
+    let found = images.get(url);
+    if (!found) images.set(url, (found = readImage(read, url)));
     const image: ImageBytes = { bytes: undefined };
-    images.push(
-      readImage(read, url)
-        .catch(() => undefined)
-        .then((bytes) => {
-          const type = bytes && imageType(bytes);
-          if (!bytes) onMissing(nameOf(url), kNotFound);
-          else if (type === undefined || type === 'image/ktx2')
-            onMissing(nameOf(url), 'it is no PNG, JPEG or WebP image');
-          else image.bytes = bytes;
-          onLoad?.(image as unknown as HTMLImageElement);
-        }),
-    );
+    void found.then((bytes) => {
+      if (typeof bytes !== 'string') image.bytes = bytes;
+      onLoad?.(image as unknown as HTMLImageElement);
+    });
     return image as unknown as HTMLImageElement;
   };
-  console.warn = () => {}; // of what they leave out
-  page.window ??= { innerWidth: 1, innerHeight: 1 }; // asked for by cameras
-  let scene: Promise<Scene>;
-  try {
-    scene = parse();
-  } finally {
-    ImageLoader.prototype.load = load;
-    console.warn = warn;
-    if (!window) delete page.window;
+  // Asked for by cameras.
+  (globalThis as { window?: object }).window ??= { innerWidth: 1, innerHeight: 1 };
+  const scene = await parse();
+  for (const [url, found] of images) {
+    const reason = await found;
+    if (typeof reason === 'string') onMissing(nameOf(url), reason);
   }
-  const done = await scene;
-  await Promise.all(images);
-  return done;
+  return scene;
+}
+
+/** The bytes of an image, or why there are none. */
+async function readImage(
+  read: (name: string) => Promise<Uint8Array | undefined>,
+  url: string,
+): Promise<Uint8Array | string> {
+  const bytes = await bytesOf(read, url).catch(() => undefined);
+  const type = bytes && imageType(bytes);
+  if (!bytes) return kNotFound;
+  if (type === undefined || type === 'image/ktx2') return 'it is no PNG, JPEG or WebP image';
+  return imageSize(bytes) && imageIsWhole(bytes) ? bytes : 'it is damaged';
 }
 
 /** The name of an image as it stands in the model, with slashes. */
@@ -63,7 +59,7 @@ const nameOf = (url: string): string => (isInside(url) ? 'an image in it' : url.
 /** Whether an image is within the model. */
 const isInside = (url: string): boolean => /^(blob|data):/.test(url);
 
-async function readImage(
+async function bytesOf(
   read: (name: string) => Promise<Uint8Array | undefined>,
   url: string,
 ): Promise<Uint8Array | undefined> {

@@ -1,0 +1,135 @@
+// What toGlb writes is valid, however odd the numbers in the file are.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { NodeIO } from '@gltf-transform/core';
+import { toGlb } from 'cagecast/formats';
+import { pngOf } from '../../support/files/costly.js';
+import { usdaOf } from '../../support/files/costly-formats.js';
+import { validate } from '../../support/gltf.js';
+import { fbxNode } from '../../support/models.js';
+
+const io = new NodeIO();
+
+/** The GLB of a text, which has no error, as a document. */
+async function documentOf(text: string | Uint8Array, beside: Record<string, string | Uint8Array> = {}) {
+  const read = async (name: string) => {
+    const found = beside[name];
+    return found === undefined ? undefined : new Uint8Array(Buffer.from(found as string));
+  };
+  const glb = await toGlb(new Uint8Array(Buffer.from(text as string)), { read });
+  assert.deepEqual(await validate(glb), []);
+  return (await io.readBinary(glb)).getRoot();
+}
+
+const plyOf = (properties: string, vertices: readonly string[], faces: readonly string[]): string =>
+  `ply\nformat ascii 1.0\nelement vertex ${vertices.length}\n${properties}\nelement face ${faces.length}\nproperty list uchar int vertex_indices\nend_header\n${[...vertices, ...faces].join('\n')}\n`;
+const kPlace = 'property float x\nproperty float y\nproperty float z';
+const kCorners = ['0 0 0', '1 0 0', '0 1 0', '0 0 1'];
+
+test('triangles whose corners are not there, or nowhere, are left out, and their vertices', async () => {
+  for (const bad of ['3 0 1 9', '3 0 1 -1', '3 0 1 70000', '3 4 1 2']) {
+    const root = await documentOf(plyOf(kPlace, [...kCorners, 'nan 0 0'], ['3 0 1 2', bad]));
+    const [primitive] = root.listMeshes()[0]!.listPrimitives();
+    assert.deepEqual([...primitive!.getIndices()!.getArray()!], [0, 1, 2], bad);
+    assert.equal(primitive!.getAttribute('POSITION')!.getCount(), 3);
+  }
+  for (const place of ['nan 0 0', 'inf 0 0', '1e300 0 0'])
+    for (const text of [
+      plyOf(kPlace, [place, '1 0 0', '0 1 0'], ['3 0 1 2']),
+      `v 0 0 1\nv ${place}\nv 1 0 0\nv 0 1 0\nf 2 3 4\n`,
+      `solid a\nfacet normal 0 0 1\nouter loop\nvertex ${place}\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n`,
+    ])
+      await assert.rejects(toGlb(Buffer.from(text)), /file without any triangle/, text);
+  await assert.rejects(toGlb(Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\nf 7 8 9\n')), /OBJ file without any triangle/);
+});
+
+test('normals, UVs and colours that are no numbers get their defaults, others are brought into range', async () => {
+  const properties = `${kPlace}\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nproperty float red\nproperty float green\nproperty float blue`;
+  const odd = ['nan', '1e300', '-5', '0', '1e-44'];
+  const vertices = odd.map((x, i) => `${kCorners[i % 4]} ${`${x} `.repeat(8)}`);
+  const root = await documentOf(plyOf(properties, vertices, ['3 0 1 2', '3 2 3 4']));
+  const [primitive] = root.listMeshes()[0]!.listPrimitives();
+  for (const semantic of ['NORMAL', 'TEXCOORD_0', 'COLOR_0'])
+    assert.ok([...primitive!.getAttribute(semantic)!.getArray()!].every(Number.isFinite), semantic);
+  assert.deepEqual(primitive!.getAttribute('NORMAL')!.getElement(0, []), [0, 0, 1]);
+});
+
+test('factors of materials', async () => {
+  const obj = (name: string) => `mtllib a.mtl\nusemtl ${name}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n`;
+  for (const value of ['nan', '-3', '7', 'inf', '', '1e999']) {
+    const lines = ['Kd', 'Ke', 'Ks', 'Ns', 'd', 'Tr'].map((key) => `${key} ${value} ${value} ${value}`);
+    const map = `map_Kd -s ${value} ${value} -o ${value} ${value} a.png\nmap_Bump -bm ${value} a.png`;
+    const root = await documentOf(obj('x'), {
+      'a.mtl': `newmtl x\n${lines.join('\n')}\n${map}\n`,
+      'a.png': pngOf(4, 4),
+    });
+    const [material] = root.listMaterials();
+    for (const factor of [...material!.getBaseColorFactor(), ...material!.getEmissiveFactor()])
+      assert.ok(factor >= 0 && factor <= 1, `${value}: ${factor}`);
+  }
+});
+
+test('images that are cut off are missing', async () => {
+  const missing: string[][] = [];
+  const obj = Buffer.from('mtllib a.mtl\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n');
+  const read = async (name: string) =>
+    name === 'a.mtl' ? Buffer.from('newmtl x\nmap_Kd a.png\n') : pngOf(4, 4).subarray(0, 40);
+  assert.deepEqual(await validate(await toGlb(obj, { read, onMissing: (...one) => missing.push(one) })), []);
+  assert.deepEqual(missing, [['a.png', 'it is damaged']]);
+});
+
+test('places of nodes, and skins', async () => {
+  const mesh =
+    'def Mesh "mesh" {\npoint3f[] points = [(0,0,0), (1,0,0), (0,1,0)]\nint[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0,1,2]\n}';
+  for (const value of ['nan', 'inf', '1e999', '-1e39', 'x']) {
+    const numbers = Array(3).fill(value).join(',');
+    const places = `double3 xformOp:translate = (${numbers})\nfloat3 xformOp:scale = (${numbers})\nfloat3 xformOp:rotateXYZ = (${numbers})\nuniform token[] xformOpOrder = ["xformOp:translate", "xformOp:rotateXYZ", "xformOp:scale"]`;
+    await documentOf(usdaOf(`def Xform "all" {\n${places}\n${mesh}\n}`));
+  }
+  const list = (name: string, values: readonly (number | string)[]) =>
+    fbxNode(`${name}: *${values.length}`, `a: ${values.join(',')}`);
+  for (const odd of ['nan', '1e400', '-1']) {
+    const matrix = list('Transform', Array(16).fill(odd));
+    await documentOf(
+      [
+        '; FBX 7.4.0 project file',
+        fbxNode('FBXHeaderExtension: ', 'FBXVersion: 7400'),
+        fbxNode(
+          'Objects: ',
+          fbxNode(
+            'Geometry: 10, "Geometry::head", "Mesh"',
+            list('Vertices', [0, 0, 0, 1, 0, 0, 0, 1, 0]),
+            list('PolygonVertexIndex', [0, 1, -3]),
+          ),
+          fbxNode('Model: 20, "Model::head", "Mesh"', 'Version: 232'),
+          fbxNode(
+            'Model: 40, "Model::neck", "LimbNode"',
+            fbxNode('Properties70: ', `P: "Lcl Translation", "Lcl Translation", "", "A",${odd},${odd},0`),
+          ),
+          fbxNode('Deformer: 30, "Deformer::", "Skin"', 'Version: 101'),
+          fbxNode(
+            'Deformer: 31, "SubDeformer::", "Cluster"',
+            list('Indexes', [0, 1, 2]),
+            list('Weights', [odd, odd, 1]),
+            matrix,
+            list('TransformLink', Array(16).fill(odd)),
+          ),
+          fbxNode('Deformer: 50, "Deformer::", "BlendShape"', 'Version: 100'),
+          fbxNode(
+            'Deformer: 51, "SubDeformer::smile", "BlendShapeChannel"',
+            `DeformPercent: ${odd}`,
+            list('FullWeights', [odd]),
+          ),
+          fbxNode('Geometry: 52, "Geometry::smile", "Shape"', list('Indexes', [1]), list('Vertices', [odd, 0, 0])),
+        ),
+        fbxNode(
+          'Connections: ',
+          ...['20,0', '40,0', '10,20', '30,10', '31,30', '40,31', '50,10', '51,50', '52,51'].map(
+            (one) => `C: "OO",${one}`,
+          ),
+        ),
+        '',
+      ].join('\n'),
+    );
+  }
+});

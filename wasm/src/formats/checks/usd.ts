@@ -1,0 +1,59 @@
+import { exceeds } from '../../gltf/checks/read-limits.js';
+import { InputError } from '../../gltf/input-error.js';
+import type { FormatLimits } from '../limits.js';
+import { checkBraces } from './nesting.js';
+
+/**
+ * Checks how deep the prims of a text are nested. Of a USDZ, the files must be stored, as the format demands, not compressed, and no byte
+ * may be in many of them.
+ */
+export function checkUsd(bytes: Uint8Array, limits: FormatLimits): void {
+  if (bytes[0] !== 0x50 || bytes[1] !== 0x4b) checkLayer(bytes, limits);
+  else for (const { name, content } of filesIn(bytes, limits)) if (/\.usda?$/i.test(name)) checkLayer(content, limits);
+}
+
+function checkLayer(bytes: Uint8Array, limits: FormatLimits): void {
+  const isBinary = new TextDecoder().decode(bytes.subarray(0, 8)) === 'PXR-USDC';
+  if (!isBinary) checkBraces(bytes, 'prims', limits);
+}
+
+interface File {
+  name: string;
+  content: Uint8Array;
+}
+
+function filesIn(bytes: Uint8Array, limits: FormatLimits): File[] {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const end = endOfArchive(view);
+  if (end === undefined) throw new InputError('its archive has no end');
+  const count = view.getUint16(end + 8, true);
+  let at = view.getUint32(end + 16, true);
+  const isLong = end >= 20 && view.getUint32(end - 20, true) === 0x07064b50;
+  if (isLong || count === 0xffff || at === 0xffffffff)
+    throw new InputError('its archive is of the kind ZIP64, which USDZ is not');
+  if (count > limits.parts) throw exceeds(`has ${count.toLocaleString('en')} files`, 'parts', limits);
+  let all = 0;
+  const files: File[] = [];
+  for (let file = 0; file < count; ++file) {
+    if (at + 46 > bytes.length) throw new InputError('the list of its files is damaged');
+    const method = view.getUint16(at + 10, true);
+    if (method !== 0)
+      throw new InputError(`file ${file + 1} in it is compressed; in a USDZ, files are stored as they are`);
+    all += view.getUint32(at + 20, true);
+    if (all > bytes.length) throw new InputError(`the files in it have more bytes than its ${bytes.length} together`);
+    const name = new TextDecoder().decode(bytes.subarray(at + 46, at + 46 + view.getUint16(at + 28, true)));
+    const local = view.getUint32(at + 42, true);
+    if (local + 30 > bytes.length) throw new InputError('the list of its files is damaged');
+    const begin = local + 30 + view.getUint16(local + 26, true) + view.getUint16(local + 28, true);
+    files.push({ name, content: bytes.subarray(begin, begin + view.getUint32(at + 20, true)) });
+    at += 46 + [28, 30, 32].reduce((sum, length) => sum + view.getUint16(at + length, true), 0);
+  }
+  return files;
+}
+
+/** Where the record at the end of a ZIP begins, which a comment may follow. */
+function endOfArchive(view: DataView): number | undefined {
+  for (let at = view.byteLength - 22; at >= Math.max(0, view.byteLength - 22 - 0xffff); --at)
+    if (view.getUint32(at, true) === 0x06054b50) return at;
+  return undefined;
+}

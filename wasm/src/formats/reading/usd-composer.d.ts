@@ -1,0 +1,3 @@
+declare module 'three/addons/loaders/usd/USDComposer.js' {
+  export class USDComposer {}
+}
