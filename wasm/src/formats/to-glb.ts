@@ -137,7 +137,7 @@ function readInWorker(
     }
     const onAbort = () => fail(signal!.reason);
     end = () => {
-      clock.stop();
+      clock.end();
       signal?.removeEventListener('abort', onAbort);
       thread.terminate();
     };
@@ -152,13 +152,19 @@ function readInWorker(
 const unsupported = (reason: string, cause?: unknown): CagecastError =>
   new CagecastError('unsupported', 'toGlb', `${reason}; other formats are only read in one`, { cause });
 
-/** Tells when something has run for some seconds, breaks not counted. */
+/** Milliseconds between two looks at the clock. */
+const kTick = 50;
+
+/**
+ * Tells when something has run for some seconds, breaks not counted: of CPU, as far as the host tells that of all its threads; so other
+ * programs do not count.
+ */
 class Clock {
   readonly #onEnd: () => void;
   #left: number;
-  #began = 0;
-  #timer: ReturnType<typeof setTimeout> | undefined;
-  #stops = 0;
+  #last = { time: 0, cpu: 0 };
+  #timer: ReturnType<typeof setInterval> | undefined;
+  #breaks = 0;
 
   constructor(seconds: number, onEnd: () => void) {
     this.#left = 1000 * seconds;
@@ -167,17 +173,35 @@ class Clock {
 
   /** Goes on, once each break has ended. */
   run(): void {
-    if (this.#stops > 0) --this.#stops;
-    if (this.#stops > 0) return;
-    this.#began = performance.now();
-    // Longer ones end at once.
-    this.#timer = setTimeout(this.#onEnd, Math.min(this.#left, 2 ** 31 - 1));
+    if (this.#breaks > 0) --this.#breaks;
+    if (this.#breaks > 0) return;
+    this.#last = this.#now;
+    this.#timer = setInterval(() => this.#look(), kTick);
   }
 
   stop(): void {
-    if (this.#stops++ > 0) return;
-    clearTimeout(this.#timer);
-    this.#left -= performance.now() - this.#began;
+    if (this.#breaks++ > 0) return;
+    clearInterval(this.#timer);
+    this.#look();
+  }
+
+  /** Stops for good. */
+  end(): void {
+    this.#breaks = Infinity;
+    clearInterval(this.#timer);
+  }
+
+  get #now(): { time: number; cpu: number } {
+    const time = performance.now();
+    const used = globalThis.process?.cpuUsage?.();
+    return { time, cpu: used ? (used.user + used.system) / 1000 : time };
+  }
+
+  #look(): void {
+    const { time, cpu } = this.#now;
+    this.#left -= Math.min(time - this.#last.time, cpu - this.#last.cpu);
+    this.#last = { time, cpu };
+    if (this.#left < 0) this.#onEnd();
   }
 }
 

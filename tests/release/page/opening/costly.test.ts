@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { costlyFiles, jpegOf, webpOf } from '../../../support/files/costly';
+import { costlyFormats } from '../../../support/files/costly-formats';
 import { glbOf, tetrahedron } from '../../../support/glb';
 import { glb, Site, settled, shownError, type Visit } from '../../../support/site';
 
@@ -54,6 +55,54 @@ for (const [name, { bytes, refusal }] of Object.entries(costlyFiles))
     await page.getByTestId('target-input').setInputFiles(glb('sound.glb', sound));
     assert.equal(await settled(page), 'ready', await shownError(page));
   });
+
+const soundFile = glb('sound.glb', sound);
+const uploadOf = (name: string, bytes: Uint8Array) => ({ name, mimeType: '', buffer: Buffer.from(bytes) });
+
+for (const [title, { name, bytes, beside, refusal }] of Object.entries(costlyFormats))
+  if (!beside && refusal)
+    test(`${title}, in ${name}`, async () => {
+      const { page } = visit;
+      const taken = await memoryOf(async () => {
+        await page.getByTestId('target-input').setInputFiles(uploadOf(name, bytes()));
+        assert.equal(await settled(page), 'error', await shownError(page));
+      });
+      const said = await shownError(page);
+      // What is of no known kind is damaged to the page.
+      if (!/neither/.test(refusal.source)) assert.match(said, new RegExp(`^${name}: .*${refusal.source}`));
+      assert.ok(taken < kMost, `${Math.round(taken / 1e6)} MB`);
+      await page.getByTestId('target-input').setInputFiles(soundFile);
+      assert.equal(await settled(page), 'ready', await shownError(page));
+    });
+
+test('a model of another format whose reading does not end: Escape and the next model end its worker at once', async () => {
+  const { page } = visit;
+  // So large that its reader may take a minute.
+  const text = Buffer.concat([
+    costlyFormats['a line that is matched over and over']!.bytes(),
+    Buffer.alloc(30e6, '# \n'),
+  ]);
+  const readers = () => page.workers().filter((worker) => /formats-thread/.test(worker.url()));
+  const begin = async () => {
+    const started = page.waitForEvent('worker', (worker) => /formats-thread/.test(worker.url()));
+    await page.getByTestId('target-input').setInputFiles(uploadOf('endless.usda', text));
+    const worker = await started;
+    await page.getByTestId('progress').waitFor();
+    return worker;
+  };
+  const first = await begin();
+  const closed = first.waitForEvent('close', { timeout: 1000 });
+  await page.keyboard.press('Escape');
+  await closed;
+  await page.getByTestId('progress').waitFor({ state: 'hidden' });
+  assert.equal(await shownError(page), '');
+  const second = await begin();
+  const replaced = second.waitForEvent('close', { timeout: 5000 });
+  await page.getByTestId('target-input').setInputFiles(soundFile);
+  await replaced;
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.equal(readers().length, 0);
+});
 
 test('pictures of billions of pixels to paint with', async () => {
   const { page } = visit;
