@@ -9,7 +9,11 @@ export function spawn(
   megabytes: number,
 ): Thread<Question> {
   const url = import.meta.url.replace(/[^/]*$/, 'formats-thread.js');
-  if (typeof Worker !== 'function') return threadOfNode(url, onAnswer, onFailure, megabytes);
+  if (typeof Worker !== 'function')
+    return threadOfNode(url, onAnswer, onFailure, {
+      execArgv: [],
+      resourceLimits: { maxOldGenerationSizeMb: megabytes },
+    });
   // Bundlers find the worker's script only in this form.
   const start = () => new Worker(new URL('./formats-thread.js', import.meta.url), { type: 'module' });
   return threadOf(start, url, onAnswer, onFailure);

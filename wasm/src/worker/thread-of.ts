@@ -1,3 +1,4 @@
+import type { WorkerOptions } from 'node:worker_threads';
 import { nodeModule } from '../core/node.js';
 import type { Reply, Request, Thread } from './protocol.js';
 
@@ -35,21 +36,20 @@ function startFromAnywhere(start: () => Worker, url: string): Worker {
   }
 }
 
-/** Starts a worker thread in Node. @param megabytes  Of its heap, at most. @throws Error if this is another host. */
+/** Starts a worker thread in Node. @param options  Of Node. @throws Error if this is another host. */
 export function threadOfNode<Message = Request, Answer = Reply>(
   url: string,
   onReply: (reply: Answer) => void,
   onFailure: OnFailure,
-  megabytes?: number,
+  // Do not inherit the flags of this process: some, such as --input-type, are invalid for a file, and none is needed.
+  options: WorkerOptions = { execArgv: [] },
 ): Thread<Message> {
   const threads = nodeModule('node:worker_threads');
   if (!threads)
     throw new Error(
       'it has no workers, nor process.getBuiltinModule, as Node 20.16 has; cagecast and cagecast/cages/sync need none',
     );
-  const resourceLimits = megabytes === undefined ? {} : { maxOldGenerationSizeMb: megabytes };
-  // Do not inherit the flags of this process: some, such as --input-type, are invalid for a file, and none is needed.
-  const worker = new threads.Worker(new URL(url), { execArgv: [], resourceLimits });
+  const worker = new threads.Worker(new URL(url), options);
   worker.on('message', onReply);
   worker.on('error', (error) => onFailure(error.message));
   worker.unref();
