@@ -125,7 +125,7 @@ const kTriangle = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n';
 /** Names that lead from an object to what all objects have. */
 export const kInherited = ['__proto__', 'constructor', 'toString', 'hasOwnProperty', 'valueOf'];
 
-/** Files of each format, in which everything that has a name has one of those. */
+/** Files of each format. Every name in them is one of those. */
 export const inheritedNames: Record<string, (name: string) => Uint8Array> = {
   'proto.obj': (name) => bufferOf(`mtllib ${name}\no ${name}\nusemtl ${name}\n${kTriangle}`),
   'proto.ply': (name) =>

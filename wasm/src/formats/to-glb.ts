@@ -17,7 +17,7 @@ export interface Companions {
    */
   read?: ((name: string) => Promise<Uint8Array | undefined>) | undefined;
   /**
-   * Called for each file that the model names, but that the GLB goes without: it was not found, or is an image that glTF does not have.
+   * Called for each file that the model names and the GLB goes without: it was not found, or glTF does not have such images.
    * Default: nothing is said.
    * @param reason  For people: "it was not found".
    */
@@ -42,7 +42,7 @@ export interface Companions {
  * The file is read in a worker of its own, which ends afterwards, within limits of time and memory, after a look at what it says of
  * itself. three.js is in the worker's script. Cost: that of the loader, linear in the vertices, and a tenth of a second for the worker.
  * @param bytes  The whole file. Its content says which format it is.
- * @throws {CagecastError} `badArgument` that says what the file is, or why it cannot be read, with the limit that it exceeds;
+ * @throws {CagecastError} `badArgument`: the file is of another kind, or cannot be read, with the reason, such as a limit;
  * `badOption`; `unsupported` if this host cannot start a worker.
  *
  * @example

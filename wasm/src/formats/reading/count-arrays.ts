@@ -19,9 +19,9 @@ const typed = [
 ] as const;
 
 /**
- * Counts all that is made from now on in this thread, which is for one file: what `new Float32Array(n)` and the like take, before they
- * take it, and what `push` adds to lists. No host can limit typed arrays, and few can limit anything else.
- * @returns what throws once that was more than the limit `memory`, even if a loader caught that.
+ * Counts the memory of this thread, for one file, from now on: `new Float32Array(n)` and the like before they take it, and `push`.
+ * No host can limit typed arrays, and few can limit anything else.
+ * @returns a check: it throws once the limit `memory` was exceeded, even if a loader caught the error then.
  */
 export function countArrays(limits: Pick<FormatLimits, 'memory'>): () => void {
   let bytes = 0;

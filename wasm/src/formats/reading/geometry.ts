@@ -130,7 +130,7 @@ function flip(uvs: Float32Array): void {
 }
 
 /**
- * The vertices that kept triangles have, in the order in which they come to them. Those of others are all one.
+ * The vertices of kept triangles, in their order. Corners of other triangles are at the first one.
  * @param isMerged  Whether vertices that are alike become one, too.
  */
 function gathered(

@@ -14,7 +14,7 @@ interface Composer {
   ): object;
 }
 
-/** Makes what loaders do in this thread, which is for one file, ask first whether that is within the limits. */
+/** Makes the loaders of this thread, for one file, ask first whether their next step is within the limits. */
 export function guardLoaders(limits: FormatLimits): void {
   const { triangulateShape } = ShapeUtils;
   ShapeUtils.triangulateShape = (contour, holes) => {
