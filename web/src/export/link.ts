@@ -1,8 +1,11 @@
+import { maxLayers } from 'cagecast/three/paint';
 import { type Choice, kMaxWeld, type Locks, type Rules } from '../state/choices';
 import { type ChosenShape, kDeforms } from '../state/deform';
 import type { Angle } from '../state/view-state';
 import { kLastStep, kLightNames, kModes, type Mode, type View } from '../state/view-state';
 
+/** A link may name as many morphs, with weights up to so much, as projects. */
+const [kMaxMorphs, kMaxWeight] = [10_000, 1e6];
 const kChoices = ['keep', 'exclude', 'always', 'out'] as const;
 
 /** A layer in a link. */
@@ -74,7 +77,7 @@ export function readLink(fragment: string): LinkState | undefined {
   const sample = words.get('sample');
   if (!sample) return undefined;
   const mode = words.get('view') as Mode;
-  const layers = words.getAll('layer');
+  const layers = words.getAll('layer').slice(0, maxLayers);
   return {
     sample,
     layers: layers.length > 0 ? layers.filter((text) => text !== 'none').map(readLayer) : undefined,
@@ -115,9 +118,10 @@ function readShape(words: URLSearchParams): ChosenShape | undefined {
   const [deform = '', amount = '', alone] = (words.get('deform') ?? '').split(',');
   const known = kDeforms.find((name) => name === deform);
   const far = Math.abs(Number(amount)) <= 1 ? Number(amount) : 0;
-  const morphs = words.getAll('morph').flatMap((text): [string, number][] => {
+  const given = words.getAll('morph').slice(0, kMaxMorphs);
+  const morphs = given.flatMap((text): [string, number][] => {
     const [, weight, name] = /^([^,]+),(.+)$/s.exec(text) ?? [];
-    return name !== undefined && Number.isFinite(Number(weight)) ? [[name, Number(weight)]] : [];
+    return name !== undefined && Math.abs(Number(weight)) <= kMaxWeight ? [[name, Number(weight)]] : [];
   });
   return (known && far !== 0) || morphs.length > 0
     ? { deform: known ?? kDeforms[0], amount: known ? far : 0, cage: alone !== 'alone', morphs: new Map(morphs) }
