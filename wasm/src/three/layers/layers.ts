@@ -244,8 +244,8 @@ export class Layers extends Emitter<{
   }
 
   /**
-   * Puts saved layers and their base tint in the place of those that there are, as one step. Their images may have 134 million pixels
-   * together, which are 512 MiB: no less than `save` writes. Sizes are read before any of them is decoded, one after the other.
+   * Puts saved layers and their base tint in the place of those that there are, as one step. Their images have at
+   * most 2048 × 2048 pixels, as `save` writes them. Sizes are read before any of them is decoded, one after the other.
    * @throws {CagecastError} `badArgument` that names the layer, the value and the limit, if it is not what `save` returned; `badOption` for
    * a style that is wrong, or a region that the cage does not have. Then nothing is changed.
    */

@@ -2,10 +2,6 @@ import { imageSize } from '../../gltf/image-file.js';
 import { asStored, fromDataUrl } from '../canvas.js';
 import { kPaint, notA, wrong } from '../errors.js';
 import { maxCompositeSize } from './composite.js';
-import { maxLayers } from './stack.js';
-
-/** Pixels that the images of saved layers may have together, which are 512 MiB: `save` writes two images for a layer, and no larger ones. */
-export const maxSavedPixels = 2 * maxLayers * maxCompositeSize ** 2;
 
 /** An image that is not decoded yet. */
 export interface SavedImage {
@@ -15,32 +11,24 @@ export interface SavedImage {
   pixels: number;
 }
 
-/** Reads images of saved layers, which anybody may have written: a few bytes can stand for gigabytes, so that first all sizes are read. */
-export class SavedImages {
-  #pixels = 0;
-
-  /**
-   * Reads how large an image says to be, and counts it.
-   * @param side  The pixels along each side that it must have. Default: any.
-   * @throws {CagecastError} `badArgument` that names the image, its pixels and the limit.
-   */
-  read(url: unknown, name: string, side?: number): SavedImage {
-    if (typeof url !== 'string') throw notA('the data URL of an image', name, url, kPaint);
-    const { bytes, type } = bytesOf(url, name);
-    const size = imageSize(bytes);
-    if (!size) throw wrong(`${name} cannot be read: it does not say how many pixels it has`, kPaint);
-    const { width, height } = size;
-    const has = `${name} has ${counted(width)} × ${counted(height)} pixels`;
-    if (side !== undefined && (width !== side || height !== side))
-      throw wrong(`${has}, not ${side} × ${side} as its painting`, kPaint);
-    this.#pixels += width * height;
-    if (this.#pixels > maxSavedPixels)
-      throw wrong(
-        `${has}; up to it, the images have ${counted(this.#pixels)}, more than ${counted(maxSavedPixels)}`,
-        kPaint,
-      );
-    return { name, file: new Blob([bytes], { type }), pixels: width * height };
-  }
+/**
+ * Reads how large an image of a saved layer says to be, which anybody may have written: a few bytes can stand for gigabytes. `save` writes
+ * none of more than 2048 × 2048, so that those of all layers take 512 MiB at most, two for each.
+ * @param side  The pixels along each side that it must have. Default: any.
+ * @throws {CagecastError} `badArgument` that names the image, its pixels and the limit.
+ */
+export function readImage(url: unknown, name: string, side?: number): SavedImage {
+  if (typeof url !== 'string') throw notA('the data URL of an image', name, url, kPaint);
+  const { bytes, type } = bytesOf(url, name);
+  const size = imageSize(bytes);
+  if (!size) throw wrong(`${name} cannot be read: it does not say how many pixels it has`, kPaint);
+  const { width, height } = size;
+  const has = `${name} has ${counted(width)} × ${counted(height)} pixels`;
+  if (side !== undefined && (width !== side || height !== side))
+    throw wrong(`${has}, not ${side} × ${side} as its painting`, kPaint);
+  if (Math.max(width, height) > maxCompositeSize)
+    throw wrong(`${has}, more than ${maxCompositeSize} × ${maxCompositeSize}`, kPaint);
+  return { name, file: new Blob([bytes], { type }), pixels: width * height };
 }
 
 /** Decodes an image. @throws {CagecastError} `badArgument` that names it. */

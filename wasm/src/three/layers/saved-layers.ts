@@ -11,7 +11,7 @@ import { type Layer, plainStyle, readStyle, type Sheet, type Style } from './lay
 import { sidesOf } from './layer-pass.js';
 import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';
 import { checkRegion, type Regions } from './regions.js';
-import { decoded, type SavedImage, SavedImages } from './saved-images.js';
+import { decoded, readImage, type SavedImage } from './saved-images.js';
 import { maxLayers } from './stack.js';
 
 const kVersion = 1;
@@ -108,12 +108,11 @@ export async function loadLayers(
   checkColor('saved.baseTint', baseTint);
   const placeOf = (i: number): string => `saved.layers[${i}]`;
   const styles = Array.from(layers, (layer, i) => checkLayer(layer, placeOf(i), regions));
-  const images = new SavedImages();
   const checked = layers.map(({ name, painting, image, normal }, i): CheckedLayer => {
     return {
       ...{ name, painting, style: styles[i]! },
-      image: images.read(image, `${placeOf(i)}.image`, painting),
-      normal: normal === undefined ? undefined : images.read(normal, `${placeOf(i)}.normal`),
+      image: readImage(image, `${placeOf(i)}.image`, painting),
+      normal: normal === undefined ? undefined : readImage(normal, `${placeOf(i)}.normal`),
     };
   });
   const loaded: LoadedLayer[] = [];
