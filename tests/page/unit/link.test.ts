@@ -33,6 +33,11 @@ test('a link restores what it was written from', () => {
   const plain = { ...state, layers: undefined, shape: undefined, angle: undefined, locks: {}, view: kFirstView };
   assert.deepEqual(readLink(writeLink(plain)), plain);
   assert.deepEqual(readLink(writeLink({ ...plain, layers: [] }))!.layers, []);
+  const closer = { ...state, angle: { turn: 30, tilt: 80, near: 2, at: [0.25, -0.5, 0] as const } };
+  assert.deepEqual(readLink(writeLink(closer)), closer);
+  const { at: _, ...middle } = closer.angle;
+  for (const wrong of ['0.25,-0.5,7', '0.25,-0.5', 'x,0,0', '0,0,Infinity'])
+    assert.deepEqual(readLink(`#sample=human&angle=30,80,2,${wrong}`)!.angle, middle);
   assert.equal(
     writeLink({ ...plain, shape: { deform: 'bend', amount: 0, cage: true, morphs: new Map() } }),
     'sample=human&rules=paper&threshold=0.35&borders=cut&weld=0.000001&view=compare&split=0.500',

@@ -63,8 +63,11 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
   if (shape && shape.amount !== 0)
     words.set('deform', [shape.deform, Number(shape.amount.toFixed(3)), ...(shape.cage ? [] : ['alone'])].join(','));
   for (const [name, weight] of shape?.morphs ?? []) words.append('morph', `${Number(weight.toFixed(3))},${name}`);
-  if (angle)
-    words.set('angle', [angle.turn.toFixed(3), angle.tilt.toFixed(3), angle.near.toFixed(4)].map(Number).join(','));
+  if (angle) {
+    const at = angle.at?.map((value) => value.toFixed(4)) ?? [];
+    const numbers = [angle.turn.toFixed(3), angle.tilt.toFixed(3), angle.near.toFixed(4), ...at].map(Number);
+    words.set('angle', numbers.join(','));
+  }
   return words.toString().replaceAll('%2F', '/').replaceAll('%2C', ',');
 }
 
@@ -134,10 +137,9 @@ function readLocks(words: URLSearchParams, lock: Choice): Locks {
 }
 
 function readAngle(word: string | null): Angle | undefined {
-  const [turn = NaN, tilt = NaN, near = NaN] = (word ?? '').split(',').map(Number);
-  return Math.abs(turn) <= 360 && tilt >= 0 && tilt <= 180 && near > 0 && near < Infinity
-    ? { turn, tilt, near }
-    : undefined;
+  const [turn = NaN, tilt = NaN, near = NaN, x = NaN, y = NaN, z = NaN] = (word ?? '').split(',').map(Number);
+  if (!(Math.abs(turn) <= 360 && tilt >= 0 && tilt <= 180 && near > 0 && near < Infinity)) return undefined;
+  return { turn, tilt, near, ...([x, y, z].every((value) => Math.abs(value) <= 1) && { at: [x, y, z] as const }) };
 }
 
 const readColor = (word: string): string | undefined => (/^[0-9a-f]{6}$/i.test(word) ? `#${word}` : undefined);
