@@ -1,4 +1,5 @@
 import { dirname } from 'node:path';
+import { inspect } from 'node:util';
 
 /** Why a job failed, in the words of the dead-letter list and the metrics. */
 export const reasons = {
@@ -9,7 +10,7 @@ export const reasons = {
   lost: 'it was done, but its output is gone or was changed since: submit it again',
   refused: 'a path outside the folders, a link, or a server that is not allowed',
   network: 'a server, the network or a disk did not answer as it should; may pass',
-  crash: 'the process that did the job died; tried again until it has died three times',
+  crash: 'the process that did the job died, or was not heard of; tried again until it has died three times',
   unexpected: 'an error of the program: please report it',
 } as const;
 
@@ -65,9 +66,16 @@ const troubles = [
 const noConnection =
   /ECONNREFUSED|ECONNRESET|ETIMEDOUT|ENOTFOUND|EAI_AGAIN|EHOSTUNREACH|ENETUNREACH|Connection is closed|Stream isn't writeable/;
 
+/** What can be read of anything that was thrown. Codes of BullMQ are numbers, and anybody may throw anything: what is no text is ''. */
+function partsOf(error: unknown): { message: string; code: string; name: string; path: string; cause: unknown } {
+  const { message, code, name, path, cause } = Object(error) as Record<string, unknown>;
+  const textOf = (value: unknown): string => (typeof value === 'string' ? value : '');
+  return { message: textOf(message), code: textOf(code), name: textOf(name), path: textOf(path), cause };
+}
+
 /** What keeps Redis from answering, in a plain sentence; undefined if it is nothing that passes. */
 export function redisTrouble(error: unknown): string | undefined {
-  const { message = '', code = '' } = error as NodeJS.ErrnoException;
+  const { message, code } = partsOf(error);
   const known = troubles.find(({ pattern }) => pattern.test(message));
   if (known) return known.text;
   return noConnection.test(`${code} ${message}`)
@@ -102,24 +110,34 @@ const sentences: Record<string, string> = {
   ERR_STRING_TOO_LONG: 'has a line of more than 500 MB',
 };
 
+const kDeepest = 10; // causes of causes
+const sentenceOf = (word: string): string | undefined => (Object.hasOwn(sentences, word) ? sentences[word] : undefined);
+
 /** What an error of the system or of a server means, to be put after the name of what it is about. */
-export function meaningOf(error: unknown): string {
-  const { code, name, cause } = error as NodeJS.ErrnoException & { cause?: unknown };
-  if (cause instanceof Error) return meaningOf(cause);
-  return sentences[code ?? ''] ?? sentences[name] ?? `cannot be used (${code ?? name})`;
+export function meaningOf(error: unknown, depth = 0): string {
+  const { code, name, cause } = partsOf(error);
+  if (cause instanceof Error && depth < kDeepest) return meaningOf(cause, depth + 1);
+  return sentenceOf(code) ?? sentenceOf(name) ?? `cannot be used (${code || name || 'for a reason that is not known'})`;
 }
 
-/** Any error as a failure. */
+// What BullMQ itself says of jobs that its workers have, or had.
+const lostLock = /^(Missing lock|Lock mismatch|could not renew lock) for job\b/;
+const noJob = /^Missing key for job\b/;
+
+/** Any error, and anything else that was thrown, as a failure. */
 export function asFailure(error: unknown): Failure {
   if (error instanceof Failure) return error;
   const trouble = redisTrouble(error);
   if (trouble !== undefined) return new Failure('network', trouble);
-  const text = error instanceof Error ? error.message : String(error);
+  const { message, code, path } = partsOf(error);
+  const text = error instanceof Error ? message : typeof error === 'string' ? error : inspect(error);
   if (/^(NOAUTH|WRONGPASS|NOPERM)\b/.test(text))
     return new Failure('refused', 'Redis refuses the user or the password of REDIS_URL');
-  const { code = '', path } = error as NodeJS.ErrnoException;
+  if (lostLock.test(text))
+    return new Failure('crash', 'a job took longer than its lock: another worker may do it too (CATALOGUE_LOCK)');
+  if (noJob.test(text)) return new Failure('missing', 'the job was removed from Redis before it was done');
   if (code.startsWith('ERR_PARSE_ARGS')) return new Failure('broken', text);
-  if (code in sentences) return new Failure('missing', `${path ?? 'a file or server'}: ${meaningOf(error)}`);
+  if (sentenceOf(code)) return new Failure('missing', `${path || 'a file or server'}: ${meaningOf(error)}`);
   return new Failure('unexpected', text);
 }
 
@@ -128,8 +146,8 @@ export function reasonOf(message: unknown): Reason {
   const text = String(message ?? '');
   const [word = ''] = text.split(':', 1);
   if (Object.hasOwn(reasons, word)) return word as Reason;
-  // What BullMQ itself says of a job that stalled too often.
-  return /stalled/.test(text) ? 'crash' : 'unexpected';
+  // What BullMQ itself says of a job that stalled too often, or whose lock was lost.
+  return /stalled/.test(text) || lostLock.test(text) ? 'crash' : 'unexpected';
 }
 
 // What nobody caught ends a program of this folder with one sentence: a trace could show addresses, and says nobody what to do.

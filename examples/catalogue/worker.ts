@@ -114,8 +114,6 @@ const tell = (text: string) => console.error(`${new Date().toISOString()} ${with
 worker.on('error', (error) => {
   const trouble = redisTrouble(error);
   if (trouble !== undefined) tellTrouble(trouble);
-  else if (/lock/i.test(error.message))
-    tell('a job took longer than its lock: another worker may do it too (CATALOGUE_LOCK)');
   else tell(asFailure(error).message);
 });
 worker.on('failed', (job, { message }) => {

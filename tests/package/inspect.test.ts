@@ -31,6 +31,20 @@ const diagonal = (() => {
 })();
 
 describe('inspect', () => {
+  test('UVs that go round the texture many times cost no more than others', () => {
+    const cpu = (uvs: Float32Array) => {
+      const from = process.cpuUsage();
+      look({ uvs });
+      const { user, system } = process.cpuUsage(from);
+      return user + system;
+    };
+    cpu(cage.uvs); // compiles
+    const usual = cpu(cage.uvs);
+    // Each triangle covers the texture a hundred times, and from -8 to 9 they do not count as pixels.
+    const vast = cpu(cage.uvs.map((_, i) => 17 * ((Math.floor(i / 2) * (i % 2 ? 0.618 : 0.382)) % 1) - 8));
+    assert.ok(vast < 10 * usual, `${vast} µs, ${usual} for others`);
+  });
+
   test('each segment says how sure its verdict is, as the transfer does, and the surest threshold is far from all coverages', () => {
     const { segmentStats } = transfer(cage, target);
     const { segments } = look({});

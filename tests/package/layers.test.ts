@@ -1,6 +1,6 @@
 // Layers and painters as far as nothing is drawn: steps that can be undone, and what is refused.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
+import { after, before, describe, test } from 'node:test';
 import type { LoadedCage } from 'cagecast/three';
 import {
   createLayers,
@@ -12,6 +12,8 @@ import {
   type StickerPicture,
 } from 'cagecast/three/paint';
 import { Group, Mesh, SphereGeometry, Texture } from 'three';
+import { imageSize } from '../../wasm/src/gltf/image-file.js';
+import { jpegOf, pngOf, webpOf } from '../support/files/costly.js';
 import { allocatedBy, renderer } from '../support/no-renderer.js';
 
 const texture = new Texture();
@@ -159,10 +161,13 @@ test('what is no saved layers is refused, and changes nothing', async () => {
     [{ version: 1, layers: Array(17).fill(layer) }, 'saved.layers are 17, more than 16'],
     [{ version: 1, layers: [layer, {}] }, 'saved.layers[1].name is undefined, not a name'],
     [{ version: 1, layers: [{ ...layer, painting: 3 }] }, 'saved.layers[0].painting is 3, not 1024 or 2048'],
-    [{ version: 1, layers: [{ ...layer, tint: 'red' }] }, 'tint is "red", not a colour such as #ff8800'],
+    [
+      { version: 1, layers: [{ ...layer, tint: 'red' }] },
+      'saved.layers[0].tint is "red", not a colour such as #ff8800',
+    ],
     [
       { version: 1, layers: [{ ...layer, region: 'lips' }] },
-      'region is "lips", which is not known; give createLayers the cage',
+      'saved.layers[0].region is "lips", which is not known; give createLayers the cage',
     ],
     [
       { version: 1, layers: [{ ...layer, image: 'a.png' }] },
@@ -267,3 +272,152 @@ test('what is refused names the argument and its value, changes nothing and leav
     assert.throws(call, { code: 'badArgument', message: 'That layer was removed.' });
   assert.deepEqual([layers.list, layers.canUndo, layers.history.held], [[layer], false, false]);
 });
+
+describe('saved layers that anybody may have written', () => {
+  const dataUrl = (bytes: Uint8Array, type = 'image/webp') =>
+    `data:${type};base64,${Buffer.from(bytes).toString('base64')}`;
+  const small = dataUrl(pngOf(64, 64), 'image/png');
+  const savedOf = (...layers: object[]) =>
+    ({ version: 1, layers: layers.map((layer) => ({ name: 'a', image: small, ...layer })) }) as never;
+
+  /** What decodes images: here none are, but it is counted how many at the same time. */
+  let [decoding, atOnce, open, fails] = [0, 0, 0, -1];
+  const bitmapOf = async (file: Blob) => {
+    atOnce = Math.max(atOnce, ++decoding);
+    const { width, height } = imageSize(new Uint8Array(await file.arrayBuffer()))!;
+    --decoding;
+    if (fails-- === 0) throw new Error('damaged');
+    ++open;
+    return { width, height, close: () => void --open };
+  };
+  before(() => Object.assign(globalThis, { createImageBitmap: bitmapOf }));
+  after(() => Reflect.deleteProperty(globalThis, 'createImageBitmap'));
+
+  /** That they are refused, nothing is decoded, and the layers that were there stay. */
+  async function refused(saved: never, message: RegExp) {
+    const layers = createLayers({ renderer });
+    layers.add(texture, { name: 'mine' });
+    layers.setBaseTint('#ff0000');
+    await assert.rejects(layers.load(saved), { name: 'CagecastError', message });
+    assert.deepEqual(
+      [namesOf(layers), layers.baseTint, layers.undo()],
+      [['mine'], '#ff0000', 'changing the base tint'],
+    );
+    assert.equal(open, 0);
+  }
+
+  test('images of more pixels than there is room for are refused by what they say, whatever their format', async () => {
+    const most = 'more than 2048 × 2048$';
+    const bombs: Record<string, [bytes: Uint8Array, type: string, size: string]> = {
+      webp: [webpOf(16_383, 16_383), 'image/webp', '16,383 × 16,383'],
+      png: [pngOf(30_000, 30_000), 'image/png', '30,000 × 30,000'],
+      jpeg: [jpegOf(65_500, 65_500), 'image/jpeg', '65,500 × 65,500'],
+      gif: [Buffer.from('GIF89a\xff\xff\xff\xff', 'latin1'), 'image/gif', '65,535 × 65,535'],
+      bmp: [bmpOf(40_000, -40_000), 'image/bmp', '40,000 × 40,000'],
+      ico: [icoOf(pngOf(64, 64), pngOf(30_000, 30_000)), 'image/x-icon', '30,000 × 30,000'],
+      avif: [avifOf([64, 64], [50_000, 50_000]), 'image/avif', '50,000 × 50,000'],
+      'png that lies of its type': [pngOf(30_000, 30_000), 'image/webp', '30,000 × 30,000'],
+    };
+    for (const [name, [bytes, type, size]] of Object.entries(bombs)) {
+      const image = dataUrl(bytes, type);
+      const said = new RegExp(`saved\\.layers\\[1\\]\\.image has ${size} pixels, ${most}`);
+      await refused(savedOf({}, { image }), said);
+      await refused(
+        savedOf({}, { image: small, normal: image }),
+        new RegExp(`saved\\.layers\\[1\\]\\.normal has ${size}`),
+      );
+      assert.ok(bytes.length < 500_000, name);
+    }
+    await refused(
+      savedOf({ image: dataUrl(Buffer.from('<svg/>'), 'image/svg+xml') }),
+      /\[0\]\.image cannot be read: .*how many pixels/,
+    );
+    await refused(
+      savedOf({ image: dataUrl(webpOf(2049, 1)) }),
+      /saved\.layers\[0\]\.image has 2,049 × 1 pixels, more than 2048 × 2048$/,
+    );
+  });
+
+  test('the image of a painting has its size', async () => {
+    for (const [width, height] of [
+      [16_383, 4096],
+      [1024, 1023],
+      [2048, 2048],
+      [1, 1],
+    ] as const)
+      await refused(
+        savedOf({ painting: 1024, image: dataUrl(webpOf(width, height)) }),
+        new RegExp(`\\[0\\]\\.image has ${width.toLocaleString('en')} × .* pixels, not 1024 × 1024 as its painting`),
+      );
+  });
+
+  test('values out of range, of another type or too long are refused with the layer, the value and the limit', async () => {
+    const cases: [layer: object, message: RegExp][] = [
+      [{ opacity: 1.5 }, /saved\.layers\[1\]\.opacity is 1\.5, not a number from 0 to 1/],
+      [{ opacity: '0.5' }, /\[1\]\.opacity is "0\.5", not a number/],
+      [{ opacity: null }, /\[1\]\.opacity is null/],
+      [{ tint: ['#ffffff'] }, /\[1\]\.tint is of type Array, not a colour/],
+      [{ blend: 'burn' }, /\[1\]\.blend is "burn", not one of/],
+      [{ emissive: 1e9 }, /\[1\]\.emissive is 1000000000, not a number from 0 to 10/],
+      [{ roughness: -1 }, /\[1\]\.roughness is -1/],
+      [{ normalScale: '1' }, /\[1\]\.normalScale is "1", not a finite number/],
+      [{ region: 'lips' }, /\[1\]\.region is "lips", which is not known/],
+      [{ visible: 1 }, /\[1\]\.visible is 1, not true or false/],
+      [{ painting: 4096 }, /\[1\]\.painting is 4096, not 1024 or 2048/],
+      [{ name: 7 }, /\[1\]\.name is 7, not a name/],
+      [{ name: 'x'.repeat(5000) }, /\[1\]\.name has 5000 characters, more than 1000/],
+      [{ image: 7 }, /\[1\]\.image is 7, not the data URL of an image/],
+      [{ image: {} }, /\[1\]\.image is of type Object, not the data URL/],
+      [{ normal: null }, /\[1\]\.normal is null, not the data URL/],
+    ];
+    for (const [layer, message] of cases) await refused(savedOf({}, layer), message);
+    await refused(savedOf(...Array.from({ length: 17 }, () => ({}))), /saved\.layers are 17, more than 16/);
+    await refused({ version: 1, layers: [null] } as never, /saved\.layers\[0\]\.name is undefined/);
+  });
+
+  test('they are decoded one after the other; if one cannot be, nothing is left of the others', async () => {
+    atOnce = 0;
+    const three = savedOf({ normal: small }, {}, {});
+    fails = 3;
+    await refused(three, /saved\.layers\[2\]\.image cannot be read: damaged/);
+    fails = 1;
+    await refused(three, /saved\.layers\[0\]\.normal cannot be read: damaged/);
+    const layers = createLayers({ renderer });
+    await layers.load(three);
+    assert.deepEqual([layers.list.length, atOnce, open], [3, 1, 4]);
+    layers.dispose();
+    assert.equal(open, 0);
+  });
+});
+
+/** The beginnings of images that say to have as many pixels. */
+function bmpOf(width: number, height: number): Buffer {
+  const bytes = Buffer.alloc(54);
+  bytes.write('BM');
+  [40, width, height].forEach((value, at) => bytes.writeInt32LE(value, 14 + 4 * at));
+  return bytes;
+}
+
+function icoOf(...pictures: Buffer[]): Buffer {
+  const head = Buffer.alloc(6 + 16 * pictures.length);
+  head.writeUInt16LE(1, 2);
+  head.writeUInt16LE(pictures.length, 4);
+  let at = head.length;
+  for (const [n, { length }] of pictures.entries()) {
+    head.writeUInt32LE(at, 6 + 16 * n + 12);
+    at += length;
+  }
+  return Buffer.concat([head, ...pictures]);
+}
+
+function avifOf(...sizes: [width: number, height: number][]): Buffer {
+  const boxes = sizes.map(([width, height]) => {
+    const box = Buffer.alloc(20);
+    box.writeUInt32BE(20);
+    box.write('ispe', 4);
+    box.writeUInt32BE(width, 12);
+    box.writeUInt32BE(height, 16);
+    return box;
+  });
+  return Buffer.concat([Buffer.from('\0\0\0\x14ftypavif\0\0\0\0avif', 'latin1'), ...boxes]);
+}

@@ -51,6 +51,7 @@ async function tab(browser: FakeBrowser, memory: Partial<Flags> = {}, fragment =
   const project = new Project(session, scenePart(session, samples, loader));
   const away = new PutAwayLayers(session, stack, edits);
   const images = {
+    check: async () => {},
     load: async (file: File) => ({ ...paintOf(file.name), file }),
     nameOf: () => '',
     pack: never,

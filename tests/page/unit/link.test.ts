@@ -1,7 +1,10 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { maxLayers } from 'cagecast/three/paint';
 import { type LinkState, readLink, writeLink } from '../../../web/src/export/link';
+import { Strokes } from '../../../web/src/export/strokes';
 import { kFirstView } from '../../../web/src/state/view-state';
+import { webpOf } from '../../support/files/costly';
 
 const state: LinkState = {
   sample: 'human',
@@ -30,10 +33,39 @@ test('a link restores what it was written from', () => {
   const plain = { ...state, layers: undefined, shape: undefined, angle: undefined, locks: {}, view: kFirstView };
   assert.deepEqual(readLink(writeLink(plain)), plain);
   assert.deepEqual(readLink(writeLink({ ...plain, layers: [] }))!.layers, []);
+  const closer = { ...state, angle: { turn: 30, tilt: 80, near: 2, at: [0.25, -0.5, 0] as const } };
+  assert.deepEqual(readLink(writeLink(closer)), closer);
+  const { at: _, ...middle } = closer.angle;
+  for (const wrong of ['0.25,-0.5,7', '0.25,-0.5', 'x,0,0', '0,0,Infinity'])
+    assert.deepEqual(readLink(`#sample=human&angle=30,80,2,${wrong}`)!.angle, middle);
   assert.equal(
     writeLink({ ...plain, shape: { deform: 'bend', amount: 0, cage: true, morphs: new Map() } }),
     'sample=human&rules=paper&threshold=0.35&borders=cut&weld=0.000001&view=compare&split=0.500',
   );
+});
+
+test('a link has no more layers than the page, and no weights that are out of range', () => {
+  const many = readLink(`#sample=human${'&layer=checker'.repeat(20_000)}${'&morph=1,a'.repeat(20_000)}&morph=1e9,b`)!;
+  assert.equal(many.layers!.length, maxLayers);
+  assert.deepEqual([...many.shape!.morphs], [['a', 1]]);
+  assert.equal(readLink('#sample=human&morph=1e9,b&morph=-Infinity,c')!.shape, undefined);
+});
+
+test('strokes of a link have the sizes that the page writes, and are damaged or decoded else', async () => {
+  const textOf = (bytes: Buffer) => `strokes:${bytes.toString('base64url')}`;
+  for (const [width, height] of [
+    [16_383, 4096],
+    [512, 256],
+    [1024, 1024],
+    [1, 1],
+  ] as const)
+    await assert.rejects(Strokes.check(textOf(webpOf(width, height))), {
+      message: `its strokes have ${width.toLocaleString('en')} × ${height.toLocaleString('en')} pixels, not 512 × 512 or 256 × 256`,
+    });
+  for (const size of [256, 512]) assert.ok((await Strokes.check(textOf(webpOf(size, size)))) instanceof File);
+  for (const text of ['strokes:', 'strokes:%%%', 'strokes:AAAA', textOf(Buffer.from('RIFF'))])
+    assert.equal(await Strokes.check(text), undefined);
+  await assert.rejects(Strokes.check(textOf(Buffer.from('GIF89a\xff\xff\xff\xff', 'latin1'))), /65,535 × 65,535/);
 });
 
 test('of a link that is old, cut short or edited by hand, what is wrong has its default', () => {

@@ -57,6 +57,8 @@ export interface SyncOptions {
 
 let starting: Promise<void> | undefined;
 let compiled: WebAssembly.Module | undefined;
+/** An instance for the next call, which shows that the host can run it. */
+let first: CagesModule | undefined;
 
 /**
  * Loads the WebAssembly module, `cagecast-cages.wasm`. All calls share it, and the options of the first count.
@@ -74,7 +76,9 @@ export function init(options: InitOptions = {}): Promise<void> {
 
 async function start(options: InitOptions): Promise<void> {
   // The build inserts the file name as a literal, so that bundlers find the file.
-  compiled = await (givenModule(options) ?? compileFile(new URL(CAGECAST_WASM, import.meta.url)));
+  const module = await (givenModule(options) ?? compileFile(new URL(CAGECAST_WASM, import.meta.url)));
+  first = make(module);
+  compiled = module;
 }
 
 /** As `makeCage` of `cagecast/cages`. Needs `init`. */
@@ -186,8 +190,16 @@ const exclusionsOf = (module: CagesModule): string[] => module.makeOptions()['ex
 
 function freshModule(fn: string): CagesModule {
   if (compiled === undefined) throw notInitialised(fn);
-  return instantiate<CagesModule>(createModule, compiled, 'makeCage');
+  try {
+    return first ?? make(compiled);
+  } catch (cause) {
+    throw failureOf(fn, cause);
+  } finally {
+    first = undefined;
+  }
 }
+
+const make = (module: WebAssembly.Module): CagesModule => instantiate<CagesModule>(createModule, module, 'makeCage');
 
 interface Call<Of extends Answer, Result> {
   fn: string;

@@ -58,6 +58,12 @@ export class CagecastError extends Error {
   }
 }
 
+/** Why WebAssembly did not start, for messages. A RangeError is a lack of memory, or of addresses, of which V8 sets aside more than it uses. */
+export function notStarted(what: string, cause: unknown): string {
+  const advice = '; in Node each module sets aside some 10 GB of addresses: raise ulimit -v';
+  return `this host cannot run ${what} (${String(cause)})${cause instanceof RangeError ? advice : ''}`;
+}
+
 /** Describes a value in a message: short values in full, others by their type. */
 export function show(value: unknown): string {
   if (typeof value === 'string') return JSON.stringify(value.length > 40 ? `${value.slice(0, 40)}…` : value);

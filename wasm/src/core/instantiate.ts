@@ -1,4 +1,4 @@
-import { CagecastError, show } from './error.js';
+import { CagecastError, notStarted, show } from './error.js';
 
 /** Options of `init`. */
 export interface InitOptions {
@@ -34,15 +34,15 @@ export function instantiate<Module extends object>(
   createModule(
     Object.assign(glue, {
       instantiateWasm(imports: WebAssembly.Imports, receive: (instance: WebAssembly.Instance) => void): object {
-        let made: WebAssembly.Instance;
         try {
-          made = new WebAssembly.Instance(module, imports);
+          const made = new WebAssembly.Instance(module, imports);
+          receive(made);
+          return made.exports;
         } catch (cause) {
-          // The glue keeps it to itself.
-          throw (failure = cause);
+          // Not thrown: the glue would print it, and keep it to itself.
+          failure = cause;
+          return {};
         }
-        receive(made);
-        return made.exports;
       },
     }),
   ).then(undefined, () => {});
@@ -68,6 +68,4 @@ export const failureOf = (fn: string, cause: unknown): CagecastError =>
 export const unsupported = (cause: unknown): CagecastError =>
   cause instanceof CagecastError
     ? cause
-    : new CagecastError('unsupported', 'init', `this host cannot run the WebAssembly module (${String(cause)})`, {
-        cause,
-      });
+    : new CagecastError('unsupported', 'init', notStarted('the WebAssembly module', cause), { cause });

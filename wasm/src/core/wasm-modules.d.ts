@@ -18,21 +18,21 @@ declare module '#wasm-text' {
 
 /** Google's Draco decoder; its package has types for its main module only. */
 declare module 'draco3dgltf/draco_decoder_gltf_nodejs.js' {
-  export default function createDecoderModule(module: { wasmBinary: Uint8Array }): Promise<unknown>;
+  export default function createDecoderModule(module: object): Promise<unknown>;
 }
 
 declare module 'draco3dgltf/draco_decoder_gltf.wasm' {
-  const bytes: Uint8Array;
+  const bytes: Uint8Array<ArrayBuffer>;
   export default bytes;
 }
 
 /** Google's Draco encoder. */
 declare module 'draco3dgltf/draco_encoder_gltf_nodejs.js' {
-  export default function createEncoderModule(module: { wasmBinary: Uint8Array }): Promise<unknown>;
+  export default function createEncoderModule(module: object): Promise<unknown>;
 }
 
 declare module 'draco3dgltf/draco_encoder.wasm' {
-  const bytes: Uint8Array;
+  const bytes: Uint8Array<ArrayBuffer>;
   export default bytes;
 }
 

@@ -1,5 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import { type MeshoptView, meshoptView } from './checks/check-geometry.js';
+import { meshoptDecoder } from './meshopt.js';
 
 /** The numbers of an accessor. Those of glTF-Transform are such, too. */
 export interface AccessorData {
@@ -100,15 +101,13 @@ async function decodeViews(
   const bytesOf = ({ buffer, byteOffset = 0, byteLength }: Pick<MeshoptView, 'buffer' | 'byteOffset' | 'byteLength'>) =>
     buffers[buffer]?.subarray(byteOffset, byteOffset + byteLength) ?? new Uint8Array(0);
   if (!views.some(meshoptView)) return views.map(bytesOf);
-  // Only here, as its script compiles WebAssembly as soon as it runs.
-  const { MeshoptDecoder } = await import('meshoptimizer/decoder');
-  await MeshoptDecoder.ready;
+  const decoder = await meshoptDecoder();
   return views.map((view) => {
     const compressed = meshoptView(view);
     if (!compressed) return bytesOf(view);
     const { count, byteStride, mode, filter } = compressed;
     const bytes = new Uint8Array(count * byteStride);
-    MeshoptDecoder.decodeGltfBuffer(bytes, count, byteStride, bytesOf(compressed), mode, filter);
+    decoder.decodeGltfBuffer(bytes, count, byteStride, bytesOf(compressed), mode, filter);
     return bytes;
   });
 }

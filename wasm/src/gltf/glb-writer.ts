@@ -7,6 +7,7 @@ import { type MeshoptView, meshoptExtensions, meshoptView } from './checks/check
 import { isDataUri, stemOf } from './data-uri.js';
 import { imageType } from './image-file.js';
 import { InputError } from './input-error.js';
+import { meshoptEncoder } from './meshopt.js';
 import type { GltfFile } from './open-gltf.js';
 import { type Contents, imageFile, type NamedFile, packGltf } from './output/pack-gltf.js';
 import { subtract } from './output/ranges.js';
@@ -100,12 +101,7 @@ export class GlbWriter {
     const writer = new GlbWriter(file, form);
     writer.#mergeBuffers(file.buffers);
     await writer.#embedImages(file);
-    if (writer.#meshopt !== undefined) {
-      // Only here, as its script compiles WebAssembly as soon as it runs.
-      const { MeshoptEncoder } = await import('meshoptimizer/encoder');
-      await MeshoptEncoder.ready;
-      writer.#encoder = MeshoptEncoder;
-    }
+    if (writer.#meshopt !== undefined) writer.#encoder = await meshoptEncoder();
     return writer;
   }
 

@@ -51,11 +51,12 @@ export function ktx2Problem(bytes: Uint8Array): string | undefined {
   return width! % 4 === 0 && height! % 4 === 0 ? undefined : `it has ${width} × ${height} pixels, not multiples of 4`;
 }
 
-/** The pixels that a PNG, JPEG, WebP, KTX2 or AVIF file says to have; undefined if it does not say it. */
+/** The pixels that a PNG, JPEG, WebP, KTX2, AVIF, GIF, BMP or ICO file says to have: all that browsers read. Undefined if it does not say it. */
 export function imageSize(bytes: Uint8Array): { width: number; height: number } | undefined {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   try {
-    const [width, height] = sizes[imageType(bytes) ?? 'image/avif'](view);
+    const type = imageType(bytes);
+    const [width, height] = type ? sizes[type](view) : otherSize(view);
     return { width, height };
   } catch {
     return undefined; // it ends before
@@ -77,14 +78,47 @@ const sizes = {
     return [(bits & 0x3fff) + 1, ((bits >> 14) & 0x3fff) + 1];
   },
   'image/ktx2': (view: DataView): Size => [view.getUint32(20, true), view.getUint32(24, true)],
-  // The first box "ispe", which is in the header.
-  'image/avif': (view: DataView): Size => {
-    if (view.getUint32(4) !== 0x66747970) throw new RangeError('not AVIF'); // "ftyp"
-    let at = 8;
-    while (view.getUint32(at) !== 0x69737065) ++at;
-    return [view.getUint32(at + 8), view.getUint32(at + 12)];
-  },
 };
+
+/** What browsers read although glTF does not have it. @throws RangeError for all else. */
+function otherSize(view: DataView): Size {
+  const begin = view.getUint32(0);
+  if (view.getUint32(4) === 0x66747970) return avifSize(view); // "ftyp"
+  if (begin === 0x47494638) return [view.getUint16(6, true), view.getUint16(8, true)]; // "GIF8"
+  if (begin >>> 16 === 0x424d) return bitmapSize(view, 14); // "BM"
+  if (begin === 0x00000100 || begin === 0x00000200) return iconSize(view);
+  throw new RangeError('not an image');
+}
+
+/** The largest of the boxes "ispe", which are in the header: parts of a picture have some, too. */
+function avifSize(view: DataView): Size {
+  let largest: Size | undefined;
+  for (let at = 8; at + 16 <= view.byteLength; ++at) {
+    if (view.getUint32(at) !== 0x69737065) continue;
+    const size: Size = [view.getUint32(at + 8), view.getUint32(at + 12)];
+    if (!largest || size[0] * size[1] > largest[0] * largest[1]) largest = size;
+  }
+  if (!largest) throw new RangeError('no size');
+  return largest;
+}
+
+/** The header of a bitmap, of which the oldest kind has shorter numbers. Heights below zero count from the top. */
+function bitmapSize(view: DataView, at: number): Size {
+  if (view.getUint32(at, true) === 12) return [view.getUint16(at + 4, true), view.getUint16(at + 6, true)];
+  return [Math.abs(view.getInt32(at + 4, true)), Math.abs(view.getInt32(at + 8, true))];
+}
+
+/** The largest picture of an icon: each is a PNG or a bitmap. */
+function iconSize(view: DataView): Size {
+  let largest: Size = [0, 0];
+  for (let n = 0; n < view.getUint16(4, true); ++n) {
+    const at = view.getUint32(6 + 16 * n + 12, true);
+    const size: Size =
+      view.getUint32(at) === 0x89504e47 ? [view.getUint32(at + 16), view.getUint32(at + 20)] : bitmapSize(view, at);
+    if (size[0] * size[1] > largest[0] * largest[1]) largest = size;
+  }
+  return largest;
+}
 
 /** The frame header of a JPEG, after other segments. */
 function jpegSize(view: DataView): Size {

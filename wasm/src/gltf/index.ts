@@ -31,6 +31,8 @@ export {
   refineCage,
   withBaseColors,
 } from './document/document-cages.js';
+/** @internal */
+export { imageSize } from './image-file.js';
 export { type FileKind, type Format, fileKind } from './kinds.js';
 export type { LeftOut, PartsOption };
 

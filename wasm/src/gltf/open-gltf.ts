@@ -1,4 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
+import { CagecastError } from '../index.js';
 import { type AccessorData, decodeAccessors } from './accessors.js';
 import { checkGeometry, dracoOf } from './checks/check-geometry.js';
 import { checkRest } from './checks/check-rest.js';
@@ -61,6 +62,7 @@ export async function openGltf(
     return { path, json, buffers, accessors, readUri };
   } catch (error) {
     if (error instanceof InputError) throw error.in(path);
+    if (error instanceof CagecastError) throw error; // of this host, not of the file
     throw new InputError(`${path}: cannot be decoded (${firstLine(error)})`, { cause: error });
   }
 }

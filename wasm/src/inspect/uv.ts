@@ -84,16 +84,20 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
 /** Whether UVs are so far outside of 0 … 1 that they may be in pixels. */
 const areVast = (uvs: Float32Array): boolean => uvs.some((value) => value < -8 || value > 9);
 
+/** The most rows of the grid that triangles may have together. Cages have less than a million; a hostile one need not. */
+const kMostRows = 2 ** 23;
+
 /**
  * Counts, at the centres of a grid of pixels over the texture, which repeats, how many UV triangles use each.
  * A pixel on a shared edge belongs to one of its triangles alone: the edges of each are half open, as in rasterisers.
+ * Cost: a few steps for each row of a triangle, however long it is and however often it goes round the texture; where triangles have too
+ * many rows together, the grid is coarser.
  */
 function coverageOf(
   uvs: Float32Array,
   indices: ArrayLike<number>,
   areas: Float64Array,
 ): { used: number; share: number; layers: number } {
-  const counts = new Uint16Array(kSamples * kSamples);
   // UVs in pixels would take too long: then the whole layout is scaled to the grid.
   let [low, high] = [Infinity, -Infinity];
   for (const value of uvs) {
@@ -101,35 +105,84 @@ function coverageOf(
     if (value > high) high = value;
   }
   const vast = areVast(uvs);
-  const scale = vast ? (kSamples - 1) / (high - low) : kSamples;
-  const place = (value: number) => (vast ? value - low : value) * scale - 0.5;
+  const [from, extent] = vast ? [low, high - low] : [0, 1];
+  let rows = 0;
   for (let t = 0; t < areas.length; ++t) {
     if (areas[t] === 0) continue;
-    const x: number[] = [];
-    const y: number[] = [];
+    const [a, b, c] = [0, 1, 2].map((k) => uvs[2 * indices[3 * t + k]! + 1]!) as [number, number, number];
+    rows += ((Math.max(a, b, c) - Math.min(a, b, c)) / extent) * kSamples;
+  }
+  let samples = kSamples;
+  for (; rows > kMostRows && samples > 1; rows /= 2) samples /= 2;
+  const scale = vast ? (samples - 1) / extent : samples;
+  const grid = new RepeatingGrid(samples);
+  const [x, y] = [new Float64Array(3), new Float64Array(3)];
+  for (let t = 0; t < areas.length; ++t) {
+    if (areas[t] === 0) continue;
     for (let k = 0; k < 3; ++k) {
       const v = 2 * indices[3 * t + k]!;
-      x.push(place(uvs[v]!));
-      y.push(place(uvs[v + 1]!));
+      x[k] = (uvs[v]! - from) * scale - 0.5;
+      y[k] = (uvs[v + 1]! - from) * scale - 0.5;
     }
-    fill(x, y, (column, row) => {
-      const at = (((row % kSamples) + kSamples) % kSamples) * kSamples + (((column % kSamples) + kSamples) % kSamples);
-      if (counts[at]! < 65535) ++counts[at]!;
-    });
+    fill(x, y, grid);
   }
-  let [used, twice, layers] = [0, 0, 0];
-  for (const count of counts) {
-    if (count > 0) ++used;
-    if (count > 1) ++twice;
-    if (count > layers) layers = count;
-  }
-  return { used: vast ? 0 : used / counts.length, share: used > 0 ? twice / used : 0, layers };
+  const { used, twice, layers } = grid.counts();
+  return { used: vast ? 0 : used / samples ** 2, share: used > 0 ? twice / used : 0, layers };
 }
 
-/** Calls `pixel` for every whole point inside a triangle, row by row; of its edges, the left ones belong to it. */
-function fill(x: readonly number[], y: readonly number[], pixel: (column: number, row: number) => void): void {
-  const firstRow = Math.ceil(Math.min(...y));
-  const lastRow = Math.ceil(Math.max(...y)) - 1;
+/** Counts how often each pixel of a texture that repeats is covered by runs of pixels. */
+class RepeatingGrid {
+  /** By pixel, and one more in each row: how much more often it is covered than the pixel before it. */
+  readonly #steps: Int32Array;
+  /** By row: how often all of it is covered. */
+  readonly #whole: Float64Array;
+
+  constructor(readonly samples: number) {
+    this.#steps = new Int32Array((samples + 1) * samples);
+    this.#whole = new Float64Array(samples);
+  }
+
+  /** Covers pixels of a row, from one to before another. */
+  cover(row: number, from: number, to: number): void {
+    const { samples } = this;
+    const line = modulo(row, samples);
+    const rounds = Math.floor((to - from) / samples);
+    this.#whole[line]! += rounds;
+    const first = line * (samples + 1) + modulo(from, samples);
+    const last = first + (to - from) - rounds * samples;
+    const end = (line + 1) * (samples + 1) - 1;
+    ++this.#steps[first]!;
+    if (last <= end) --this.#steps[last]!;
+    else {
+      // Goes round.
+      --this.#steps[end]!;
+      ++this.#steps[line * (samples + 1)]!;
+      --this.#steps[last - samples]!;
+    }
+  }
+
+  /** How many pixels are covered, and more than once; and how often at most. */
+  counts(): { used: number; twice: number; layers: number } {
+    let [used, twice, layers] = [0, 0, 0];
+    for (let row = 0; row < this.samples; ++row) {
+      let count = this.#whole[row]!;
+      for (let column = 0; column < this.samples; ++column) {
+        count += this.#steps[row * (this.samples + 1) + column]!;
+        if (count > 0) ++used;
+        if (count > 1) ++twice;
+        if (count > layers) layers = count;
+      }
+    }
+    return { used, twice, layers };
+  }
+}
+
+const modulo = (value: number, by: number): number => ((value % by) + by) % by;
+
+/** Covers every whole point inside a triangle, row by row; of its edges, the left ones belong to it. */
+function fill(x: ArrayLike<number>, y: ArrayLike<number>, grid: RepeatingGrid): void {
+  const firstRow = Math.ceil(Math.min(y[0]!, y[1]!, y[2]!));
+  const lastRow = Math.ceil(Math.max(y[0]!, y[1]!, y[2]!)) - 1;
   for (let row = firstRow; row <= lastRow; ++row) {
     let [left, right] = [Infinity, -Infinity];
     for (let k = 0; k < 3; ++k) {
@@ -142,7 +195,7 @@ function fill(x: readonly number[], y: readonly number[], pixel: (column: number
       if (crossing < left) left = crossing;
       if (crossing > right) right = crossing;
     }
-    for (let column = Math.ceil(left); column < right; ++column) pixel(column, row);
+    if (Math.ceil(left) < Math.ceil(right)) grid.cover(row, Math.ceil(left), Math.ceil(right));
   }
 }
 

@@ -24,11 +24,11 @@ export function check(fits: boolean, name: string, value: unknown, what: string)
 
 /** @throws {CagecastError} `badOption` for a colour that is not six hexadecimal digits. */
 export const checkColor = (name: string, value: string): void =>
-  check(/^#[0-9a-f]{6}$/i.test(value), name, value, 'a colour such as #ff8800');
+  check(typeof value === 'string' && /^#[0-9a-f]{6}$/i.test(value), name, value, 'a colour such as #ff8800');
 
 /** @throws {CagecastError} `badOption` for a number below 0 or above 1. */
 export const checkShare = (name: string, value: number): void =>
-  check(value >= 0 && value <= 1, name, value, 'a number from 0 to 1');
+  check(typeof value === 'number' && value >= 0 && value <= 1, name, value, 'a number from 0 to 1');
 
 /** @throws {CagecastError} `badOption` for options that are no object, or one that a function does not have. */
 export function checkNames(fn: string, where: string, given: unknown, known: readonly string[]): void {

@@ -1,6 +1,6 @@
 import { Cache, type Light, type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from 'three';
 import type { GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { checkGltf } from '../gltf/checks/check-gltf.js';
+import { checkGltf, checkImage } from '../gltf/checks/check-gltf.js';
 import type { CagecastError } from '../index.js';
 
 /** A file, and where it came from. */
@@ -59,6 +59,11 @@ const asStored: ImageBitmapOptions = { premultiplyAlpha: 'none', colorSpaceConve
 /** Loads a picture as a texture as glTF has them. @throws Error that names the attribute and the address. */
 export async function loadPaint(address: string, signal: AbortSignal): Promise<Texture> {
   const { url, blob } = await fetchFile('paint', address, signal);
+  try {
+    checkImage(new Uint8Array(await blob.arrayBuffer()));
+  } catch (cause) {
+    throw new Error(`paint: ${url} cannot be read (${(cause as CagecastError).reason})`, { cause });
+  }
   // Not as an image element, whose addresses may not be allowed to be those of blobs.
   const picture = await createImageBitmap(blob, asStored).catch((cause: unknown) => {
     throw new Error(`paint: ${url} is not a picture (${(cause as Error).message})`, { cause });

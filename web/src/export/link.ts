@@ -1,8 +1,11 @@
+import { maxLayers } from 'cagecast/three/paint';
 import { type Choice, kMaxWeld, type Locks, type Rules } from '../state/choices';
 import { type ChosenShape, kDeforms } from '../state/deform';
 import type { Angle } from '../state/view-state';
 import { kLastStep, kLightNames, kModes, type Mode, type View } from '../state/view-state';
 
+/** A link may name as many morphs, with weights up to so much, as projects. */
+const [kMaxMorphs, kMaxWeight] = [10_000, 1e6];
 const kChoices = ['keep', 'exclude', 'always', 'out'] as const;
 
 /** A layer in a link. */
@@ -60,8 +63,11 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
   if (shape && shape.amount !== 0)
     words.set('deform', [shape.deform, Number(shape.amount.toFixed(3)), ...(shape.cage ? [] : ['alone'])].join(','));
   for (const [name, weight] of shape?.morphs ?? []) words.append('morph', `${Number(weight.toFixed(3))},${name}`);
-  if (angle)
-    words.set('angle', [angle.turn.toFixed(3), angle.tilt.toFixed(3), angle.near.toFixed(4)].map(Number).join(','));
+  if (angle) {
+    const at = angle.at?.map((value) => value.toFixed(4)) ?? [];
+    const numbers = [angle.turn.toFixed(3), angle.tilt.toFixed(3), angle.near.toFixed(4), ...at].map(Number);
+    words.set('angle', numbers.join(','));
+  }
   return words.toString().replaceAll('%2F', '/').replaceAll('%2C', ',');
 }
 
@@ -74,7 +80,7 @@ export function readLink(fragment: string): LinkState | undefined {
   const sample = words.get('sample');
   if (!sample) return undefined;
   const mode = words.get('view') as Mode;
-  const layers = words.getAll('layer');
+  const layers = words.getAll('layer').slice(0, maxLayers);
   return {
     sample,
     layers: layers.length > 0 ? layers.filter((text) => text !== 'none').map(readLayer) : undefined,
@@ -115,9 +121,10 @@ function readShape(words: URLSearchParams): ChosenShape | undefined {
   const [deform = '', amount = '', alone] = (words.get('deform') ?? '').split(',');
   const known = kDeforms.find((name) => name === deform);
   const far = Math.abs(Number(amount)) <= 1 ? Number(amount) : 0;
-  const morphs = words.getAll('morph').flatMap((text): [string, number][] => {
+  const given = words.getAll('morph').slice(0, kMaxMorphs);
+  const morphs = given.flatMap((text): [string, number][] => {
     const [, weight, name] = /^([^,]+),(.+)$/s.exec(text) ?? [];
-    return name !== undefined && Number.isFinite(Number(weight)) ? [[name, Number(weight)]] : [];
+    return name !== undefined && Math.abs(Number(weight)) <= kMaxWeight ? [[name, Number(weight)]] : [];
   });
   return (known && far !== 0) || morphs.length > 0
     ? { deform: known ?? kDeforms[0], amount: known ? far : 0, cage: alone !== 'alone', morphs: new Map(morphs) }
@@ -130,10 +137,9 @@ function readLocks(words: URLSearchParams, lock: Choice): Locks {
 }
 
 function readAngle(word: string | null): Angle | undefined {
-  const [turn = NaN, tilt = NaN, near = NaN] = (word ?? '').split(',').map(Number);
-  return Math.abs(turn) <= 360 && tilt >= 0 && tilt <= 180 && near > 0 && near < Infinity
-    ? { turn, tilt, near }
-    : undefined;
+  const [turn = NaN, tilt = NaN, near = NaN, x = NaN, y = NaN, z = NaN] = (word ?? '').split(',').map(Number);
+  if (!(Math.abs(turn) <= 360 && tilt >= 0 && tilt <= 180 && near > 0 && near < Infinity)) return undefined;
+  return { turn, tilt, near, ...([x, y, z].every((value) => Math.abs(value) <= 1) && { at: [x, y, z] as const }) };
 }
 
 const readColor = (word: string): string | undefined => (/^[0-9a-f]{6}$/i.test(word) ? `#${word}` : undefined);

@@ -57,11 +57,7 @@ export function exportedPaint(
           const rest = isBase ? known.slice(1) : known;
           let paints: (Paint | undefined)[];
           try {
-            paints = await Promise.all(
-              rest.map(({ paint }) =>
-                Strokes.has(paint) ? Strokes.read(paint).catch(() => undefined) : opener.paint(paint),
-              ),
-            );
+            paints = await readPaints(rest, layers, opener);
           } catch (error) {
             return session.fail(error);
           }
@@ -82,6 +78,35 @@ export function exportedPaint(
       },
     },
   };
+}
+
+/**
+ * The paints of layers in a link, read one after the other; those that are damaged are left out.
+ * @param all  All layers of the link. @throws Error that names the layer, if its strokes have a size that this page does not write: nothing is decoded then.
+ */
+async function readPaints(
+  layers: readonly LinkedLayer[],
+  all: readonly LinkedLayer[],
+  opener: Opener,
+): Promise<(Paint | undefined)[]> {
+  const strokes = new Map<LinkedLayer, File | undefined>();
+  for (const layer of layers)
+    if (Strokes.has(layer.paint))
+      strokes.set(
+        layer,
+        await Strokes.check(layer.paint).catch((error: Error) => {
+          throw new Error(
+            `The layers of the link are left out. Of number ${all.indexOf(layer) + 1}, ${error.message}.`,
+          );
+        }),
+      );
+  const paints: (Paint | undefined)[] = [];
+  for (const layer of layers) {
+    const file = strokes.get(layer);
+    if (!strokes.has(layer)) paints.push(await opener.paint(layer.paint));
+    else paints.push(file && (await Strokes.read(layer.paint, file).catch(() => undefined)));
+  }
+  return paints;
 }
 
 function styleOf({ opacity, tint, blend, visible }: LinkedLayer): Partial<Style> {

@@ -9,6 +9,15 @@ const kQuality = 0.8;
 /** Characters of one layer in a link: messengers cut what is much longer. */
 const kMaxLength = 12_000;
 
+/** Bytes in base64 for addresses; undefined if they are not. */
+function bytesOf(text: string): Uint8Array<ArrayBuffer> | undefined {
+  try {
+    return Uint8Array.from(atob(text.replace(/-/g, '+').replace(/_/g, '/')), (letter) => letter.charCodeAt(0));
+  } catch {
+    return undefined;
+  }
+}
+
 /** Strokes and stickers as texts of links. */
 export class Strokes {
   readonly #renderer: WebGLRenderer | undefined;
@@ -45,10 +54,27 @@ export class Strokes {
   /** Whether a text of a link is of strokes. */
   static has = (text: string): boolean => text.startsWith(kPrefix) && text.length <= kMaxLength;
 
-  /** The paint of a text. @throws Error if it is damaged. */
-  static async read(text: string): Promise<Paint> {
-    const data = text.slice(kPrefix.length).replace(/-/g, '+').replace(/_/g, '/');
-    const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
-    return { ...(await loadPaint(new File([bytes], 'Painting', { type: 'image/webp' }))), linked: text };
+  /**
+   * The image of a text, and its size, which nothing is decoded for.
+   * @returns Undefined if it is damaged. @throws Error if it says to have other sizes than those that are written here.
+   */
+  static async check(text: string): Promise<File | undefined> {
+    const bytes = bytesOf(text.slice(kPrefix.length));
+    const { imageSize } = await import('cagecast/gltf');
+    const size = bytes && imageSize(bytes);
+    if (!size) return undefined;
+    const { width, height } = size;
+    if (width !== height || !kSizes.includes(width)) {
+      const [has, may] = [[[width, height]], kSizes.map((side) => [side, side])].map((sizes) =>
+        sizes.map(([w, h]) => `${w!.toLocaleString('en')} × ${h!.toLocaleString('en')}`).join(' or '),
+      );
+      throw new Error(`its strokes have ${has} pixels, not ${may}`);
+    }
+    return new File([bytes], 'Painting', { type: 'image/webp' });
+  }
+
+  /** The paint of a text. @param file  What `check` returned. @throws Error if it is damaged. */
+  static async read(text: string, file: File): Promise<Paint> {
+    return { ...(await loadPaint(file)), linked: text };
   }
 }

@@ -1,5 +1,5 @@
 // What the page needs for files that are not its own: it loads when there is one.
-import { checkGltf, checkImage, fileKind } from 'cagecast/gltf';
+import { checkGltf, checkImage, fileKind, imageSize } from 'cagecast/gltf';
 import { reasonOf } from '../state/wording';
 import { companionOf } from './file-paths';
 
@@ -22,6 +22,34 @@ export async function checkPicture(file: File): Promise<void> {
     checkImage(new Uint8Array(bytes));
   } catch (error) {
     throw new Error(`${file.name}: ${reasonOf(error)}`, { cause: error });
+  }
+}
+
+/** Pixels that the images and paintings of a project may have together, whatever its size: what its layers have at most as the page shows them. */
+const kMaxPixels = 2 ** 27;
+/** As `expansion` of `checkGltf`: how many times larger than its files they may be. */
+const kExpansion = 100;
+
+/**
+ * Refuses pictures that would take all memory together, before any of them is decoded.
+ * @param painted  The files of paintings, and their pixels.
+ * @throws Error that names the file, its pixels and the limit.
+ */
+export async function checkPictures(
+  files: readonly File[],
+  painted: { files: readonly File[]; pixels: number },
+): Promise<void> {
+  let pixels = painted.pixels;
+  // A file that is used again is decoded again, but its bytes count once.
+  const bytes = [...new Set([...files, ...painted.files])].reduce((sum, { size }) => sum + size, 0);
+  const most = Math.max(kMaxPixels, (kExpansion * bytes) / 4);
+  for (const file of files) {
+    await checkPicture(file);
+    const { width, height } = imageSize(new Uint8Array(await file.arrayBuffer())) ?? { width: 0, height: 0 };
+    pixels += width * height;
+    if (pixels <= most) continue;
+    const [w, h, all, limit] = [width, height, pixels, most].map((n) => Math.floor(n).toLocaleString('en'));
+    throw new Error(`${file.name}: it has ${w} × ${h} pixels; up to it, the layers have ${all}, more than ${limit}`);
   }
 }
 

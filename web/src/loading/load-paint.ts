@@ -36,7 +36,11 @@ async function decode(file: File): Promise<ImageBitmap> {
   if (shrink >= 1) return bitmap;
   const resizeWidth = Math.max(1, Math.round(bitmap.width * shrink));
   const resizeHeight = Math.max(1, Math.round(bitmap.height * shrink));
-  return createImageBitmap(bitmap, { resizeWidth, resizeHeight, resizeQuality: 'high' });
+  try {
+    return await createImageBitmap(bitmap, { resizeWidth, resizeHeight, resizeQuality: 'high' });
+  } finally {
+    bitmap.close(); // else it takes its memory until garbage is collected
+  }
 }
 
 /** Makes a lettered checker, which shows where the texture lands and how it is stretched. */

@@ -53,7 +53,14 @@ export function setUpProjects(page: ProjectOfPage): Projects {
   const { session, stack, history, live, viewer, wardrobe } = page;
   const samples = page.opener;
   const project = new Project(session, scenePart(session, samples, page.loader));
-  const images = { load: loadPaint, nameOf: paintName, pack, unpack };
+  const images = {
+    check: async (...given: Parameters<LayersOfPage['images']['check']>) =>
+      (await import('../loading/given-file')).checkPictures(...given),
+    load: loadPaint,
+    nameOf: paintName,
+    pack,
+    unpack,
+  };
   const templates = [...element('template-select', HTMLSelectElement).options].map(({ value }) => value);
   const parts = [
     layersPart({ ...page, samples, images }),

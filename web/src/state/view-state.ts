@@ -62,4 +62,6 @@ export interface Angle {
   tilt: number;
   /** Magnification, relative to the distance at which the whole model is visible. */
   near: number;
+  /** What is looked at, in radii of the model from its middle; absent for the middle. */
+  at?: readonly [x: number, y: number, z: number] | undefined;
 }

@@ -111,14 +111,20 @@ export class CameraControls {
   get angle(): Angle | undefined {
     if (!this.#moved) return undefined;
     const { radius, phi, theta } = this.#orbit;
-    return { turn: MathUtils.radToDeg(theta), tilt: MathUtils.radToDeg(phi), near: this.#fullDistance / radius };
+    const { target } = this.#controls;
+    return {
+      turn: MathUtils.radToDeg(theta),
+      tilt: MathUtils.radToDeg(phi),
+      near: this.#fullDistance / radius,
+      ...(!target.equals(kMiddle) && { at: target.toArray() }),
+    };
   }
 
   /** Sets the camera angle, within the limits of the controls. */
-  lookFrom({ turn, tilt, near }: Angle): void {
+  lookFrom({ turn, tilt, near, at }: Angle): void {
     this.#markMoved();
     const [phi, theta] = [MathUtils.degToRad(tilt), MathUtils.degToRad(turn)];
-    this.#look({ radius: this.#fullDistance / near, phi, theta }, kMiddle);
+    this.#look({ radius: this.#fullDistance / near, phi, theta }, at ? new Vector3(...at) : kMiddle);
   }
 
   /** The crowd on the stage has changed. @param isOther Whether another one is there, or none. */

@@ -10,28 +10,40 @@ after(() => site?.close());
 
 const kHuman = /\/human\/target\.glb/;
 
-/** Answers only when the test lets it. */
-async function hang(page: Page, address: RegExp): Promise<Route[]> {
+/** Answers only when the test lets it. @returns a function that waits for the next request. */
+async function hang(page: Page, address: RegExp): Promise<() => Promise<Route>> {
   const held: Route[] = [];
-  await page.route(address, (route) => void held.push(route));
-  return held;
+  let arrive = (): void => {};
+  await page.route(address, (route) => {
+    held.push(route);
+    arrive();
+  });
+  return async () => {
+    while (held.length === 0) await new Promise<void>((done) => (arrive = done));
+    return held.shift()!;
+  };
 }
 
 test('a sample that does not come is said to after ten seconds, and can be asked for again; it may come meanwhile', async () => {
   const { page } = await site.visit({}, kNoWebGl);
   const box = page.getByTestId('ask');
-  const held = await hang(page, kHuman);
+  const request = await hang(page, kHuman);
   await page.clock.install();
-  const choose = async (): Promise<void> => {
+  const choose = async (): Promise<Route> => {
+    // Else the page's clock would run on, however long this takes.
+    await page.clock.pauseAt((await page.evaluate(() => Date.now())) + 1000);
     await page.getByTestId('sample-select').selectOption('human');
+    const asked = await request();
     await page.clock.runFor(9_000);
     assert.ok(await box.isHidden());
     await page.clock.runFor(2_000);
     await box.filter({ hasText: /^Human.*: still waiting for the server\./ }).waitFor();
+    await page.clock.resume();
+    return asked;
   };
-  await choose();
+  const asked = await choose();
   assert.deepEqual(await faults(page), []);
-  await held.splice(0)[0]!.continue();
+  await asked.continue();
   await box.waitFor({ state: 'hidden' });
   assert.equal(await settled(page), 'ready', await shownError(page));
 

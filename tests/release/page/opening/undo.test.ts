@@ -47,12 +47,15 @@ async function work({ page }: Visit): Promise<void> {
   await page.getByTestId('threshold').fill('0.7');
   await page.getByTestId('amount').fill('0.4');
   await page.locator('#view').focus();
-  for (const key of ['ArrowLeft', 'ArrowLeft', '+']) await page.keyboard.press(key);
+  for (const key of ['ArrowLeft', 'ArrowLeft', '+', 'Shift+ArrowLeft', 'Shift+ArrowUp']) await page.keyboard.press(key);
   await ready(page);
 }
 
-/** What the camera sees. */
-const camera = (page: Page): Promise<Buffer> => page.locator('#view').screenshot();
+/** What the camera sees, beside the verdict, which comes when the cage was inspected: seconds after the model on a slow machine. */
+async function camera(page: Page): Promise<Buffer> {
+  await page.locator('#stage-verdict:not([data-verdict=""])').waitFor();
+  return page.locator('#view').screenshot();
+}
 
 test('a sample over own work can be taken back by the message and by the key, with all that was there', async () => {
   const visit = await site.visit({ viewport: { width: 900, height: 700 } });

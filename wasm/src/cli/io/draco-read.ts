@@ -1,8 +1,8 @@
 import { type GLTF, type JSONDocument, Logger, NodeIO } from '@gltf-transform/core';
 import { EXTMeshoptCompression, KHRDracoMeshCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
-import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import type { AccessorData } from '../../gltf/accessors.js';
 import { meshoptView } from '../../gltf/checks/check-geometry.js';
+import { meshoptDecoder } from '../../gltf/meshopt.js';
 import { createDracoDecoder } from './draco.js';
 
 const geometryExtensions = [KHRMeshQuantization, EXTMeshoptCompression, KHRDracoMeshCompression];
@@ -19,7 +19,6 @@ export async function decodeDraco(
   const { asset, bufferViews = [], accessors = [], meshes = [] } = json;
   const used = new Set(json.extensionsUsed?.filter((name) => geometryExtensionNames.includes(name)));
   used.add('KHR_draco_mesh_compression');
-  if (bufferViews.some(meshoptView)) used.add('EXT_meshopt_compression');
 
   const resources: Record<string, Uint8Array> = {};
   const bufferDefs = (json.buffers ?? []).map((buffer, b) => {
@@ -27,8 +26,11 @@ export async function decodeDraco(
     return { ...buffer, uri: `buffer${b}` };
   });
   const io = new NodeIO().setLogger(new Logger(Logger.Verbosity.SILENT)).registerExtensions([...geometryExtensions]);
-  io.registerDependencies({ 'meshopt.decoder': MeshoptDecoder, 'draco3d.decoder': await createDracoDecoder() });
-  await MeshoptDecoder.ready;
+  if (bufferViews.some(meshoptView)) {
+    used.add('EXT_meshopt_compression');
+    io.registerDependencies({ 'meshopt.decoder': await meshoptDecoder() });
+  }
+  io.registerDependencies({ 'draco3d.decoder': await createDracoDecoder() });
   const document = await io.readJSON({
     json: {
       asset: { ...asset, version: '2.0' },

@@ -1,11 +1,10 @@
 import { type Accessor, Document, type GLTF, Logger, NodeIO, type TypedArray } from '@gltf-transform/core';
 import { KHRDracoMeshCompression } from '@gltf-transform/extensions';
-import wasmBinary from 'draco3dgltf/draco_encoder.wasm';
-import createEncoderModule from 'draco3dgltf/draco_encoder_gltf_nodejs.js';
 import { dracoOf } from '../../gltf/checks/check-geometry.js';
 import type { GlbWriter } from '../../gltf/glb-writer.js';
 import type { GltfFile } from '../../gltf/open-gltf.js';
 import { dracoExtension, unmarkDraco } from '../../gltf/output/draco-marks.js';
+import { createDracoEncoder } from './draco.js';
 
 const silent = new Logger(Logger.Verbosity.SILENT);
 
@@ -26,7 +25,7 @@ export async function packDraco(writer: GlbWriter, file: GltfFile): Promise<void
   const io = new NodeIO()
     .setLogger(silent)
     .registerExtensions([KHRDracoMeshCompression])
-    .registerDependencies({ 'draco3d.encoder': await createEncoderModule({ wasmBinary }) });
+    .registerDependencies({ 'draco3d.encoder': await createDracoEncoder() });
   for (const primitive of primitives) {
     const { json, resources } = await io.writeJSON(documentOf(writer, file, primitive));
     const packed = json.meshes![0]!.primitives[0]!;

@@ -1,5 +1,6 @@
 import { PNG } from 'pngjs';
 import { Picture, type Rgb } from '../../glb/thumbnail/picture.js';
+import { Seen } from '../../glb/thumbnail/seen.js';
 import { type View, viewAt, views } from '../../glb/thumbnail/views.js';
 import { InputError } from '../../gltf/input-error.js';
 import { counted, percent, verdictOf } from '../../inspect/finding.js';
@@ -41,6 +42,7 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
   const { verdict, findings, holes, segments, placement, uv, options } = report;
   const { mesh, parts } = target.extracted;
   const scene = sceneOf(cage.extracted.mesh, mesh, result, { threshold: options.threshold }, parts);
+  const figures = shownViews.map((shown) => figuresOf(scene, shown));
   const title = text(`${report.cage.file} on ${report.target.file}`);
   return `<!doctype html>
 <html lang="en">
@@ -68,10 +70,10 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
 ${findings.length > 0 ? `<ol>${findings.map((finding) => `<li><i class="${verdictOf([finding])}"></i>${text(finding.sentence)}.<small>${text(adviceOn(finding))}</small></li>`).join('')}</ol>` : '<p>No problems found.</p>'}
 <h2>Zones</h2>
 <p>${kZoneNames.map((zone, z) => `<span class="key" style="background:rgb(${kZoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>
-<div class="row">${shownViews.map(({ name, view }) => figure(name, () => drawZones(scene, view))).join('')}</div>
+<div class="row">${figures.map(({ zones }) => zones).join('')}</div>
 <h2>Fit</h2>
 <p><span class="key" style="background:rgb(${kOutsideColor.join()})"></span>outside the cage: ${percent(placement.outside.exposedArea)} of the exposed area<span class="key" style="background:rgb(${shade(0).join()})"></span>at the cage<span class="key" style="background:rgb(${shade(kFarthest).join()})"></span>${percent(kFarthest)} of the diagonal beneath. Median ${percent(placement.distances.p50)}, 99 % within ${percent(placement.distances.p99)}. Lines: edges of the cage, open edges dark.</p>
-<div class="row">${shownViews.map(({ name, view }) => figure(name, () => drawFit(scene, view))).join('')}</div>
+<div class="row">${figures.map(({ fit }) => fit).join('')}</div>
 <h2>UVs</h2>
 <p>${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}; ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that more than once.</p>
 <div class="row" style="max-width: 28rem"><figure>${drawUvs(scene)}<figcaption>the cage in the texture; darker where triangles overlap</figcaption></figure></div>
@@ -93,44 +95,37 @@ function rows([head, ...body]: string[][]): string {
   return `<table>${row(head!, 'th')}${body.map((cells) => row(cells, 'td')).join('')}</table>`;
 }
 
-function figure(name: string, draw: () => Picture): string {
-  const png = new PNG({ width: kSize, height: kSize });
+/** Pictures of one view, side by side: the zones and the fit, or why there is none. */
+function figuresOf(scene: Scene, { name, view }: (typeof shownViews)[number]): { zones: string; fit: string } {
   try {
-    png.data.set(draw().image().data);
+    const seen = new Seen(pictureOf(scene, view), scene.target);
+    const [zones, fit] = [drawZones(scene, view, seen), drawFit(scene, view, seen)];
+    return { zones: figure(name, zones), fit: figure(name, fit) };
   } catch (error) {
     if (!(error instanceof InputError)) throw error;
-    return `<figure><figcaption>${name}: ${text(error.message)}</figcaption></figure>`;
+    const none = `<figure><figcaption>${name}: ${text(error.message)}</figcaption></figure>`;
+    return { zones: none, fit: none };
   }
+}
+
+function figure(name: string, picture: Picture): string {
+  const png = new PNG({ width: kSize, height: kSize });
+  png.data.set(picture.image().data);
   return `<figure><img alt="${name === 'front' || name === 'back' ? `the ${name}` : `from ${name}`}" src="data:image/png;base64,${PNG.sync.write(png).toString('base64')}"><figcaption>${name}</figcaption></figure>`;
 }
 
-function pictureOf({ targetBox: { min, max } }: Scene, view: View): Picture {
+function pictureOf({ targetBox: { min, max } }: Pick<Scene, 'targetBox'>, view: View): Picture {
   const middle: Vector = [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, (min[2] + max[2]) / 2];
   const radius = 0.56 * Math.max(max[0] - min[0], max[1] - min[1], max[2] - min[2]);
   return new Picture({ size: kSize, view, middle, radius });
 }
 
-function drawTarget(
-  picture: Picture,
-  { target }: Scene,
-  color: (triangle: readonly [number, number, number]) => Rgb,
-): void {
-  const { positions, indices } = target;
-  for (let i = 0; i < indices.length; i += 3) {
-    const corners = [indices[i]!, indices[i + 1]!, indices[i + 2]!] as const;
-    picture.triangle(
-      pointAt(positions, corners[0]),
-      pointAt(positions, corners[1]),
-      pointAt(positions, corners[2]),
-      color(corners),
-    );
-  }
-}
-
-function drawZones(scene: Scene, view: View): Picture {
+function drawZones({ target: { indices }, result: { zones }, ...scene }: Scene, view: View, seen: Seen): Picture {
   const picture = pictureOf(scene, view);
-  const { zones } = scene.result;
-  drawTarget(picture, scene, (corners) => kZoneColors[Math.max(...corners.map((v) => zones[v]!))]!);
+  picture.mesh(seen, (t) => {
+    const [p, q, r] = [zones[indices[3 * t]!]!, zones[indices[3 * t + 1]!]!, zones[indices[3 * t + 2]!]!];
+    return kZoneColors[Math.max(p, q, r)]!;
+  });
   return picture;
 }
 
@@ -140,12 +135,14 @@ function shade(distance: number): Rgb {
   return [Math.round(245 - 215 * t), Math.round(245 - 130 * t), Math.round(238 - 138 * t)];
 }
 
-function drawFit(scene: Scene, view: View): Picture {
+function drawFit(scene: Scene, view: View, seen: Seen): Picture {
   const picture = pictureOf(scene, view);
   const { signed } = scene.sides;
   const { positions } = scene.cage;
-  drawTarget(picture, scene, (corners) => {
-    const mean = corners.reduce((sum, v) => sum + signed[v]!, 0) / 3 / scene.diagonal;
+  const { indices } = scene.target;
+  picture.mesh(seen, (t) => {
+    const sum = signed[indices[3 * t]!]! + signed[indices[3 * t + 1]!]! + signed[indices[3 * t + 2]!]!;
+    const mean = sum / 3 / scene.diagonal;
     return mean > 0 ? kOutsideColor : shade(-mean);
   });
   for (const { a, b, uses } of scene.surface.edges) {

@@ -1,6 +1,6 @@
 import { colorByte, type Image, linearOf } from '../../bake/image.js';
-import { InputError } from '../../gltf/input-error.js';
 import type { Vector } from '../../inspect/geometry.js';
+import { Raster } from './raster.js';
 import type { View } from './views.js';
 
 /** Red, green, blue; 0 … 255. */
@@ -11,6 +11,13 @@ export type Rgb = readonly [number, number, number];
  * @param q, r  The weights of the second and the third corner there.
  */
 export type Shade = (q: number, r: number, out: Float32Array) => void;
+
+/** Which triangle of a mesh is seen at each sample; -1 for none. */
+export interface Sight {
+  readonly triangles: Int32Array;
+  readonly depths: Float32Array;
+  lightOf(triangle: number): number;
+}
 
 /** What is shown, and how finely. */
 export interface Framing {
@@ -27,14 +34,8 @@ export interface Framing {
   background?: readonly number[] | undefined;
 }
 
-/** Corners lie on a grid of so many places per sample, so that it is exact which side of an edge a sample is on. */
-const kGrid = 256;
 /** What is blended over a surface may lie so much behind it, in samples: the same triangle from another corner on. */
 const kTie = 1e-3;
-/** How often triangles may cover the whole picture. Figures with hair in many layers stay below 10; a hostile file need not. */
-const kMostLayers = 64;
-/** Samples of each triangle that do not count: a million small triangles are no reason to stop. */
-const kFreeSamples = 16;
 /** The share of light that what is seen from the side has. */
 const kAmbient = 0.35;
 
@@ -52,7 +53,7 @@ export function facingOf(p: Vector, q: Vector, r: Vector): number {
 /** An orthographic picture with a depth buffer, drawn without a GPU. Memory: 8 bytes for each sample. */
 export class Picture {
   /** Samples along each side. */
-  readonly #side: number;
+  readonly side: number;
   readonly #samples: number;
   /** Red, green, blue in sRGB, not premultiplied, and alpha of every sample, from the top left. */
   readonly #colors: Uint8ClampedArray<ArrayBuffer>;
@@ -62,19 +63,18 @@ export class Picture {
   readonly #scale: number;
   readonly #byteOf = colorByte();
   readonly #color = new Float32Array(4);
-  /** Samples that may still be looked at. */
-  #left: number;
+  readonly #raster: Raster;
 
   constructor({ size, view, middle, radius, samples = 1, background = [] }: Framing) {
     this.#samples = samples;
-    this.#side = samples * size;
-    this.#colors = new Uint8ClampedArray(4 * this.#side ** 2);
+    this.side = samples * size;
+    this.#colors = new Uint8ClampedArray(4 * this.side ** 2);
     if (background.length > 0) for (let i = 0; i < this.#colors.length; i += 4) this.#colors.set(background, i);
-    this.#depths = new Float32Array(this.#side ** 2).fill(-Infinity);
-    this.#left = kMostLayers * this.#side ** 2;
+    this.#depths = new Float32Array(this.side ** 2).fill(-Infinity);
+    this.#raster = new Raster(this.side);
     this.#view = view;
     this.#middle = middle;
-    this.#scale = this.#side / 2 / (radius || 1);
+    this.#scale = this.side / 2 / (radius || 1);
   }
 
   /** Column, row, and height towards the eye of a point, all in samples. The middles of samples have whole numbers. */
@@ -82,46 +82,49 @@ export class Picture {
     const { right, up, eye } = this.#view;
     const [x, y, z] = [p[0] - this.#middle[0], p[1] - this.#middle[1], p[2] - this.#middle[2]];
     const on = (axis: Vector) => this.#scale * (axis[0] * x + axis[1] * y + axis[2] * z);
-    return [this.#side / 2 + on(right) - 0.5, this.#side / 2 - on(up) - 0.5, on(eye)];
-  }
-
-  /** Draws a triangle of one colour, both sides, lit from the eye. */
-  triangle(a: Vector, b: Vector, c: Vector, color: Rgb): void {
-    const [p, q, r] = [this.project(a), this.project(b), this.project(c)];
-    const light = lit(Math.abs(facingOf(p, q, r)));
-    const [red, green, blue] = color.map((byte) => linearOf[Math.round(byte * light)]!) as [number, number, number];
-    this.fill(p, q, r, (_, __, out) => {
-      [out[0], out[1], out[2], out[3]] = [red, green, blue, 1];
-    });
+    return [this.side / 2 + on(right) - 0.5, this.side / 2 - on(up) - 0.5, on(eye)];
   }
 
   /**
-   * Draws a projected triangle. A sample on an edge that two triangles share belongs to exactly one of them.
+   * Draws a mesh that covers nothing yet, each triangle in one colour, both sides, lit from the eye.
+   * @param seen  What is seen of it, in this picture or another one of the same framing.
+   */
+  mesh(seen: Sight, colorOf: (triangle: number) => Rgb): void {
+    this.#depths.set(seen.depths);
+    const colors = this.#colors;
+    let [last, red, green, blue] = [-1, 0, 0, 0];
+    for (let at = 0; at < seen.triangles.length; ++at) {
+      const triangle = seen.triangles[at]!;
+      if (triangle < 0) continue;
+      if (triangle !== last) {
+        const light = seen.lightOf(triangle);
+        [red, green, blue] = colorOf(triangle).map((byte) => Math.round(byte * light)) as [number, number, number];
+        last = triangle;
+      }
+      colors[4 * at] = red;
+      colors[4 * at + 1] = green;
+      colors[4 * at + 2] = blue;
+      colors[4 * at + 3] = 255;
+    }
+  }
+
+  /**
+   * Draws a projected triangle.
    * @param blends  Whether its colours are laid over what is there, in linear light; then it hides nothing.
    * @throws {InputError} once triangles cover the whole picture too often.
    */
   fill(p: Vector, second: Vector, third: Vector, shade: Shade, blends = false): void {
-    const isTurned = cross(p, second, third) < 0;
+    const raster = this.#raster;
+    if (!raster.begin(p, second, third)) return;
+    const { isTurned } = raster;
     const [q, r] = isTurned ? [third, second] : [second, third];
-    const area = cross(p, q, r);
-    if (!(area > 0)) return;
-    const last = this.#side - 1;
-    const [columns, rows] = [within(p[0], q[0], r[0], last), within(p[1], q[1], r[1], last)];
-    const samples = Math.max(0, columns[1] + 1 - columns[0]) * Math.max(0, rows[1] + 1 - rows[0]);
-    this.#left -= Math.max(0, samples - kFreeSamples);
-    if (this.#left < 0)
-      throw new InputError(
-        `cannot be drawn: its triangles cover the picture more than ${kMostLayers} times; leave out what lies in many layers`,
-      );
-    const [ofP, ofQ, ofR] = [new Edge(q, r), new Edge(r, p), new Edge(p, q)];
     const slack = blends ? kTie : 0;
-    for (let row = rows[0]; row <= rows[1]; ++row) {
-      for (let column = columns[0]; column <= columns[1]; ++column) {
-        const [wp, wq, wr] = [ofP.at(column, row), ofQ.at(column, row), ofR.at(column, row)];
-        if (wp < ofP.least || wq < ofQ.least || wr < ofR.least) continue;
-        const [s, t] = [wq / area, wr / area];
+    for (let row = raster.first; row <= raster.last; ++row) {
+      raster.row(row);
+      for (let column = raster.from; column <= raster.to; ++column) {
+        const [s, t] = [raster.second(column, row), raster.third(column, row)];
         const depth = Math.fround(p[2] + s * (q[2] - p[2]) + t * (r[2] - p[2]));
-        const at = row * this.#side + column;
+        const at = row * this.side + column;
         if (depth < this.#depths[at]! - slack) continue;
         shade(isTurned ? t : s, isTurned ? s : t, this.#color);
         if (!(this.#color[3]! > 0)) continue;
@@ -131,24 +134,25 @@ export class Picture {
     }
   }
 
-  /** Draws a line, a pixel wide, in front of what it lies on. */
+  /** Draws a line, a pixel wide, in front of what it lies on. @throws {InputError} as `fill`, lines counted, too. */
   line(a: Vector, b: Vector, color: Rgb): void {
     const [p, q] = [this.project(a), this.project(b)];
-    const steps = Math.min(4 * this.#side, Math.ceil(Math.max(Math.abs(q[0] - p[0]), Math.abs(q[1] - p[1]), 1)));
+    const steps = Math.min(4 * this.side, Math.ceil(Math.max(Math.abs(q[0] - p[0]), Math.abs(q[1] - p[1]), 1)));
+    this.#raster.spend(steps);
     const drawn = Float32Array.of(linearOf[color[0]]!, linearOf[color[1]]!, linearOf[color[2]]!, 1);
     for (let i = 0; i <= steps; ++i) {
       const t = i / steps;
       const [column, row] = [Math.round(p[0] + t * (q[0] - p[0])), Math.round(p[1] + t * (q[1] - p[1]))];
-      if (column < 0 || row < 0 || column >= this.#side || row >= this.#side) continue;
+      if (column < 0 || row < 0 || column >= this.side || row >= this.side) continue;
       const depth = p[2] + t * (q[2] - p[2]) + 0.5;
-      const at = row * this.#side + column;
+      const at = row * this.side + column;
       if (depth >= this.#depths[at]!) this.#set(at, depth, drawn);
     }
   }
 
   /** What is drawn: the mean of the samples of each pixel, in linear light. */
   image(): Image & { data: Uint8ClampedArray<ArrayBuffer> } {
-    const [samples, side] = [this.#samples, this.#side];
+    const [samples, side] = [this.#samples, this.side];
     const size = side / samples;
     if (samples === 1) return { width: size, height: size, data: this.#colors };
     const data = new Uint8ClampedArray(4 * size * size);
@@ -185,40 +189,5 @@ export class Picture {
     for (let k = 0; k < 3; ++k)
       colors[at + k] = this.#byteOf((color[k]! * color[3]! + linearOf[colors[at + k]!]! * below) / alpha);
     colors[at + 3] = Math.round(255 * alpha);
-  }
-}
-
-const onGrid = (x: number): number => Math.round(kGrid * x);
-
-/** Twice the area of a triangle on the grid; negative if it goes round the other way. */
-const cross = (p: Vector, q: Vector, r: Vector): number =>
-  (onGrid(q[0]) - onGrid(p[0])) * (onGrid(r[1]) - onGrid(p[1])) -
-  (onGrid(q[1]) - onGrid(p[1])) * (onGrid(r[0]) - onGrid(p[0]));
-
-/** The first and the last whole number within three numbers, and 0 … last. */
-const within = (a: number, b: number, c: number, last: number): [number, number] => [
-  Math.max(0, Math.floor(Math.min(a, b, c))),
-  Math.min(last, Math.ceil(Math.max(a, b, c))),
-];
-
-/** An edge of a triangle: for a sample, twice the area of the triangle that it makes with the edge, on the grid. */
-class Edge {
-  readonly #x: number;
-  readonly #y: number;
-  readonly #dx: number;
-  readonly #dy: number;
-  /** From which area on a sample is inside: of those on the edge itself, the upper and the left ones are. */
-  readonly least: 0 | 1;
-
-  constructor(from: Vector, to: Vector) {
-    this.#x = onGrid(from[0]);
-    this.#y = onGrid(from[1]);
-    this.#dx = onGrid(to[0]) - this.#x;
-    this.#dy = onGrid(to[1]) - this.#y;
-    this.least = this.#dy < 0 || (this.#dy === 0 && this.#dx > 0) ? 0 : 1;
-  }
-
-  at(column: number, row: number): number {
-    return this.#dx * (kGrid * row - this.#y) - this.#dy * (kGrid * column - this.#x);
   }
 }

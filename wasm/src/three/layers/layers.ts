@@ -244,9 +244,10 @@ export class Layers extends Emitter<{
   }
 
   /**
-   * Puts saved layers and their base tint in the place of those that there are, as one step.
-   * @throws {CagecastError} `badArgument` that names the layer, if it is not what `save` returned; `badOption` for a region that the cage
-   * does not have. Then nothing is changed.
+   * Puts saved layers and their base tint in the place of those that there are, as one step. Their images have at
+   * most 2048 × 2048 pixels, as `save` writes them. Sizes are read before any of them is decoded, one after the other.
+   * @throws {CagecastError} `badArgument` that names the layer, the value and the limit, if it is not what `save` returned; `badOption` for
+   * a style that is wrong, or a region that the cage does not have. Then nothing is changed.
    */
   async load(saved: SavedLayers, { undoable }: ChangeOptions = {}): Promise<void> {
     const { layers, baseTint } = await loadLayers(this.renderer, saved, this.#regions);

@@ -1,6 +1,7 @@
 import { SRGBColorSpace, Texture, type WebGLRenderer } from 'three';
 import { show } from '../../core/error.js';
-import { fromDataUrl, toPng } from '../canvas.js';
+import { CagecastError } from '../../index.js';
+import { toPng } from '../canvas.js';
 import { checkColor, kPaint, notA, wrong } from '../errors.js';
 import { kWhole, toTexels } from '../gpu/rect.js';
 import { readStraight } from '../gpu/straight.js';
@@ -10,6 +11,7 @@ import { type Layer, plainStyle, readStyle, type Sheet, type Style } from './lay
 import { sidesOf } from './layer-pass.js';
 import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';
 import { checkRegion, type Regions } from './regions.js';
+import { decoded, readImage, type SavedImage } from './saved-images.js';
 import { maxLayers } from './stack.js';
 
 const kVersion = 1;
@@ -91,7 +93,8 @@ export interface LoadedLayer {
 /**
  * Reads what `saveLayers` returned.
  * @param regions  Of the cage, if there is one.
- * @throws {CagecastError} `badArgument` that names the layer, `badOption` for a style or a region.
+ * @throws {CagecastError} that names the layer, the value and the limit: `badArgument`, or `badOption` for a style or a region. Nothing is
+ * left of what was read then.
  */
 export async function loadLayers(
   renderer: WebGLRenderer,
@@ -102,31 +105,69 @@ export async function loadLayers(
   if (!Array.isArray(layers)) throw notA('what save returned', 'saved', saved, kPaint);
   if (version !== kVersion) throw wrong(`saved.version is ${show(version)}, not ${kVersion}`, kPaint);
   if (layers.length > maxLayers) throw wrong(`saved.layers are ${layers.length}, more than ${maxLayers}`, kPaint);
-  const checked = layers.map((layer, i) => {
-    const { name, painting } = layer ?? {};
-    if (typeof name !== 'string') throw notA('a name', `saved.layers[${i}].name`, name, kPaint);
-    if (painting !== undefined && !paintingSizes.includes(painting))
-      throw notA(paintingSizes.join(' or '), `saved.layers[${i}].painting`, painting, kPaint);
-    const { normal: _, ...rest } = layer;
-    const style = readStyle(rest, `saved.layers[${i}]`);
-    checkRegion(style.region, regions);
-    return { layer, style };
-  });
   checkColor('saved.baseTint', baseTint);
-  const loaded = await Promise.all(
-    checked.map(async ({ layer: { name, image, painting, normal }, style }, i) => {
-      const sheet = new ImageSheet(await bitmapOf(image, `saved.layers[${i}].image`));
-      if (normal !== undefined) style.normal = reliefOf(await bitmapOf(normal, `saved.layers[${i}].normal`));
-      return { name, style, sheet: painting ? paintingOf(renderer, sheet, painting) : sheet };
-    }),
-  );
+  const placeOf = (i: number): string => `saved.layers[${i}]`;
+  const styles = Array.from(layers, (layer, i) => checkLayer(layer, placeOf(i), regions));
+  const checked = layers.map(({ name, painting, image, normal }, i): CheckedLayer => {
+    return {
+      ...{ name, painting, style: styles[i]! },
+      image: readImage(image, `${placeOf(i)}.image`, painting),
+      normal: normal === undefined ? undefined : readImage(normal, `${placeOf(i)}.normal`),
+    };
+  });
+  const loaded: LoadedLayer[] = [];
+  try {
+    // One after the other: each takes more memory while it is decoded.
+    for (const layer of checked) loaded.push(await loadLayer(renderer, layer));
+  } catch (error) {
+    for (const { sheet, style } of loaded) {
+      sheet.dispose?.();
+      style.normal?.dispose();
+    }
+    throw error;
+  }
   return { layers: loaded, baseTint };
 }
 
-const bitmapOf = (url: string, name: string): Promise<ImageBitmap> =>
-  fromDataUrl(String(url)).catch((error: Error) => {
-    throw wrong(`${name} cannot be read: ${error.message}`, kPaint);
-  });
+const kMaxName = 1000; // characters
+
+/** A layer of which all but its pixels is read. */
+interface CheckedLayer {
+  name: string;
+  style: Partial<Style>;
+  painting: PaintingSize | undefined;
+  image: SavedImage;
+  normal: SavedImage | undefined;
+}
+
+/** Checks all of a layer but its images. @param place  Of the layer, for messages. @returns its style. @throws {CagecastError} */
+function checkLayer(layer: SavedLayer, place: string, regions: Regions | undefined): Partial<Style> {
+  const { name, painting, normal: _, ...rest } = Object(layer) as SavedLayer;
+  if (typeof name !== 'string') throw notA('a name', `${place}.name`, name, kPaint);
+  if (name.length > kMaxName) throw wrong(`${place}.name has ${name.length} characters, more than ${kMaxName}`, kPaint);
+  if (painting !== undefined && !paintingSizes.includes(painting))
+    throw notA(paintingSizes.join(' or '), `${place}.painting`, painting, kPaint);
+  try {
+    const style = readStyle(rest);
+    checkRegion(style.region, regions);
+    return style;
+  } catch (error) {
+    if (!(error instanceof CagecastError)) throw error;
+    throw wrong(`${place}.${error.reason}`, kPaint, error.code, { cause: error });
+  }
+}
+
+async function loadLayer(renderer: WebGLRenderer, layer: CheckedLayer): Promise<LoadedLayer> {
+  const { name, style, painting, image, normal } = layer;
+  const sheet = new ImageSheet(await decoded(image));
+  try {
+    if (normal) style.normal = reliefOf(await decoded(normal));
+  } catch (error) {
+    sheet.dispose();
+    throw error;
+  }
+  return { name, style, sheet: painting ? paintingOf(renderer, sheet, painting) : sheet };
+}
 
 /** A normal map with an image of its own. */
 function reliefOf(bitmap: ImageBitmap): Texture {

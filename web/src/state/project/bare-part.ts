@@ -3,7 +3,8 @@ import { damaged, listOf, numberOf } from './checks';
 import type { Contribution } from './project';
 
 const kMaxRuns = 1_000_000;
-const kMaxTriangles = 2 ** 26;
+/** Of all models together: marks take a byte each. */
+export const kMaxMarks = 2 ** 26;
 
 /** What the user marked to stay bare. */
 export function barePart(session: Session): Contribution {
@@ -34,11 +35,11 @@ export function runsOf(marks: Uint8Array): number[] {
   return runs;
 }
 
-/** The marks that saved runs stand for. */
-export function marksOf(saved: unknown): Uint8Array {
-  const runs = listOf(saved, kMaxRuns, 'marks').map((run) => Math.floor(numberOf(run, 0, kMaxTriangles, 0)));
+/** The marks that saved runs stand for. @param most  How many there may be. @throws Error that says how many there are. */
+export function marksOf(saved: unknown, most = kMaxMarks): Uint8Array {
+  const runs = listOf(saved, kMaxRuns, 'marks').map((run) => Math.floor(numberOf(run, 0, kMaxMarks, 0)));
   const count = runs.reduce((sum, run) => sum + run, 0);
-  if (count > kMaxTriangles) damaged('it has too many marks');
+  if (count > most) damaged(`it has too many marks, ${kMaxMarks - most + count}: more than ${kMaxMarks}`);
   const marks = new Uint8Array(count);
   let from = 0;
   runs.forEach((run, at) => {

@@ -44,6 +44,11 @@ interface Painting {
 
 /** Reads and writes images. */
 interface ImageFiles {
+  /**
+   * Refuses images that would take all memory together, before any is decoded. A project can name its images as it likes: none is trusted.
+   * @param painted The files of paintings, and their pixels. @throws Error that names the file.
+   */
+  check(files: readonly File[], painted: { files: readonly File[]; pixels: number }): Promise<void>;
   /** @param picture URL of the image; an object URL of the file by default. */
   load(file: File, picture?: string): Promise<Paint>;
   /** The name of a sample's paint in links. @param picture Its URL. */
@@ -55,7 +60,8 @@ interface ImageFiles {
 }
 
 /** The layers: paintings by their texels, images by their files; also those that were put away. */
-export function layersPart({ session, stack, edits, away, samples, painter, images }: LayersOfPage): Contribution {
+export function layersPart(page: LayersOfPage): Contribution {
+  const { session, stack, edits, away, samples, painter, images } = page;
   /** Stands for the texels of a painting until they change; the file where they were read from one. */
   const states = new WeakMap<PaintedSheet, object>();
   painter?.on('painted', (sheet) => states.delete(sheet));
@@ -82,15 +88,14 @@ export function layersPart({ session, stack, edits, away, samples, painter, imag
     if (size === undefined) {
       const known = typeof paint === 'string' ? samples.find(paint) : undefined;
       const loaded = await images.load(files(file), known?.paint.file);
-      if (typeof drawn === 'string') return { ...loaded, drawn };
+      if (typeof drawn === 'string') return { ...loaded, drawn: textOf(drawn, '') };
       return known ? { ...loaded, sample: known.sample } : loaded;
     }
-    if (!painter) throw new Error('paintings need WebGL, which is not available in this browser');
-    const side = paintingSizes.find((one) => one === size) ?? damaged('a painting has an unknown size');
+    const side = sideOf(size);
     const packed = files(file);
     if (taken.has(packed)) damaged('two layers have one painting');
     taken.add(packed);
-    const sheet = painter.sheetOf(side, await images.unpack(packed, 4 * side * side));
+    const sheet = painter!.sheetOf(side, await images.unpack(packed, 4 * side * side));
     states.set(sheet, packed);
     return sheet;
   };
@@ -103,7 +108,7 @@ export function layersPart({ session, stack, edits, away, samples, painter, imag
   const readAll = async (saved: unknown, files: Files, taken: Set<unknown>): Promise<ReadLayer[]> => {
     const layers: ReadLayer[] = [];
     // One at a time: each takes memory while it is read.
-    for (const one of listOf(saved ?? [], maxLayers, 'layers')) {
+    for (const one of layersIn(saved)) {
       const { name, style, sheet } = objectOf(one, 'layer');
       layers.push({ name: textOf(name, 'Layer'), style: styleOf(style), sheet: await readSheet(sheet, files, taken) });
     }
@@ -120,6 +125,7 @@ export function layersPart({ session, stack, edits, away, samples, painter, imag
     }),
     async read(saved, files) {
       const { layers, away: putAway, base } = objectOf(saved, 'layers');
+      await checkImages([...layersIn(layers), ...layersIn(putAway)], files, page);
       const taken = new Set<unknown>(); // each painting takes memory of its own
       const [all, others] = [await readAll(layers, files, taken), await readAll(putAway, files, taken)];
       return {
@@ -143,6 +149,23 @@ export function layersPart({ session, stack, edits, away, samples, painter, imag
     },
   };
 }
+
+/** Checks what all images and paintings take together, before any is read. @throws Error that names a file. */
+async function checkImages(saved: unknown[], files: Files, { painter, images }: LayersOfPage): Promise<void> {
+  const sheets = saved.map((one) => objectOf(objectOf(one, 'layer')['sheet'], 'paint'));
+  const stored = sheets.filter(({ paint }) => paint !== kChecker);
+  const [painted, given] = [true, false].map((is) => stored.filter(({ size }) => (size !== undefined) === is));
+  if (painted!.length > 0 && !painter) throw new Error('paintings need WebGL, which is not available in this browser');
+  const pixels = painted!.reduce((sum, { size }) => sum + sideOf(size) ** 2, 0);
+  const filesOf = (list: typeof stored) => list.map(({ file }) => files(file));
+  await images.check(filesOf(given!), { files: filesOf(painted!), pixels });
+}
+
+const layersIn = (saved: unknown): unknown[] => listOf(saved ?? [], maxLayers, 'layers');
+
+/** Texels per side of a painting. */
+const sideOf = (size: unknown): PaintedSheet['size'] =>
+  paintingSizes.find((one) => one === size) ?? damaged('a painting has an unknown size');
 
 function styleOf(saved: unknown): Partial<Style> {
   const { opacity, tint, blend, visible } = objectOf(saved, 'style of a layer');

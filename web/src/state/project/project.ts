@@ -134,12 +134,13 @@ export class Project {
     const session = this.#session;
     let isRequested = true;
     session.work(kReading, 0, { abort: () => (isRequested = false) });
-    const [{ target, cage, paint }, ...restorings] = await Promise.all([
-      this.#scene.read(parts[this.#scene.name], files),
-      ...this.#contributions
-        .filter(({ name }) => parts[name] !== undefined)
-        .map((contribution) => contribution.read(parts[contribution.name], files)),
-    ]);
+    // One after the other: each takes more memory while it is read.
+    const { target, cage, paint } = await this.#scene.read(parts[this.#scene.name], files);
+    const restorings: Restoring[] = [];
+    for (const contribution of this.#contributions) {
+      const saved = parts[contribution.name];
+      if (saved !== undefined && isRequested) restorings.push(await contribution.read(saved, files));
+    }
     if (!isRequested) return false;
     for (const restoring of restorings) restoring.before?.();
     this.#requested = Promise.resolve(target);

@@ -15,7 +15,8 @@ export function scenePart(session: Session, all: Samples, loader: Loader): Scene
   });
   const read = async (saved: unknown, files: Files): Promise<Model> => {
     const { files: keys, sample: name } = objectOf(saved, 'model');
-    const [file, ...others] = listOf(keys, kMaxFiles, 'files').map(files);
+    // One that is named again would count again, for how large the model may be.
+    const [file, ...others] = new Set(listOf(keys, kMaxFiles, 'files').map(files));
     const model = await loader.load(file ?? files(undefined), others);
     const sample = all.samples.find((one) => one.name === name);
     return sample ? { ...model, sample } : model;

@@ -18,6 +18,12 @@ interface Camera {
   lookFrom(angle: Angle): void;
 }
 
+/** A place in the model. */
+function placeOf(saved: unknown): NonNullable<Angle['at']> {
+  const [x, y, z] = listOf(saved, 3, 'coordinates').map((value) => numberOf(value, -1, 1, 0));
+  return [x ?? 0, y ?? 0, z ?? 0];
+}
+
 /** Rules, overrides of parts, the shape and the view. @param controls Undefined without WebGL. */
 export function settingsParts(session: Session, live: Shaped, controls: Camera | undefined): Contribution[] {
   return [
@@ -75,7 +81,7 @@ export function settingsParts(session: Session, live: Shaped, controls: Camera |
       save: () => ({ ...session.view, angle: controls?.angle }),
       read(saved) {
         const { mode, split, step, paint, cage, seeThrough, light, background, angle } = objectOf(saved, 'view');
-        const { turn, tilt, near } = (angle ?? {}) as Record<string, unknown>;
+        const { turn, tilt, near, at } = (angle ?? {}) as Record<string, unknown>;
         return {
           shown() {
             session.setView({
@@ -93,6 +99,7 @@ export function settingsParts(session: Session, live: Shaped, controls: Camera |
                 turn: numberOf(turn, -360, 360, 0),
                 tilt: numberOf(tilt, 0, 180, 90),
                 near: numberOf(near, 0.01, 100, 1),
+                at: at === undefined ? undefined : placeOf(at),
               });
           },
         };

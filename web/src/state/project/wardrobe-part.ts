@@ -1,6 +1,6 @@
 import { kMaxAvatars } from '../wardrobe/avatar';
 import type { KeptAvatar, WardrobeOfPage } from '../wardrobe/kept';
-import { marksOf, runsOf } from './bare-part';
+import { kMaxMarks, marksOf, runsOf } from './bare-part';
 import { listOf, locksOf, numberOf, objectOf, textOf } from './checks';
 import type { Contribution, Files, Keep } from './project';
 
@@ -14,7 +14,7 @@ export function wardrobePart(wardrobe: WardrobeOfPage): Contribution {
   });
   const readModel = (saved: unknown, files: Files): NonNullable<KeptAvatar['cage']> => {
     const { files: keys, sample } = objectOf(saved, 'avatar');
-    const all = listOf(keys, kMaxFiles, 'files').map(files);
+    const all = [...new Set(listOf(keys, kMaxFiles, 'files').map(files))];
     return { files: all.length > 0 ? all : [files(undefined)], sample: textOf(sample, '') || undefined };
   };
   return {
@@ -38,15 +38,18 @@ export function wardrobePart(wardrobe: WardrobeOfPage): Contribution {
     },
     read(saved, files) {
       const { at, all, avatars } = objectOf(saved, 'wardrobe');
+      let room = kMaxMarks;
       const read = listOf(avatars, kMaxAvatars - 1, 'avatars').map((one): KeptAvatar => {
         const { name, model, cage, follows, locks, bare } = objectOf(one, 'avatar');
+        const marks = bare === undefined ? undefined : marksOf(bare, room);
+        room -= marks?.length ?? 0;
         return {
           name: textOf(name, 'Avatar'),
           ...readModel(model, files),
           cage: cage === undefined ? undefined : readModel(cage, files),
           follows: follows === true,
           locks: locksOf(locks),
-          bare: bare === undefined ? undefined : marksOf(bare),
+          bare: marks,
         };
       });
       const place = Math.floor(numberOf(at, 0, read.length, 0));
