@@ -329,7 +329,7 @@ export const costlyFormats: Record<string, CostlyFormat> = {
   'a line that is matched over and over': {
     name: 'a.usda',
     bytes: () => bufferOf(usdaOf(`def${' '.repeat(300_000)}a""b {`, '}')),
-    refusal: /its loader takes more than 2 seconds; the limit "seconds" is 2/,
+    refusal: /its loader takes more than 1.5 seconds; the limit "seconds" is 1.5/,
   },
   'an array of zeros whose record says to be empty': {
     name: 'a.fbx',

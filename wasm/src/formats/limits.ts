@@ -8,7 +8,7 @@ export interface FormatLimits extends Pick<ReadLimits, 'bytes' | 'nesting' | 'in
   corners: number;
   /**
    * Seconds that the loader may take, of CPU in Node, where those of other threads of the process count, too, and of the clock in pages;
-   * waiting for files is not counted. Default: 2, and 2 more for each MiB of the file beyond the first
+   * waiting for files is not counted. Default: 1.5, for a file of more than a MiB 1.5 for each
    */
   seconds: number;
   /**
@@ -26,7 +26,7 @@ const kFixed = { files: 1000, corners: 2000 };
 /** The names of the limits that only other formats have, and what their defaults are, for people. */
 export const formatDefaults = {
   ...kFixed,
-  seconds: '2 for each MiB',
+  seconds: '1.5 for each MiB',
   memory: '128 MiB and "expansion" times the file',
 };
 
@@ -40,7 +40,7 @@ export function limitsOf(bytes: number, given: Partial<FormatLimits> = {}): Form
     parts,
     expansion,
     ...kFixed,
-    seconds: 2 * Math.max(1, bytes / kMiB),
+    seconds: 1.5 * Math.max(1, bytes / kMiB),
     memory: 128 * kMiB + expansion * bytes,
     ...withoutNone(given),
   };
