@@ -118,3 +118,20 @@ test('pictures of billions of pixels to paint with', async () => {
     assert.ok(taken < kMost, `${Math.round(taken / 1e6)} MB`);
   }
 });
+
+test('a link with strokes of a billion pixels', async () => {
+  const { page } = visit;
+  const strokes = `strokes:${webpOf(16_383, 4096).toString('base64url')}`;
+  const link = `#sample=lizard${`&layer=${strokes},1,ffffff,normal`.repeat(16)}`;
+  const taken = await memoryOf(async () => {
+    await page.evaluate((fragment) => void (location.hash = fragment), link);
+    await page.locator('#error').filter({ hasText: 'link' }).waitFor();
+  });
+  assert.equal(
+    await shownError(page),
+    'The layers of the link are left out. Of number 1, its strokes have 16,383 × 4,096 pixels, not 512 × 512 or 256 × 256.',
+  );
+  assert.ok(taken < kMost, `${Math.round(taken / 1e6)} MB`);
+  await page.getByTestId('target-input').setInputFiles(glb('sound.glb', sound));
+  assert.equal(await settled(page), 'ready', await shownError(page));
+});
