@@ -7,8 +7,8 @@ export interface FormatLimits extends Pick<ReadLimits, 'bytes' | 'nesting' | 'in
   /** Corners of a polygon. Default: 2000 */
   corners: number;
   /**
-   * Seconds that the loader may take, of CPU in Node, where those of other threads of the process count, too, and of the clock in pages;
-   * waiting for files is not counted. Default: 1.5, for a file of more than a MiB 1.5 for each
+   * Seconds that the loader may take, waiting for files not counted. In Node, seconds of CPU, other threads of the process included;
+   * default: 1.5, for a file of more than a MiB 1.5 for each. In pages, seconds of the clock, as phones are slower; default: 10, for each
    */
   seconds: number;
   /**
@@ -19,6 +19,9 @@ export interface FormatLimits extends Pick<ReadLimits, 'bytes' | 'nesting' | 'in
 }
 
 const kMiB = 2 ** 20;
+
+/** Seconds for each MiB, by the host: whether it tells the CPU that is used. */
+const kSeconds = typeof globalThis.process?.cpuUsage === 'function' ? 1.5 : 10;
 
 /** Limits that do not depend on the file. */
 const kFixed = { files: 1000, corners: 2000 };
@@ -40,7 +43,7 @@ export function limitsOf(bytes: number, given: Partial<FormatLimits> = {}): Form
     parts,
     expansion,
     ...kFixed,
-    seconds: 1.5 * Math.max(1, bytes / kMiB),
+    seconds: kSeconds * Math.max(1, bytes / kMiB),
     memory: 128 * kMiB + expansion * bytes,
     ...withoutNone(given),
   };
