@@ -7,7 +7,7 @@ import { inspect, suggest } from 'cagecast/inspect';
 import fc from 'fast-check';
 import { optionFlags } from '../../../wasm/src/generated/options.js';
 import { tetrahedron } from '../../support/gltf.js';
-import { mesh, resultOf, runs, validOptions } from './any.js';
+import { mesh, ofStage, resultOf, runs, validOptions } from './any.js';
 
 const [cage, target] = [tetrahedron(1), tetrahedron(0.9)];
 const usual = () => [...transfer(cage, target).zones];
@@ -72,13 +72,12 @@ describe('for any valid scene and options', () => {
   test('projecting and classifying is transferring, with locks too', () => {
     const lock = fc.constantFrom(undefined, 'keep' as const, 'exclude' as const);
     fc.assert(
-      fc.property(mesh, mesh, validOptions, lock, (cage, target, { threshold, minCovered, steps, ...first }, lock) => {
+      fc.property(mesh, mesh, validOptions, lock, (cage, target, options, lock) => {
         const locks = lock && { segments: { 0: lock } };
-        const classifying = { threshold, minCovered, locks, steps: { floor: steps?.floor } };
-        const result = resultOf(() => transfer(cage, target, { ...first, ...classifying }));
+        const result = resultOf(() => transfer(cage, target, { ...options, locks }));
         if (!result) return;
-        const projection = project(cage, target, first);
-        const classified = classify(projection, classifying);
+        const projection = project(cage, target, ofStage('project', options));
+        const classified = classify(projection, { ...ofStage('classify', options), locks });
         assert.deepEqual(classified.zones, result.zones);
         assert.deepEqual(classified.cosmeticTriangles, result.cosmeticTriangles);
         assert.deepEqual(classified.segmentStats, result.segmentStats);

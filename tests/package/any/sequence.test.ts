@@ -20,7 +20,7 @@ import { inspect, suggest } from 'cagecast/inspect';
 import fc from 'fast-check';
 import { tetrahedron } from '../../support/gltf.js';
 import { head } from '../scenes.js';
-import { mesh, plain, runs, validOptions } from './any.js';
+import { mesh, ofStage, plain, runs, validOptions } from './any.js';
 
 before(init);
 
@@ -108,11 +108,10 @@ function callOf(step: Step, all: { cage: Mesh; target: Mesh }[], kept: Kept): Ca
   const [cage, target] = faulty(scene.cage, scene.target, fault);
   const vertices = target.positions.length / 3 + Number(fault === 'masks');
   const masks = mask === undefined ? undefined : { vertices: new Int8Array(vertices).fill(mask, 0, 2) };
-  const { threshold, minCovered, steps, ...first } = options;
-  const classifying = { threshold: fault === 'option' ? 2 : threshold, minCovered, locks, masks };
-  const { floor: _, ...projectSteps } = steps ?? {};
-  const projecting = { ...first, steps: projectSteps };
-  const whole = { ...options, ...classifying };
+  const projecting = ofStage('project', options);
+  const own = { ...(fault === 'option' && { threshold: 2 }), locks, masks };
+  const classifying = { ...ofStage('classify', options), ...own };
+  const whole = { ...options, ...own };
   const [result, projection] = [structuredClone(kept.transfer), structuredClone(kept.project)];
   switch (fn) {
     case 'project':
