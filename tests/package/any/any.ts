@@ -29,7 +29,9 @@ export const mesh = fc.integer({ min: 3, max: 14 }).chain((vertices) => {
       { nil: undefined },
     ),
     poses: fc.option(
-      fc.integer({ min: 1, max: 2 }).chain((poses) => numbers(3 * vertices * poses).map((all) => Float32Array.from(all))),
+      fc
+        .integer({ min: 1, max: 2 })
+        .chain((poses) => numbers(3 * vertices * poses).map((all) => Float32Array.from(all))),
       { nil: undefined },
     ),
   });
@@ -38,7 +40,7 @@ export const mesh = fc.integer({ min: 3, max: 14 }).chain((vertices) => {
 const share = fc.double({ min: 0, max: 1, noNaN: true });
 
 /** Any value of an option's range. Lengths are mostly short. */
-function valueOf({ kind, range }: ReturnType<typeof readOptions>[number]): fc.Arbitrary<unknown> {
+function anyValueOf({ kind, range }: ReturnType<typeof readOptions>[number]): fc.Arbitrary<unknown> {
   if (kind === 'toggle' || kind === 'choice') return fc.constantFrom(...range);
   const [low, high] = range as [number, number];
   const most = kind === 'length' ? Math.min(0.1, high) : high;
@@ -51,7 +53,7 @@ const anyValues = (isStep: boolean, stages = ['project', 'classify']): Record<st
   Object.fromEntries(
     readOptions('.')
       .filter((option) => option.isStep === isStep && stages.includes(option.stage))
-      .map((option) => [option.name, valueOf(option)]),
+      .map((option) => [option.name, anyValueOf(option)]),
   );
 const some = <T>(values: Record<string, fc.Arbitrary<unknown>>) =>
   fc.record(values, { requiredKeys: [] }) as fc.Arbitrary<T>;

@@ -69,6 +69,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const float uv : cut.uvs) require(std::isfinite(uv));
   require(std::is_sorted(cut.origins.begin(), cut.origins.end()));
   for (const std::uint32_t triangle : cut.origins) require(3 * std::size_t{triangle} < scene.target.indices.size());
+  const std::span<const Mask> masks = scene.options.masks.triangles;
+  for (std::size_t t = 0; t < cut.origins.size() && !masks.empty(); ++t) {
+    const std::uint32_t origin = cut.origins[t];
+    if (masks[origin] == Mask::automatic) continue;
+    require(cut.cosmeticTriangles[t] == result.zones.cosmeticTriangles[origin]);
+  }
   const std::vector<double> areas = areasOfPieces(target.mesh, cut);
   for (std::size_t t = 0; t < areas.size(); ++t) {
     const std::uint32_t* corners = target.mesh.indices.data() + 3 * t;

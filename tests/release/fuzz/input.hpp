@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <numbers>
 #include <span>
 #include <vector>
@@ -52,17 +53,37 @@ class Input {
     return any;
   }
 
+  /// Sets an option to a value of its range, from the least to the greatest, if a byte says so.
+  /// @param mostly  It is at most this, or the greatest.
+  void vary(float& option, float mostly, std::initializer_list<float> range) {
+    if (!flag()) return;
+    const float low = range.begin()[0], high = range.begin()[1], part = share();
+    option = part == 1 ? high : low + part * (std::min(high, mostly) - low);
+  }
+  /// Sets an option to one of its values, if a byte says so.
+  template <typename Option>
+  void vary(Option& option, float, std::initializer_list<Option> values) {
+    if (flag()) option = values.begin()[below(static_cast<std::uint32_t>(values.size()))];
+  }
+
+  /// A preset, of which each option of options.def may be varied.
   TransferOptions options() {
     TransferOptions out = flag() ? TransferOptions{} : TransferOptions::paper();
-    out.threshold = share();
-    out.seams = flag() ? Seams::corner : Seams::vertex;
-    if (flag()) out.weldTolerance = share() / 100;
-    if (flag()) out.minCovered = share();
-    if (flag()) out.steps.floor = below(2) != 0;
-    const std::uint8_t off = byte();
-    if ((off & 1) != 0) out.steps.interiorSamples = false;
-    if ((off & 4) != 0) out.steps.recheck = false;
-    if ((off & 8) != 0) out.steps.holes = false;
+// Says how large a number mostly is, or which names there are.
+#define CAGECAST_MOSTLY_share constexpr float mostly = 1;
+#define CAGECAST_MOSTLY_length constexpr float mostly = 0.1f;
+#define CAGECAST_MOSTLY_toggle constexpr float mostly = 1;
+#define CAGECAST_MOSTLY_choice(type) \
+  using enum type;                   \
+  constexpr float mostly = 1;
+#define CAGECAST_VARY(kind, field, range) \
+  { CAGECAST_MOSTLY_##kind vary(out.field, mostly, {CAGECAST_VALUES range}); }
+#define CAGECAST_VALUES(...) __VA_ARGS__
+#define CAGECAST_OPTION(stage, name, kind, standard, paper, range, text) CAGECAST_VARY(kind, name, range)
+#define CAGECAST_STEP(stage, name, kind, standard, paper, range, text) CAGECAST_VARY(kind, steps.name, range)
+#include "cagecast/options.def"
+#undef CAGECAST_VARY
+#undef CAGECAST_VALUES
     return out;
   }
 
@@ -119,16 +140,30 @@ struct Mesh {
   Mesh() = default;
 };
 
-/// A cage, a target and options. Either mesh may be a ball instead.
+/// A cage, a target and options. Either mesh may be a ball instead, and what is painted may be masked.
 struct Scene {
   Mesh cage, target;
+  std::vector<Mask> vertexMasks, triangleMasks;
   TransferOptions options;
 
   explicit Scene(Input& input) : cage(input, true), target(input, false), options(input.options()) {
-    const std::uint8_t balls = input.byte();
-    if ((balls & 1) != 0) cage = Mesh::ball(input, true);
-    if ((balls & 2) != 0) target = Mesh::ball(input, false);
-    if ((balls & 4) != 0) target.move(input);
+    const std::uint8_t has = input.byte();
+    if ((has & 1) != 0) cage = Mesh::ball(input, true);
+    if ((has & 2) != 0) target = Mesh::ball(input, false);
+    if ((has & 4) != 0) target.move(input);
+    if ((has & 8) != 0) mask(input, target.positions.size() / 3, vertexMasks);
+    if ((has & 16) != 0) mask(input, target.indices.size() / 3, triangleMasks);
+    options.masks = {vertexMasks, triangleMasks};
+  }
+  Scene(const Scene&) = delete;  // Its options refer to its masks.
+  Scene& operator=(const Scene&) = delete;
+
+ private:
+  static void mask(Input& input, std::size_t count, std::vector<Mask>& masks) {
+    for (; count > 0; --count) {
+      const std::uint32_t drawn = input.below(8);
+      masks.push_back(drawn == 1 ? Mask::never : drawn == 2 ? Mask::always : Mask::automatic);
+    }
   }
 };
 
