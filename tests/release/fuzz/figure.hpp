@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -46,10 +47,12 @@ struct Figure {
 
   explicit Figure(Input& input) : mesh(input, true) {
     const std::uint8_t has = input.byte();
+    const bool isHead = (has & 64) != 0;
     if ((has & 1) != 0) mesh = Mesh::ball(input, true);
+    if (isHead) mesh = Mesh::head(input);
     const char* const names[] = {"head", "eye_l", "eye_r", "hair", "body/skin", "teeth", "wheel"};
     model.mesh = mesh.view();
-    for (std::uint32_t i = input.below(5); i > 0; --i) model.parts.emplace_back(names[input.below(7)]);
+    for (std::uint32_t i = isHead ? 3 : input.below(5); i > 0; --i) model.parts.emplace_back(names[input.below(7)]);
     anywhere = {input.coordinate(), input.coordinate(), input.coordinate()};
     if ((has & 2) != 0) model.joints = {{"Hips", {0, 0, 0}, -1}, {"Head", anywhere, 0}, {"LeftEye", anywhere, 1}};
     if ((has & 4) != 0) holders.resize(mesh.positions.size() / 3);
@@ -59,9 +62,33 @@ struct Figure {
     for (std::uint8_t& mark : marks) mark = input.flag();
     model.marks = marks;
     if ((has & 16) != 0) model.hints = {{"eye_inner", anywhere}, {"eye_outer", {1, 0, 0}}, {"mouth", {0, -0.5f, 0.5f}}};
-    if ((has & 32) == 0) return;
+    if ((has & 128) != 0) paint(input);
+    if ((has & 160) != 32) return;
     for (int i = 0; i < 4 * 2 * 2; ++i) pixels.push_back(input.byte());
     model.baseColors.assign(3, {{input.share(), input.share(), input.share()}, {2, 2, pixels}});
+  }
+
+ private:
+  /// A picture of eyes and a mouth, each of any colour.
+  void paint(Input& input) {
+    constexpr std::uint32_t kSide = 64;
+    using Color = std::array<std::uint8_t, 3>;
+    const auto color = [&] { return Color{input.byte(), input.byte(), input.byte()}; };
+    const Color skin = color(), eye = color(), iris = color(), lips = color(), hair = color();
+    const double size = 0.25 * static_cast<double>(input.share()), hairline = static_cast<double>(input.share());
+    const auto isWithin = [](double across, double up) { return across * across + up * up < 1; };
+    const auto at = [&](double x, double y) {
+      const double across = std::abs(x) - 0.27, up = y - 0.05;
+      if (isWithin(across / (0.4 * size), up / (0.4 * size))) return iris;
+      if (isWithin(across / size, up / (0.6 * size))) return eye;
+      if (isWithin(x / 0.2, (y + 0.45) / 0.06)) return lips;
+      return y > hairline ? hair : skin;
+    };
+    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+      const Color one = at(2 * (i % kSide + 0.5) / kSide - 1, 1 - 2 * (i / kSide + 0.5) / kSide);
+      pixels.insert(pixels.end(), {one[0], one[1], one[2], 255});
+    }
+    model.baseColors.assign(3, {.image = {kSide, kSide, pixels}});
   }
 };
 

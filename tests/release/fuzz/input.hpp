@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cagecast/transfer.hpp"
@@ -110,24 +111,56 @@ struct Mesh {
   /// A ball of rings and sectors, some of whose triangles are missing. Those at its poles are needles: the sine of π as
   /// a float is not 0.
   static Mesh ball(Input& input, bool hasUvs) {
-    const std::uint32_t rings = 2 + input.below(4), sectors = 3 + input.below(6), row = sectors + 1;
+    const std::uint32_t rings = 2 + input.below(4), sectors = 3 + input.below(6);
     const float radius = 1 + input.share();
     Mesh out;
-    for (std::uint32_t i = 0; i <= rings; ++i)
-      for (std::uint32_t j = 0; j <= sectors; ++j) {
-        const double u = static_cast<double>(j) / sectors, v = static_cast<double>(i) / rings;
-        const double polar = std::numbers::pi * v, around = 2 * std::numbers::pi * u;
-        for (const double at :
-             {std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around)})
-          out.positions.push_back(radius * static_cast<float>(at));
-        if (hasUvs) out.uvs.insert(out.uvs.end(), {static_cast<float>(u), static_cast<float>(v)});
-      }
-    for (std::uint32_t i = 0; i < rings; ++i)
-      for (std::uint32_t j = 0; j < sectors; ++j) {
-        const std::uint32_t missing = input.below(4), at = i * row + j;
-        if ((missing & 1) == 0) out.indices.insert(out.indices.end(), {at, at + 1, at + row});
-        if ((missing & 2) == 0) out.indices.insert(out.indices.end(), {at + 1, at + row + 1, at + row});
-      }
+    out.addBall({rings, sectors, hasUvs}, [](const Spot& p) { return p; });
+    for (float& x : out.positions) x *= radius;
+    std::vector<std::uint32_t> some;
+    for (std::size_t i = 0; i < out.indices.size(); i += 6) {
+      const std::uint32_t missing = input.below(4);
+      for (std::size_t k = 0; k < 6; ++k)
+        if ((missing & (k < 3 ? 1u : 2u)) == 0) some.push_back(out.indices[i + k]);
+    }
+    out.indices = std::move(some);
+    return out;
+  }
+  /// The head of a figure that faces +z, in three groups: skin, with a nose, a mouth's crease and a few bumps, and two
+  /// eyeballs. Each may be as large as it likes, or not there.
+  static Mesh head(Input& input) {
+    const auto some = [&](double most) { return most * static_cast<double>(input.share()); };
+    const double nose = some(0.5), crease = some(0.2), eye = some(0.3), eyeX = some(0.5), eyeZ = 1 - some(0.6);
+    struct Bump {
+      double x, y, height;
+    };
+    std::vector<Bump> bumps;
+    for (std::uint32_t i = input.below(4); i > 0; --i) bumps.push_back({some(2) - 1, some(2) - 1, some(0.6) - 0.3});
+    Mesh out;
+    const auto hill = [](double x, double width, double y, double height) {
+      return std::exp(-x * x / (width * width) - y * y / (height * height));
+    };
+    out.addBall({24, 24, true}, [&](const Spot& p) {
+      Spot at{0.7 * p.x, p.y, 0.85 * p.z};
+      if (p.z <= 0) return at;
+      at.z += nose * hill(at.x, 0.12, at.y + 0.1, 0.2) - crease * hill(at.x, 0.25, at.y + 0.45, 0.08);
+      for (const Bump& bump : bumps) at.z += bump.height * hill(at.x - bump.x, 0.15, at.y - bump.y, 0.15);
+      return at;
+    });
+    // A picture of the face lies over its front.
+    for (std::size_t v = 0; v < out.uvs.size() / 2; ++v) {
+      const float x = out.positions[3 * v], y = out.positions[3 * v + 1];
+      const bool isFront = out.positions[3 * v + 2] > 0;
+      out.uvs[2 * v] = isFront ? 0.5f + 0.5f * x : 0;
+      out.uvs[2 * v + 1] = isFront ? 0.5f - 0.5f * y : 0;
+    }
+    out.groups.assign(out.positions.size() / 3, 0);
+    for (const double side : {1.0, -1.0}) {
+      if (eye > 0)
+        out.addBall({6, 8, true}, [&](const Spot& p) {
+          return Spot{side * eyeX + eye * p.x, 0.1 + eye * p.y, 0.85 * eyeZ + eye * p.z};
+        });
+      out.groups.resize(out.positions.size() / 3, side > 0 ? 1 : 2);
+    }
     return out;
   }
   /// Adds a pose, in which some vertices are elsewhere.
@@ -137,7 +170,34 @@ struct Mesh {
   [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups, poses}; }
 
  private:
+  struct Spot {
+    double x, y, z;
+  };
+  struct Shape {
+    std::uint32_t rings, sectors;
+    bool hasUvs;
+  };
   Mesh() = default;
+
+  /// @param place  Where a place of the ball of radius 1 about the origin is.
+  template <typename Place>
+  void addBall(const Shape& shape, const Place& place) {
+    const std::uint32_t first = static_cast<std::uint32_t>(positions.size() / 3), row = shape.sectors + 1;
+    for (std::uint32_t i = 0; i <= shape.rings; ++i)
+      for (std::uint32_t j = 0; j <= shape.sectors; ++j) {
+        const double u = static_cast<double>(j) / shape.sectors, v = static_cast<double>(i) / shape.rings;
+        const double polar = std::numbers::pi * v, around = 2 * std::numbers::pi * u;
+        const Spot at =
+            place({std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around)});
+        for (const double x : {at.x, at.y, at.z}) positions.push_back(static_cast<float>(x));
+        if (shape.hasUvs) uvs.insert(uvs.end(), {static_cast<float>(u), static_cast<float>(v)});
+      }
+    for (std::uint32_t i = 0; i < shape.rings; ++i)
+      for (std::uint32_t j = 0; j < shape.sectors; ++j) {
+        const std::uint32_t at = first + i * row + j;
+        indices.insert(indices.end(), {at, at + 1, at + row, at + 1, at + row + 1, at + row});
+      }
+  }
 };
 
 /// A cage, a target and options. Either mesh may be a ball instead, and what is painted may be masked.
