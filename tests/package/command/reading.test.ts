@@ -92,6 +92,7 @@ const wrongJson: [changes: Record<string, unknown>, message: RegExp][] = [
   [instances('first'), /is "first", not one of 3 accessors/],
   [skin({ joints: [99] }), /skins\[0\]\.joints/],
   [skin({ joints: 'all' }), /skins\[0\]\.joints is not an array of numbers/],
+  [skin({ joints: undefined }), /skins\[0\]\.joints is not an array of numbers/],
   [skin({ joints: [0], inverseBindMatrices: 99 }), /skins\[0\]\.inverseBindMatrices/],
 ];
 

@@ -69,9 +69,22 @@ test('factors of materials', async () => {
   }
 });
 
+test('a mesh without UVs has no texture, beside one that has both', async () => {
+  const obj = 'mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\no a\nusemtl x\nf 1 2 3\no b\nusemtl x\nf 1/1 2/1 3/1\n';
+  const root = await documentOf(obj, { 'a.mtl': 'newmtl x\nKd 1 0 0\nmap_Kd a.png\n', 'a.png': pngOf(4, 4) });
+  const looks = root.listMeshes().map((mesh) => mesh.listPrimitives()[0]!.getMaterial()!);
+  assert.deepEqual(
+    looks.map((material) => [material.getName(), material.getBaseColorTexture() !== null]),
+    [
+      ['x', false],
+      ['x', true],
+    ],
+  );
+});
+
 test('images that are cut off are missing', async () => {
   const missing: string[][] = [];
-  const obj = Buffer.from('mtllib a.mtl\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n');
+  const obj = Buffer.from('mtllib a.mtl\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n');
   const read = async (name: string) =>
     name === 'a.mtl' ? Buffer.from('newmtl x\nmap_Kd a.png\n') : pngOf(4, 4).subarray(0, 40);
   assert.deepEqual(await validate(await toGlb(obj, { read, onMissing: (...one) => missing.push(one) })), []);

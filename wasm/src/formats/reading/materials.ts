@@ -47,7 +47,8 @@ export const named = (name: unknown): { name?: string } => (typeof name === 'str
 export class MaterialWriter {
   readonly #json: GLTF.IGLTF;
   readonly #addView: (bytes: Uint8Array) => number;
-  readonly #materials = new Map<Material, number>();
+  /** Their numbers: of those without textures, and of those with them. */
+  readonly #materials = [new Map<Material, number>(), new Map<Material, number>()] as const;
   readonly #images = new Map<Uint8Array, number>();
 
   constructor(json: GLTF.IGLTF, addView: (bytes: Uint8Array) => number) {
@@ -55,15 +56,19 @@ export class MaterialWriter {
     this.#addView = addView;
   }
 
-  /** @returns the number of the material. */
-  add(material: Material): number {
-    const known = this.#materials.get(material);
+  /**
+   * @param hasUvs  Whether its mesh has UVs; without, it has no textures.
+   * @returns the number of the material.
+   */
+  add(material: Material, hasUvs: boolean): number {
+    const materials = this.#materials[hasUvs ? 1 : 0];
+    const known = materials.get(material);
     if (known !== undefined) return known;
     const look = material as Material & Look;
     const { opacity, transparent, alphaTest, side } = look;
-    const baseColorTexture = this.#texture(look.map);
-    const normalTexture = this.#texture(look.normalMap);
-    const emissiveTexture = this.#texture(look.emissiveMap);
+    const [baseColorTexture, normalTexture, emissiveTexture] = [look.map, look.normalMap, look.emissiveMap].map(
+      (map) => (hasUvs ? this.#texture(map) : undefined),
+    );
     const emissive = colorOf(look.emissive, 0);
     const written: GLTF.IMaterial = {
       ...named(look.name),
@@ -81,7 +86,7 @@ export class MaterialWriter {
       ...(side === DoubleSide && { doubleSided: true }),
     };
     const number = (this.#json.materials ??= []).push(written) - 1;
-    this.#materials.set(material, number);
+    materials.set(material, number);
     return number;
   }
 

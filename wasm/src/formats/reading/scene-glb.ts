@@ -88,7 +88,7 @@ class SceneWriter {
         {
           attributes: own,
           indices: this.#addAccessor(some, 1),
-          ...this.#materialOf(materials[materialIndex]),
+          ...this.#materialOf(materials[materialIndex], 'TEXCOORD_0' in own),
           ...(deltas.length > 0 && { targets: deltas }),
         },
       ];
@@ -105,9 +105,9 @@ class SceneWriter {
     return (this.#json.meshes ??= []).push(written) - 1;
   }
 
-  #materialOf(material: Material | undefined): { material?: number } {
+  #materialOf(material: Material | undefined, hasUvs: boolean): { material?: number } {
     // Some names, such as "constructor", lead a loader to what is none.
-    return material?.isMaterial ? { material: this.#materials.add(material) } : {};
+    return material?.isMaterial ? { material: this.#materials.add(material, hasUvs) } : {};
   }
 
   /** Adds the skins of all meshes, once all bones have their nodes. */

@@ -71,7 +71,7 @@ export function checkLists(json: GLTF.IGLTF): void {
     requireList(`nodes[${n}].children`, node.children, Number.isInteger, 'numbers');
     requireList(`nodes[${n}].weights`, node.weights, Number.isFinite, 'finite numbers');
   });
-  json.skins?.forEach((skin, s) => requireList(`skins[${s}].joints`, skin.joints, Number.isInteger, 'numbers'));
+  json.skins?.forEach((skin, s) => requireList(`skins[${s}].joints`, skin.joints ?? null, Number.isInteger, 'numbers'));
   json.scenes?.forEach((scene, s) => requireList(`scenes[${s}].nodes`, scene.nodes, Number.isInteger, 'numbers'));
 }
 
