@@ -117,6 +117,7 @@ async function fuzz(target) {
     `${root}build/fuzz/tests/release/fuzz/cagecast_fuzz_${target}`,
     [
       `-timeout=${mostSeconds}`,
+      `-report_slow_units=${mostSeconds}`, // Else it keeps what took ten seconds beside other programs.
       `-max_len=${mostBytes}`,
       '-print_final_stats=1',
       '-entropic_scale_per_exec_time=1', // Quick inputs are varied more often.

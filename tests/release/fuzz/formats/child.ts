@@ -2,8 +2,8 @@
 import { Worker } from 'node:worker_threads';
 import { check, type Files, Mark } from './check.js';
 
-/** What a file of less than a megabyte may take. */
-const kLimits = { milliseconds: 2000, megabytes: 500 };
+/** What a file of less than a megabyte may take: two seconds of its loader, and what starts and ends it. */
+const kLimits = { milliseconds: 3000, megabytes: 500 };
 
 export interface Answer {
   fault?: string;

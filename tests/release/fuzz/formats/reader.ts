@@ -57,7 +57,7 @@ export class Reader {
         const [, over] = /^it takes (.*)$/m.exec(this.#said) ?? [];
         const fault = over ? `it takes ${over}` : `its process ended (${code}): ${this.#said.trim()}`;
         // What was taken is over the limit; how much is not known.
-        resolve({ fault, isRead: false, milliseconds: over?.includes(' s ') ? 2000 : 0, megabytes: 0 });
+        resolve({ fault, isRead: false, milliseconds: over?.includes(' s ') ? 3000 : 0, megabytes: 0 });
       };
       child.once('message', answered);
       child.once('close', ended);

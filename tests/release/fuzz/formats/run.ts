@@ -41,6 +41,7 @@ export async function fuzzFormats(only: readonly string[], budget: Budget): Prom
   for (const [i, [name, sample]] of chosen.entries()) {
     // What one does not need is for those after it.
     const row = await fuzz(name, sample, { ...budget, seconds: left / (chosen.length - i) });
+    console.log(`  ${name}: ${row.inputs} files, ${Math.round(row.seconds)} s`);
     left -= row.seconds;
     rows.push(row);
   }

@@ -27,7 +27,7 @@ const zipped = (files: Record<string, Uint8Array>) => zipSync(files, { level: 0,
 export const samples: Record<string, Sample> = {
   ...Object.fromEntries(
     readdirSync(folder)
-      .filter((name) => extname(name) !== '.mtl')
+      .filter((name) => !['', '.mtl'].includes(extname(name)))
       .map((name) => [name, alone(name)]),
   ),
   ...Object.fromEntries(
@@ -49,3 +49,13 @@ export const samples: Record<string, Sample> = {
     filesOf: (bytes) => ({ 'packed.usdz': zipped({ 'model.usda': bytes, 'skin.png': read('skin.png') }) }),
   },
 };
+
+/** Files that broke a promise once, with those beside them. */
+export const found: Record<string, Files> = Object.fromEntries(
+  readdirSync(`${folder}found`).map((name) => [
+    name,
+    extname(name) === '.mtl'
+      ? samples['model.mtl']!.filesOf(read(`found/${name}`))
+      : { [name]: read(`found/${name}`), ...beside },
+  ]),
+);
