@@ -45,10 +45,10 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'layers, for WebGPURenderer',
-    17_900,
+    18_000,
     "import 'cagecast/three/paint/webgpu'; import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);",
   ],
-  ['layers', 15_400, "import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);"],
+  ['layers', 15_600, "import { createLayers } from 'cagecast/three/paint'; console.log(createLayers);"],
   ['useCagecast', 73_500, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
   ['inspect', 29_500, "import { inspect } from 'cagecast/inspect'; console.log(inspect);"],
   ['bake', 6500, "import { bake } from 'cagecast/bake'; console.log(bake);"],

@@ -82,13 +82,16 @@ test('a mesh without UVs has no texture, beside one that has both', async () => 
   );
 });
 
-test('images that are cut off are missing', async () => {
-  const missing: string[][] = [];
+test('images that are cut off, or without a header, are missing', async () => {
   const obj = Buffer.from('mtllib a.mtl\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n');
-  const read = async (name: string) =>
-    name === 'a.mtl' ? Buffer.from('newmtl x\nmap_Kd a.png\n') : pngOf(4, 4).subarray(0, 40);
-  assert.deepEqual(await validate(await toGlb(obj, { read, onMissing: (...one) => missing.push(one) })), []);
-  assert.deepEqual(missing, [['a.png', 'it is damaged']]);
+  const whole = pngOf(4, 4);
+  const other = (at: number) => Buffer.concat([whole.subarray(0, at), Buffer.alloc(4), whole.subarray(at + 4)]);
+  for (const image of [whole.subarray(0, 40), other(8), other(12)]) {
+    const missing: string[][] = [];
+    const read = async (name: string) => (name === 'a.mtl' ? Buffer.from('newmtl x\nmap_Kd a.png\n') : image);
+    assert.deepEqual(await validate(await toGlb(obj, { read, onMissing: (...one) => missing.push(one) })), []);
+    assert.deepEqual(missing, [['a.png', 'it is damaged']]);
+  }
 });
 
 test('places of nodes, and skins', async () => {
@@ -103,7 +106,7 @@ test('places of nodes, and skins', async () => {
     fbxNode(`${name}: *${values.length}`, `a: ${values.join(',')}`);
   for (const odd of ['nan', '1e400', '-1']) {
     const matrix = list('Transform', Array(16).fill(odd));
-    await documentOf(
+    const root = await documentOf(
       [
         '; FBX 7.4.0 project file',
         fbxNode('FBXHeaderExtension: ', 'FBXVersion: 7400'),
@@ -122,8 +125,8 @@ test('places of nodes, and skins', async () => {
           fbxNode('Deformer: 30, "Deformer::", "Skin"', 'Version: 101'),
           fbxNode(
             'Deformer: 31, "SubDeformer::", "Cluster"',
-            list('Indexes', [0, 1, 2]),
-            list('Weights', [odd, odd, 1]),
+            list('Indexes', [0, 0, 1, 2]),
+            list('Weights', [0.25, 0.5, odd, 1]),
             matrix,
             list('TransformLink', Array(16).fill(odd)),
           ),
@@ -144,5 +147,8 @@ test('places of nodes, and skins', async () => {
         '',
       ].join('\n'),
     );
+    // A joint that is named twice counts once.
+    const [primitive] = root.listMeshes()[0]!.listPrimitives();
+    assert.deepEqual(primitive!.getAttribute('WEIGHTS_0')!.getElement(0, []), [1, 0, 0, 0]);
   }
 });

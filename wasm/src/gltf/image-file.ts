@@ -68,7 +68,11 @@ const u24 = (view: DataView, at: number): number => view.getUint16(at, true) | (
 type Size = [width: number, height: number];
 
 const sizes = {
-  'image/png': (view: DataView): Size => [view.getUint32(16), view.getUint32(20)],
+  'image/png': (view: DataView): Size => {
+    const isHeader = view.getUint32(8) === 13 && view.getUint32(12) === 0x49484452; // "IHDR"
+    if (!isHeader) throw new RangeError('it has no header');
+    return [view.getUint32(16), view.getUint32(20)];
+  },
   'image/jpeg': jpegSize,
   'image/webp': (view: DataView): Size => {
     const kind = view.getUint32(12);

@@ -47,7 +47,11 @@ export class Strokes {
     const [head, data] = canvas.toDataURL('image/webp', kQuality).split(',');
     // Browsers that cannot encode it give a PNG.
     return head?.includes('webp')
-      ? kPrefix + data!.replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '')
+      ? kPrefix +
+          data!
+            .replace(/\+/g, '-')
+            .replace(/\//g, '_')
+            .replace(/={1,2}$/, '')
       : undefined;
   }
 

@@ -71,6 +71,8 @@ export function attributesOf(geometry: BufferGeometry, { indices, kept }: Corner
       size,
     };
   }
+  const [skinIndex, skinWeight] = [attributes['JOINTS_0'], attributes['WEIGHTS_0']];
+  if (skinIndex && skinWeight) joinJoints(skinIndex.values, skinWeight.values);
   const positions = attributes['POSITION']!.values as Float32Array;
   const isRelative = geometry.morphTargetsRelative;
   const targets = (geometry.morphAttributes['position'] ?? []).map((target) => {
@@ -81,6 +83,18 @@ export function attributesOf(geometry: BufferGeometry, { indices, kept }: Corner
   });
   if (geometry.index && !kept) return { attributes, targets, indices };
   return gathered({ attributes, targets, indices }, kept, !geometry.index);
+}
+
+/** Gives what a vertex has of a joint more than once to the first of these. */
+function joinJoints(joints: Column['values'], weights: Column['values']): void {
+  for (let i = 0; i < joints.length; ++i) {
+    for (let first = i - (i % 4); first < i; ++first) {
+      if (joints[first] !== joints[i] || weights[i] === 0) continue;
+      weights[first]! += weights[i]!;
+      weights[i] = 0;
+      joints[i] = 0;
+    }
+  }
 }
 
 /** The values of an attribute; of vertices that it does not have, zeros. */
