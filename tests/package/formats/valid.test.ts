@@ -94,6 +94,15 @@ test('images that are cut off, or without a header, are missing', async () => {
   }
 });
 
+test('a file is refused whose images decode to more than the limit', async () => {
+  const obj = Buffer.from('mtllib a.mtl\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n');
+  const huge = Buffer.from(pngOf(4, 4));
+  huge.writeUInt32BE(30_000, 16);
+  huge.writeUInt32BE(30_000, 20);
+  const read = async (name: string) => (name === 'a.mtl' ? Buffer.from('newmtl x\nmap_Kd a.png\n') : huge);
+  await assert.rejects(toGlb(obj, { read }), /images\[0\] has 30,000 × 30,000 pixels.*the limit "expansion" is 100/);
+});
+
 test('places of nodes, and skins', async () => {
   const mesh =
     'def Mesh "mesh" {\npoint3f[] points = [(0,0,0), (1,0,0), (0,1,0)]\nint[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0,1,2]\n}';

@@ -56,6 +56,11 @@ export class MaterialWriter {
     this.#addView = addView;
   }
 
+  /** The bytes of each, by their numbers. */
+  get images(): Iterable<Uint8Array> {
+    return this.#images.keys();
+  }
+
   /**
    * @param hasUvs  Whether its mesh has UVs; without, it has no textures.
    * @returns the number of the material.

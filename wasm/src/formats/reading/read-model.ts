@@ -35,11 +35,12 @@ export async function readModel(
     return found;
   };
   const scene = await readers[format](bytes, { read: counted, onMissing, limits });
-  return sceneGlb(scene, (size) => {
+  const check = (size: number) => {
     const most = mostBytes(readBytes, limits);
     if (size > most)
       throw exceeds(`becomes a GLB of more than ${most.toLocaleString('en')} bytes`, 'expansion', limits);
-  });
+  };
+  return sceneGlb(scene, check, limits);
 }
 
 const bufferOf = (bytes: Uint8Array): ArrayBuffer => Uint8Array.from(bytes).buffer;

@@ -1,5 +1,7 @@
 import type { GLTF, vec4 } from '@gltf-transform/core';
 import { type Material, Matrix4, type Mesh, type Object3D, type SkinnedMesh } from 'three';
+import { checkImages } from '../../gltf/checks/check-images.js';
+import type { ReadLimits } from '../../gltf/checks/read-limits.js';
 import { packGlb, paddedLength } from '../../parts/glb.js';
 import { attributesOf, boundsOf, cornersOf } from './geometry.js';
 import { MaterialWriter, named } from './materials.js';
@@ -7,13 +9,18 @@ import { MaterialWriter, named } from './materials.js';
 /**
  * Writes what is drawn of a scene as a GLB; nothing if it has no triangle.
  * @param check  Told the bytes of the GLB as they become more; throws if they are too many.
+ * @throws {InputError} if its images decode to more than the limit.
  */
-export function sceneGlb(scene: Object3D, check: (bytes: number) => void): Uint8Array<ArrayBuffer> | undefined {
+export function sceneGlb(
+  scene: Object3D,
+  check: (bytes: number) => void,
+  limits: Pick<ReadLimits, 'expansion'>,
+): Uint8Array<ArrayBuffer> | undefined {
   const writer = new SceneWriter(check);
   scene.updateMatrixWorld(true);
   const root = writer.addNode(scene);
   writer.addSkins();
-  return writer.hasTriangles ? writer.finish(root) : undefined;
+  return writer.hasTriangles ? writer.finish(root, limits) : undefined;
 }
 
 const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4', 16: 'MAT4' } as const;
@@ -126,7 +133,9 @@ class SceneWriter {
     }
   }
 
-  finish(root: number): Uint8Array<ArrayBuffer> {
+  finish(root: number, limits: Pick<ReadLimits, 'expansion'>): Uint8Array<ArrayBuffer> {
+    const images = [...this.#materials.images].map((bytes, i): [string, Uint8Array] => [`images[${i}]`, bytes]);
+    checkImages(images, this.#length, limits);
     this.#json.scene = 0;
     this.#json.scenes = [{ nodes: [root] }];
     this.#json.buffers = [{ byteLength: this.#length }];

@@ -5,9 +5,10 @@ import { isDataUri, readDataUri } from '../data-uri.js';
 import { InputError } from '../input-error.js';
 import { parseGltf } from '../parse.js';
 import { checkGeometry } from './check-geometry.js';
+import { checkImages } from './check-images.js';
 import { checkRest } from './check-rest.js';
 import { withDracoCounts } from './draco-header.js';
-import { checkImages, checkLimits } from './limits.js';
+import { checkLimits } from './limits.js';
 import { checkBytes, defaultLimits, type ReadLimits } from './read-limits.js';
 
 /** Options of `checkGltf`. */

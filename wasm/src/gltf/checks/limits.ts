@@ -1,14 +1,13 @@
 import type { GLTF } from '@gltf-transform/core';
-import { imageSize } from '../image-file.js';
 import { instancing } from '../instancing.js';
 import { isMarked } from '../overlay.js';
 import { hasTriangles } from '../pieces.js';
 import { bytesOf, dracoOf, meshoptView, topNodes } from './check-geometry.js';
+import { checkExpansion } from './check-images.js';
 import { exceeds, type ReadLimits } from './read-limits.js';
 
-/** Geometry, and images, of up to this many bytes may be decoded from any file. */
+/** Geometry of up to this many bytes may be decoded from any file. */
 const kFreeBytes = 2 ** 25;
-const kFreeImageBytes = 2 ** 28;
 
 /** Checks how deep JSON is nested, before it is parsed. @throws {InputError} */
 export function checkNesting(text: Uint8Array, limits: ReadLimits): void {
@@ -39,36 +38,6 @@ export function checkLimits(json: GLTF.IGLTF, fileBytes: number, limits: ReadLim
   checkImplied(json, limits);
   const decoded = checkInstances(json, limits) + decodedBytes(json) + sharedBytes(json);
   checkExpansion('decodes', decoded, Math.max(kFreeBytes, limits.expansion * fileBytes), fileBytes, limits);
-}
-
-function checkExpansion(what: string, bytes: number, most: number, fileBytes: number, limits: ReadLimits): void {
-  if (bytes > most)
-    throw exceeds(
-      `${what} to ${bytes.toLocaleString('en')} bytes, ${Math.round(bytes / fileBytes).toLocaleString('en')} times its size`,
-      'expansion',
-      limits,
-    );
-}
-
-/**
- * Checks what decoding images costs, by the sizes that they say to have.
- * @param images  Their bytes, or the first of them, by what messages call them.
- * @param fileBytes  Of the images, and of the file that they are in.
- * @throws {InputError}
- */
-export function checkImages(
-  images: Iterable<[name: string, bytes: Uint8Array]>,
-  fileBytes: number,
-  limits: ReadLimits,
-): void {
-  const most = Math.max(kFreeImageBytes, limits.expansion * fileBytes);
-  let decoded = 0;
-  for (const [name, bytes] of images) {
-    const { width, height } = imageSize(bytes) ?? { width: 0, height: 0 };
-    decoded += 4 * width * height;
-    const size = `${name} has ${width.toLocaleString('en')} × ${height.toLocaleString('en')} pixels`;
-    checkExpansion(`${size}; up to it, images decode`, decoded, most, fileBytes, limits);
-  }
 }
 
 function checkParts({ nodes = [], meshes = [] }: GLTF.IGLTF, limits: ReadLimits): void {
