@@ -4,10 +4,10 @@
 //   npm run test:all             those, and all others
 //
 //   SUITE …                      only these, by name; the table below has them
-//   --others                     only those that npm test leaves out
+//   --others                     only those beyond npm test
 //   --changed                    only those of the folders with changes that are not committed
-//   --record                     notes on which files those that take longest have passed; the record is committed
-//   --unless-recorded            without those that have passed on the files that are here, as their record says
+//   --record                     notes the files on which the longest suites passed; commit the record
+//   --unless-recorded            without suites whose record is of the files as they are
 
 import { spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -26,8 +26,7 @@ if (!process.execArgv.includes('tsx')) process.execArgv.push('--import', 'tsx');
 const kMaxPerFile = 20 * 60_000;
 
 /**
- * The suites. `always`: `npm test` runs it. `setup`: what is installed for it, if it is not what `npm test` needs. `needs`: what is built for
- * it. `of`: the folders whose changes ask for it. `tests`: a folder of tests for Node; else `run` returns how many passed and failed.
+ * The suites. `always`: `npm test` runs it. `setup`: its purpose in setup.mjs, by default `test`. `needs`: the builds it uses. `of`: the folders whose changes ask for it. `tests`: a folder of tests for Node; else `run` returns how many passed and failed.
  * `record`: where it is noted on which files of which `folders` the suite has passed.
  */
 const kSuites = {

@@ -13,7 +13,7 @@ const isCode = (path) => isCpp(path) || isScript(path) || /\.(tsx|css|html|h|c|p
 const isPage = (path) => /^(README|CONTRIBUTING|CHANGELOG)\.md$|^docs\/.*\.md$/.test(path);
 const isProduct = (path) => /^(core|wasm|web)\//.test(path);
 
-/** Names that a module exports as values, those of modules that it passes on included. */
+/** Names of a module's exported values, with those of the modules it re-exports. */
 function valuesOf(root, path, seen = new Set()) {
   if (seen.has(path)) return [];
   seen.add(path);
