@@ -90,7 +90,7 @@ function sharingWorkers(): Plugin {
     apply: 'build',
     enforce: 'pre',
     transform(code, id) {
-      return code.replace(/new URL\('(\.\/[\w-]+-worker\.ts)', import\.meta\.url\)/g, (_, worker) => {
+      return code.replace(/new URL\('(\.{1,2}\/[\w/-]+-worker\.ts)', import\.meta\.url\)/g, (_, worker) => {
         const chunk = this.emitFile({ type: 'chunk', id: path.join(path.dirname(id), worker) });
         return `import.meta.ROLLUP_FILE_URL_${chunk}`;
       });

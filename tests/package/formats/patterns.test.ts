@@ -45,6 +45,7 @@ test('what recognises files', () => {
     'ply\n',
     'solid ',
     'o x\n',
+    'o \n',
     'mtllib a\n',
     '\xef\xbb\xbf',
     `PK${'a'.repeat(28)}`,

@@ -309,17 +309,17 @@ export const costlyFormats: Record<string, CostlyFormat> = {
   'tokens of terabytes': {
     name: 'a.usdc',
     bytes: () => usdcOf('TOKENS', 1, 2 ** 33, 10, 0),
-    refusal: /takes more than [\d,]+ bytes of memory; the limit "memory"/,
+    refusal: /its section (TOKENS|PATHS) says to have more than its 100 bytes hold/,
   },
   'more tokens than bytes': {
     name: 'a.usdc',
     bytes: () => usdcOf('TOKENS', 2 ** 50, 8, 8, 0),
-    refusal: /limit "(memory|seconds)"/,
+    refusal: /its section (TOKENS|PATHS) says to have more than its 100 bytes hold/,
   },
   'more paths than bytes': {
     name: 'a.usdc',
     bytes: () => usdcOf('PATHS', 2 ** 31, 2 ** 31, 8),
-    refusal: /limit "memory"/,
+    refusal: /its section (TOKENS|PATHS) says to have more than its 100 bytes hold/,
   },
   'prims in prims': {
     name: 'a.usda',
@@ -329,7 +329,7 @@ export const costlyFormats: Record<string, CostlyFormat> = {
   'a line that is matched over and over': {
     name: 'a.usda',
     bytes: () => bufferOf(usdaOf(`def${' '.repeat(300_000)}a""b {`, '}')),
-    refusal: /its loader takes more than 1.5 seconds; the limit "seconds" is 1.5/,
+    refusal: /its loader takes more than [\d.]+ seconds; the limit "seconds"/,
   },
   'an array of zeros whose record says to be empty': {
     name: 'a.fbx',

@@ -100,9 +100,12 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
       sentence: largest
         ? `${only} may be painted: the cage covers ${percent(largest.coverage)} of the exposed area of "${largest.part}", ${reason(largest, threshold)}`
         : `${only} may be painted`,
-      advice: largest
-        ? `If the cage should cover only a region of "${largest.part}", override this or make that region a mesh of its own. Otherwise extend the cage.`
-        : 'The other findings and the zones show the reason; uncovered vertices, for example, have no cage over them.',
+      advice:
+        largest?.culledBy === 'lock'
+          ? `Exclude less than all of "${largest.part}".`
+          : largest
+            ? `If the cage should cover only a region of "${largest.part}", override this or make that region a mesh of its own. Otherwise extend the cage.`
+            : 'The other findings and the zones show the reason; uncovered vertices, for example, have no cage over them.',
       numbers: { share, culled: over > 0 ? cut / over : 0 },
       ...(largest && { places: [placeOfSegment(largest.s, largest)], locks: locksFor([largest]) }),
     },

@@ -3,18 +3,40 @@ import { InputError } from '../../gltf/input-error.js';
 import type { FormatLimits } from '../limits.js';
 import { checkBraces } from './nesting.js';
 
+/** LZ4 makes a byte of at most 255, and a coded integer has at least 2 bits. */
+const [kMaxBytesPerByte, kMaxIntegersPerByte] = [255, 4 * 255];
+
 /**
- * Checks how deep the prims of a text are nested. Of a USDZ, the files must be stored, as the format demands, not compressed, and no byte
+ * Checks how deep the prims of a text are nested, and the counts of a binary layer. Of a USDZ, the files must be stored, as the format demands, not compressed, and no byte
  * may be in many of them.
  */
 export function checkUsd(bytes: Uint8Array, limits: FormatLimits): void {
   if (bytes[0] !== 0x50 || bytes[1] !== 0x4b) checkLayer(bytes, limits);
-  else for (const { name, content } of filesIn(bytes, limits)) if (/\.usda?$/i.test(name)) checkLayer(content, limits);
+  else
+    for (const { name, content } of filesIn(bytes, limits)) if (/\.usd[ac]?$/i.test(name)) checkLayer(content, limits);
 }
 
 function checkLayer(bytes: Uint8Array, limits: FormatLimits): void {
   const isBinary = new TextDecoder().decode(bytes.subarray(0, 8)) === 'PXR-USDC';
-  if (!isBinary) checkBraces(bytes, 'prims', limits);
+  if (isBinary) checkSections(bytes);
+  else checkBraces(bytes, 'prims', limits);
+}
+
+/** Checks that the sections of a binary layer can hold as much as they say. */
+function checkSections(bytes: Uint8Array): void {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const numberAt = (at: number): number => (at + 8 <= bytes.length ? Number(view.getBigUint64(at, true)) : 0);
+  const list = numberAt(16);
+  const kSection = 32; // bytes: a name, where it begins, how long it is
+  for (let i = 0; i < numberAt(list) && list + 8 + kSection * (i + 1) <= bytes.length; ++i) {
+    const at = list + 8 + kSection * i;
+    const name = new TextDecoder().decode(bytes.subarray(at, at + 16)).replace(/\0.*/s, '');
+    const begin = numberAt(at + 16);
+    const size = Math.min(numberAt(at + 24), Math.max(0, bytes.length - begin));
+    const [count, unpacked] = [numberAt(begin), name === 'TOKENS' ? numberAt(begin + 8) : 0];
+    if (count > kMaxIntegersPerByte * size || unpacked > kMaxBytesPerByte * size)
+      throw new InputError(`its section ${name} says to have more than its ${size} bytes hold`);
+  }
 }
 
 interface File {
