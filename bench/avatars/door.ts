@@ -1,0 +1,113 @@
+// One avatar through one door, in a process of its own: makes its cage, paints it, measures, and draws it from four sides.
+//
+//   tsx bench/avatars/door.ts FILE DOOR PLACE AVATAR.json     PLACE.png, .cage.glb and .painted.glb are written; prints a row as JSON
+
+import { readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { NodeIO } from '@gltf-transform/core';
+import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import { cageGlb } from 'cagecast/cages';
+import { toGlb } from 'cagecast/formats';
+import { cagecast, cageModel, cageTemplate } from 'cagecast/gltf';
+import draco from 'draco3dgltf';
+import { MeshoptDecoder } from 'meshoptimizer';
+import { PNG } from 'pngjs';
+import { root } from '../native.js';
+import type { Avatar } from './labels.js';
+import { frameOf, type Score, scoreOf } from './score.js';
+
+/** A row of the table. Without a verdict, `failed` says why. */
+export interface Row extends Score {
+  verdict?: string;
+  failed?: string;
+  /** Processor time of making or fitting. */
+  seconds?: number;
+}
+
+const kPaint = `${root}examples/samples/human/paint-harlequin.png`;
+/** Pixels of a picture, and the half of a close-up's side in distances from eyes to mouth. */
+const [kPixels, kCloseUp] = [256, 2.2];
+/** From where an avatar is seen, in degrees to the left of its front. */
+const kAzimuths = [0, 35, 90];
+
+const { runCommand } = await import(`${root}dist/command.js`);
+/** Runs the command. @throws {Error} with what it says if it cannot. */
+async function command(...args: string[]): Promise<string> {
+  let [out, errors] = ['', ''];
+  const exit = await runCommand(args, {
+    stdout: (data: Uint8Array | string) =>
+      void (out += typeof data === 'string' ? data : new TextDecoder().decode(data)),
+    stderr: (text: string) => void (errors += text),
+  });
+  if (exit !== 0 && exit !== 3) throw new Error(errors.trim() || `exit code ${exit}`);
+  return out;
+}
+
+await MeshoptDecoder.ready;
+const io = new NodeIO().registerExtensions(ALL_EXTENSIONS).registerDependencies({
+  'draco3d.decoder': await draco.createDecoderModule(),
+  'meshopt.decoder': MeshoptDecoder,
+});
+
+async function score(file: string, cage: string, { face, parts }: Avatar): Promise<Score> {
+  const isGltf = /\.(glb|vrm)$/.test(file);
+  const document = await (isGltf ? io.read(file) : io.readBinary(await toGlb(readFileSync(file))));
+  const fitted = await io.read(cage);
+  const model = cageModel(document);
+  let zones = new Uint8Array();
+  await document.transform(
+    cagecast({ cage: fitted, onResult: (result) => void (zones = Uint8Array.from(result.zones)) }),
+  );
+  return scoreOf(cageTemplate(fitted), model, zones, face, parts);
+}
+
+/** Draws an avatar from its front, between front and side, from its side, and its face. */
+async function draw(painted: string, to: string, { face }: Avatar): Promise<void> {
+  const { z, middle, unit } = face ? frameOf(face) : { z: { x: 0, z: 1 }, middle: undefined, unit: 1 };
+  const front = Math.round((180 / Math.PI) * Math.atan2(z.x, z.z));
+  const views = kAzimuths.map((azimuth) => ['--view', `${front + azimuth},5`]);
+  if (middle) {
+    const corner = (k: number): number[] =>
+      middle.toArray().map((x, a) => x + (k & (1 << a) ? 1 : -1) * kCloseUp * unit);
+    const positions = Float32Array.from([0, 1, 2, 3, 4, 5, 6, 7].flatMap(corner));
+    writeFileSync(
+      `${to}.box.glb`,
+      cageGlb({ positions, indices: Uint32Array.of(0, 1, 3, 4, 5, 7), uvs: new Float32Array(16) }),
+    );
+    views.push(['--view', `${front},0`, '--cage', `${to}.box.glb`]);
+  }
+  const sheet = new PNG({ width: 4 * kPixels, height: kPixels, fill: true });
+  for (const [n, view] of views.entries()) {
+    await command(
+      'thumbnail',
+      painted,
+      ...view,
+      '--size',
+      `${kPixels}`,
+      '--background',
+      '#808080',
+      '-o',
+      `${to}.png`,
+      '--quiet',
+    );
+    PNG.bitblt(PNG.sync.read(readFileSync(`${to}.png`)), sheet, 0, 0, kPixels, kPixels, n * kPixels, 0);
+  }
+  writeFileSync(`${to}.png`, PNG.sync.write(sheet));
+  rmSync(`${to}.box.glb`, { force: true });
+}
+
+const [file, door, to, label] = process.argv.slice(2) as [string, string, string, string];
+const avatar = JSON.parse(label) as Avatar;
+const row: Row = {};
+try {
+  const [cage, painted] = [`${to}.cage.glb`, `${to}.painted.glb`];
+  const before = process.cpuUsage();
+  row.verdict = JSON.parse(await command(...door.split(' '), file, '-o', cage, '--json')).verdict;
+  const { user, system } = process.cpuUsage(before);
+  row.seconds = (user + system) / 1e6;
+  await command('transfer', file, '--cage', cage, '--texture', kPaint, '-o', painted, '--quiet');
+  await draw(painted, to, avatar);
+  Object.assign(row, await score(file, cage, avatar));
+} catch (error) {
+  row.failed = (error as Error).message.split('\n')[0]!;
+}
+process.stdout.write(`\n${JSON.stringify(row)}`, () => process.exit());

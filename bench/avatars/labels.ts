@@ -1,0 +1,42 @@
+import { readFileSync } from 'node:fs';
+
+/** A spot in the space of the model's scene. */
+export type Spot = readonly [number, number, number];
+
+/** Where eyes and mouth are, on the surface; left and right are the model's own. */
+export interface Face {
+  eyeL: Spot;
+  eyeR: Spot;
+  mouth: Spot;
+  /** Who marked it: `net`, a learned detector that was sure, or `hand`, on a picture. */
+  by: 'net' | 'hand';
+  /** Spots that are not to be seen, marked where they would be. The mouth does not count then. */
+  guessed?: 'mouth' | 'eyes and mouth';
+}
+
+/** A kind of part, as names of nodes, meshes or materials. */
+export type Parts = Partial<Record<'skin' | 'clothes' | 'hair' | 'eyes', string[]>>;
+
+/** An avatar of `avatars.json`: where it comes from, and what is true of it. */
+export interface Avatar {
+  file: string;
+  repository: string;
+  commit: string;
+  path: string;
+  sha256: string;
+  licence: string;
+  maker: string;
+  style: string;
+  kind: 'head' | 'figure' | 'animal' | 'thing';
+  /** `held`: not looked at while rules are written. By the hash: an even first digit is open. */
+  half: 'open' | 'held';
+  face?: Face;
+  parts?: Parts;
+}
+
+export const avatars = (): Avatar[] =>
+  JSON.parse(readFileSync(new URL('avatars.json', import.meta.url), 'utf8')) as Avatar[];
+
+/** What a door is given: the arguments of the command before the model. */
+export const kDoors = ['fit human-head', 'fit human-body', 'make'] as const;
+export type Door = (typeof kDoors)[number];
