@@ -84,4 +84,16 @@ struct Mesh {
   [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups, poses}; }
 };
 
+/// Lists of groups, copied from JavaScript.
+struct PartArrays {
+  Array<std::uint32_t> ignore, keep, exclude;
+
+  /// @param source  What is in it may be missing.
+  bool copy(const val& source) {
+    return copyArray(source["ignore"], ignore) && copyArray(source["keep"], keep) &&
+           copyArray(source["exclude"], exclude);
+  }
+  [[nodiscard]] Parts view() const { return {ignore, keep, exclude}; }
+};
+
 }  // namespace cagecast::bindings

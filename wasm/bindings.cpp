@@ -25,20 +25,20 @@ struct Meshes {
   }
 };
 
-/// Options with the caller's locks and masks, copied from JavaScript.
+/// Options with the caller's parts, locks and masks, copied from JavaScript.
 struct Overrides {
-  Array<LockEntry> segmentLocks, groupLocks;
+  PartArrays parts;
+  Array<LockEntry> locks;
   Array<Mask> vertexMasks, triangleMasks;
 
-  /// @param source  Its `locks` and its `masks`, and what is in these, may be missing.
   bool copy(const val& source) {
-    const val locks = source["locks"];
     const val masks = source["masks"];
-    return copyRecords(locks["segments"], segmentLocks) && copyRecords(locks["groups"], groupLocks) &&
+    return parts.copy(source["parts"]) && copyRecords(source["locks"], locks) &&
            copyArray(masks["vertices"], vertexMasks) && copyArray(masks["triangles"], triangleMasks);
   }
   [[nodiscard]] TransferOptions over(TransferOptions options) const {
-    options.locks = {segmentLocks, groupLocks};
+    options.parts = parts.view();
+    options.locks = locks;
     options.masks = {vertexMasks, triangleMasks};
     return options;
   }
@@ -58,11 +58,13 @@ val endingOf(const Status& status, const Meshes& meshes = {}) {
 /// until `release` or the next call.
 class Calls {
  public:
-  val project(const val& cage, const val& target, const TransferOptions& options) {
+  val project(const val& cage, const val& target, const TransferOptions& options, const val& given) {
     Meshes meshes;
-    if (!meshes.copy(cage, target)) return endingOf(kOutOfMemory);
+    Overrides overrides;
+    if (!meshes.copy(cage, target) || !overrides.copy(given)) return endingOf(kOutOfMemory);
     Projection& projection = result_.projection;
-    const Status status = cagecast::project(meshes.cage.view(), meshes.target.view(), options, workspace_, projection);
+    const Status status =
+        cagecast::project(meshes.cage.view(), meshes.target.view(), overrides.over(options), workspace_, projection);
     if (!status.ok()) return endingOf(status, meshes);
     indices_ = std::move(meshes.target.indices);
     val out = projected();
@@ -209,7 +211,8 @@ EMSCRIPTEN_BINDINGS(cagecast) {
       .value("none", CulledBy::none)
       .value("coverage", CulledBy::coverage)
       .value("hole", CulledBy::hole)
-      .value("lock", CulledBy::lock);
+      .value("lock", CulledBy::lock)
+      .value("ignore", CulledBy::ignore);
 
   {
     value_object<Steps> steps("Steps");
@@ -221,7 +224,7 @@ EMSCRIPTEN_BINDINGS(cagecast) {
     options.field("steps", &TransferOptions::steps);
   }
 
-  value_object<LockEntry>("LockEntry").field("id", &LockEntry::id).field("lock", &LockEntry::lock);
+  value_object<LockEntry>("LockEntry").field("segment", &LockEntry::segment).field("lock", &LockEntry::lock);
   value_object<Ratios>("Ratios")
       .field("threshold", &Ratios::threshold)
       .field("floor", &Ratios::floor)

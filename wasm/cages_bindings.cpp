@@ -95,9 +95,11 @@ void setCage(val& out, const Cage& cage) {
   out.set("kind", cage.kind);
 }
 
-val makeCageCall(const val& target, const MakeOptions& options, const val& report) {
+val makeCageCall(const val& target, MakeOptions options, const val& parts, const val& report) {
   ModelArrays arrays;
-  if (!arrays.copy(target)) return endingOf(kOutOfMemory, arrays.model);
+  PartArrays lists;
+  if (!arrays.copy(target) || !lists.copy(parts)) return endingOf(kOutOfMemory, arrays.model);
+  options.parts = lists.view();
   Cage cage;
   const Status status = makeCage(arrays.model, options, progressTo(report), cage);
   val out = endingOf(status, arrays.model);
@@ -105,12 +107,14 @@ val makeCageCall(const val& target, const MakeOptions& options, const val& repor
   return out;
 }
 
-val fitCageCall(const val& from, const val& target, const val& landmarks, FitOptions options, const val& report) {
+val fitCageCall(const val& from, const val& target, const val& landmarks, const val& parts, const val& report) {
   ModelArrays arrays;
+  PartArrays lists;
   Mesh mesh;
-  if (!arrays.copy(target) || !mesh.copy(from["mesh"])) return endingOf(kOutOfMemory, arrays.model);
+  if (!arrays.copy(target) || !lists.copy(parts) || !mesh.copy(from["mesh"]))
+    return endingOf(kOutOfMemory, arrays.model);
   const Template source{mesh.view(), listOf<Landmark>(from["landmarks"]), from["kind"].as<Kind>()};
-  options.landmarks = listOf<Landmark>(landmarks);
+  const FitOptions options{lists.view(), listOf<Landmark>(landmarks)};
   FittedCage cage;
   const Status status = fitCage(source, arrays.model, options, progressTo(report), cage);
   val out = endingOf(status, source, arrays.model, options);
@@ -146,24 +150,14 @@ val refineCageCall(const val& cage, const val& target, const RefineOptions& opti
   return out;
 }
 
-val matchingPartsCall(const val& parts, const val& patterns) {
+val excludedByNameCall(const val& parts) {
   val out = val::array();
-  const std::vector<bool> isMatch = matchingParts(listOf<std::string>(parts), listOf<std::string>(patterns));
-  for (std::size_t p = 0; p < isMatch.size(); ++p) out.set(p, static_cast<bool>(isMatch[p]));
+  const std::vector<bool> isExcluded = excludedByName(listOf<std::string>(parts));
+  for (std::size_t p = 0; p < isExcluded.size(); ++p) out.set(p, static_cast<bool>(isExcluded[p]));
   return out;
 }
 
-template <typename Options>
-val patternsOf(const Options& options) {
-  return listed(options.exclude);
-}
-template <typename Options>
-void setPatterns(Options& options, const val& patterns) {
-  options.exclude = listOf<std::string>(patterns);
-}
-
 MakeOptions makeOptions() { return {}; }
-FitOptions fitOptions() { return {}; }
 RefineOptions refineOptions() { return {}; }
 
 }  // namespace
@@ -190,20 +184,17 @@ EMSCRIPTEN_BINDINGS(cagecast_cages) {
       .field("parent", &Joint::parent);
   value_object<MakeOptions>("MakeOptions")
       .field("kind", &MakeOptions::kind)
-      .field("exclude", &patternsOf<MakeOptions>, &setPatterns<MakeOptions>)
       .field("triangles", &MakeOptions::triangles)
       .field("closing", &MakeOptions::closing)
       .field("offset", &MakeOptions::offset)
       .field("voxels", &MakeOptions::voxels);
-  value_object<FitOptions>("FitOptions").field("exclude", &patternsOf<FitOptions>, &setPatterns<FitOptions>);
   value_object<RefineOptions>("RefineOptions").field("reach", &RefineOptions::reach);
 
   function("makeOptions", &makeOptions);
-  function("fitOptions", &fitOptions);
   function("refineOptions", &refineOptions);
   function("makeCage", &makeCageCall);
   function("fitCage", &fitCageCall);
   function("findLandmarks", &findLandmarksCall);
   function("refineCage", &refineCageCall);
-  function("matchingParts", &matchingPartsCall);
+  function("excludedByName", &excludedByNameCall);
 }

@@ -62,7 +62,7 @@ export function scoreOf(
   parts: Parts = {},
 ): Score {
   const isOf = (kind: keyof Parts, t: number): boolean => {
-    const names = model.parts?.[model.groups?.[model.indices[3 * t]!] ?? 0] ?? [];
+    const names = model.names?.[model.groups?.[model.indices[3 * t]!] ?? 0] ?? [];
     return [names].flat().some((name) => parts[kind]?.includes(name));
   };
   const isPainted = (t: number): boolean => {

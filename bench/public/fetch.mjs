@@ -57,8 +57,8 @@ async function fetchModel(model, to) {
     const holes = template ? [] : labels.ncz.flatMap((pattern) => ['--exclude', pattern]);
     const args = [
       command,
-      ...(template ? [template] : []),
       at('target.glb'),
+      ...(template ? ['--template', template] : []),
       ...holes,
       '-o',
       at('cage.glb'),

@@ -65,8 +65,12 @@ function perVertex(value: unknown, what: string, target: CageModel): Uint8Array 
   return Uint8Array.from(value as unknown as number[]);
 }
 
-function byName(patterns: readonly string[], what: string, { positions, groups, parts = [] }: CageModel): Uint8Array {
-  const names = parts.map((part) => [part].flat());
+function byName(
+  patterns: readonly string[],
+  what: string,
+  { positions, groups, names: all = [] }: CageModel,
+): Uint8Array {
+  const names = all.map((part) => [part].flat());
   const isMeant = new Uint8Array(names.length);
   for (const pattern of patterns) {
     const matches = matcher(pattern.toLowerCase());

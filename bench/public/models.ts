@@ -73,6 +73,6 @@ export async function readModel({ name, ...files }: ModelFiles): Promise<Labelle
   const { positions, indices, uvs } = await of(files.cage, readCage(files.cage));
   if (uvs === undefined) throw new Error(`${files.cage}: has no UVs; the texture is drawn in them`);
   const labels = labelsOf(readJson(files.labels), files.labels, model);
-  const { parts: _, joints: __, groups = new Uint32Array(model.positions.length / 3), ...target } = model;
+  const { names: _, joints: __, groups = new Uint32Array(model.positions.length / 3), ...target } = model;
   return { name, labels, scene: { cage: { positions, indices, uvs }, target: { ...target, groups } } };
 }

@@ -263,34 +263,35 @@ TEST_CASE("options as constructed are the preset `default`, and `paper` turns it
 
 TEST_CASE("a lock that is none of the three, or of nothing that exists, is an error", "[options][locks]") {
   using Locked = std::vector<LockEntry>;
+  using Groups = std::vector<std::uint32_t>;
   const struct {
-    Locked segments, groups;
+    Locked locks;
+    Groups ignore, keep, exclude;
     Option option;
     std::uint32_t at;
     const char* text;
   } cases[] = {{{{0, static_cast<Lock>(3)}},
                 {},
-                Option::segmentLocks,
+                {},
+                {},
+                Option::locks,
                 0,
-                "locks.segments[0] = 3 is not one of (automatic, keep, exclude)"},
-               {{},
-                {{7, static_cast<Lock>(200)}},
-                Option::groupLocks,
-                7,
-                "locks.groups[7] = 200 is not one of (automatic, keep, exclude)"},
+                "locks[0] = 3 is not one of (automatic, keep, exclude)"},
                {{{0, Lock::keep}, {2, Lock::keep}},
                 {},
-                Option::segmentLocks,
+                {},
+                {},
+                Option::locks,
                 2,
-                "locks.segments[2] is given, but there is no segment 2"},
-               {{},
-                {{0, Lock::keep}, {2, Lock::keep}},
-                Option::groupLocks,
-                2,
-                "locks.groups[2] is given, but there is no segment of group 2"}};
-  for (const auto& [segments, groups, option, at, text] : cases) {
+                "locks[2] is given, but there is no segment 2"},
+               {{}, {2}, {}, {}, Option::ignoredParts, 2, "parts.ignore has group 2, of which there is no vertex"},
+               {{}, {0}, {}, {}, Option::ignoredParts, 0, "parts.ignore has all groups of target: nothing is left"},
+               {{}, {}, {0, 2}, {}, Option::keptParts, 2, "parts.keep has group 2, of which there is no vertex"},
+               {{}, {}, {}, {2}, Option::excludedParts, 2, "parts.exclude has group 2, of which there is no vertex"}};
+  for (const auto& [locks, ignore, keep, exclude, option, at, text] : cases) {
     Call call;
-    call.options.locks = {segments, groups};
+    call.options.locks = locks;
+    call.options.parts = {ignore, keep, exclude};
     const Status status = call.transfer();
     CHECK(status.code == Code::badOption);
     CHECK(status.option == option);

@@ -72,7 +72,7 @@ TEST_CASE("any calls, some of which fail, give with what was used before what th
                                                : scenes::patchwork(random.next());
     TransferOptions options = anyOptions(random);
     const LockEntry lock{random.below(3), Lock::exclude};  // A segment 2 is seldom there.
-    if (random.below(4) == 0) options.locks.segments = {&lock, 1};
+    if (random.below(4) == 0) options.locks = {&lock, 1};
     const std::uint32_t fault = random.below(12), call = random.below(3);
     if (fault == 0) scene.target.indices.back() = 1u << 30;
     if (fault == 1) scene.cage.positions.back() = kNaN;

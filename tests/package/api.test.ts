@@ -3,9 +3,9 @@ import { copyFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import {
+  type ClassifyOptions,
   classify,
   init,
-  type Locks,
   type Mesh,
   type Preset,
   presetOptions,
@@ -77,7 +77,7 @@ describe('init', () => {
       }
       const cages = await import('cagecast/cages/sync');
       await cages.init({ module: compiled['cagecast-cages'] });
-      console.log(cages.defaultExclusions().length > 9);`;
+      console.log(cages.excludedByName(['eye'])[0]);`;
     const failure = 'badOption init: options.module is "cagecast.wasm", neither a WebAssembly.Module nor its bytes';
     assert.equal(printed(script), `${failure}\n3\n${failure}\n3\ntrue`);
   });
@@ -311,7 +311,7 @@ describe('options', () => {
       transfer(smallHole().cage, smallHole().target, options).segmentStats.map((stats) => stats.culledBy);
     assert.deepEqual(culledBy({}), ['none', 'hole']);
     assert.deepEqual(culledBy({ steps: { holes: false } }), ['none', 'none']);
-    assert.deepEqual(culledBy({ locks: { segments: { 1: 'exclude' } } }), ['none', 'lock']);
+    assert.deepEqual(culledBy({ locks: { 1: 'exclude' } }), ['none', 'lock']);
     assert.deepEqual(culledBy({ threshold: 1, steps: { floor: false, holes: false } }), ['none', 'coverage']);
     assert.ok(painted({ threshold: 0, minCovered: 1, steps: { floor: true } }) < painted({ threshold: 0 }));
     assert.ok(
@@ -327,9 +327,9 @@ describe('locks', () => {
   test('of groups and segments hold in transfer and classify', () => {
     const { cage, target } = head(5);
     const segment = transfer(cage, target).segments[0]!;
-    const painted = (locks: Locks, group: number) => {
-      const result = transfer(cage, target, { locks });
-      const decided = classify(project(cage, target), { locks });
+    const painted = (options: Pick<ClassifyOptions, 'parts' | 'locks'>, group: number) => {
+      const result = transfer(cage, target, options);
+      const decided = classify(project(cage, target), options);
       for (const name of ['zones', 'cosmeticTriangles', 'segmentStats'] as const)
         assert.deepEqual(decided[name], result[name]);
       const own = result.segmentStats.filter((stats) => stats.group === group);
@@ -340,16 +340,21 @@ describe('locks', () => {
       );
       return isPainted;
     };
-    for (const [locks, group, expected] of [
+    for (const [options, group, expected] of [
       [{}, 0, true],
-      [{ groups: { 0: 'exclude' } }, 0, false],
-      [{ segments: { [segment]: 'exclude' } }, 0, false],
-      [{ groups: { 0: 'exclude' }, segments: { [segment]: 'keep' } }, 0, true],
-      [{ groups: { 0: 'exclude' }, segments: { [segment]: 'auto' } }, 0, true],
+      [{ parts: { exclude: [0] } }, 0, false],
+      [{ parts: { exclude: [0], keep: [0] } }, 0, true],
+      [{ locks: { [segment]: 'exclude' } }, 0, false],
+      [{ parts: { exclude: [0] }, locks: { [segment]: 'keep' } }, 0, true],
+      [{ parts: { exclude: [0] }, locks: { [segment]: 'auto' } }, 0, true],
       [{}, 1, false],
-    ] as [Locks, number, boolean][])
-      assert.equal(painted(locks, group), expected, JSON.stringify(locks));
-    const kept = transfer(cage, target, { locks: { groups: { 1: 'keep', 2: 'auto' } } });
+    ] as [Pick<ClassifyOptions, 'parts' | 'locks'>, number, boolean][])
+      assert.equal(painted(options, group), expected, JSON.stringify(options));
+    const kept = transfer(
+      cage,
+      { ...target, names: ['skin', ['EYE', 'ball'], 'tongue'] },
+      { parts: { keep: ['ey*'] } },
+    );
     assert.ok(kept.segmentStats.every(({ group, culled }) => group !== 1 || !culled));
   });
 });

@@ -60,9 +60,9 @@ describe('cutBorders', () => {
   }
 
   test('what transfer excluded by a lock stays excluded', async () => {
-    const locks = { groups: { 0: 'exclude' } } as const;
-    const result = transfer(cage, target, { locks });
-    const cut = cutBorders(cage, target, result, { locks });
+    const parts = { exclude: [0] };
+    const result = transfer(cage, target, { parts });
+    const cut = cutBorders(cage, target, result, { parts });
     const isOfLocked = (t: number) => target.groups![target.indices[3 * t]!] === 0;
     assert.equal(cut.triangles.filter((t, i) => isOfLocked(t) && cut.cosmeticTriangles[i] === 1).length, 0);
     assert.ok(transfer(cage, target).cosmeticTriangles.some((one, t) => isOfLocked(t) && one === 1));
@@ -211,13 +211,13 @@ describe('geometries of three.js with borders: cut', () => {
     assert.equal(shown(), painted);
     const [skin, eye] = [result.segments[0]!, result.segments[vertices - 1]!];
     assert.ok(!result.segmentStats[skin]!.culled && result.segmentStats[eye]!.culled);
-    setClassification(classify(projection, { locks: { segments: { [skin]: 'exclude' } } }));
+    setClassification(classify(projection, { locks: { [skin]: 'exclude' } }));
     assert.equal(shown(), 0);
     assert.notEqual(mesh.geometry.getAttribute('_ncz').getX(0), Zone.Cosmetic);
     setClassification(classify(projection));
     assert.equal(shown(), painted);
-    const segments = Object.fromEntries(result.segmentStats.map((_, s) => [s, 'keep' as const]));
-    const kept = classify(projection, { locks: { segments } });
+    const locks = Object.fromEntries(result.segmentStats.map((_, s) => [s, 'keep' as const]));
+    const kept = classify(projection, { locks });
     setClassification(kept);
     const isMore = (one: number, t: number) =>
       one === 1 && result.segmentStats[result.segments[target.indices[3 * t]!]!]!.culled;
@@ -230,7 +230,7 @@ describe('geometries of three.js with borders: cut', () => {
     // Points that are hidden or uncovered never change to or from "culled".
     const projection = project(cage, plain);
     const only = (lock: 'exclude' | 'keep') => Object.fromEntries(projection.segmentStats.map((_, s) => [s, lock]));
-    const bare = { segments: only('exclude') };
+    const bare = only('exclude');
     const shownAfter = (locks: TransferOptions['locks'], later: TransferOptions['locks']) => {
       const mesh = new ThreeMesh(geometryOf(plain), material);
       const { overlays, setClassification } = applyTransfer(mesh, {

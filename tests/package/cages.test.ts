@@ -10,12 +10,11 @@ import {
   type CagecastError,
   type CageModel,
   cageGlb,
-  defaultExclusions,
+  excludedByName,
   findLandmarks,
   fitCage,
   loadTemplate,
   makeCage,
-  matchingParts,
   type Regions,
   refineCage,
   type Template,
@@ -61,7 +60,7 @@ function head(detail = 12): CageModel & Mesh {
   const skin = ball([0, 0, 0], (phi, theta) => 1 + 0.1 * Math.cos(theta) + 0.02 * Math.cos(phi), detail, 2 * detail);
   const eyes = [-0.35, 0.35].map((x) => ball([x, -0.85, 0.2], () => 0.18, 8, 16));
   const { positions, indices, groups } = join3d(skin, ...eyes);
-  return { positions, indices, groups, parts: ['skin', ['Eye.L', 'white'], ['Eye.R', 'white']] };
+  return { positions, indices, groups, names: ['skin', ['Eye.L', 'white'], ['Eye.R', 'white']] };
 }
 
 /** A coarse grid: these tests are not about what a good cage is. */
@@ -116,10 +115,10 @@ describe('makeCage', () => {
     assert.equal(sync.makeCage(model, { ...options, kind: 'automatic' }).kind, 'head');
   });
 
-  test('takes patterns and marks in the place of the default list', async () => {
-    assert.deepEqual(sync.defaultExclusions(), await defaultExclusions());
-    assert.deepEqual(await matchingParts(['eye', 'lid'], ['eye']), [true, false]);
-    assert.deepEqual(sync.matchingParts(['skin', ['Eye.L', 'white'], 'eyelid'], ['eye', 'sk*']), [true, true, false]);
+  test('takes lists of parts, and marks, beside what names say', async () => {
+    const names = ['skin', ['Eye.L', 'white'], 'eyelid'];
+    assert.deepEqual(await excludedByName(names), [false, true, false]);
+    assert.deepEqual(sync.excludedByName(names), [false, true, false]);
     const model = head();
     const marks = Uint8Array.from({ length: model.indices.length / 3 }, (_, t) =>
       Number(model.groups![model.indices[3 * t]!] === 1),
@@ -128,7 +127,7 @@ describe('makeCage', () => {
       [model, 0],
       [{ ...model, marks }, 1],
     ] as const)
-      assert.equal(inspect(sync.makeCage(of, { ...options, exclude: [] }), model).holes.length, holes);
+      assert.equal(inspect(sync.makeCage(of, { ...options, parts: { keep: ['*'] } }), model).holes.length, holes);
   });
 
   test('is cancelled at once by its signal, and the next call starts anew', async () => {
@@ -186,8 +185,9 @@ describe('makeCage', () => {
         'model has no positions; see cageModel of cagecast/gltf and cagecast/three',
       ],
       [call({ positions: [1] }), 'badArgument', 'model.positions is of type Array, not a Float32Array'],
-      [call({ parts: 'skin' }), 'badArgument', 'model.parts is "skin", not an array of names'],
-      [call({ parts: [['a', 1]] }), 'badArgument', 'model.parts[0] is 1, not a name, or an array of names'],
+      [call({ names: 'skin' }), 'badArgument', 'model.names is "skin", not an array'],
+      [call({ names: [['a', 1]] }), 'badArgument', 'model.names[0] is of type Array, not a name or an array of names'],
+      [call({ parts: ['skin'] }), 'badArgument', /^model\.parts is not there any more; .* as model\.names$/],
       [
         call({ joints: {} }),
         'badArgument',
@@ -210,14 +210,16 @@ describe('makeCage', () => {
       [
         call({}, { size: 1 }),
         'badOption',
-        'options.size is unknown; there are: kind, exclude, triangles, closing, offset, voxels',
+        'options.size is unknown; there are: kind, triangles, closing, offset, voxels, parts',
       ],
       [
         call({}, { kind: 'hand' }),
         'badOption',
         'options.kind = "hand" is unknown; there are: "automatic", "head", "body", "prop"',
       ],
-      [call({}, { exclude: 'eye*' }), 'badOption', 'options.exclude is "eye*", not an array of patterns'],
+      [call({}, { exclude: ['eye*'] }), 'badOption', /^options\.exclude is unknown; there are: .*, parts$/],
+      [call({}, { parts: { keep: 'eye*' } }), 'badOption', /^options\.parts\.keep is "eye\*", not an array of numbers/],
+      [call({}, { parts: { keep: [3] } }), 'badOption', 'options.parts.keep has group 3, of which there is no vertex'],
       [call({}, { offset: -1 }), 'badOption', 'options.offset is -1, not a number of at least 0'],
       [call({}, { triangles: 0.5 }), 'badOption', 'options.triangles is 0.5, not a whole number'],
       [call({}, { onProgress: 1 }), 'badOption', 'options.onProgress is 1, not a function'],
@@ -225,12 +227,8 @@ describe('makeCage', () => {
       [call({ indices: new Uint32Array(0) }), 'badModel', 'model has no triangles; at least one is needed'],
       [call({ positions: nan }), 'badModel', 'model.positions[4] = NaN is not a finite number'],
     ]);
-    await assertFailures('matchingParts', [
-      [
-        () => sync.matchingParts(['skin'], 'eye' as never),
-        'badArgument',
-        'patterns is "eye", not an array of patterns',
-      ],
+    await assertFailures('excludedByName', [
+      [() => sync.excludedByName('eye' as never), 'badArgument', 'names is "eye", not an array'],
     ]);
   });
 
@@ -250,9 +248,9 @@ describe('makeCage', () => {
 
   test('an idle worker does not keep a process alive, and nothing is loaded before the first call', () => {
     const script = `
-      import { defaultExclusions } from 'cagecast/cages';
+      import { excludedByName } from 'cagecast/cages';
       import { makeCage } from 'cagecast/cages/sync';
-      try { makeCage({}); } catch ({ code }) { console.log(code, (await defaultExclusions()).length > 0); }`;
+      try { makeCage({}); } catch ({ code }) { console.log(code, (await excludedByName(['eye']))[0]); }`;
     assert.equal(printed(script), 'notInitialised true');
   });
 });
@@ -313,7 +311,7 @@ describe('fitCage', () => {
     const targets = { eyeBlinkLeft: 'left eye', eyeBlinkRight: 'right eye', jawOpen: 'jaw' } as const;
     const [file, cageFile] = [at('avatar.glb'), at('cage.glb')];
     writeFileSync(file, faceAvatar(targets));
-    await cagecast('fit', 'human-head', file, '-o', cageFile);
+    await cagecast('fit', file, '--template', 'human-head', '-o', cageFile);
     const { positions, holes } = gltf.cageTemplate(await new NodeIO().read(cageFile));
     const share = kFace.eye[1] - kFace.mouth[1];
     const [x, y] = kFace.eye;
@@ -349,11 +347,7 @@ describe('fitCage', () => {
     const none = new Uint32Array(0);
     await assertFailures('fitCage', [
       [call(null), 'badArgument', /^template is null, not a mesh/],
-      [
-        call({}, {}, { exclude: [] }),
-        'badArgument',
-        /^landmarks\.exclude is an option; options come after landmarks: /,
-      ],
+      [call({}, {}, { parts: {} }), 'badArgument', /^landmarks\.parts is an option; options come after landmarks: /],
       [() => fitCage(bare as Template, model), 'missingUvs', /^template\.uvs is missing/],
       [
         call({ landmarks: [1] }),
@@ -371,7 +365,7 @@ describe('fitCage', () => {
         /^template\.kind is "hand", not one of "automatic", "head", "body", "prop"/,
       ],
       [call({}, {}, { chin: 'low' }), 'badArgument', /^landmarks\.chin is "low", not 3 finite numbers/],
-      [call({}, {}, {}, { triangles: 5 }), 'badOption', /^options\.triangles is unknown; there are: exclude$/],
+      [call({}, {}, {}, { triangles: 5 }), 'badOption', /^options\.triangles is unknown; there are: parts$/],
       [call({ indices: none }), 'badTemplate', /template/],
       [call({}, { baseColors: 3 }), 'badArgument', 'model.baseColors is 3, not an array of { factor, image }'],
       [
@@ -526,9 +520,9 @@ describe('cageModel', () => {
     maker.node({ name: 'all', mesh });
     const file = maker.finish();
     const document = await new NodeIO().registerExtensions(KHRONOS_EXTENSIONS).readBinary(new Uint8Array(file));
-    for (const { parts } of [gltf.cageModel(document), three.cageModel(await load(file))])
+    for (const { names } of [gltf.cageModel(document), three.cageModel(await load(file))])
       assert.deepEqual(
-        parts!.map((names) => names.includes('glass')),
+        names!.map((own) => own.includes('glass')),
         [true, true, false],
       );
   });
@@ -676,12 +670,12 @@ describe('cageModel', () => {
     maker.json.meshes[mesh!]!.name = 'Face.mesh';
     maker.node({ name: 'Face', mesh: mesh! });
     const bytes = maker.finish();
-    assert.deepEqual(gltf.cageModel(await read(bytes)).parts, [
+    assert.deepEqual(gltf.cageModel(await read(bytes)).names, [
       ['Face', 'Face.mesh', 'skin', 'Face/skin'],
       ['Face', 'Face.mesh', 'EyeWhite', 'Face/EyeWhite'],
     ]);
-    const { parts } = three.cageModel(await load(bytes));
-    assert.ok(parts!.length === 2 && parts![0]!.includes('skin') && parts![1]!.includes('EyeWhite'));
+    const { names } = three.cageModel(await load(bytes));
+    assert.ok(names!.length === 2 && names![0]!.includes('skin') && names![1]!.includes('EyeWhite'));
   });
 
   test('makeCage gives the same for a document, a scene and arrays', async () => {

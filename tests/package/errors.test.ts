@@ -111,7 +111,9 @@ describe('errors', () => {
     [inCage({ uvs: 'uv' }), 'cage.uvs is "uv", not a Float32Array'],
     [inTarget({ groups: [0, 0, 0] }), 'target.groups is of type Array, not a Uint32Array'],
   ];
-  const all = ['preset', ...optionFlags.map(({ name }) => name), 'steps', 'locks', 'masks', 'reuse'].join(', ');
+  const all = ['preset', ...optionFlags.map(({ name }) => name), 'steps', 'parts', 'locks', 'masks', 'reuse'].join(
+    ', ',
+  );
   const ofOptions: [options: unknown, sentence: string | RegExp, at?: number][] = [
     [0.5, 'options is 0.5, not an object'],
     [{ treshold: 0.5 }, `options.treshold is not an option; transfer takes: ${all}`],
@@ -133,25 +135,28 @@ describe('errors', () => {
       { steps: { projection: 'nearest' } },
       'options.steps.projection = "nearest" is unknown; there are: "nearestPoint", "nearestVertex"',
     ],
-    [{ locks: 'keep' }, 'options.locks is "keep", not an object'],
-    [{ locks: new Map([['groups', { 0: 'exclude' }]]) }, /options\.locks is .*, not an object/],
-    [{ locks: { segment: {} } }, 'options.locks.segment is unknown; there are: segments, groups'],
-    [{ locks: { groups: 1 } }, /options\.locks\.groups is 1, not an object/],
-    [{ locks: { groups: new Set([0]) } }, /options\.locks\.groups is .*, not an object/],
+    [{ locks: 'keep' }, 'options.locks is "keep", not an object of numbers and locks'],
+    [{ locks: new Map([[0, 'exclude']]) }, /options\.locks is .*, not an object/],
     [
-      { locks: { groups: new Map([[0, 'exclude']]) } },
-      'options.locks.groups is of type Map, not an object of numbers and locks',
+      { locks: { segments: { 0: 'keep' } } },
+      'options.locks has the key "segments", which is not the number of a segment',
     ],
     [
-      { locks: { segments: { '': 'keep' } } },
-      'options.locks.segments has the key "", which is not the number of a segment',
+      { locks: { groups: { 0: 'keep' } } },
+      /options\.locks\.groups is not there any more; give .* as options\.parts\.keep/,
     ],
-    [
-      { locks: { segments: { 0: 'maybe' } } },
-      'options.locks.segments[0] = "maybe" is unknown; there are: "auto", "keep", "exclude"',
-    ],
-    [{ locks: { groups: { 7: 'keep' } } }, 'options.locks.groups[7] is given, but there is no segment of group 7', 7],
-    [{ locks: { segments: { 99: 'exclude' } } }, 'options.locks.segments[99] is given, but there is no segment 99', 99],
+    [{ locks: { '': 'keep' } }, 'options.locks has the key "", which is not the number of a segment'],
+    [{ locks: { 0: 'maybe' } }, 'options.locks[0] = "maybe" is unknown; there are: "auto", "keep", "exclude"'],
+    [{ locks: { 99: 'exclude' } }, 'options.locks[99] is given, but there is no segment 99', 99],
+    [{ parts: 'hair' }, 'options.parts is "hair", not an object'],
+    [{ parts: { leave: [] } }, 'options.parts.leave is not an option; transfer takes: ignore, keep, exclude'],
+    [{ parts: { keep: 'hair' } }, 'options.parts.keep is "hair", not an array of numbers and names'],
+    [{ parts: { keep: [-1] } }, 'options.parts.keep[0] = -1 is neither the number of a group nor a name'],
+    [{ parts: { keep: ['hair'] } }, 'options.parts.keep[0]: nothing is named "hair"; no part has a name'],
+    [{ parts: { keep: [7] } }, 'options.parts.keep has group 7, of which there is no vertex', 7],
+    [{ parts: { exclude: [7] } }, 'options.parts.exclude has group 7, of which there is no vertex', 7],
+    [{ parts: { ignore: [7] } }, 'options.parts.ignore has group 7, of which there is no vertex', 7],
+    [{ parts: { ignore: [0] } }, 'options.parts.ignore has all groups of target: nothing is left'],
   ];
   for (const [of, rows, standard] of [
     ['meshes', ofMeshes, undefined],
@@ -213,13 +218,8 @@ describe('errors', () => {
     );
     const sentence = 'classify: options.threshold = 2 is not within 0..1';
     fails(() => classify(projection, { threshold: 2 }), 'badOption', sentence);
-    const locks = { segments: { 99: 'exclude' } } as const;
-    fails(
-      () => classify(projection, { locks }),
-      'badOption',
-      /locks\.segments\[99\] is given, but there is no segment 99/,
-      99,
-    );
+    const locks = { 99: 'exclude' } as const;
+    fails(() => classify(projection, { locks }), 'badOption', /locks\[99\] is given, but there is no segment 99/, 99);
     worksAgain();
   });
 });

@@ -97,8 +97,9 @@ describe('the canonical face', () => {
     writeFileSync(at('face.obj'), objOf(face(467)));
     const { status, stderr } = await cagecast(
       'fit',
-      at('face.obj'),
       'examples/samples/human/target.glb',
+      '--template',
+      at('face.obj'),
       '-o',
       at('c.glb'),
     );

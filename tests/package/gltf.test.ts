@@ -270,7 +270,7 @@ describe('document.transform(cagecast(…))', () => {
       cagecast({
         cage,
         texture,
-        parts: (_, node, isDrawn) => isDrawn && node.getName() !== 'Visor',
+        parts: { ignore: ['visor'] },
         onResult: (_, parts, __, leftOut) => void left.push(...[...parts, ...leftOut].map(({ name }) => name)),
       }),
     );
@@ -442,8 +442,13 @@ describe('document.transform(cagecast(…))', () => {
       [{ texture: new Uint8Array(100) }, /^cagecast: texture: is neither a PNG nor a JPEG image/],
       [{ texture: texture.subarray(0, 50) }, /^cagecast: texture: is truncated/],
       [{ texture: texture.buffer }, /^cagecast: texture is of type ArrayBuffer, not a Uint8Array$/],
-      [{ parts: 'head' }, /^cagecast: parts is "head", not a function$/],
-      [{ parts: () => false }, /^cagecast: target: all parts are left out: "only" \(ignored\); the option parts says/],
+      [{ parts: 'head' }, /^cagecast: options\.parts is "head", not an object$/, 'badOption'],
+      [{ parts: { ignore: ['head'] } }, /^cagecast: target: parts\.ignore: nothing is named "head"; there are only/],
+      [{ parts: { ignore: [2] } }, /^cagecast: target: parts\.ignore: there is no part 2, only 1/],
+      [
+        { parts: { ignore: ['*'] } },
+        /^cagecast: target: all parts are left out: "only" \(ignored\); name what counts in parts\.keep/,
+      ],
       [{ maskImages: { nevr: 1 } }, /^cagecast: maskImages is .*, not \{ never, always \}/],
       [{ threshold: 2 }, /threshold = 2/, 'badOption'],
       [

@@ -7,14 +7,10 @@ import { ball, head, join3d, within } from './scenes.js';
 
 before(init);
 
-type Whole = { [K in keyof Omit<Mesh, 'poses'>]-?: NonNullable<Mesh[K]> };
-const { cage, target } = head(1, 16) as { cage: Whole; target: Whole };
-const parts = [0, 1, 2].map((group) => ({
-  name: ['skin', 'eye', 'tongue'][group]!,
-  firstVertex: target.groups.indexOf(group),
-  vertexCount: target.groups.filter((one) => one === group).length,
-}));
-const look = (changed: Partial<Mesh>, on: Mesh = target): Inspection => inspect({ ...cage, ...changed }, on, { parts });
+type Whole = { [K in keyof Omit<Mesh, 'poses' | 'names'>]-?: NonNullable<Mesh[K]> };
+const { cage, target: unnamed } = head(1, 16) as { cage: Whole; target: Whole };
+const target = { ...unnamed, names: ['skin', 'eye', 'tongue'] };
+const look = (changed: Partial<Mesh>, on: Mesh = target): Inspection => inspect({ ...cage, ...changed }, on);
 const codes = ({ findings }: Inspection): FindingCode[] => findings.map(({ code }) => code);
 const find = ({ findings }: Inspection, code: FindingCode) => findings.find((finding) => finding.code === code)!;
 const moved = (by: (p: [number, number, number]) => readonly number[]): Float32Array => {
@@ -63,10 +59,14 @@ describe('inspect', () => {
 
   test('a part that hides more than a third of the rest is named, with what leaves it out', () => {
     const visor = ball([0, 0, 0], () => 1.12, 12, 24);
-    const on = join3d(target, visor);
-    const names = [{ name: 'head', firstVertex: 0, vertexCount: target.positions.length / 3 }];
-    names.push({ name: 'Visor', firstVertex: names[0]!.vertexCount, vertexCount: visor.positions.length / 3 });
-    const { findings } = inspect(cage, on, { parts: names });
+    const on = { ...join3d(target, visor), names: ['head', 'Visor'] };
+    const groups = Uint32Array.from({ length: on.positions.length / 3 }, (_, v) => +(v >= target.positions.length / 3));
+    const { findings } = inspect(cage, { ...on, groups }, {});
+    assert.ok(
+      !inspect(cage, { ...on, groups }, { parts: { ignore: ['visor'] } }).findings.some(
+        ({ code }) => code === 'muchHidden',
+      ),
+    );
     const { sentence, ignore } = findings.find(({ code }) => code === 'muchHidden')!;
     assert.deepEqual(
       [sentence.replace(/[\d.]+ %/, 'n %'), ignore],
@@ -135,11 +135,11 @@ describe('inspect', () => {
 
   test('takes an existing result, and gives plain data', () => {
     const result = transfer(cage, target);
-    const again = inspect(cage, target, { result, parts });
+    const again = inspect(cage, target, { result });
     assert.deepEqual(again, look({}));
     assert.deepEqual(structuredClone(again), again);
     assert.deepEqual(
-      inspect(cage, target).segments.map(({ part }) => part),
+      inspect(cage, unnamed).segments.map(({ part }) => part),
       ['group 0', 'group 1', 'group 2'],
     );
   });
@@ -219,8 +219,8 @@ describe('a cage out of place', () => {
         groups: Uint32Array.of(...target.groups, 7, 7, 7, 7),
       };
     };
-    const named = [...parts, { name: 'Ground', firstVertex: target.positions.length / 3, vertexCount: 4 }];
-    const look = (half: number) => inspect(cage, onGround(half), { parts: named });
+    const names = [...target.names, ...Array(4).fill(''), 'Ground'];
+    const look = (half: number) => inspect(cage, { ...onGround(half), names });
     assert.ok(!codes(look(1)).includes('targetTooLarge'));
     for (const [half, verdict] of [
       [15, 'usable'],
@@ -271,25 +271,22 @@ describe('a cage for a part of the target', () => {
 
   test('a cap: what lies beyond its border does not count', () => {
     const cap = within(cage, (_, __, z) => z > 0.6);
-    assert.notEqual(inspect(cap, target, { parts }).verdict, 'unfit');
+    assert.notEqual(inspect(cap, target).verdict, 'unfit');
     // If it does: the segment does not pass, and the reason.
     const steps = { holes: false };
-    const inspection = inspect(cap, target, { parts, steps });
+    const inspection = inspect(cap, target, { steps });
     assert.match(
       find(inspection, 'nothingToPaint').sentence,
       /covers \d+\.\d % of the exposed area of "skin", less than the threshold of 0\.5/,
     );
     // At a lower threshold it is the floor that it misses.
     assert.match(
-      find(inspect(cap, target, { parts, threshold: 0.05, steps }), 'nothingToPaint').sentence,
+      find(inspect(cap, target, { threshold: 0.05, steps }), 'nothingToPaint').sentence,
       /and it has 0\.\d+ times the required covered area/,
     );
-    assert.notEqual(
-      inspect(cap, target, { parts, threshold: 0.05, steps: { ...steps, floor: false } }).verdict,
-      'unfit',
-    );
+    assert.notEqual(inspect(cap, target, { threshold: 0.05, steps: { ...steps, floor: false } }).verdict, 'unfit');
     const { locks } = find(inspection, 'nothingToPaint');
-    assert.notEqual(inspect(cap, target, { parts, steps, locks }).verdict, 'unfit', 'as the advice says');
+    assert.notEqual(inspect(cap, target, { steps, locks }).verdict, 'unfit', 'as the advice says');
   });
 });
 
@@ -471,8 +468,6 @@ for (const [fn, look] of Object.entries({ inspect, suggest }))
     const call = look as (...args: unknown[]) => unknown;
     const cases: [unknown[], RegExp, string?][] = [
       [[cage, target, null], /: options is null, not an object$/, 'badOption'],
-      [[cage, target, { parts: 5 }], /: options\.parts is 5, not an array of ranges of vertices$/, 'badOption'],
-      [[cage, target, { parts: [null] }], /: options\.parts is of type Array, not an array of ranges/, 'badOption'],
       [[cage, undefined, { result }], /: target\.positions is undefined, not a typed array/],
       [[{}, target, { result }], /: cage\.positions is undefined, not a typed array/],
       [[cage, target, { result: 5 }], /: result is 5; pass what transfer\(\) returned$/],

@@ -150,12 +150,12 @@ describe('reuse', () => {
         transfer(cage, { ...target, ...change }, { ...options, reuse: given });
     leavesAlone(call({ indices: new Uint32Array([0, 1, 1e6]) }), reuse, 'indexOutOfRange');
     leavesAlone(call({}, { threshold: 2 }), reuse, 'badOption');
-    leavesAlone(call({}, { locks: { groups: { 0: 'maybe' } } }), reuse, 'badOption');
-    leavesAlone(call({}, { threshold: 2, locks: { groups: { 0: 'keep' } } }), reuse, 'badOption');
+    leavesAlone(call({}, { locks: { 0: 'maybe' } }), reuse, 'badOption');
+    leavesAlone(call({}, { threshold: 2, parts: { keep: [0] } }), reuse, 'badOption');
     // Found out when the projection is there.
-    leavesAlone(call({}, { locks: { groups: { 9: 'keep' } } }), reuse, 'badOption');
+    leavesAlone(call({}, { parts: { keep: [9] } }), reuse, 'badOption');
     leavesAlone(
-      (given) => transfer(one.cage, one.target, { locks: { segments: { 999: 'keep' } }, reuse: given }),
+      (given) => transfer(one.cage, one.target, { locks: { 999: 'keep' }, reuse: given }),
       reuse,
       'badOption',
     );

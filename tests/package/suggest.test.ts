@@ -82,9 +82,7 @@ describe('suggest', () => {
       assert.match(advice, /^If that is wrong, override it, /);
       assert.equal(culled({ ...options, locks })[1], !isCulled);
       for (const lock of ['keep', 'exclude'] as const)
-        assert.ok(
-          !codes(suggest(cage, target, { ...options, locks: { segments: { 1: lock } } })).includes('segmentInDoubt'),
-        );
+        assert.ok(!codes(suggest(cage, target, { ...options, locks: { 1: lock } })).includes('segmentInDoubt'));
     }
   });
 

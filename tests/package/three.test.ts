@@ -86,7 +86,7 @@ describe('extract', () => {
     const { positions, indices, uvs } = scene.target;
     const single = { positions, indices, uvs, groups: new Uint32Array(vertices) };
     for (const object of [geometryOf(scene.target), meshOf(scene.target), new Group().add(meshOf(scene.target))])
-      assert.deepEqual(extract(object).mesh, single);
+      assert.deepEqual({ ...extract(object).mesh, names: undefined }, { ...single, names: undefined });
     const other = meshOf(scene.target);
     other.material.map = Object.assign(new Texture(), { channel: 2 });
     assert.equal(extract(other).mesh.uvs, undefined, 'it has no UVs of this channel');
@@ -135,11 +135,11 @@ describe('extract', () => {
       ['outline', 1],
       ['name', 1],
     ]);
-    const all = applyTransfer(root, { cage: cage(), parts: () => true });
+    const all = applyTransfer(root, { cage: cage(), parts: { keep: ['*'] } });
     assert.equal(all.parts.length, 8);
     const { parts, leftOut: others } = applyTransfer(root, {
       cage: cage(),
-      parts: (one, isDrawn) => (isDrawn && one !== skin) || !one.visible,
+      parts: { ignore: [0], keep: ['head_outercage'] },
     });
     assert.deepEqual([parts.length, others[0]!.why, others[0]!.mesh === skin], [1, 'ignored', true]);
     assert.equal(
@@ -170,7 +170,7 @@ describe('extract', () => {
     );
   });
 
-  test('accessories stay bare, unless all is such or locks say otherwise', () => {
+  test('accessories stay bare, unless all is such or they are kept', () => {
     const [skin, hat] = [meshOf(scene.target), meshOf(ball([0, 0.9, 0], () => 0.05, 8, 12))];
     hat.name = 'Wolf3D_Headwear';
     const painted = (target: Object3D, options = {}) => {
@@ -179,7 +179,7 @@ describe('extract', () => {
     };
     const both = () => new Group().add(skin.clone(), hat.clone());
     assert.deepEqual(painted(both()).at(-1), 'lock');
-    assert.notEqual(painted(both(), { locks: { groups: { 1: 'keep' } } }).at(-1), 'lock');
+    assert.notEqual(painted(both(), { parts: { keep: ['*headwear'] } }).at(-1), 'lock');
     assert.notEqual(painted(hat.clone())[0], 'lock');
     // What a cage was made without stays bare, too.
     const around = cage();
@@ -295,9 +295,9 @@ test('arguments that are none, and models that cannot be read, are errors that n
     [() => extract(few), /target: "long name [^"]*…" has 5 heat for \d+ vertices/],
     [
       () => extract(new Group().add(Object.assign(meshOf(scene.target), { visible: false, name: 'head' }))),
-      /^cagecast\/three: target: all parts are left out: "head" \(hidden\); the option parts says which count$/,
+      /^cagecast\/three: target: all parts are left out: "head" \(hidden\); name what counts in parts.keep$/,
     ],
-    [() => apply(target, { cage: cage(), parts: 'head' }), /options\.parts is "head", not a function/, 'badOption'],
+    [() => apply(target, { cage: cage(), parts: 'head' }), /options\.parts is "head", not an object/, 'badOption'],
     [() => extract(new Group().add(new BatchedMesh(2, 99, 99, target.material))), whole],
     [() => extract(new ThreeMesh(instanced, target.material)), whole],
     [() => applied.setOpacity(2), /^setOpacity: opacity is 2, not a number from 0 to 1/],
@@ -388,7 +388,7 @@ describe('applyTransfer', () => {
   test('a note says why nothing may be painted, and what helps', () => {
     assert.equal(applyTransfer(meshOf(ungrouped), { cage: cage() }).note, undefined);
     const target = Object.assign(meshOf(ungrouped), { name: 'head' });
-    const { note } = applyTransfer(target, { cage: cage(), locks: { groups: { 0: 'exclude' } } });
+    const { note } = applyTransfer(target, { cage: cage(), parts: { exclude: ['head'] } });
     assert.equal(note, 'nothing may be painted: "head" is excluded by choice; lift the lock');
     const exchanged = 'nothing may be painted: target and cage seem to be exchanged; exchange them';
     assert.equal(applyTransfer(cage(), { cage: meshOf(ball([0, 0, 0], () => 0.5, 40, 60)) }).note, exchanged);
@@ -869,9 +869,7 @@ describe('inspect', () => {
     const around = cage();
     const arrays = [extract(around, 'cage').mesh, extract(target).mesh] as const;
     const found = await inspect(target, { cage: around, threshold: 0.6 });
-    const [skin] = extract(target).parts;
-    const parts = [{ name: skin!.name, firstVertex: 0, vertexCount: skin!.vertexCount }];
-    assert.deepEqual(found, inspectArrays(...arrays, { threshold: 0.6, parts }));
+    assert.deepEqual(found, inspectArrays(...arrays, { threshold: 0.6 }));
     assert.ok(found.segments.some(({ part }) => part === 'skin'));
     applyTransfer(target, { cage: around });
     assert.deepEqual(await inspect(target, { cage: around, threshold: 0.6 }), found, 'also once it is painted');
@@ -881,7 +879,7 @@ describe('inspect', () => {
     const eyes = { eye_centre_left: [x! + 0.1, y!, z!], eye_centre_right: [x! - 0.1, y!, z!] } as const;
     Object.assign(around.userData, { landmarks: eyes });
     const strict = await inspect(target, { cage: around, threshold: 1 });
-    assert.deepEqual(strict, inspectArrays(...arrays, { threshold: 1, parts, landmarks: eyes }));
+    assert.deepEqual(strict, inspectArrays(...arrays, { threshold: 1, landmarks: eyes }));
   });
 
   test('takes the cages in a file, and names what is wrong', async () => {

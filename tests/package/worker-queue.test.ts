@@ -1,7 +1,7 @@
 // How calls of cagecast/cages share workers: with workers that answer when they are told to.
 import assert from 'node:assert/strict';
 import { beforeEach, test } from 'node:test';
-import { init, matchingParts, terminate } from 'cagecast/cages';
+import { excludedByName, init, terminate } from 'cagecast/cages';
 
 /** A worker that does nothing by itself. */
 class IdleWorker {
@@ -27,7 +27,7 @@ class IdleWorker {
 let workers: IdleWorker[] = [];
 const settled = () => new Promise((done) => setImmediate(done));
 /** What each worker was asked, by the only argument. */
-const asked = () => workers.map(({ asked }) => asked.map(({ args }) => (args[1] as string[])[0]).join(''));
+const asked = () => workers.map(({ asked }) => asked.map(({ args }) => (args[0] as string[])[0]).join(''));
 const ended = () => workers.map(({ isEnded }) => isEnded);
 
 /** Calls that note when they end, and how. */
@@ -36,7 +36,7 @@ function calls(...names: string[]) {
   const controllers = names.map(() => new AbortController());
   names.forEach((name, i) => {
     const { signal } = controllers[i]!;
-    matchingParts([], [name], { signal }).then(
+    excludedByName([name], { signal }).then(
       () => log.push(name),
       (error: unknown) => log.push(`${name}: ${error instanceof Error ? (error as { code?: string }).code : error}`),
     );
@@ -120,7 +120,7 @@ test('init starts as many workers as it is told, which all stay; other numbers a
   assert.ok(ended().every((is) => !is));
   const names = [...'abcdefghij'].slice(0, most + 3);
   calls(...names);
-  const last = workers.map(({ asked }) => (asked.at(-1)!.args[1] as string[])[0]);
+  const last = workers.map(({ asked }) => (asked.at(-1)!.args[0] as string[])[0]);
   assert.deepEqual(last, names);
   for (const worker of workers) await worker.answer();
   const one = init({ workers: 1 });

@@ -43,8 +43,7 @@ describe('the worker', () => {
   test('gives the results of the package, without init', async () => {
     const [projection, expected] = [await project(cage, target), direct.project(cage, target)];
     assert.deepEqual(plain(projection), plain(expected));
-    const locks = { groups: { 0: 'exclude' } } as const;
-    for (const options of [{ threshold: 0.3 }, { locks }]) {
+    for (const options of [{ threshold: 0.3 }, { parts: { exclude: [0] } }]) {
       assert.deepEqual(await classify(projection, options), direct.classify(expected, options));
       const [here, there] = [direct.transfer(cage, target, options), await transfer(cage, target, options)];
       assert.deepEqual(plain(there), plain(here));
@@ -57,14 +56,14 @@ describe('the worker', () => {
   });
 
   test('inspects as cagecast/inspect does', async () => {
-    const parts = [{ name: 'skin', firstVertex: 0, vertexCount: target.positions.length / 3 }];
     const turned = { ...cage, indices: cage.indices.slice().reverse() };
     for (const [around, options] of [
-      [cage, { parts }],
+      [cage, { parts: { keep: ['skin'] } }],
       [turned, { threshold: 0.7 }],
     ] as const) {
-      assert.deepEqual(await inspect(around, target, options), checks.inspect(around, target, options));
-      assert.deepEqual(await suggest(around, target, options), checks.suggest(around, target, options));
+      const named = { ...target, names: ['skin'] };
+      assert.deepEqual(await inspect(around, named, options), checks.inspect(around, named, options));
+      assert.deepEqual(await suggest(around, named, options), checks.suggest(around, named, options));
     }
     await assert.rejects(inspect(cage, target, { result: {} as never }), /^CagecastError: inspect: /);
   });

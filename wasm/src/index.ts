@@ -17,6 +17,7 @@ export {
   presetOptions,
   type TransferOptions,
 } from './api/options.js';
+export type { PartNames, PartOf, Parts } from './api/parts.js';
 export type { Classification, Projected, Projection, TransferResult } from './api/result.js';
 export type { Reuse } from './api/reuse.js';
 export { type SplitVertices, splitVertices } from './api/split-vertices.js';

@@ -76,13 +76,6 @@ bool isNear(const TriangleMesh& cage, const TriangleMesh& hull, const std::vecto
   });
 }
 
-/// Whether each triangle is skin: of no part that `exclude` names.
-std::vector<bool> keptTriangles(const Model& model, const std::vector<std::string>& exclude) {
-  std::vector<bool> keep = trianglesOf(model.mesh, matchingParts(model.parts, exclude));
-  keep.flip();
-  return keep;
-}
-
 /// The same names, those first that say most of where a template belongs.
 std::vector<std::string> mostHelpfulFirst(std::vector<std::string> names) {
   static constexpr const char* kFirst[] = {
@@ -247,14 +240,14 @@ class Fit {
     Figure parts = readFigure(model_);
     TriangleMesh& mesh = parts.mesh;
     for (Vec3& p : mesh.positions) p = map_.inverse(p);
-    const std::vector<bool> kept = keptTriangles(model_, options_.exclude);
+    const std::vector<bool> isExcluded = excludedTriangles(model_, options_.parts);
     std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size()), isCover(mesh.triangles.size());
     figure_ = {};
     figure_.componentCount = parts.componentCount;
     figure_.eyes = eyePairs(pairs_.from, pairs_.to);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const bool isEye = parts.roles[t] == Role::eye;
-      isSkin[t] = kept[parts.triangleOf[t]];
+      isSkin[t] = !isExcluded[parts.triangleOf[t]];
       isFigure[t] = isSkin[t] || isEye;
       isCover[t] = !isFigure[t];
       if (isCover[t]) {
@@ -294,8 +287,11 @@ Status fitCage(const Template& from, const Model& model, const FitOptions& optio
          {std::tuple{Argument::from, &from.landmarks, boundsOf(from.cage)},
           std::tuple{Argument::landmarks, &options.landmarks, boundsOf(model.mesh)}})
       if (const Status status = checkLandmarkList(*list, argument, box); !status.ok()) return status;
+    if (const Status status = checkParts(model, options.parts); !status.ok()) return status;
+    const WithoutParts rest(model, options.parts.ignore);
+    if (const Status status = checkModel(rest.model()); !status.ok()) return status;
     FittedCage fitted;  // `out` may own the template.
-    const Foreground foreground(model);
+    const Foreground foreground(rest.model());
     const Status status = Fit(from, foreground.model(), options, progress).run(fitted);
     out = std::move(fitted);
     return status;

@@ -78,7 +78,7 @@ MakeSettings settingsFor(const Model& model, const MakeOptions& options, double 
 /// @param triangleOf  The triangle of the model for each of the mesh.
 std::vector<bool> marksOf(const Model& model, const MakeOptions& options,
                           const std::vector<std::uint32_t>& triangleOf) {
-  const std::vector<bool> isExcluded = trianglesOf(model.mesh, matchingParts(model.parts, options.exclude));
+  const std::vector<bool> isExcluded = excludedTriangles(model, options.parts);
   std::vector<bool> isMarked(triangleOf.size());
   for (std::size_t t = 0; t < triangleOf.size(); ++t) {
     const std::uint32_t original = triangleOf[t];
@@ -108,26 +108,28 @@ bool markLooseEyes(const Model& model, const Progress& progress, std::vector<boo
   return true;
 }
 
-/// Marks eyes where neither names nor marks tell what must not be painted. What has eyes is a head, if it may be one.
+/// Marks eyes where neither names nor marks tell what must not be painted, unless they are kept. What has eyes is a
+/// head, if it may be one.
 /// @return false if `progress` cancelled it.
-bool lookForEyes(const Model& model, const MakeOptions& options, const Progress& progress, Kind& kind,
-                 std::vector<bool>& isMarked) {
-  if (options.exclude.empty() || hasMarks(isMarked)) return true;
+bool lookForEyes(const Model& model, const MakeOptions& options, const Progress& progress,
+                 const std::vector<bool>& isKept, Kind& kind, std::vector<bool>& isMarked) {
+  if (hasMarks(isMarked)) return true;
   if (kind == Kind::prop && (options.kind != Kind::automatic || !isCompactProp(model))) return true;
   if (!markLooseEyes(model, progress, isMarked)) return false;
+  for (std::size_t t = 0; t < isMarked.size(); ++t) isMarked[t] = isMarked[t] && !isKept[t];
   if (kind == Kind::prop && hasMarks(isMarked)) kind = Kind::head;
   return true;
 }
 
-/// Marks the wheels of a vehicle by their shape, unless names say what its wheels are.
-void lookForWheels(const Model& model, const MakeOptions& options, Kind kind, const TriangleMesh& mesh,
+/// Marks the wheels of a vehicle by their shape, unless they are kept, or names say what its wheels are.
+void lookForWheels(const Model& model, Kind kind, const TriangleMesh& mesh, const std::vector<bool>& isKept,
                    std::vector<bool>& isMarked) {
   static const std::vector<std::string> kNames = {"*wheel*", "tyre*", "tire*", "rim", "rims"};
   const std::vector<bool> named = matchingParts(model.parts, kNames);
   const bool isNamed = std::find(named.begin(), named.end(), true) != named.end();
-  if (kind != Kind::prop || options.exclude.empty() || isNamed) return;
+  if (kind != Kind::prop || isNamed) return;
   const std::vector<bool> wheels = wheelsOf(mesh);
-  for (std::size_t t = 0; t < wheels.size(); ++t) isMarked[t] = isMarked[t] || wheels[t];
+  for (std::size_t t = 0; t < wheels.size(); ++t) isMarked[t] = isMarked[t] || (wheels[t] && !isKept[t]);
 }
 
 /// Points below the hull, but in front of the model, which the cage must not fall behind.
@@ -193,7 +195,10 @@ void store(const Layout& layout, Kind kind, Cage& out) {
 Status make(const Model& given, const MakeOptions& options, const Progress& progress, Cage& out) {
   if (const Status status = checkModel(given); !status.ok()) return status;
   if (const Status status = checkOptions(options); !status.ok()) return status;
-  const Foreground foreground(given);
+  if (const Status status = checkParts(given, options.parts); !status.ok()) return status;
+  const WithoutParts rest(given, options.parts.ignore);
+  if (const Status status = checkModel(rest.model()); !status.ok()) return status;
+  const Foreground foreground(rest.model());
   const Model& model = foreground.model();
   float reached = 0;  // A repeated stage does not go back.
   const Progress rising = [&progress, &reached](float share, const char* stage) {
@@ -206,8 +211,11 @@ Status make(const Model& given, const MakeOptions& options, const Progress& prog
   MakeSettings settings = settingsFor(model, options, diagonalOf(mesh));
   const double offset = settings.hull.offset;
   std::vector<bool> isMarked = marksOf(model, options, triangleOf);
-  if (!lookForEyes(model, options, rising, settings.kind, isMarked)) return kAborted;
-  lookForWheels(model, options, settings.kind, mesh, isMarked);
+  const std::vector<bool> ofKept = trianglesIn(model.mesh, options.parts.keep);
+  std::vector<bool> isKept(triangleOf.size());
+  for (std::size_t t = 0; t < triangleOf.size(); ++t) isKept[t] = ofKept[triangleOf[t]];
+  if (!lookForEyes(model, options, rising, isKept, settings.kind, isMarked)) return kAborted;
+  lookForWheels(model, settings.kind, mesh, isKept, isMarked);
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
   if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return kNothingToPaint;

@@ -75,6 +75,9 @@ struct Call {
 std::string describeOption(const Status& status) {
   if (status.option == Option::kind)
     return "options.kind = " + text("%g", static_cast<double>(status.value)) + " is not a kind";
+  if (status.option >= Option::ignoredParts && status.option <= Option::excludedParts)
+    return std::string("options.") + optionName(status.option) + " has group " + std::to_string(status.at) +
+           ", of which there is no vertex";
   for (const auto& [option, name, low, high] : kOptionRanges)
     if (option == status.option)
       return std::string("options.") + name + text(" = %g", static_cast<double>(status.value)) +

@@ -87,4 +87,61 @@ std::vector<bool> trianglesOf(const MeshView& mesh, const std::vector<bool>& isM
   return out;
 }
 
+std::vector<bool> excludedByName(const std::vector<std::string>& parts) {
+  static const std::vector<std::string> kPatterns = {
+      // Faces. `eye` is a word of its own: lids are skin.
+      "eye", "eyes", "eyeball*", "eyelash*", "eyebrow*", "eyeline*", "lash*", "brow", "brows", "iris*", "pupil*",
+      "cornea*", "sclera*", "teeth*", "tooth*", "tongue*", "gum", "gums", "mouth*", "hair*", "beard*", "moustache*",
+      "mustache*", "glass*", "goggles*",
+      // Vehicles.
+      "window*", "windscreen*", "windshield*", "wheel*", "tyre*", "tire*", "rim", "rims", "light", "lights",
+      "headlight*", "taillight*", "lamp*", "grille*", "seat*", "dashboard*", "steering*", "interior*", "lining*",
+      "floor*"};
+  return matchingParts(parts, kPatterns);
+}
+
+std::vector<bool> trianglesIn(const MeshView& mesh, std::span<const std::uint32_t> groups) {
+  std::vector<std::uint32_t> sorted(groups.begin(), groups.end());
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<bool> out(mesh.indices.size() / 3, false);
+  for (std::size_t t = 0; t < out.size() && !sorted.empty(); ++t) {
+    const std::uint32_t group = mesh.groups.empty() ? 0 : mesh.groups[mesh.indices[3 * t]];
+    out[t] = std::binary_search(sorted.begin(), sorted.end(), group);
+  }
+  return out;
+}
+
+std::vector<bool> excludedTriangles(const Model& model, const Parts& parts) {
+  std::vector<bool> out = trianglesOf(model.mesh, excludedByName(model.parts));
+  const std::vector<bool> isExcluded = trianglesIn(model.mesh, parts.exclude);
+  const std::vector<bool> isKept = trianglesIn(model.mesh, parts.keep);
+  for (std::size_t t = 0; t < out.size(); ++t) out[t] = !isKept[t] && (out[t] || isExcluded[t]);
+  return out;
+}
+
+Status checkParts(const Model& model, const Parts& parts) noexcept {
+  const std::span<const std::uint32_t> all = model.mesh.groups;
+  const std::uint32_t last = all.empty() ? 0 : *std::max_element(all.begin(), all.end());
+  for (const auto& [option, groups] : {std::pair{Option::ignoredParts, parts.ignore},
+                                       {Option::keptParts, parts.keep},
+                                       {Option::excludedParts, parts.exclude}}) {
+    for (const std::uint32_t group : groups)
+      if (group > last) return {Code::badOption, Argument::options, group, option};
+  }
+  return {};
+}
+
+WithoutParts::WithoutParts(const Model& model, std::span<const std::uint32_t> groups) : model_(model) {
+  if (groups.empty()) return;
+  const std::vector<bool> isIgnored = trianglesIn(model.mesh, groups);
+  for (std::size_t t = 0; t < isIgnored.size(); ++t) {
+    if (isIgnored[t]) continue;
+    const auto corners = model.mesh.indices.subspan(3 * t, 3);
+    indices_.insert(indices_.end(), corners.begin(), corners.end());
+    if (!model.marks.empty()) marks_.push_back(model.marks[t]);
+  }
+  model_.mesh.indices = indices_;
+  model_.marks = marks_;
+}
+
 }  // namespace cagecast::cages

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cagecast/mesh.hpp"
+#include "cagecast/options.hpp"
 #include "cagecast/status.hpp"
 
 /// Cages for models that have none: made afresh for one model, fitted from a template, or moved into place.
@@ -82,27 +83,24 @@ struct Cage {
   [[nodiscard]] MeshView view() const noexcept { return {positions, indices, uvs}; }
 };
 
-/// Name patterns of parts that are not painted, as `matchingParts` takes them.
-const std::vector<std::string>& defaultExclusions();
-
-/// Whether each part's name matches one of the patterns: `*` stands for any text, `?` for one character, case does not
-/// matter. A pattern describes the whole name, what is between slashes in it ("node/mesh/material"), or one of its
-/// words: `eye` matches "l-eye" and "EyeLeft", but not "eyelid".
-std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std::vector<std::string>& patterns);
+/// Whether each part is excluded by its name, unless `Parts::keep` has it: eyes, teeth, tongues, hair and glasses; of
+/// vehicles windows, wheels, lights and the interior.
+/// @param parts  As `Model::parts`.
+std::vector<bool> excludedByName(const std::vector<std::string>& parts);
 
 /// Lengths are shares of the diagonal of the model's bounding box, 0.0005 to 0.2. 0 means: by kind.
 struct MakeOptions {
   Kind kind = Kind::automatic;
-  std::vector<std::string> exclude = defaultExclusions();  ///< Patterns for `Model::parts`.
-  std::uint32_t triangles = 0;                             ///< Of the cage, about: heads and props 600, bodies 1500.
-  float closing = 0;         ///< Gaps narrower than twice this, or two voxels, are bridged: 0.02, bodies 0.008.
-  float offset = 0;          ///< Distance of the cage from the model: 0.01, bodies 0.004.
-  std::uint32_t voxels = 0;  ///< Along the longest side: 140, bodies 240.
+  Parts parts = {};             ///< Holes are over excluded parts; others besides are excluded by their names.
+  std::uint32_t triangles = 0;  ///< Of the cage, about: heads and props 600, bodies 1500.
+  float closing = 0;            ///< Gaps narrower than twice this, or two voxels, are bridged: 0.02, bodies 0.008.
+  float offset = 0;             ///< Distance of the cage from the model: 0.01, bodies 0.004.
+  std::uint32_t voxels = 0;     ///< Along the longest side: 140, bodies 240.
 };
 
 struct FitOptions {
-  std::vector<std::string> exclude = defaultExclusions();  ///< Patterns for `Model::parts`.
-  std::vector<Landmark> landmarks = {};                    ///< Of the model, at most 300; these override found ones.
+  Parts parts = {};                      ///< Excluded parts are no skin; others besides are excluded by their names.
+  std::vector<Landmark> landmarks = {};  ///< Of the model, at most 300; these override found ones.
 };
 
 struct RefineOptions {

@@ -26,17 +26,20 @@ enum class Lock : std::uint8_t {
   exclude,    ///< Always culled, whatever its score. Like any culled segment, it explains the holes over it.
 };
 
-/// A lock and what it applies to.
+/// A lock and its segment.
 struct LockEntry {
-  std::uint32_t id = 0;  ///< The number of a segment, or of a group.
+  std::uint32_t segment = 0;  ///< As in `Projection::segments`.
   Lock lock = Lock::automatic;
 };
 
-/// Overrides for single segments. A lock by segment takes precedence over one by group. If there are several for the
-/// same segment or group, the last one counts.
-struct Locks {
-  std::span<const LockEntry> segments = {};  ///< By segment number, as in `Projection::segments`.
-  std::span<const LockEntry> groups = {};    ///< By `SegmentStats::group`: the group of the segment's first vertex.
+/// Parts of a target, by the numbers of its groups; a segment has the group of its first vertex. The first list with a
+/// group counts.
+struct Parts {
+  /// Parts that are not there: not painted, not in the way, not counted. A triangle is ignored with any of its corners.
+  /// The vertices of such a group are one segment without points or area.
+  std::span<const std::uint32_t> ignore = {};
+  std::span<const std::uint32_t> keep = {};     ///< Parts whose segments are as with `Lock::keep`.
+  std::span<const std::uint32_t> exclude = {};  ///< Parts whose segments are as with `Lock::exclude`.
 };
 
 /// An override by the user for a vertex or a triangle.
@@ -80,7 +83,10 @@ struct TransferOptions {
 #define CAGECAST_OPTION(stage, name, kind, standard, paper, range, text) CAGECAST_TYPE_##kind name = standard;
 #include "cagecast/options.def"
   Steps steps;
-  Locks locks;  ///< Read by `classify` and `transfer`.
+  Parts parts;  ///< `ignore` is read by `project`, `transfer` and `cutBorders`; the rest as `locks`.
+  /// Overrides for single segments, which count more than those for parts; the last one for a segment counts. Read by
+  /// `classify` and `transfer`.
+  std::span<const LockEntry> locks = {};
   Masks masks;  ///< Read by `classify`, `transfer` and `cutBorders`.
 
   /// The preset `paper`: the method as published.
@@ -99,8 +105,10 @@ enum class Option : std::uint8_t {
 #define CAGECAST_OPTION(stage, name, kind, standard, paper, range, text) name,
 #define CAGECAST_STEP(stage, name, kind, standard, paper, range, text) name,
 #include "cagecast/options.def"
-  segmentLocks,
-  groupLocks,
+  locks,
+  ignoredParts,
+  keptParts,
+  excludedParts,
   // Of cages.hpp:
   kind,
   triangles,

@@ -32,7 +32,8 @@ enum class CulledBy : std::uint8_t {
   none,      ///< It is not culled.
   coverage,  ///< The cage covers too little of it, or it lies too deep: one of `Ratios` but `hole` is below 1.
   hole,      ///< A hole of the cage is meant for it: only `Ratios::hole` is below 1.
-  lock,      ///< `Lock::exclude`.
+  lock,      ///< `Lock::exclude`, or `Parts::exclude`.
+  ignore,    ///< `Parts::ignore`: it is not there.
 };
 
 /// CPU time of each step in milliseconds; wall time in WebAssembly and on Windows, the only clock there.
@@ -69,9 +70,9 @@ struct Ratios {
 /// and exact to diagonal² · triangles² · 2^-58 of the target, because that of each triangle is rounded to a whole
 /// number of tiny units: what is left of slivers that are 1e12 times longer than wide is rounding.
 struct SegmentStats {
-  std::uint32_t points = 0;            ///< Number of welded points.
+  std::uint32_t points = 0;            ///< Number of welded points; 0 if it is ignored.
   std::uint32_t group = 0;             ///< The group of its first vertex; 0 if the target has no groups.
-  CulledBy culledBy = CulledBy::none;  ///< Set by `transfer`; `project` leaves `none`.
+  CulledBy culledBy = CulledBy::none;  ///< Set by `transfer`; `project` sets only `ignore`.
   Ratios ratios;                       ///< Set by `transfer`.
   double area = 0;                     ///< A: its whole area.
   double beyondArea = 0;               ///< The part of A beyond outer borders of the cage, occluded or not.
@@ -90,7 +91,7 @@ struct SegmentStats {
   /// diagonal; docs/evaluation.md has the table.
   [[nodiscard]] double confidence() const noexcept {
     const double has = score();
-    if (culledBy == CulledBy::lock || culled() != (has < 1)) return 1;
+    if (culledBy == CulledBy::lock || culledBy == CulledBy::ignore || culled() != (has < 1)) return 1;
     const double closeness = has < 1 ? has : 1 / has;
     return 1 - closeness * closeness * closeness * closeness / 2;
   }

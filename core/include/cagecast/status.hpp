@@ -43,7 +43,7 @@ const char* codeName(Code code) noexcept;
 /// The name of an argument: "cage", "target", "options", "model", "template", "landmarks"; empty if there is none.
 const char* argumentName(Argument argument) noexcept;
 
-/// The name of an option as users write it after `options.`: "threshold", "steps.floor", "locks.groups".
+/// The name of an option as users write it after `options.`: "threshold", "steps.floor", "parts.ignore".
 const char* optionName(Option option) noexcept;
 
 /// One sentence for people that names the argument, the element, its value and the limit:

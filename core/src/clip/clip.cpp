@@ -198,6 +198,7 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
   // New vertices are as close as 1e-7 to each other, also across a border: those are not one.
   locked.weldTolerance = 0;
   locked.masks = {};
+  locked.parts = {options.parts.ignore, {}, {}};
   Array<float> poses;
   if (options.motion && !blendPoses(decided, cut, poses)) return kOutOfMemory;
   Projection again;
@@ -205,7 +206,7 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
           projectPart(cage, {cut.positions, cut.indices, {}, groups, poses}, locked, workspace, again);
       !status.ok())
     return status;
-  locked.locks = {locks, {}};
+  locked.locks = locks;
   Zones zones;
   if (!renumberHiders(again, segments)) return kOutOfMemory;
   const ProjectionView view{again.visibility, segments, stats, again.recovery, {}, {again.hiddenBy, again.hiders}};

@@ -71,11 +71,14 @@ std::string describeOption(const Status& status, const MeshView& target) {
     return name + " has " + at + " entries, not 1 for each of " + std::to_string(count) +
            (isOfVertices ? " vertices" : " triangles") + " of target";
   }
-  if (status.option == Option::segmentLocks || status.option == Option::groupLocks) {
+  if (status.option == Option::locks) {
     const std::string at = std::to_string(status.at);
     if (status.value != 0) return name + "[" + at + "] = " + spelled(status.value) + " is not one of " + kLockNames;
-    return name + "[" + at + "] is given, but there is no " +
-           (status.option == Option::groupLocks ? "segment of group " : "segment ") + at;
+    return name + "[" + at + "] is given, but there is no segment " + at;
+  }
+  if (status.option >= Option::ignoredParts && status.option <= Option::excludedParts) {
+    if (status.value != 0) return name + " has all groups of target: nothing is left";
+    return name + " has group " + std::to_string(status.at) + ", of which there is no vertex";
   }
   const std::string given = name + " = " + spelled(status.value);
   const OptionEntry* entry = findOption(status.option);

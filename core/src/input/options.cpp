@@ -64,8 +64,10 @@ const OptionEntry* findOption(Option option) noexcept {
 }
 
 const char* optionName(Option option) noexcept {
-  if (option == Option::segmentLocks) return "locks.segments";
-  if (option == Option::groupLocks) return "locks.groups";
+  if (option == Option::locks) return "locks";
+  if (option == Option::ignoredParts) return "parts.ignore";
+  if (option == Option::keptParts) return "parts.keep";
+  if (option == Option::excludedParts) return "parts.exclude";
   if (option == Option::vertexMasks) return "masks.vertices";
   if (option == Option::triangleMasks) return "masks.triangles";
   const OptionEntry* entry = findOption(option);
@@ -87,26 +89,30 @@ Status checkOptions(const TransferOptions& options) noexcept {
   return status.ok() ? checkOptions(options, Stage::classify) : status;
 }
 
-Status resolveLocks(const Locks& locks, std::span<const SegmentStats> stats, Array<Lock>& out) noexcept {
-  const bool isAny = !locks.segments.empty() || !locks.groups.empty();
+Status resolveLocks(const TransferOptions& options, std::span<const SegmentStats> stats, Array<Lock>& out) noexcept {
+  const Parts& parts = options.parts;
+  const bool isAny = !options.locks.empty() || !parts.keep.empty() || !parts.exclude.empty();
   if (!out.reset(isAny ? stats.size() : 0)) return {Code::outOfMemory};
   std::fill(out.begin(), out.end(), Lock::automatic);
-  for (const Option option : {Option::groupLocks, Option::segmentLocks}) {
-    for (const auto& [id, lock] : option == Option::groupLocks ? locks.groups : locks.segments) {
-      if (lock > Lock::exclude) return {Code::badOption, Argument::options, id, option, static_cast<float>(lock)};
+  const auto lockGroups = [&](std::span<const std::uint32_t> groups, Lock lock, Option option) -> Status {
+    for (const std::uint32_t group : groups) {
+      bool isKnown = false;
+      for (std::size_t s = 0; s < stats.size(); ++s) {
+        if (stats[s].group != group) continue;
+        out[s] = lock;
+        isKnown = true;
+      }
+      if (!isKnown) return {Code::badOption, Argument::options, group, option};
     }
-  }
-  for (const auto& [group, lock] : locks.groups) {
-    bool isKnown = false;
-    for (std::size_t s = 0; s < stats.size(); ++s) {
-      if (stats[s].group != group) continue;
-      out[s] = lock;
-      isKnown = true;
-    }
-    if (!isKnown) return {Code::badOption, Argument::options, group, Option::groupLocks};
-  }
-  for (const auto& [segment, lock] : locks.segments) {
-    if (segment >= stats.size()) return {Code::badOption, Argument::options, segment, Option::segmentLocks};
+    return {};
+  };
+  if (const Status status = lockGroups(parts.exclude, Lock::exclude, Option::excludedParts); !status.ok())
+    return status;
+  if (const Status status = lockGroups(parts.keep, Lock::keep, Option::keptParts); !status.ok()) return status;
+  for (const auto& [segment, lock] : options.locks) {
+    if (lock > Lock::exclude)
+      return {Code::badOption, Argument::options, segment, Option::locks, static_cast<float>(lock)};
+    if (segment >= stats.size()) return {Code::badOption, Argument::options, segment, Option::locks};
     out[segment] = lock;
   }
   return {};

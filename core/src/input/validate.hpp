@@ -26,15 +26,15 @@ Status checkProjection(const ProjectionView& projection, std::span<const std::ui
 /// The stages of the method that read options.
 enum class Stage : std::uint8_t { project, classify };
 
-/// Checks the options of a stage, except `locks`.
+/// Checks the options of a stage, except `parts` and `locks`.
 Status checkOptions(const TransferOptions& options, Stage stage) noexcept;
-/// Checks the options of both stages, except `locks`.
+/// Checks the options of both stages, except `parts` and `locks`.
 Status checkOptions(const TransferOptions& options) noexcept;
 
-/// Finds the lock of every segment.
+/// Finds the lock of every segment, by itself or by its group.
 /// @param[out] out  1 per segment; empty if there are no locks at all.
 /// @return badOption for a segment or group that does not exist, or a lock that is none of the three.
-/// Cost: the number of segments for every lock by group.
-Status resolveLocks(const Locks& locks, std::span<const SegmentStats> stats, Array<Lock>& out) noexcept;
+/// Cost: the number of segments for every group.
+Status resolveLocks(const TransferOptions& options, std::span<const SegmentStats> stats, Array<Lock>& out) noexcept;
 
 }  // namespace cagecast

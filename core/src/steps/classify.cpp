@@ -96,12 +96,16 @@ CulledBy culledByRules(const Ratios& ratios) {
   return std::min({ratios.threshold, ratios.floor, ratios.depth}) < 1 ? CulledBy::coverage : CulledBy::hole;
 }
 
-/// Decides which segments are culled: by a lock, or by the rules.
+/// Decides which segments are culled: ignored ones, by a lock, or by the rules.
 Status cullSegments(const ProjectionView& projection, const TransferOptions& options, Zones& out) {
   Array<Lock> locks;
-  if (const Status status = resolveLocks(options.locks, projection.segmentStats, locks); !status.ok()) return status;
+  if (const Status status = resolveLocks(options, projection.segmentStats, locks); !status.ok()) return status;
   Rules(projection, options).apply(out.ratios);
   for (std::size_t s = 0; s < out.culledBy.size(); ++s) {
+    if (projection.segmentStats[s].culledBy == CulledBy::ignore) {
+      out.culledBy[s] = CulledBy::ignore;
+      continue;
+    }
     switch (locks.empty() ? Lock::automatic : locks[s]) {
       case Lock::automatic: out.culledBy[s] = culledByRules(out.ratios[s]); break;
       case Lock::keep: out.culledBy[s] = CulledBy::none; break;
@@ -164,6 +168,18 @@ void writeZones(const ProjectionView& projection, Zones& out) {
   }
 }
 
+/// Culls the vertices of ignored parts and their triangles, whatever masks say.
+void leaveIgnored(std::span<const std::uint32_t> segments, std::span<const std::uint32_t> indices, Zones& out) {
+  const auto isIgnored = [&](std::uint32_t v) { return out.culledBy[segments[v]] == CulledBy::ignore; };
+  if (std::find(out.culledBy.begin(), out.culledBy.end(), CulledBy::ignore) == out.culledBy.end()) return;
+  for (std::uint32_t v = 0; v < segments.size(); ++v) {
+    if (isIgnored(v)) out.zones[v] = Zone::culled;
+  }
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (isIgnored(indices[i])) out.cosmeticTriangles[i / 3] = 0;
+  }
+}
+
 }  // namespace
 
 bool isCosmetic(std::span<const Zone> zones, const std::uint32_t* corners, const TransferOptions& options) noexcept {
@@ -197,7 +213,9 @@ Status classify(const ProjectionView& projection, std::span<const std::uint32_t>
   explainHoles(shares, out);
   writeZones(projection, out);
   markCosmetic(out.zones, indices, options, out.cosmeticTriangles);
-  return {applyMasks(options, indices, out) ? Code::ok : Code::outOfMemory};
+  if (!applyMasks(options, indices, out)) return {Code::outOfMemory};
+  leaveIgnored(projection.segments, indices, out);
+  return {};
 }
 
 }  // namespace cagecast

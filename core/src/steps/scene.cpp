@@ -1,11 +1,16 @@
 #include "steps/scene.hpp"
 
+#include "input/ignored_parts.hpp"
 #include "input/validate.hpp"
 #include "search/target_tree.hpp"
 
 namespace cagecast {
 
 Status Scene::load() noexcept {
+  if (!options.parts.ignore.empty()) {
+    if (const Status status = checkArrays(targetMesh, Argument::target); !status.ok()) return status;
+    if (const Status status = ignoreParts(options.parts.ignore, arena, targetMesh); !status.ok()) return status;
+  }
   if (const Status status = checkMeshes(cageMesh, targetMesh, units); !status.ok()) return status;
   if (!gatherCage(cageMesh, units, arena, cage)) return {Code::outOfMemory};
   if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};

@@ -19,7 +19,7 @@ struct Scene {
   Scene(const MeshView& cageMesh_, const MeshView& targetMesh_, const TransferOptions& options_, Arena& arena_) noexcept
       : cageMesh(cageMesh_), targetMesh(targetMesh_), options(options_), arena(arena_) {}
 
-  /// Checks the meshes, scales the cage and welds the target.
+  /// Checks the meshes, leaves out ignored parts, scales the cage and welds the target.
   Status load() noexcept;
   /// Builds the trees, and as far as the options need them the half-edges and the boundary loops.
   void buildTrees() noexcept;
@@ -28,7 +28,7 @@ struct Scene {
   [[nodiscard]] double length(double share) const noexcept { return share * units.diagonal; }
 
   const MeshView& cageMesh;
-  const MeshView& targetMesh;
+  MeshView targetMesh;  ///< Without ignored parts, once it is loaded.
   const TransferOptions& options;
   Arena& arena;
 

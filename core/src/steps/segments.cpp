@@ -38,6 +38,13 @@ void findSegments(const Scene& scene, PointData& data, Array<SegmentStats>& stat
     segments[i] = segments[parents[i]];
     ++stats[segments[i]].points;
   }
+  for (const std::uint32_t group : scene.options.parts.ignore) {
+    for (SegmentStats& segment : stats) {
+      if (segment.group != group) continue;
+      segment.points = 0;
+      segment.culledBy = CulledBy::ignore;
+    }
+  }
 }
 
 }  // namespace cagecast

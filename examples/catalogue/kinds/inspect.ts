@@ -1,7 +1,7 @@
 import { CagecastError, init, type Mesh, transfer } from 'cagecast';
 import type { CageModel } from 'cagecast/cages';
 import { cageModel, cageTemplate } from 'cagecast/gltf';
-import { inspect, type PartName } from 'cagecast/inspect';
+import { inspect } from 'cagecast/inspect';
 import { Failure } from '../failure.ts';
 import type { Facts, Kind } from './kind.ts';
 import { inputFailure, readModel } from './model.ts';
@@ -28,7 +28,7 @@ export const inspectKind: Kind = {
  * @throws {Failure} `unfit`
  */
 export function fit(cage: Mesh, target: CageModel, settings: object, result = transfer(cage, target, settings)): Facts {
-  const { verdict, findings } = inspect(cage, target, { ...settings, result, parts: partNames(target) });
+  const { verdict, findings } = inspect(cage, target, { ...settings, result });
   const { cosmeticTriangles } = result;
   const facts: Facts = {
     verdict,
@@ -38,14 +38,4 @@ export function fit(cage: Mesh, target: CageModel, settings: object, result = tr
   };
   if (verdict === 'unfit') throw new Failure('unfit', findings[0]!.sentence, facts);
   return facts;
-}
-
-/** The names of a model's parts, for the sentences of findings. */
-function partNames({ groups, parts }: CageModel): PartName[] {
-  const names: PartName[] = [];
-  groups?.forEach((group, vertex) => {
-    if (vertex > 0 && group === groups[vertex - 1]) ++names.at(-1)!.vertexCount;
-    else names.push({ name: parts?.[group]?.[0] ?? `part ${group}`, firstVertex: vertex, vertexCount: 1 });
-  });
-  return names;
 }

@@ -14,6 +14,16 @@ using namespace cagecast::cages;
 
 namespace {
 
+/// The numbers of the parts with some names.
+std::vector<std::uint32_t> partsNamed(const OwnedModel& model, const std::vector<std::string>& names) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t p = 0; p < model.parts.size(); ++p)
+    if (std::find(names.begin(), names.end(), model.parts[p]) != names.end()) out.push_back(p);
+  return out;
+}
+
+std::vector<std::uint32_t> allParts(const OwnedModel& model) { return partsNamed(model, model.parts); }
+
 /// A ball of a head that looks along +z, open below, with two eyes that stand out a little.
 OwnedModel head() {
   OwnedModel out;
@@ -93,16 +103,36 @@ TEST_CASE("strands of hair and visors are no necks", "[cages][make]") {
   model.add("visor", visor);
   MakeOptions options;
   options.kind = Kind::head;
-  options.exclude = {};
+  const std::vector<std::uint32_t> all = allParts(model);
+  options.parts.keep = all;
   const TriangleMesh mesh = meshOf(made(model.model(), options));
   REQUIRE(boundaryLoops(mesh).size() == 1);
   CHECK(hasHoleAt(mesh, {0, -1, 0}, 0.3));
 }
 
-TEST_CASE("patterns decide what is excluded", "[cages][make]") {
+TEST_CASE("an ignored part is not there: the cage is as without it", "[cages][make]") {
+  OwnedModel model = head();
+  const Cage expected = made(model.model());
+  model.add("cloak", sphere({0, -3, 0}, 2, 12));
+  MakeOptions options;
+  const std::vector<std::uint32_t> cloak = partsNamed(model, {"cloak"});
+  options.parts.ignore = cloak;
+  const Cage cage = made(model.model(), options);
+  CHECK(cage.positions == expected.positions);
+  CHECK(cage.uvs == expected.uvs);
+  const std::vector<std::uint32_t> all = allParts(model);
+  options.parts.ignore = all;
+  CHECK(faultOf(model.model(), options) == "model has no triangles; at least one is needed");
+  const std::vector<std::uint32_t> none{9};
+  options.parts.ignore = none;
+  CHECK(faultOf(model.model(), options) == "options.parts.ignore has group 9, of which there is no vertex");
+}
+
+TEST_CASE("names say what is excluded, unless lists of parts do", "[cages][make]") {
   const OwnedModel model = head();
   MakeOptions options;
-  options.exclude = {"r-*"};
+  const std::vector<std::uint32_t> left = partsNamed(model, {"l-eye"});
+  options.parts.keep = left;
   const TriangleMesh mesh = meshOf(made(model.model(), options));
   CHECK_FALSE(hasHoleAt(mesh, {0.35, 0.2, 1}, 0.2));
   CHECK(hasHoleAt(mesh, {-0.35, 0.2, 1}, 0.2));
@@ -328,7 +358,8 @@ TEST_CASE("lengths that the grid is too coarse for count as the least that it ca
   const OwnedModel model = head();
   MakeOptions options;
   options.closing = options.offset = 0.0005f;
-  options.exclude = {};
+  const std::vector<std::uint32_t> all = allParts(model);
+  options.parts.keep = all;
   for (const std::uint32_t voxels : {16u, 40u}) {
     CAPTURE(voxels);
     options.voxels = voxels;
@@ -409,7 +440,8 @@ TEST_CASE("pieces that lie a little too far apart are bridged, all of them or no
   options.voxels = 80;
   CHECK(faultOf(near.model(), options) == apart);
   // What is not painted may be left out.
-  options.exclude = {"head", "limb"};
+  const std::vector<std::uint32_t> others = partsNamed(near, {"head", "limb"});
+  options.parts.exclude = others;
   const Cage torso = made(near.model(), options);
   CHECK(Surface(meshOf(torso)).closest(Vec3{0, 1.1, 0}).height < 0);
 }
@@ -417,7 +449,8 @@ TEST_CASE("pieces that lie a little too far apart are bridged, all of them or no
 TEST_CASE("what no cage can be made for is said in a sentence", "[cages][make]") {
   OwnedModel model = head();
   MakeOptions options;
-  options.exclude = {"*"};
+  const std::vector<std::uint32_t> all = allParts(model);
+  options.parts.exclude = all;
   CHECK(faultOf(model.model(), options) == "model has nothing to paint: all that is seen of it is excluded");
   CHECK(faultOf({}) == "model has no vertices; at least one is needed");
   MakeOptions closing, offset, voxels, triangles;
@@ -448,10 +481,10 @@ TEST_CASE("a thing as compact as a head is one if it has eyes", "[cages][make]")
   // Without eyes, or where names or a person say what is what, it is what it was.
   CHECK(made(bust(0).model()).kind == Kind::prop);
   MakeOptions options;
-  options.exclude = {};
+  const std::vector<std::uint32_t> all = allParts(closed);
+  options.parts.keep = all;
   CHECK(made(closed.model(), options).kind == Kind::prop);
-  options.kind = Kind::prop;
-  options.exclude = defaultExclusions();
+  options = {.kind = Kind::prop};
   CHECK(boundaryLoops(meshOf(made(closed.model(), options))).empty());
 }
 

@@ -142,7 +142,7 @@ TEST_CASE("a lock overrides the verdict on its segment, not the score", "[classi
       INFO("segment " << s);
       const LockEntry locks[] = {{s, lock}};
       TransferOptions options;
-      options.locks.segments = locks;
+      options.locks = locks;
       const Zones zones = classified(result, scene, options);
       CHECK(zones.culledBy[s] == (lock == Lock::keep      ? CulledBy::none
                                   : lock == Lock::exclude ? CulledBy::lock
@@ -167,18 +167,24 @@ TEST_CASE("a lock by segment overrides one by group, and of several the last one
   append(target, scenes::box({0.2f, 0, 0}, {1.1f, 1, 1}, 1));
   std::fill(target.groups.begin() + 24, target.groups.end(), 7u);
   using Locked = std::vector<LockEntry>;
-  constexpr auto kNone = CulledBy::none, kLock = CulledBy::lock;
+  using Groups = std::vector<std::uint32_t>;
+  constexpr auto kNone = CulledBy::none, kLock = CulledBy::lock, kIgnore = CulledBy::ignore;
   const struct {
-    Locked segments, groups;
+    Locked locks;
+    Groups ignore, keep, exclude;
     std::vector<CulledBy> verdicts;
-  } cases[] = {{{}, {}, {kNone, kNone}},
-               {{{0, Lock::exclude}}, {}, {kLock, kNone}},
-               {{}, {{7, Lock::exclude}}, {kNone, kLock}},
-               {{{1, Lock::keep}}, {{7, Lock::exclude}}, {kNone, kNone}},
-               {{{1, Lock::keep}, {1, Lock::automatic}}, {{7, Lock::exclude}}, {kNone, kNone}}};
-  for (const auto& [segments, groups, verdicts] : cases) {
+  } cases[] = {{{}, {}, {}, {}, {kNone, kNone}},
+               {{{0, Lock::exclude}}, {}, {}, {}, {kLock, kNone}},
+               {{}, {}, {}, {7}, {kNone, kLock}},
+               {{}, {}, {7}, {7}, {kNone, kNone}},
+               {{}, {7}, {7}, {7}, {kNone, kIgnore}},
+               {{{1, Lock::keep}}, {7}, {}, {}, {kNone, kIgnore}},
+               {{{1, Lock::keep}}, {}, {}, {7}, {kNone, kNone}},
+               {{{1, Lock::keep}, {1, Lock::automatic}}, {}, {}, {7}, {kNone, kNone}}};
+  for (const auto& [locks, ignore, keep, exclude, verdicts] : cases) {
     TransferOptions options;
-    options.locks = {segments, groups};
+    options.locks = locks;
+    options.parts = {ignore, keep, exclude};
     CHECK(copied(transferred(cage.view(), target.view(), options).zones.culledBy) == verdicts);
   }
 }
@@ -193,7 +199,7 @@ TEST_CASE("a small part bare under a hole is culled, unless it is kept", "[class
   CHECK(result.zones.explainedHoles[result.projection.holeShares[0].hole] == 1);
   const LockEntry kept[] = {{1, Lock::keep}};
   TransferOptions options;
-  options.locks.segments = kept;
+  options.locks = kept;
   CHECK(copied(classified(result, trap.scene, options).culledBy) == std::vector{none, none, hole});
 }
 

@@ -160,7 +160,7 @@ TEST_CASE("what hides a point in a pose hides nothing if it is culled, decided a
     for (const Lock ofSkin : {Lock::automatic, Lock::exclude}) {
       const LockEntry locks[] = {{glasses, lock}, {skin, ofSkin}};
       TransferOptions options;
-      options.locks.segments = locks;
+      options.locks = locks;
       Zones zones;
       REQUIRE(classify(result.projection.view(), eye.target.indices, options, zones).ok());
       for (std::size_t v = 0; v < eye.skin; ++v) {

@@ -55,10 +55,10 @@ TEST_CASE("occluded points of a part that the cage covers nowhere get no more ra
     return target;
   };
   const Mesh cage = sheet({-2, -2, 1}, {4, 0, 0}, {0, 4, 0});
-  const LockEntry kept[] = {{1, Lock::keep}};
+  const std::uint32_t kept[] = {1};
   TransferOptions options;
   options.steps.holes = false;
-  options.locks.groups = kept;
+  options.parts.keep = kept;
   for (const float x : {1.25f, 2.25f}) {
     const TransferResult result = transferred(cage.view(), shelf(x).view(), options);
     const bool isLeft = result.zones.zones[2] == Zone::occluded && result.zones.zones[3] == Zone::occluded;
@@ -132,7 +132,7 @@ TEST_CASE("what stays unpainted hides nothing, also by a lock that is set later,
   // Hair that is painted hides what is behind it.
   std::vector<LockEntry> kept;
   for (std::uint32_t s = 1; s < result.projection.segmentStats.size(); ++s) kept.push_back({s, Lock::keep});
-  options.locks.segments = kept;
+  options.locks = kept;
   Zones zones;
   REQUIRE(classify(result.projection.view(), target.indices, options, zones).ok());
   CHECK(occluded(zones.zones) > 50);
@@ -192,7 +192,7 @@ TEST_CASE("an excluded segment explains the hole it lies under, a kept one does 
     std::vector<LockEntry> locks;
     for (std::uint32_t s = 0; s < stats.size(); ++s) locks.push_back({s, s == skin ? Lock::keep : lock});
     TransferOptions options;
-    options.locks.segments = locks;
+    options.locks = locks;
     Zones zones;
     REQUIRE(classify(result.projection.view(), scene.target.indices, options, zones).ok());
     const auto explained = std::count(zones.explainedHoles.begin(), zones.explainedHoles.end(), 1);

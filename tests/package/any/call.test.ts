@@ -73,7 +73,7 @@ describe('for any valid scene and options', () => {
     const lock = fc.constantFrom(undefined, 'keep' as const, 'exclude' as const);
     fc.assert(
       fc.property(mesh, mesh, validOptions, lock, (cage, target, options, lock) => {
-        const locks = lock && { segments: { 0: lock } };
+        const locks = lock && { 0: lock };
         const result = resultOf(() => transfer(cage, target, { ...options, locks }));
         if (!result) return;
         const projection = project(cage, target, ofStage('project', options));

@@ -56,12 +56,9 @@ const seldom = <T>(arbitrary: fc.Arbitrary<T>) =>
 
 const lock = fc.constantFrom('keep' as const, 'exclude' as const, 'auto' as const);
 /** A segment 9 is seldom there: then the call fails when the projection is there. */
-const locks: fc.Arbitrary<Locks | undefined> = seldom(
-  fc.record({
-    segments: fc.dictionary(fc.constantFrom('0', '0', '9'), lock),
-    groups: fc.dictionary(fc.constant('0'), lock),
-  }),
-);
+const locks: fc.Arbitrary<Locks | undefined> = seldom(fc.dictionary(fc.constantFrom('0', '0', '9'), lock));
+const groups = fc.uniqueArray(fc.constant(0));
+const parts = seldom(fc.record({ keep: groups, exclude: groups }));
 
 /** What is wrong with the arguments of a call: found out before the core is called, or by it, early or late. */
 const fault = seldom(fc.constantFrom('option', 'index', 'position', 'cage', 'masks', 'memory'));
@@ -74,6 +71,7 @@ const step = fc.record({
   scene: fc.nat({ max: 2 }),
   options: validOptions,
   locks,
+  parts,
   mask: seldom(fc.integer({ min: -1, max: 1 })),
   reuses: fc.oneof({ weight: 2, arbitrary: fc.constant(true) }, { weight: 1, arbitrary: fc.constant(false) }),
   fault,
@@ -101,7 +99,7 @@ function faulty(cage: Mesh, target: Mesh, fault: Step['fault']): [Mesh, Mesh] {
 }
 
 function callOf(step: Step, all: { cage: Mesh; target: Mesh }[], kept: Kept): Call {
-  const { fn, options, locks, mask, fault } = step;
+  const { fn, options, locks, parts, mask, fault } = step;
   // What is done with a transfer fits its scene, mostly.
   const isAfter = step.reuses && (fn === 'cutBorders' || fn === 'splitVertices');
   const scene = all[isAfter ? kept.scene : step.scene]!;
@@ -109,7 +107,7 @@ function callOf(step: Step, all: { cage: Mesh; target: Mesh }[], kept: Kept): Ca
   const vertices = target.positions.length / 3 + Number(fault === 'masks');
   const masks = mask === undefined ? undefined : { vertices: new Int8Array(vertices).fill(mask, 0, 2) };
   const projecting = ofStage('project', options);
-  const own = { ...(fault === 'option' && { threshold: 2 }), locks, masks };
+  const own = { ...(fault === 'option' && { threshold: 2 }), locks, parts, masks };
   const classifying = { ...ofStage('classify', options), ...own };
   const whole = { ...options, ...own };
   const [result, projection] = [structuredClone(kept.transfer), structuredClone(kept.project)];

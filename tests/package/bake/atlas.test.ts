@@ -70,14 +70,14 @@ before(async () => {
 /** The same with an atlas and without: what is reported, and both files. */
 async function baked(file: Buffer, flags = '') {
   writeFileSync('target.glb', file);
-  await ok('bake target.glb cage.glb paint.png -o plain.glb');
+  await ok('bake target.glb --cage cage.glb --texture paint.png -o plain.glb');
   const { atlas } = await json<{
     atlas: {
       packed: string[][];
       textures: { slot: string; size: number }[];
       left: { material: string; reason: string }[];
     };
-  }>(`bake target.glb cage.glb paint.png --atlas${flags} -o atlas.glb`);
+  }>(`bake target.glb --cage cage.glb --texture paint.png --atlas${flags} -o atlas.glb`);
   const [plain, packed] = ['plain.glb', 'atlas.glb'].map((name) => new Uint8Array(readFileSync(name)));
   assert.deepEqual(await validate('atlas.glb'), []);
   return { atlas, plain: plain!, packed: packed!, json: unpackGlb(Buffer.from(packed!)).json };
@@ -214,18 +214,18 @@ test('a VRM 0, and a single texture, stay as they are, and it says so', async ()
   });
   writeFileSync('target.glb', vrm);
   assert.match(
-    await ok('bake target.glb cage.glb paint.png --atlas -o out.glb'),
+    await ok('bake target.glb --cage cage.glb --texture paint.png --atlas -o out.glb'),
     /textures are not packed: .*\nnot packed: "m0", "m1": VRM may refer to it/,
   );
   writeFileSync('target.glb', squares(list.slice(0, 1)));
   assert.match(
-    await ok('bake target.glb cage.glb paint.png --atlas -o out.glb'),
+    await ok('bake target.glb --cage cage.glb --texture paint.png --atlas -o out.glb'),
     /textures are not packed: fewer than two/,
   );
-  await fails(2, /--atlas needs an OUT\.glb/, 'bake target.glb cage.glb paint.png --atlas -o out.png');
+  await fails(2, /--atlas needs an OUT\.glb/, 'bake target.glb --cage cage.glb --texture paint.png --atlas -o out.png');
   await fails(
     2,
     /not a whole number of texels within 64\.\.8192/,
-    'bake target.glb cage.glb paint.png --atlas 7 -o out.glb',
+    'bake target.glb --cage cage.glb --texture paint.png --atlas 7 -o out.glb',
   );
 });

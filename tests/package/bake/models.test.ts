@@ -86,10 +86,10 @@ async function baked(document: Document, more: Partial<Parameters<typeof bake>[0
 }
 
 /** Bakes into a document, and into its file by the command. @returns what both have become, and what they say. */
-async function both(document: Document, more: Partial<Parameters<typeof bake>[0]> = {}, flags = 'red.png') {
+async function both(document: Document, more: Partial<Parameters<typeof bake>[0]> = {}, flags = '--texture red.png') {
   writeFileSync('model.glb', await io.writeBinary(document));
   const report = await baked(document, more);
-  const stdout = await ok(`bake model.glb cage.glb ${flags} -o out.glb`);
+  const stdout = await ok(`bake model.glb --cage cage.glb ${flags} -o out.glb`);
   assert.deepEqual(await validate('out.glb'), []);
   return { documents: [document, await io.read('out.glb')], report, stdout };
 }
@@ -202,7 +202,7 @@ describe('documents and files', () => {
     assert.ok(stdout.includes(`not painted: "box", with "plain" of its variants: ${reason}`), stdout);
     // The reason of its own material comes first, and that of a variant names it.
     const palette = /: nothing can be baked: "box": its texture is a palette, or too small for/;
-    await fails(1, palette, 'bake model.glb cage.glb red.png --size 1 -o small.glb');
+    await fails(1, palette, 'bake model.glb --cage cage.glb --texture red.png --size 1 -o small.glb');
   });
 
   test('vertex colours hinder the paint unless all of them are white', async () => {
@@ -230,7 +230,11 @@ describe('documents and files', () => {
     writeFileSync('model.glb', await io.writeBinary(tinted));
     const reason = 'its vertices have colours';
     assert.deepEqual((await baked(tinted)).left, [{ part: 'box', reason }]);
-    await fails(1, `model.glb: nothing can be baked: "box": ${reason}`, 'bake model.glb cage.glb red.png -o out.glb');
+    await fails(
+      1,
+      `model.glb: nothing can be baked: "box": ${reason}`,
+      'bake model.glb --cage cage.glb --texture red.png -o out.glb',
+    );
   });
 
   test('masks by images and by colours keep paint away, and bring it back', async () => {
@@ -241,7 +245,7 @@ describe('documents and files', () => {
     const islands = (image: Image) =>
       [16, 48, 80].flatMap((x) => [24, 72].map((y) => Number(texel(image, x, y)[0] === 230))).join('');
     const command = async (flags: string) => {
-      await ok(`bake box.glb cage.glb red.png${flags} -o masked.png`);
+      await ok(`bake box.glb --cage cage.glb --texture red.png${flags} -o masked.png`);
       return islands(pngIn('masked.png'));
     };
     assert.equal(await command(''), '111111');
@@ -263,7 +267,7 @@ describe('documents and files', () => {
     await colored.transform(cagecast({ cage: await io.read('cage.glb'), maskColors: '_MASK', onResult }));
     assert.equal(painted, (uvs.getCount() * 4) / 6);
     const none = /box\.glb: no part has COLOR_0 of 3 or 4 numbers/;
-    await fails(1, none, 'bake box.glb cage.glb red.png --mask-colors COLOR_0 -o none.png');
+    await fails(1, none, 'bake box.glb --cage cage.glb --texture red.png --mask-colors COLOR_0 -o none.png');
   });
 
   test('a texture that is used in another way, too, stays; the paint gets one of its own', async () => {
@@ -413,9 +417,9 @@ describe('documents', () => {
 
 describe('cagecast bake', () => {
   test('a PNG has the paint alone; the way back has it in the cage’s UVs', async () => {
-    await ok('bake box.glb cage.glb red.png -o paint.png');
-    await ok('bake box.glb cage.glb red.png -o painted.glb');
-    await ok(`bake painted.glb cage.glb --back --size ${size} -o back.png`);
+    await ok('bake box.glb --cage cage.glb --texture red.png -o paint.png');
+    await ok('bake box.glb --cage cage.glb --texture red.png -o painted.glb');
+    await ok(`bake painted.glb --cage cage.glb --back --size ${size} -o back.png`);
     const [paint, back] = [pngIn('paint.png'), pngIn('back.png')];
     assert.deepEqual([paint.width, back.width], [size, size]);
     for (let y = 0; y < size; ++y)
@@ -436,7 +440,7 @@ describe('cagecast bake', () => {
       const far = nodes.push({ name: 'far', mesh: 0, translation: [9, 0, 0] }) - 1;
       scenes[0]!.nodes = [holding('Near', 0), holding('Away', holding('box', far))];
     });
-    const line = 'bake held.glb cage.glb red.png -o part.png --part';
+    const line = 'bake held.glb --cage cage.glb --texture red.png -o part.png --part';
     for (const part of ['Ne*', 'box']) assert.match(await ok(line, part), /part\.png: 96 × 96, for "box"$/m, part);
     await fails(1, /held\.glb: nothing of it may be painted\n$/, line, 'Away');
     await fails(1, /--part Nose: no node or material has this name; there are: box, /, line, 'Nose');
@@ -446,7 +450,7 @@ describe('cagecast bake', () => {
     const padded = (image: Image) => Buffer.concat([pngOf(image), Buffer.alloc(3)]);
     writeFileSync('padded.glb', (await texturedBox(padded(own))).buffer);
     writeFileSync('padded.png', padded(red));
-    await ok('bake padded.glb cage.glb padded.png -o out.glb');
+    await ok('bake padded.glb --cage cage.glb --texture padded.png -o out.glb');
     assertPainted(colorsOf(await io.read('out.glb')));
   });
 
@@ -456,7 +460,7 @@ describe('cagecast bake', () => {
       json.images = [{ mimeType: image.mimeType!, uri: 'skin.png', extras: { licence: 'own' } }];
     });
     writeFileSync('skin.png', pngOf(own));
-    await ok('bake named.glb cage.glb red.png -o out.glb');
+    await ok('bake named.glb --cage cage.glb --texture red.png -o out.glb');
     const [image] = unpackGlb(readFileSync('out.glb')).json.images!;
     assert.deepEqual([image!.name, image!.extras], ['skin', { licence: 'own' }]);
 
@@ -469,7 +473,7 @@ describe('cagecast bake', () => {
       json.materials!.push({ extensions: { KHR_materials_clearcoat: null } } as object, { extensions: null } as object);
       json.extensionsUsed = ['EXT_texture_webp'];
     });
-    await ok('bake optional.glb cage.glb red.png -o out.glb');
+    await ok('bake optional.glb --cage cage.glb --texture red.png -o out.glb');
     const { extensionsUsed, extensionsRequired } = unpackGlb(readFileSync('out.glb')).json;
     assert.deepEqual([extensionsUsed, extensionsRequired], [['EXT_texture_webp'], undefined]);
   });
@@ -488,7 +492,7 @@ describe('cagecast bake', () => {
       json.extensions = { VRM: { materialProperties: [{ textureProperties, vectorProperties }] } };
       json.extensionsUsed = ['VRM', 'VRMC_materials_mtoon'];
     });
-    await ok('bake avatar.glb cage.glb red.png -o out.vrm');
+    await ok('bake avatar.glb --cage cage.glb --texture red.png -o out.vrm');
     const { json } = unpackGlb(readFileSync('out.vrm'));
     const [painted] = json.materials!;
     const now = painted!.pbrMetallicRoughness!.baseColorTexture!.index;
@@ -509,30 +513,36 @@ describe('cagecast bake', () => {
     writeFileSync('mirrored.glb', (await texturedBox(Buffer.from(pngOf(own)), { mirrored: true })).buffer);
     const overlap =
       /UVs overlap: \d+\.\d % of its texels are claimed twice, \d+\.\d % of the paint found no room \("box"\)/;
-    assert.match(await ok('bake mirrored.glb cage.glb red.png -o out.glb'), overlap);
+    assert.match(await ok('bake mirrored.glb --cage cage.glb --texture red.png -o out.glb'), overlap);
   });
 
   test('another size keeps the colours under an alpha of 0, and the longer side is as long as asked', async () => {
     const data = picture(64, (x) => [10 + x, 20, 200, 0]).data.subarray(0, 4 * 32 * 64);
     writeFileSync('clear.glb', (await texturedBox(Buffer.from(pngOf({ width: 32, height: 64, data })))).buffer);
-    await ok('bake clear.glb cage.glb red.png --size 32 -o out.glb');
+    await ok('bake clear.glb --cage cage.glb --texture red.png --size 32 -o out.glb');
     const image = colorsOf(await io.read('out.glb'));
     assert.deepEqual([image.width, image.height], [16, 32]);
     assert.ok(
       image.data.every((byte, i) => i % 4 !== 2 || byte >= 40),
       'none is black',
     );
-    assert.match(await ok('bake clear.glb cage.glb red.png --size 32 -o clear.png'), /: 16 × 32, for /);
+    assert.match(
+      await ok('bake clear.glb --cage cage.glb --texture red.png --size 32 -o clear.png'),
+      /: 16 × 32, for /,
+    );
     // Of a texture that cannot be read, nothing is needed.
     changed('packed.glb', (json) => {
       const uri = `data:image/ktx2;base64,${Buffer.from(ktx2Of(1, 2, 3)).toString('base64')}`;
       json.images = [{ uri }];
     });
-    assert.match(await ok('bake packed.glb cage.glb red.png --size 32 -o packed.png'), /: 32 × 32, for /);
+    assert.match(
+      await ok('bake packed.glb --cage cage.glb --texture red.png --size 32 -o packed.png'),
+      /: 32 × 32, for /,
+    );
     const unreadable = /packed\.glb: its texture is a KTX2 image, which cannot be baked/;
-    await fails(1, unreadable, 'bake packed.glb cage.glb red.png -o packed.png');
+    await fails(1, unreadable, 'bake packed.glb --cage cage.glb --texture red.png -o packed.png');
     // The way back shows what an opaque material does.
-    await ok('bake clear.glb cage.glb --back -o back.png');
+    await ok('bake clear.glb --cage cage.glb --back -o back.png');
     assert.ok(pngIn('back.png').data.some((byte, i) => i % 4 === 3 && byte === 255));
   });
 
@@ -541,11 +551,11 @@ describe('cagecast bake', () => {
     writeFileSync('mask.png', pngOf(plain(0, 0, 0, 255)));
     writeFileSync('own.json', '{ "neverMask": "mask.png" }');
     writeFileSync('skin.png', pngOf(own));
-    const settings = 'bake box.glb cage.glb red.png --config own.json';
+    const settings = 'bake box.glb --cage cage.glb --texture red.png --config own.json';
     assert.match(await ok(`${settings} -o out.glb`), /\nsettings from .*own\.json\n$/);
     const refused = /^cagecast: .*\.png would overwrite .*\.png, which this command reads/;
     for (const [line, path] of [
-      ['bake named.glb cage.glb red.png', 'skin.png'],
+      ['bake named.glb --cage cage.glb --texture red.png', 'skin.png'],
       [settings, 'mask.png'],
     ] as const) {
       const before = readFileSync(path);
@@ -564,21 +574,29 @@ describe('cagecast bake', () => {
     changed('texture.glb', ({ materials }) => (materials![0]!.pbrMetallicRoughness!.baseColorTexture!.index = 7));
     changed('image.glb', ({ textures }) => (textures![0]!.source = 5));
     const nothing = 'nothing can be baked: "box": it';
-    const whole = 'bake box.glb cage.glb red.png';
+    const whole = 'bake box.glb --cage cage.glb --texture red.png';
     const cases: [line: string, status: number, message: RegExp | string][] = [
-      ['bake bare.glb cage.glb red.png -o no.glb', 1, `bare.glb: ${nothing} has no TEXCOORD_0, the UVs of its texture`],
-      ['bake bare.glb cage.glb red.png -o no.png', 1, /bare\.glb: "box" has no TEXCOORD_0/],
-      ['bake box.glb cage.glb short.png -o no.glb', 1, /short\.png: is truncated/],
-      ['bake box.glb cage.glb text.png -o no.glb', 1, /text\.png: is not a PNG, JPEG or WebP image/],
-      ['bake texture.glb cage.glb red.png -o no.glb', 1, `texture.glb: ${nothing}s material has no texture`],
-      ['bake image.glb cage.glb red.png -o no.glb', 1, `image.glb: ${nothing}s texture has no image`],
-      ['bake box.glb cage.glb -o no.glb', 2, /there is nothing to bake/],
+      [
+        'bake bare.glb --cage cage.glb --texture red.png -o no.glb',
+        1,
+        `bare.glb: ${nothing} has no TEXCOORD_0, the UVs of its texture`,
+      ],
+      ['bake bare.glb --cage cage.glb --texture red.png -o no.png', 1, /bare\.glb: "box" has no TEXCOORD_0/],
+      ['bake box.glb --cage cage.glb --texture short.png -o no.glb', 1, /short\.png: is truncated/],
+      ['bake box.glb --cage cage.glb --texture text.png -o no.glb', 1, /text\.png: is not a PNG, JPEG or WebP image/],
+      [
+        'bake texture.glb --cage cage.glb --texture red.png -o no.glb',
+        1,
+        `texture.glb: ${nothing}s material has no texture`,
+      ],
+      ['bake image.glb --cage cage.glb --texture red.png -o no.glb', 1, `image.glb: ${nothing}s texture has no image`],
+      ['bake box.glb --cage cage.glb -o no.glb', 2, /there is nothing to bake/],
       [`${whole} --mask-colors POSITION -o no.glb`, 2, /It is not COLOR_0, COLOR_1, … or an attribute of/],
       [`${whole} --never-mask no.glb -o no.glb`, 2, /no\.glb would overwrite .*no\.glb, which/],
-      [`${whole} --back -o no.png`, 2, /--back takes TARGET and CAGE only/],
+      [`${whole} --back -o no.png`, 2, /--back takes no paint/],
       [`${whole} --part nose -o no.png`, 1, /--part nose: no node or material has this name; there are: box, own/],
       [`${whole} -o nowhere/out.png`, 1, 'nowhere/out.png: cannot be written (its folder does not exist)'],
-      ['bake box.glb cage.glb --back -o nowhere/out.png', 1, /^cagecast: nowhere\/out\.png: cannot be written/],
+      ['bake box.glb --cage cage.glb --back -o nowhere/out.png', 1, /^cagecast: nowhere\/out\.png: cannot be written/],
       ...['0', '1e5', 'NaN'].map((text): [string, number, RegExp] => [
         `${whole} --size ${text} -o no.glb`,
         2,
@@ -652,7 +670,7 @@ test('a JPEG stays a JPEG; where a texture becomes a PNG, its line says so; othe
     const all = Buffer.concat(chunks);
     json.buffers![0]!.byteLength = all.length;
     writeFileSync(`${type}.glb`, packGlb({ json, bin: all }));
-    assert.match(await ok(`bake ${type}.glb cage.glb red.png -o ${type}-out.glb`), line);
+    assert.match(await ok(`bake ${type}.glb --cage cage.glb --texture red.png -o ${type}-out.glb`), line);
     const material = materialsOf(await io.read(`${type}-out.glb`))[0]!;
     assert.equal(material.getBaseColorTexture()!.getMimeType(), type === 'jpeg' ? 'image/jpeg' : 'image/png');
     assert.deepEqual([...material.getEmissiveTexture()!.getImage()!], [...untouched]);
@@ -663,7 +681,7 @@ test('UVs that lie wholly outside of a clamped texture hold no paint, which is s
   await strips('strip-cage.glb', [{ z: 0.02, u: (x) => x / 2 }]);
   await strips('outside.glb', [{ z: 0, u: (x) => x + 3 }], 'CLAMP_TO_EDGE');
   const reason = 'its UVs lie outside of 0..1, where its texture is clamped: nothing of the paint would be in it';
-  const line = 'bake outside.glb strip-cage.glb red.png -o';
+  const line = 'bake outside.glb --cage strip-cage.glb --texture red.png -o';
   await fails(1, `outside.glb: nothing can be baked: "nodes[0]": ${reason}`, `${line} never.glb`);
   await fails(1, `outside.glb: "nodes[0]": ${reason}`, `${line} never.png`);
 });
@@ -684,7 +702,7 @@ test('the way back shows what the model shows: what is nearest to the cage, and 
   for (const [parts, wrap, colors] of cases) {
     await strips('strips.glb', parts, wrap);
     for (const borders of ['triangle', 'cut']) {
-      await ok(`bake strips.glb strip-cage.glb --back --size 64 --borders ${borders} -o strip.png`);
+      await ok(`bake strips.glb --cage strip-cage.glb --back --size 64 --borders ${borders} -o strip.png`);
       const image = pngIn('strip.png');
       const found = [8, 24, 40, 56].map((x) => (texel(image, x, 32)[0]! > 200 ? 'r' : 'b')).join('');
       assert.equal(found, colors, `${wrap}, ${borders}`);

@@ -248,7 +248,7 @@ test('the command writes the same as a PNG', async () => {
   writeFileSync(path('to.glb'), glbOf(turned(whole)));
   const png = Object.assign(new PNG({ width: kSize, height: kSize }), { data: Buffer.from(image.data) });
   writeFileSync(path('paint.png'), PNG.sync.write(png));
-  const line = `relay ${path('ball.glb')} ${path('from.glb')} ${path('paint.png')} --to ${path('to.glb')}`;
+  const line = `relay ${path('ball.glb')} --cage ${path('from.glb')} --texture ${path('paint.png')} --to ${path('to.glb')}`;
   const { width, height, triangles } = await json<{ width: number; height: number; triangles: Record<string, number> }>(
     `${line} --size 128 -o ${path('out.png')}`,
   );

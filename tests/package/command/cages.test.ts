@@ -31,15 +31,15 @@ test('make writes a cage with holes over the eyes, a report, and the verdict', a
   assert.deepEqual(await validate('cage.glb'), []);
   const [{ name, extras }] = jsonOf('cage.glb').nodes as [{ name: string; extras: object }];
   assert.deepEqual([name, Object.keys(extras).sort()], ['cage', ['bare', 'holes', 'kind', 'landmarks']]);
-  assert.deepEqual((extras as { bare: string[] }).bare, ['Eye.L', 'EyeWhite']);
+  assert.deepEqual((extras as { bare: string[] }).bare, ['Eye.L', 'ball', 'EyeWhite']);
 });
 
-test('make: --exclude replaces the list of names, and --closing, --kind and --triangles say what is made', async () => {
+test('make: --exclude and --keep say more than names, and --closing, --kind and --triangles say what is made', async () => {
   writeMade('held.glb', (maker) => {
     makeHead(maker);
     maker.json.scenes![0]!.nodes = [0, maker.node({ name: 'The Lookers', children: [1, 2] })];
   });
-  const stdout = await ok('make held.glb --triangles 300 -o out.glb --exclude lookers');
+  const stdout = await ok('make held.glb --triangles 300 -o out.glb --exclude', 'the lookers');
   assert.match(stdout, /, 2 holes$/m, 'names of nodes above parts are known');
   const { target } = await json<{ target: { bare: string[] } }>('transfer held.glb --cage out.glb');
   assert.deepEqual(target.bare, ['Eye.L', 'ball'], 'and still by who uses the cage');
@@ -47,8 +47,8 @@ test('make: --exclude replaces the list of names, and --closing, --kind and --tr
     for (const x of [0, 3.4]) maker.node({ name: 'eye', mesh: maker.mesh(ball([x, 0, 0], () => 1, 12, 24)) });
   });
   // Apart, they are no single model.
-  const bridged = await ok('make eyes.glb --closing 0.15 --kind prop --triangles 300 -o out.glb --exclude ');
-  assert.match(bridged, /, 0 holes$/m, 'an empty name excludes nothing');
+  const bridged = await ok('make eyes.glb --closing 0.15 --kind prop --triangles 300 -o out.glb --keep *');
+  assert.match(bridged, /, 0 holes$/m, 'all is kept');
   const { nodes, accessors } = jsonOf('out.glb');
   assert.equal(nodes![0]!.extras!['kind'], 'prop');
   const triangles = accessors![2]!.count / 3;
@@ -81,7 +81,7 @@ test('transfer and inspect --cage auto: they say which parts the cage is made wi
 
 test('fit writes the template moved onto the model, and says what it was moved by', async () => {
   mkdirSync('human-head'); // a folder with the name of a template does not hide it
-  const stdout = await ok(`fit human-head ${human} -o fit.glb --html fit.html`);
+  const stdout = await ok(`fit ${human} --template human-head -o fit.glb --html fit.html`);
   assert.match(
     stdout,
     /^wrote fit\.glb: \d+ vertices, \d+ triangles, 1 chart, 4 holes\nlandmarks: \d+ used, 0 of them given\nfound, but not certain \(1 would be\): forehead \(0\.\d\d\), /,
@@ -98,7 +98,10 @@ test('fit takes landmarks of the template and of the model from files', async ()
   write('some.json', JSON.stringify({ nose_tip: landmarks['nose_tip'], chin: landmarks['chin'] }));
   writeChanged('bare.glb', template, (json) => delete json.meshes![0]!.extras);
   const files = '--template-landmarks landmarks.json --landmarks some.json';
-  assert.match(await ok(`fit bare.glb ${human} -o given.glb ${files}`), /^landmarks: \d+ used, 2 of them given$/m);
+  assert.match(
+    await ok(`fit ${human} --template bare.glb -o given.glb ${files}`),
+    /^landmarks: \d+ used, 2 of them given$/m,
+  );
 });
 
 test('a cage that is unfit is written, too, and the exit code is 3; a program gets all landmarks', async () => {
@@ -110,7 +113,7 @@ test('a cage that is unfit is written, too, and the exit code is 3; a program ge
   const { landmarks, verdict } = await json<{
     landmarks: { used: Record<string, number[]>; confidence: object; missing: string[] };
     verdict: string;
-  }>('fit fit.glb plain.glb --landmarks wrong.json -o unfit.glb', 3);
+  }>('fit plain.glb --template fit.glb --landmarks wrong.json -o unfit.glb', 3);
   assert.deepEqual([verdict, existsSync('unfit.glb')], ['unfit', true]);
   assert.deepEqual(landmarks.used['chin'], wrong.chin);
   assert.deepEqual(Object.keys(landmarks.confidence), Object.keys(landmarks.used));
@@ -123,11 +126,11 @@ test('errors are one line that names the file, and write nothing', async () => {
   for (const [name, chin] of [['few', [0, 0, 0]] as const, ['odd', [0]] as const])
     writeChanged(`${name}.glb`, template, (json) => (json.meshes![0]!.extras = { landmarks: { chin } }));
   const files = readdirSync('.').sort();
-  const fit = (path: string, flags = '') => `fit ${path} ${human} -o never.glb${flags}`;
+  const fit = (path: string, flags = '') => `fit ${human} --template ${path} -o never.glb${flags}`;
   for (const [line, message] of [
     ['make missing.glb -o never.glb', /missing\.glb: no such file/],
     ['make no.json -o never.glb', /no\.json: is neither a GLB or glTF file nor one of FBX|no\.json: is /],
-    ['fit human-head missing.glb -o never.glb', /missing\.glb: no such file/],
+    ['fit missing.glb --template human-head -o never.glb', /missing\.glb: no such file/],
     [fit('human'), /human: no such file, and no template of the package: there are human-head, /],
     [fit('bare.glb'), /bare\.glb: has no landmarks in the extras .*; give at least 4 .*--template-landmarks T\.json/],
     [fit('few.glb'), /few\.glb: has 1 landmark in the extras .*; give at least 4 .*--template-landmarks T\.json/],

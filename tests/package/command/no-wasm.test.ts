@@ -20,10 +20,10 @@ const models = 'target.glb --cage cage.glb';
 const commands: Record<string, { args: string; works?: true }> = {
   transfer: { args: `${models} -o out.glb` },
   inspect: { args: models },
-  bake: { args: 'target.glb cage.glb paint.png -o out.glb' },
-  relay: { args: 'target.glb cage.glb paint.png --to cage.glb -o out.png' },
+  bake: { args: 'target.glb --cage cage.glb --texture paint.png -o out.glb' },
+  relay: { args: 'target.glb --cage cage.glb --texture paint.png --to cage.glb -o out.png' },
   make: { args: 'target.glb -o out.glb' },
-  fit: { args: 'human-head target.glb -o out.glb' },
+  fit: { args: 'target.glb --template human-head -o out.glb' },
   batch: { args: `${models} --quiet` },
   diff: { args: 'report.json report.json', works: true },
   thumbnail: { args: 'target.glb -o out.png', works: true },

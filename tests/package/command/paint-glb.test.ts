@@ -70,7 +70,7 @@ test('without attributes only the overlay has UVs, and parts without one stay as
   const again = await paintGlb(lean.bytes, around);
   assert.equal(primitives(again.bytes).length, 2, 'an earlier transfer is replaced');
   assert.deepEqual(again.triangles, lean.triangles);
-  const bare = await paintGlb(glbOf(target), { ...around, exclude: ['*'] });
+  const bare = await paintGlb(glbOf(target), { ...around, parts: { exclude: ['*'] } });
   assert.deepEqual(unpackGlb(bare.bytes), unpackGlb(glbOf(target)));
 });
 
@@ -79,7 +79,7 @@ test('a cage may be a mesh; parts stay bare, or not, by their names', async () =
   const painted = async (options: Partial<PaintOptions>) =>
     (await paintGlb(model, { cage: { ...cage, uvs: cage.uvs! }, texture, ...options })).triangles.painted;
   assert.equal(await painted({}), (await paintGlb(model, { cage: read('cage.glb'), texture })).triangles.painted);
-  assert.equal(await painted({ exclude: ['on*'] }), 0);
+  assert.equal(await painted({ parts: { exclude: ['ON*'] } }), 0);
 });
 
 test('a template is fitted first, here by its bytes; the cage that this makes can be given the next time', async () => {
@@ -129,7 +129,12 @@ test('what cannot be used is named, with what helps', async () => {
       /^paintGlb: cage: meshes\[0\].*no TEXCOORD_0/,
       'cage',
     ],
-    [model, { ...own, exclude: ['nose'] }, /^paintGlb: exclude: nothing is named "nose"; there are only/, 'exclude'],
+    [
+      model,
+      { ...own, parts: { exclude: ['nose'] } },
+      /^paintGlb: bytes: parts\.exclude: nothing is named "nose"; there are only/,
+      'bytes',
+    ],
     [
       model,
       { ...own, treshold: 1 },

@@ -217,7 +217,7 @@ test('a picture that is no PNG is decoded by the sharp of the project, as what n
   const relay = () => {
     const { status, stderr } = spawnSync(
       process.execPath,
-      'elsewhere/cli.js relay target.glb cage.glb paint.webp --to cage.glb -o relayed.png'.split(' '),
+      'elsewhere/cli.js relay target.glb --cage cage.glb --texture paint.webp --to cage.glb -o relayed.png'.split(' '),
     );
     return [status, stderr.toString()];
   };

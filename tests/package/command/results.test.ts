@@ -261,7 +261,7 @@ test('what is not drawn is left out, and what --ignore names; hats stay bare', a
     ['Visor: ignored', outfit, cage],
     [],
   ]);
-  assert.deepEqual(await partsOf(' --ignore head_* --ignore '), [
+  assert.deepEqual(await partsOf(' --ignore head_* --keep outfit'), [
     ['head', 'Visor', 'Outfit', 'StrawHat'],
     [cage],
     ['StrawHat'],
@@ -279,12 +279,12 @@ test('what is not drawn is left out, and what --ignore names; hats stay bare', a
   );
   await fails(
     1,
-    /--keep Outfit: no node or material has this name; .*; left out: "Outfit" \(hidden\)/,
-    `${line} --keep Outfit`,
+    /--exclude Outfit: no node or material has this name; .*; left out: "Outfit" \(hidden\)/,
+    `${line} --exclude Outfit`,
   );
   await fails(
     1,
-    /^cagecast: dressed\.glb: all parts are left out: "head", .* \(ignored\), .*; --ignore '' takes what is not drawn, too$/m,
+    /^cagecast: dressed\.glb: all parts are left out: "head", .* \(ignored\), .*; name what counts by --keep$/m,
     `${line} --ignore *`,
   );
 });

@@ -269,7 +269,7 @@ test('the picture is filled by parts, by a cage, or by the head that a joint hol
   };
   assert.deepEqual(await corner({}), ['model', 255, 0]);
   assert.deepEqual(await corner({ view: 'face' }), ['model', 255, 0]);
-  assert.deepEqual(await corner({ parts: ['*1'] }), ['parts', 0, 255]);
+  assert.deepEqual(await corner({ frame: ['*1'] }), ['parts', 0, 255]);
   assert.deepEqual(await corner({ cage: { positions: square(3.6, 3) } }), ['cage', 0, 255]);
   assert.deepEqual(
     await corner({ cage: glbOf({ positions: square(3.6, 3), indices: Uint16Array.of(0, 1, 2, 0, 2, 3) }) }),
@@ -340,11 +340,11 @@ test('wrong arguments are named', async () => {
     [{ view: 'up' }, /options\.view is "up", not front, back/],
     [{ view: { elevation: 91 } }, /options\.view\.elevation is 91, not a number from -90 to 90/],
     [{ view: { azimuth: Number.NaN } }, /options\.view\.azimuth is NaN/],
-    [{ parts: [] }, /options\.parts is of type Array, not an array of patterns/],
-    [{ parts: ['nose'] }, /parts: nothing is named "nose"; there are quad0/],
+    [{ frame: [] }, /options\.frame is of type Array, not an array of patterns/],
+    [{ frame: ['nose'] }, /frame: nothing is named "nose"; there are quad0/],
     [{ cage: {} }, /options\.cage is of type Object, not the bytes of a GLB, or a mesh/],
     [{ cage: new Uint8Array(3) }, /cage: /],
-    [{ cage: bytes, parts: ['*'] }, /both given/],
+    [{ cage: bytes, frame: ['*'] }, /both given/],
     [{ background: 'red' }, /options\.background is "red", not a colour/],
     [{ decode: 1 }, /options\.decode is 1, not a function/],
     [{ zoom: 1 }, /options\.zoom is not an option; thumbnail takes: size, view/],

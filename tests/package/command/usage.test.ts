@@ -77,14 +77,26 @@ const wrong: [line: string, message: RegExp][] = [
   ['transfer - --cage cage.glb --config -', /only one file can be the standard input/],
   ['inspect - --cage cage.glb --config -', /only one file can be the standard input/],
   ['inspect target.glb --cage cage.glb --html page.txt', /must end in \.html/],
-  ['bake - cage.glb paint.png --config - -o out.glb', /only one file can be the standard input/],
-  ['bake target.glb cage.glb -o out.glb', /there is nothing to bake/],
-  ['bake target.glb cage.glb -o out.png', /to write a PNG, PAINT is needed/],
-  ['bake target.glb cage.glb paint.png --normal paint.png -o out.png', /--normal and --orm need an OUT\.glb/],
-  ['bake target.glb cage.glb paint.png --back -o out.png', /--back takes TARGET and CAGE only/],
-  ['bake target.glb cage.glb paint.png --part only -o out.glb', /--part is for a PNG; for a GLB, use --exclude/],
-  ['bake target.glb cage.glb paint.png --atlas 9000 -o out.glb', /not a whole number of texels within 64\.\.8192/],
-  ['bake target.glb cage.glb paint.png --size 0 -o out.png', /not a whole number of texels within 1\.\./],
+  ['bake - --cage cage.glb --texture paint.png --config - -o out.glb', /only one file can be the standard input/],
+  ['bake target.glb --cage cage.glb -o out.glb', /there is nothing to bake/],
+  ['bake target.glb --cage cage.glb -o out.png', /to write a PNG, --texture is needed/],
+  [
+    'bake target.glb --cage cage.glb --texture paint.png --normal paint.png -o out.png',
+    /--normal and --orm need an OUT\.glb/,
+  ],
+  ['bake target.glb --cage cage.glb --texture paint.png --back -o out.png', /--back takes no paint/],
+  [
+    'bake target.glb --cage cage.glb --texture paint.png --part only -o out.glb',
+    /--part is for a PNG; for a GLB, use --exclude/,
+  ],
+  [
+    'bake target.glb --cage cage.glb --texture paint.png --atlas 9000 -o out.glb',
+    /not a whole number of texels within 64\.\.8192/,
+  ],
+  [
+    'bake target.glb --cage cage.glb --texture paint.png --size 0 -o out.png',
+    /not a whole number of texels within 1\.\./,
+  ],
   ['make', /missing required argument 'TARGET'|required option/],
   ['make target.glb', /required option '-o, --output <CAGE\.glb>' not specified/],
   ['make target.glb -o cage.obj', /Its name must end in \.glb/],
@@ -93,9 +105,9 @@ const wrong: [line: string, message: RegExp][] = [
   ['make target.glb -o out.glb --closing ', /It is not a number within 0\.0005\.\.0\.2/],
   ['make target.glb -o out.glb --kind hand', /Allowed choices are automatic, head, body, prop/],
   ['make target.glb -o target.glb', /target\.glb would overwrite target\.glb, which this command reads/],
-  ['fit human-head', /missing required argument 'TARGET'|required option/],
-  ['fit human-head target.glb', /required option '-o, --output <CAGE\.glb>' not specified/],
-  ['fit cage.glb target.glb -o cage.glb', /would overwrite cage\.glb, which this command reads/],
+  ['fit', /missing required argument 'TARGET'|required option/],
+  ['fit target.glb --template human-head', /required option '-o, --output <CAGE\.glb>' not specified/],
+  ['fit target.glb --template cage.glb -o cage.glb', /would overwrite cage\.glb, which this command reads/],
   ['batch', /give either TARGETS or --manifest/],
   ['batch  --cage cage.glb', /TARGETS is empty/],
   ['batch target.glb --cage - -o {name}.glb', /its jobs have no standard input/],
@@ -131,7 +143,11 @@ test('wrong usage exits 2 with one line and writes nothing', async () => {
 test('outputs are checked before anything is read', async () => {
   write('kept.glb', 'before');
   mkdirSync('folder.glb');
-  for (const command of ['make no-model.glb', 'fit human-head no-model.glb', 'transfer no-model.glb --cage auto'])
+  for (const command of [
+    'make no-model.glb',
+    'fit no-model.glb --template human-head',
+    'transfer no-model.glb --cage auto',
+  ])
     for (const [out, reason] of [
       ['gone/out.glb', 'its folder does not exist'],
       ['kept.glb/out.glb', 'its folder is a file'],
@@ -184,7 +200,11 @@ test('after a name that nothing has, those of parts, materials and nodes that ho
   write('named.glb', maker.finish());
   const line = 'named.glb: --keep eyes*: no node or material has this name; there are: head, skin, upper, Body';
   await fails(1, line, 'transfer named.glb --cage cage.glb --keep eyes*');
-  await fails(1, line.replace('--keep', '--part'), 'bake named.glb cage.glb paint.png -o p.png --part eyes*');
+  await fails(
+    1,
+    line.replace('--keep', '--part'),
+    'bake named.glb --cage cage.glb --texture paint.png -o p.png --part eyes*',
+  );
   await fails(1, line.replace('--keep', '--exclude'), 'make named.glb -o c.glb --exclude eyes*');
 });
 

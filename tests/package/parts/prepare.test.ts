@@ -77,8 +77,8 @@ describe('prepareParts', () => {
   });
 
   test('gives the same in the worker', async () => {
-    const parts = [{ firstVertex: 0, vertexCount: vertices, firstTriangle: 0, triangleCount: triangles }];
-    const options: PrepareOptions = { borders: 'cut', parts, locks: { groups: { 0: 'keep' } } };
+    const ranges = [{ firstVertex: 0, vertexCount: vertices, firstTriangle: 0, triangleCount: triangles }];
+    const options: PrepareOptions = { borders: 'cut', ranges, parts: { keep: [0] } };
     const there = await prepareInWorker(cage, target, options);
     assert.deepEqual(there.parts, prepareParts(cage, target, options).parts);
     await terminate();
@@ -101,13 +101,13 @@ describe('prepareParts', () => {
       [...mesh.indices.subarray(3 * triangles, 3 * triangles + 3)],
       [0, 2, 1].map((k) => vertices + indices[k]!),
     );
-    const [own, other] = prepareParts(cage, mesh, { parts }).parts;
+    const [own, other] = prepareParts(cage, mesh, { ranges: parts }).parts;
     for (const { indices: corners, sources } of [own!, other!])
       assert.deepEqual(
         Array.from(corners, (v) => sources[v]),
         [...indices],
       );
-    const cut = prepareParts(cage, mesh, { parts, borders: 'cut' }).parts[1]!;
+    const cut = prepareParts(cage, mesh, { ranges: parts, borders: 'cut' }).parts[1]!;
     assert.ok(cut.cut!.triangles.every((t) => t >= triangles));
     // Pieces face as the triangles do that they are cut from.
     const at = (v: number) => applied.subarray(3 * v, 3 * v + 3);
@@ -201,22 +201,22 @@ describe('applySplit', () => {
       [() => join([{ ...part, matrix: [1] }]), 'joinParts: parts[0].matrix has 1 numbers, not 16', 1],
       [
         () => prepare({ border: 'cut' }),
-        /^prepareParts: options\.border is not an option; prepareParts takes: parts, borders, /,
+        /^prepareParts: options\.border is not an option; prepareParts takes: ranges, borders, /,
       ],
       [() => prepare({ borders: 'cutt' }), /^prepareParts: options\.borders = "cutt" is unknown; there are: /],
       [() => prepare({ separatePaint: 1 }), 'prepareParts: options.separatePaint = 1 is not true or false'],
-      [() => prepare({ parts: whole }), 'prepareParts: options.parts is of type Object, not an array'],
+      [() => prepare({ ranges: whole }), 'prepareParts: options.ranges is of type Object, not an array'],
       [
-        () => prepare({ parts: [{}] }),
-        /options\.parts\[0\]\.firstVertex = undefined is not a whole number within 0\.\./,
+        () => prepare({ ranges: [{}] }),
+        /options\.ranges\[0\]\.firstVertex = undefined is not a whole number within 0\.\./,
       ],
       [
-        () => prepare({ parts: [whole, { ...whole, triangleCount: 1e9 }] }),
-        /parts\[1\]\.triangleCount = 1000000000 is/,
+        () => prepare({ ranges: [whole, { ...whole, triangleCount: 1e9 }] }),
+        /ranges\[1\]\.triangleCount = 1000000000 is/,
         1,
       ],
       [
-        () => prepare({ parts: [{ ...whole, vertexCount: 1 }] }),
+        () => prepare({ ranges: [{ ...whole, vertexCount: 1 }] }),
         /target\.indices\[\d+\] = \d+ is not a vertex of .*\[0\]/,
       ],
       [

@@ -58,7 +58,7 @@ test('a part that hides much is left out with a click, and taken back with anoth
   await page.ready();
   assert.equal(page.painted(), 'Head 4,Visor 0', 'it stays so by other rules and with another cage');
   assert.match(codeFor(session).command, / --ignore Visor /);
-  assert.match(codeFor(session).three, /parts: \(mesh, isDrawn\) => isDrawn && mesh\.name !== "Visor"/);
+  assert.match(codeFor(session).three, /parts: \{ ignore: \["Visor"\] \}/);
   const [back, ...others] = takeBacks(session);
   assert.deepEqual([back!.title, others], ['Take back “Visor”', []]);
   back!.run();
@@ -147,10 +147,12 @@ test('what is exported without a part is what is shown without it: locks and mas
   const shown = classify(made, choices);
 
   const rest = join3d(...parts.slice(1));
+  const { parts: numbers, ...others } = choicesWithout(choices, model.mesh, made);
+  assert.deepEqual(numbers, { exclude: [2], ignore: [0] });
   const exported = transfer(
     cage,
-    { ...rest, groups: groups.subarray(vertices[0]).map((group) => group - 1) },
-    choicesWithout(choices, model.mesh, made),
+    { ...rest, groups: groups.subarray(vertices[0]) },
+    { ...others, parts: { exclude: numbers!.exclude } },
   );
   assert.deepEqual(shown.zones.subarray(vertices[0]), exported.zones);
   assert.deepEqual(shown.cosmeticTriangles.subarray(shell.indices.length / 3), exported.cosmeticTriangles);

@@ -142,7 +142,7 @@ test('a locked part is explained by its lock only', async () => {
   const segment = projection.segments[target!.indices[0]!]!;
   for (const lock of ['keep', 'exclude'] as const) {
     const locks = { [segment]: lock };
-    const classification = classify(projection, { locks: { segments: locks } });
+    const classification = classify(projection, { locks });
     const shown = shownOf(cage!, target!, projection);
     const { steps } = explain(
       { shown, classification, rules: { preset: 'default', threshold: 0.5 }, locks, loops: new BoundaryLoops(cage!) },

@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<LockEntry> locks;
   for (std::uint32_t i = input.below(4); i > 0; --i)
     locks.push_back({input.below(16), static_cast<Lock>(input.below(3))});
-  options.locks = {locks, {}};
+  options.locks = locks;
 
   const ProjectionView projection{visibility, ofVertex, stats, recovery, shares, {hiddenBy, hiders}};
   Zones out;

@@ -168,10 +168,10 @@ describe('the packed package', () => {
     for (const entry of ['cagecast', 'cagecast/slim'])
       assert.equal(printed('program.js', `${programOf(entry)} ${print}`), JSON.stringify(answer));
     const sync = `
-      import { defaultExclusions, init, makeCage } from 'cagecast/cages/sync';
+      import { excludedByName, init, makeCage } from 'cagecast/cages/sync';
       await init();
       const model = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]), indices: new Uint32Array([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]) };
-      console.log(defaultExclusions().length > 0, makeCage(model, { triangles: 100, voxels: 40 }).indices.constructor.name);`;
+      console.log(excludedByName(['eye'])[0], makeCage(model, { triangles: 100, voxels: 40 }).indices.constructor.name);`;
     assert.equal(printed('sync.js', sync), 'true Uint32Array');
     writeFileSync(join(user, 'core.js'), coreScript('cagecast'));
     const threads = `

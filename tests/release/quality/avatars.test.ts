@@ -26,7 +26,7 @@ test('holes off by a tenth are seen, depth counts a quarter, and painted eyes an
     positions: Float32Array.from([...square(0.5, 1, 0.1), ...square(0, 0.5, 0.1), ...square(0, -3, 0.1)]),
     indices: Uint32Array.from({ length: 18 }, (_, i) => i),
     groups: Uint32Array.from({ length: 18 }, (_, i) => Math.floor(i / 6)),
-    parts: [['eye'], ['skin'], ['shirt']],
+    names: [['eye'], ['skin'], ['shirt']],
   };
   const corners = [square(0.6, 1, 0.05), square(-0.5, 1, 0.05), square(0, 0, 0.05, 0.2)];
   const cage = {

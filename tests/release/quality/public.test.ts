@@ -22,7 +22,7 @@ const square = {
   indices: Uint32Array.of(0, 1, 2, 2, 1, 3),
   uvs: Float32Array.of(0, 0, 1, 0, 0, 1, 1, 1),
 };
-const target = { ...square, groups: Uint32Array.of(0, 0, 0, 1), parts: [['Head', 'Skin'], ['EyeLeft']] };
+const target = { ...square, groups: Uint32Array.of(0, 0, 0, 1), names: [['Head', 'Skin'], ['EyeLeft']] };
 
 const write = (name: string, text: string): string => {
   writeFileSync(at(name), text, { mode: 0o755 });

@@ -60,14 +60,15 @@ function checkProjection(projection: Projection): CoreProjection {
     if (length !== 0 && length !== vertices)
       throw wrong(` has ${vertices} entries of visibility but ${length} of ${name}`);
   if (indices.length % 3 !== 0) throw wrong(`.indices has ${indices.length} entries, not 3 per triangle`);
-  const { none, throughHole, maxTriangles } = useCore('classify', ({ module }) => ({
+  const { none, ignore, throughHole, maxTriangles } = useCore('classify', ({ module }) => ({
     none: module['CulledBy']!['none']!,
+    ignore: module['CulledBy']!['ignore']!,
     throughHole: module.throughHole,
     maxTriangles: module.maxTriangles,
   }));
   const stats = Array.from(segmentStats, (segment, s) => ({
     ...checkSegment(segment, s),
-    culledBy: none,
+    culledBy: segment.culledBy === 'ignore' ? ignore : none,
   }));
   const { shares, holes } = checkShares(holeShares, segmentStats.length, maxTriangles);
 

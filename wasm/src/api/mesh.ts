@@ -1,6 +1,7 @@
 import { CagecastError, show } from '../core/error.js';
 import type { CheckedMesh } from '../core/module.js';
 import { type ArrayKind, plainArray, showArray } from '../core/typed-arrays.js';
+import type { PartNames } from './parts.js';
 
 /** A triangle mesh. Its arrays are copied and never changed. */
 export interface Mesh {
@@ -14,6 +15,8 @@ export interface Mesh {
   uvs?: Float32Array | undefined;
   /** 1 per vertex, usually the number of its mesh or material: vertices of different groups are never welded. Default: all 0. */
   groups?: Uint32Array | undefined;
+  /** Names by the number of a group, one or several, for patterns of `parts` and for messages. Default: none. */
+  names?: PartNames | undefined;
   /**
    * Of a target: other positions of its vertices, as `positions` has them, one pose after the other. What is hidden at rest and seen in
    * one of them is painted as well, with the option `motion`. Default: none.
@@ -74,6 +77,7 @@ export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'templ
   const uvs = arrayOf('uvs', 'Float32Array', 'Float32Array');
   const groups = arrayOf('groups', 'Uint32Array', 'Uint32Array');
   const poses = arrayOf('poses', 'Float32Array', 'Float32Array');
+  checkNames(fn, `${name}.names`, given.names);
   // With vertices, an empty array of groups is a mistake of the caller, which the core would take for "no groups".
   if (groups?.length === 0 && positions.length > 0) {
     throw new CagecastError(
@@ -84,6 +88,16 @@ export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'templ
     );
   }
   return { positions, indices, uvs: uvs ?? noFloats, groups: groups ?? noGroups, poses: poses ?? noFloats };
+}
+
+/** @param place  Where they are, such as `target.names`. @throws {CagecastError} `badArgument` */
+export function checkNames(fn: string, place: string, names: unknown): void {
+  if (names === undefined || names === null) return;
+  const wrong = (text: string) => new CagecastError('badArgument', fn, place + text, { argument: place.split('.')[0] });
+  if (!Array.isArray(names)) throw wrong(` is ${show(names)}, not an array`);
+  const isName = (one: unknown) => typeof one === 'string';
+  const bad = names.findIndex((own) => !isName(own) && !(Array.isArray(own) && own.every(isName)));
+  if (bad >= 0) throw wrong(`[${bad}] is ${show(names[bad])}, not a name or an array of names`);
 }
 
 /** "1 vertex", "900 vertices". */

@@ -3,10 +3,10 @@ import { optionTable } from '../generated/options.js';
 
 /** For each function, the stages whose options it takes, and its other options. */
 const kFunctions = {
-  project: { stages: ['project'], others: ['reuse'] },
-  classify: { stages: ['classify'], others: ['locks', 'masks', 'reuse'] },
-  transfer: { stages: ['project', 'classify'], others: ['locks', 'masks', 'reuse'] },
-  cutBorders: { stages: ['project', 'classify'], others: ['locks', 'masks'] },
+  project: { stages: ['project'], others: ['parts', 'reuse'] },
+  classify: { stages: ['classify'], others: ['parts', 'locks', 'masks', 'reuse'] },
+  transfer: { stages: ['project', 'classify'], others: ['parts', 'locks', 'masks', 'reuse'] },
+  cutBorders: { stages: ['project', 'classify'], others: ['parts', 'locks', 'masks'] },
 } as const;
 export type Fn = keyof typeof kFunctions;
 
@@ -18,6 +18,16 @@ export const optionsOf = (fn: Fn, isStep: boolean): OptionName[] =>
     (name) =>
       optionTable[name].isStep === isStep &&
       (kFunctions[fn].stages as readonly string[]).includes(optionTable[name].stage),
+  );
+
+/** The lists of the option `parts`, of which the first that has a part counts. */
+export const kPartLists = ['ignore', 'keep', 'exclude'] as const;
+export type PartList = (typeof kPartLists)[number];
+
+/** The lists of `parts` that a function takes. */
+export const partListsOf = (fn: Fn): PartList[] =>
+  kPartLists.filter((list) =>
+    (kFunctions[fn].stages as readonly string[]).includes(list === 'ignore' ? 'project' : 'classify'),
   );
 
 /** The names of all options of a function. */

@@ -9,7 +9,8 @@ import {
   type ProjectStage,
   type ProjectSteps,
 } from '../generated/options.js';
-import { type Fn, faultOfNames, type OptionName, optionNames, optionsOf } from './option-names.js';
+import { type Fn, faultOfNames, type OptionName, optionNames, optionsOf, partListsOf } from './option-names.js';
+import { checkParts, type PartNames, type Parts } from './parts.js';
 
 /**
  * A named set of values for all options. `paper` is the method as published: *Cage-based Texture Transfer with Geometric
@@ -21,13 +22,8 @@ export type Preset = 'default' | 'paper';
 /** An override for a segment: its score decides (`auto`), it is never culled (`keep`), or always (`exclude`). */
 export type Lock = 'auto' | 'keep' | 'exclude';
 
-/** Overrides for parts of the target. A lock by segment takes precedence over one by group. */
-export interface Locks {
-  /** By segment number, as in `result.segments`. */
-  segments?: Readonly<Record<number, Lock>> | undefined;
-  /** By group number, as in `target.groups`, or 0 if the target has no groups. A segment has the group of its first vertex. */
-  groups?: Readonly<Record<number, Lock>> | undefined;
-}
+/** Overrides by the number of a segment, as in `result.segments`. They count more than those by `parts`. */
+export type Locks = Readonly<Record<number, Lock>>;
 
 /**
  * Where the target is never painted (−1) or always (1), whatever the method says; 0 leaves it to the method. For what no lock can
@@ -48,6 +44,8 @@ export interface Masks {
 
 /** Options of `project`. An option that is not given has the value of the preset. */
 export interface ProjectOptions extends ProjectStage {
+  /** Parts that are not there. Default: none. */
+  parts?: Pick<Parts, 'ignore'> | undefined;
   /** The values of all options that are not given. Default: `default`. */
   preset?: Preset | undefined;
   /** Switches for measuring single steps; not part of the stable interface. */
@@ -60,9 +58,11 @@ export interface ClassifyOptions extends ClassifyStage {
   preset?: Preset | undefined;
   /** Switches for measuring single steps; not part of the stable interface. */
   steps?: ClassifySteps | undefined;
-  /** Segments and groups that are always or never painted. */
+  /** Groups that are always or never painted, by number. Default: none. */
+  parts?: Pick<Parts<number>, 'keep' | 'exclude'> | undefined;
+  /** Segments that are always or never painted. Default: none. */
   locks?: Locks | undefined;
-  /** Vertices and triangles that are always or never painted. */
+  /** Vertices and triangles that are always or never painted. Default: none. */
   masks?: Masks | undefined;
 }
 
@@ -72,9 +72,11 @@ export interface TransferOptions extends ProjectStage, ClassifyStage {
   preset?: Preset | undefined;
   /** Switches for measuring single steps; not part of the stable interface. */
   steps?: (ProjectSteps & ClassifySteps) | undefined;
-  /** Segments and groups that are always or never painted. */
+  /** Parts that are not there, that are always painted, or never. Default: none. */
+  parts?: Parts | undefined;
+  /** Segments that are always or never painted. Default: none. */
   locks?: Locks | undefined;
-  /** Vertices and triangles that are always or never painted. */
+  /** Vertices and triangles that are always or never painted. Default: none. */
   masks?: Masks | undefined;
 }
 
@@ -102,7 +104,7 @@ function typeOf(name: string): string | undefined {
 }
 
 /**
- * Returns the value of every option in a preset, except `locks`.
+ * Returns the value of every option in a preset, except `parts`, `locks` and `masks`.
  * @throws {CagecastError} `notInitialised`, `badOption`
  */
 export function presetOptions(preset: Preset = 'default'): PresetOptions {
@@ -135,12 +137,19 @@ function presetOf(fn: string, name: string, preset: unknown): CoreOptions {
 /**
  * Checks the types of options, and fills in those that are not given. The core checks the ranges of numbers.
  * @param preset  The preset if the options name none.
+ * @param names   Of the target's groups.
  * @throws {CagecastError} `badOption`
  */
-export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'default'): CheckedOptions {
+export function checkOptions(
+  fn: Fn,
+  options: unknown = {},
+  preset: Preset = 'default',
+  names?: PartNames,
+): CheckedOptions {
   const given = checkNames(fn, 'options', options, optionNames(fn));
   const { steps: givenSteps = {} } = given;
   const steps = checkNames(fn, 'options.steps', givenSteps, optionsOf(fn, true));
+  const bad = (reason: string) => new CagecastError('badOption', fn, reason);
   const chosen = (given['preset'] ?? preset) as Preset;
   const core = presetOf(fn, 'options.preset', chosen);
   for (const name of optionsOf(fn, false))
@@ -150,7 +159,11 @@ export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'de
   return {
     preset: chosen,
     core,
-    overrides: { locks: checkLocks(fn, given['locks']), masks: checkMasks(fn, given['masks']) },
+    overrides: {
+      parts: checkParts(fn, given['parts'], partListsOf(fn), names, bad),
+      locks: checkLocks(fn, given['locks']),
+      masks: checkMasks(fn, given['masks']),
+    },
   };
 }
 
@@ -178,22 +191,17 @@ function checkValue(fn: string, where: string, name: OptionName, value: unknown)
 
 function checkLocks(fn: string, locks: unknown = {}): CoreOverrides['locks'] {
   const wrong = (text: string) => new CagecastError('badOption', fn, `options.locks${text}`);
-  if (!isRecord(locks)) throw wrong(` is ${show(locks)}, not an object`);
-  const out: CoreOverrides['locks'] = { segments: [], groups: [] };
-  for (const [field, entries] of Object.entries(locks)) {
-    if (field !== 'segments' && field !== 'groups') throw wrong(`.${field} is unknown; there are: segments, groups`);
-    if (entries === undefined) continue;
-    if (!isRecord(entries)) throw wrong(`.${field} is ${show(entries)}, not an object of numbers and locks`);
-    out[field] = Object.entries(entries).map(([id, lock]) => {
-      // Segments and groups have 32-bit numbers.
-      if (!/^(0|[1-9][0-9]*)$/.test(id) || Number(id) >= 2 ** 32)
-        throw wrong(`.${field} has the key ${show(id)}, which is not the number of a ${field.slice(0, -1)}`);
-      if (!kLockNames.includes(lock as Lock))
-        throw wrong(`.${field}[${id}] = ${show(lock)} is unknown; there are: ${kLockNames.map(show).join(', ')}`);
-      return { id: Number(id), lock: useCore(fn, ({ module }) => module['Lock']![lock as Lock]!) };
-    });
-  }
-  return out;
+  if (!isRecord(locks)) throw wrong(` is ${show(locks)}, not an object of numbers and locks`);
+  return Object.entries(locks).map(([segment, lock]) => {
+    if (segment === 'groups')
+      throw wrong('.groups is not there any more; give the numbers of groups as options.parts.keep and .exclude');
+    // Segments have 32-bit numbers.
+    if (!/^(0|[1-9][0-9]*)$/.test(segment) || Number(segment) >= 2 ** 32)
+      throw wrong(` has the key ${show(segment)}, which is not the number of a segment`);
+    if (!kLockNames.includes(lock as Lock))
+      throw wrong(`[${segment}] = ${show(lock)} is unknown; there are: ${kLockNames.map(show).join(', ')}`);
+    return { segment: Number(segment), lock: useCore(fn, ({ module }) => module['Lock']![lock as Lock]!) };
+  });
 }
 
 /** Checks the types of masks; the core checks their lengths and values. */

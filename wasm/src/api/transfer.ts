@@ -19,7 +19,7 @@ import { checkReuse, handOver, type Reuse } from './reuse.js';
  * transfer(cage, target, { threshold: 0.5, reuse: result });
  */
 export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & Reuse<TransferResult>): TransferResult {
-  const { core, overrides } = checkOptions('transfer', options);
+  const { core, overrides } = checkOptions('transfer', options, undefined, target?.names);
   const arrays = checkReuse('transfer', options?.reuse);
   const [cageMesh, targetMesh] = [checkMesh('transfer', 'cage', cage), checkMesh('transfer', 'target', target)];
   const result = callCore(
@@ -32,14 +32,18 @@ export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & R
 
 /**
  * Does the costly part of `transfer`: steps 1 to 4, 6, 7, 9, 10, 12 and 13 of the method. The result does not depend on threshold,
- * floor or locks. Pass it to `classify`, once for each threshold that you want to try.
+ * floor, locks, or which parts are kept or excluded. Pass it to `classify`, once for each threshold that you want to try.
  * @param options  With `reuse`, an earlier projection is overwritten and returned.
  * @throws {CagecastError} as `transfer` does.
  */
 export function project(cage: Mesh, target: Mesh, options?: ProjectOptions & Reuse<Projection>): Projection {
-  const { core, preset } = checkOptions('project', options);
+  const { core, preset, overrides } = checkOptions('project', options, undefined, target?.names);
   const arrays = checkReuse('project', options?.reuse);
   const [cageMesh, targetMesh] = [checkMesh('project', 'cage', cage), checkMesh('project', 'target', target)];
-  const result = callCore('project', ({ workspace }) => workspace.project(cageMesh, targetMesh, core), arrays);
+  const result = callCore(
+    'project',
+    ({ workspace }) => workspace.project(cageMesh, targetMesh, core, overrides),
+    arrays,
+  );
   return handOver({ ...result, preset }, options?.reuse);
 }

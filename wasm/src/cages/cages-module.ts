@@ -1,5 +1,5 @@
 import type { Image } from '../bake/image.js';
-import type { Answer, CheckedMesh, Enum, EnumValue } from '../core/module.js';
+import type { Answer, CheckedMesh, Enum, EnumValue, PartNumbers } from '../core/module.js';
 
 export interface CoreLandmark {
   name: string;
@@ -45,7 +45,7 @@ export interface CoreTemplate {
   kind: EnumValue;
 }
 
-export type CoreOptions = Record<string, number | EnumValue | string[]>;
+export type CoreOptions = Record<string, number | EnumValue>;
 type Report = (share: number, stage: string) => boolean;
 
 /** What wasm/cages_bindings.cpp binds. */
@@ -53,17 +53,16 @@ export interface CagesModule {
   Kind: Enum;
   /** All options with their defaults. */
   makeOptions(): CoreOptions;
-  fitOptions(): CoreOptions;
   refineOptions(): CoreOptions;
-  makeCage(model: CoreModel, options: CoreOptions, report: Report): CageAnswer;
+  makeCage(model: CoreModel, options: CoreOptions, parts: PartNumbers, report: Report): CageAnswer;
   fitCage(
     template: CoreTemplate,
     model: CoreModel,
     landmarks: CoreLandmark[],
-    options: CoreOptions,
+    parts: PartNumbers,
     report: Report,
   ): FitAnswer;
   findLandmarks(model: CoreModel, report: Report): FoundAnswer;
-  matchingParts(parts: string[], patterns: string[]): boolean[];
+  excludedByName(parts: string[]): boolean[];
   refineCage(cage: CheckedMesh, model: CoreModel, options: CoreOptions, report: Report): CageAnswer;
 }

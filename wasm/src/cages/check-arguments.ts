@@ -1,4 +1,5 @@
 import { checkMesh, count } from '../api/mesh.js';
+import type { PartNames } from '../api/parts.js';
 import type { Image } from '../bake/image.js';
 import { CagecastError, isRecord, show } from '../core/error.js';
 import { type EnumValue, namesOf } from '../core/module.js';
@@ -18,7 +19,9 @@ const wrong = (fn: string, place: string, text: string) =>
  */
 export function checkModel(fn: string, model: unknown): CoreModel {
   const mesh = checkMesh(fn, 'model', model);
-  const { parts = [], joints = [], marks, hints, vertexJoints, baseColors } = model as CageModel;
+  const { names = [], joints = [], marks, hints, vertexJoints, baseColors } = model as CageModel;
+  if ('parts' in (model as object))
+    throw wrong(fn, 'model.parts', ' is not there any more; give the names of parts as model.names');
   const bad = (field: string, value: unknown, type: string) =>
     wrong(fn, `model.${field}`, ` is ${show(value)}, not ${type}`);
   if (!Array.isArray(joints)) throw bad('joints', joints, 'an array of joints { name, position, parent }');
@@ -36,7 +39,7 @@ export function checkModel(fn: string, model: unknown): CoreModel {
     vertexJoints: plainVertexJoints ?? new Uint16Array(0),
     marks: plainMarks ?? new Uint8Array(0),
     ...checkBaseColors(fn, 'model.baseColors', baseColors),
-    parts: checkParts(fn, 'model.parts', parts),
+    parts: joinedNames(names ?? []),
     hints: checkLandmarks(fn, 'model.hints', hints),
     joints: joints.map((joint, j) => {
       if (typeof joint?.name !== 'string') throw bad(`joints[${j}].name`, joint?.name, 'a name');
@@ -72,24 +75,8 @@ function isImage(image: unknown): image is Image {
   return isSide(width) && isSide(height) && plainArray(data, 'Uint8Array', 'Uint8ClampedArray') !== undefined;
 }
 
-/** Checks the names of parts. @returns one name for each. @throws {CagecastError} `badArgument` */
-export function checkParts(fn: string, argument: string, parts: unknown): string[] {
-  if (!Array.isArray(parts)) throw wrong(fn, argument, ` is ${show(parts)}, not an array of names`);
-  return parts.map((part: unknown, p) => {
-    const names = Array.isArray(part) ? part : [part];
-    for (const name of names)
-      if (typeof name !== 'string')
-        throw wrong(fn, argument, `[${p}] is ${show(name)}, not a name, or an array of names`);
-    return names.join('/');
-  });
-}
-
-/** Checks patterns of names. @param bad  Makes the error. */
-export function checkPatterns(patterns: unknown, bad: (type: string) => CagecastError): string[] {
-  if (!Array.isArray(patterns) || !patterns.every((pattern) => typeof pattern === 'string'))
-    throw bad('an array of patterns');
-  return patterns;
-}
+/** One name for each part, as C++ takes them. */
+export const joinedNames = (names: PartNames): string[] => names.map((own) => [own].flat().join('/'));
 
 /** Checks the types of a cage. @throws {CagecastError} `badArgument`, `missingUvs` */
 function checkCage(fn: string, name: 'cage' | 'template', cage: unknown) {
@@ -161,6 +148,7 @@ export function checkLandmarks(fn: string, argument: string, landmarks: unknown)
 
 /**
  * Puts options in the place of their defaults.
+ * @param takes  Other options of the function.
  * @throws {CagecastError} `badOption`
  */
 export function checkOptions(
@@ -168,16 +156,16 @@ export function checkOptions(
   module: CagesModule,
   defaults: CoreOptions,
   options: Record<string, unknown>,
+  takes: readonly string[],
 ): CoreOptions {
   const bad = (text: string) => new CagecastError('badOption', fn, `options${text}`);
   const merged = { ...defaults };
   for (const [name, value] of Object.entries(options)) {
     if (value === undefined) continue;
-    if (!(name in defaults)) throw bad(`.${name} is unknown; there are: ${Object.keys(defaults).join(', ')}`);
+    if (!(name in defaults))
+      throw bad(`.${name} is unknown; there are: ${[...Object.keys(defaults), ...takes].join(', ')}`);
     if (name === 'kind') {
       merged[name] = kindOf(module, value, (kinds) => bad(`.kind = ${show(value)} is unknown; there are: ${kinds}`));
-    } else if (name === 'exclude') {
-      merged[name] = checkPatterns(value, (type) => bad(`.exclude is ${show(value)}, not ${type}`));
     } else {
       if (typeof value !== 'number' || !(value >= 0) || !Number.isFinite(value))
         throw bad(`.${name} is ${show(value)}, not a number of at least 0`);
@@ -192,7 +180,7 @@ export function checkOptions(
 
 /** @throws {CagecastError} `badArgument` if options of `fitCage` are given in the place of landmarks. */
 export function checkOrder(landmarks: unknown): void {
-  const name = ['exclude', 'signal', 'onProgress'].find((option) => isRecord(landmarks) && option in landmarks);
+  const name = ['parts', 'signal', 'onProgress'].find((option) => isRecord(landmarks) && option in landmarks);
   if (name === undefined) return;
   const text = `landmarks.${name} is an option; options come after landmarks: fitCage(template, model, undefined, { ${name} })`;
   throw new CagecastError('badArgument', 'fitCage', text, { argument: 'landmarks' });

@@ -7,7 +7,9 @@
  * WebAssembly, `cagecast-cages.wasm`, when it starts: until a function is called, nothing of it is loaded.
  * @module cagecast/cages
  */
+
 import type { Mesh } from '../api/mesh.js';
+import type { PartNames } from '../api/parts.js';
 import { CagecastError } from '../index.js';
 import { type CallOptions, type OnProgress, type WorkerOptions, WorkerQueue } from '../worker/queue.js';
 import { spawn } from './spawn-cages.js';
@@ -111,22 +113,14 @@ export function refineCage(
   return unreadOf('refineCage', model) ?? queue.withOptions('refineCage', [cage, model], options);
 }
 
-/** The patterns of names of parts that are not painted unless the option `exclude` says otherwise. */
-export function defaultExclusions(options: CallOptions = {}): Promise<string[]> {
-  return queue.withOptions('defaultExclusions', [], options);
-}
-
 /**
- * Whether each part's name matches one of some patterns, as the option `exclude` takes them.
- * @param parts  As those of a `CageModel`.
+ * Whether parts of these names are excluded if nothing is said of them: eyes, teeth, tongues, hair and glasses; of vehicles windows, wheels,
+ * lights and the interior.
+ * @param names  As those of a `Mesh`.
  * @throws {CagecastError} `badArgument`
  */
-export function matchingParts(
-  parts: readonly (string | readonly string[])[],
-  patterns: readonly string[],
-  options: CallOptions = {},
-): Promise<boolean[]> {
-  return queue.withOptions('matchingParts', [parts, patterns], options);
+export function excludedByName(names: PartNames, options: CallOptions = {}): Promise<boolean[]> {
+  return queue.withOptions('excludedByName', [names], options);
 }
 
 /**

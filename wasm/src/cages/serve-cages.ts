@@ -1,6 +1,6 @@
 import { answer } from '../worker/answer.js';
 import type { Reply, Request } from '../worker/protocol.js';
-import { defaultExclusions, findLandmarks, fitCage, init, makeCage, matchingParts, refineCage } from './sync.js';
+import { excludedByName, findLandmarks, fitCage, init, makeCage, refineCage } from './sync.js';
 
 const functions = {
   init: () => undefined,
@@ -8,8 +8,7 @@ const functions = {
   fitCage,
   findLandmarks,
   refineCage,
-  defaultExclusions: () => defaultExclusions(),
-  matchingParts: (parts, patterns) => matchingParts(parts as string[], patterns as string[]),
+  excludedByName: (names) => excludedByName(names as string[]),
 } as Record<string, (...args: unknown[]) => unknown>;
 
 /** Milliseconds between two messages about progress: smooth for people. */

@@ -6,7 +6,9 @@
  * @module cagecast/cages/sync
  */
 import createModule from '#cages-glue';
-import type { Mesh } from '../api/mesh.js';
+import { checkNames, type Mesh } from '../api/mesh.js';
+import { kPartLists } from '../api/option-names.js';
+import { checkParts, type PartNames } from '../api/parts.js';
 import { CagecastError, type Code, isRecord, show } from '../core/error.js';
 import {
   failureOf,
@@ -16,7 +18,7 @@ import {
   notInitialised,
   unsupported,
 } from '../core/instantiate.js';
-import { type Answer, nameOf } from '../core/module.js';
+import { type Answer, nameOf, type PartNumbers } from '../core/module.js';
 import { compileFile } from '../core/read-file.js';
 import type { CageAnswer, CagesModule, CoreLandmark, CoreOptions, CoreTemplate } from './cages-module.js';
 import {
@@ -25,10 +27,9 @@ import {
   checkModel,
   checkOptions,
   checkOrder,
-  checkParts,
-  checkPatterns,
   checkRegions,
   checkTemplate,
+  joinedNames,
 } from './check-arguments.js';
 import type {
   Cage,
@@ -86,8 +87,9 @@ export function makeCage(model: CageModel, options: MakeOptions & SyncOptions = 
   return call(options, {
     fn: 'makeCage',
     defaults: 'makeOptions',
-    run: (module, core, report) => module.makeCage(checkModel('makeCage', model), core, report),
-    result: (answer, module) => cageOf(module, answer, { holes: {}, bare: bareNames(module, model, options) }),
+    run: (module, core, report, parts) => module.makeCage(checkModel('makeCage', model), core, parts, report),
+    names: model?.names ?? [],
+    result: (answer, module, parts) => cageOf(module, answer, { holes: {}, bare: bareNames(module, model, parts) }),
   });
 }
 
@@ -105,17 +107,17 @@ export function fitCage(
   };
   return call(options, {
     fn: 'fitCage',
-    defaults: 'fitOptions',
-    run: (module, core, report) =>
+    names: model?.names ?? [],
+    run: (module, _, report, parts) =>
       module.fitCage(
         checkTemplate('fitCage', 'template', module, template),
         checkModel('fitCage', model),
         checkLandmarks('fitCage', 'landmarks', landmarks),
-        core,
+        parts,
         report,
       ),
-    result: (answer, module) => ({
-      cage: cageOf(module, answer, { ...kept, bare: bareNames(module, model, options) }),
+    result: (answer, module, parts) => ({
+      cage: cageOf(module, answer, { ...kept, bare: bareNames(module, model, parts) }),
       used: landmarksOf(answer.landmarks),
       confidence: confidenceOf(answer.landmarks),
       missing: answer.missing,
@@ -168,25 +170,17 @@ export function refineCage(
   });
 }
 
-/** The patterns of names of parts that are not painted unless the option `exclude` says otherwise. Needs `init`. */
-export function defaultExclusions(): string[] {
-  return exclusionsOf(freshModule('defaultExclusions'));
-}
-
 /**
- * Whether each part's name matches one of some patterns, as the option `exclude` takes them. Needs `init`.
- * @param parts  As those of a `CageModel`.
+ * Whether parts of these names are excluded if nothing is said of them: eyes, teeth, tongues, hair and glasses; of vehicles windows, wheels,
+ * lights and the interior. Needs `init`.
+ * @param names  As those of a `Mesh`.
  * @throws {CagecastError} `badArgument`
  */
-export function matchingParts(parts: readonly (string | readonly string[])[], patterns: readonly string[]): boolean[] {
-  const fn = 'matchingParts';
-  const names = checkParts(fn, 'parts', parts);
-  const bad = (type: string) =>
-    new CagecastError('badArgument', fn, `patterns is ${show(patterns)}, not ${type}`, { argument: 'patterns' });
-  return freshModule(fn).matchingParts(names, checkPatterns(patterns, bad));
+export function excludedByName(names: PartNames): boolean[] {
+  const fn = 'excludedByName';
+  checkNames(fn, 'names', names);
+  return freshModule(fn).excludedByName(joinedNames(names));
 }
-
-const exclusionsOf = (module: CagesModule): string[] => module.makeOptions()['exclude'] as string[];
 
 function freshModule(fn: string): CagesModule {
   if (compiled === undefined) throw notInitialised(fn);
@@ -204,9 +198,11 @@ const make = (module: WebAssembly.Module): CagesModule => instantiate<CagesModul
 interface Call<Of extends Answer, Result> {
   fn: string;
   /** The function that returns the options of this one. */
-  defaults?: 'makeOptions' | 'fitOptions' | 'refineOptions';
-  run(module: CagesModule, options: CoreOptions, report: Report): Of;
-  result(answer: Of, module: CagesModule): Result;
+  defaults?: 'makeOptions' | 'refineOptions';
+  /** The names of the model's parts, if the function takes `parts`. */
+  names?: PartNames;
+  run(module: CagesModule, options: CoreOptions, report: Report, parts: PartNumbers): Of;
+  result(answer: Of, module: CagesModule, parts: PartNumbers): Result;
 }
 
 /** The code of an error that is about an argument. */
@@ -226,12 +222,22 @@ function call<Of extends Answer, Result>(given: SyncOptions, of: Call<Of, Result
   const { fn } = of;
   if (!isRecord(given)) throw new CagecastError('badOption', fn, `options is ${show(given)}, not an object`);
   const { onProgress, ...rest } = given;
+  const { parts: lists, ...numbers } = rest as { parts?: unknown };
+  const parts = of.names
+    ? checkParts(fn, lists, kPartLists, of.names, (reason) => new CagecastError('badOption', fn, reason))
+    : {};
   const module = freshModule(fn);
-  const options = checkOptions(fn, module, of.defaults ? module[of.defaults]() : {}, rest);
+  const options = checkOptions(
+    fn,
+    module,
+    of.defaults ? module[of.defaults]() : {},
+    of.names ? numbers : rest,
+    of.names ? ['parts'] : [],
+  );
   const reporter = new Reporter(onProgress);
   let answer: Of;
   try {
-    answer = of.run(module, options, reporter.report);
+    answer = of.run(module, options, reporter.report, parts);
   } catch (cause) {
     if (cause instanceof CagecastError) throw cause;
     throw failureOf(fn, cause);
@@ -246,7 +252,7 @@ function call<Of extends Answer, Result>(given: SyncOptions, of: Call<Of, Result
       { argument, at },
     );
   reporter.end();
-  return of.result(answer, module);
+  return of.result(answer, module, parts);
 }
 
 type Report = (share: number, stage: string) => boolean;
@@ -287,15 +293,18 @@ const landmarksOf = (landmarks: readonly CoreLandmark[]): Landmarks =>
 const confidenceOf = (landmarks: readonly CoreLandmark[]): Record<string, number> =>
   Object.fromEntries(landmarks.map(({ name, confidence }) => [name, confidence]));
 
-/** The names of a model's parts that are excluded; nothing if there are none. */
+/** The names that only excluded parts of a model have; nothing if there are none. */
 function bareNames(
   module: CagesModule,
-  { parts = [] }: CageModel,
-  { exclude = exclusionsOf(module) }: FitOptions,
+  { names = [] }: CageModel,
+  { keep, exclude }: PartNumbers,
 ): string[] | undefined {
-  const names = [...new Set(parts.flat())];
-  const isExcluded = module.matchingParts(names, [...exclude]);
-  const bare = names.filter((_, n) => isExcluded[n]);
+  const isExcluded = module
+    .excludedByName(joinedNames(names))
+    .map((is, p) => !keep?.includes(p) && (is || exclude?.includes(p) === true));
+  const those = (fits: boolean) => names.flatMap((own, p) => (isExcluded[p] === fits ? own : []));
+  const others = new Set(those(false));
+  const bare = [...new Set(those(true))].filter((name) => name !== '' && !others.has(name));
   return bare.length > 0 ? bare : undefined;
 }
 

@@ -1,4 +1,5 @@
 import type { Mesh } from '../api/mesh.js';
+import type { Parts } from '../api/parts.js';
 import type { Image } from '../bake/index.js';
 
 /** x, y, z in the space of the model. */
@@ -40,15 +41,11 @@ export interface BaseColor {
 }
 
 /**
- * What a cage is made for: a mesh as for `transfer` (its UVs are those of `baseColors`), and what is known about it. `cageModel` of
+ * The model of a cage: a mesh as for `transfer`, with all that is known about it. Its UVs belong to `baseColors`; by its `names`, parts are
+ * excluded. `cageModel` of
  * `cagecast/gltf` and `cagecast/three` reads it from a model.
  */
 export interface CageModel extends Mesh {
-  /**
-   * The name of each part, by its number in `groups`, or several names for it (of its node, mesh and material). They tell what must
-   * not be painted. Default: none.
-   */
-  parts?: readonly (string | readonly string[])[] | undefined;
   /** The skeleton's joints. Default: none. */
   joints?: readonly Joint[] | undefined;
   /** 1 per triangle: 1 must not be painted. Default: none of them; for that leave it out, as an empty array is an error. */
@@ -90,8 +87,7 @@ export interface Cage {
   /** Those of its template. Default: none. */
   regions?: Regions | undefined;
   /**
-   * The names of parts of its model that the option `exclude` named. Transfers to loaded models leave parts of these names bare, unless
-   * locks say otherwise. Default: none.
+   * Names of parts of its model that were excluded. Transfers to loaded models exclude parts of these names, too. Default: none.
    */
   bare?: readonly string[] | undefined;
 }
@@ -138,19 +134,13 @@ export interface FoundLandmarks {
   kind: Kind;
 }
 
-interface Excluding {
-  /**
-   * Patterns for the names of parts that must not be painted: `*` stands for any text, case does not matter. They replace the
-   * default, which `defaultExclusions` returns.
-   */
-  exclude?: readonly string[] | undefined;
-}
-
 /**
  * Options of `makeCage`. Lengths are shares of the diagonal of the model's bounding box, 0.0005 to 0.2. 0, the default of all
  * numbers, means by kind.
  */
-export interface MakeOptions extends Excluding {
+export interface MakeOptions {
+  /** Parts to ignore, keep or exclude. Holes are over excluded parts, also those of `excludedByName` unless they are kept. */
+  parts?: Parts | undefined;
   /** Default: `automatic`. */
   kind?: Kind | undefined;
   /** Triangles of the cage, about: 50 to 20,000. By kind: heads and props 600, bodies 1500. */
@@ -164,7 +154,10 @@ export interface MakeOptions extends Excluding {
 }
 
 /** Options of `fitCage`. */
-export interface FitOptions extends Excluding {}
+export interface FitOptions {
+  /** Parts to ignore, keep or exclude. Excluded parts are no skin, nor are those of `excludedByName` unless they are kept. */
+  parts?: Parts | undefined;
+}
 
 /** Options of `refineCage`. */
 export interface RefineOptions {

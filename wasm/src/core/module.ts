@@ -18,13 +18,17 @@ export interface CheckedMesh {
   poses: Float32Array;
 }
 
-/** Locks and masks, as C++ takes them. */
+/** Groups by list. */
+export type PartNumbers = Partial<Record<'ignore' | 'keep' | 'exclude', Uint32Array>>;
+
+/** Parts, locks and masks, as C++ takes them. */
 export interface CoreOverrides {
-  locks: { segments: CoreLock[]; groups: CoreLock[] };
+  parts: PartNumbers;
+  locks: CoreLock[];
   masks: { vertices?: Int8Array; triangles?: Int8Array };
 }
 interface CoreLock {
-  id: number;
+  segment: number;
   lock: EnumValue;
 }
 
@@ -110,7 +114,7 @@ export interface CoreDecision {
 
 /** The working memory of calls, and what the last one left to be copied. */
 export interface Workspace {
-  project(cage: CheckedMesh, target: CheckedMesh, options: CoreOptions): ProjectAnswer;
+  project(cage: CheckedMesh, target: CheckedMesh, options: CoreOptions, overrides: CoreOverrides): ProjectAnswer;
   transfer(cage: CheckedMesh, target: CheckedMesh, options: CoreOptions, overrides: CoreOverrides): TransferAnswer;
   classify(projection: CoreProjection, options: CoreOptions, overrides: CoreOverrides): ClassifyAnswer;
   splitVertices(target: CheckedMesh, cornerUvs: Float32Array): SplitAnswer;

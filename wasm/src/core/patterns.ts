@@ -1,11 +1,15 @@
+/** A name without regard to case and Unicode form. */
+const folded = (name: string): string => name.normalize('NFKC').toLowerCase();
+
 /**
- * Returns a test whether a name matches a pattern, in which `*` matches any text. Takes time in proportion to name and pattern at
- * most, times each other: a regular expression would try all ways to share a name among the stars.
+ * Returns a test whether a whole name matches a pattern: case and Unicode form do not matter, and `*` is any text. Takes time in proportion
+ * to name and pattern at most, times each other: a regular expression would try all ways to share a name among the stars.
  */
 export function matcher(pattern: string): (name: string) => boolean {
-  const [first = '', ...pieces] = pattern.split('*');
+  const [first = '', ...pieces] = folded(pattern).split('*');
   const last = pieces.pop();
-  return (text) => {
+  return (name) => {
+    const text = folded(name);
     if (last === undefined) return text === first;
     if (text.length < first.length + last.length || !text.startsWith(first) || !text.endsWith(last)) return false;
     // Each piece where it first occurs: if a name matches at all, it matches so.

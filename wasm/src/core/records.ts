@@ -74,13 +74,14 @@ export interface SegmentStats {
    * 2 % of the target's diagonal.
    */
   confidence: number;
-  /** Whether none of it may be painted. `false` after `project`. */
+  /** Whether none of it may be painted. `false` after `project`, but for what is ignored. */
   culled: boolean;
   /**
    * Why it is culled. `coverage`: the cage covers too little of it, or it lies too deep: one of `ratios` but `hole` is below 1.
-   * `hole`: a hole of the cage is meant for it: only `ratios.hole` is below 1. `lock`: a lock excludes it.
+   * `hole`: a hole of the cage is meant for it: only `ratios.hole` is below 1. `lock`: a lock or `parts.exclude` excludes it. `ignore`:
+   * `parts.ignore` names it, so it is not there: it has no points and no area.
    */
-  culledBy: 'none' | 'coverage' | 'hole' | 'lock';
+  culledBy: 'none' | 'coverage' | 'hole' | 'lock' | 'ignore';
 }
 
 /**

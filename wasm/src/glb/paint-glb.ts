@@ -1,4 +1,5 @@
 import { faultOfNames, optionNames } from '../api/option-names.js';
+import { faultOfParts, type Parts } from '../api/parts.js';
 import { cageGlb } from '../cages/cage-glb.js';
 import type { CageCallOptions, Fit, Landmarks, TemplateName } from '../cages/index.js';
 import type { Template } from '../cages/types.js';
@@ -15,13 +16,10 @@ import { noteOf } from '../inspect/bare.js';
 import { type Borders, isCut } from '../parts/cut-part.js';
 import { cutBorders, transfer } from '../worker/index.js';
 import { fitTo } from './fit.js';
-import { locksOf } from './locks.js';
-import type { PartPatterns } from './part-patterns.js';
 
 /** Options of `paintGlb`: those of `transfer`, and what to paint. Of `cage` and `template`, one is needed. */
 export interface PaintOptions
-  extends Omit<TransferOptions, 'locks' | 'masks'>,
-    PartPatterns,
+  extends Omit<TransferOptions, 'parts' | 'locks' | 'masks'>,
     Pick<CageCallOptions, 'signal' | 'onProgress'> {
   /** The image that was drawn in the cage's UVs: the bytes of a PNG, JPEG, WebP or KTX2 file. */
   texture: Uint8Array;
@@ -36,12 +34,17 @@ export interface PaintOptions
   landmarks?: Landmarks | undefined;
   /** Where the paint ends: at existing triangle edges (`triangle`, the default), or exactly at holes and seams, where triangles are cut (`cut`). */
   borders?: Borders | undefined;
+  /**
+   * What counts, by the names of nodes, meshes and materials. What a viewer does not draw is ignored, and so are cages, markers and
+   * collision shapes; glasses, hats, weapons and what the cage was made without are excluded, by their names; unless `keep` names them.
+   */
+  parts?: Parts | undefined;
   /** Whether every primitive also gets the cage's UVs and `_NCZ` as attributes, for programs that read them. Default: false. */
   attributes?: boolean | undefined;
 }
 
 const kOptions = [
-  ...['texture', 'cage', 'template', 'landmarks', 'exclude', 'keep', 'borders', 'attributes', 'signal', 'onProgress'],
+  ...['texture', 'cage', 'template', 'landmarks', 'borders', 'attributes', 'signal', 'onProgress'],
   ...optionNames('transfer').filter((name) => !['locks', 'masks', 'reuse'].includes(name)),
 ];
 
@@ -77,7 +80,7 @@ export interface PaintedGlb {
  * const { bytes, note } = await paintGlb(await readFile('avatar.vrm'), { template: 'human-head', texture: await readFile('paint.png') });
  */
 export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promise<PaintedGlb> {
-  const fault = faultOfNames('paintGlb', 'options', options, kOptions);
+  const fault = faultOfNames('paintGlb', 'options', options, kOptions) ?? faultOfParts('paintGlb', options.parts);
   if (fault !== undefined) throw new CagecastError('badOption', 'paintGlb', fault);
   const {
     texture,
@@ -86,8 +89,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     landmarks,
     borders,
     attributes = false,
-    exclude,
-    keep,
+    parts: patterns,
     signal,
     onProgress = () => {},
     ...rules
@@ -105,17 +107,18 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     await init();
     signal?.throwIfAborted();
     onProgress(0, 'reading');
-    const target = await readModel('bytes', bytes);
+    const target = await readModel('bytes', bytes, { parts: patterns });
     const fit = template && (await fitTo(target, template, { landmarks, signal, onProgress }));
     const around = await readCage(fit?.cage ?? cage!, target);
     signal?.throwIfAborted();
     onProgress(0.9, 'transferring');
     const bare = bareParts(target, around);
-    const locks = locksOf(target, bare, { exclude, keep });
+    const { kept, excluded } = target.extracted;
+    const named = { keep: kept, exclude: [...bare, ...excluded] };
     const pair = movedApart(target, around);
-    const { source, result } = await transferred(pair, target, { ...rules, locks, signal });
+    const { source, result } = await transferred(pair, target, { ...rules, parts: named, signal });
     const arrays = [source.extracted.mesh, pair.target.extracted.mesh] as const;
-    const cut = cuts ? await cutBorders(...arrays, result, { ...rules, locks, signal }) : undefined;
+    const cut = cuts ? await cutBorders(...arrays, result, { ...rules, parts: named, signal }) : undefined;
     onProgress(0.95, 'writing');
     const { data } = await writeTransfer(target.file, target.extracted, result, {
       paints: [paint],
@@ -132,7 +135,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
         total: result.cosmeticTriangles.length,
       },
       note: noteOf(mesh, result, parts, around.extracted.mesh),
-      bare: [...new Set(bare.filter((p) => locks?.groups?.[p] === 'exclude').map((p) => parts[p]!.name))],
+      bare: [...new Set(bare.filter((p) => !kept.includes(p)).map((p) => parts[p]!.name))],
       fit,
     };
   } catch (error) {
@@ -166,19 +169,23 @@ async function transferred(
 }
 
 /** Reads a target, or a cage around one. @throws {InputError} that names the argument. */
-async function readModel(name: string, bytes: Uint8Array, beside?: ReadModel): Promise<ReadModel> {
+async function readModel(
+  name: string,
+  bytes: Uint8Array,
+  { beside, parts }: { beside?: ReadModel; parts?: Parts | undefined } = {},
+): Promise<ReadModel> {
   const file = await openGltf(name, bytes);
-  const extracted = extract(file, beside?.extracted.origin ?? 'own', beside && 'cage');
+  const extracted = extract(file, beside?.extracted.origin ?? 'own', beside ? 'cage' : parts);
   if (extracted.mesh.indices.length > 0) return { file, extracted };
   throw new InputError('has no triangles in its scene; at least one is needed').in(name);
 }
 
 async function readCage(cage: Uint8Array | Mesh, target: ReadModel): Promise<ReadModel> {
-  if (cage instanceof Uint8Array) return withUvs(await readModel('cage', cage, target));
+  if (cage instanceof Uint8Array) return withUvs(await readModel('cage', cage, { beside: target }));
   if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'the bytes of a GLB, or a mesh');
   if (cage.uvs === undefined)
     throw wrong('cage.uvs', cage.uvs, "a Float32Array: the texture is drawn in the cage's UVs");
-  return readModel('cage', cageGlb({ ...cage, uvs: cage.uvs }), target);
+  return readModel('cage', cageGlb({ ...cage, uvs: cage.uvs }), { beside: target });
 }
 
 function readPaint(texture: Uint8Array): Paint {

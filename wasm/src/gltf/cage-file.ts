@@ -15,7 +15,7 @@ export function cageModelOf(file: GltfFile, { mesh, parts, origin }: Extracted):
     positions,
     indices,
     groups,
-    parts: partNamesOf(file, parts),
+    names: partNamesOf(file, parts),
     ...skeletonOf(file, { parts, origin }),
     hints: faceHints(morphedParts(file, parts, positions)),
   };

@@ -1,5 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
+import type { Named, Parts } from '../api/parts.js';
 import { show } from '../core/error.js';
 import type { Vector } from '../inspect/geometry.js';
 import { identity, type Matrix, multiply } from '../parts/affine.js';
@@ -49,7 +50,7 @@ export interface Part extends Piece, PrimitiveRef {
 }
 
 /** The triangles of a glTF's scene as arrays, and the parts that they come from. */
-export interface Extracted extends Pick<Chosen<Part>, 'accessories'> {
+export interface Extracted extends Pick<Chosen<Part>, 'accessories' | 'kept' | 'excluded'> {
   /** With one group per part; with UVs if every primitive has the set of its base colour texture, or the first without one. */
   mesh: Mesh & { indices: Uint32Array };
   /** In the order of their vertices. */
@@ -60,7 +61,7 @@ export interface Extracted extends Pick<Chosen<Part>, 'accessories'> {
 }
 
 /** Says which parts of a file count. */
-export type WhichCount = 'cage' | ((parts: readonly Part[], file: GltfFile) => IsMeant);
+export type WhichCount = 'cage' | Parts | ((parts: readonly Part[], file: GltfFile) => IsMeant);
 
 /**
  * Collects the triangles of a glTF's default scene (else its first), depth first, in the scene's space.
@@ -84,7 +85,7 @@ export function extract(
     const all = listParts(file);
     const fail = (text: string) => new InputError(`${text}${advice}`);
     const chosen = typeof whichCount === 'function' ? whichCount(all, file) : whichCount;
-    const { parts, leftOut: others, accessories } = chooseParts(all, looksOf(file), chosen, fail);
+    const { parts, leftOut: others, ...numbers } = chooseParts(all, looksOf(file), chosen, fail);
     renumber(parts);
     const leftOut = others.map(({ name, why }) => ({ name, why }));
     const near = moveTo(parts, origin);
@@ -95,7 +96,7 @@ export function extract(
       mesh: { ...mesh, ...(uvs && { uvs }), ...(poses && { poses }) },
       parts,
       leftOut,
-      accessories,
+      ...numbers,
       origin: near,
     };
   });
@@ -120,13 +121,32 @@ export function extractDrawn(file: GltfFile, whichCount?: Exclude<WhichCount, 'c
     const isOver = (part: Part) => isOverlay(primitiveOf(file, part), file.json);
     const [overlays, own] = [all.filter(isOver), all.filter((part) => !isOver(part))];
     const fail = (text: string) => new InputError(text);
-    const chosen = new Set(chooseParts(own, looksOf(file), whichCount?.(own, file), fail).parts);
+    const chosen = new Set(
+      chooseParts(own, looksOf(file), typeof whichCount === 'function' ? whichCount(own, file) : whichCount, fail)
+        .parts,
+    );
     const nodes = new Set([...chosen].map(({ node }) => node));
     const shown = new Set(overlays.filter(({ node }) => nodes.has(node)));
     const parts = all.filter((part) => chosen.has(part) || shown.has(part));
     renumber(parts);
     return { parts, overlays: shown, origin: moveTo(parts, 'own') };
   });
+}
+
+/** Returns what finds the names of the nodes above a node. */
+function aboveIn({ nodes = [] }: GLTF.IGLTF): (node: number) => string[] {
+  const parents = new Map(nodes.flatMap(({ children = [] }, n) => children.map((child) => [child, n])));
+  return (node) => {
+    const names: string[] = [];
+    for (let n = parents.get(node); n !== undefined; n = parents.get(n)) names.push(nodes[n]!.name ?? '');
+    return names;
+  };
+}
+
+/** What patterns find parts by. */
+export function namedParts({ json }: Pick<GltfFile, 'json'>, parts: readonly Part[]): Named[] {
+  const namesAbove = aboveIn(json);
+  return parts.map(({ aliases, node }) => ({ names: aliases, above: namesAbove(node) }));
 }
 
 /** Returns what tells whether a part is drawn. */
@@ -140,11 +160,13 @@ function looksOf({ json }: GltfFile): (part: Part) => Look {
     if (!hidden.has(node)) stack.push(...(nodes[node]!.children ?? []));
     hidden.add(node);
   }
+  const namesAbove = aboveIn(json);
   return ({ node, mesh, primitive, aliases, matrix, localPositions, localIndices }) => {
     const material = materials[meshes[mesh]!.primitives[primitive]!.material ?? -1];
     const alpha = material?.pbrMetallicRoughness?.baseColorFactor?.[3];
     return {
       names: aliases,
+      above: namesAbove(node),
       isHidden: hidden.has(node),
       isClear: isClear(material?.alphaMode, alpha, material?.alphaCutoff),
       sides: material?.doubleSided ? 'both' : 'front',
@@ -163,17 +185,6 @@ export function primitivePath({ mesh, primitive }: PrimitiveRef): string {
 /** The part that a vertex belongs to. */
 export function partOf(parts: readonly Part[], vertex: number): Part | undefined {
   return parts.find((part) => vertex >= part.firstVertex && vertex < part.firstVertex + part.vertexCount);
-}
-
-/** The numbers of the parts below nodes of which some number is true. */
-export function partsBelow({ nodes = [] }: GLTF.IGLTF, parts: readonly Part[], isMeant: readonly boolean[]): number[] {
-  const below = new Set<number>();
-  const stack = nodes.flatMap((_, node) => (isMeant[node] ? [node] : []));
-  for (let node = stack.pop(); node !== undefined; node = stack.pop()) {
-    if (!below.has(node)) stack.push(...(nodes[node]!.children ?? []));
-    below.add(node);
-  }
-  return [...parts.keys()].filter((p) => below.has(parts[p]!.node));
 }
 
 /** Parts, and what moves them. @param positions  Of all of them, in the space of the model. */

@@ -4,13 +4,13 @@
  * @module cagecast/gltf
  */
 import type { Document, Transform } from '@gltf-transform/core';
+import type { Parts } from '../api/parts.js';
 import type { Mesh, TransferOptions, TransferResult } from '../index.js';
 import { noteOf } from '../inspect/bare.js';
 import { type Borders, isCut } from '../parts/cut-part.js';
 import type { LeftOut } from '../parts/drawn.js';
 import type { MaskSources } from './bake/mask-sources.js';
 import { addTransfer } from './document/add-transfer.js';
-import type { PartsOption } from './document/extract-document.js';
 import { transferDocument, wrong } from './document/transfer-document.js';
 import type { Piece } from './pieces.js';
 
@@ -34,13 +34,13 @@ export {
 /** @internal */
 export { imageSize } from './image-file.js';
 export { type FileKind, type Format, fileKind } from './kinds.js';
-export type { LeftOut, PartsOption };
+export type { LeftOut, Parts };
 
 /** The ranges of a part of a document in the arrays of a result, and its name. */
 export type PartRange = Pick<Piece, 'name' | 'firstVertex' | 'vertexCount' | 'firstTriangle' | 'triangleCount'>;
 
 /** Options of `cagecast`: those of `transfer`, and what to transfer. */
-export interface CagecastOptions extends TransferOptions, MaskSources {
+export interface CagecastOptions extends Omit<TransferOptions, 'parts'>, MaskSources {
   /**
    * The cage that the texture was drawn for: a mesh, or a document, of which the default scene is used. It must have UVs.
    * Default: the meshes of the document that are named as the outer cages of others, as `Head_OuterCage` of `Head_Geo`.
@@ -54,10 +54,10 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
    */
   borders?: Borders | undefined;
   /**
-   * Which primitives are transferred to. Default: what a viewer draws, without cages, markers and collision shapes, by their names.
-   * What is left out hides nothing. Glasses, hats and weapons stay bare, by their names, unless locks say otherwise.
+   * What counts, by the names of nodes, meshes and materials. What a viewer does not draw is ignored, and so are cages, markers and
+   * collision shapes; glasses, hats, weapons and what the cage was made without are excluded, by their names; unless `keep` names them.
    */
-  parts?: PartsOption | undefined;
+  parts?: Parts | undefined;
   /**
    * Called with a copy of the result, and with the parts of the document in the order of the result's arrays, before the document is changed:
    * if it throws, the document stays as it was. `note` says why nothing, or less than 5 % of what the cage covers, may be painted, and

@@ -88,10 +88,12 @@ export function moveTo(pieces: readonly Piece[], origin: Origin): Vector {
  * Joins pieces into arrays, with a group for each. Vertices keep their order, transforms are applied in double
  * precision and rounded once, and the winding of mirrored pieces is reversed.
  */
-export const joinPieces = (pieces: readonly Piece[]): Mesh & { indices: Uint32Array } =>
-  joinParts(
+export const joinPieces = (pieces: readonly Piece[]): Mesh & { indices: Uint32Array } => ({
+  ...joinParts(
     pieces.map(({ localPositions: positions, localIndices: indices, matrix }) => ({ positions, indices, matrix })),
-  ).mesh;
+  ).mesh,
+  names: pieces.map(({ name, aliases }) => [name, ...aliases]),
+});
 
 /** @throws {InputError} that names the first value of an attribute that is not a finite number. */
 export function requireFinite(place: string, semantic: string, values: Float32Array, size: number): void {

@@ -1,14 +1,14 @@
+import { numbersNamed } from '../api/parts.js';
 import { cageGlb } from '../cages/cage-glb.js';
 import type { Cage } from '../cages/types.js';
 import { show } from '../core/error.js';
-import { matcher } from '../core/patterns.js';
 import { CagecastError } from '../index.js';
 import { turnedBack } from '../inspect/backward.js';
 import { groupsNamed } from '../parts/drawn.js';
 import { moveApart } from '../parts/own-cages.js';
 import { bareNames } from '../parts/template-extras.js';
 import { partNamesOf } from './cage-file.js';
-import { type Extracted, extract, type Part, partOf, partsBelow, primitivePath, uvLayout } from './extract-file.js';
+import { type Extracted, extract, namedParts, type Part, partOf, primitivePath, uvLayout } from './extract-file.js';
 import { InputError } from './input-error.js';
 import { type GltfFile, openGltf } from './open-gltf.js';
 
@@ -85,14 +85,9 @@ export interface Named {
   extracted: Pick<Extracted, 'parts'> & Partial<Extracted>;
 }
 
-/** The numbers of the parts that a pattern names. The name of a node that no part has stands for all parts below it. */
-export function partsNamed(pattern: string, { file: { json }, extracted: { parts } }: Named): number[] {
-  const matches = matcher(pattern);
-  const own = [...parts.keys()].filter((p) => parts[p]!.aliases.some(matches));
-  if (own.length > 0) return own;
-  const isAbove = (json.nodes ?? []).map(({ name }) => name !== undefined && matches(name));
-  return partsBelow(json, parts, isAbove);
-}
+/** The numbers of the parts that a pattern names. */
+export const partsNamed = (pattern: string, { file, extracted: { parts } }: Named): number[] =>
+  numbersNamed(pattern, namedParts(file, parts));
 
 /** An error of the core for two models, with the file at fault and the place in it. */
 export function errorInFile(error: unknown, models: { target: ReadModel; cage: ReadModel }): unknown {

@@ -106,7 +106,7 @@ function areExchanged(cage: Mesh, target: Mesh): boolean {
 
 /** Which rule culls a segment. */
 function causeOf(stats: SegmentStats | undefined): Cause {
-  if (!stats || stats.culledBy === 'none') return 'mask';
+  if (!stats || stats.culledBy === 'none' || stats.culledBy === 'ignore') return 'mask';
   if (stats.culledBy !== 'coverage') return stats.culledBy;
   const { threshold, floor, depth } = stats.ratios;
   return threshold < 1 ? 'threshold' : depth < floor ? 'depth' : 'floor';

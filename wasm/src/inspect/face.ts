@@ -58,7 +58,7 @@ export function checkFace({ target, areas, result, parts, isInRegion }: Scene, l
       advice: 'Close the holes of the cage over it, or make a cage for this model.',
       numbers: { share },
       places: [{ segment, group: target.groups?.[first] ?? 0, part }],
-      ...(result.segmentStats[segment]?.culled && { locks: { segments: { [segment]: 'keep' as const } } }),
+      ...(result.segmentStats[segment]?.culled && { locks: { [segment]: 'keep' as const } }),
     },
   ];
 }

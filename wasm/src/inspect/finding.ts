@@ -26,7 +26,7 @@ export interface Finding {
   places?: Place[];
   /** Locks that reverse the verdicts on these segments: an option of `transfer` and `classify`. */
   locks?: Locks;
-  /** The names of parts to leave out: by `--ignore`, or the option `parts` of `cagecast/gltf` and `cagecast/three`. */
+  /** The names of parts that should not count, for `parts.ignore`. */
   ignore?: string[];
 }
 

@@ -27,8 +27,7 @@ export function checkHiding({ cage, target, parts, areas, result }: Scene, optio
     allHidden - hidden[p]! > Math.max(kMuchHidden * (all - total[p]!), kMinRest * total[p]!);
   const suspects = [...parts.keys()].filter(isSuspect).sort((a, b) => total[b]! - total[a]!);
   // Segments have other numbers without a part, and triangles too.
-  const { masks: _, locks, ...others } = options;
-  const rules = { ...others, ...(locks?.groups && { locks: { groups: locks.groups } }) };
+  const { masks: _, locks: __, ...rules } = options;
   return suspects.slice(0, kMaxTried).flatMap((p): Finding[] => {
     const isOther = (_: number, i: number) => partOf[target.indices[i - (i % 3)]!] !== p;
     const { zones } = transfer(cage, { ...target, indices: Uint32Array.from(target.indices).filter(isOther) }, rules);

@@ -3,6 +3,7 @@
  * @module cagecast/inspect
  */
 
+import { numbersNamed, type PartOf, type Parts } from '../api/parts.js';
 import { show } from '../core/error.js';
 import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../index.js';
 import { checkBackward } from './backward.js';
@@ -19,6 +20,7 @@ import {
 import { joined } from './geometry.js';
 import { checkHiding } from './hiding.js';
 import { checkHoles, type Hole, holesOf, spanPoints } from './holes.js';
+import { withoutIgnored } from './ignored.js';
 import { checkInside, type Inside, insideOf } from './inside.js';
 import { checkNormals, facingOutward, orientationOf } from './normals.js';
 import { checkPieces } from './pieces.js';
@@ -30,28 +32,13 @@ import { checkTopology, type Topology, topologyOf } from './topology.js';
 import { checkUvs, type UvLayout, uvLayoutOf } from './uv.js';
 
 export { surestThreshold } from './surest-threshold.js';
-export type {
-  Finding,
-  FindingCode,
-  Hole,
-  Inside,
-  PartName,
-  Place,
-  Placement,
-  Segment,
-  Spots,
-  Topology,
-  UvLayout,
-  Verdict,
-};
+export type { Finding, FindingCode, Hole, Inside, Place, Placement, Segment, Spots, Topology, UvLayout, Verdict };
 export { unfitFrom, usableFrom };
 
 /** Options of `inspect`: those of the transfer, and its result if there is one. */
 export interface InspectOptions extends TransferOptions {
   /** The result of `transfer` for the same arguments, if it was called already. */
   result?: TransferResult | undefined;
-  /** Names for ranges of the target's vertices. Default: the numbers of its groups. */
-  parts?: readonly PartName[] | undefined;
   /** Spots of the target, as its made or fitted cage has them: with the centres of both eyes, a bare face is a finding. */
   landmarks?: Spots | undefined;
 }
@@ -121,24 +108,18 @@ export function suggest(cage: Mesh, target: Mesh, options?: InspectOptions): Fin
 const heaviestFirst = (findings: readonly Finding[]): Finding[] => [...findings].sort((a, b) => b.weight - a.weight);
 
 /** The placement of the cage, and the findings about it and about the result. */
-function outcomeOf(fn: string, cage: Mesh, target: Mesh, given: InspectOptions = {}) {
+function outcomeOf(fn: string, cage: Mesh, whole: Mesh, given: InspectOptions = {}) {
   if (typeof given !== 'object' || given === null)
     throw new CagecastError('badOption', fn, `options is ${show(given)}, not an object`);
-  const { result, parts, landmarks, ...options } = given;
-  if (result !== undefined) {
+  const { result: known, landmarks, parts, ...others } = given;
+  if (known !== undefined) {
     checkArrays(fn, 'cage', cage, ['positions', 'indices', 'uvs']);
-    checkArrays(fn, 'target', target, ['positions', 'indices']);
-    checkResult(fn, result, target);
+    checkArrays(fn, 'target', whole, ['positions', 'indices']);
+    checkResult(fn, known, whole);
   }
-  if (parts !== undefined && !(Array.isArray(parts) && parts.every((part) => part?.vertexCount >= 0)))
-    throw new CagecastError('badOption', fn, `options.parts is ${show(parts)}, not an array of ranges of vertices`);
-  const scene = sceneOf(
-    cage,
-    target,
-    result ?? transfer(cage, target, options),
-    options,
-    parts ?? partsByGroup(target),
-  );
+  const { target, result } = withoutIgnored(whole, known ?? transfer(cage, whole, { ...others, parts }));
+  const options = { ...others, parts: numbered(whole, parts) };
+  const scene = sceneOf(cage, target, result, options, partsByGroup(target));
   const orientation = orientationOf(scene);
   const upright = orientation.share > 0 ? uprightScene() : scene;
   const placement = placementOf(upright);
@@ -153,7 +134,7 @@ function outcomeOf(fn: string, cage: Mesh, target: Mesh, given: InspectOptions =
     ...checkInside(inside),
     ...checkHoles(holes, segments),
     ...checkFace(scene, landmarks),
-    ...checkSegments(scene, segments, options.locks),
+    ...checkSegments(scene, segments, options),
     ...checkHiding(scene, options),
     ...checkPieces(scene, options),
   ];
@@ -204,13 +185,27 @@ function checkResult(fn: string, result: TransferResult, { positions }: Mesh): v
     );
 }
 
-function partsByGroup({ positions, groups }: Mesh): PartName[] {
+/** The groups that are kept or excluded. @param parts  Checked by the transfer. */
+function numbered({ names = [] }: Mesh, parts: Parts = {}) {
+  const all = names.map((own) => ({ names: [own].flat() }));
+  const groupsOf = (list: readonly PartOf[] = []) =>
+    list.flatMap((part) => (typeof part === 'number' ? part : numbersNamed(part, all)));
+  return { keep: groupsOf(parts.keep), exclude: groupsOf(parts.exclude) };
+}
+
+/** The ranges of vertices of one group. */
+function partsByGroup({ positions, groups, names = [] }: Mesh): PartName[] {
   const vertices = positions.length / 3;
   const parts: PartName[] = [];
   for (let v = 0; v < vertices; ++v) {
     const last = parts.at(-1);
     if (last && (!groups || groups[v] === groups[v - 1])) ++last.vertexCount;
-    else parts.push({ name: groups ? `group ${groups[v]}` : 'target', firstVertex: v, vertexCount: 1 });
+    else parts.push({ name: nameOf(groups?.[v]), firstVertex: v, vertexCount: 1 });
   }
   return parts;
+
+  function nameOf(group: number | undefined): string {
+    const [name] = [names[group ?? 0] ?? []].flat();
+    return name ?? (group === undefined ? 'target' : `group ${group}`);
+  }
 }

@@ -1,4 +1,4 @@
-import type { Locks, SegmentStats } from '../index.js';
+import type { ClassifyOptions, Locks, SegmentStats } from '../index.js';
 import { counted, type Finding, type Place, percent } from './finding.js';
 import { grouped } from './geometry.js';
 import { partsOf, type Scene } from './scene.js';
@@ -58,7 +58,11 @@ export function segmentsOf({ parts, result }: Pick<Scene, 'parts' | 'result'>): 
 type Numbered = Segment & { s: number; ratios: SegmentStats['ratios'] };
 
 /** Reports if too little is painted; and of segments without a lock, if verdicts are close and if much is culled. */
-export function checkSegments(scene: Scene, segments: readonly Segment[], locks: Locks = {}): Finding[] {
+export function checkSegments(
+  scene: Scene,
+  segments: readonly Segment[],
+  { locks = {}, parts: { keep = [], exclude = [] } = {} }: Pick<ClassifyOptions, 'locks' | 'parts'>,
+): Finding[] {
   const numbered = segments
     .map((segment, s) => ({ ...segment, s, ratios: scene.result.segmentStats[s]!.ratios }))
     .sort((a, b) => b.exposedArea - a.exposedArea);
@@ -75,7 +79,7 @@ export function checkSegments(scene: Scene, segments: readonly Segment[], locks:
 
   /** Whether no lock has decided on a segment. */
   function isOpen({ s, group }: Numbered): boolean {
-    return (locks.segments?.[s] ?? locks.groups?.[group] ?? 'auto') === 'auto';
+    return (locks[s] ?? 'auto') === 'auto' && !keep.includes(group) && !exclude.includes(group);
   }
 }
 
@@ -179,6 +183,5 @@ function reason({ ratios, culled, culledBy, score }: Numbered, threshold: number
 /** Where a segment is. */
 export const placeOfSegment = (segment: number, { group, part }: Segment): Place => ({ segment, group, part });
 
-const locksFor = (segments: readonly Numbered[]): Locks => ({
-  segments: Object.fromEntries(segments.map(({ s, culled }) => [s, culled ? 'keep' : 'exclude'])),
-});
+const locksFor = (segments: readonly Numbered[]): Locks =>
+  Object.fromEntries(segments.map(({ s, culled }) => [s, culled ? 'keep' : 'exclude']));

@@ -1,5 +1,6 @@
 // Which parts of a model count. What a viewer does not draw is neither painted nor in the way.
-import type { Locks } from '../api/options.js';
+import { kPartLists } from '../api/option-names.js';
+import { type PartOf, type Parts, partsNamed } from '../api/parts.js';
 import { show } from '../core/error.js';
 import { determinant } from './affine.js';
 import { cageParts } from './own-cages.js';
@@ -9,6 +10,8 @@ import { movePoints } from './points.js';
 export interface Look {
   /** The names of its node, its mesh and its materials. */
   names: readonly (string | undefined)[];
+  /** The names of the nodes above it. Default: none. */
+  above?: readonly (string | undefined)[];
   /** Whether it, or something above it, is switched off. */
   isHidden: boolean;
   /** Whether the alpha of its material leaves nothing of it. */
@@ -57,6 +60,9 @@ export interface Chosen<Part> {
   leftOut: (LeftOut & { part: Part })[];
   /** The numbers of those that a figure wears or carries, by their names; none if all are such. */
   accessories: number[];
+  /** The numbers of those that patterns keep or exclude. */
+  kept: number[];
+  excluded: number[];
 }
 
 /** Whether a part of a target counts. @param isDrawn  Whether a viewer draws it, and it is no cage, marker, collision shape or backdrop. */
@@ -65,27 +71,50 @@ export type IsMeant = (part: number, isDrawn: boolean) => boolean;
 /**
  * Chooses the parts of a target, or of a cage, that count.
  * @param lookOf   What is known of a part.
- * @param isMeant  Default: what is drawn. `cage`: the outer cages, or all if there are none.
- * @param fail     Makes the error if parts are there, but none counts.
+ * @param which  Patterns, or a function; drawn parts count by default, and those of `keep`. `cage`: the outer cages, or all if there are
+ * none.
+ * @param fail   Makes the error if parts are there, but none counts, or if a pattern names nothing.
  */
 export function chooseParts<Part extends { name: string }>(
   parts: readonly Part[],
   lookOf: (part: Part) => Look,
-  isMeant: IsMeant | 'cage' = (_, isDrawn) => isDrawn,
+  which: Parts | IsMeant | 'cage' = {},
   fail: (text: string) => Error,
 ): Chosen<Part> {
   const looks = parts.map(lookOf);
   const reasons = whyNotDrawn(looks);
-  const counts = isMeant === 'cage' ? cageParts(looks.map(({ names }) => names)) : isMeant;
+  const patterns = typeof which === 'object' ? which : {};
+  const drawn = [...parts.keys()].filter((p) => reasons[p] === undefined);
+  const [ignored, kept, excluded] = kPartLists.map((list) => {
+    const failed = (text: string) => fail(`parts.${list}: ${text}`);
+    const numbered = (n: number): number[] => {
+      if (drawn[n] !== undefined) return [drawn[n]];
+      throw failed(`there is no part ${n}, only ${drawn.length}`);
+    };
+    const find = (part: PartOf) => (typeof part === 'number' ? numbered(part) : partsNamed(part, looks, failed));
+    return new Set((patterns[list] ?? []).flatMap(find));
+  }) as [Set<number>, Set<number>, Set<number>];
+  const isAsked: IsMeant = (p, isDrawn) => !ignored.has(p) && (isDrawn || kept.has(p));
+  const counts =
+    which === 'cage' ? cageParts(looks.map(({ names }) => names)) : typeof which === 'function' ? which : isAsked;
   const isLeftOut = reasons.map((reason, p) => !counts(p, reason === undefined));
   const leftOut = parts.flatMap((part, p) =>
     isLeftOut[p] ? [{ part, name: part.name, why: reasons[p] ?? ('ignored' as const) }] : [],
   );
-  const kept = parts.filter((_, p) => !isLeftOut[p]);
-  if (parts.length > 0 && kept.length === 0) throw fail(`all parts are left out: ${leftOutText(leftOut)}`);
-  const own = looks.filter((_, p) => !isLeftOut[p]).map(({ names }) => names.some(isAccessory));
-  const accessories = own.flatMap((is, p) => (is ? [p] : []));
-  return { parts: kept, leftOut, accessories: accessories.length < kept.length ? accessories : [] };
+  const numbers = [...parts.keys()].filter((p) => !isLeftOut[p]);
+  if (parts.length > 0 && numbers.length === 0)
+    throw fail(
+      `all parts are left out: ${leftOutText(leftOut)}${typeof which === 'object' ? '; name what counts in parts.keep' : ''}`,
+    );
+  const those = (fits: (p: number) => boolean) => numbers.flatMap((p, n) => (fits(p) ? [n] : []));
+  const accessories = those((p) => looks[p]!.names.some(isAccessory));
+  return {
+    parts: numbers.map((p) => parts[p]!),
+    leftOut,
+    accessories: accessories.length < numbers.length ? accessories : [],
+    kept: those((p) => kept.has(p)),
+    excluded: those((p) => excluded.has(p)),
+  };
 }
 
 /** How many parts a message names. */
@@ -106,13 +135,6 @@ export function leftOutText(leftOut: readonly LeftOut[]): string {
 export function groupsNamed(bare: readonly string[], names: readonly (readonly string[])[]): number[] {
   const isBare = names.map((own) => own.some((name) => bare.includes(name)));
   return isBare.includes(false) ? isBare.flatMap((is, group) => (is ? [group] : [])) : [];
-}
-
-/** Locks that leave groups bare, under those that are given. */
-export function withBare(groups: readonly number[], locks: Locks | undefined): Locks | undefined {
-  if (groups.length === 0) return locks;
-  const bare = Object.fromEntries(groups.map((group) => [group, 'exclude' as const]));
-  return { ...locks, groups: { ...bare, ...locks?.groups } };
 }
 
 /** Alpha less than this, or transmission more than that, can be looked through. */

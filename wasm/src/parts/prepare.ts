@@ -41,14 +41,14 @@ export interface Prepared {
   result: TransferResult;
   /** The number of triangles added by cutting borders. */
   cutTriangles: number;
-  /** In the order of the option `parts`. */
+  /** In the order of the option `ranges`. */
   parts: PreparedPart[];
 }
 
 /** Options of `prepareParts`: those of `transfer`, and how vertices are prepared. */
 export interface PrepareOptions extends TransferOptions {
   /** The parts that have vertex buffers of their own, such as `joinParts` returns them. Default: the whole target is one. */
-  parts?: readonly PartRange[] | undefined;
+  ranges?: readonly PartRange[] | undefined;
   /** Where the paint ends: at existing triangle edges (`triangle`, the default), or at the borders of the cage, where triangles are cut. */
   borders?: Borders | undefined;
   /**
@@ -60,7 +60,7 @@ export interface PrepareOptions extends TransferOptions {
   result?: TransferResult | undefined;
 }
 
-const kOwnOptions = ['parts', 'borders', 'separatePaint', 'result'] satisfies (keyof PrepareOptions)[];
+const kOwnOptions = ['ranges', 'borders', 'separatePaint', 'result'] satisfies (keyof PrepareOptions)[];
 
 /**
  * Transfers, cuts borders if asked to, and splits the vertices of each part of a target so that each has one UV: all that an engine
@@ -76,7 +76,7 @@ const kOwnOptions = ['parts', 'borders', 'separatePaint', 'result'] satisfies (k
  *
  * @example
  * const { mesh, parts } = joinParts(meshes); // positions, indices and matrix of each mesh
- * const prepared = prepareParts(cage, mesh, { parts });
+ * const prepared = prepareParts(cage, mesh, { ranges: parts });
  * prepared.parts.forEach((part, p) => {
  *   meshes[p].positions = applySplit(meshes[p].positions, 3, part);
  *   meshes[p].uv2 = part.uvs;
@@ -89,7 +89,7 @@ export function prepareParts(cage: Mesh | undefined, target: Mesh, options: Prep
     ...optionNames('transfer').filter((name) => name !== 'reuse'),
   ]);
   if (fault !== undefined) throw new CagecastError('badOption', kFn, fault);
-  const { parts: ranges, borders, separatePaint: separates = true, result: known, ...own } = options;
+  const { ranges, borders, separatePaint: separates = true, result: known, ...own } = options;
   if (typeof separates !== 'boolean') throw wrongOption(`separatePaint = ${show(separates)} is not true or false`);
   const cuts = isCut(kFn, borders);
   const { positions, indices } = checkTarget(target);
@@ -127,10 +127,10 @@ function checkTarget(target: Mesh): Pick<Mesh, 'positions' | 'indices'> {
   return { positions, indices };
 }
 
-function checkRanges(parts: readonly PartRange[], vertices: number, indices: ArrayLike<number>): void {
-  if (!Array.isArray(parts)) throw wrongOption(`parts is ${show(parts)}, not an array`);
+function checkRanges(ranges: readonly PartRange[], vertices: number, indices: ArrayLike<number>): void {
+  if (!Array.isArray(ranges)) throw wrongOption(`ranges is ${show(ranges)}, not an array`);
   const triangles = Math.floor(indices.length / 3);
-  parts.forEach((part: PartRange | null, p) => {
+  ranges.forEach((part: PartRange | null, p) => {
     const check = (first: 'firstVertex' | 'firstTriangle', count: 'vertexCount' | 'triangleCount', most: number) => {
       for (const [name, limit] of [
         [first, most],
@@ -140,7 +140,7 @@ function checkRanges(parts: readonly PartRange[], vertices: number, indices: Arr
         if (!(Number.isInteger(value) && value! >= 0 && value! <= limit))
           throw wrong(
             'options',
-            `options.parts[${p}].${name} = ${show(value)} is not a whole number within 0..${limit}`,
+            `options.ranges[${p}].${name} = ${show(value)} is not a whole number within 0..${limit}`,
             p,
           );
       }
@@ -152,7 +152,7 @@ function checkRanges(parts: readonly PartRange[], vertices: number, indices: Arr
       if (!(indices[i]! >= firstVertex && indices[i]! < firstVertex + vertexCount))
         throw wrong(
           'target',
-          `target.indices[${i}] = ${indices[i]} is not a vertex of options.parts[${p}] (${firstVertex}..${firstVertex + vertexCount - 1})`,
+          `target.indices[${i}] = ${indices[i]} is not a vertex of options.ranges[${p}] (${firstVertex}..${firstVertex + vertexCount - 1})`,
           i,
         );
   });

@@ -1,4 +1,5 @@
 import { faultOfNames } from '../api/option-names.js';
+import { faultOfParts } from '../api/parts.js';
 import { show } from '../core/error.js';
 import { CagecastError, type Code, type ErrorDetails } from '../index.js';
 
@@ -33,5 +34,11 @@ export const checkShare = (name: string, value: number): void =>
 /** @throws {CagecastError} `badOption` for options that are no object, or one that a function does not have. */
 export function checkNames(fn: string, where: string, given: unknown, known: readonly string[]): void {
   const fault = faultOfNames(fn, where, given, known);
+  if (fault !== undefined) throw wrong(fault, fn, 'badOption');
+}
+
+/** @throws {CagecastError} `badOption` for an option `parts` that has no patterns. */
+export function checkParts(fn: string, parts: unknown): void {
+  const fault = faultOfParts(fn, parts);
   if (fault !== undefined) throw wrong(fault, fn, 'badOption');
 }

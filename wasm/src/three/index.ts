@@ -5,7 +5,7 @@
  */
 import type { Mesh } from '../index.js';
 import { type Borders, isCut } from '../parts/cut-part.js';
-import { type LeftOut, withBare } from '../parts/drawn.js';
+import type { LeftOut } from '../parts/drawn.js';
 import { type Apart, type Caged, moveApart as partsApart } from '../parts/own-cages.js';
 import { type Prepared, type PreparedPart, type PrepareOptions, prepareParts } from '../parts/prepare.js';
 import type { PartRange } from '../parts/split-part.js';
@@ -14,14 +14,7 @@ import { apply, rangesOf } from './apply/apply.js';
 import { type Applied, type ApplyOptions, checkOptions, type Saved, transferOptions } from './apply/apply-options.js';
 import { zoneAttribute } from './apply/attributes.js';
 import { cutGeometry } from './apply/cut-geometry.js';
-import {
-  bareGroups,
-  type Extracted,
-  extract,
-  extractNear,
-  type Part,
-  type PartsOption,
-} from './apply/extract-scene.js';
+import { bareGroups, type Extracted, extract, extractNear, type Part } from './apply/extract-scene.js';
 import type { Loaded } from './apply/models.js';
 import { ownCage } from './apply/own-cage.js';
 import { atOnce } from './apply/remake.js';
@@ -56,7 +49,6 @@ export {
   type LeftOut,
   type Part,
   type PartRange,
-  type PartsOption,
   type Prepared,
   type PreparedPart,
   type Saved,
@@ -184,12 +176,12 @@ function read(fn: string, target: Loaded, options: ApplyOptions): Call {
   const cuts = isCut(fn, options.borders);
   const { cage, saved, result, parts } = options;
   const call = ++calls;
-  const extracted = extractNear(target, 'target', 'own', { isMeant: parts, channel: options.channel });
+  const extracted = extractNear(target, 'target', 'own', { parts, channel: options.channel });
   const own = transferOptions(options);
   const needsCage = !saved && (cuts || !result);
   const outer = needsCage ? extractNear(cage ?? ownCage(fn, target), 'cage', extracted.origin) : undefined;
   const bare = outer ? bareGroups(outer, extracted) : extracted.accessories;
-  const rules = { ...own, locks: withBare(bare, own.locks) };
+  const rules = { ...own, parts: { keep: extracted.kept, exclude: [...bare, ...extracted.excluded] } };
   const apart = outer && moveApart(outer, extracted);
   const around = apart?.cage ?? outer?.mesh;
   const known = saved && checkSaved(saved, extracted);
@@ -205,7 +197,7 @@ function read(fn: string, target: Loaded, options: ApplyOptions): Call {
       apart?.target ?? extracted.mesh,
       {
         ...rules,
-        parts: rangesOf(extracted),
+        ranges: rangesOf(extracted),
         borders: options.borders,
         separatePaint: !!options.texture && !options.material,
         result,

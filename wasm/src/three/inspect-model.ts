@@ -1,19 +1,19 @@
+import type { Parts } from '../api/parts.js';
 import type { Inspection, InspectOptions } from '../inspect/index.js';
-import { withBare } from '../parts/drawn.js';
 import { moveApart } from '../parts/own-cages.js';
 import { type CallOptions, inspect as inspectArrays, transfer } from '../worker/index.js';
-import { bareGroups, extract, type PartsOption } from './apply/extract-scene.js';
+import { bareGroups, extract } from './apply/extract-scene.js';
 import { cageTemplate } from './apply/loaded-cages.js';
 import type { Loaded, LoadedCage } from './apply/models.js';
 import { ownCage } from './apply/own-cage.js';
 import { wrong } from './errors.js';
 
-/** Options of `inspect`: those of `cagecast/inspect`, whose names of parts and landmarks are those of the models. */
+/** Options of `inspect`: those of `cagecast/inspect`, with names of parts and landmarks of the models. */
 export interface InspectModelOptions extends Omit<InspectOptions, 'parts' | 'landmarks'>, Pick<CallOptions, 'signal'> {
   /** The cage, as for `applyTransfer`. Default: the target's own. */
   cage?: LoadedCage | undefined;
-  /** Which meshes count, as for `applyTransfer`. */
-  parts?: PartsOption | undefined;
+  /** What counts, as for `applyTransfer`. */
+  parts?: Parts | undefined;
 }
 
 /**
@@ -29,7 +29,8 @@ export async function inspect(target: Loaded, options: InspectModelOptions = {})
   const { cage, parts, signal, ...given } = options;
   const extracted = extract(target, 'target', parts);
   const outer = extract(cage ?? ownCage('inspect', target), 'cage');
-  const rules = { ...given, locks: withBare(bareGroups(outer, extracted), given.locks) };
+  const exclude = [...bareGroups(outer, extracted), ...extracted.excluded];
+  const rules = { ...given, parts: { keep: extracted.kept, exclude } };
   const apart = given.result ? undefined : moveApart(outer, extracted, (text) => wrong(`target: ${text}`, 'inspect'));
   const result = apart ? await transfer(apart.cage, apart.target, { ...rules, signal }) : given.result;
   if (apart && result) apart.mend(result);
@@ -37,14 +38,7 @@ export async function inspect(target: Loaded, options: InspectModelOptions = {})
   return inspectArrays(outer.mesh, extracted.mesh, {
     ...rules,
     result,
-    parts: extracted.parts.map(nameOf),
     landmarks,
     signal,
   });
 }
-
-const nameOf = ({ name, firstVertex, vertexCount }: { name: string; firstVertex: number; vertexCount: number }) => ({
-  name,
-  firstVertex,
-  vertexCount,
-});

@@ -1,9 +1,10 @@
 import type { Texture } from 'three';
+import type { Parts } from '../api/parts.js';
 import { type Image, maskTriangles, maskVertices } from '../bake/index.js';
 import type { Masks } from '../index.js';
 import { localIndices } from '../parts/prepare.js';
 import { valuesOf } from './apply/attributes.js';
-import { extract, type PartsOption } from './apply/extract-scene.js';
+import { extract } from './apply/extract-scene.js';
 import type { Loaded } from './apply/models.js';
 import { type Context, makeCanvas } from './canvas.js';
 import { checkNames, wrong } from './errors.js';
@@ -17,7 +18,7 @@ export interface ModelMasks {
   /** An attribute of colours, 3 or 4 numbers each, such as "color": red vertices are never painted, green ones always. */
   attribute?: string | undefined;
   /** The same as of `applyTransfer`. */
-  parts?: PartsOption | undefined;
+  parts?: Parts | undefined;
 }
 
 /**
@@ -31,8 +32,8 @@ export interface ModelMasks {
  */
 export function modelMasks(target: Loaded, options: ModelMasks): Masks {
   checkNames('modelMasks', 'options', options, ['never', 'always', 'attribute', 'parts']);
-  const { never, always, attribute, parts: isMeant } = options;
-  const { mesh, parts } = extract(target, 'target', isMeant);
+  const { never, always, attribute, parts: patterns } = options;
+  const { mesh, parts } = extract(target, 'target', patterns);
   const images = { never: never && imageOf('never', never), always: always && imageOf('always', always) };
   const vertices = new Int8Array(mesh.positions.length / 3);
   const triangles = new Int8Array(mesh.indices.length / 3);

@@ -1,5 +1,6 @@
 import { MeshStandardMaterial, type Texture } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { kPartLists } from '../api/option-names.js';
 import { CagecastError, init, type Preset } from '../index.js';
 import type { Inspection } from '../inspect/index.js';
 import {
@@ -18,7 +19,7 @@ import { defaultOrbit, type Orbit, Stage } from './stage.js';
 export type Check = Pick<Inspection, 'verdict' | 'findings'>;
 
 /** Attributes of which a change means another transfer. */
-const kOfTransfer = ['target', 'cage', 'preset', 'threshold', 'borders', 'motion', 'feather'];
+const kOfTransfer = ['target', 'cage', 'preset', 'threshold', 'borders', 'motion', 'feather', ...kPartLists];
 
 const kLost =
   'cagecast-viewer: the browser has stopped this 3D view, as the page has more of them than it allows (16 in Chromium) or the graphics were reset';
@@ -53,6 +54,7 @@ interface Shown {
  * - `target`, `cage`: addresses of a glTF or GLB file each. Without a cage the target is shown bare.
  * - `paint`: the address of a picture in the cage's UVs.
  * - `opacity`, `feather`, `preset`, `threshold`, `borders`, `motion`: as the options of `applyTransfer`.
+ * - `ignore`, `keep`, `exclude`: as those of its option `parts`: patterns, with commas between them.
  * - `camera-orbit`: degrees from the front and from above, and the distance as a share of that which shows all: `20deg 80deg 100%`.
  * - `alt`: what assistive technology says. `poster`: the address of a picture to show until the model is there.
  * - `check`: inspects the cage too, which takes up to 15 times as long as a transfer, on the page's thread.
@@ -297,7 +299,8 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       const [{ file, gltf }, outer, paint] = await Promise.all([model, around, texture]);
       signal.throwIfAborted();
       const options = this.#options();
-      const check = outer && this.hasAttribute('check') ? await this.#inspector(gltf, outer.gltf) : undefined;
+      const check =
+        outer && this.hasAttribute('check') ? await this.#inspector(gltf, outer.gltf, options.parts) : undefined;
       const onProgress = (share: number, stage: string) => this.#tell('progress', { share: 0.3 + 0.7 * share, stage });
       const applied =
         outer &&
@@ -330,11 +333,12 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   }
 
   /** Reads the arrays before vertices are split. */
-  async #inspector(gltf: GLTF, around: GLTF) {
+  async #inspector(gltf: GLTF, around: GLTF, parts: ApplyOptions['parts']) {
     const [{ inspect }] = await Promise.all([import('../inspect/index.js'), init()]);
-    const [{ mesh, parts }, { mesh: cage }] = [extract(gltf.scene), extract(around.scene, 'cage')];
+    const { mesh, kept: keep, excluded: exclude } = extract(gltf.scene, 'target', parts);
+    const { mesh: cage } = extract(around.scene, 'cage');
     return ({ result }: Applied, { feather, opacity, borders, ...options }: ApplyOptions): Check => {
-      const { verdict, findings } = inspect(cage, mesh, { ...options, result, parts });
+      const { verdict, findings } = inspect(cage, mesh, { ...options, parts: { keep, exclude }, result });
       return { verdict, findings };
     };
   }
@@ -366,7 +370,10 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
         throw new CagecastError('badOption', 'cagecast-viewer', `${name} is "${given}", not true or false`);
       return given === undefined ? undefined : given === 'true';
     };
+    const trim = (pattern: string) => pattern.trim();
+    const patterns = (list: string) => text(list)?.split(',').map(trim);
     const all = {
+      parts: Object.fromEntries(kPartLists.map((list) => [list, patterns(list)])),
       opacity: number('opacity'),
       feather: number('feather'),
       threshold: number('threshold'),

@@ -28,9 +28,7 @@ function threeCode({ target, cage, projection }: Shown, rules: Rules, locks: Rea
     const number = numbers[Number(segment)];
     return lock === 'auto' || number === undefined ? [] : [`${number}: '${asLock(lock)}'`];
   });
-  const leftOut = projection.leftOut.map(
-    (group) => ` && mesh.name !== ${JSON.stringify(target.mesh.primitives[group]!.mesh.name)}`,
-  );
+  const leftOut = projection.leftOut.map((group) => JSON.stringify(target.mesh.primitives[group]!.mesh.name));
   const options = [
     'cage',
     'texture',
@@ -38,8 +36,8 @@ function threeCode({ target, cage, projection }: Shown, rules: Rules, locks: Rea
     ...(threshold === undefined ? [] : [`threshold: ${threshold}`]),
     ...(weldTolerance ? [`weldTolerance: ${weldTolerance}`] : []),
     ...(borders ? [`borders: '${borders}'`] : []),
-    ...(leftOut.length > 0 ? [`parts: (mesh, isDrawn) => isDrawn${leftOut.join('')}`] : []),
-    ...(segments.length > 0 ? [`locks: { segments: { ${segments.join(', ')} } }`] : []),
+    ...(leftOut.length > 0 ? [`parts: { ignore: [${leftOut.join(', ')}] }`] : []),
+    ...(segments.length > 0 ? [`locks: { ${segments.join(', ')} }`] : []),
   ];
   return `${noteOn(locks, '//')}import { init } from 'cagecast'
 import { applyTransfer } from 'cagecast/three'

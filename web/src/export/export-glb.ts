@@ -38,7 +38,6 @@ export async function exportGlb(
     cage: cage.files[0] === target.files[0] ? undefined : cageOf(cage.mesh),
     texture: new Uint8Array(await texture.arrayBuffer()),
     into,
-    leftOut: projection?.leftOut ?? [],
     options: { ...rules, ...(target.mesh && projection ? choicesWithout(choices, target.mesh, projection) : choices) },
   };
   const worker = new Worker(new URL('./export-worker.ts', import.meta.url), { type: 'module' });

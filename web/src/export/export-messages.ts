@@ -11,8 +11,7 @@ export interface ExportRequest {
   texture: Uint8Array<ArrayBuffer>;
   /** Paint as an overlay, or in the model's own textures where it has some. */
   into: PaintInto;
-  /** The numbers of the parts that are left out, among those that are drawn. */
-  leftOut: readonly number[];
+  /** Parts are numbers among those that are drawn. */
   options: TransferOptions & Pick<CagecastOptions, 'borders'>;
 }
 

@@ -1,6 +1,6 @@
 import { type Document, type JSONDocument, Logger, WebIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { type BakeReport, bake, cagecast, type ImageCodec, type PartsOption } from 'cagecast/gltf';
+import { type BakeReport, bake, cagecast, type ImageCodec } from 'cagecast/gltf';
 import { readGltfHead } from '../loading/gltf-file';
 import { answerBy } from '../platform/ask-worker';
 import { avatarExtensions } from './avatar-extensions';
@@ -13,16 +13,13 @@ const kCompressions = ['KHR_draco_mesh_compression', 'EXT_meshopt_compression', 
 answerBy(paintModel, ({ glb }) => [glb.buffer]);
 
 /** Writes the target with the new UV set, its zones, and the paint as an overlay or in its textures. */
-async function paintModel({ files, cage, texture, into, leftOut, options }: ExportRequest): Promise<ExportAnswer> {
+async function paintModel({ files, cage, texture, into, options }: ExportRequest): Promise<ExportAnswer> {
   const io = new WebIO()
     .setLogger(new Logger(Logger.Verbosity.SILENT))
     .registerExtensions([...ALL_EXTENSIONS, ...avatarExtensions]);
   const document = await read(io, files);
   let baked: Baked | undefined;
-  let drawn = 0;
-  // It is asked once for each part, in the order of the page's.
-  const parts: PartsOption = (_primitive, _node, isDrawn) => isDrawn && !leftOut.includes(drawn++);
-  const all = { ...options, cage, texture, parts };
+  const all = { ...options, cage, texture };
   if (into === 'overlay') await document.transform(cagecast(all));
   else {
     const color = await readPixels(new Blob([texture]));

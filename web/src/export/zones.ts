@@ -14,7 +14,7 @@ export function zonesJson({
   return JSON.stringify({
     target: target.name,
     cage: cage.name,
-    options: { preset, threshold, weldTolerance, locks: { segments: locks } },
+    options: { preset, threshold, weldTolerance, locks },
     counts: { cosmetic, occluded, uncovered, culled },
     parts: target.mesh.primitives.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({
       name,

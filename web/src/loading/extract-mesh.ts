@@ -24,7 +24,14 @@ export function extractMesh(
   });
   // They would hide the model on the stage.
   if (slot === 'target') for (const { mesh, why } of leftOut) if (why === 'name') mesh.visible = false;
-  return { ...mesh, primitives, accessories, names, bare, leftOut: leftOut.map((one) => nameOf(one.mesh) || one.name) };
+  return {
+    ...mesh,
+    names: names.map((own, group) => [...new Set([primitives[group]?.name ?? '', ...own])]),
+    primitives,
+    accessories,
+    bare,
+    leftOut: leftOut.map((one) => nameOf(one.mesh) || one.name),
+  };
 }
 
 /** The meshes of a model, as a target and as a cage. @throws Error as `extractMesh`. */

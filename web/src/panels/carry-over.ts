@@ -32,7 +32,7 @@ export async function carryOver(session: Session, away: PutAwayLayers, renderer:
       from: meshOf(earlier.cage),
       to: meshOf(shown.cage.mesh),
       model: meshOf(shown.target.mesh),
-      transfer: { preset, threshold, weldTolerance, locks: session.choices.locks },
+      transfer: { preset, threshold, weldTolerance, parts: session.choices.parts, locks: session.choices.locks },
     };
     const worker = new Worker(new URL('../loading/relay-worker.ts', import.meta.url), { type: 'module' });
     const relayed = await askWorker<ImageData>(worker, request, [data.buffer]);

@@ -82,7 +82,7 @@ export class FitPanel {
     const {
       shown,
       rules: { preset, threshold, weldTolerance },
-      choices: { locks },
+      choices: { parts, locks },
     } = this.#session;
     if (!shown) return;
     this.#button.hidden = true;
@@ -90,13 +90,8 @@ export class FitPanel {
     this.#client ??= new TransferClient();
     try {
       const { target, cage, projection } = shown;
-      const parts = target.mesh.primitives.map(({ name, firstVertex, vertexCount }) => ({
-        name,
-        firstVertex,
-        vertexCount,
-      }));
       const landmarks = madeOf(shown.cage.files[0]!)?.fitting?.used;
-      const options = { preset, threshold, weldTolerance, locks, parts, landmarks };
+      const options = { preset, threshold, weldTolerance, parts, locks, landmarks };
       this.#write(await this.#client.ask('inspect', cage, withoutParts(target, projection), options));
     } catch (error) {
       if (error instanceof Superseded) return;
@@ -162,7 +157,7 @@ export class FitPanel {
       for (const begin of ['pointerenter', 'focusin']) item.addEventListener(begin, () => this.#highlight(segments));
       for (const end of ['pointerleave', 'focusout']) item.addEventListener(end, () => this.#highlight([]));
     }
-    const entries = Object.entries(locks?.segments ?? {});
+    const entries = Object.entries(locks ?? {});
     for (const lock of ['keep', 'exclude'] as const) {
       const chosen = entries.filter(([, other]) => other === lock).map(([segment]) => Number(segment));
       if (chosen.length > 0) item.append(this.#lockButton(chosen, lock));

@@ -8,7 +8,13 @@ export function arraysOf(cage: Model, target: Model): { cage: Mesh; target: Mesh
   const [outer, inner] = [apart?.cage ?? cage.mesh, apart?.target ?? target.mesh];
   return {
     cage: { positions: outer.positions, indices: outer.indices, uvs: outer.uvs },
-    target: { positions: inner.positions, indices: inner.indices, groups: inner.groups, poses: inner.poses },
+    target: {
+      positions: inner.positions,
+      indices: inner.indices,
+      groups: inner.groups,
+      names: inner.names,
+      poses: inner.poses,
+    },
     ...(apart && { mend: apart.mend }),
   };
 }

@@ -39,8 +39,11 @@ export const bareGroupsOf = (pair: Record<'target' | 'cage', { mesh: ExtractedMe
 export const choiceFor = (segment: number, group: number, chosen: Locks, bareGroups: readonly number[]): Choice =>
   chosen[segment] ?? (bareGroups.includes(group) ? 'exclude' : 'auto');
 
+/** What choices come to. */
+export type Choices = Pick<ClassifyOptions, 'parts' | 'locks' | 'masks'>;
+
 /**
- * The locks and masks that choices come to.
+ * The parts, locks and masks that choices come to.
  * @param bareGroups Those that stay bare without a choice.
  * @param projection Of the model that they are for.
  * @param bare       Its triangles that stay bare, as `BareMarks` gives them.
@@ -50,17 +53,15 @@ export function choicesOf(
   bareGroups: readonly number[],
   projection: Pick<SplitProjection, 'segments'> | undefined,
   bare?: Uint8Array,
-): Pick<ClassifyOptions, 'locks' | 'masks'> {
+): Choices {
   const entries = Object.entries(chosen);
   const always = new Set(entries.flatMap(([segment, choice]) => (choice === 'always' ? [Number(segment)] : [])));
-  const locks = {
-    segments: Object.fromEntries(entries.map(([s, choice]) => [s, asLock(choice)])),
-    groups: Object.fromEntries(bareGroups.map((group) => [group, 'exclude' as const])),
-  };
+  const locks = Object.fromEntries(entries.map(([s, choice]) => [s, asLock(choice)]));
+  const parts = { exclude: bareGroups };
   const vertices =
     always.size > 0 && projection && Int8Array.from(projection.segments, (segment) => (always.has(segment) ? 1 : 0));
   const triangles = bare && Int8Array.from(bare, (mark) => -mark);
-  return { locks, ...((vertices || triangles) && { masks: { vertices: vertices || undefined, triangles } }) };
+  return { parts, locks, ...((vertices || triangles) && { masks: { vertices: vertices || undefined, triangles } }) };
 }
 
 /** What stays bare of each target, by its file: it comes back with the target. */

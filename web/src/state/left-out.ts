@@ -1,5 +1,5 @@
-import type { ClassifyOptions, Lock, Projection, SegmentStats } from 'cagecast';
-import type { Choice, Locks, Rules } from './choices';
+import type { Projection, SegmentStats, TransferOptions } from 'cagecast';
+import type { Choice, Choices, Locks, Rules } from './choices';
 import type { ExtractedMesh, Model } from './model';
 import type { Shown } from './scene';
 import type { SplitProjection, Transferer } from './transfers';
@@ -61,28 +61,24 @@ export function numbersWithout({
   return segmentStats.map(({ group }) => (leftOut.includes(group) ? undefined : next++));
 }
 
-/** Locks and masks as they are for a model without the parts that are left out. */
+/** Choices as they are for a model without the parts that are left out. */
 export function choicesWithout(
-  { locks, masks }: Pick<ClassifyOptions, 'locks' | 'masks'>,
+  { parts, locks, masks }: Choices,
   { groups, indices }: Pick<ExtractedMesh, 'groups' | 'indices'>,
   made: SplitProjection,
-): Pick<ClassifyOptions, 'locks' | 'masks'> {
+): Choices & Pick<TransferOptions, 'parts'> {
   const { leftOut } = made;
-  if (leftOut.length === 0) return { locks, masks };
+  if (leftOut.length === 0) return { parts, locks, masks };
   const segments = numbersWithout(made);
-  const renumbered = (of: Readonly<Record<number, Lock>> = {}, numbers: readonly (number | undefined)[]) =>
-    Object.fromEntries(
-      Object.entries(of).flatMap(([number, lock]) => {
-        const next = numbers[Number(number)];
-        return next === undefined ? [] : [[next, lock] as const];
-      }),
-    );
-  let next = 0;
-  const count = Math.max(...made.segmentStats.map(({ group }) => group)) + 1;
-  const ofGroups = Array.from({ length: count }, (_, group) => (leftOut.includes(group) ? undefined : next++));
   const stays = (vertex: number): boolean => !leftOut.includes(groups[vertex]!);
   return {
-    locks: { segments: renumbered(locks?.segments, segments), groups: renumbered(locks?.groups, ofGroups) },
+    parts: { ...parts, ignore: leftOut },
+    locks: Object.fromEntries(
+      Object.entries(locks ?? {}).flatMap(([segment, lock]) => {
+        const next = segments[Number(segment)];
+        return next === undefined ? [] : [[next, lock] as const];
+      }),
+    ),
     masks: masks && {
       vertices: masks.vertices?.filter((_, vertex) => stays(vertex)),
       triangles: masks.triangles?.filter((_, triangle) => stays(indices[3 * triangle]!)),

@@ -1,17 +1,10 @@
-import {
-  CagecastError,
-  type Classification,
-  type ClassifyOptions,
-  classify,
-  init,
-  type Projection,
-  type Timings,
-} from 'cagecast';
+import { CagecastError, type Classification, classify, init, type Projection, type Timings } from 'cagecast';
 import type { Inspection } from 'cagecast/inspect';
 import {
   BareMarks,
   bareGroupsOf,
   type Choice,
+  type Choices,
   choicesOf,
   kFirstRules,
   knownLocks,
@@ -253,8 +246,8 @@ export class Session extends Replay<SessionEvents> {
     this.#classify();
   }
 
-  /** The locks and masks that the choices come to. */
-  get choices(): Pick<ClassifyOptions, 'locks' | 'masks'> {
+  /** What the choices come to. */
+  get choices(): Choices {
     return choicesOf(this.#locks, bareGroupsOf(this.#shown), this.#shown?.projection, this.bare);
   }
 

@@ -24,9 +24,12 @@ import { cutTarget, type Run, runTransfer } from '../transfer/run-transfer.js';
 import { listNames, paintForModel, paintOfModel } from './bake-picture.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
+import { addTarget } from './transfer-command.js';
 
 interface BakeFlags extends common.SettingFlags, common.ReadFlags, common.PrintFlags {
+  cage?: string;
   /** Files of images in the cage's UVs. */
+  texture?: string;
   normal?: string;
   orm?: string;
   /** A GLB or VRM, or a PNG: the paint alone, in the model's UVs. */
@@ -41,7 +44,7 @@ interface BakeFlags extends common.SettingFlags, common.ReadFlags, common.PrintF
 }
 
 /** The arguments of `cagecast bake`. */
-interface BakeCommand extends Sources, Omit<BakeFlags, keyof common.SettingFlags> {
+interface BakeCommand extends Sources, Omit<BakeFlags, keyof common.SettingFlags | 'cage' | 'texture'> {
   paint: string | undefined;
   borders: Borders;
 }
@@ -58,20 +61,14 @@ With --atlas, materials that differ only by textures and factors become one. Mat
 the texture repeats, and if extensions may refer to them, as those of VRM 0 and MToon do; the summary says which.
 
 Examples:
-  cagecast bake head.glb cage.glb paint.png --normal scales.png --size 2048 -o painted.glb
-  cagecast bake head.glb cage.glb --back -o paint-again.png`;
+  cagecast bake head.glb --cage cage.glb --texture paint.png --normal scales.png --size 2048 -o painted.glb
+  cagecast bake head.glb --cage cage.glb --back -o paint-again.png`;
 
 /** Adds the command that bakes paint into textures. */
 export function addBakeCommand(program: Command, io: Io): void {
-  const command = program
-    .command('bake')
+  const command = addTarget(program.command('bake'))
     .description("bake PAINT into TARGET's own textures, in its own UVs; its geometry stays as it is")
-    .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ')
-    .argument(
-      '<CAGE>',
-      'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ with UVs that the paint was drawn for; auto makes one',
-    )
-    .argument('[PAINT]', "PNG in the cage's UV space; JPEG and WebP where sharp is installed")
+    .option('--texture <PAINT>', "PNG in the cage's UV space; JPEG and WebP where sharp is installed")
     .addOption(
       common
         .parsed(
@@ -101,32 +98,28 @@ export function addBakeCommand(program: Command, io: Io): void {
     )
     .addOption(common.bordersFlag());
   common.addFlags(command, 'What is painted', 'How files are read', 'What is printed');
-  command
-    .addHelpText('after', kHelp)
-    .action((target: string, cage: string, paint: string | undefined, flags: BakeFlags) => {
-      const fault = faultOf(paint, flags);
-      if (fault !== undefined) throw new UsageError(fault);
-      const inputs = [target, ...common.inputsOf({ ...flags, cage, texture: paint }), flags.normal, flags.orm];
-      return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
-        const settings = resolveSettings(await common.layersFor(flags)(target));
-        return bakeCommand({ ...flags, target, cage, paint, ...settings, reading: common.readingOf(flags) }, io);
-      });
+  command.addHelpText('after', kHelp).action((target: string, flags: BakeFlags) => {
+    const { cage = target, texture: paint } = flags;
+    const fault = faultOf(flags);
+    if (fault !== undefined) throw new UsageError(fault);
+    const inputs = [target, ...common.inputsOf(flags), flags.normal, flags.orm];
+    return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
+      const settings = resolveSettings(await common.layersFor(flags)(target));
+      const reading = common.readingOf(flags);
+      return bakeCommand({ ...flags, target, cage, isOwnCage: !flags.cage, paint, ...settings, reading }, io);
     });
+  });
 }
 
 /** What is wrong with the arguments together, if anything is. */
-function faultOf(
-  paint: string | undefined,
-  { output, normal, orm, back, atlas, part = [] }: BakeFlags,
-): string | undefined {
+function faultOf({ output, texture, normal, orm, back, atlas, part = [] }: BakeFlags): string | undefined {
   const isPicture = output.toLowerCase().endsWith('.png');
   const hasMaps = normal !== undefined || orm !== undefined;
-  if (back && (!isPicture || paint !== undefined || hasMaps))
-    return '--back takes TARGET and CAGE only, and writes a PNG';
-  if (!back && isPicture && paint === undefined) return 'to write a PNG, PAINT is needed';
+  if (back && (!isPicture || texture !== undefined || hasMaps)) return '--back takes no paint, and writes a PNG';
+  if (!back && isPicture && texture === undefined) return 'to write a PNG, --texture is needed';
   if (isPicture && hasMaps) return '--normal and --orm need an OUT.glb';
   if (isPicture && atlas !== undefined) return '--atlas needs an OUT.glb';
-  if (!back && paint === undefined && !hasMaps) return 'there is nothing to bake: give PAINT, --normal or --orm';
+  if (!back && texture === undefined && !hasMaps) return 'there is nothing to bake: give --texture, --normal or --orm';
   return !isPicture && part.length > 0 ? '--part is for a PNG; for a GLB, use --exclude' : undefined;
 }
 

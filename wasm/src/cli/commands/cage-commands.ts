@@ -38,7 +38,7 @@ const kClosingRange = [0.0005, 0.2] as const;
 interface CageFileFlags extends common.ReadFlags, common.PrintFlags {
   output: string;
   html?: string;
-  /** Patterns of names that replace the default ones. */
+  keep?: string[];
   exclude?: string[];
 }
 
@@ -49,12 +49,17 @@ interface MakeFlags extends CageFileFlags {
 }
 
 interface FitFlags extends CageFileFlags {
+  template: string;
   templateLandmarks?: string;
   landmarks?: string;
 }
 
 /** The rules of a transfer with no other flags. */
-const rulesOf = ({ ignore = [] }: CageFileFlags): Rules => resolveSettings([{ settings: { ignore } }]).rules;
+const rulesOf = ({ ignore = [], keep = [], exclude = [] }: CageFileFlags): Rules =>
+  resolveSettings([{ settings: { ignore, keep, exclude } }]).rules;
+
+/** The parts that flags name. */
+const partsOf = (flags: CageFileFlags, model: ReadModel) => transferOptions(rulesOf(flags), model, []).parts;
 
 const kExitCodes = '\nExit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.';
 
@@ -91,7 +96,7 @@ export function addCageCommands(program: Command, io: Io): void {
       'after',
       `${kExitCodes}
 
-Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o cage.glb`,
+Example: cagecast make head.glb --exclude visor --keep 'hair*' --triangles 800 -o cage.glb`,
     )
     .action((target: string, flags: MakeFlags) =>
       perform(io, flags, { inputs: [target], outputs: [flags.output, flags.html] }, () => makeFor(target, flags, io)),
@@ -99,9 +104,12 @@ Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o
 
   const fit = program
     .command('fit')
-    .argument('<TEMPLATE>', `GLB, glTF or OBJ of a cage for another model; or ${templateNames.join(', ')}`)
     .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ of the model that gets the cage')
     .description('move a template cage onto TARGET, so that one texture fits both; print a verdict')
+    .requiredOption(
+      '--template <TEMPLATE>',
+      `GLB, glTF or OBJ of a cage for another model; or ${templateNames.join(', ')}`,
+    )
     .option(
       '--template-landmarks <T.json>',
       'landmarks of the model that TEMPLATE was made for (default: those in the file, as extras.landmarks)',
@@ -115,35 +123,34 @@ Example: cagecast make head.glb --exclude eye --exclude teeth --triangles 800 -o
 Files of landmarks are JSON, name → [x, y, z] in the model's space: { "nose_tip": [0, 1.52, 0.11], … }${kExitCodes}
 
 Examples:
-  cagecast fit human-head head.glb -o cage.glb
-  cagecast fit template.glb head.glb --landmarks head.json -o cage.glb --html report.html`,
+  cagecast fit head.glb --template human-head -o cage.glb
+  cagecast fit head.glb --template template.glb --landmarks head.json -o cage.glb --html report.html`,
     )
-    .action((template: string, target: string, flags: FitFlags) => {
-      const inputs = [template, target, flags.templateLandmarks, flags.landmarks];
+    .action((target: string, flags: FitFlags) => {
+      const inputs = [flags.template, target, flags.templateLandmarks, flags.landmarks];
       return perform(io, flags, { inputs, outputs: [flags.output, flags.html] }, () =>
-        fitTo(template, target, flags, io),
+        fitTo(flags.template, target, flags, io),
       );
     });
 }
 
 /** Makes a cage for a model and inspects it. @throws {InputError} that names the file at fault; then no file is written. */
 async function makeFor(target: string, flags: MakeFlags, io: Io): Promise<Found> {
-  const { exclude, triangles, kind, closing } = flags;
-  const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags).ignored);
-  const cage = await makeCageFor(model, { exclude, triangles, kind, closing }, io);
+  const { triangles, kind, closing } = flags;
+  const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags));
+  const cage = await makeCageFor(model, { parts: partsOf(flags, model), triangles, kind, closing }, io);
   return finish({ ...cage, landmarks: await landmarksOf(model, io) }, model, flags, io);
 }
 
 /** Fits a template cage to a model and inspects it. @throws {InputError} that names the file at fault; then no file is written. */
 async function fitTo(path: string, target: string, flags: FitFlags, io: Io): Promise<Found> {
-  const { exclude } = flags;
   const template = await readTemplate(path, flags, io);
   const given = flags.landmarks === undefined ? undefined : await readLandmarks(flags.landmarks);
-  const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags).ignored);
+  const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags));
   const { origin } = model.extracted;
   const landmarks = given && landmarksMoved(given, origin, -1);
   const files = { template: path, landmarks: flags.landmarks };
-  const fit = await fitCageTo(model, { template, landmarks, files, options: { exclude } }, io);
+  const fit = await fitCageTo(model, { template, landmarks, files, options: { parts: partsOf(flags, model) } }, io);
   const used = landmarksMoved(fit.used, origin, 1);
   return finish(fit.cage, model, flags, io, describeFit({ ...fit, used }, landmarks ?? {}));
 }
@@ -244,9 +251,6 @@ function describeFit({ used, confidence, missing, guessed }: Fit, given: Landmar
   return { lines, advice, otherwise, report: { landmarks: { used, confidence, missing, guessed } } };
 }
 
-/** Said where findings advise flags that these commands do not have, or have for something else. */
-const kOtherFlags = '--keep and --exclude, as advised here, are flags of cagecast transfer';
-
 /** Inspects a cage, as `inspect` does without flags, and writes the files. */
 async function finish(
   cage: Cage,
@@ -273,7 +277,6 @@ async function finish(
     verdict !== 'good' && notes.advice,
     ...conclusion,
     verdict === 'unfit' && notes.otherwise,
-    conclusion.some((line) => /--(keep|exclude) "/.test(line)) && kOtherFlags,
     html && `wrote ${html}`,
   ];
   const exitCode = verdict === 'unfit' ? kExit.unfit : 0;

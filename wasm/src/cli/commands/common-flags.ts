@@ -69,6 +69,16 @@ const kOutputFlags = [
 /** The flag for a page about a cage. */
 export const htmlFlag = (): Option => parsed('--html <REPORT.html>', 'a page with pictures', endingIn('.html'));
 
+/** What counts, by name; `--ignore` is one of the flags for reading. */
+const kPartFlags = [
+  parsed(
+    '--keep <NAME>',
+    'paint parts of this node, mesh or material wherever the cage covers them, whatever rules and names say. The whole name; * matches any text, case does not matter; a node that holds others means all below it; may be repeated',
+    oneMore,
+  ),
+  parsed('--exclude <NAME>', 'never paint parts of this node, mesh or material; as --keep', oneMore),
+];
+
 const kCageFileFlags = [
   parsed(
     '-o, --output <CAGE.glb>',
@@ -76,11 +86,7 @@ const kCageFileFlags = [
     endingIn('.glb'),
   ).makeOptionMandatory(),
   htmlFlag(),
-  parsed(
-    '--exclude <NAME>',
-    'do not paint parts with this word in the name of their node or material, nor those below such a node (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair; an empty name excludes nothing',
-    (name: string, before: string[] = []) => (name === '' ? before : [...before, name]),
-  ),
+  ...kPartFlags,
 ];
 
 /** A flag of true or false. */
@@ -110,12 +116,7 @@ const optionOf = (option: (typeof optionFlags)[number]): Option => {
 const kSettingFlags = [
   choice('--preset <NAME>', 'values of the options that are not given', kChoices.preset),
   ...optionFlags.map(optionOf),
-  parsed(
-    '--keep <NAME>',
-    'keep parts of this node or material, whatever the rules say. * matches any text; a node that holds others means all below it; may be repeated',
-    oneMore,
-  ),
-  parsed('--exclude <NAME>', 'never paint parts of this node or material; as --keep', oneMore),
+  ...kPartFlags,
   new Option('--never-mask <IMAGE>', "never paint where this image, in TARGET's own UVs, is white"),
   new Option('--always-mask <IMAGE>', 'paint where this one is white, whatever the rules say'),
   parsed(
@@ -145,7 +146,7 @@ const kCageFlags = [
 const kReadFlags = [
   parsed(
     '--ignore <NAME>',
-    'leave parts of TARGET out, as if they were not there: nodes, meshes or materials of this name; as --keep. What a viewer does not draw is left out, too, as are cages, markers and collision shapes, by their names; an empty name takes these in',
+    'leave parts of TARGET out, as if they were not there: nodes, meshes or materials of this name; as --keep. What a viewer does not draw is left out, too, as are cages, markers and collision shapes, by their names, unless --keep names them',
     oneMore,
   ),
   new Option(

@@ -31,21 +31,20 @@ export function makeProgram(io: Io): Command {
       `
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
-  cagecast bake head.glb cage.glb paint.png -o painted.glb
+  cagecast bake head.glb --cage cage.glb --texture paint.png -o painted.glb
   cagecast inspect head.glb --cage cage.glb
   cagecast make head.glb -o cage.glb
-  cagecast fit template.glb head.glb -o cage.glb
+  cagecast fit head.glb --template template.glb -o cage.glb
   cagecast batch 'heads/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
   cagecast thumbnail painted.glb -o painted.png
 
 Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make, fit or batch finds a cage unfit,
 4 diff finds a change over the limit.`,
     );
-  // An empty path would be the current folder, and nothing has an empty name. To --ignore, it says something of its own.
+  // An empty path would be the current folder, and nothing has an empty name.
   program.hook('preAction', (_, command) => {
     const hasEmpty = (value: unknown) => [value].flat().includes('');
-    const names = command.options.filter((option) => option.long !== '--ignore');
-    const flag = names.find((option) => hasEmpty(command.getOptionValue(option.attributeName())))?.long;
+    const flag = command.options.find((option) => hasEmpty(command.getOptionValue(option.attributeName())))?.long;
     const argument = command.registeredArguments.find((_, i) => hasEmpty(command.processedArgs[i]))?.name();
     if (flag ?? argument) throw new UsageError(`${flag ?? argument} is empty`);
   });
@@ -65,6 +64,10 @@ Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make
 const inOneLine = (text: string): string =>
   text
     .replace(/^error: /, '')
+    .replace(
+      /^too many arguments.*/s,
+      (all) => `${all} The model is the one argument; the rest are flags, such as --cage, --texture and --template.`,
+    )
     .split('\n')
     .map((line) => line.trim())
     .join(' ')

@@ -17,8 +17,11 @@ import { readTarget } from '../transfer/read-target.js';
 import { runTransfer } from '../transfer/run-transfer.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
+import { addTarget } from './transfer-command.js';
 
 interface RelayFlags extends common.SettingFlags, common.ReadFlags, common.PrintFlags {
+  cage?: string;
+  texture: string;
   /** The other cage. */
   to: string;
   /** A PNG in its UVs. */
@@ -38,22 +41,16 @@ Where several surfaces share a place in the other cage's UVs, the one nearest to
 paint beside them; what it does not paint otherwise stays transparent.
 
 Example:
-  cagecast relay head.glb cage.glb paint.png --to fitted.glb -o paint-for-template.png`;
+  cagecast relay head.glb --cage cage.glb --texture paint.png --to fitted.glb -o paint-for-template.png`;
 
 /** More of the paint than this is lost where a cage's UVs overlap, or where it does not tell limbs apart. */
 const kMuchLost = 0.1;
 
 /** Adds the command that carries a paint from one cage to another. */
 export function addRelayCommand(program: Command, io: Io): void {
-  const command = program
-    .command('relay')
+  const command = addTarget(program.command('relay'))
     .description('carry PAINT, drawn for CAGE, over to another cage on the same TARGET')
-    .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ that both cages are around')
-    .argument(
-      '<CAGE>',
-      'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ with UVs that the paint was drawn for; auto makes one',
-    )
-    .argument('<PAINT>', "PNG in the cage's UV space; JPEG and WebP where sharp is installed")
+    .requiredOption('--texture <PAINT>', "PNG in the cage's UV space; JPEG and WebP where sharp is installed")
     .requiredOption('--to <CAGE>', 'the other cage; auto makes one')
     .addOption(
       common
@@ -73,15 +70,13 @@ export function addRelayCommand(program: Command, io: Io): void {
       ),
     );
   common.addFlags(command, 'What is painted', 'How files are read', 'What is printed');
-  command.addHelpText('after', kHelp).action((target: string, cage: string, paint: string, flags: RelayFlags) => {
-    const inputs = [
-      target,
-      ...common.inputsOf({ ...flags, cage, texture: paint }),
-      ...common.inputsOf({ cage: flags.to }),
-    ];
+  command.addHelpText('after', kHelp).action((target: string, flags: RelayFlags) => {
+    const { cage = target, texture: paint } = flags;
+    const inputs = [target, ...common.inputsOf(flags), ...common.inputsOf({ cage: flags.to })];
     return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
       const { rules } = resolveSettings(await common.layersFor(flags)(target));
-      return relayCommand({ ...flags, target, cage, paint, rules, reading: common.readingOf(flags) }, io);
+      const reading = common.readingOf(flags);
+      return relayCommand({ ...flags, target, cage, isOwnCage: !flags.cage, paint, rules, reading }, io);
     });
   });
 }
@@ -90,7 +85,7 @@ export function addRelayCommand(program: Command, io: Io): void {
 async function relayCommand(command: RelayCommand, io: Io): Promise<Found> {
   const { target, cage, paint, to: other, output, kind, size, rules, reading } = command;
   const image = await readImage(paint, reading);
-  const model = await readTarget(target, reading, io, rules.ignored);
+  const model = await readTarget(target, reading, io, rules);
   const from = await runTransfer(command, io, undefined, model);
   const to = await runTransfer({ ...command, cage: other }, io, undefined, model);
   io.step('carrying the paint over');

@@ -158,10 +158,10 @@ async function draw(model: string, flags: ThumbnailFlags, cage: Mesh | undefined
   const { output, size, view, part, ignore = [] } = flags;
   const background = flags.background ?? (/\.jpe?g$/i.test(output) ? kWhite : undefined);
   const file = await readGltf(model, common.readingOf(flags));
-  const { ignored } = resolveSettings([{ settings: { ignore } }]).rules;
-  const options = { size, view, parts: part, cage, background, decode: decodeImage };
+  const { rules } = resolveSettings([{ settings: { ignore } }]);
+  const options = { size, view, frame: part, cage, background, decode: decodeImage };
   try {
-    return { ...(await drawFile(file, options, allBut(ignored))), ...(file.missing && { missing: file.missing }) };
+    return { ...(await drawFile(file, options, allBut(rules))), ...(file.missing && { missing: file.missing }) };
   } catch (error) {
     throw error instanceof InputError && error.message.startsWith(model) ? error : withName(error, model);
   }

@@ -54,11 +54,11 @@ export function inspectionReport(
 ): InspectionReport {
   const { target, wholeCage, options, result } = run;
   const cage = withinBounds(wholeCage, textures.length > 0 ? boundsAround(textures) : undefined);
-  const { mesh, parts } = target.extracted;
+  const { mesh } = target.extracted;
   const areas = perZone(result.zones, vertexAreas(mesh));
   const total = areas.cosmetic + areas.occluded + areas.uncovered + areas.culled || 1;
   return {
-    ...inspect(cage.extracted.mesh, mesh, { ...options, result, parts, landmarks: landmarksIn(cage) }),
+    ...inspect(cage.extracted.mesh, mesh, { ...options, result, landmarks: landmarksIn(cage) }),
     versions: versions(),
     target: {
       ...targetReport(command.target, run),
@@ -106,8 +106,8 @@ export function conclusionOf({ verdict, findings }: Inspection): string[] {
 export function adviceOn({ advice, places = [], locks, ignore = [], numbers: { weldTolerance } }: Finding): string {
   if (weldTolerance !== undefined) return `${advice} By: --weld-tolerance ${weldTolerance}`;
   if (ignore.length > 0) return `${advice} By: ${ignore.map((name) => `--ignore "${name}"`).join(' ')}`;
-  const locked = places.filter(({ segment }) => locks?.segments?.[segment] !== undefined);
-  const flags = new Set(locked.map(({ segment, part }) => `--${locks!.segments![segment]} "${part}"`));
+  const locked = places.filter(({ segment }) => locks?.[segment] !== undefined);
+  const flags = new Set(locked.map(({ segment, part }) => `--${locks![segment]} "${part}"`));
   return flags.size === 0 ? advice : `${advice} To override: ${[...flags].join(' ')}`;
 }
 
@@ -117,6 +117,7 @@ const kFates: Record<Segment['culledBy'], string> = {
   coverage: 'culled',
   hole: 'culled (hole)',
   lock: 'culled (lock)',
+  ignore: 'ignored',
 };
 
 /** The segments with the largest exposed areas, as a table. @param most  How many. */

@@ -23,7 +23,7 @@ export async function readModel(
 ): Promise<ReadModel> {
   io.step(`reading ${path}`);
   const file = await readGltf(path, reading, bytes);
-  const extracted = extract(file, 'own', whichCount, "; --ignore '' takes what is not drawn, too");
+  const extracted = extract(file, 'own', whichCount, '; name what counts by --keep');
   if (extracted.mesh.indices.length > 0) return { file, extracted };
   const what = (file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene';
   throw new InputError(`has no ${what}; at least one triangle is needed`).in(path);

@@ -1,6 +1,6 @@
 import { InputError } from '../../gltf/input-error.js';
 import { type Named, partsNamed, type ReadModel } from '../../gltf/read-model.js';
-import type { TransferOptions } from '../../index.js';
+import type { Lock, TransferOptions } from '../../index.js';
 import { leftOutText } from '../../parts/drawn.js';
 import type { Rules } from '../model/settings.js';
 import { cut, kMaxCharacters, listed, quoted } from '../model/text.js';
@@ -24,7 +24,7 @@ export function noSuchName(flag: string, { file: { json }, extracted }: Named): 
 }
 
 /**
- * The options of `transfer`. Names of parts become locks by group, because each part is a group.
+ * The options of `transfer`. Names of parts become numbers of groups, because each part is a group.
  * @param bare  The parts that are excluded if nothing is said of them.
  * @throws {InputError} that names the file, if nothing has a given name, or a part is both kept and excluded in one place.
  */
@@ -41,7 +41,7 @@ export function transferOptions(
       throw noSuchName(`--${rule.lock} ${rule.pattern}`, model).in(model.file.path);
     for (const p of found) saidOf[p]!.push(rule);
   }
-  const groups = parts.flatMap(({ name }, p) => {
+  const groups = parts.flatMap(({ name }, p): [number, Lock][] => {
     const rank = Math.max(...saidOf[p]!.map((rule) => rule.rank));
     const [first, ...others] = saidOf[p]!.filter((rule) => rule.rank === rank);
     if (first === undefined) return bare.includes(p) ? [[p, 'exclude']] : [];
@@ -51,5 +51,6 @@ export function transferOptions(
     const both = [first, other].map(({ lock, pattern }) => `--${lock} ${pattern}`).join(' and ');
     throw new InputError(`${both} both match ${quoted(name)}${place}`).in(model.file.path);
   });
-  return { preset, ...single, locks: { groups: Object.fromEntries(groups) } };
+  const those = (lock: Lock) => groups.flatMap(([p, is]) => (is === lock ? [p] : []));
+  return { preset, ...single, parts: { keep: those('keep'), exclude: those('exclude') } };
 }

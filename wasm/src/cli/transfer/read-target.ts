@@ -8,31 +8,30 @@ import { readModel } from './models.js';
 import { noSuchName } from './part-names.js';
 
 /**
- * Reads a target: what is drawn of it, without the parts that are ignored.
- * @param ignored  Patterns of names. An empty one stands for itself: then also what is not drawn counts.
+ * Reads a target: its drawn and its kept parts, without ignored ones.
  * @throws {InputError} that names the file; if a pattern matches nothing, or all is left out, too.
  */
 export function readTarget(
   path: string,
   reading: ReadOptions,
   io: Io,
-  ignored: Rules['ignored'],
+  rules: Pick<Rules, 'ignored' | 'names'>,
   bytes?: Uint8Array,
 ): Promise<ReadModel> {
-  return readModel(path, reading, io, { bytes, whichCount: allBut(ignored) });
+  return readModel(path, reading, io, { bytes, whichCount: allBut(rules) });
 }
 
-/** What is drawn, without the parts that are ignored; see `readTarget`. */
-export function allBut(ignored: Rules['ignored']): Exclude<WhichCount, 'cage'> {
-  const patterns = ignored.filter(({ pattern }) => pattern !== '');
+/** What is drawn or kept, without the parts that are ignored; see `readTarget`. */
+export function allBut({ ignored, names }: Pick<Rules, 'ignored' | 'names'>): Exclude<WhichCount, 'cage'> {
   return (parts, file) => {
     const out = new Set<number>();
-    for (const { pattern, isOptional } of patterns) {
-      const found = partsNamed(pattern, { file, extracted: { parts: [...parts] } });
-      if (found.length === 0 && !isOptional)
-        throw noSuchName(`--ignore ${pattern}`, { file, extracted: { parts: [...parts] } });
+    const all = { file, extracted: { parts: [...parts] } };
+    const kept = new Set(names.flatMap(({ lock, pattern }) => (lock === 'keep' ? partsNamed(pattern, all) : [])));
+    for (const { pattern, isOptional } of ignored) {
+      const found = partsNamed(pattern, all);
+      if (found.length === 0 && !isOptional) throw noSuchName(`--ignore ${pattern}`, all);
       for (const p of found) out.add(p);
     }
-    return (p, isDrawn) => (isDrawn || patterns.length < ignored.length) && !out.has(p);
+    return (p, isDrawn) => (isDrawn || kept.has(p)) && !out.has(p);
   };
 }

@@ -54,7 +54,7 @@ export async function transferRegion(
 ): Promise<RegionRun> {
   const { target, output, reading, uvBounds } = command;
   const paint = texture === undefined || isTiled(texture) ? undefined : await readPaint(texture, reading.limits);
-  const model = before && (await readTarget(target, reading, io, command.rules.ignored, before.bytes));
+  const model = before && (await readTarget(target, reading, io, command.rules, before.bytes));
   const run = await runTransfer(command, io, readCage, model);
   const tiles = texture !== undefined && isTiled(texture) ? await readTiles(texture, run.cage, reading.limits) : [];
   const areas: PaintArea[] = uvBounds ? ['bounded'] : tiles.map(({ tile }) => ({ tile }));

@@ -53,12 +53,18 @@ export async function runTransfer(
   readCage: typeof readModel = readModel,
   read?: ReadModel,
 ): Promise<Run> {
-  const target = read ?? (await readTarget(path, reading, io, rules.ignored));
+  const target = read ?? (await readTarget(path, reading, io, rules));
   const masks = await readMasks(target, rules.masks, reading);
   const isMade = cage === kAutoCage;
   const cageOf = async (file: string) =>
     besideOf(target, withUvs(isOwnCage && file === cage ? cageIn(target) : await readCage(file, reading, io)));
-  const whole = isMade ? await readBack(await makeCageFor(target, {}, io), kAutoCage, target) : await cageOf(cage);
+  const whole = isMade
+    ? await readBack(
+        await makeCageFor(target, { parts: transferOptions(rules, target, []).parts }, io),
+        kAutoCage,
+        target,
+      )
+    : await cageOf(cage);
   const bare = bareParts(target, whole);
   const options = { ...transferOptions(rules, target, bare), ...(masks && { masks }) };
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
@@ -67,7 +73,7 @@ export async function runTransfer(
   const first = await transferModels(apart.target, withinBounds(wholeCage, uvBounds), options, io);
   // Cages that have names know which way they face.
   const run = apart.target === target ? await faceForward(first, io) : first;
-  const names = bare.flatMap((p) => (options.locks?.groups?.[p] === 'keep' ? [] : [target.extracted.parts[p]!.name]));
+  const names = bare.flatMap((p) => (options.parts?.keep?.includes(p) ? [] : [target.extracted.parts[p]!.name]));
   const { diagonal } = boxOf(target.extracted.mesh.positions);
   return {
     ...run,

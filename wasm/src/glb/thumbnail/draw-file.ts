@@ -1,8 +1,8 @@
-import { type Drawn, extract, extractDrawn, type WhichCount } from '../../gltf/extract-file.js';
+import { partsNamed } from '../../api/parts.js';
+import { type Drawn, extract, extractDrawn, namedParts, type WhichCount } from '../../gltf/extract-file.js';
 import { InputError, naming } from '../../gltf/input-error.js';
 import { type GltfFile, openGltf } from '../../gltf/open-gltf.js';
 import { CagecastError, type Mesh } from '../../index.js';
-import { partsOf } from '../locks.js';
 import { hostDecode } from './decode.js';
 import { drawSurfaces } from './draw.js';
 import { framed, headPoints, pointsOf } from './frame.js';
@@ -55,12 +55,13 @@ interface Model {
 /** What fills the picture, and its points, 3 numbers each. @throws {InputError} */
 async function toFill(
   { file, drawn, surfaces }: Model,
-  { view, parts: patterns, cage }: ThumbnailOptions,
+  { view, frame: patterns, cage }: ThumbnailOptions,
 ): Promise<[Thumbnail['framed'], ArrayLike<number>]> {
   if (patterns) {
     // Overlays are named as what they lie on.
     const own = drawn.parts.filter((part) => !drawn.overlays.has(part));
-    const named = patterns.flatMap((pattern) => partsOf({ file, extracted: { parts: own } }, 'parts', pattern));
+    const fail = (text: string) => new InputError(`frame: ${text}`);
+    const named = patterns.flatMap((pattern) => partsNamed(pattern, namedParts(file, own), fail));
     return ['parts', pointsOf(named.map((p) => surfaces[drawn.parts.indexOf(own[p]!)]!))];
   }
   if (cage) return ['cage', (await cagePoints(cage)).map((x, i) => x - drawn.origin[i % 3]!)];

@@ -12,7 +12,7 @@ export interface ThumbnailOptions {
    */
   view?: ViewName | Angles | undefined;
   /** Patterns for names of nodes, meshes and materials: what is to fill the picture, in which `*` stands for any text. Default: all that is drawn. */
-  parts?: readonly string[] | undefined;
+  frame?: readonly string[] | undefined;
   /** What is to fill the picture, by a cage around it: the bytes of a GLB, or a mesh, in the space of the model's scene. */
   cage?: Uint8Array | Pick<Mesh, 'positions'> | undefined;
   /** The colour behind the model: `#rrggbb`, or `#rrggbbaa`. Default: transparent. */

@@ -7,7 +7,7 @@ import { drawFile } from './draw-file.js';
 import { isColor, kLargest, kSmallest, type Thumbnail, type ThumbnailOptions } from './options.js';
 import { views } from './views.js';
 
-const kOptions = ['size', 'view', 'parts', 'cage', 'background', 'decode'];
+const kOptions = ['size', 'view', 'frame', 'cage', 'background', 'decode'];
 
 /**
  * Draws a model, painted or not: the bytes of a GLB or VRM in, a picture out. Without a GPU, a page or three.js, so it runs in Node, workers
@@ -48,7 +48,7 @@ export async function thumbnail(bytes: Uint8Array, options: ThumbnailOptions = {
 function checkOptions(options: ThumbnailOptions): void {
   const fault = faultOfNames('thumbnail', 'options', options, kOptions);
   if (fault !== undefined) throw new CagecastError('badOption', 'thumbnail', fault);
-  const { size, view, parts, cage, background, decode } = options;
+  const { size, view, frame, cage, background, decode } = options;
   const check = (name: string, value: unknown, isRight: boolean, type: string) => {
     if (value !== undefined && !isRight) throw wrong(`options.${name}`, value, type, 'badOption');
   };
@@ -74,18 +74,18 @@ function checkOptions(options: ThumbnailOptions): void {
       typeof view === 'string' && Object.hasOwn(views, view),
       `${Object.keys(views).join(', ')} or { azimuth, elevation }`,
     );
-  check('parts', parts, Array.isArray(parts) && parts.length > 0, 'an array of patterns');
+  check('frame', frame, Array.isArray(frame) && frame.length > 0, 'an array of patterns');
   check(
     'cage',
     cage,
     cage instanceof Uint8Array || (cage?.positions instanceof Float32Array && cage.positions.length > 0),
     'the bytes of a GLB, or a mesh',
   );
-  if (parts && cage)
+  if (frame && cage)
     throw new CagecastError(
       'badOption',
       'thumbnail',
-      'options.parts and options.cage are both given; one of them says what fills the picture',
+      'options.frame and options.cage are both given; one of them says what fills the picture',
     );
   check('background', background, isColor(background), 'a colour such as "#ffffff"');
   check('decode', decode, typeof decode === 'function', 'a function');

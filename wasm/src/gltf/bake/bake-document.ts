@@ -1,16 +1,16 @@
 import type { Document } from '@gltf-transform/core';
+import type { Parts } from '../../api/parts.js';
 import { mostTexels } from '../../bake/index.js';
 import type { Mesh, TransferOptions } from '../../index.js';
 import { type Borders, isCut } from '../../parts/cut-part.js';
 import { addTransfer } from '../document/add-transfer.js';
 import { removeOverlays } from '../document/earlier-in-document.js';
-import type { PartsOption } from '../document/extract-document.js';
 import { ofArgument, transferDocument, wrong } from '../document/transfer-document.js';
 import type { MaskSources } from './mask-sources.js';
 import { type BakeReport, bakeModel, type ImageCodec, type Paints, type Slot, slots } from './plan.js';
 
 /** Options of `bake`: those of `transfer`, and what to bake. */
-export interface BakeOptions extends TransferOptions, MaskSources {
+export interface BakeOptions extends Omit<TransferOptions, 'parts'>, MaskSources {
   /**
    * The cage that the paints were drawn for: a mesh, or a document, of which the default scene is used. It must have UVs.
    * Default: the meshes of the document that are named as the outer cages of others, as `Head_OuterCage` of `Head_Geo`.
@@ -29,8 +29,8 @@ export interface BakeOptions extends TransferOptions, MaskSources {
    * hold the paint get an overlay. Default: the geometry stays as it is, and such parts are not painted.
    */
   texture?: Uint8Array | undefined;
-  /** Which primitives are painted. Default: what a viewer draws; see `cagecast`. */
-  parts?: PartsOption | undefined;
+  /** What counts, as for `cagecast`. */
+  parts?: Parts | undefined;
   /** Called with what was done. */
   onBaked?: ((report: BakeReport) => void) | undefined;
 }

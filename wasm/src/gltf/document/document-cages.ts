@@ -47,7 +47,7 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
     positions,
     indices,
     groups,
-    parts: parts.map(partNames),
+    names: parts.map(partNames),
     ...skeletonOf(document, parts, vrmBones(extensions)),
     hints: faceHints(morphedParts(document, parts, positions, vrmExpressions(extensions))),
   };

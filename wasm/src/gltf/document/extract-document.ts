@@ -7,6 +7,7 @@ import type {
   Primitive,
   TextureInfo,
 } from '@gltf-transform/core';
+import type { Parts } from '../../api/parts.js';
 import type { Mesh } from '../../index.js';
 import type { Vector } from '../../inspect/geometry.js';
 import { identity, type Matrix, multiply } from '../../parts/affine.js';
@@ -48,12 +49,6 @@ export interface DocumentPart extends Piece {
   primitive: Primitive;
 }
 
-/**
- * Says which primitives of nodes are transferred to; the others stay as they are, and hide nothing.
- * @param isDrawn  Whether a viewer draws it, and it is no cage, marker or collision shape by its name, and no backdrop.
- */
-export type PartsOption = (primitive: Primitive, node: Node, isDrawn: boolean) => boolean;
-
 /** The triangles of a document's scene as arrays, and the parts that they come from. */
 export interface ExtractedDocument {
   /** With one group per part; with UVs if every primitive has the set of its base colour texture, or the first without one. */
@@ -63,6 +58,9 @@ export interface ExtractedDocument {
   leftOut: LeftOut[];
   /** The numbers of parts that a figure wears or carries. */
   accessories: number[];
+  /** The numbers of parts that patterns keep, and exclude. */
+  kept: number[];
+  excluded: number[];
   /** What was subtracted from their places in the scene. */
   origin: Vector;
 }
@@ -77,23 +75,18 @@ export interface ExtractedDocument {
 export function extractDocument(
   document: Document,
   origin: Origin = kSceneOrigin,
-  isMeant?: PartsOption | 'cage',
+  which?: Parts | 'cage',
 ): ExtractedDocument {
   const all = listParts(document);
-  const asked =
-    typeof isMeant === 'function'
-      ? (p: number, isDrawn: boolean) => isMeant(all[p]!.primitive, all[p]!.node, isDrawn)
-      : isMeant;
-  const fail = (text: string) => new InputError(`${text}; the option parts says which count`);
-  const { parts, leftOut, accessories } = chooseParts(all, lookOf, asked, fail);
+  const { parts, leftOut, ...numbers } = chooseParts(all, lookOf, which, (text) => new InputError(text));
   renumber(parts);
   const others = {
     leftOut: leftOut.map(({ name, why }) => ({ name, why })),
-    accessories,
+    ...numbers,
     origin: moveTo(parts, origin),
   };
   const joined = joinPieces(parts);
-  const poses = isMeant === 'cage' ? undefined : posesOf(morphedParts(document, parts, joined.positions));
+  const poses = which === 'cage' ? undefined : posesOf(morphedParts(document, parts, joined.positions));
   const mesh = { ...joined, ...(poses && { poses }) };
   const layouts = parts.map(({ primitive }) => uvLayoutOf(primitive.getMaterial()?.getBaseColorTextureInfo()));
   const sets = parts.map(({ primitive }, p) => primitive.getAttribute(layouts[p]!.set));
@@ -138,14 +131,19 @@ export function morphedParts(
 const weightsOf = (node: Node, mesh: DocumentMesh): number[] =>
   node.getWeights().length > 0 ? node.getWeights() : mesh.getWeights();
 
+/** The nodes above a node, the nearest first. */
+function ancestorsOf(node: Node): Node[] {
+  const above = node.getParentNode();
+  return above ? [above, ...ancestorsOf(above)] : [];
+}
+
 function lookOf({ node, primitive, aliases, matrix, localPositions, localIndices }: DocumentPart): Look {
   const material = primitive.getMaterial();
   const isOff = (of: Node) => (of.getExtension(visibilityExtension) as Visibility | null)?.getVisible() === false;
-  let above: Node | null = node;
-  while (above && !isOff(above)) above = above.getParentNode();
   return {
     names: aliases,
-    isHidden: above !== null,
+    above: ancestorsOf(node).map((one) => one.getName()),
+    isHidden: [node, ...ancestorsOf(node)].some(isOff),
     isClear: isClear(material?.getAlphaMode(), material?.getAlpha(), material?.getAlphaCutoff()),
     sides: material?.getDoubleSided() ? 'both' : 'front',
     positions: localPositions,

@@ -1,4 +1,5 @@
 import type { Document } from '@gltf-transform/core';
+import { faultOfParts, type Parts } from '../../api/parts.js';
 import { show } from '../../core/error.js';
 import {
   CagecastError,
@@ -10,7 +11,7 @@ import {
   type TransferResult,
   transfer,
 } from '../../index.js';
-import { groupsNamed, withBare } from '../../parts/drawn.js';
+import { groupsNamed } from '../../parts/drawn.js';
 import { moved } from '../../parts/origin.js';
 import { hasCages, moveApart } from '../../parts/own-cages.js';
 import { bareNames } from '../../parts/template-extras.js';
@@ -18,19 +19,13 @@ import { type MaskSources, masksOf } from '../bake/mask-sources.js';
 import { InputError } from '../input-error.js';
 import { type Paint, paintOf } from '../overlay.js';
 import { DocumentModel } from './document-model.js';
-import {
-  type DocumentPart,
-  type ExtractedDocument,
-  extractDocument,
-  type PartsOption,
-  partNames,
-} from './extract-document.js';
+import { type DocumentPart, type ExtractedDocument, extractDocument, partNames } from './extract-document.js';
 
 /** Options of a transfer from a cage to a document. */
-interface DocumentTransferOptions extends TransferOptions, MaskSources {
+interface DocumentTransferOptions extends Omit<TransferOptions, 'parts'>, MaskSources {
   cage?: Document | Mesh | undefined;
   texture?: Uint8Array | undefined;
-  parts?: PartsOption | undefined;
+  parts?: Parts | undefined;
 }
 
 /** A transfer to a document, which is not changed by it. */
@@ -61,7 +56,8 @@ export async function transferDocument(
     throw wrong(caller, 'cage', cage, 'a document or a mesh');
   if (texture !== undefined && !(texture instanceof Uint8Array))
     throw wrong(caller, 'texture', texture, 'a Uint8Array');
-  if (parts !== undefined && typeof parts !== 'function') throw wrong(caller, 'parts', parts, 'a function');
+  const fault = faultOfParts(caller, parts);
+  if (fault !== undefined) throw new CagecastError('badOption', caller, fault);
   if (Object.keys(maskImages ?? {}).some((name) => name !== 'never' && name !== 'always'))
     throw wrong(caller, 'maskImages', maskImages, '{ never, always }');
   await init();
@@ -79,7 +75,7 @@ export async function transferDocument(
     masksOf(model, options.masks, { images: maskImages, colors: maskColors }),
   );
   const bare = [...target.accessories, ...excludedParts(target.parts, cage, around.parts)];
-  const rules = { ...options, masks, locks: withBare(bare, options.locks) };
+  const rules = { ...options, masks, parts: { keep: target.kept, exclude: [...bare, ...target.excluded] } };
   const result = transfer(source, own, rules);
   const cut = cuts ? cutBorders(source, own, result, rules) : undefined;
   apart?.mend(result);

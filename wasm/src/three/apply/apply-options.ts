@@ -1,10 +1,11 @@
 import type { Material, Mesh, Texture } from 'three';
 import { optionNames } from '../../api/option-names.js';
+import type { Parts } from '../../api/parts.js';
 import type { Classification, TransferOptions, TransferResult } from '../../index.js';
 import type { Borders } from '../../parts/cut-part.js';
 import type { Prepared } from '../../parts/prepare.js';
-import { checkNames, notA, wrong } from '../errors.js';
-import type { Extracted, Part, PartsOption } from './extract-scene.js';
+import { checkNames, checkParts, notA, wrong } from '../errors.js';
+import type { Extracted, Part } from './extract-scene.js';
 import { isModel, type LoadedCage } from './models.js';
 import type { Calling } from './tasks.js';
 
@@ -16,7 +17,7 @@ export interface Saved {
 }
 
 /** Options of `applyTransfer`: those of `transfer`, and what to display. */
-export interface ApplyOptions extends TransferOptions {
+export interface ApplyOptions extends Omit<TransferOptions, 'parts'> {
   /**
    * The cage: what GLTFLoader loaded, a scene, a mesh or a geometry with the attribute `uv`, or a `Cage` or `Template` of
    * `cagecast/cages`, in the same space as the target. Default: the meshes of the target that are named as outer cages of others, as
@@ -60,10 +61,11 @@ export interface ApplyOptions extends TransferOptions {
    */
   borders?: Borders | undefined;
   /**
-   * Which meshes are painted. Default: what three.js draws, without cages, markers and collision shapes, by their names. What is left
-   * out hides nothing. Glasses, hats and weapons stay bare, by their names, unless locks say otherwise.
+   * What counts, by the names of meshes, of the objects above them, and of materials. What three.js does not draw is ignored, and so are
+   * cages, markers and collision shapes; glasses, hats, weapons and what the cage was made without are excluded, by their names; unless
+   * `keep` names them.
    */
-  parts?: PartsOption | undefined;
+  parts?: Parts | undefined;
 }
 
 /**
@@ -160,7 +162,7 @@ export function checkOptions(fn: string, options: ApplyOptions & Calling): void 
     check(name, share >= 0 && share <= 1, 'a number from 0 to 1');
   }
   check('saved', !saved || typeof saved.key === 'string', 'what prepareTransfer or deserialize returned');
-  check('parts', parts == null || typeof parts === 'function', 'a function');
+  checkParts(fn, parts);
   check('signal', signal == null || signal.throwIfAborted, 'an AbortSignal');
   check('onProgress', onProgress == null || typeof onProgress === 'function', 'a function');
 }

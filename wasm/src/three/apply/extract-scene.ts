@@ -8,6 +8,7 @@ import {
   type SkinnedMesh,
   type Mesh as ThreeMesh,
 } from 'three';
+import type { Parts } from '../../api/parts.js';
 import { show } from '../../core/error.js';
 import type { CagecastError, Mesh } from '../../index.js';
 import type { Vector } from '../../inspect/geometry.js';
@@ -54,15 +55,12 @@ export interface Extracted {
   accessories: number[];
   /** The names of each group: of its mesh, the object that holds the meshes of one glTF mesh, its geometry and its material. */
   names: string[][];
+  /** The numbers in `groups` of what `parts` keeps, and of what it excludes. */
+  kept: number[];
+  excluded: number[];
   /** Of a cage, the names of the parts that it leaves bare. */
   bare: string[];
 }
-
-/**
- * Says which meshes are painted; the others hide nothing.
- * @param isDrawn  Whether three.js draws it, and it is no cage, marker or collision shape by its name, and no backdrop.
- */
-export type PartsOption = (mesh: ThreeMesh, isDrawn: boolean) => boolean;
 
 const identity = new Matrix4();
 
@@ -74,14 +72,14 @@ const identity = new Matrix4();
  * morph targets shape them as they do now (`morphTargetInfluences`). An instanced mesh is taken once, where its first instance is. Each mesh, or each of its material
  * groups, is a group.
  * @param argument  The name of the argument, for messages.
- * @param isMeant   Which meshes count. Default: what is drawn; of a `cage` or `template`, its outer cages, or all if there are none
+ * @param parts     What counts. Default: what is drawn; of a `cage` or `template`, its outer cages, or all if there are none
  * @throws {CagecastError} that names the part and the element.
  */
-export const extract = (model: LoadedCage, argument = 'target', isMeant?: PartsOption): Extracted =>
-  extractNear(model, argument, kSceneOrigin, { isMeant });
+export const extract = (model: LoadedCage, argument = 'target', parts?: Parts): Extracted =>
+  extractNear(model, argument, kSceneOrigin, { parts });
 
 interface ExtractOptions {
-  isMeant?: PartsOption | undefined;
+  parts?: Parts | undefined;
   /** That a transfer will write. */
   channel?: Channel | undefined;
 }
@@ -98,10 +96,10 @@ export function extractNear(
   model: LoadedCage,
   argument: string,
   origin: Origin,
-  { isMeant, channel }: ExtractOptions = {},
+  { parts, channel }: ExtractOptions = {},
 ): ExtractedNear {
   const object = objectOf(model, argument);
-  return asItWas(object, channel, () => extractNow(model, argument, origin, isMeant));
+  return asItWas(object, channel, () => extractNow(model, argument, origin, parts));
 }
 
 /** Calls a function while an object is what it was before transfers: all, or those whose place one into a channel takes. */
@@ -112,14 +110,9 @@ export function asItWas<T>(object: Object3D | BufferGeometry, channel: Channel |
   return asBefore(geometries, channel, call);
 }
 
-function extractNow(
-  model: LoadedCage,
-  argument: string,
-  origin: Origin,
-  isMeant: PartsOption | undefined,
-): ExtractedNear {
+function extractNow(model: LoadedCage, argument: string, origin: Origin, patterns: Parts | undefined): ExtractedNear {
   const object = objectOf(model, argument);
-  const { parts, leftOut, accessories } = listParts(object, argument, isMeant);
+  const { parts, leftOut, accessories, kept, excluded } = listParts(object, argument, patterns);
   const placed = ({ geometry, matrix }: Part) => ({
     points: valuesOf(geometry.getAttribute('position') as Attribute),
     matrix: matrix.elements,
@@ -137,18 +130,22 @@ function extractNow(
     group = placeGroups(part, groups, group);
   }
   const uvs = readUvs(parts, vertices, argument, isLoadedGltf(model) ? model : undefined);
-  const bare = accessories.flatMap((p) => {
-    const { firstVertex, vertexCount } = parts[p]!;
-    return [...new Set(groups.subarray(firstVertex, firstVertex + vertexCount))];
-  });
+  const groupsOf = (numbers: readonly number[]) =>
+    numbers.flatMap((p) => {
+      const { firstVertex, vertexCount } = parts[p]!;
+      return [...new Set(groups.subarray(firstVertex, firstVertex + vertexCount))];
+    });
   const poses = isCage(argument) ? undefined : posesOf(morphedParts(parts, positions));
-  const mesh = { positions, indices, groups, ...(uvs && { uvs }), ...(poses && { poses }) };
+  const names = groupNames(parts, object);
+  const mesh = { positions, indices, groups, names, ...(uvs && { uvs }), ...(poses && { poses }) };
   return {
     mesh,
     parts,
     leftOut,
-    accessories: bare,
-    names: groupNames(parts, object),
+    accessories: groupsOf(accessories),
+    kept: groupsOf(kept),
+    excluded: groupsOf(excluded),
+    names,
     bare: bareNames(parts.flatMap(extrasOf)),
     origin: near,
     states: parts.map(({ geometry }) => stateOf(geometry)),
@@ -163,8 +160,8 @@ export const extrasOf = ({ mesh, geometry }: Pick<Part, 'mesh' | 'geometry'>): u
 ];
 
 /**
- * The numbers in `groups` of what a transfer leaves bare unless locks say otherwise: what a figure wears or carries, and what the cage
- * was made without, by its names. For those who call `transfer`.
+ * The numbers in `groups` of parts that a transfer excludes by default: things worn or carried, and parts that the cage was made without, by
+ * its names. For `parts.exclude` of those who call `transfer`.
  * @param cage    What `extract` returned for a cage.
  * @param target  What it returned for a target.
  */
@@ -182,8 +179,8 @@ function endOf(parts: readonly Part[]): [vertices: number, triangles: number] {
 function listParts(
   object: Object3D | BufferGeometry,
   argument: string,
-  isMeant: PartsOption | undefined,
-): Pick<Extracted, 'parts' | 'leftOut' | 'accessories'> {
+  patterns: Parts | undefined,
+): Pick<Extracted, 'parts' | 'leftOut' | 'accessories' | 'kept' | 'excluded'> {
   const parts: Part[] = [];
   const add = (
     aliases: readonly string[],
@@ -223,7 +220,7 @@ function listParts(
   };
   if (isGeometry(object)) {
     add([], object.name || 'geometry', undefined, object, identity);
-    return { parts, leftOut: [], accessories: [] };
+    return { parts, leftOut: [], accessories: [], kept: [], excluded: [] };
   }
   object.updateWorldMatrix(true, true);
   const meshes: ThreeMesh[] = [];
@@ -241,15 +238,20 @@ function listParts(
   const chosen = chooseParts(
     found,
     ({ mesh, matrix }) => lookOf(mesh, matrix, object),
-    isMeant ? (p, isDrawn) => isMeant(meshes[p]!, isDrawn) : isCage(argument) ? 'cage' : undefined,
-    (text) => wrong(`${argument}: ${text}; the option parts says which count`, undefined, undefined, { argument }),
+    patterns ?? (isCage(argument) ? 'cage' : undefined),
+    (text) => wrong(`${argument}: ${text}`, undefined, undefined, { argument }),
   );
   for (const { name, mesh, matrix } of chosen.parts) add(namesOf(mesh, object), name, mesh, mesh.geometry, matrix);
-  const accessories = new Set(chosen.accessories.map((p) => chosen.parts[p]!.mesh));
+  const numbersOf = (some: readonly number[]) => {
+    const meshes = new Set(some.map((p) => chosen.parts[p]!.mesh));
+    return [...parts.keys()].filter((p) => meshes.has(parts[p]!.mesh!));
+  };
   return {
     parts,
     leftOut: chosen.leftOut.map(({ part, name, why }) => ({ name, why, mesh: part.mesh })),
-    accessories: [...parts.keys()].filter((p) => accessories.has(parts[p]!.mesh!)),
+    accessories: numbersOf(chosen.accessories),
+    kept: numbersOf(chosen.kept),
+    excluded: numbersOf(chosen.excluded),
   };
 }
 
@@ -273,6 +275,9 @@ function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
     !visible || gltfExtensions?.[visibilityExtension]?.visible === false;
   return {
     names: namesOf(mesh, root),
+    above: below(root, mesh)
+      .slice(1)
+      .map(({ name }) => name),
     isHidden: below(root, mesh).some(isOff) || all(({ visible }) => !visible),
     isClear: all(({ transparent, alphaTest, opacity }) =>
       isClear(transparent ? 'BLEND' : alphaTest > 0 ? 'MASK' : 'OPAQUE', opacity, alphaTest),

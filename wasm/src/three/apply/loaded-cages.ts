@@ -34,7 +34,7 @@ export function cageModel(model: Loaded): cages.CageModel {
       positions,
       indices,
       groups,
-      parts: names,
+      names,
       ...skeletonOf(parts, bones),
       hints: faceHints(morphedParts(parts, positions, isLoadedGltf(model) ? expressionsOf(model) : undefined)),
     };

@@ -45,18 +45,8 @@ export class AvatarTransfers {
     const { standing, cage, locks } = avatar;
     if (!standing || !cage || standing.model.mesh.indices.length + cage.mesh.indices.length > 3 * kMaxInspected) return;
     const { preset, threshold, weldTolerance } = this.#around.session.rules;
-    const parts = standing.model.mesh.primitives.map(({ name, firstVertex, vertexCount }) => ({
-      name,
-      firstVertex,
-      vertexCount,
-    }));
-    const options = {
-      preset,
-      threshold,
-      weldTolerance,
-      locks: choicesOf(locks, bareGroupsOf({ target: standing.model, cage }), undefined).locks,
-      parts,
-    };
+    const choices = choicesOf(locks, bareGroupsOf({ target: standing.model, cage }), undefined);
+    const options = { preset, threshold, weldTolerance, ...choices };
     const target = standing.projection ? withoutParts(standing.model, standing.projection) : standing.model;
     const { verdict } = await this.#around.transferer.ask('inspect', cage, target, options);
     this.#list.update(avatar, { verdict });

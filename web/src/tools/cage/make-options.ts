@@ -94,10 +94,10 @@ export class MakeOptionsPanel {
       // The model on the stage has overlays.
       this.#maker.read(target),
     ]);
-    const { parts = [] } = cageModel(read.loaded);
-    const bare = await engine.matchingParts(parts, await engine.defaultExclusions());
+    const { names = [] } = cageModel(read.loaded);
+    const bare = await engine.excludedByName(names);
     const { primitives } = target.mesh;
-    if (target !== this.#target || parts.length !== primitives.length || parts.length < 2) return;
+    if (target !== this.#target || names.length !== primitives.length || names.length < 2) return;
     this.#usual = bare.map((isBare) => !isBare);
     const rows = primitives.map(({ name, firstTriangle, triangleCount }, part) => {
       const input = make('input', { type: 'checkbox', checked: this.#usual[part]! });
@@ -114,14 +114,13 @@ export class MakeOptionsPanel {
     if (this.#parts.offsetParent) announce(`${rows.length} parts can be switched.`);
   }
 
-  #choices({ groups, indices }: CageModel): ReturnType<NonNullable<CageMaker['choices']>> {
+  #choices({ groups }: CageModel): ReturnType<NonNullable<CageMaker['choices']>> {
     const options = { offset: this.#offset, triangles: this.#triangles };
     if (this.#session.shown?.target !== this.#target) return { options };
     const painted = [...this.#parts.querySelectorAll('input')].map(({ checked }) => checked);
     if (!groups || painted.every((on, part) => on === this.#usual[part])) return { options };
-    const marks = new Uint8Array(indices.length / 3).map((_, t) => (painted[groups[indices[3 * t]!]!] ? 0 : 1));
-    // If a part is painted in spite of its name, names no longer count.
-    const inSpite = painted.some((on, part) => on && !this.#usual[part]);
-    return { options: { ...options, ...(inSpite && { exclude: [] }) }, marks };
+    const inSpite = (of: boolean) =>
+      painted.flatMap((on, part) => (on === of && on !== this.#usual[part] ? [part] : []));
+    return { options: { ...options, parts: { keep: inSpite(true), exclude: inSpite(false) } } };
   }
 }
