@@ -23,7 +23,6 @@ export interface Row extends Score {
   seconds?: number;
 }
 
-const kPaint = `${root}examples/samples/human/paint-harlequin.png`;
 /** Pixels of a picture, and the half of a close-up's side in distances from eyes to mouth. */
 const [kPixels, kCloseUp] = [256, 2.2];
 /** From where an avatar is seen, in degrees to the left of its front. */
@@ -58,6 +57,16 @@ async function score(file: string, cage: string, { face, parts }: Avatar): Promi
     cagecast({ cage: fitted, onResult: (result) => void (zones = Uint8Array.from(result.zones)) }),
   );
   return scoreOf(cageTemplate(fitted), model, zones, face, parts);
+}
+
+/** A paint that shows its UVs: checks of 16 to a side, redder to the right and greener downwards. */
+function loudPaint(): Buffer {
+  const paint = new PNG({ width: kPixels, height: kPixels });
+  for (let i = 0; i < kPixels * kPixels; ++i) {
+    const [x, y] = [i % kPixels, Math.floor(i / kPixels)];
+    paint.data.set([x, y, ((x ^ y) & 16) === 0 ? 255 : 0, 255], 4 * i);
+  }
+  return PNG.sync.write(paint);
 }
 
 /** Draws an avatar from its front, between front and side, from its side, and its face. */
@@ -104,7 +113,9 @@ try {
   row.verdict = JSON.parse(await command(...door.split(' '), file, '-o', cage, '--json')).verdict;
   const { user, system } = process.cpuUsage(before);
   row.seconds = (user + system) / 1e6;
-  await command('transfer', file, '--cage', cage, '--texture', kPaint, '-o', painted, '--quiet');
+  writeFileSync(`${to}.paint.png`, loudPaint());
+  await command('transfer', file, '--cage', cage, '--texture', `${to}.paint.png`, '-o', painted, '--quiet');
+  rmSync(`${to}.paint.png`);
   await draw(painted, to, avatar);
   Object.assign(row, await score(file, cage, avatar));
 } catch (error) {

@@ -42,8 +42,8 @@ function through(path: string, door: Door, to: string, avatar: Avatar): Row {
   }
 }
 
-const isRight = ({ face = Infinity, verdict, failed }: Row): boolean =>
-  !failed && face <= kRight && verdict !== 'unfit';
+const isRight = ({ face, verdict, failed }: Row): boolean =>
+  !failed && (face ?? Infinity) <= kRight && verdict !== 'unfit';
 
 /** How many faces are right, for each half and door. */
 function sumsOf(all: readonly Avatar[], rows: Rows): string {
@@ -85,7 +85,12 @@ function linesOf(all: readonly Avatar[], rows: Rows, half: string): string {
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
-  options: { only: { type: 'string' }, output: { type: 'string' }, half: { type: 'string', default: 'open' } },
+  options: {
+    only: { type: 'string' },
+    door: { type: 'string' },
+    output: { type: 'string' },
+    half: { type: 'string', default: 'open' },
+  },
 });
 const here = process.env['INIT_CWD'] ?? process.cwd();
 const [folder, output] = [resolve(here, positionals[0] ?? '.'), resolve(here, values.output ?? 'build/avatars')];
@@ -102,7 +107,7 @@ for (const avatar of all) {
     continue;
   }
   rows[avatar.file] = {};
-  for (const door of kDoors) {
+  for (const door of kDoors.filter((one) => one.includes(values.door ?? ''))) {
     const to = join(output, `${avatar.file.replace(/\.\w+$/, '')}.${door.split(' ').at(-1)}`);
     rows[avatar.file]![door] = through(path, door, to, avatar);
     console.error(

@@ -41,7 +41,7 @@ function apart(face: Face, spot: Spot, other: Vector3): number {
   return Math.hypot(off.dot(x), off.dot(y), kDepthWeight * off.dot(z)) / unit;
 }
 
-/** How far the holes of eyes and mouth are off: the worst. Of a cage whose holes have no names, those nearest to the eyes. */
+/** How far the holes of eyes and mouth are off: the worst; infinite without holes. Of a cage whose holes have no names, those nearest to the eyes. */
 export function faceError(cage: Template, face: Face): number {
   const middle = (loop: readonly number[]): Vector3 =>
     loop.reduce((sum, v) => sum.add(vertexAt(cage.positions, v)), new Vector3()).divideScalar(loop.length);
