@@ -5,6 +5,7 @@
 #include <string>
 
 #include "landmarks/landmark_list.hpp"
+#include "mesh/part_names.hpp"
 
 namespace cagecast::cages {
 
@@ -21,10 +22,11 @@ Role roleOf(std::string_view partName) {
   std::string name;
   for (const char c : partName) name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (contains(name, {"lash", "brow", "hair", "beard", "moustache", "mustache", "glasses", "eyewear", "eyeline",
-                      "eye_line", "eyeshadow", "headwear", "helmet"}))
+                      "eye_line", "eyeshadow", "headwear", "helmet", "afro", "bob0", "ponytail"}))
     return Role::cover;
   if (contains(name, {"teeth", "tooth", "tongue", "gum"})) return Role::mouth;
   if (contains(name, {"eyelid", "eye_lid", "eyesocket"})) return Role::surface;
+  if (matchesName(name, "high-poly") || matchesName(name, "*.high-poly")) return Role::eye;  // MakeHuman's.
   if (contains(name, {"eye", "iris", "pupil", "cornea", "sclera"})) return Role::eye;
   return Role::surface;
 }

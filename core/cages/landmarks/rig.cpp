@@ -30,6 +30,8 @@ constexpr RigBone kBones[] = {
 constexpr std::size_t kMinNamed = 6;
 /// Words say less than a naming that is known: they have to name so many more joints than it does.
 constexpr std::size_t kClearlyMore = 2;
+/// What nearly all names have is the exporter's, in per cent of them.
+constexpr std::size_t kNearlyAll = 80;
 
 /// Case, spaces and separators of names vary with the exporter.
 std::string plain(std::string_view name) {
@@ -114,13 +116,26 @@ std::string_view sideOf(std::string_view word) {
   return word == "r" || word == "right" || word == "右" ? "right" : "";
 }
 
+/// Names without the numbers that an exporter gave to nearly all of them: "DEF-head_051".
+std::vector<std::string> withoutNumbers(const std::vector<Joint>& joints) {
+  std::vector<std::string> all, cut;
+  std::size_t numbered = 0;
+  for (const Joint& joint : joints) {
+    const std::size_t end = joint.name.find_last_not_of("0123456789");
+    const bool isNumbered = end != std::string::npos && end + 1 < joint.name.size() && joint.name[end] == '_';
+    all.push_back(joint.name);
+    cut.push_back(isNumbered ? joint.name.substr(0, end) : joint.name);
+    numbered += isNumbered ? 1 : 0;
+  }
+  return 100 * numbered >= kNearlyAll * joints.size() ? cut : all;
+}
+
 /// Splits names into their side and what is left of them, without words that nearly all names begin with, such as those
 /// of an armature.
-std::vector<SidedName> sidedNames(const std::vector<Joint>& joints) {
-  constexpr std::size_t kNearlyAll = 80;  ///< Per cent.
+std::vector<SidedName> sidedNames(const std::vector<std::string>& names) {
   std::vector<std::vector<std::string>> all;
-  all.reserve(joints.size());
-  for (const Joint& joint : joints) all.push_back(lowerWords(joint.name));
+  all.reserve(names.size());
+  for (const std::string& name : names) all.push_back(lowerWords(name));
   std::map<std::string, std::size_t> counts;
   for (const auto& words : all)
     for (const std::string& word : std::set<std::string>(words.begin(), words.end())) ++counts[word];
@@ -158,6 +173,7 @@ std::size_t findByWords(const std::vector<SidedName>& names, std::string_view wo
         std::string_view rest = names[j].rest;
         if (isTaken[j] || names[j].side != side || !rest.starts_with(word)) continue;
         rest.remove_prefix(word.size());
+        if (rest == "m") rest = "";  // The middle, between "_L" and "_R".
         const bool isNumber = std::all_of(rest.begin(), rest.end(), [](char c) { return c >= '0' && c <= '9'; });
         if (rest.empty() || (numbered && isNumber)) return j;
       }
@@ -209,11 +225,12 @@ std::vector<std::string> jointLandmarks() {
 
 Rig recogniseRig(const std::vector<Joint>& joints) {
   if (joints.empty()) return {};
+  const std::vector<std::string> own = withoutNumbers(joints);
   std::vector<std::string> names;
   bool anyMixamo = false;
-  for (const Joint& joint : joints) {
+  for (const std::string& name : own) {
     bool mixamo = false;
-    names.push_back(bareName(joint.name, mixamo));
+    names.push_back(bareName(name, mixamo));
     anyMixamo = anyMixamo || mixamo;
   }
   std::array<std::vector<RigJoint>, kNamings> found;
@@ -230,7 +247,7 @@ Rig recogniseRig(const std::vector<Joint>& joints) {
   const char* kNames[] = {"VRM", anyMixamo ? "Mixamo" : "Ready Player Me", "Roblox R15", "VRoid", "Rigify"};
   Rig rig{kNames[most - found.begin()]};
   std::vector<RigJoint> best = std::move(*most);
-  const std::vector<SidedName> sided = sidedNames(joints);
+  const std::vector<SidedName> sided = sidedNames(own);
   rig.isHead = belowHead(joints, sided);
   if (std::vector<RigJoint> others = jointsByWords(sided); others.size() > best.size() + kClearlyMore) {
     best = std::move(others);

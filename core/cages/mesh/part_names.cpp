@@ -70,13 +70,6 @@ bool matchesName(std::string_view name, std::string_view pattern) {
   return false;
 }
 
-std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std::vector<std::string>& patterns) {
-  std::vector<bool> out(parts.size(), false);
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    for (const std::string& pattern : patterns) out[i] = out[i] || matchesName(parts[i], pattern);
-  return out;
-}
-
 std::vector<bool> trianglesOf(const MeshView& mesh, const std::vector<bool>& isMatch) {
   std::vector<bool> out(mesh.indices.size() / 3, false);
   if (mesh.groups.empty()) return out;
@@ -87,17 +80,32 @@ std::vector<bool> trianglesOf(const MeshView& mesh, const std::vector<bool>& isM
   return out;
 }
 
+std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std::vector<std::string>& patterns) {
+  std::vector<bool> out(parts.size(), false);
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (const std::string& pattern : patterns) out[i] = out[i] || matchesName(parts[i], pattern);
+  return out;
+}
+
 std::vector<bool> excludedByName(const std::vector<std::string>& parts) {
-  static const std::vector<std::string> kPatterns = {
-      // Faces. `eye` is a word of its own: lids are skin.
+  static const std::vector<std::string> kFaces = {
+      // `eye` is a word of its own: lids are skin.
       "eye", "eyes", "eyeball*", "eyelash*", "eyebrow*", "eyeline*", "lash*", "brow", "brows", "iris*", "pupil*",
       "cornea*", "sclera*", "teeth*", "tooth*", "tongue*", "gum", "gums", "mouth*", "hair*", "beard*", "moustache*",
       "mustache*", "glass*", "goggles*",
-      // Vehicles.
-      "window*", "windscreen*", "windshield*", "wheel*", "tyre*", "tire*", "rim", "rims", "light", "lights",
-      "headlight*", "taillight*", "lamp*", "grille*", "seat*", "dashboard*", "steering*", "interior*", "lining*",
-      "floor*"};
-  return matchingParts(parts, kPatterns);
+      // MakeHuman's hair and eyes.
+      "afro*", "*bob0?", "ponytail*", "high-poly", "*.high-poly"};
+  static const std::vector<std::string> kVehicles = {"window*", "windscreen*", "windshield*", "wheel*",
+                                                     "tyre*",   "tire*",       "headlight*",  "taillight*",
+                                                     "lamp*",   "grille*",     "dashboard*",  "steering*"};
+  // A tone of skin may be light, and a chair is a seat.
+  static const std::vector<std::string> kOnVehicles = {"rim",   "rims",      "light",   "lights",
+                                                       "seat*", "interior*", "lining*", "floor*"};
+  std::vector<bool> out = matchingParts(parts, kFaces);
+  const std::vector<bool> ofVehicle = matchingParts(parts, kVehicles), onVehicle = matchingParts(parts, kOnVehicles);
+  const bool isVehicle = std::find(ofVehicle.begin(), ofVehicle.end(), true) != ofVehicle.end();
+  for (std::size_t p = 0; p < parts.size(); ++p) out[p] = out[p] || ofVehicle[p] || (isVehicle && onVehicle[p]);
+  return out;
 }
 
 std::vector<bool> trianglesIn(const MeshView& mesh, std::span<const std::uint32_t> groups) {

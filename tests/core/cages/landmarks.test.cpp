@@ -75,6 +75,11 @@ TEST_CASE("rigs are recognised by the names of their joints", "[cages][landmarks
   CHECK(placeOf(rigify.joints, "joint_head")->x == 2);
   CHECK(placeOf(rigify.joints, "joint_knee_right")->x == 5);
   CHECK(rig("", {"Bone", "Bone.001", "Head"}).name == "unknown");
+  // Sketchfab numbers all joints but the root.
+  const Rig numbered = rig(
+      "DEF-", {"spine_01", "spine004_02", "spine006_051", "upper_armL_03", "forearmR_04", "shinR_05", "_rootJoint"});
+  CHECK(numbered.name == "Rigify");
+  CHECK(placeOf(numbered.joints, "joint_head")->x == 2);
   // Rigs with names of their own: the words say what is what, and which side.
   const std::vector<std::vector<std::string>> others = {
       {"pelvis", "neck_01", "head", "clavicle_l", "upperarm_l", "upperarm_twist_01_l", "lowerarm_l", "hand_l",
@@ -87,7 +92,11 @@ TEST_CASE("rigs are recognised by the names of their joints", "[cages][landmarks
        "R_legLower", "R_foot"},
       {"下半身", "首", "頭", "左肩", "左腕", "左腕捩", "左ひじ", "左手首", "右足", "右ひざ", "右足首"},
       {"Hips", "Neck", "Head", "Shoulder.L", "UpperArm.L", "UpperArmTwist.L", "LowerArm.L", "Wrist.L", "UpperLeg.R",
-       "LowerLeg.R", "Foot.R"}};
+       "LowerLeg.R", "Foot.R"},
+      {"Root_M", "Neck_M", "Head_M", "Scapula_L", "Shoulder_L", "ShoulderPart1_L", "Elbow_L", "Wrist_L", "Hip_R",
+       "Knee_R", "Ankle_R"},
+      {"Hips_01", "Neck_02", "Head_03", "Shoulder_L_04", "UpperArm_L_05", "UpperArmTwist_L_06", "LowerArm_L_07",
+       "Wrist_L_08", "UpperLeg_R_09", "LowerLeg_R_010", "Foot_R_011"}};
   for (const std::vector<std::string>& names : others) {
     const Rig of = rig("", names);
     CAPTURE(names.back());
@@ -100,6 +109,7 @@ TEST_CASE("rigs are recognised by the names of their joints", "[cages][landmarks
       CHECK(placeOf(of.joints, std::string("joint_") + name)->x == place);
     }
     CHECK(of.joints.size() == std::size(expected));
+    CHECK(of.isHead[2]);
   }
   CHECK(rig("", {}).name.empty());
 }

@@ -37,15 +37,24 @@ TEST_CASE("words begin at capitals and end at signs and digits", "[cages][names]
 }
 
 TEST_CASE("the default exclusions know eyes, teeth and wheels, not skin", "[cages][names]") {
-  for (const char* name : {"l-eye/l-eye", "EyeLeft", "Wolf3D_Teeth", "upper-teeth/enamel", "Eyelashes", "FaceBrow_00",
-                           "head/tongue.001", "window.002", "wheel_backLeft.007/", "carTire.016", "lightFront.002",
-                           "steering-wheel", "node/mesh/EyeIris", "Hair_Back"}) {
+  for (const char* name :
+       {"l-eye/l-eye", "EyeLeft", "Wolf3D_Teeth", "upper-teeth/enamel", "Eyelashes", "FaceBrow_00", "head/tongue.001",
+        "window.002", "wheel_backLeft.007/", "carTire.016", "steering-wheel", "node/mesh/EyeIris", "Hair_Back",
+        "afro01", "Human.bob01/bob01", "ponytail01", "Human.high-poly/high-poly"}) {
     CAPTURE(name);
     CHECK(excludedByName({name})[0]);
   }
   for (const char* name : {"skin", "eyelid", "body.007/paintRed", "head", "Chair", "Wolf3D_Outfit_Top", "bumpers",
-                           "King_Legs/DarkBrown", "Shirt/LightBlue"}) {
+                           "King_Legs/DarkBrown", "Shirt/LightBlue", "Bob/skin", "body_high-poly"}) {
     CAPTURE(name);
     CHECK_FALSE(excludedByName({name})[0]);
+  }
+}
+
+TEST_CASE("words of vehicles count on vehicles", "[cages][names]") {
+  for (const char* name : {"lightFront.002", "Main_Light", "Young Asian Female LIGHT", "Seat", "rim"}) {
+    CAPTURE(name);
+    CHECK(excludedByName({"wheel_backLeft", name}) == std::vector<bool>{true, true});
+    CHECK(excludedByName({"skin", name}) == std::vector<bool>{false, false});
   }
 }
