@@ -31,6 +31,9 @@ struct Rim {
 
 Vec3 perpendicular(const Vec3& v, const Vec3& to) { return v - dot(v, to) * to; }
 
+/// Whether a direction is neither zero nor that of another one.
+bool isAcross(const Vec3& v, const Vec3& other) { return length(cross(v, other)) > 0; }
+
 /// Averages the points' heights over the plane along the rim.
 void smoothHeights(Rim& rim) {
   std::vector<double> along(1, 0.0);
@@ -189,6 +192,7 @@ std::vector<Anchor> eyeAnchors(const std::vector<Landmark>& from, const std::vec
     const auto inner = placeOf(from, "eye_inner_" + side), outer = placeOf(from, "eye_outer_" + side);
     const auto toInner = placeOf(to, "eye_inner_" + side), toOuter = placeOf(to, "eye_outer_" + side);
     if (!inner || !outer || !toInner || !toOuter || !axes.known) continue;
+    if (!isAcross(*outer - *inner, axes.up) || !isAcross(*toOuter - *toInner, axes.up)) continue;
     const auto spot = [&](const Vec3& a, const Vec3& b, double sign) {
       const Vec3 along = b - a, up = axes.up - dot(axes.up, along) / dot(along, along) * along;
       return 0.5 * (a + b) + sign * 0.5 * length(along) / length(up) * up;

@@ -105,6 +105,7 @@ class Fit {
     if (anchors.empty())
       return {Code::tooFewJoints, Argument::landmarks, static_cast<std::uint32_t>(pairs_.from.size())};
     std::vector<Vec3> positions = start(cage, anchors);
+    if (!std::all_of(positions.begin(), positions.end(), isFinite)) return {Code::noFit, Argument::model};
     TriangleMesh hull;
     const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels,
                              meanOf(positionsOf(pairs_.to))};
@@ -192,6 +193,9 @@ class Fit {
       for (Landmark& guess : guessLandmarks(from_, cage, model_, pairs_.to))
         found.landmarks.push_back(std::move(guess));
       pairs_ = pairLandmarks(from_, given, found.landmarks, out.missing);
+      // A guess that puts several on one spot has nothing to go by.
+      if (!checkLandmarkList(pairs_.to, Argument::model, boundsOf(model_.mesh)).ok())
+        return {Code::noFit, Argument::model};
     }
     out.landmarks = pairs_.to;
     return status;

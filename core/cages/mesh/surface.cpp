@@ -55,6 +55,9 @@ std::vector<bool> needlesIn(const TriangleMesh& mesh, double diagonal) {
   return out;
 }
 
+/// What is closest to a point that is not finite: nothing.
+constexpr SurfacePoint kNowhere{0, {0, 0, 0}, {1, 0, 0}, std::numeric_limits<double>::infinity(), 0};
+
 /// If memory has run out, does what `operator new` does then: throws `std::bad_alloc`, or ends the program if that is
 /// compiled without exceptions.
 void checkMemory(const Arena& arena) {
@@ -108,7 +111,8 @@ std::vector<SurfacePoint> Surface::closest(std::span<const Vec3> points) const {
   const std::uint32_t triangleCount = trees.cage.count;
   if (triangleCount == 0) {
     std::vector<SurfacePoint> out;
-    for (const Vec3& p : points) out.push_back({0, trees.centre, {1, 0, 0}, length(p - trees.centre), 0});
+    for (const Vec3& p : points)
+      out.push_back(isFinite(p) ? SurfacePoint{0, trees.centre, {1, 0, 0}, length(p - trees.centre), 0} : kNowhere);
     return out;
   }
   const Arena::Scope scope(trees.arena);
@@ -123,11 +127,16 @@ std::vector<SurfacePoint> Surface::closest(std::span<const Vec3> points) const {
   const double most = kReach * trees.units.diagonal;
   const auto inReach = [&](const Vec3& p) { return length(p) > most ? most / length(p) * p : p; };
   for (std::size_t first = 0, next = 0; first < points.size(); first = next) {
+    if (!isFinite(points[first])) {
+      out[first] = kNowhere;
+      ++next;
+      continue;
+    }
     const Vec3 start = inReach(trees.scaled(points[first]));
     std::uint32_t count = 0;
     for (; next < points.size() && count < kGroup; ++next, ++count) {
       const Vec3 p = inReach(trees.scaled(points[next]));
-      if (length(p - start) > kGroupEdges * trees.edge) break;
+      if (!(length(p - start) <= kGroupEdges * trees.edge)) break;
       group[4 * count] = static_cast<float>(p.x);
       group[4 * count + 1] = static_cast<float>(p.y);
       group[4 * count + 2] = static_cast<float>(p.z);
@@ -136,6 +145,10 @@ std::vector<SurfacePoint> Surface::closest(std::span<const Vec3> points) const {
     for (std::uint32_t i = 0; i < count; ++i) {
       const Vec3 p = trees.scaled(points[first + i]);
       const std::uint32_t candidateCount = search.candidates(i, found);
+      if (candidateCount == 0) {
+        out[first + i] = kNowhere;
+        continue;
+      }
       for (std::uint32_t c = 0; c < candidateCount; ++c)
         candidates[c] = {found[c], closestPointOnTriangle(trees.cage.triangles[found[c]], p)};
       const Candidate& best = nearestOf(candidates, candidateCount, trees.units.diagonal);

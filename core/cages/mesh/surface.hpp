@@ -41,7 +41,8 @@ class Surface {
   Surface& operator=(Surface&&) noexcept;
   ~Surface();
 
-  /// Quicker for points that are ordered so that neighbours are close together.
+  /// Quicker for points that are ordered so that neighbours are close together. A point that is not finite is
+  /// infinitely far from triangle 0.
   [[nodiscard]] std::vector<SurfacePoint> closest(std::span<const Vec3> points) const;
   [[nodiscard]] SurfacePoint closest(const Vec3& point) const;
 

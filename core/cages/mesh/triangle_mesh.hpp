@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,6 +27,8 @@ inline Vec3 unit(const Vec3& v) {
   const double size = length(v);
   return size > 0 ? 1 / size * v : Vec3{0, 0, 0};
 }
+
+inline bool isFinite(const Vec3& v) { return std::isfinite(v.x + v.y + v.z); }
 
 /// Adds a position to an array of floats.
 inline void append(std::vector<float>& floats, const Vec3& p) {

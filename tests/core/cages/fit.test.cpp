@@ -232,6 +232,24 @@ TEST_CASE("where too little is known, a cage is placed by size and symmetry", "[
   CHECK(heads.fit().ok());
 }
 
+TEST_CASE("a guess that puts landmarks on one spot is refused", "[cages][fit]") {
+  Heads heads;
+  for (const char* side : {"left", "right"}) {
+    const double sign = side == std::string("left") ? 1 : -1;
+    heads.own.push_back({std::string("eye_inner_") + side, toPosition(headPoint(kOwn, sign * 0.45, 0.3, 0))});
+    heads.own.push_back({std::string("eye_outer_") + side, toPosition(headPoint(kOwn, sign * 0.55, 0.3, 0))});
+  }
+  std::erase_if(heads.own, [](const Landmark& landmark) { return landmark.name == "chin"; });
+  heads.given.clear();
+  // A lamp: both corners of an eye are closest to one edge of its pole.
+  heads.model = OwnedModel{};
+  heads.model.add("foot", box({0, -1, 0}, {0.75, 0.1, 0.9}));
+  heads.model.add("pole", box({0, 0, 0}, {0.05, 1, 0.05}));
+  const Status status = heads.fit();
+  INFO(heads.says(status));
+  CHECK(status.code == Code::noFit);
+}
+
 TEST_CASE("a fit reports its progress in small shares, and can be cancelled", "[cages][fit]") {
   Heads heads;
   float before = -1, widest = 0;

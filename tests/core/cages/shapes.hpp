@@ -49,6 +49,17 @@ inline TriangleMesh ellipsoid(const Vec3& centre, const Vec3& radii, std::uint32
   });
 }
 
+/// @param half  Of its size.
+inline TriangleMesh box(const Vec3& centre, const Vec3& half) {
+  TriangleMesh out;
+  for (const double x : {-1.0, 1.0})
+    for (const double y : {-1.0, 1.0})
+      for (const double z : {-1.0, 1.0}) out.positions.push_back(centre + Vec3{x * half.x, y * half.y, z * half.z});
+  out.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 7, 5}, {4, 6, 7}, {0, 4, 5}, {0, 5, 1},
+                   {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+  return out;
+}
+
 inline TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
   const auto first = static_cast<std::uint32_t>(a.positions.size());
   a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());

@@ -127,3 +127,30 @@ TEST_CASE("needles around a pole do not lead a search astray", "[cages][surface]
     CHECK(point.distance < 0.05);
   }
 }
+
+TEST_CASE("a point that is not finite is far from everything, and leaves others as they are", "[cages][surface]") {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kFar = std::numeric_limits<double>::infinity();
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const auto isPoint = GENERATE(false, true);
+  if (!isPoint) mesh.triangles = {{0, 1, 2}};
+  if (isPoint) mesh.triangles = {{0, 0, 0}};
+  const Surface surface(mesh);
+  const Vec3 points[] = {{kNaN, 0, 0}, {0, 0, 1}, {0, kNaN, 0}, {0, 0, kFar}, {0, 0, 2}, {kNaN, kNaN, kNaN}};
+  const std::vector<SurfacePoint> found = surface.closest(points);
+  REQUIRE(found.size() == 6);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    CAPTURE(isPoint, i);
+    CHECK(found[i].triangle == 0);
+    CHECK(isFinite(found[i].position));
+    if (i == 1 || i == 4)
+      CHECK(found[i].distance == Approx(points[i].z));
+    else
+      CHECK(found[i].distance == kFar);
+  }
+  const SurfaceRay rays[] = {{{kNaN, 0, 1}, {0, 0, -1}}, {{0.2, 0.2, 1}, {kNaN, 0, -1}}, {{0.2, 0.2, 1}, {0, 0, -1}}};
+  const std::vector<RayHit> hits = surface.trace(rays);
+  CHECK(std::isinf(hits[0].distance));
+  CHECK(std::isinf(hits[1].distance));
+  if (!isPoint) CHECK(hits[2].distance == Approx(1));
+}

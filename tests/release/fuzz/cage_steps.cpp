@@ -110,6 +110,27 @@ void fit(fuzz::Input& input, const TriangleMesh& mesh, fuzz::Patience& patience)
   if (pushOut(cage, {mesh, mesh}, tracks, step, positions)) check({positions, cage.mesh.triangles});
 }
 
+/// Closest points and rays of anything, and pairs around any eyes.
+void search(fuzz::Input& input, const TriangleMesh& mesh) {
+  const auto anywhere = [&] { return Position{input.coordinate(), input.coordinate(), input.coordinate()}; };
+  std::vector<Vec3> points;
+  for (std::uint32_t i = input.below(6); i > 0; --i) points.push_back(positionOf({"", anywhere()}));
+  const Surface surface(mesh);
+  for (const SurfacePoint& point : surface.closest(points)) {
+    require(point.triangle < mesh.triangles.size() && point.distance >= 0);
+    check({{point.position}, {}});
+  }
+  std::vector<SurfaceRay> rays;
+  for (const Vec3& p : points) rays.push_back({p, unit(points[0])});
+  for (const RayHit& hit : surface.trace(rays)) require(hit.triangle < mesh.triangles.size());
+  std::vector<Landmark> eyes{{"eye_centre_left", {1, 1, 0}}, {"eye_centre_right", {-1, 1, 0}}, {"nose_tip", {0, 0, 1}}};
+  for (const char* name : {"eye_inner_left", "eye_outer_left", "eye_inner_right", "eye_outer_right"}) {
+    const Vec3 at = positionOf({"", anywhere()});
+    eyes.push_back({name, input.flag() || !(length(at) < 100) ? eyes.back().position : toPosition(at)});
+  }
+  for (const Anchor& anchor : eyeAnchors(eyes, eyes, axesOf(eyes))) check({{anchor.from, anchor.to}, {}});
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -122,5 +143,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (step == 0) wrapAndCut(input, mesh, patience);
   if (step == 1) layOut(input, mesh, patience);
   if (step == 2) fit(input, mesh, patience);
+  search(input, mesh);
   return 0;
 }

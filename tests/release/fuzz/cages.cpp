@@ -38,7 +38,11 @@ void fit(fuzz::Input& input, const fuzz::Mesh& other, const fuzz::Figure& figure
                               {"chin", {0, 0, 0}},
                               {"crown", {0, 1, 0}},
                               {"eye_centre_left", {0.5f, 0.5f, 0}},
-                              {"eye_centre_right", {-0.5f, 0.5f, 0}}}};
+                              {"eye_centre_right", {-0.5f, 0.5f, 0}},
+                              {"eye_inner_left", {0.4f, 0.5f, 0.1f}},
+                              {"eye_outer_left", {0.6f, 0.5f, 0.1f}},
+                              {"eye_inner_right", {-0.4f, 0.5f, 0.1f}},
+                              {"eye_outer_right", {-0.6f, 0.5f, 0.1f}}}};
   cages::FitOptions options;
   if (input.flag()) options.landmarks = from.landmarks;  // Else they are found, or guessed.
   cages::FittedCage cage;
