@@ -65,16 +65,18 @@ double residual(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   return sum / static_cast<double>(from.size());
 }
 
-/// The pairs of landmarks that are no joints.
+/// Some pairs of landmarks that are no joints.
 struct SkinPairs {
   std::vector<std::size_t> places;  ///< In the lists of landmarks.
   std::vector<Vec3> from, to;
 };
 
-SkinPairs skinPairs(const std::vector<Landmark>& from, const std::vector<Landmark>& to) {
+/// @param which  Those that count; empty for all.
+SkinPairs skinPairs(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
+                    const std::vector<bool>& which = {}) {
   SkinPairs out;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    if (isJoint(from[i].name)) continue;
+    if (isJoint(from[i].name) || (!which.empty() && !which[i])) continue;
     out.places.push_back(i);
     out.from.push_back(positionOf(from[i]));
     out.to.push_back(positionOf(to[i]));
@@ -131,6 +133,16 @@ std::vector<Suspect> leaveOut(std::vector<Vec3> from, std::vector<Vec3> to, doub
   return suspects;
 }
 
+/// The points that are not where the others put them, if these agree much better without them.
+std::vector<Suspect> mistakesIn(const SkinPairs& pairs, double diagonal) {
+  std::vector<Suspect> suspects = leaveOut(pairs.from, pairs.to, kMaxLandmarkOff * diagonal);
+  if (suspects.empty()) return suspects;
+  const double all = residual(pairs.from, pairs.to);
+  if (suspects.back().rest < kRestOfSeveral * all || all > kMaxApart * diagonal) return suspects;
+  suspects.resize(suspects.front().rest < kRestOfOne * all ? 1 : 0);
+  return suspects;
+}
+
 }  // namespace
 
 Status checkLandmarkList(const std::vector<Landmark>& landmarks, Argument argument, const Bounds& box) {
@@ -168,22 +180,25 @@ Status checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box) {
 }
 
 Status checkAgreement(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
-                      const std::vector<bool>& given, double diagonal) {
-  const SkinPairs pairs = skinPairs(from, to);
-  const bool isAnyGiven = std::find(given.begin(), given.end(), true) != given.end();
-  if (pairs.places.size() < 3 || !isAnyGiven) return {};
+                      const std::vector<bool>& given, double diagonal, std::vector<bool>& outvoted) {
+  outvoted.assign(from.size(), false);
+  const SkinPairs pairs = skinPairs(from, to), own = skinPairs(from, to, given);
+  if (pairs.places.size() < 3 || own.places.empty()) return {};
   const double asGiven = residual(pairs.from, pairs.to);
   for (const std::size_t i : {swappedSides(pairs, to, asGiven, diagonal), exchangedPair(from, to, given, diagonal)})
     if (i != kNone) return fault(Code::wrongSide, Argument::landmarks, i);
-  std::vector<Suspect> suspects = leaveOut(pairs.from, pairs.to, kMaxLandmarkOff * diagonal);
-  if (suspects.empty()) return {};
-  const bool areSeveral = suspects.back().rest < kRestOfSeveral * asGiven || asGiven > kMaxApart * diagonal;
-  if (!areSeveral) suspects.resize(1);
-  if (!areSeveral && !(suspects.front().rest < kRestOfOne * asGiven)) return {};
-  for (const Suspect& suspect : suspects) {
-    const std::size_t i = pairs.places[suspect.index];
-    if (given[i]) return fault(Code::landmarkAway, Argument::landmarks, i, suspect.off / diagonal);
-  }
+  const auto isGiven = [&](const Suspect& suspect) { return given[pairs.places[suspect.index]]; };
+  const std::vector<Suspect> suspects = mistakesIn(pairs, diagonal), ownSuspects = mistakesIn(own, diagonal);
+  if (std::none_of(suspects.begin(), suspects.end(), isGiven)) return {};
+  // What was found has no vote against what a person gives.
+  if (!ownSuspects.empty())
+    return fault(Code::landmarkAway, Argument::landmarks, own.places[ownSuspects.front().index],
+                 ownSuspects.front().off / diagonal);
+  if (own.places.size() < 3) return {};
+  const Similarity map = fitSimilarity(own.from, own.to);
+  for (std::size_t k = 0; k < pairs.places.size(); ++k)
+    outvoted[pairs.places[k]] =
+        !given[pairs.places[k]] && length(map.inverse(pairs.to[k]) - pairs.from[k]) > kMaxLandmarkOff * diagonal;
   return {};
 }
 

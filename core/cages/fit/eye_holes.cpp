@@ -13,11 +13,13 @@ namespace cagecast::cages {
 
 namespace {
 
-/// Lengths in diagonals of the cage.
-constexpr double kHoleNear = 0.12;   ///< From the centre of an eye to the middle of its hole, at most.
-constexpr double kEyeNear = 0.04;    ///< From the landmark to the middle of the component that is the eye, at most.
-constexpr double kLargestEye = 0.3;  ///< The size of an eye, at most.
-constexpr double kLift = 1e-4;       ///< Rays from a surface start this far off it.
+/// Lengths in distances of the two eyes.
+constexpr double kEyeNear = 0.3;       ///< From the landmark to the middle of the component that is the eye, at most.
+constexpr double kLargestEye = 2;      ///< The size of an eye, at most.
+constexpr double kMaxOff = 0.3;        ///< From where landmarks have a hole to what is seen of the eye, at most.
+constexpr double kMaxOffGiven = 0.07;  ///< The same where a person gave a landmark of it.
+/// Rays from a surface start this far off it, in diagonals of the cage.
+constexpr double kLift = 1e-4;
 /// Rays to an eye: directions from its middle, places along each of them, and places along the sides of a grid.
 constexpr int kDirections = 144, kSteps = 144, kGrid = 48;
 /// A component may be the lashes of an eye if all of it is this near to the eye's middle, across and in depth. In
@@ -56,7 +58,8 @@ int eyeballAt(const std::vector<Bounds>& boxes, const std::vector<bool>& isNear,
 }
 
 /// The triangles of the eye at a landmark: named parts on its side, else the eyeball around it, and what is inside.
-std::vector<bool> eyeAt(const EyedFigure& figure, const Vec3& centre, const Vec3& other, double diagonal) {
+std::vector<bool> eyeAt(const EyedFigure& figure, const Vec3& centre, const Vec3& other) {
+  const double apart = length(centre - other);
   const std::size_t count = figure.mesh.triangles.size();
   std::vector<Bounds> boxes(figure.componentCount);
   for (std::size_t t = 0; t < count; ++t)
@@ -64,15 +67,15 @@ std::vector<bool> eyeAt(const EyedFigure& figure, const Vec3& centre, const Vec3
   std::vector<bool> named(boxes.size()), isNear(boxes.size()), isEye(boxes.size());
   for (std::size_t t = 0; t < count; ++t)
     if (figure.isEye[t]) named[figure.components[t]] = true;
-  const bool anyNamed = std::find(named.begin(), named.end(), true) != named.end();
   for (std::size_t c = 0; c < boxes.size(); ++c) {
     if (boxes[c].empty()) continue;
     const double distance = length(boxes[c].middle() - centre);
-    if (boxes[c].diagonal() > kLargestEye * diagonal || distance > length(boxes[c].middle() - other)) continue;
-    isEye[c] = named[c] && distance < kLargestEye * diagonal;
-    isNear[c] = distance < kEyeNear * diagonal;
+    if (boxes[c].diagonal() > kLargestEye * apart || distance > length(boxes[c].middle() - other)) continue;
+    isEye[c] = named[c] && distance < kLargestEye * apart;
+    isNear[c] = distance < kEyeNear * apart;
   }
-  const int ball = anyNamed ? -1 : eyeballAt(boxes, isNear, centre);
+  const bool isNamed = std::find(isEye.begin(), isEye.end(), true) != isEye.end();
+  const int ball = isNamed ? -1 : eyeballAt(boxes, isNear, centre);
   if (ball >= 0) {
     isEye = isNear;
     const Bounds& box = boxes[static_cast<std::size_t>(ball)];
@@ -184,21 +187,6 @@ class EyeView {
   double radius_ = 0;
   EyeOpening opening_;
 };
-
-/// The hole of an eye: the loop around its landmark; -1 if there is none of its own.
-int holeAt(const TemplateCage& cage, const Vec3& centre, const Vec3& other) {
-  int best = -1;
-  double least = kHoleNear * cage.diagonal;
-  for (std::size_t i = 0; i < cage.loops.size(); ++i) {
-    if (static_cast<int>(i) == cage.rim) continue;
-    const Vec3 middle = middleOf(cage.mesh, cage.loops[i]);
-    const double distance = length(middle - centre);
-    if (distance >= least || distance >= length(middle - other)) continue;
-    least = distance;
-    best = static_cast<int>(i);
-  }
-  return best;
-}
 
 /// The mean of points, and their mean distances from it along x and y.
 Flat spreadOf(const std::vector<Flat>& points, Flat& middle) {
@@ -358,6 +346,19 @@ void drawTo(const TemplateCage& cage, std::vector<std::uint32_t> loop, const Eye
     positions[loop[i]] = inFrontOf(surface, opening, outline[i], positions[loop[i]], cage.offset);
 }
 
+/// Whether what is seen of an eye is where landmarks have it.
+bool isInPlace(const FaceHole& hole, const Face& face, const EyeOpening& opening, double apart) {
+  return length(face.fromFront(hole.place - opening.middle)) < kMaxOff * apart;
+}
+
+/// Moves a hole to where a person has it, but for what the shape of the eye may say.
+void obey(const FaceHole& hole, const Face& face, double apart, std::vector<Vec3>& positions) {
+  const Vec3 miss = missOf(hole, face, positions);
+  const double far = length(miss);
+  if (!hole.isGiven || !(far > kMaxOffGiven * apart)) return;
+  for (const std::uint32_t v : hole.loop) positions[v] = positions[v] + (1 - kMaxOffGiven * apart / far) * miss;
+}
+
 std::optional<Vec3> centreOf(const std::vector<Landmark>& landmarks, const std::string& side) {
   if (const auto centre = placeOf(landmarks, "eye_centre_" + side)) return centre;
   const auto inner = placeOf(landmarks, "eye_inner_" + side), outer = placeOf(landmarks, "eye_outer_" + side);
@@ -381,6 +382,8 @@ bool fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const StepC
                  std::vector<Vec3>& tracks, std::vector<Vec3>& positions) {
   constexpr double kTreeShare = 0.4;  ///< Of the time.
   tracks.assign(positions.size(), Vec3{0, 0, 0});
+  for (const FaceHole& hole : figure.holes)
+    for (const std::uint32_t v : hole.loop) tracks[v] = figure.face.there.front;
   if (figure.eyes.empty()) return true;
   const Surface surface(figure.mesh);
   for (std::size_t side = 0; side < 2; ++side) {
@@ -388,16 +391,22 @@ bool fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const StepC
     const EyePair &eye = figure.eyes[side], &other = figure.eyes[1 - side];
     const int hole = holeAt(cage, eye.from, other.from);
     if (hole < 0) continue;
-    const std::vector<bool> isEye = eyeAt(figure, eye.to, other.to, cage.diagonal);
+    const std::vector<bool> isEye = eyeAt(figure, eye.to, other.to);
     if (std::find(isEye.begin(), isEye.end(), true) == isEye.end()) continue;
     const Vec3 axis = axisOf(figure.mesh, isEye, surface, cage.diagonal);
     if (!(length(axis) > 0)) continue;
     std::optional<EyeOpening> opening = EyeView(figure.mesh, surface, isEye, axis).opening();
+    const std::vector<std::uint32_t>& loop = cage.loops[static_cast<std::size_t>(hole)];
     if (!opening) continue;
+    const double apart = length(eye.to - other.to);
+    const auto placed =
+        std::find_if(figure.holes.begin(), figure.holes.end(), [&](const FaceHole& one) { return one.loop == loop; });
+    if (placed != figure.holes.end() && !isInPlace(*placed, figure.face, *opening, apart)) continue;
     addCovers(figure.mesh, figure.components, figure.componentCount, isEye, *opening);
     addCovers(figure.covers, figure.coverComponents, figure.componentCount, {}, *opening);
-    drawTo(cage, cage.loops[static_cast<std::size_t>(hole)], *opening, surface, positions);
-    for (const std::uint32_t v : cage.loops[static_cast<std::size_t>(hole)]) tracks[v] = opening->axis;
+    drawTo(cage, loop, *opening, surface, positions);
+    if (placed != figure.holes.end()) obey(*placed, figure.face, apart, positions);
+    for (const std::uint32_t v : loop) tracks[v] = opening->axis;
   }
   return true;
 }

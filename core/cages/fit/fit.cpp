@@ -38,9 +38,23 @@ constexpr float kLandmarksEnd = 0.2f, kHullEnd = 0.4f, kTightenEnd = 0.8f, kEyes
 
 /// What is known of both models.
 struct Pairs {
-  std::vector<Landmark> from, to;     ///< In the same order; `to` in the target's space, then in the template's.
-  std::vector<bool> given;            ///< Whether a person gave it.
-  std::vector<std::uint32_t> places;  ///< In the template's list.
+  std::vector<Landmark> from, to;          ///< In the same order; `to` in the target's space, then in the template's.
+  std::vector<bool> given;                 ///< Whether a person gave it.
+  std::vector<std::optional<Vec3>> found;  ///< Where what was given was found, too; as `to`.
+  std::vector<std::uint32_t> places;       ///< In the template's list.
+
+  /// Leaves some out.
+  void drop(const std::vector<bool>& isOut) {
+    const auto without = [&](auto& list) {
+      std::size_t i = 0;
+      std::erase_if(list, [&](const auto&) { return isOut[i++]; });
+    };
+    without(from);
+    without(to);
+    without(given);
+    without(found);
+    without(places);
+  }
 };
 
 /// Pairs landmarks of a template with given ones, else with found ones.
@@ -53,7 +67,8 @@ Pairs pairLandmarks(const Template& from, const std::vector<Landmark>& given, co
     const Landmark& landmark = from.landmarks[i];
     const Landmark* there = findLandmark(given, landmark.name);
     const bool isGiven = there != nullptr;
-    if (!isGiven) there = findLandmark(found, landmark.name);
+    const Landmark* other = findLandmark(found, landmark.name);
+    if (!isGiven) there = other;
     if (there == nullptr) {
       unknown.push_back(landmark.name);
       continue;
@@ -61,9 +76,44 @@ Pairs pairLandmarks(const Template& from, const std::vector<Landmark>& given, co
     out.from.push_back(landmark);
     out.to.push_back(*there);
     out.given.push_back(isGiven);
+    out.found.push_back(isGiven && other != nullptr ? std::optional(positionOf(*other)) : std::nullopt);
     out.places.push_back(i);
   }
   return out;
+}
+
+/// Where given landmarks say that eyes and mouth are, for the search of the others.
+std::vector<Landmark> hintsOf(const std::vector<Landmark>& given) {
+  constexpr double kHalfWidth = 0.22;  ///< Of an eye, in distances of both.
+  std::vector<Landmark> out;
+  const auto left = placeOf(given, "eye_centre_left"), right = placeOf(given, "eye_centre_right");
+  if (left && right) {
+    const Vec3 half = kHalfWidth * (*left - *right);
+    out = {{"eye_inner_left", toPosition(*left - half)},
+           {"eye_outer_left", toPosition(*left + half)},
+           {"eye_inner_right", toPosition(*right + half)},
+           {"eye_outer_right", toPosition(*right - half)}};
+  }
+  std::vector<Vec3> lips;
+  for (const char* name : {"lip_upper", "lip_lower"})
+    if (const auto lip = placeOf(given, name)) lips.push_back(*lip);
+  if (!lips.empty()) out.push_back({"mouth", toPosition(meanOf(lips))});
+  return out;
+}
+
+/// Whether both eyes are given, and a face was found elsewhere, or none although more of it is given.
+bool areElsewhere(const std::vector<Landmark>& given, const std::vector<Landmark>& found) {
+  constexpr double kFar = 0.25;  ///< In distances of the eyes.
+  const auto left = placeOf(given, "eye_centre_left"), right = placeOf(given, "eye_centre_right");
+  if (!left || !right) return false;
+  const auto foundLeft = placeOf(found, "eye_centre_left"), foundRight = placeOf(found, "eye_centre_right");
+  if (!foundLeft || !foundRight) return given.size() >= kMinLandmarks;
+  return std::max(length(*foundLeft - *left), length(*foundRight - *right)) > kFar * length(*left - *right);
+}
+
+void setLandmark(std::vector<Landmark>& list, const Landmark& landmark) {
+  std::erase_if(list, [&](const Landmark& other) { return other.name == landmark.name; });
+  list.push_back(landmark);
 }
 
 /// Whether the triangles of a cage are within a distance of the box around a hull and landmarks.
@@ -106,6 +156,7 @@ class Fit {
       return {Code::tooFewJoints, Argument::landmarks, static_cast<std::uint32_t>(pairs_.from.size())};
     std::vector<Vec3> positions = start(cage, anchors);
     if (!std::all_of(positions.begin(), positions.end(), isFinite)) return {Code::noFit, Argument::model};
+    figure_.holes = faceHoles(cage, positions, pairs_.from, pairs_.to, pairs_.given, face_);
     TriangleMesh hull;
     const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels,
                              meanOf(positionsOf(pairs_.to))};
@@ -182,12 +233,19 @@ class Fit {
     if (!allGiven) {
       const Progress finding = partOf(progress_, 0, kLandmarksEnd);
       if (const Status status = findLandmarks(model_, finding, found); !status.ok()) return status;
+      Model hinted = model_;
+      for (const Landmark& hint : hintsOf(given)) setLandmark(hinted.hints, hint);
+      // Again, where a person has the face.
+      if (areElsewhere(given, found.landmarks))
+        if (const Status status = findLandmarks(hinted, finding, found); !status.ok()) return status;
     }
     if (found.areSeveralHeads && given.size() < kMinLandmarks) return {Code::noFit, Argument::model};
     pairs_ = pairLandmarks(from_, given, found.landmarks, out.missing);
     Status status = checkJoints(pairs_.to, boundsOf(model_.mesh));
-    if (status.ok()) status = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal);
+    std::vector<bool> outvoted(pairs_.from.size());
+    if (status.ok()) status = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal, outvoted);
     if (!status.ok() && status.code != Code::smallSkeleton) status.at = pairs_.places[status.at];
+    if (status.ok()) pairs_.drop(outvoted);
     if (status.ok() && isTooLittle(pairs_.to)) {
       out.guessed = mostHelpfulFirst(out.missing);
       for (Landmark& guess : guessLandmarks(from_, cage, model_, pairs_.to))
@@ -205,12 +263,30 @@ class Fit {
   void align() {
     map_ = fitSimilarity(positionsOf(pairs_.from), positionsOf(pairs_.to));
     for (Landmark& landmark : pairs_.to) landmark.position = toPosition(map_.inverse(positionOf(landmark)));
+    face_ = faceOf(pairs_.from, pairs_.to, axesOf(from_.landmarks),
+                   unit(map_.inverse({0, 1, 0}) - map_.inverse({0, 0, 0})));
+    for (std::optional<Vec3>& found : pairs_.found)
+      if (found) found = map_.inverse(*found);
+    pairs_.drop(contradicted(pairs_.given, pairs_.found, face_, pairs_.to));
     bones_ = bonesOf(pairs_.from, pairs_.to);
   }
 
   /// Reports the steps of something that takes the time from one share to another.
   [[nodiscard]] StepCallback stepsOf(float from, float to, const char* stage) const {
     return [this, from, to, stage](double share) { return report(progress_, from + share * (to - from), stage); };
+  }
+
+  /// What draws the holes of a face to their places; how deep they are, the hull says.
+  [[nodiscard]] std::vector<PlaneTerm> holdsOf(const std::vector<Vec3>& positions) const {
+    constexpr double kStrength = 10;
+    std::vector<PlaneTerm> holds;
+    for (const FaceHole& hole : figure_.holes) {
+      const Vec3 miss = missOf(hole, face_, positions);
+      for (const std::uint32_t v : hole.loop)
+        for (const Vec3& direction : {face_.there.left, face_.there.up})
+          holds.push_back({{v, v, v}, {1, 0, 0}, positions[v] + miss, direction, kStrength});
+    }
+    return holds;
   }
 
   /// Draws the cage onto the hull, and pushes it out until the target is inside. @return false if cancelled.
@@ -221,7 +297,8 @@ class Fit {
       const float from = kHullEnd + static_cast<float>(pass) * each;
       const std::vector<Vec3> free(positions.size(), Vec3{0, 0, 0});
       if (pass > 0 && !relax(cage, free, stepsOf(from, from, "fit"), positions)) return false;
-      positions = tighten(cage, positions, hull, settings.tighten, stepsOf(from, from + each, "fit"));
+      positions =
+          tighten(cage, positions, hull, holdsOf(positions), settings.tighten, stepsOf(from, from + each, "fit"));
       if (positions.empty()) return false;
     }
     std::vector<Vec3> tracks;
@@ -249,6 +326,7 @@ class Fit {
     figure_ = {};
     figure_.componentCount = parts.componentCount;
     figure_.eyes = eyePairs(pairs_.from, pairs_.to);
+    figure_.face = face_;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const bool isEye = parts.roles[t] == Role::eye;
       isSkin[t] = !isExcluded[parts.triangleOf[t]];
@@ -271,7 +349,8 @@ class Fit {
   const FitOptions& options_;
   const Progress& progress_;
   Pairs pairs_;
-  Similarity map_;           ///< From the template's space to the target's.
+  Similarity map_;  ///< From the template's space to the target's.
+  Face face_;
   std::vector<Bone> bones_;  ///< None for heads.
   TriangleMesh skin_;        ///< The target without excluded parts, in the template's space.
   EyedFigure figure_;        ///< Eyes fill their sockets.

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "linear/sparse_system.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/neighbours.hpp"
+#include "mesh/thin_plate.hpp"
 
 /// The steps of a fit, each in a file of its own. Lengths are in the space of the template.
 namespace cagecast::cages {
@@ -61,12 +64,14 @@ Status checkLandmarkList(const std::vector<Landmark>& landmarks, Argument argume
 /// @return `at` is a place in the list.
 Status checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box);
 
-/// Checks that landmarks of a model are where those of a template can be after turning and scaling.
+/// Checks that landmarks that a person gave are where those of a template can be after turning and scaling, and on the
+/// sides where all landmarks have them.
 /// @param from,to  In the same order.
 /// @param given  Whether a person gave it.
+/// @param[out] outvoted  Whether each was found far from where three or more given ones put it.
 /// @return `at` is a place in these lists.
 Status checkAgreement(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
-                      const std::vector<bool>& given, double diagonal);
+                      const std::vector<bool>& given, double diagonal, std::vector<bool>& outvoted);
 
 /// A piece of the body that moves as one: where it is in the template, and an affine map to the target.
 struct Bone {
@@ -105,6 +110,51 @@ std::vector<Anchor> jawAnchors(const std::vector<Landmark>& own, const std::vect
 /// Pairs above and below each eye: an eye that is wider is higher, too, by as much.
 std::vector<Anchor> eyeAnchors(const std::vector<Landmark>& from, const std::vector<Landmark>& to, const Axes& axes);
 
+/// A face as a whole, in the template's space.
+struct Face {
+  Axes own, there;     ///< The directions of the template's face and of the target's.
+  Similarity map;      ///< From the template's face to the target's.
+  bool known = false;  ///< Whether there are landmarks enough.
+
+  /// A length and direction of the template's face on that of the target.
+  [[nodiscard]] Vec3 carried(const Vec3& v) const {
+    return map.scale * (dot(v, own.left) * there.left + dot(v, own.up) * there.up + dot(v, own.front) * there.front);
+  }
+  /// Without its depth.
+  [[nodiscard]] Vec3 fromFront(const Vec3& v) const { return v - dot(v, there.front) * there.front; }
+};
+
+/// @param from,to  Landmarks in the same order, both in the template's space.
+/// @param axes  Of the template.
+/// @param up  Where the target's y is.
+Face faceOf(const std::vector<Landmark>& from, const std::vector<Landmark>& to, const Axes& axes, const Vec3& up);
+
+/// Whether each landmark is one of an eye or of a mouth that was found elsewhere than a person has it.
+/// @param given  Whether a person gave it.
+/// @param found  Where what is given was found, too.
+std::vector<bool> contradicted(const std::vector<bool>& given, const std::vector<std::optional<Vec3>>& found,
+                               const Face& face, const std::vector<Landmark>& to);
+
+/// A hole of a cage for an eye or a mouth.
+struct FaceHole {
+  std::vector<std::uint32_t> loop;
+  Vec3 place;            ///< Where its middle belongs, as seen from in front: depth does not count.
+  bool isGiven = false;  ///< Whether a person gave a landmark of it.
+};
+
+/// The hole at a spot of the template: the loop whose middle is nearest to it, and nearer than to another spot; -1 if
+/// there is none.
+int holeAt(const TemplateCage& cage, const Vec3& centre, const Vec3& other);
+
+/// The holes of a face, and where the landmarks put them. Empty if the face is not known.
+/// @param start  Where the cage is by landmarks alone.
+std::vector<FaceHole> faceHoles(const TemplateCage& cage, const std::vector<Vec3>& start,
+                                const std::vector<Landmark>& from, const std::vector<Landmark>& to,
+                                const std::vector<bool>& given, const Face& face);
+
+/// How a hole has to move to be in its place, as seen from in front.
+Vec3 missOf(const FaceHole& hole, const Face& face, const std::vector<Vec3>& positions);
+
 struct TightenOptions {
   double reach = 0.1;   ///< Planes farther away than this share of the diagonal do not count; shrinks to a third.
   double sliding = 0;   ///< Resistance to sliding along the surface.
@@ -114,9 +164,10 @@ struct TightenOptions {
 
 /// Draws a cage onto the hull of the target, smoothly and with little sliding.
 /// @param rest  Positions of the cage to start from; what they are is kept as far as the hull lets them.
+/// @param holds  What else it is drawn to, such as the holes of a face to their places.
 /// @return The positions; empty if cancelled.
 std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& rest, const TriangleMesh& hull,
-                          const TightenOptions& options, const StepCallback& step);
+                          std::span<const PlaneTerm> holds, const TightenOptions& options, const StepCallback& step);
 
 /// The centre of an eye of the template and of that of the target, both in the template's space.
 struct EyePair {
@@ -135,12 +186,15 @@ struct EyedFigure {
   std::vector<std::uint32_t> coverComponents;
   std::uint32_t componentCount = 0;
   std::vector<EyePair> eyes;  ///< Left and right; empty if not both are known of both.
+  Face face;
+  std::vector<FaceHole> holes;
 };
 
 /// Draws the borders of eye holes to the contours of what is visible of the eyes, seen along the direction in which
-/// they look, with lashes as far as there is room. Where a model has no eyes of their own, holes stay where they are.
+/// they look, with lashes as far as there is room. Where a model has no eyes of their own, or none where landmarks have
+/// them, holes stay where they are.
 /// @param[out] tracks  Per vertex of the cage: where its eye looks if it is on the border of a hole that was drawn,
-///   else zero.
+///   where the face looks on that of another hole of it, else zero.
 /// @return false if cancelled.
 bool fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const StepCallback& step,
                  std::vector<Vec3>& tracks, std::vector<Vec3>& positions);

@@ -462,6 +462,90 @@ TEST_CASE("dense rings around the hole of an eye make room for it, and do not fo
   CHECK(std::none_of(folded.begin(), folded.end(), [](bool is) { return is; }));
 }
 
+TEST_CASE("a head is not taken for the eye that a landmark is in", "[cages][fit]") {
+  OwnedModel mesh;
+  mesh.roll(
+      40, 24, [](double u, double v) { return headPoint(kOwn, 2 * kPi * u + kPi, -0.9 + 2.4 * v, 0.04); },
+      [](double u, double v) { return std::hypot(2 * kPi * std::abs(u - 0.5) - 0.5, -0.9 + 2.4 * v - 0.3) > 0.16; });
+  mesh.groups.clear();
+  // A cage of a whole figure is large beside its eyes.
+  mesh.positions.insert(mesh.positions.end(), {0, -30, 0, 0.1f, -30, 0, 0, -30, 0.1f});
+  mesh.uvs.resize(mesh.positions.size() / 3 * 2);
+  const auto count = static_cast<std::uint32_t>(mesh.positions.size() / 3);
+  mesh.indices.insert(mesh.indices.end(), {count - 3, count - 2, count - 1});
+  const std::vector<Landmark> own = headLandmarks(kOwn);
+  const TemplateCage cage = prepareTemplate({mesh.view(), own});
+  EyedFigure figure;
+  figure.mesh = weldExactly(headMesh(kOwn, 60, 40, 0).view());
+  figure.components = connectedPieces(figure.mesh, figure.componentCount);
+  figure.isEye.resize(figure.mesh.triangles.size());
+  figure.eyes = eyePairs(own, own);
+  std::vector<Vec3> tracks, positions = cage.mesh.positions;
+  REQUIRE(fitEyeHoles(
+      cage, figure, [](double) { return true; }, tracks, positions));
+  for (std::size_t v = 0; v < positions.size(); ++v) REQUIRE(length(positions[v] - cage.mesh.positions[v]) == 0);
+}
+
+TEST_CASE("what was found has no vote against what a person gives", "[cages][fit]") {
+  const std::vector<Landmark> from = headLandmarks(kOwn);
+  std::vector<Landmark> to = headLandmarks(kOther);
+  std::vector<bool> given(from.size()), outvoted;
+  const auto isGiven = [](const Landmark& one) {
+    return one.name.starts_with("eye_") || one.name.starts_with("mouth");
+  };
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    given[i] = isGiven(from[i]);
+    if (!given[i]) to[i].position[1] -= 3;  // All of a face that was found elsewhere.
+  }
+  CHECK(checkAgreement(from, to, given, 3, outvoted).ok());
+  for (std::size_t i = 0; i < from.size(); ++i) CHECK(outvoted[i] == !given[i]);
+  CHECK(checkAgreement(from, headLandmarks(kOther), given, 3, outvoted).ok());
+  CHECK(std::find(outvoted.begin(), outvoted.end(), true) == outvoted.end());
+}
+
+TEST_CASE("a hole of a face is where its given landmark is, whatever the hull says", "[cages][fit]") {
+  Heads heads;
+  heads.cage = OwnedModel{};
+  const auto isHole = [](double longitude, double latitude) {
+    return std::hypot(std::abs(longitude) - 0.5, latitude - 0.3) < 0.16 || std::hypot(longitude, latitude + 0.4) < 0.2;
+  };
+  heads.cage.roll(
+      40, 24, [](double u, double v) { return headPoint(kOwn, 2 * kPi * u + kPi, -0.9 + 2.4 * v, 0.04); },
+      [&](double u, double v) { return !isHole(2 * kPi * (u - 0.5), -0.9 + 2.4 * v); });
+  heads.cage.groups.clear();
+  heads.own.push_back({"lip_lower", toPosition(headPoint(kOwn, 0, -0.45, 0))});
+  heads.given.push_back({"lip_lower", toPosition(headPoint(kOther, 0, -0.45, 0))});
+  std::erase_if(heads.own, [](const Landmark& one) { return one.name.starts_with("mouth"); });
+  std::erase_if(heads.given, [](const Landmark& one) { return one.name.starts_with("mouth"); });
+  // A beard hangs from the chin, and the mouth is higher than it.
+  heads.model = heads.model.mapped([](const Vec3& p) {
+    const double beard = std::exp(-12 * (p.x * p.x + (p.y + 0.75) * (p.y + 0.75)));
+    return p.z > 0 ? p + Vec3{0, -0.2 * beard, 0.5 * beard} : p;
+  });
+  for (Landmark& one : heads.given)
+    if (one.name == "lip_lower") one.position[1] += 0.1f;
+  const Status status = heads.fit();
+  REQUIRE(status.ok());
+  const TemplateCage cage = prepareTemplate(heads.from());
+  TriangleMesh fitted = cage.mesh;
+  for (std::size_t v = 0; v < cage.vertexOf.size(); ++v)
+    fitted.positions[cage.vertexOf[v]] = Vec3::from(&heads.out.positions[3 * v]);
+  const auto place = [](const std::vector<Landmark>& list, const char* name) { return *placeOf(list, name); };
+  const Vec3 eyes = 0.5 * (place(heads.own, "eye_centre_left") + place(heads.own, "eye_centre_right"));
+  const double face = length(eyes - place(heads.own, "lip_lower"));
+  for (const auto& [name, other] : {std::pair{"eye_centre_left", place(heads.own, "eye_centre_right")},
+                                    {"eye_centre_right", place(heads.own, "eye_centre_left")},
+                                    {"lip_lower", eyes}}) {
+    const int hole = holeAt(cage, place(heads.own, name), other);
+    REQUIRE(hole >= 0);
+    const std::vector<std::uint32_t>& loop = cage.loops[static_cast<std::size_t>(hole)];
+    const Vec3 own = middleOf(cage.mesh, loop) - place(heads.own, name);
+    const Vec3 there = middleOf(fitted, loop) - place(heads.given, name);
+    CAPTURE(name);
+    CHECK(std::hypot(there.x - own.x, there.y - own.y) < 0.1 * face);
+  }
+}
+
 TEST_CASE("a jaw of which only the chin is known moves with it", "[cages][fit]") {
   const std::vector<Landmark> own{{"chin", {0, -1, 1}}, {"menton", {0, -1.5F, 0.5F}}, {"ear_lobe_left", {1, 0, 0}}};
   std::vector<Landmark> to{{"chin", {0, -2, 1}}, {"ear_lobe_left", {1, 0, 0}}};
