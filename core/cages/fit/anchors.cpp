@@ -16,6 +16,10 @@ constexpr double kSmoothing = 0.03;  ///< Ragged rims are smoothed over this sha
 /// would be millions where landmarks that are close together make the target huge in the template's space.
 constexpr std::size_t kMaxSamples = 2000;
 
+/// A border of the target may be its neck if it is about as long as the template's, by these shares, and about where
+/// that is: its centre is off by at most this share of the diagonal. Hems of jackets are longer and lower.
+constexpr double kShortestNeck = 0.5, kLongestNeck = 1.7, kNeckOff = 0.2;
+
 /// How far the map may stay off landmarks that are not sure (see `Anchor::slack`).
 constexpr double kSlack = 0.1;
 
@@ -136,6 +140,37 @@ std::vector<Vec3> stations(const Rim& rim, const Axes& axes) {
   return out;
 }
 
+/// How long a loop is.
+double lengthOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop) {
+  double around = 0;
+  for (std::size_t k = 0; k < loop.size(); ++k)
+    around += length(mesh.positions[loop[(k + 1) % loop.size()]] - mesh.positions[loop[k]]);
+  return around;
+}
+
+double lengthOf(const Rim& rim) {
+  double around = 0;
+  for (std::size_t k = 0; k < rim.points.size(); ++k)
+    around += length(rim.points[(k + 1) % rim.points.size()] - rim.points[k]);
+  return around;
+}
+
+/// The border of a target that is the neck that a template's rim is for: the nearest that may be; -1 if there is none.
+int neckAmong(const TriangleMesh& target, const std::vector<std::vector<std::uint32_t>>& loops, const Rim& from,
+              double diagonal) {
+  const double own = lengthOf(from);
+  int best = -1;
+  double least = kNeckOff * diagonal;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    const double around = lengthOf(target, loops[i]);
+    const double off = length(middleOf(target, loops[i]) - from.centre);
+    if (around < kShortestNeck * own || around > kLongestNeck * own || off >= least) continue;
+    least = off;
+    best = static_cast<int>(i);
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<Anchor> landmarkAnchors(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
@@ -156,12 +191,13 @@ std::vector<Anchor> landmarkAnchors(const std::vector<Landmark>& from, const std
 
 std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& target, const Axes& axes) {
   std::vector<Anchor> anchors;
-  const auto loops = boundaryLoops(target);
-  const int rim = rimOf(target, loops, cage.diagonal);
-  if (!axes.known || cage.rim < 0 || rim < 0) return anchors;
+  if (!axes.known || cage.rim < 0) return anchors;
   const double step = kRimStep * cage.diagonal;
   const Rim from = sampleRim(cage.mesh, cage.loops[static_cast<std::size_t>(cage.rim)], step, axes.up);
-  const Rim to = sampleRim(target, loops[static_cast<std::size_t>(rim)], step, axes.up);
+  const auto loops = boundaryLoops(target);
+  const int neck = neckAmong(target, loops, from, cage.diagonal);
+  if (neck < 0) return anchors;
+  const Rim to = sampleRim(target, loops[static_cast<std::size_t>(neck)], step, axes.up);
   const std::vector<Vec3> a = stations(from, axes), b = stations(to, axes);
   if (a.size() != b.size()) return anchors;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -169,6 +205,20 @@ std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& tar
     anchors.push_back({a[i], b[i] + cage.offset / std::max(length(outward), cage.offset) * outward});
   }
   return anchors;
+}
+
+std::vector<bool> belowRim(const TemplateCage& cage, const std::vector<Vec3>& positions, const TriangleMesh& target) {
+  constexpr double kBelow = 0.06;  ///< In diagonals: what a neck goes into is still seen.
+  std::vector<bool> out(target.triangles.size());
+  if (cage.rim < 0) return out;
+  const std::vector<std::uint32_t>& loop = cage.loops[static_cast<std::size_t>(cage.rim)];
+  const TriangleMesh placed{positions, cage.mesh.triangles};
+  const Rim rim = sampleRim(placed, loop, kRimStep * cage.diagonal, meanOf(positions) - middleOf(placed, loop));
+  for (std::size_t t = 0; t < out.size(); ++t)
+    out[t] = std::all_of(target.triangles[t].begin(), target.triangles[t].end(), [&](std::uint32_t v) {
+      return dot(target.positions[v] - rim.centre, rim.normal) < -kBelow * cage.diagonal;
+    });
+  return out;
 }
 
 std::vector<Anchor> jawAnchors(const std::vector<Landmark>& own, const std::vector<Landmark>& to) {

@@ -199,16 +199,19 @@ class Fit {
     return positions;
   }
 
-  /// What of the figure is near a cage: the hull of a head is as fine where there is a body.
+  /// What of the figure is near a cage and not below its rim: the hull of a head is as fine where there is a body.
   [[nodiscard]] TriangleMesh nearTo(const std::vector<Vec3>& positions, const TemplateCage& cage) const {
     Bounds box;
     for (const Triangle3& t : cage.mesh.triangles)
       for (const std::uint32_t v : t) box.add(positions[v]);
-    std::vector<bool> isNear;
-    for (const Triangle3& t : figure_.mesh.triangles)
-      isNear.push_back(std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
-        return box.distance(figure_.mesh.positions[v]) < kHullReach * cage.diagonal;
-      }));
+    std::vector<bool> isNear = belowRim(cage, positions, figure_.mesh);
+    isNear.flip();
+    for (std::size_t t = 0; t < isNear.size(); ++t) {
+      const Triangle3& corners = figure_.mesh.triangles[t];
+      isNear[t] = isNear[t] && std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+                    return box.distance(figure_.mesh.positions[v]) < kHullReach * cage.diagonal;
+                  });
+    }
     return subset(figure_.mesh, isNear);
   }
 

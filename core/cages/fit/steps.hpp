@@ -98,9 +98,13 @@ std::vector<Anchor> landmarkAnchors(const std::vector<Landmark>& from, const std
                                     bool withJoints);
 
 /// Pairs of points around the rims where both end, such as necks: front on front, back on back, the sides by length.
-/// Empty if one of the two has no rim.
+/// Empty if the template has no rim, or the target none about as long and about there.
 /// @param target  The target's skin, in the template's space.
 std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& target, const Axes& axes);
+
+/// Whether each triangle of a target is wholly below the rim of a cage: a template of a head does not see it.
+/// @param positions  Of the cage where it is.
+std::vector<bool> belowRim(const TemplateCage& cage, const std::vector<Vec3>& positions, const TriangleMesh& target);
 
 /// Pairs along the lower edge of a jaw of which only the chin is known, as where a mouth is open or the chin double:
 /// all of it moves with the chin, less and less towards the lobes of the ears. Empty if menton is known.

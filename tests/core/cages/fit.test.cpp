@@ -591,16 +591,45 @@ TEST_CASE("the outline of a mask is no neck, and may end anywhere on a head", "[
   CHECK(off < 0.15);
 }
 
-TEST_CASE("a rim that is huge beside the template's has its anchors", "[cages][fit]") {
+TEST_CASE("the neck is the border about as long as the template's and about there, not the longest", "[cages][fit]") {
   const OwnedModel cageMesh = headMesh(kOwn, 20, 12, 0.04), model = headMesh(kOwn, 60, 40, 0);
   const TemplateCage cage = prepareTemplate({cageMesh.view(), headLandmarks(kOwn)});
-  TriangleMesh target = weldExactly(model.view());
+  const TriangleMesh head = weldExactly(model.view());
+  const Axes axes = axesOf(headLandmarks(kOwn));
+  const std::vector<Anchor> anchors = rimAnchors(cage, head, axes);
+  REQUIRE(anchors.size() == 8);
+  // A jacket around the neck, open at its collar and longer at its hem.
+  OwnedModel cloth;
+  cloth.roll(
+      40, 10,
+      [](double u, double v) {
+        const double wide = 0.7 + 1.3 * (1 - v);
+        return Vec3{wide * std::sin(2 * kPi * u), -4 + 3 * v, wide * std::cos(2 * kPi * u)};
+      },
+      [](double, double) { return true; });
+  const TriangleMesh jacket = weldExactly(cloth.view());
+  const std::vector<Anchor> dressed = rimAnchors(cage, together(head, jacket), axes);
+  REQUIRE(dressed.size() == anchors.size());
+  for (std::size_t i = 0; i < anchors.size(); ++i) CHECK(length(dressed[i].to - anchors[i].to) < 1e-9);
+  CHECK(rimAnchors(cage, mapped(jacket, [](const Vec3& p) { return p - Vec3{0, 2, 0}; }), axes).empty());
+  // What is below the neck is not seen.
+  const std::vector<bool> below = belowRim(cage, cage.mesh.positions, together(head, jacket));
+  for (std::size_t t = 0; t < below.size(); ++t)
+    if (t < head.triangles.size()) REQUIRE_FALSE(below[t]);
+  CHECK(std::count(below.begin(), below.end(), true) > std::ptrdiff_t(jacket.triangles.size() / 2));
+}
+
+TEST_CASE("a rim of very many points, and one that is huge, are read in no time", "[cages][fit]") {
+  const OwnedModel cageMesh = headMesh(kOwn, 20, 12, 0.04);
+  const TemplateCage cage = prepareTemplate({cageMesh.view(), headLandmarks(kOwn)});
+  TriangleMesh target = weldExactly(headMesh(kOwn, 60, 40, 0).view());
   const auto anchors = [&] { return rimAnchors(cage, target, axesOf(headLandmarks(kOwn))); };
-  const std::vector<Anchor> small = anchors();
-  REQUIRE(small.size() == 8);
-  constexpr double kScale = 1e5;
-  for (Vec3& p : target.positions) p = kScale * p;
-  const std::vector<Anchor> huge = anchors();
-  REQUIRE(huge.size() == small.size());
-  for (std::size_t i = 0; i < huge.size(); ++i) CHECK(length(1 / kScale * huge[i].to - small[i].to) < 0.1);
+  const std::vector<Anchor> few = anchors();
+  REQUIRE(few.size() == 8);
+  target = weldExactly(headMesh(kOwn, 20000, 2, 0).view());
+  const std::vector<Anchor> many = anchors();
+  REQUIRE(many.size() == few.size());
+  for (std::size_t i = 0; i < many.size(); ++i) CHECK(length(many[i].to - few[i].to) < 0.1);
+  for (Vec3& p : target.positions) p = 1e5 * p;
+  CHECK(anchors().empty());
 }
