@@ -18,8 +18,8 @@ export interface Score {
 /** What depth counts, against the face's plane: a cage lies before the skin. */
 const kDepthWeight = 0.25;
 
-/** How far around a mark an eye is, and around its middle a face, in distances from eyes to mouth. */
-const [kEyeReach, kFaceReach] = [0.3, 1.2];
+/** How far around a mark parts called eyes are, or an iris, and around its middle a face, in distances from eyes to mouth. */
+const [kEyeReach, kIrisReach, kFaceReach] = [0.3, 0.1, 1.2];
 
 /** The least cosine between a normal and the face's direction at which a triangle is seen from the front. */
 const kFacing = 0.2;
@@ -86,7 +86,9 @@ export function scoreOf(
   };
   const eyes = [face.eyeL, face.eyeR].map((spot) => new Vector3(...spot));
   const isEye = (t: number): boolean =>
-    (parts.eyes ? isOf('eyes', t) : true) && eyes.some((eye) => near(t, eye, kEyeReach));
+    parts.eyes
+      ? isOf('eyes', t) && eyes.some((eye) => near(t, eye, kEyeReach))
+      : eyes.some((eye) => near(t, eye, kIrisReach));
   const isSkin = (t: number): boolean => !(['eyes', 'hair', 'clothes'] as const).some((kind) => isOf(kind, t));
   const painted = share(triangles.filter((t) => isSkin(t) && near(t, middle, kFaceReach)));
   return {
