@@ -1,6 +1,6 @@
 // One avatar through one door, in a process of its own: makes its cage, paints it, measures, and draws it from four sides.
 //
-//   tsx bench/avatars/door.ts FILE DOOR PLACE AVATAR.json     PLACE.png, .cage.glb and .painted.glb are written; prints a row as JSON
+//   tsx bench/avatars/door.ts FILE DOOR PLACE AVATAR.json     writes PLACE.png, .cage.glb, .painted.glb, and its row to PLACE.json
 
 import { readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { NodeIO } from '@gltf-transform/core';
@@ -72,7 +72,7 @@ function loudPaint(): Buffer {
 /** Draws an avatar from its front, between front and side, from its side, and its face. */
 async function draw(painted: string, to: string, { face }: Avatar): Promise<void> {
   const { z, middle, unit } = face ? frameOf(face) : { z: { x: 0, z: 1 }, middle: undefined, unit: 1 };
-  const front = Math.round((180 / Math.PI) * Math.atan2(z.x, z.z));
+  const front = file.endsWith('.vrm') ? 0 : Math.round((180 / Math.PI) * Math.atan2(z.x, z.z)); // A VRM's views are its own.
   const views = kAzimuths.map((azimuth) => ['--view', `${front + azimuth},5`]);
   if (middle) {
     const corner = (k: number): number[] =>
@@ -121,4 +121,5 @@ try {
 } catch (error) {
   row.failed = (error as Error).message.split('\n')[0]!;
 }
-process.stdout.write(`\n${JSON.stringify(row)}`, () => process.exit());
+writeFileSync(`${to}.json`, JSON.stringify(row));
+process.exit();

@@ -2,7 +2,7 @@
 
 import { spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { root } from '../native.js';
@@ -28,18 +28,16 @@ function faultOf(path: string, { sha256 }: Avatar): string | undefined {
 function through(path: string, door: Door, to: string, avatar: Avatar): Row {
   const script = join(root, 'bench/avatars/door.ts');
   const args = ['--import', 'tsx', script, path, door, to, JSON.stringify(avatar)];
-  const { stdout, signal, status } = spawnSync(process.execPath, args, {
-    encoding: 'utf8',
+  // By a file, as what the process started may hold a pipe open after its end.
+  rmSync(`${to}.json`, { force: true });
+  const { signal, status } = spawnSync(process.execPath, args, {
     timeout: 1000 * kTimeout,
     killSignal: 'SIGKILL',
     cwd: root,
-    stdio: ['ignore', 'pipe', 'ignore'],
+    stdio: 'ignore',
   });
-  try {
-    return JSON.parse(stdout.split('\n').at(-1)!) as Row;
-  } catch {
-    return { failed: signal ? `ended by ${signal} (after at most ${kTimeout} s)` : `crashed with exit code ${status}` };
-  }
+  if (existsSync(`${to}.json`)) return JSON.parse(readFileSync(`${to}.json`, 'utf8')) as Row;
+  return { failed: signal ? `ended by ${signal} (after at most ${kTimeout} s)` : `crashed with exit code ${status}` };
 }
 
 const isRight = ({ face, verdict, failed }: Row): boolean =>
