@@ -110,7 +110,9 @@ const row: Row = {};
 try {
   const [cage, painted] = [`${to}.cage.glb`, `${to}.painted.glb`];
   const before = process.cpuUsage();
-  row.verdict = JSON.parse(await command(...door.split(' '), file, '-o', cage, '--json')).verdict;
+  const [what, template] = door.split(' ') as [string, string?];
+  const options = template ? ['--template', template] : [];
+  row.verdict = JSON.parse(await command(what, file, ...options, '-o', cage, '--json')).verdict;
   const { user, system } = process.cpuUsage(before);
   row.seconds = (user + system) / 1e6;
   writeFileSync(`${to}.paint.png`, loudPaint());

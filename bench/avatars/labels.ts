@@ -37,6 +37,6 @@ export interface Avatar {
 export const avatars = (): Avatar[] =>
   JSON.parse(readFileSync(new URL('avatars.json', import.meta.url), 'utf8')) as Avatar[];
 
-/** What a door is given: the arguments of the command before the model. */
+/** The doors: a command, and the template of a fit. */
 export const kDoors = ['fit human-head', 'fit human-body', 'make'] as const;
 export type Door = (typeof kDoors)[number];
