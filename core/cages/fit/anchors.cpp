@@ -155,7 +155,7 @@ double lengthOf(const Rim& rim) {
   return around;
 }
 
-/// The border of a target that is the neck that a template's rim is for: the nearest that may be; -1 if there is none.
+/// The neck of a target: its nearest border about as long as a template's rim; -1 if there is none.
 int neckAmong(const TriangleMesh& target, const std::vector<std::vector<std::uint32_t>>& loops, const Rim& from,
               double diagonal) {
   const double own = lengthOf(from);

@@ -71,12 +71,12 @@ struct SkinPairs {
   std::vector<Vec3> from, to;
 };
 
-/// @param which  Those that count; empty for all.
+/// @param counts  Whether each counts; empty for all.
 SkinPairs skinPairs(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
-                    const std::vector<bool>& which = {}) {
+                    const std::vector<bool>& counts = {}) {
   SkinPairs out;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    if (isJoint(from[i].name) || (!which.empty() && !which[i])) continue;
+    if (isJoint(from[i].name) || (!counts.empty() && !counts[i])) continue;
     out.places.push_back(i);
     out.from.push_back(positionOf(from[i]));
     out.to.push_back(positionOf(to[i]));

@@ -346,7 +346,7 @@ void drawTo(const TemplateCage& cage, std::vector<std::uint32_t> loop, const Eye
     positions[loop[i]] = inFrontOf(surface, opening, outline[i], positions[loop[i]], cage.offset);
 }
 
-/// Whether what is seen of an eye is where landmarks have it.
+/// Whether the visible part of an eye is about where landmarks have it.
 bool isInPlace(const FaceHole& hole, const Face& face, const EyeOpening& opening, double apart) {
   return length(face.fromFront(hole.place - opening.middle)) < kMaxOff * apart;
 }

@@ -64,7 +64,7 @@ Status checkLandmarkList(const std::vector<Landmark>& landmarks, Argument argume
 /// @return `at` is a place in the list.
 Status checkJoints(const std::vector<Landmark>& landmarks, const Bounds& box);
 
-/// Checks that landmarks that a person gave are where those of a template can be after turning and scaling, and on the
+/// Checks given landmarks: they have to be where a template can have them after turning and scaling, and on the
 /// sides where all landmarks have them.
 /// @param from,to  In the same order.
 /// @param given  Whether a person gave it.

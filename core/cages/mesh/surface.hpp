@@ -41,8 +41,7 @@ class Surface {
   Surface& operator=(Surface&&) noexcept;
   ~Surface();
 
-  /// Quicker for points that are ordered so that neighbours are close together. A point that is not finite is
-  /// infinitely far from triangle 0.
+  /// Quicker if points in a row are close together. A point with a NaN or infinity is infinitely far from triangle 0.
   [[nodiscard]] std::vector<SurfacePoint> closest(std::span<const Vec3> points) const;
   [[nodiscard]] SurfacePoint closest(const Vec3& point) const;
 
