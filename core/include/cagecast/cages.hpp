@@ -84,8 +84,8 @@ struct Cage {
 };
 
 /// Whether each part is excluded by its name, unless `Parts::keep` has it: eyes, teeth, tongues, hair and glasses; of
-/// vehicles windows, wheels, lights and the interior. `light`, `seat` and their like count beside a part that is named as
-/// that of a vehicle.
+/// vehicles windows, wheels, lights and the interior. `light`, `seat` and their like count beside a part that is named
+/// as that of a vehicle.
 /// @param parts  As `Model::parts`.
 std::vector<bool> excludedByName(const std::vector<std::string>& parts);
 
