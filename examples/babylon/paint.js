@@ -21,7 +21,7 @@ export function paintMeshes(target, cage, texture, options) {
   const meshes = withVertices(target);
   const { mesh, parts } = joinParts(meshes.map(arraysOf));
   const outer = joinParts(withVertices(cage).map((one) => ({ ...arraysOf(one), uvs: one.getVerticesData('uv') })));
-  const prepared = prepareParts(outer.mesh, mesh, { ...options, parts });
+  const prepared = prepareParts(outer.mesh, mesh, { ...options, ranges: parts });
   prepared.parts.forEach((part, p) => replaceVertices(meshes[p], part));
   const painted = meshes.filter((_, p) => prepared.parts[p].cosmeticTriangles.includes(1));
   for (const { material } of painted)

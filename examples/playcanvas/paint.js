@@ -40,7 +40,7 @@ export function paintEntity(device, target, cage, texture, options) {
       return { ...arraysOf(one, cage), uvs };
     }),
   );
-  const prepared = prepareParts(outer.mesh, mesh, { ...options, parts });
+  const prepared = prepareParts(outer.mesh, mesh, { ...options, ranges: parts });
   prepared.parts.forEach((part, p) => replaceVertices(device, meshes[p], part));
   const painted = meshes.filter((_, p) => prepared.parts[p].cosmeticTriangles.includes(1));
   for (const material of new Set(painted.map((one) => one.material))) paintMaterial(device, material, texture);
