@@ -106,8 +106,9 @@ test('fit takes landmarks of the template and of the model from files', async ()
 
 test('a cage that is unfit is written, too, and the exit code is 3; a program gets all landmarks', async () => {
   write('plain.glb', glbOf(skin()));
-  const eyes = { eye_centre_left: [0.35, -0.85, 0.2], eye_centre_right: [-0.35, -0.85, 0.2] };
-  const wrong = { ...eyes, nose_tip: [0, -1, 0], lip_lower: [0, -0.9, -0.3], chin: [0, -0.75, -0.5] };
+  // A face within the ball.
+  const eyes = { eye_centre_left: [0.3, 0, 0.1], eye_centre_right: [-0.3, 0, 0.1] };
+  const wrong = { ...eyes, nose_tip: [0, -0.1, 0.2], lip_lower: [0, -0.3, 0.1], chin: [0, -0.5, 0.125] };
   write('wrong.json', JSON.stringify(wrong));
   // What fit has written is a template itself.
   const { landmarks, verdict } = await json<{
