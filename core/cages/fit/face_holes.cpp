@@ -92,9 +92,9 @@ int holeAt(const TemplateCage& cage, const Vec3& centre, const Vec3& other) {
   return best;
 }
 
-std::vector<FaceHole> faceHoles(const TemplateCage& cage, const std::vector<Vec3>& start,
-                                const std::vector<Landmark>& from, const std::vector<Landmark>& to,
-                                const std::vector<bool>& given, const Face& face) {
+std::vector<FaceHole> faceHoles(const TemplateCage& cage, const std::vector<Vec3>& start, const LandmarkPairs& pairs,
+                                const Face& face) {
+  const auto& [from, to, given] = pairs;
   std::vector<FaceHole> out;
   const auto eyes = eyePairs(from, to);
   if (!face.known || eyes.empty()) return out;

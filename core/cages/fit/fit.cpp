@@ -37,9 +37,7 @@ constexpr double kHullReach = 0.5;
 constexpr float kLandmarksEnd = 0.2f, kHullEnd = 0.4f, kTightenEnd = 0.8f, kEyesEnd = 0.9f, kRelaxEnd = 0.92f;
 
 /// What is known of both models.
-struct Pairs {
-  std::vector<Landmark> from, to;          ///< In the same order; `to` in the target's space, then in the template's.
-  std::vector<bool> given;                 ///< Whether a person gave it.
+struct Pairs : LandmarkPairs {
   std::vector<std::optional<Vec3>> found;  ///< Where what was given was found, too; as `to`.
   std::vector<std::uint32_t> places;       ///< In the template's list.
 
@@ -156,7 +154,7 @@ class Fit {
       return {Code::tooFewJoints, Argument::landmarks, static_cast<std::uint32_t>(pairs_.from.size())};
     std::vector<Vec3> positions = start(cage, anchors);
     if (!std::all_of(positions.begin(), positions.end(), isFinite)) return {Code::noFit, Argument::model};
-    figure_.holes = faceHoles(cage, positions, pairs_.from, pairs_.to, pairs_.given, face_);
+    figure_.holes = faceHoles(cage, positions, pairs_, face_);
     TriangleMesh hull;
     const HullOptions around{settings.closing * cage.diagonal, cage.offset, settings.voxels,
                              meanOf(positionsOf(pairs_.to))};
@@ -300,8 +298,10 @@ class Fit {
       const float from = kHullEnd + static_cast<float>(pass) * each;
       const std::vector<Vec3> free(positions.size(), Vec3{0, 0, 0});
       if (pass > 0 && !relax(cage, free, stepsOf(from, from, "fit"), positions)) return false;
-      positions =
-          tighten(cage, positions, hull, holdsOf(positions), settings.tighten, stepsOf(from, from + each, "fit"));
+      const std::vector<PlaneTerm> holds = holdsOf(positions);
+      TightenOptions options = settings.tighten;
+      options.holds = holds;
+      positions = tighten(cage, positions, hull, options, stepsOf(from, from + each, "fit"));
       if (positions.empty()) return false;
     }
     std::vector<Vec3> tracks;

@@ -139,6 +139,12 @@ Face faceOf(const std::vector<Landmark>& from, const std::vector<Landmark>& to, 
 std::vector<bool> contradicted(const std::vector<bool>& given, const std::vector<std::optional<Vec3>>& found,
                                const Face& face, const std::vector<Landmark>& to);
 
+/// Landmarks that are known of template and target.
+struct LandmarkPairs {
+  std::vector<Landmark> from, to;  ///< In the same order; `to` in the target's space, then in the template's.
+  std::vector<bool> given;         ///< Whether a person gave it.
+};
+
 /// A hole of a cage for an eye or a mouth.
 struct FaceHole {
   std::vector<std::uint32_t> loop;
@@ -152,9 +158,8 @@ int holeAt(const TemplateCage& cage, const Vec3& centre, const Vec3& other);
 
 /// The holes of a face, and where the landmarks put them. Empty if the face is not known.
 /// @param start  Where the cage is by landmarks alone.
-std::vector<FaceHole> faceHoles(const TemplateCage& cage, const std::vector<Vec3>& start,
-                                const std::vector<Landmark>& from, const std::vector<Landmark>& to,
-                                const std::vector<bool>& given, const Face& face);
+std::vector<FaceHole> faceHoles(const TemplateCage& cage, const std::vector<Vec3>& start, const LandmarkPairs& pairs,
+                                const Face& face);
 
 /// How a hole has to move to be in its place, as seen from in front.
 Vec3 missOf(const FaceHole& hole, const Face& face, const std::vector<Vec3>& positions);
@@ -164,14 +169,14 @@ struct TightenOptions {
   double sliding = 0;   ///< Resistance to sliding along the surface.
   double stiffest = 0;  ///< Resistance to bending, at first and at last.
   double softest = 0;
+  std::span<const PlaneTerm> holds = {};  ///< What else the cage is drawn to, such as the holes of a face.
 };
 
 /// Draws a cage onto the hull of the target, smoothly and with little sliding.
 /// @param rest  Positions of the cage to start from; what they are is kept as far as the hull lets them.
-/// @param holds  What else it is drawn to, such as the holes of a face to their places.
 /// @return The positions; empty if cancelled.
 std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& rest, const TriangleMesh& hull,
-                          std::span<const PlaneTerm> holds, const TightenOptions& options, const StepCallback& step);
+                          const TightenOptions& options, const StepCallback& step);
 
 /// The centre of an eye of the template and of that of the target, both in the template's space.
 struct EyePair {

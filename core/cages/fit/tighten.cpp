@@ -45,7 +45,7 @@ std::vector<SurfaceSample> verticesAndCentres(const TriangleMesh& mesh) {
 }  // namespace
 
 std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& rest, const TriangleMesh& hull,
-                          std::span<const PlaneTerm> holds, const TightenOptions& options, const StepCallback& step) {
+                          const TightenOptions& options, const StepCallback& step) {
   if (!step(0)) return {};
   const Surface surface(hull);
   const std::vector<Vec3> hullNormals = vertexNormals(hull);
@@ -60,7 +60,7 @@ std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& res
     const double reach = options.reach * cage.diagonal * std::pow(3.0, -share);
     const std::vector<SurfacePoint> closest = surface.closest(positionsOf(current, samples));
     const std::vector<Vec3> normals = vertexNormals(current);
-    std::vector<PlaneTerm> planes(holds.begin(), holds.end());
+    std::vector<PlaneTerm> planes(options.holds.begin(), options.holds.end());
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (closest[i].distance > reach) continue;
       const Triangle3& corners = cage.mesh.triangles[samples[i].triangle];

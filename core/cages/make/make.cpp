@@ -111,10 +111,8 @@ bool markLooseEyes(const Model& model, const Progress& progress, std::vector<boo
 /// Marks eyes where neither names nor marks tell what must not be painted, unless they are kept. What has eyes is a
 /// head, if it may be one.
 /// @return false if `progress` cancelled it.
-bool lookForEyes(const Model& model, const MakeOptions& options, const Progress& progress,
-                 const std::vector<bool>& isKept, Kind& kind, std::vector<bool>& isMarked) {
-  if (hasMarks(isMarked)) return true;
-  if (kind == Kind::prop && (options.kind != Kind::automatic || !isCompactProp(model))) return true;
+bool lookForEyes(const Model& model, const Progress& progress, const std::vector<bool>& isKept, Kind& kind,
+                 std::vector<bool>& isMarked) {
   if (!markLooseEyes(model, progress, isMarked)) return false;
   for (std::size_t t = 0; t < isMarked.size(); ++t) isMarked[t] = isMarked[t] && !isKept[t];
   if (kind == Kind::prop && hasMarks(isMarked)) kind = Kind::head;
@@ -214,7 +212,9 @@ Status make(const Model& given, const MakeOptions& options, const Progress& prog
   const std::vector<bool> ofKept = trianglesIn(model.mesh, options.parts.keep);
   std::vector<bool> isKept(triangleOf.size());
   for (std::size_t t = 0; t < triangleOf.size(); ++t) isKept[t] = ofKept[triangleOf[t]];
-  if (!lookForEyes(model, options, rising, isKept, settings.kind, isMarked)) return kAborted;
+  const bool mayHaveEyes = settings.kind != Kind::prop || (options.kind == Kind::automatic && isCompactProp(model));
+  if (mayHaveEyes && !hasMarks(isMarked) && !lookForEyes(model, rising, isKept, settings.kind, isMarked))
+    return kAborted;
   lookForWheels(model, settings.kind, mesh, isKept, isMarked);
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);

@@ -100,7 +100,7 @@ void fit(fuzz::Input& input, const TriangleMesh& mesh, fuzz::Patience& patience)
   check({positions, {}});
   const StepCallback step = [&](double share) { return patience.ask(static_cast<float>(share)); };
   const double reach = static_cast<double>(input.share());
-  positions = tighten(cage, positions, mesh, {}, {.reach = reach, .sliding = 0.5, .stiffest = 30, .softest = 1}, step);
+  positions = tighten(cage, positions, mesh, {.reach = reach, .sliding = 0.5, .stiffest = 30, .softest = 1}, step);
   require(positions.empty() == patience.gone());
   if (patience.gone()) return;
   EyedFigure figure{mesh, std::vector<bool>(mesh.triangles.size()), {}, {}, {}, 0, eyePairs(from, from), {}, {}};
