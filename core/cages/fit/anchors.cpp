@@ -140,29 +140,23 @@ std::vector<Vec3> stations(const Rim& rim, const Axes& axes) {
   return out;
 }
 
-/// How long a loop is.
-double lengthOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop) {
+/// The length of a closed line.
+double lengthAround(const std::vector<Vec3>& points) {
   double around = 0;
-  for (std::size_t k = 0; k < loop.size(); ++k)
-    around += length(mesh.positions[loop[(k + 1) % loop.size()]] - mesh.positions[loop[k]]);
-  return around;
-}
-
-double lengthOf(const Rim& rim) {
-  double around = 0;
-  for (std::size_t k = 0; k < rim.points.size(); ++k)
-    around += length(rim.points[(k + 1) % rim.points.size()] - rim.points[k]);
+  for (std::size_t k = 0; k < points.size(); ++k) around += length(points[(k + 1) % points.size()] - points[k]);
   return around;
 }
 
 /// The neck of a target: its nearest border about as long as a template's rim; -1 if there is none.
 int neckAmong(const TriangleMesh& target, const std::vector<std::vector<std::uint32_t>>& loops, const Rim& from,
               double diagonal) {
-  const double own = lengthOf(from);
+  const double own = lengthAround(from.points);
   int best = -1;
   double least = kNeckOff * diagonal;
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    const double around = lengthOf(target, loops[i]);
+    std::vector<Vec3> points;
+    for (const std::uint32_t v : loops[i]) points.push_back(target.positions[v]);
+    const double around = lengthAround(points);
     const double off = length(middleOf(target, loops[i]) - from.centre);
     if (around < kShortestNeck * own || around > kLongestNeck * own || off >= least) continue;
     least = off;

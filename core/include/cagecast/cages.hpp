@@ -92,7 +92,7 @@ std::vector<bool> excludedByName(const std::vector<std::string>& parts);
 /// Lengths are shares of the diagonal of the model's bounding box, 0.0005 to 0.2. 0 means: by kind.
 struct MakeOptions {
   Kind kind = Kind::automatic;
-  Parts parts = {};             ///< Holes are over excluded parts; others besides are excluded by their names.
+  Parts parts = {};             ///< Holes are over excluded parts, and over those of `excludedByName` unless kept.
   std::uint32_t triangles = 0;  ///< Of the cage, about: heads and props 600, bodies 1500.
   float closing = 0;            ///< Gaps narrower than twice this, or two voxels, are bridged: 0.02, bodies 0.008.
   float offset = 0;             ///< Distance of the cage from the model: 0.01, bodies 0.004.
@@ -100,7 +100,7 @@ struct MakeOptions {
 };
 
 struct FitOptions {
-  Parts parts = {};                      ///< Excluded parts are no skin; others besides are excluded by their names.
+  Parts parts = {};                      ///< Excluded parts are no skin, nor those of `excludedByName` unless kept.
   std::vector<Landmark> landmarks = {};  ///< Of the model, at most 300; these override found ones.
 };
 

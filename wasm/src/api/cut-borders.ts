@@ -42,8 +42,8 @@ export interface CutTarget {
  * @param cage     As for `transfer`.
  * @param target   As for `transfer`. The attributes of a new vertex are those of its `sources`, blended by `weights`.
  * @param result   What `transfer` returned for the same cage, target and options.
- * @param options  The options of the transfer. `locks` and the parts that are kept or excluded do not count: the result contains their effect. Triangles that a mask
- * decides are decided as a whole.
+ * @param options  The options of the transfer. `locks`, and parts that are kept or excluded, do not count: the result has their effect.
+ * Triangles that a mask decides are decided as a whole.
  * @throws {CagecastError} `resultMismatch` if the result does not belong to this target; `bordersTooComplex` if the cut takes more
  * comparisons than its limit (docs/borders.md): leave the triangles whole then; else as `transfer` does.
  *

@@ -29,24 +29,24 @@ export interface Parts<Part = PartOf> {
 /** How many names a message lists at most. */
 const kMaxNames = 20;
 
-/** Something that patterns select. */
-export interface Named {
+/** A part as patterns know it. */
+export interface NamedPart {
   names: readonly (string | undefined)[];
   /** The names of the nodes above it. */
   above?: readonly (string | undefined)[] | undefined;
 }
 
 /** The numbers of the parts of a name, else of the parts below a node of this name. */
-export function numbersNamed(pattern: string, all: readonly Named[]): number[] {
+export function numbersNamed(pattern: string, all: readonly NamedPart[]): number[] {
   if (/^\*+$/.test(pattern)) return [...all.keys()]; // also those without a name
   const matches = matcher(pattern);
-  const isNamed = (names: Named['names'] = []) => names.some((name) => name !== undefined && matches(name));
+  const isNamed = (names: NamedPart['names'] = []) => names.some((name) => name !== undefined && matches(name));
   const own = [...all.keys()].filter((n) => isNamed(all[n]!.names));
   return own.length > 0 ? own : [...all.keys()].filter((n) => isNamed(all[n]!.above));
 }
 
 /** The same; `wrong` makes the error if there are none, and the pattern has no `*`. */
-export function partsNamed(pattern: string, all: readonly Named[], wrong: (text: string) => Error): number[] {
+export function partsNamed(pattern: string, all: readonly NamedPart[], wrong: (text: string) => Error): number[] {
   const found = numbersNamed(pattern, all);
   if (found.length > 0 || pattern.includes('*')) return found;
   const names = [...new Set(all.flatMap((one) => one.names))].filter((name) => name !== undefined && name !== '');

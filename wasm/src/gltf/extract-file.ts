@@ -1,6 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
-import type { Named, Parts } from '../api/parts.js';
+import type { NamedPart, Parts } from '../api/parts.js';
 import { show } from '../core/error.js';
 import type { Vector } from '../inspect/geometry.js';
 import { identity, type Matrix, multiply } from '../parts/affine.js';
@@ -144,7 +144,7 @@ function aboveIn({ nodes = [] }: GLTF.IGLTF): (node: number) => string[] {
 }
 
 /** What patterns find parts by. */
-export function namedParts({ json }: Pick<GltfFile, 'json'>, parts: readonly Part[]): Named[] {
+export function namedParts({ json }: Pick<GltfFile, 'json'>, parts: readonly Part[]): NamedPart[] {
   const namesAbove = aboveIn(json);
   return parts.map(({ aliases, node }) => ({ names: aliases, above: namesAbove(node) }));
 }

@@ -90,14 +90,15 @@ test('a model of another format whose reading does not end: Escape and the next 
     await page.getByTestId('progress').waitFor();
     return worker;
   };
+  const beforeLimit = { timeout: 9000 }; // the page's own is 10 seconds
   const first = await begin();
-  const closed = first.waitForEvent('close', { timeout: 1000 });
+  const closed = first.waitForEvent('close', beforeLimit);
   await page.keyboard.press('Escape');
   await closed;
   await page.getByTestId('progress').waitFor({ state: 'hidden' });
   assert.equal(await shownError(page), '');
   const second = await begin();
-  const replaced = second.waitForEvent('close', { timeout: 5000 });
+  const replaced = second.waitForEvent('close', beforeLimit);
   await page.getByTestId('target-input').setInputFiles(soundFile);
   await replaced;
   assert.equal(await settled(page), 'ready', await shownError(page));

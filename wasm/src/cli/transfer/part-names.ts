@@ -3,7 +3,7 @@ import { type Named, partsNamed, type ReadModel } from '../../gltf/read-model.js
 import type { Lock, TransferOptions } from '../../index.js';
 import { leftOutText } from '../../parts/drawn.js';
 import type { Rules } from '../model/settings.js';
-import { cut, kMaxCharacters, listed, quoted } from '../model/text.js';
+import { cut, kMaxCharacters, listed } from '../model/text.js';
 
 /** How many names a message lists at most. */
 const kMaxNames = 20;
@@ -23,34 +23,30 @@ export function noSuchName(flag: string, { file: { json }, extracted }: Named): 
   return new InputError(`${flag}: no node or material has this name; there are: ${listed(shown, kMaxNames)}${others}`);
 }
 
+/** Whether a pattern has to name a part: not of a configuration file, which speaks of many models, nor one for any text. */
+export const mustMatch = ({ pattern, isOptional }: Rules['ignored'][number]): boolean =>
+  !isOptional && !pattern.includes('*');
+
 /**
  * The options of `transfer`. Names of parts become numbers of groups, because each part is a group.
  * @param bare  The parts that are excluded if nothing is said of them.
- * @throws {InputError} that names the file, if nothing has a given name, or a part is both kept and excluded in one place.
+ * @throws {InputError} that names the file, if nothing has a given name.
  */
 export function transferOptions(
-  { preset, single, names, config }: Rules,
+  { preset, single, names }: Rules,
   model: ReadModel,
   bare: readonly number[],
 ): TransferOptions {
   const { parts } = model.extracted;
-  const saidOf: Rules['names'][] = parts.map(() => []);
+  const said = new Map<number, Rules['names'][number]>();
   for (const rule of names) {
     const found = partsNamed(rule.pattern, model).filter((p) => parts[p]!.vertexCount > 0);
-    if (found.length === 0 && !rule.isOptional)
+    if (found.length === 0 && mustMatch(rule))
       throw noSuchName(`--${rule.lock} ${rule.pattern}`, model).in(model.file.path);
-    for (const p of found) saidOf[p]!.push(rule);
+    // What is said later counts; of what is said together, keep.
+    for (const p of found) if (!said.has(p) || rule.rank > said.get(p)!.rank) said.set(p, rule);
   }
-  const groups = parts.flatMap(({ name }, p): [number, Lock][] => {
-    const rank = Math.max(...saidOf[p]!.map((rule) => rule.rank));
-    const [first, ...others] = saidOf[p]!.filter((rule) => rule.rank === rank);
-    if (first === undefined) return bare.includes(p) ? [[p, 'exclude']] : [];
-    const other = others.find(({ lock }) => lock !== first.lock);
-    if (other === undefined) return [[p, first.lock]];
-    const place = first.isOptional ? ` (in ${config})` : '';
-    const both = [first, other].map(({ lock, pattern }) => `--${lock} ${pattern}`).join(' and ');
-    throw new InputError(`${both} both match ${quoted(name)}${place}`).in(model.file.path);
-  });
-  const those = (lock: Lock) => groups.flatMap(([p, is]) => (is === lock ? [p] : []));
-  return { preset, ...single, parts: { keep: those('keep'), exclude: those('exclude') } };
+  const those = (lock: Lock, byDefault: readonly number[] = []) =>
+    [...parts.keys()].filter((p) => said.get(p)?.lock === lock || (!said.has(p) && byDefault.includes(p)));
+  return { preset, ...single, parts: { keep: those('keep'), exclude: those('exclude', bare) } };
 }

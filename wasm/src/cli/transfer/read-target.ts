@@ -5,7 +5,7 @@ import type { Io } from '../io/io.js';
 import type { ReadOptions } from '../model/reading.js';
 import type { Rules } from '../model/settings.js';
 import { readModel } from './models.js';
-import { noSuchName } from './part-names.js';
+import { mustMatch, noSuchName } from './part-names.js';
 
 /**
  * Reads a target: its drawn and its kept parts, without ignored ones.
@@ -27,9 +27,9 @@ export function allBut({ ignored, names }: Pick<Rules, 'ignored' | 'names'>): Ex
     const out = new Set<number>();
     const all = { file, extracted: { parts: [...parts] } };
     const kept = new Set(names.flatMap(({ lock, pattern }) => (lock === 'keep' ? partsNamed(pattern, all) : [])));
-    for (const { pattern, isOptional } of ignored) {
-      const found = partsNamed(pattern, all);
-      if (found.length === 0 && !isOptional) throw noSuchName(`--ignore ${pattern}`, all);
+    for (const rule of ignored) {
+      const found = partsNamed(rule.pattern, all);
+      if (found.length === 0 && mustMatch(rule)) throw noSuchName(`--ignore ${rule.pattern}`, all);
       for (const p of found) out.add(p);
     }
     return (p, isDrawn) => (isDrawn || kept.has(p)) && !out.has(p);
