@@ -101,7 +101,7 @@ const readBudget = async (): Promise<Budget> => JSON.parse(await readFile(file, 
 
 /**
  * Counts anew and holds the count against the recorded one.
- * @return What is wrong, in a sentence that says what to do; empty if nothing is.
+ * @return Each fault, in a sentence with its remedy; empty if there is none.
  */
 export async function checkInstructions(processor: Processor, preset: Preset): Promise<string> {
   const { scene, instructions } = await readBudget();

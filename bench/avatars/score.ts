@@ -4,7 +4,7 @@ import { Vector3 } from 'three';
 import { bordersOf, type Shape, triangleAt, vertexAt } from '../quality/shape.js';
 import type { Face, Parts, Spot } from './labels.js';
 
-/** What is measured of a painted avatar; what cannot be is not there. Distances in those from the eyes' middle to the mouth. */
+/** Measures of a painted avatar; one without a value is not there. Distances are in multiples of that from the eyes' middle to the mouth. */
 export interface Score {
   /** How far the holes of eyes and mouth are off: the worst of them. */
   face?: number | undefined;

@@ -27,7 +27,7 @@ export interface Score {
 export interface PictureScore {
   /** Of the pixels that show the model, the share that shows paint where none must be. */
   forbidden: number;
-  /** Of the pixels that show what is to be painted, where the cage speaks of it, the share that shows no paint. */
+  /** The share of pixels without paint, among those of the surface to be painted about which the cage speaks. */
   bare: number;
 }
 

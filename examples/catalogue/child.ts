@@ -24,7 +24,7 @@ process.on('message', async ({ kind, inputs, settings }: Task) => {
 process.on('disconnect', () => process.exit());
 process.send!('ready');
 
-// A job that hangs would outlive a worker that was killed: it never gets to hear that the worker is gone. A thread of its own does.
+// A hanging job would outlive a killed worker, as it never hears of its end. A thread of its own does.
 new Worker(
   `const parent = process.ppid; setInterval(() => process.ppid === parent || process.kill(process.pid, 'SIGKILL'), 1000);`,
   { eval: true, execArgv: [] },

@@ -66,7 +66,7 @@ const troubles = [
 const noConnection =
   /ECONNREFUSED|ECONNRESET|ETIMEDOUT|ENOTFOUND|EAI_AGAIN|EHOSTUNREACH|ENETUNREACH|Connection is closed|Stream isn't writeable/;
 
-/** What can be read of anything that was thrown. Codes of BullMQ are numbers, and anybody may throw anything: what is no text is ''. */
+/** The texts in anything that was thrown; '' for all else: codes of BullMQ are numbers, and anybody may throw anything. */
 function partsOf(error: unknown): { message: string; code: string; name: string; path: string; cause: unknown } {
   const { message, code, name, path, cause } = Object(error) as Record<string, unknown>;
   const textOf = (value: unknown): string => (typeof value === 'string' ? value : '');
@@ -146,7 +146,7 @@ export function reasonOf(message: unknown): Reason {
   const text = String(message ?? '');
   const [word = ''] = text.split(':', 1);
   if (Object.hasOwn(reasons, word)) return word as Reason;
-  // What BullMQ itself says of a job that stalled too often, or whose lock was lost.
+  // BullMQ's own words on a job that stalled too often or lost its lock.
   return /stalled/.test(text) || lostLock.test(text) ? 'crash' : 'unexpected';
 }
 

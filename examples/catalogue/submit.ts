@@ -42,7 +42,7 @@ interface Wanted {
 type State = 'none' | 'left' | 'done' | 'lost' | 'failed';
 type Before = Awaited<ReturnType<typeof doneBefore>>;
 
-/** Turns a manifest into jobs. Those that somebody asked for before are not done again, if what they wrote is there. */
+/** Turns a manifest into jobs. Known ones are not done again if their output is there. */
 export async function submit(path: string, catalogue: Catalogue): Promise<Submission> {
   const keys = new Set<string>();
   const summary: Submission = { new: 0, known: 0, again: 0, lost: 0, wrong: 0, errors: [], keys };
@@ -115,7 +115,7 @@ async function stateOf(
   return [status === 'done' ? 'done' : isDone ? 'lost' : 'failed', job];
 }
 
-/** Whether a job that failed is tried again when it is submitted again. A signature that has expired looks like an input that is missing. */
+/** Whether a failed job is tried again when it is submitted again. An expired signature looks like a missing input. */
 function mayPass(job: CatalogueJob): boolean {
   const { reason } = resultOf(job, 'failed');
   return reason === 'missing' || (reason !== 'crash' && new Failure(reason!, '').mayPass);

@@ -7,7 +7,7 @@ export const kFace = { eye: [0.3, -0.02], eyeSize: [0.19, 0.21], mouth: [0, -0.5
 type Motion = 'left eye' | 'right eye' | 'both eyes' | 'jaw' | 'lips';
 
 /**
- * A stylised head of one piece: painted-on eyes that are large, a nose that is hardly there, a wide mouth that is a slit.
+ * A stylised head of one piece: large painted-on eyes, hardly a nose, a wide slit of a mouth.
  * @param targets     What its morph targets do, by their names.
  * @param extensions  Of the file.
  */

@@ -1,4 +1,4 @@
-// Calls with objects that run code of their own, or that are not what they look like: a clear error, or the right result.
+// Calls with objects that run code of their own, or only look right: a clear error, or the right result.
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { runInNewContext } from 'node:vm';

@@ -650,7 +650,7 @@ describe('overlays', () => {
       assert.equal(overlay.geometry.getAttribute(name), target.geometry.getAttribute(name));
     const isPainted = (_: number, i: number) => result.cosmeticTriangles[Math.floor(i / 3)] === 1;
     assert.deepEqual([...overlay.geometry.index!.array], [...target.geometry.index!.array].filter(isPainted));
-    // Another classification frees the triangles that it had, but not what is of its base, nor what a copy of the model shows.
+    // Another classification frees its own triangles, but neither those of its base nor those a copy of the model shows.
     const { geometry } = overlay;
     const copy = target.clone().children[0] as ThreeMesh;
     let freed: unknown[] = ['nothing yet'];

@@ -1,4 +1,4 @@
-// One night in which all goes wrong that can: what is told afterwards has to be what is there.
+// One night in which all goes wrong: afterwards the programs have to tell the truth.
 import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -1,4 +1,4 @@
-// What holds for any file that somebody takes for a model: it is read or refused within its share of time and memory, what is made of
+// Promises for any file that somebody takes for a model: it is read or refused within its share of time and memory, what is made of
 // it is valid, and nothing else changes. A failure prints a seed; CAGECAST_SEED and CAGECAST_RUNS try others, and more of them, and
 // `npm run fuzz -- formats` looks for long.
 import assert from 'node:assert/strict';

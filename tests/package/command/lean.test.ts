@@ -1,4 +1,4 @@
-// Files stay lean, and in the form that they had: nothing that is replaced stays, and what was compressed is compressed again.
+// Files stay lean and keep their form: nothing replaced stays, and what was compressed is compressed again.
 import assert from 'node:assert/strict';
 import { copyFileSync, readdirSync, readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
@@ -32,7 +32,7 @@ async function written(name: string, flags = '') {
   const out = `out-${name}`;
   const stdout = await ok(`transfer ${name} --cage cage.glb -o ${out}${flags && ' '}${flags}`);
   assert.match(stdout, /^[^\n]*: [\d,]+ vertices/, 'nothing else is printed');
-  // A UV set that no material uses is what the command adds; the validator cannot see into what is compressed.
+  // The command adds a UV set without a material; the validator cannot see into compressed data.
   const issues = await validate(out, 2);
   for (const issue of issues)
     assert.match(issue, /TEXCOORD_\d+: UNUSED_OBJECT|UNSUPPORTED_EXTENSION|bufferViews\/\d+: UNUSED_OBJECT/);

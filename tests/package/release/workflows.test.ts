@@ -1,4 +1,4 @@
-// What GitHub is told to do for a release: who may write what, in which order, and that it tests what is tested here.
+// GitHub's orders for a release: who may write where, the order of jobs, and the same tests as here.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync } from 'node:fs';
@@ -38,7 +38,7 @@ const jobs = Object.entries(workflows).flatMap(([name, workflow]) =>
     permissions: value.permissions ?? workflow.permissions,
   })),
 );
-/** Those that may change something, by a token of GitHub's or by one that they can ask for. */
+/** Jobs with a right to change something, by a token of GitHub's or one they can ask for. */
 const trusted = jobs.filter(({ job, permissions }) => {
   const writes = permissions === undefined || Object.values(permissions).some((right) => right !== 'read');
   return writes || /secrets\.|github\.token/.test(JSON.stringify(job));

@@ -231,7 +231,7 @@ export const channelScenes: Scenes = {
   'of many layers, which take several passes, each counts'() {
     const half = clear(kColor, 128);
     const [low, high] = [bumps(), bumps(true, 64)];
-    // From the lowest: one that covers all, others that cover nothing, and one that covers half of it.
+    // From the lowest: one covers all, others cover nothing, and one covers half of it.
     const lookOfAll = (between: number): number[] => {
       const { layers, look } = painted();
       const nothing = { normal: high, roughness: 0, metalness: 1, emissive: 1 };

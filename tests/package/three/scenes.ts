@@ -1,4 +1,4 @@
-// What the scenes share: models, what is seen of them, and what must hold. Runs in the browser.
+// Models, views and assertions of all scenes. Runs in the browser.
 import type { Painter } from 'cagecast/three/paint';
 import {
   AmbientLight,
@@ -23,7 +23,7 @@ import {
   WebGLRenderer,
 } from 'three';
 
-/** Scenes by what they show: each throws an error that says what it found instead. */
+/** Scenes by name: each throws an error with what it found instead. */
 export type Scenes = Record<string, () => void | Promise<void>>;
 
 /** Lets the test that has opened the page run its scenes. */

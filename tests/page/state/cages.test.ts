@@ -10,7 +10,7 @@ import { PutAwayLayers } from '../../../web/src/state/put-away-layers';
 import { tetrahedron } from '../../support/glb';
 import { begin, cageGlb, Gate, paintOf, quiet, until } from './harness';
 
-/** A maker of cages beside a session that shows `a.glb`. Each cage that it makes has UVs of its own; those it moves keep theirs. */
+/** A maker of cages beside a session of `a.glb`. Each cage it makes has UVs of its own; those it moves keep theirs. */
 async function workshop() {
   const page = await begin();
   const gate = new Gate();

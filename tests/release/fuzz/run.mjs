@@ -20,7 +20,7 @@ import { samples } from './formats/samples.ts';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 const found = `${root}build/fuzz/found`;
-/** What each target tries; seconds that one input may take, on a machine that others use as well; its most bytes. */
+/** The subject of each target; seconds for one input, on a busy machine; its most bytes. */
 const kTargets = {
   transfer: ['any scene, options and masks, against the reference: regions, motion', 60, 1200],
   classify: ['any projection that is consistent in itself', 60, 1200],

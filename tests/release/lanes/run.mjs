@@ -218,7 +218,7 @@ const browsers = [
   ['WebAssembly, Firefox', inBrowser('firefox-esr', '--headless', '--no-remote', '--profile', 'PROFILE')],
 ];
 
-/** The lanes that run; those that `npm test` has no time for are named as such. */
+/** The lanes to run; those too slow for `npm test` are named as such. */
 function chosenLanes() {
   const later = async () => {
     throw new LeftOut('npm run lanes');

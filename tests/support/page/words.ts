@@ -11,7 +11,7 @@ export type Language = (typeof kLanguages)[number];
 export const dictionaryOf = (language: Language, onLeft?: (words: string) => void): Dictionary =>
   new Dictionary(JSON.parse(readFileSync(inRepository(`web/src/words/${language}.json`), 'utf8')), onLeft);
 
-/** A script for before the page's own: it collects all texts that the document has, but for those that are not to be translated. */
+/** A script to run before the page's own: it collects all texts of the document that are to be translated. */
 export const kCollectTexts = `
   const kAttributes = ['aria-label', 'aria-valuetext', 'aria-roledescription', 'title', 'placeholder', 'alt']
   const isOurs = (element) => element && !element.closest('[translate=no], script, style, noscript')

@@ -34,7 +34,7 @@ export class Opener implements Samples {
   #samples: Sample[] = [];
   /** Warnings about the latest files, shown once these are loaded. */
   #warnings: readonly string[] = [];
-  /** The cage whose paints are listed, and the pictures of those that are drawn, once they are there. */
+  /** The cage whose paints are listed, and pictures of the drawn ones, once they are there. */
   #offered: { cage: Model; pictures: readonly string[] } | undefined;
   /** The base paint that was chosen last. */
   #chosen: Promise<Paint> | undefined;
@@ -46,7 +46,7 @@ export class Opener implements Samples {
   cageFor: ((target: Model) => Promise<Model>) | undefined;
   /** Opens a saved project. */
   onProject: ((file: File) => void) | undefined;
-  /** Is told of each target that is requested, and before that of what else changes with it: then undefined. */
+  /** Called with each requested target, and without one before the shown model is put aside. */
   onReplace: ((target?: Promise<Model>) => void) | undefined;
 
   constructor(session: Session, stack: LayerStack, edits: Edits, loader: Loader, drawings: Drawings) {
@@ -203,7 +203,7 @@ export class Opener implements Samples {
     for (const slot of slots) this.#reading.get(slot)?.abort();
   }
 
-  /** The cage of a target that was opened alone: its own, one that the user has opened before, or one that is fitted or made. */
+  /** The cage of a target that was opened alone: its own, one the user has opened before, or a new one, fitted or made. */
   async #cageOf(loading: Promise<Model>): Promise<Model> {
     const before = this.#session.requested.cage?.catch(() => undefined);
     const target = asTarget(await loading);

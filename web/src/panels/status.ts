@@ -28,7 +28,7 @@ export function showStatus(session: Session, blind: boolean): void {
   });
   session.on('progress', (progress) => {
     bar.show(progress);
-    // What is said of the model that is shown is not said of the one that is awaited.
+    // Words about the shown model are not about the awaited one.
     document.documentElement.toggleAttribute('data-leaving', session.isLeaving);
     switch (progress.state) {
       case 'working':

@@ -11,7 +11,7 @@ const kParameter = 'lang';
 const isOffered = (language: string | null): language is string =>
   language === 'en' || Object.hasOwn(kDictionaries, language ?? '');
 
-/** The language that the address asks for, that was chosen last, or that the browser prefers. */
+/** The language in the address, else the last choice, else the browser's. */
 function wanted(): string {
   const asked = new URLSearchParams(location.search).get(kParameter);
   return [asked, chosen(), ...navigator.languages.map((tag) => tag.slice(0, 2))].find(isOffered) ?? 'en';

@@ -2,7 +2,7 @@ import { damaged, listOf, objectOf, textOf } from '../state/project/checks';
 import { type Files, filesIn, kVersion } from '../state/project/project';
 import { plainName, unzip, zip } from './zip';
 
-// A project file is a ZIP: this text says what is in it, and the other files are those that it names.
+// A project file is a ZIP: this text lists the other files in it.
 const kText = 'project.json';
 const kMaxText = 2 ** 24;
 const kMaxFiles = 4096;

@@ -57,7 +57,7 @@ export class CageMaker extends Emitter<{
   readonly #session: Session;
   readonly #unmoved = new WeakSet<Model>();
   readonly #turned = new WeakSet<Model>();
-  /** What the user chose for cages that are made: options, and parts that are not painted. */
+  /** The user's choices for made cages: options, and parts to leave bare. */
   choices: ((model: CageModel) => { options: MakeOptions; marks?: Uint8Array }) | undefined;
   /** What the last fit that was asked for here came to. */
   latest: Fitting | undefined;

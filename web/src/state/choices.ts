@@ -27,11 +27,11 @@ export type Locks = Record<number, Choice>;
 /** The nearest to a choice that is a lock. */
 export const asLock = (choice: Choice): Lock => (choice === 'always' ? 'keep' : choice === 'out' ? 'exclude' : choice);
 
-/** Those of the choices that are for segments that a model has. */
+/** The choices for segments of a model, without those for others. */
 export const knownLocks = (locks: Locks, { segmentStats }: Pick<SplitProjection, 'segmentStats'>): Locks =>
   Object.fromEntries(Object.entries(locks).filter(([segment]) => Number(segment) < segmentStats.length));
 
-/** What stays bare without the user's choice: what a figure wears, and what the cage was made without. */
+/** Parts that stay bare by default: clothes of a figure, and those without which the cage was made. */
 export const bareGroupsOf = (pair: Record<'target' | 'cage', { mesh: ExtractedMesh }> | undefined): number[] =>
   pair ? bareGroups(pair.cage.mesh, pair.target.mesh) : [];
 

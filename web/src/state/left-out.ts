@@ -52,7 +52,7 @@ export function moveChoices(chosen: Locks, from: ArrayLike<number>, to: Uint32Ar
   return moved;
 }
 
-/** The numbers that segments have in a model without the parts that are left out; undefined for those of these parts. */
+/** The numbers of segments in a model without its left-out parts; undefined for segments of such parts. */
 export function numbersWithout({
   segmentStats,
   leftOut,

@@ -291,7 +291,7 @@ export class Session extends Replay<SessionEvents> {
     this.emit('progress', this.#shown ? { state: 'ready' } : { state: 'waiting', missing: ['target', 'cage'] });
   }
 
-  /** Says what is being done for the files that were requested, and how far that is: 0..1. */
+  /** Names the work on the requested files, and its progress: 0..1. */
   reportLoading(stage: string, share: number): void {
     if (this.#working && !this.#work) this.#report(stage, 0.3 * share);
   }

@@ -9,7 +9,7 @@ import type { Session } from './session';
 /** Whether the cage fits; empty until it was inspected. */
 export type KnownVerdict = Inspection['verdict'] | '';
 
-/** The share of the visible surface that can be painted, 0..1; of what an open cage covers a region of, that of the region. */
+/** The share of the visible surface that can be painted, 0..1; with an open cage over a region, the share of the region. */
 export function paintableShare(
   parts: readonly { exposedArea: number; coveredArea: number; culled: boolean }[],
 ): number {

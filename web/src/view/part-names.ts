@@ -44,7 +44,7 @@ export function plainNameOf({ name, mesh }: Primitives[number]): string {
 /** At least this share of what is seen of a part is painted, or the part is said to be bare. */
 const kPainted = 0.5;
 
-/** The plain names of the parts that stay bare, without those that lie beyond the cage or are left out; those that are known first. */
+/** The plain names of the bare parts, without those beyond the cage or left out; known ones first. */
 export function bareParts(
   { target, projection }: Shown,
   stats: readonly Pick<SegmentStats, 'group' | 'area' | 'exposedArea' | 'coveredArea' | 'beyondArea' | 'culled'>[],

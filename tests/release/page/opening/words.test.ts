@@ -9,7 +9,7 @@ let site: Site;
 before(async () => void (site = await Site.open()));
 after(() => site?.close());
 
-/** What the page says of the model that is shown: all that is seen of notes and counts; not what it says of this visit. */
+/** The page's words on the shown model: all visible notes and counts, without those on this visit. */
 async function words(page: Page): Promise<string[]> {
   await page.locator('#stage-verdict:not([data-verdict=""])').waitFor();
   return page

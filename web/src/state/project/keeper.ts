@@ -73,7 +73,7 @@ export class Keeper {
   #timer: ReturnType<typeof setTimeout> | undefined;
   #since: number | undefined;
   #saving: Promise<void> | undefined;
-  /** The target that was requested in place of the one that is shown, and what that was if that is known already. */
+  /** The target requested in place of the shown one, and its file once it is known. */
   #coming: { target?: Promise<Model>; former?: Former | undefined } = {};
   #replacing: Replacing | undefined;
   /** How many states are being opened. */

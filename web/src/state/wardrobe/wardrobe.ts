@@ -215,7 +215,7 @@ export class Wardrobe {
       avatar.takesPaint = avatar.cage !== undefined && haveSameUvs(avatar.cage, cage);
       if (avatar.standing) avatar.standing.takesPaint = avatar.takesPaint;
       if (avatar === active || avatar.takesPaint || !common || avatar.files.length === 0) continue;
-      // What waits for a cage gets the one that it waits for; what was fitted to the last cage of this model follows it.
+      // A garment that waits for a cage gets it; one fitted to this model's last cage follows it.
       const lacks = !avatar.cage && (!came || avatar.doing === '');
       if (lacks || (!came && isOther && avatar.follows)) this.#fitLater(avatar, common);
     }

@@ -16,7 +16,7 @@ const kMaxBetween = 8; // spots that are filled in between two positions of the 
 
 type Position = Pick<PointerEvent, 'clientX' | 'clientY'>;
 
-/** The tool that marks on the model what stays bare: no paint gets there, and cages that are made have holes there. */
+/** The tool to mark bare spots on the model: no paint gets there, and made cages have holes there. */
 export class BareBrush {
   readonly #session: Session;
   readonly #viewer: Viewer;

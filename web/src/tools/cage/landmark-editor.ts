@@ -14,7 +14,7 @@ import { Mirror, otherSide } from './mirror';
 
 type Position = readonly [number, number, number];
 
-/** All landmarks that are known, those of the user, and the cage that was fitted to them, once there is one. */
+/** All known landmarks, the user's among them, and the cage fitted to them, once there is one. */
 interface Spots {
   spots: Readonly<Record<string, Position>>;
   readonly given: Readonly<Record<string, Position>>;
@@ -26,7 +26,7 @@ const kStep = 5; // pixels per arrow key; with Shift 1
 const kFitDelay = 700; // milliseconds after the last key before the template is fitted again
 const kUncertain = 0.7;
 const kColors = { found: '#0072b2', uncertain: '#e69f00', given: '#d81b60' };
-/** Those that say most of a model, for templates of which few are found. */
+/** The most telling landmarks of a model, for templates of which few are found. */
 const kFirst =
   /^(eye_centre|nose_tip|lip_lower|chin|bumper|roof$|wheel_|joint_(hips|neck|head|shoulder|wrist|hip|ankle))/;
 

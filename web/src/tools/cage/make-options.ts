@@ -17,7 +17,7 @@ const kMakeDelay = 700; // milliseconds after the last change before the cage is
 const valueAt = (step: number, least: number, most: number): number =>
   step === 0 ? 0 : least * (most / least) ** ((step - 1) / (kSteps - 1));
 
-/** What can be chosen for cages that are made: how far off, how fine, and which parts and spots are not painted. */
+/** The choices for made cages: distance, fineness, and parts and spots to leave bare. */
 export class MakeOptionsPanel {
   readonly #session: Session;
   readonly #viewer: Viewer;
@@ -82,7 +82,7 @@ export class MakeOptionsPanel {
     this.#waiting = setTimeout(() => this.#maker.isMade && void this.#maker.make(), kMakeDelay);
   }
 
-  /** Lists the parts of the current target, those whose names say that they are bare switched off. */
+  /** Lists the parts of the current target; those with names of bare parts are switched off. */
   async #list(): Promise<void> {
     const { target } = this.#session.shown ?? {};
     if (!target || target === this.#target) return;

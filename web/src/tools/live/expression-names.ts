@@ -5,7 +5,7 @@ const kArKit = /^(eye|brow|cheek|jaw|mouth|nose|tongue)([A-Z][A-Za-z]*)$/;
 const kVRoid = /^Fcl_(ALL|BRW|EYE|MTH|HA)_(\w+?)(?:_([LR]))?$/;
 const kVRoidParts: Record<string, string> = { ALL: 'Face', BRW: 'Brows', EYE: 'Eyes', MTH: 'Mouth', HA: 'Teeth' };
 
-// Names of the expressions of VRM 0 that VRM 1 calls otherwise, and those that are no words.
+// Names of expressions of VRM 0 with another name in VRM 1, and those that are no words.
 const kVrm: Record<string, string> = {
   joy: 'happy',
   sorrow: 'sad',

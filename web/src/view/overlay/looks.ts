@@ -6,7 +6,7 @@ import { type Mode, showsPaint, type View } from '../../state/view-state';
  */
 export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'allZones' | 'checker' | 'colors';
 
-/** What can be highlighted: the parts that the user points to, and what is marked to stay bare. */
+/** Highlights: the parts under the user's pointer, and spots marked to stay bare. */
 export type Highlighted = 'parts' | 'bare';
 
 /** The overlay of each mode with one. */
