@@ -407,7 +407,8 @@ describe('names', () => {
     assert.equal(await matches('long.glb', `${stars}*`), true);
     for (const pattern of ['abcab', '*', 'a*b', '*bc*', 'ab*ab', '**c**'])
       assert.equal(await matches('short.glb', pattern), true, pattern);
-    for (const pattern of ['ab*bcab', 'b*', 'abc*cab']) assert.equal(await matches('short.glb', pattern), false, pattern);
+    for (const pattern of ['ab*bcab', 'b*', 'abc*cab'])
+      assert.equal(await matches('short.glb', pattern), false, pattern);
     const { status, stderr } = await run('transfer long.glb --cage cage.glb --keep abca');
     assert.equal(status, 1);
     assert.match(stderr, /no node or material has this name; there are: a{59}…\n$/);
