@@ -21,16 +21,6 @@ function redisUrl(): string {
   return url;
 }
 
-function token(): string {
-  const value = text('TOKEN', '');
-  if (value !== '' && value.length < 16)
-    throw new Failure(
-      'broken',
-      `CATALOGUE_TOKEN has ${value.length} characters, at least 16 are needed: openssl rand -hex 16`,
-    );
-  return value;
-}
-
 /** What differs between machines, from the environment; the README has a table. */
 export const settings = {
   redis: redisUrl(),
@@ -59,8 +49,6 @@ export const settings = {
   address: text('ADDRESS', '127.0.0.1'),
   port: number('PORT', 8787, 0, 65_535),
   names: list('NAMES'),
-  /** Who has it can change the queue on the status page; without it, nobody can. */
-  token: token(),
 };
 
 /** A path as it was meant where `npm run` was called, which runs programs in this folder. */

@@ -1,7 +1,7 @@
 // Inputs and outputs: in a folder that all machines mount, or behind http(s), with S3-style signed URLs for GET and PUT.
 import { createHash, randomUUID } from 'node:crypto';
 import { constants } from 'node:fs';
-import { type FileHandle, lstat, mkdir, open, readdir, realpath, rename, rm } from 'node:fs/promises';
+import { type FileHandle, lstat, mkdir, open, readdir, realpath, rename, rm, writeFile } from 'node:fs/promises';
 import { dirname, isAbsolute, join, relative, resolve } from 'node:path';
 import { Failure, meaningOf, publicOf } from './failure.ts';
 import { settings } from './settings.ts';
@@ -187,7 +187,7 @@ export async function write(
     unfinished = await pathOf(`${temporaryFolder}/${randomUUID()}`, true);
     const file = await open(unfinished, 'wx');
     try {
-      await file.writeFile(data);
+      await writeFile(file, data);
       await file.sync();
       const { mtimeMs } = await file.stat();
       await rename(unfinished, path);

@@ -126,10 +126,14 @@ describe('the catalogue', () => {
     try {
       const page = (name: string) => `${address}/${name}`;
       const get = async (address: string) => (await fetch(address)).text();
-      assert.match(await get(page('queue')), /<title>Bull/);
-      const jobs = await get(`${page('queue')}/api/queues?activeQueue=jobs&status=completed&jobsPerPage=100`);
-      assert.match(jobs, /good\.glb/);
-      assert.doesNotMatch(jobs, /signature/);
+      const state = JSON.parse(await get(page('queue.json')));
+      const counts = await recipe.catalogue.queue.getJobCounts();
+      assert.deepEqual([state.counts, state.failed.length, state.done.length], [counts, 15, 42]);
+      for (const jobs of [await get(page('queue')), JSON.stringify(state)]) {
+        assert.match(jobs, /good\.glb/);
+        assert.match(jobs, /a worker died on it 3 times/);
+        assert.doesNotMatch(jobs, /signature/);
+      }
       await submit({ kind: 'slow', target: '1.glb', settings: { ms: 3 } });
       const metrics = () => get(page('metrics'));
       let text = '';

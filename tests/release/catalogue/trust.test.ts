@@ -47,9 +47,6 @@ const jobsInRedis = async () => {
   const counts = await recipe.catalogue.queue.getJobCounts();
   return Object.values(counts).reduce((sum, n) => sum + n, 0);
 };
-const json = { 'content-type': 'application/json' };
-const add = { method: 'POST', headers: json, body: JSON.stringify({ name: 'x', data: {}, options: {} }) };
-const token = 'a token of enough letters';
 
 describe('the status page', () => {
   test('only shows, and only to its own pages', async () => {
@@ -62,12 +59,11 @@ describe('the status page', () => {
         assert.equal(await status('/metrics', asHost(name)), 200, name);
       assert.equal(await status('/metrics', asHost('catalogue.example')), 200);
       for (const name of ['evil.example', 'localhost.evil.example', '127.0.0.1.evil.example', 'x@127.0.0.1'])
-        for (const path of ['/metrics', '/queue/api/queues', '/files/results.jsonl', '/login'])
+        for (const path of ['/metrics', '/queue', '/queue.json', '/files/results.jsonl'])
           assert.ok([400, 421].includes(await status(path, asHost(name))), `${name} ${path}`);
 
-      const board = '/queue/api/queues';
-      assert.equal(await status(board), 200);
-      assert.equal(await status(board, { headers: { origin: address } }), 200);
+      assert.equal(await status('/queue.json'), 200);
+      assert.equal(await status('/queue.json', { headers: { origin: address } }), 200);
       for (const headers of [
         { origin: 'http://evil.example' },
         { origin: 'null' },
@@ -75,7 +71,7 @@ describe('the status page', () => {
         { 'sec-fetch-site': 'cross-site', 'sec-fetch-mode': 'no-cors' },
         { 'sec-fetch-site': 'same-site', 'sec-fetch-mode': 'cors' },
       ])
-        for (const path of [board, '/metrics', '/files/results.jsonl'])
+        for (const path of ['/queue.json', '/metrics', '/files/results.jsonl'])
           assert.equal(await status(path, { headers }), 403, JSON.stringify(headers));
       assert.equal(
         await status('/metrics', { headers: { 'sec-fetch-site': 'cross-site', 'sec-fetch-mode': 'navigate' } }),
@@ -83,69 +79,13 @@ describe('the status page', () => {
       );
 
       const before = await jobsInRedis();
-      for (const type of [
-        'text/plain',
-        'application/x-www-form-urlencoded',
-        'multipart/form-data',
-        'application/jsonx',
-      ])
-        assert.equal(await status(`${board}/jobs/add`, { ...add, headers: { 'content-type': type } }), 415);
-      const writes: [string, string][] = [
-        ['POST', '/jobs/add'],
-        ['PUT', '/pause'],
-        ['PUT', '/jobs/obliterate'],
-        ['PUT', '/jobs/empty'],
-        ['PUT', '/jobs/retry/failed'],
-        ['PATCH', '/jobs/1/update-data'],
-        ['DELETE', '/jobs'],
-        ['OPTIONS', '/jobs/add'],
-      ];
-      const wrong = { authorization: `Bearer ${token}` };
-      for (const [method, path] of writes)
-        for (const headers of [json, { ...json, ...wrong }, { ...json, authorization: 'Bearer ' }])
-          assert.equal(await status(`${board}${path}`, { ...add, method, headers }), 403, `${method} ${path}`);
-      assert.equal(
-        await status('/login', {
-          method: 'POST',
-          body: 'token=',
-          headers: { 'content-type': 'application/x-www-form-urlencoded' },
-        }),
-        403,
-      );
+      for (const method of ['POST', 'PUT', 'PATCH', 'DELETE', 'OPTIONS'])
+        for (const path of ['/queue', '/queue.json', '/metrics', '/files/results.jsonl']) {
+          assert.equal(await status(path, { method, body: '{}' }), 405, `${method} ${path}`);
+          const headers = { origin: 'http://evil.example', 'content-type': 'text/plain' };
+          assert.equal(await status(path, { method, headers, body: '{}' }), 403, `${method} ${path}`);
+        }
       assert.equal(await jobsInRedis(), before);
-      assert.match((await fetchAs(`${address}${board}`)).text, /"readOnlyMode":true/);
-    });
-  });
-
-  test('changes the queue for those who have the token', async () => {
-    await withStatus({ CATALOGUE_TOKEN: token }, async (address) => {
-      const board = `${address}/queue/api/queues`;
-      const status = async (headers: Record<string, string>) =>
-        (await fetchAs(`${board}/pause`, { method: 'PUT', headers })).status;
-      assert.equal(await status({}), 401);
-      assert.equal(await status({ authorization: `Bearer ${token}x` }), 401);
-      assert.equal(await status({ cookie: `catalogue=${'0'.repeat(64)}` }), 401);
-      assert.equal(await status({ authorization: `Bearer ${token}`, origin: 'http://evil.example' }), 403);
-      assert.equal(await recipe.catalogue.queue.isPaused(), false);
-      assert.equal(await status({ authorization: `Bearer ${token}` }), 200);
-      assert.equal(await recipe.catalogue.queue.isPaused(), true);
-      await recipe.catalogue.queue.resume();
-
-      assert.match((await fetchAs(`${address}/login`)).text, /<form method="post">/);
-      const logIn = (given: string) =>
-        fetchAs(`${address}/login`, {
-          method: 'POST',
-          headers: { 'content-type': 'application/x-www-form-urlencoded', origin: address },
-          body: new URLSearchParams({ token: given }).toString(),
-        });
-      assert.equal((await logIn('another')).status, 401);
-      const answer = await logIn(token);
-      assert.equal(answer.status, 303);
-      const [cookie] = answer.headers['set-cookie'] as [string];
-      assert.match(cookie, /HttpOnly; SameSite=Strict/);
-      assert.doesNotMatch(cookie, /letters/);
-      assert.equal(await status({ cookie: cookie.split(';')[0]! }), 200);
-      await recipe.catalogue.queue.resume();
     });
   });
 
@@ -154,7 +94,7 @@ describe('the status page', () => {
       await recipe.redis.stop('SIGKILL');
       const away = async () => (await fetchAs(`${address}/metrics`)).status === 503;
       await until(away);
-      for (const path of ['/metrics', '/queue/api/queues']) {
+      for (const path of ['/metrics', '/queue', '/queue.json']) {
         const { status, text } = await fetchAs(`${address}${path}`);
         assert.deepEqual([status, text], [503, 'Redis does not answer: start it, or set REDIS_URL to where it is\n']);
       }
@@ -209,12 +149,8 @@ describe('what others put into Redis or the folders', () => {
     await recipe.parts.untilDone(recipe.catalogue);
     assert.equal((await run('dead.ts')).length, 1 + 17);
     await withStatus({}, async (address) => {
-      for (const state of ['latest', 'failed', 'completed']) {
-        const page = `${address}/queue/api/queues?activeQueue=jobs&status=${state}&jobsPerPage=100`;
-        assert.equal((await fetchAs(page)).status, 200, state);
-      }
-      assert.equal((await fetchAs(`${address}/metrics`)).status, 200);
-      assert.equal((await fetchAs(`${address}/files/report.html`)).status, 200);
+      for (const path of ['queue', 'queue.json', 'metrics', 'files/report.html'])
+        assert.equal((await fetchAs(`${address}/${path}`)).status, 200, path);
     });
   });
 
