@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "linear/dense.hpp"
 
@@ -18,7 +19,7 @@ constexpr std::size_t kMaxSamples = 2000;
 
 /// A border of the target may be its neck if it is about as long as the template's, by these shares, and about where
 /// that is: its centre is off by at most this share of the diagonal. Hems of jackets are longer and lower.
-constexpr double kShortestNeck = 0.5, kLongestNeck = 1.7, kNeckOff = 0.2;
+constexpr double kShortestNeck = 0.5, kLongestNeck = 2.2, kNeckOff = 0.15;
 
 /// How far the map may stay off landmarks that are not sure (see `Anchor::slack`).
 constexpr double kSlack = 0.1;
@@ -147,20 +148,22 @@ double lengthAround(const std::vector<Vec3>& points) {
   return around;
 }
 
-/// The neck of a target: its nearest border about as long as a template's rim; -1 if there is none.
-int neckAmong(const TriangleMesh& target, const std::vector<std::vector<std::uint32_t>>& loops, const Rim& from,
-              double diagonal) {
-  const double own = lengthAround(from.points);
-  int best = -1;
+/// The neck of a target: its nearest border about as long as a template's rim, not counting how ragged it is.
+std::optional<Rim> neckOf(const TriangleMesh& target, const Rim& from, const Vec3& up, double diagonal) {
+  const double step = kRimStep * diagonal, own = lengthAround(from.points);
+  std::optional<Rim> best;
   double least = kNeckOff * diagonal;
-  for (std::size_t i = 0; i < loops.size(); ++i) {
+  for (const std::vector<std::uint32_t>& loop : boundaryLoops(target)) {
     std::vector<Vec3> points;
-    for (const std::uint32_t v : loops[i]) points.push_back(target.positions[v]);
-    const double around = lengthAround(points);
-    const double off = length(middleOf(target, loops[i]) - from.centre);
-    if (around < kShortestNeck * own || around > kLongestNeck * own || off >= least) continue;
+    points.reserve(loop.size());
+    for (const std::uint32_t v : loop) points.push_back(target.positions[v]);
+    const double off = length(middleOf(target, loop) - from.centre);
+    if (lengthAround(points) < kShortestNeck * own || off >= least) continue;
+    Rim rim = sampleRim(target, loop, step, up);
+    const double around = lengthAround(rim.points);
+    if (around < kShortestNeck * own || around > kLongestNeck * own) continue;
     least = off;
-    best = static_cast<int>(i);
+    best = std::move(rim);
   }
   return best;
 }
@@ -188,14 +191,12 @@ std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& tar
   if (!axes.known || cage.rim < 0) return anchors;
   const double step = kRimStep * cage.diagonal;
   const Rim from = sampleRim(cage.mesh, cage.loops[static_cast<std::size_t>(cage.rim)], step, axes.up);
-  const auto loops = boundaryLoops(target);
-  const int neck = neckAmong(target, loops, from, cage.diagonal);
-  if (neck < 0) return anchors;
-  const Rim to = sampleRim(target, loops[static_cast<std::size_t>(neck)], step, axes.up);
-  const std::vector<Vec3> a = stations(from, axes), b = stations(to, axes);
+  const std::optional<Rim> to = neckOf(target, from, axes.up, cage.diagonal);
+  if (!to) return anchors;
+  const std::vector<Vec3> a = stations(from, axes), b = stations(*to, axes);
   if (a.size() != b.size()) return anchors;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const Vec3 outward = perpendicular(b[i] - to.centre, to.normal);
+    const Vec3 outward = perpendicular(b[i] - to->centre, to->normal);
     anchors.push_back({a[i], b[i] + cage.offset / std::max(length(outward), cage.offset) * outward});
   }
   return anchors;

@@ -619,6 +619,24 @@ TEST_CASE("the neck is the border about as long as the template's and about ther
   CHECK(std::count(below.begin(), below.end(), true) > std::ptrdiff_t(jacket.triangles.size() / 2));
 }
 
+TEST_CASE("a neck may be ragged, and what is far from the template's is none, however long", "[cages][fit]") {
+  const OwnedModel cageMesh = headMesh(kOwn, 20, 12, 0.04);
+  const TemplateCage cage = prepareTemplate({cageMesh.view(), headLandmarks(kOwn)});
+  const TriangleMesh head = weldExactly(headMesh(kOwn, 120, 40, 0).view());
+  const Axes axes = axesOf(headLandmarks(kOwn));
+  const std::vector<Anchor> smooth = rimAnchors(cage, head, axes);
+  REQUIRE(smooth.size() == 8);
+  const TriangleMesh ragged = mapped(head, [](const Vec3& p) {
+    const double tooth = p.y < -0.85 ? 0.04 * std::cos(60 * std::atan2(p.x / 0.75, p.z / 0.9)) : 0;
+    return p + Vec3{0, tooth, 0};  // Its border is 2.5 times as long.
+  });
+  const std::vector<Anchor> anchors = rimAnchors(cage, ragged, axes);
+  REQUIRE(anchors.size() == smooth.size());
+  for (std::size_t i = 0; i < anchors.size(); ++i) CHECK(length(anchors[i].to - smooth[i].to) < 0.05);
+  const Vec3 away{0, -0.17 * cage.diagonal, 0};
+  CHECK(rimAnchors(cage, mapped(head, [&](const Vec3& p) { return p + away; }), axes).empty());
+}
+
 TEST_CASE("a rim of very many points, and one that is huge, are read in no time", "[cages][fit]") {
   const OwnedModel cageMesh = headMesh(kOwn, 20, 12, 0.04);
   const TemplateCage cage = prepareTemplate({cageMesh.view(), headLandmarks(kOwn)});
