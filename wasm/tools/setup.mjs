@@ -109,17 +109,15 @@ function isNewEnough(version) {
   return major > 22 || minor >= (kOldestNode[major] ?? Infinity);
 }
 
-function installSystemPackages(names) {
-  const missing = names.filter((name) => !kNeeds[name].there());
-  if (missing.length === 0) return;
-  const list = missing.map((name) => `  ${kNeeds[name].what}  (Debian: ${name})`).join('\n');
+const lineOf = (name) => `  ${kNeeds[name].what}  (Debian: ${name})`;
+
+/** What runs apt-get with the right to install; null where nothing does. */
+function installer() {
   const asRoot = process.getuid?.() === 0 ? [] : command('sudo')() ? ['sudo'] : null;
-  if (!command('apt-get')() || asRoot === null) {
-    fail(
-      `Cagecast needs, and this machine lacks:\n${list}\nPlease install them (apt-get, which would do it, ${asRoot === null ? 'needs root or sudo' : 'is not here'}), then run this again.`,
-    );
-  }
-  console.log(`Installing:\n${list}`);
+  return command('apt-get')() ? asRoot : null;
+}
+
+function installSystemPackages(missing, asRoot) {
   const apt = (...args) => {
     const [program, ...rest] = [...asRoot, 'env', 'DEBIAN_FRONTEND=noninteractive', 'apt-get', ...args];
     const { status, stderr } = spawnSync(program, rest, { stdio: ['ignore', 'inherit', 'pipe'], encoding: 'utf8' });
@@ -145,26 +143,28 @@ function installSystemPackages(names) {
     );
 }
 
-/**
- * Installs the packages of a folder of the repository as its lock file says, unless that was done before.
- * @param args  `npm ci` refuses a lock file that lacks a package's builds for other systems, which not every registry has;
- *              `npm install --no-save` does not, and leaves the file as it is.
- */
-function installNpmPackages(folder = '', args = ['ci']) {
-  const home = `${root}${folder}`;
-  // The packages of another checkout, shared by a link as worktrees do: npm ci would empty them.
-  if (lstatSync(`${home}node_modules`, { throwIfNoEntry: false })?.isSymbolicLink()) return;
-  const lock = createHash('sha256')
-    .update(readFileSync(`${home}package-lock.json`))
+const lockOf = (folder) =>
+  createHash('sha256')
+    .update(readFileSync(`${root}${folder}package-lock.json`))
     .digest('hex');
-  const stamp = `${home}node_modules/.installed-lock`;
-  if (existsSync(stamp) && readFileSync(stamp, 'utf8') === lock) return;
-  console.log(`Installing npm packages${folder && ` of ${folder}`}…`);
+const stampOf = (folder) => `${root}${folder}node_modules/.installed-lock`;
+
+/** Whether a folder of the repository has the packages of its lock file, or those of another checkout by a link, as worktrees do. */
+const hasPackages = (folder) =>
+  lstatSync(`${root}${folder}node_modules`, { throwIfNoEntry: false })?.isSymbolicLink() ||
+  (existsSync(stampOf(folder)) && readFileSync(stampOf(folder), 'utf8') === lockOf(folder));
+
+/**
+ * Installs the packages of a folder as its lock file says. `npm ci` refuses a lock file that lacks a package's builds for other systems,
+ * which not every registry has, as that of the hosts; `npm install --no-save` does not, and leaves the file as it is.
+ */
+function installNpmPackages(folder) {
+  const args = folder === kHosts ? ['install', '--no-save'] : ['ci'];
   execFileSync('npm', [...args, '--no-audit', '--no-fund', '--loglevel=error'], {
-    cwd: home,
+    cwd: `${root}${folder}`,
     stdio: ['ignore', 'inherit', 'inherit'],
   });
-  writeFileSync(stamp, lock);
+  writeFileSync(stampOf(folder), lockOf(folder));
 }
 
 const purposes = process.argv.slice(2);
@@ -173,7 +173,14 @@ if (purposes.length === 0 || unknown !== undefined)
   fail(`usage: node wasm/tools/setup.mjs ${Object.keys(kPurposes).join(' | ')}`);
 if (!isNewEnough(process.version)) fail(`Cagecast needs Node ${kNodes}; this is ${process.versions.node}.`);
 const needs = [...new Set(purposes.flatMap((purpose) => kPurposes[purpose]))];
-installSystemPackages(needs.filter((name) => name in kNeeds));
-installNpmPackages();
-if (needs.includes(kHosts)) installNpmPackages(kHosts, ['install', '--no-save']);
-if (needs.includes(kCatalogue)) installNpmPackages(kCatalogue);
+const missing = needs.filter((name) => name in kNeeds && !kNeeds[name].there());
+const folders = ['', kHosts, kCatalogue].filter((one) => (one === '' || needs.includes(one)) && !hasPackages(one));
+const asRoot = installer();
+if (missing.length > 0 && asRoot === null)
+  fail(
+    `Cagecast needs, and this machine lacks:\n${missing.map(lineOf).join('\n')}\nPlease install them (apt-get, as root or with sudo, would do it), then run this again.`,
+  );
+const list = [...missing.map(lineOf), ...folders.map((folder) => `  the npm packages of ${folder}package-lock.json`)];
+if (list.length > 0) console.log(`Missing here, and to be installed now:\n${list.join('\n')}`);
+if (missing.length > 0) installSystemPackages(missing, asRoot);
+for (const folder of folders) installNpmPackages(folder);
