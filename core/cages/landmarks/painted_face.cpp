@@ -82,13 +82,13 @@ Portrait portraitOf(const Figure& figure, const Model& model, const HeadFrame& f
 std::vector<Vec3> commonColors(const Portrait& portrait) {
   constexpr double kBin = 8, kAlike = 14;
   constexpr double kCommon = 0.04;  ///< Of all places.
-  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kMax = 4;
   std::vector<Vec3> left;
   for (std::size_t i = 0; i < portrait.colors.size(); ++i)
     if (std::isfinite(portrait.map.heights[i])) left.push_back(portrait.colors[i]);
   const double enough = kCommon * static_cast<double>(left.size());
   std::vector<Vec3> out;
-  while (!left.empty() && out.size() < kMost) {
+  while (!left.empty() && out.size() < kMax) {
     std::map<std::array<int, 3>, std::vector<Vec3>> bins;
     const auto binOf = [](double x) { return static_cast<int>(std::floor(x / kBin)); };
     for (const Vec3& color : left) bins[{binOf(color.x), binOf(color.y), binOf(color.z)}].push_back(color);

@@ -18,7 +18,7 @@ constexpr double kAlike = 0.1;
 /// A disc has no vertex where its box has corners, beyond this share of half its size along both.
 constexpr double kCorner = 0.85;
 /// More discs than this are no wheels: a heap of coins.
-constexpr std::size_t kMostWheels = 64;
+constexpr std::size_t kMaxWheels = 64;
 /// What lies within a wheel is part of it, as rims are.
 constexpr double kAround = 0.06;
 
@@ -71,7 +71,7 @@ std::vector<bool> wheelsOf(const TriangleMesh& mesh) {
   for (const TriangleMesh& piece : split(mesh, pieces, count))
     if (const auto disc = discOf(piece, whole)) discs.push_back(*disc);
   std::vector<Disc> wheels;
-  if (discs.size() > kMostWheels) discs.clear();
+  if (discs.size() > kMaxWheels) discs.clear();
   for (const Disc& disc : discs)
     if (std::any_of(discs.begin(), discs.end(), [&](const Disc& other) { return arePair(disc, other); }))
       wheels.push_back(disc);

@@ -24,8 +24,8 @@ const good = Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n');
 /** Takes a loader hours; the clock is what ends it. */
 const endless = costlyFormats['a line that is matched over and over']!.bytes();
 
-const kMostSeconds = 4; // of CPU; all take less than 2
-const kMostMemory = 500e6; // bytes
+const kMaxSeconds = 4; // of CPU; all take less than 2
+const kMaxMemory = 500e6; // bytes
 
 /** Does something. @returns the CPU that it took, in seconds, and the memory that the process had more meanwhile. */
 async function costOf(work: () => Promise<unknown>): Promise<{ seconds: number; memory: number }> {
@@ -47,8 +47,8 @@ describe('what costs much', () => {
         if (refusal) await assert.rejects(made, { name: 'CagecastError', code: 'badArgument', message: refusal });
         else assert.deepEqual(await validate(await made), []);
       });
-      assert.ok(seconds < kMostSeconds, `${seconds} s`);
-      assert.ok(memory < kMostMemory, `${Math.round(memory / 1e6)} MB`);
+      assert.ok(seconds < kMaxSeconds, `${seconds} s`);
+      assert.ok(memory < kMaxMemory, `${Math.round(memory / 1e6)} MB`);
       assert.deepEqual(shared(), untouched);
     });
 

@@ -42,7 +42,7 @@ import { ball, cage, clear, equal, flat, halves, modelOf, ok, refuses, type Scen
 /** Pixels a side of the pictures. */
 const kSide = 192; // WebGPU reads rows of a multiple of 64
 /** By how much the pictures may differ in the mean over the painted area. */
-const kMost = 3;
+const kMax = 3;
 
 const webgl = new WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
 /** Whether WebGPURenderer draws by WebGL. */
@@ -118,7 +118,7 @@ async function same(what: string, model: Object3D, bare: Looks, other = model): 
   ok(area.length > 500, `${what}: ${area.length} pixels are painted`);
   const found = meanOf(now.webgl, now.webgpu, area);
   figures.push(`${what}: ${found.toFixed(2)} of 255`);
-  ok(found <= kMost, `${what}: the pictures differ by ${found} of 255`);
+  ok(found <= kMax, `${what}: the pictures differ by ${found} of 255`);
   ok(paintedIn(now.webgpu, bare.webgpu).length > 0.95 * area.length, `${what}: less is painted`);
 }
 
@@ -396,7 +396,7 @@ export const webgpuScenes: Scenes = {
       const area = paintedIn(now.webgl, bare.webgl);
       const [before, found] = [meanOf(bare.webgl, bare.webgpu, area), meanOf(now.webgl, now.webgpu, area)];
       figures.push(`${what}: ${found.toFixed(2)} of 255, bare ${before.toFixed(2)}`);
-      ok(area.length > 500 && found <= before + kMost, [what, area.length, before, found]);
+      ok(area.length > 500 && found <= before + kMax, [what, area.length, before, found]);
     };
     await check('MToon');
     const stacks = [webgl, webgpu].map((renderer) => createLayers({ renderer }));

@@ -14,7 +14,7 @@ import { hostTools, installPacked, linkPackages } from './install.js';
 /** A square picture has so many pixels on a side. */
 const kSide = 384;
 /** How far colours may differ in the mean, of 255. */
-const kMost = 3;
+const kMax = 3;
 
 const common = `
 import { init } from 'cagecast';
@@ -313,7 +313,7 @@ describe('the paint in other engines', () => {
           context.diagnostic(
             `${inside!.toFixed(2)} of 255 on ${area} painted pixels, ${outside!.toFixed(2)} elsewhere`,
           );
-          assert.ok(inside! <= kMost && outside! <= kMost, `${inside} and ${outside}`);
+          assert.ok(inside! <= kMax && outside! <= kMax, `${inside} and ${outside}`);
         });
     });
 });

@@ -5,7 +5,7 @@ import type { Answer, Question } from './protocol.js';
 import { countArrays } from './reading/count-arrays.js';
 
 /** Characters of a message at most: some hold a line of the file. */
-const kMostText = 300;
+const kMaxText = 300;
 
 const waiting = new Map<number, (found: Uint8Array | undefined) => void>();
 
@@ -40,6 +40,6 @@ listen<Question, Answer>(async (question, post) => {
     } catch (exceeded) {
       wrong = firstLine(exceeded);
     }
-    post({ wrong: wrong.slice(0, kMostText) });
+    post({ wrong: wrong.slice(0, kMaxText) });
   }
 });

@@ -82,7 +82,7 @@ function checkedLimits(bytes: number, given: Partial<FormatLimits> = {}): Format
 }
 
 /** Megabytes that the heap of a thread in Node may have beside what `memory` says, and at most. */
-const [kSpareHeap, kMostHeap] = [256, 4096];
+const [kSpareHeap, kMaxHeap] = [256, 4096];
 
 /**
  * Has a worker read a file, whatever its loader does with it, and ends it.
@@ -127,7 +127,7 @@ function readInWorker(
       if (/memory limit/.test(message)) fail(exceeds('its loader takes all memory that it may have', 'memory', limits));
       else fail(unsupported(`the worker failed (${message})`));
     };
-    const heap = Math.min(kMostHeap, kSpareHeap + Math.ceil((2 * limits.memory) / 2 ** 20));
+    const heap = Math.min(kMaxHeap, kSpareHeap + Math.ceil((2 * limits.memory) / 2 ** 20));
     let thread: ReturnType<typeof spawn>;
     try {
       thread = spawn((answer) => void onAnswer(answer).catch(fail), onFailure, heap);

@@ -2,7 +2,7 @@ import { show } from '../core/error.js';
 import { CagecastError, type SegmentStats } from '../index.js';
 
 /** Coverages below this count as this. */
-const kLeast = 0.05;
+const kMin = 0.05;
 /** Segments below this share of the exposed area do not count. */
 const kMinArea = 1e-4;
 
@@ -29,10 +29,10 @@ export function surestThreshold(segmentStats: readonly Pick<SegmentStats, 'cover
   const exposed = segmentStats.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
   const coverages = segmentStats
     .filter(({ exposedArea }) => exposedArea > kMinArea * exposed)
-    .map(({ coverage }) => Math.max(coverage, kLeast));
+    .map(({ coverage }) => Math.max(coverage, kMin));
   if (coverages.length === 0) return 0.5;
-  const stops = [kLeast, ...coverages].sort((a, b) => a - b);
-  let [low, high] = [kLeast, kLeast];
+  const stops = [kMin, ...coverages].sort((a, b) => a - b);
+  let [low, high] = [kMin, kMin];
   stops.slice(1).forEach((to, i) => {
     if (to / stops[i]! > high / low) [low, high] = [stops[i]!, to];
   });

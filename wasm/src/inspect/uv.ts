@@ -85,7 +85,7 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
 const areVast = (uvs: Float32Array): boolean => uvs.some((value) => value < -8 || value > 9);
 
 /** The most rows of the grid that triangles may have together. Cages have less than a million; a hostile one need not. */
-const kMostRows = 2 ** 23;
+const kMaxRows = 2 ** 23;
 
 /**
  * Counts, at the centres of a grid of pixels over the texture, which repeats, how many UV triangles use each.
@@ -113,7 +113,7 @@ function coverageOf(
     rows += ((Math.max(a, b, c) - Math.min(a, b, c)) / extent) * kSamples;
   }
   let samples = kSamples;
-  for (; rows > kMostRows && samples > 1; rows /= 2) samples /= 2;
+  for (; rows > kMaxRows && samples > 1; rows /= 2) samples /= 2;
   const scale = vast ? (samples - 1) / extent : samples;
   const grid = new RepeatingGrid(samples);
   const [x, y] = [new Float64Array(3), new Float64Array(3)];

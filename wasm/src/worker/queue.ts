@@ -23,7 +23,7 @@ export interface WorkerOptions {
   workers?: number | undefined;
 }
 
-const kMostWorkers = 64;
+const kMaxWorkers = 64;
 
 /** How far a call is: a share 0..1 that never falls, and what it does. */
 export type OnProgress = (share: number, stage: string) => void;
@@ -69,8 +69,8 @@ export class WorkerQueue {
     if (fault !== undefined) throw new CagecastError('badOption', 'init', fault);
     const { workers } = options;
     if (workers !== undefined) {
-      if (!Number.isInteger(workers) || workers < 1 || workers > kMostWorkers)
-        throw new CagecastError('badOption', 'init', `options.workers is ${show(workers)}, not 1 to ${kMostWorkers}`);
+      if (!Number.isInteger(workers) || workers < 1 || workers > kMaxWorkers)
+        throw new CagecastError('badOption', 'init', `options.workers is ${show(workers)}, not 1 to ${kMaxWorkers}`);
       this.#mostWorkers = this.#kept = workers;
     }
     await Promise.all(Array.from({ length: workers ?? 1 }, () => this.call('init', [], {})));

@@ -35,8 +35,8 @@ const kSteps: readonly { title: string; text: string }[] = [
 ];
 const [kClosest, kRays, kLast] = [1, 2, kSteps.length - 1];
 const kSeconds = 0.7; // from one frame to another one
-const kMostLines = 400;
-const kMostVisits = 1e7; // of triangles, for all lines together
+const kMaxLines = 400;
+const kMaxVisits = 1e7; // of triangles, for all lines together
 const kInk = '#14181d';
 
 /** The method as a film strip of the model on the stage: five frames, and a slider that moves the stage from one to the next. */
@@ -144,7 +144,7 @@ export class FilmStrip {
     const diagonal = diagonalOf(mesh);
     const count = mesh.positions.length / 3;
     const triangles = (mesh.indices.length + cage.mesh.indices.length) / 3;
-    const step = Math.max(1, count / Math.min(kMostLines, kMostVisits / triangles));
+    const step = Math.max(1, count / Math.min(kMaxLines, kMaxVisits / triangles));
     const vertices = Array.from({ length: Math.floor(count / step) }, (_, i) => Math.floor(i * step));
     const scene = { target: mesh, cage: cage.mesh, loops };
     return vertices.map((vertex) =>

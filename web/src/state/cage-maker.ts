@@ -2,7 +2,7 @@ import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cage
 import { cageModel, withBaseColors } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/paint';
 import { type Bone, Box3, Vector3 } from 'three';
-import { type Fitting, kMostAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
+import { type Fitting, kMaxAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
 import { type Box, boxOf, diagonalOfBox } from './surface';
@@ -299,7 +299,7 @@ export class CageMaker extends Emitter<{
     const { cage, ...found } = await engine.fitCage(await engine.loadTemplate(name), model, given, options);
     const note =
       found.guessed.length > 0
-        ? `Too little was found to fit the template by, so it was placed by the model’s size: mark ${found.guessed.slice(0, kMostAsked).map(readable).join(', ')}.`
+        ? `Too little was found to fit the template by, so it was placed by the model’s size: mark ${found.guessed.slice(0, kMaxAsked).map(readable).join(', ')}.`
         : 'The template was fitted: a paint for it fits every model that it was fitted to.';
     return { cage, note, fitting: { ...found, template: name, given } };
   }

@@ -10,7 +10,7 @@ export interface Fitting extends Omit<Fit, 'cage'> {
 }
 
 /** How many landmarks the user is asked for at most, where too little was found. */
-export const kMostAsked = 4;
+export const kMaxAsked = 4;
 
 /** How a cage was made here. */
 interface Made {

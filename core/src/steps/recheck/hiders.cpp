@@ -29,9 +29,9 @@ std::uint32_t HiderRecords::add(std::uint32_t enough, std::span<const std::uint3
   words_.add(enough);
   words_.add(0);
   // Rays that hit the fewest come first; of equals the first, on every platform.
-  std::uint32_t counts[kMostRays] = {};
+  std::uint32_t counts[kMaxRays] = {};
   for (std::size_t i = 0; i < rays.size(); ++i) hits.each(rays[i], [&](std::uint32_t) { ++counts[i]; });
-  std::uint32_t order[kMostRays];
+  std::uint32_t order[kMaxRays];
   for (std::uint32_t i = 0; i < rays.size(); ++i) order[i] = i;
   std::sort(order, order + rays.size(),
             [&](std::uint32_t a, std::uint32_t b) { return counts[a] != counts[b] ? counts[a] < counts[b] : a < b; });

@@ -18,7 +18,7 @@ class HiderRecords {
 
   /// Adds a record, or finds an equal one among those of late: neighbours are mostly hidden by the same.
   /// @param enough  How many of the rays are enough.
-  /// @param rays    Their numbers in `hits`; at most `kMostRays`.
+  /// @param rays    Their numbers in `hits`; at most `kMaxRays`.
   /// @return Where it begins.
   std::uint32_t add(std::uint32_t enough, std::span<const std::uint32_t> rays, const SegmentHits& hits) noexcept;
 
@@ -30,7 +30,7 @@ class HiderRecords {
   [[nodiscard]] bool isFree(std::size_t record) const noexcept;
 
   /// As many as step 9 sends from a point.
-  static constexpr std::size_t kMostRays = 12;
+  static constexpr std::size_t kMaxRays = 12;
 
   [[nodiscard]] bool failed() const noexcept { return words_.failed(); }
   /// Whether there is no record.

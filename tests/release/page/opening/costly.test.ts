@@ -8,7 +8,7 @@ import { glbOf, tetrahedron } from '../../../support/glb';
 import { glb, Site, settled, shownError, type Visit } from '../../../support/site';
 
 /** The most memory that any of them may take, beside what the page has. */
-const kMost = 500e6; // bytes
+const kMax = 500e6; // bytes
 
 let site: Site;
 // One page for all of it: it must come through everything.
@@ -51,7 +51,7 @@ for (const [name, { bytes, refusal }] of Object.entries(costlyFiles))
     });
     const said = await shownError(page);
     if (refusal) assert.match(said, new RegExp(`^costly\\.glb: ${refusal.source}`));
-    assert.ok(taken < kMost, `${Math.round(taken / 1e6)} MB`);
+    assert.ok(taken < kMax, `${Math.round(taken / 1e6)} MB`);
     await page.getByTestId('target-input').setInputFiles(glb('sound.glb', sound));
     assert.equal(await settled(page), 'ready', await shownError(page));
   });
@@ -70,7 +70,7 @@ for (const [title, { name, bytes, beside, refusal }] of Object.entries(costlyFor
       const said = await shownError(page);
       // What is of no known kind is damaged to the page.
       if (!/neither/.test(refusal.source)) assert.match(said, new RegExp(`^${name}: .*${refusal.source}`));
-      assert.ok(taken < kMost, `${Math.round(taken / 1e6)} MB`);
+      assert.ok(taken < kMax, `${Math.round(taken / 1e6)} MB`);
       await page.getByTestId('target-input').setInputFiles(soundFile);
       assert.equal(await settled(page), 'ready', await shownError(page));
     });
@@ -116,7 +116,7 @@ test('pictures of billions of pixels to paint with', async () => {
       await page.locator('#error').filter({ hasText: name }).waitFor();
     });
     assert.match(await shownError(page), /: it has [\d,]+ × [\d,]+ pixels; .* the limit "expansion" is 100/);
-    assert.ok(taken < kMost, `${Math.round(taken / 1e6)} MB`);
+    assert.ok(taken < kMax, `${Math.round(taken / 1e6)} MB`);
   }
 });
 
@@ -132,7 +132,7 @@ test('a link with strokes of a billion pixels', async () => {
     await shownError(page),
     'The layers of the link are left out. Of number 1, its strokes have 16,383 × 4,096 pixels, not 512 × 512 or 256 × 256.',
   );
-  assert.ok(taken < kMost, `${Math.round(taken / 1e6)} MB`);
+  assert.ok(taken < kMax, `${Math.round(taken / 1e6)} MB`);
   await page.getByTestId('target-input').setInputFiles(glb('sound.glb', sound));
   assert.equal(await settled(page), 'ready', await shownError(page));
 });

@@ -50,7 +50,7 @@ interface BakeCommand extends Sources, Omit<BakeFlags, keyof common.SettingFlags
 }
 
 /** The fewest texels of packed textures. */
-const kLeastAtlas = 64;
+const kMinAtlas = 64;
 
 /** What its help says after the flags. */
 const kHelp = `
@@ -92,8 +92,8 @@ export function addBakeCommand(program: Command, io: Io): void {
     .addOption(
       common.parsed(
         '--atlas [TEXELS]',
-        `pack the textures of all materials into one for colours, one for normals, and one for occlusion, roughness and metalness, of so many texels; ${kLeastAtlas} to ${mostTexels} (default: as many as they need, up to 4096)`,
-        common.wholeNumberWithin(kLeastAtlas, mostTexels, ' of texels'),
+        `pack the textures of all materials into one for colours, one for normals, and one for occlusion, roughness and metalness, of so many texels; ${kMinAtlas} to ${mostTexels} (default: as many as they need, up to 4096)`,
+        common.wholeNumberWithin(kMinAtlas, mostTexels, ' of texels'),
       ),
     )
     .addOption(common.bordersFlag());

@@ -212,7 +212,7 @@ function readLandmarks(path: string): Promise<Landmarks> {
 const kMaxNames = 12;
 
 /** How many landmarks are asked for where too little was found. */
-const kMostAsked = 4;
+const kMaxAsked = 4;
 
 /** Landmarks less certain than this are listed. */
 const kCertain = 0.7;
@@ -244,7 +244,7 @@ function describeFit({ used, confidence, missing, guessed }: Fit, given: Landmar
       !all.some(isJoint) &&
       'no joint is found: TARGET has no skeleton, or names of bones that are not known',
   ];
-  const ask = guessed.length > 0 ? guessed.slice(0, kMostAsked).join(', ') : 'these';
+  const ask = guessed.length > 0 ? guessed.slice(0, kMaxAsked).join(', ') : 'these';
   const isAsking = doubtful.length + missing.length + guessed.length > 0;
   const advice = isAsking && `give ${ask} for a better fit: --landmarks L.json`;
   const otherwise = 'a texture for this model alone needs no template: cagecast make TARGET -o CAGE';

@@ -4,7 +4,7 @@ import type { Vector } from '../../inspect/geometry.js';
 /** Corners lie on a grid of so many places per sample, so that it is exact which side of an edge a sample is on. */
 const kGrid = 256;
 /** How often triangles may cover the whole picture. Figures with hair in many layers stay below 10; a hostile file need not. */
-const kMostLayers = 64;
+const kMaxLayers = 64;
 /** Samples of each triangle that do not count: a million small triangles are no reason to stop. */
 const kFreeSamples = 16;
 
@@ -33,7 +33,7 @@ export class Raster {
 
   /** @param side  Samples along each side. */
   constructor(readonly side: number) {
-    this.#left = kMostLayers * side ** 2;
+    this.#left = kMaxLayers * side ** 2;
   }
 
   /**
@@ -67,7 +67,7 @@ export class Raster {
     this.#left -= Math.max(0, samples);
     if (this.#left < 0)
       throw new InputError(
-        `cannot be drawn: its triangles cover the picture more than ${kMostLayers} times; leave out what lies in many layers`,
+        `cannot be drawn: its triangles cover the picture more than ${kMaxLayers} times; leave out what lies in many layers`,
       );
   }
 

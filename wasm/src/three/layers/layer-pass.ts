@@ -16,7 +16,7 @@ import { type Blend, blendModes, type Layer, type Sheet } from './layer.js';
 import { RegionMasks, type Regions } from './regions.js';
 
 const kVideo = 2; // how its colours are stored, in the shader
-const kMost = Math.max(...Object.values(maxAtOnce));
+const kMax = Math.max(...Object.values(maxAtOnce));
 
 /** A stroke in progress: shown over one sheet, or erased from it, until it is committed. */
 export interface ActiveStroke {
@@ -42,12 +42,12 @@ export class LayerPass {
   readonly #uniforms = {
     sheets: { value: [] as (Texture | null)[] },
     normals: { value: [] as (Texture | null)[] },
-    tints: { value: Array.from({ length: kMost }, () => new Vector4()) },
-    values: { value: Array.from({ length: kMost }, () => new Vector4()) },
-    blends: { value: new Array<number>(kMost).fill(0) },
-    stored: { value: new Array<number>(kMost).fill(0) },
+    tints: { value: Array.from({ length: kMax }, () => new Vector4()) },
+    values: { value: Array.from({ length: kMax }, () => new Vector4()) },
+    blends: { value: new Array<number>(kMax).fill(0) },
+    stored: { value: new Array<number>(kMax).fill(0) },
     masks: { value: null as Texture | null },
-    slices: { value: new Array<number>(kMost).fill(0) },
+    slices: { value: new Array<number>(kMax).fill(0) },
     stroke: { value: null as Texture | null },
     below: { value: null as Texture | null },
     strokeOpacity: { value: 1 },

@@ -4,7 +4,7 @@ import { DataTexture, type Texture } from 'three';
 import { type Context, makeCanvas } from '../canvas.js';
 
 /** Texels of the largest image that is copied. */
-const kMost = 2048 ** 2;
+const kMax = 2048 ** 2;
 
 /** What is shown for a texture, and of which version. */
 interface Shown {
@@ -51,7 +51,7 @@ function filledImage(image: unknown): ImageData | undefined {
     (typeof ImageBitmap === 'function' && image instanceof ImageBitmap);
   if (!isImage) return undefined;
   const { width, height } = image;
-  if (width === 0 || height === 0 || width * height > kMost) return undefined;
+  if (width === 0 || height === 0 || width * height > kMax) return undefined;
   try {
     const context = makeCanvas(width, height).getContext('2d', { willReadFrequently: true }) as Context;
     context.drawImage(image, 0, 0);

@@ -2,7 +2,7 @@ import type { Command, History } from 'cagecast/three/paint';
 import { Box3, Plane, Vector3 } from 'three';
 import { announce, element } from '../../platform/page';
 import type { CageMaker } from '../../state/cage-maker';
-import { type Fitting, kMostAsked, madeOf, readable } from '../../state/made-cages';
+import { type Fitting, kMaxAsked, madeOf, readable } from '../../state/made-cages';
 import type { Model } from '../../state/model';
 import type { Session } from '../../state/session';
 import { firstHit } from '../../view/ray';
@@ -375,7 +375,7 @@ export class LandmarkEditor {
   /** Asks for the landmark that would help most, if a fit had to guess some, until the user has placed a few. */
   #askForNext(): void {
     const next = this.#fitting!.guessed.find((name) => !this.given[name]);
-    this.#askFor(Object.keys(this.given).length < kMostAsked ? next : undefined);
+    this.#askFor(Object.keys(this.given).length < kMaxAsked ? next : undefined);
   }
 
   #place(x: number, y: number): void {
