@@ -80,15 +80,7 @@ export default defineConfig({
   root: fileURLToPath(new URL('.', import.meta.url)),
   // Relative, so that the page can be served from any folder.
   base: './',
-  plugins: [
-    slim(),
-    samples(),
-    onlyGltfDraco(),
-    sharingWorkers(),
-    basis(),
-    share(),
-    precache(),
-  ],
+  plugins: [slim(), samples(), onlyGltfDraco(), sharingWorkers(), basis(), share(), precache()],
   build: {
     outDir: path.join(kRepository, 'build/web'),
     emptyOutDir: true,
