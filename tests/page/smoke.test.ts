@@ -14,7 +14,7 @@ import {
   glb,
   kNoWebGl,
   kPlay,
-  Site,
+  openSite,
   setThreshold,
   settled,
   shownCounts,
@@ -24,12 +24,10 @@ import {
   violetPaint,
 } from '../support/site';
 
-let site: Site;
+const site = await openSite();
 let visit: Visit;
 let page: Page;
 let area: Area;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
 
 async function ready(): Promise<void> {
   assert.equal(await settled(page), 'ready', await shownError(page));

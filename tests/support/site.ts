@@ -1,6 +1,7 @@
 import { mkdtemp, rm } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
+import { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import type { Browser, BrowserContext, BrowserContextOptions, Page } from 'playwright-core';
 import { PNG } from 'pngjs';
@@ -141,6 +142,13 @@ export class Site {
     await settled(page);
     return visit;
   }
+}
+
+/** Opens the page for the tests of a file, and closes it after them. @param look  As for `Site.open`. */
+export async function openSite(look?: Look): Promise<Site> {
+  const site = await Site.open(look);
+  after(() => site.close());
+  return site;
 }
 
 /** Waits until the page is idle, and returns its status. */

@@ -2,10 +2,10 @@
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { islandCage, lumpyBall } from '../../../tests/support/models';
-import { drop, glb, inRepository, Site, settled, shownCounts, shownError } from '../../../tests/support/site';
+import { drop, glb, inRepository, openSite, settled, shownCounts, shownError } from '../../../tests/support/site';
 import { compute, kComputation, longestTask, mainThreadWork } from './processor-time';
 
 /** Milliseconds that a task of the page's main thread may take. */
@@ -13,9 +13,7 @@ const kMaxMs = 100;
 const kLarge = 500; // 500,000 triangles
 const kMiddle = 160; // 51,200 triangles
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 test('with the CPU slowed four times, less than a second of computing before the poster image', async () => {
   const { page } = await site.visit();

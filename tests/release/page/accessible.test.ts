@@ -1,14 +1,12 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { faults } from '../../support/axe';
 import { image } from '../../support/layers';
 import { islandCage, morphingBalls } from '../../support/models';
 import { saved } from '../../support/saved';
-import { drop, glb, Site, settled, shownError } from '../../support/site';
+import { drop, glb, openSite, settled, shownError } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 const kVisits = [
   { name: 'desk, light', viewport: { width: 1440, height: 900 } },

@@ -1,14 +1,12 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { faults } from '../../support/axe';
 import { asset, dragBy, head, ready, savedCage, workedFor } from '../../support/cages';
 import { difference, look, modelArea } from '../../support/picture';
 import { saved, validModel } from '../../support/saved';
-import { drop, glb, passed, Site, setThreshold, shownCounts, shownParts } from '../../support/site';
+import { drop, glb, openSite, passed, setThreshold, shownCounts, shownParts } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 test('a part that is kept says why the rest stays bare, and can be painted anyway; the slider has marks where parts change', async () => {
   const { page, complaints } = await site.visit();

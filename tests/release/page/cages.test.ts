@@ -1,14 +1,12 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { faults } from '../../support/axe';
 import { asset, head, ready, worked } from '../../support/cages';
 import { GlbMaker, tetrahedron } from '../../support/glb';
 import { difference, look, modelArea } from '../../support/picture';
-import { drop, glb, Site, shownError, shownParts } from '../../support/site';
+import { drop, glb, openSite, shownError, shownParts } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 test('a cage is made with the chosen number of triangles and parts, again when these change', async () => {
   const { page, complaints } = await site.visit();

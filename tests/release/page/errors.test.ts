@@ -3,21 +3,16 @@ import { readFileSync } from 'node:fs';
 import { mkdir, mkdtemp, rm, truncate, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { PNG } from 'pngjs';
 import { glbOf, tetrahedron } from '../../support/glb';
 import { texturedBox } from '../../support/models';
-import { drop, glb, inRepository, Site, settled, shownCounts, shownError, type Visit } from '../../support/site';
+import { drop, glb, inRepository, openSite, settled, shownCounts, shownError } from '../../support/site';
 
-let site: Site;
+const site = await openSite();
 // One page for all of it: it must come through everything.
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit({ viewport: { width: 700, height: 500 } });
-});
-after(() => site?.close());
+const visit = await site.visit({ viewport: { width: 700, height: 500 } });
 
 const sound = tetrahedron();
 const lizard = readFileSync(inRepository('examples/samples/lizard/target.glb'));

@@ -1,26 +1,13 @@
 import assert from 'node:assert/strict';
-import { mkdtemp, rm } from 'node:fs/promises';
-import { tmpdir } from 'node:os';
-import path from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { cancelOnceShown, kSlowWorker } from '../../support/cancel';
 import { ball, islandCage, islandPaint } from '../../support/models';
 import { difference, look, modelArea, shareOfHue } from '../../support/picture';
-import { drop, Site, setThreshold, settled, shownError, type Visit } from '../../support/site';
+import { drop, openSite, setThreshold, settled, shownError } from '../../support/site';
 
-let site: Site;
-let visit: Visit;
-let folder: string;
-before(async () => {
-  site = await Site.open();
-  folder = await mkdtemp(path.join(tmpdir(), 'cagecast-exact-'));
-  visit = await site.visit();
-});
-after(async () => {
-  await site?.close();
-  await rm(folder, { recursive: true, force: true });
-});
+const site = await openSite();
+const visit = await site.visit();
 
 const isCut = /^Adds [\d,]+ triangles\.$/;
 const note = (page: Page): Promise<string | null> => page.getByTestId('borders-note').textContent();

@@ -1,17 +1,12 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { PNG } from 'pngjs';
 import { difference, look, modelArea, shareOfHue } from '../../support/picture';
-import { drop, Site, setThreshold, settled, shownError, type Visit, violetPaint } from '../../support/site';
+import { drop, openSite, setThreshold, settled, shownError, type Visit, violetPaint } from '../../support/site';
 
-let site: Site;
+const site = await openSite();
 // One page for all of it: a file's result must not depend on the files before.
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit();
-});
-after(() => site?.close());
+const visit = await site.visit();
 
 /** Goes back to what the page opens with. */
 async function fresh(): Promise<Visit> {

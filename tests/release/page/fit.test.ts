@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { reportedCounts } from '../../support/command';
 import { glbOf, tetrahedron } from '../../support/glb';
 import { difference, look, modelArea } from '../../support/picture';
@@ -7,23 +7,17 @@ import {
   drop,
   glb,
   inRepository,
+  openSite,
   passed,
-  Site,
   setThreshold,
   settled,
   shownCounts,
   shownError,
   shownParts,
-  type Visit,
 } from '../../support/site';
 
-let site: Site;
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit({ viewport: { width: 700, height: 500 } });
-});
-after(() => site?.close());
+const site = await openSite();
+const visit = await site.visit({ viewport: { width: 700, height: 500 } });
 
 const asset = (...names: string[]): string => inRepository('examples/samples', ...names);
 

@@ -1,11 +1,9 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { faults } from '../../support/axe';
-import { passed, Site, settled } from '../../support/site';
+import { openSite, passed, settled } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 /** A script that makes the first load of a tab a first visit. */
 const kFirstVisit = `if (!sessionStorage.begun) { sessionStorage.begun = 1; localStorage.removeItem('cagecast-guide') }`;

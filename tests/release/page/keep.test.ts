@@ -1,17 +1,15 @@
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
 import { asset } from '../../support/cages';
 import { filled, image, names, rows, savedTexture } from '../../support/layers';
 import { modelArea } from '../../support/picture';
 import { saved } from '../../support/saved';
-import { drop, glb, Site, settled, shownCounts, shownError, shownParts } from '../../support/site';
+import { drop, glb, openSite, settled, shownCounts, shownError, shownParts } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 /** Opens a model and a cage of the visitor's own. */
 async function openOwn(page: Page): Promise<void> {

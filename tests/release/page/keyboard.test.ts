@@ -1,22 +1,14 @@
 import assert from 'node:assert/strict';
-import { mkdtemp, readFile, rm } from 'node:fs/promises';
-import { tmpdir } from 'node:os';
+import { readFile } from 'node:fs/promises';
 import path from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
-import { inRepository, Site, settled, shownCounts, shownError } from '../../support/site';
+import { inRepository, openSite, settled, shownCounts, shownError } from '../../support/site';
+import { temporaryFolder } from '../../support/temporary';
 
-let site: Site;
-let folder: string;
-before(async () => {
-  site = await Site.open();
-  folder = await mkdtemp(path.join(tmpdir(), 'cagecast-keyboard-'));
-});
-after(async () => {
-  await site?.close();
-  await rm(folder, { recursive: true, force: true });
-});
+const site = await openSite();
+const { folder } = temporaryFolder('keyboard');
 
 /** Goes on with the Tab key until an element has the keyboard. */
 async function tabTo(page: Page, id: string): Promise<void> {

@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { KHRTextureBasisu } from '@gltf-transform/extensions';
 import { PNG } from 'pngjs';
@@ -8,11 +8,9 @@ import { texel } from '../../support/layers';
 import { islandCage, lumpyBall } from '../../support/models';
 import { look, modelArea, shareOfHue } from '../../support/picture';
 import { saved, validModel } from '../../support/saved';
-import { glb, inRepository, Site, settled, shownCounts, shownError, type Upload } from '../../support/site';
+import { glb, inRepository, openSite, settled, shownCounts, shownError, type Upload } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 async function ballWith(image: Uint8Array<ArrayBuffer>): Promise<Upload> {
   const document = await new NodeIO().readBinary(new Uint8Array((await lumpyBall(24)).buffer));

@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
 import {
@@ -16,11 +16,9 @@ import {
   workedFor,
 } from '../../support/cages';
 import { difference, look, modelArea } from '../../support/picture';
-import { drop, glb, Site, type Visit } from '../../support/site';
+import { drop, glb, openSite, type Visit } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit follows, and the cage is saved with them', async () => {
   const { page, complaints } = await site.visit();

@@ -1,28 +1,19 @@
 import assert from 'node:assert/strict';
-import { mkdtemp, rm, writeFile } from 'node:fs/promises';
-import { tmpdir } from 'node:os';
+import { writeFile } from 'node:fs/promises';
 import path from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { cancelOnceShown, kSlowWorker } from '../../support/cancel';
 import { islandCage, lumpyBall } from '../../support/models';
-import { Site, settled, shownCounts, shownError } from '../../support/site';
+import { openSite, settled, shownCounts, shownError } from '../../support/site';
+import { temporaryFolder } from '../../support/temporary';
 
 const kSide = 150; // 45,000 triangles; bench/web/page measures with 500,000
 
-let site: Site;
-let folder: string;
-let target: string;
-before(async () => {
-  site = await Site.open();
-  folder = await mkdtemp(path.join(tmpdir(), 'cagecast-large-'));
-  target = path.join(folder, 'target.glb');
-  await writeFile(target, (await lumpyBall(kSide)).buffer);
-});
-after(async () => {
-  await site?.close();
-  await rm(folder, { recursive: true, force: true });
-});
+const site = await openSite();
+const { folder } = temporaryFolder('large');
+const target = path.join(folder, 'target.glb');
+await writeFile(target, (await lumpyBall(kSide)).buffer);
 
 /** Notes what the bar says, from now on. */
 async function watchProgress(page: Page): Promise<() => Promise<string[]>> {

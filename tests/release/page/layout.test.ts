@@ -1,18 +1,13 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { PNG } from 'pngjs';
 import { asset, fitted, head, ready } from '../../support/cages';
 import { stageFaults } from '../../support/page/stage-faults';
 import { difference, look, modelArea } from '../../support/picture';
-import { drop, glb, kPlay, Site, type Visit } from '../../support/site';
+import { drop, glb, kPlay, openSite, type Visit } from '../../support/site';
 
-let site: Site;
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit({ hasTouch: true });
-});
-after(() => site?.close());
+const site = await openSite();
+let visit = await site.visit({ hasTouch: true });
 
 const kSizes = [
   { name: 'phone', width: 390, height: 844 },

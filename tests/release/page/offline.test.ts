@@ -1,11 +1,9 @@
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
-import { after, before, test } from 'node:test';
-import { Site, settled, shownCounts, shownError } from '../../support/site';
+import { test } from 'node:test';
+import { openSite, settled, shownCounts, shownError } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 test('after one visit the page works offline, with every sample and decoder', async () => {
   const { page, complaints, foreign } = await site.visit({ serviceWorkers: 'allow' });

@@ -1,17 +1,12 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { difference, frames, look, modelArea, watch } from '../../support/picture';
-import { Site, settled, shownError, type Visit } from '../../support/site';
+import { openSite, settled, shownError } from '../../support/site';
 
 const kFrames = 30; // in which whatever moves does
 
-let site: Site;
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit();
-});
-after(() => site?.close());
+const site = await openSite();
+const visit = await site.visit();
 
 test('the page retimes the transfer once the browser has compiled it', async () => {
   const { page } = visit;

@@ -1,14 +1,12 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { head, middleOf, ready } from '../../support/cages';
 import { rows } from '../../support/layers';
 import { lumpyBall } from '../../support/models';
-import { drop, Site } from '../../support/site';
+import { drop, openSite } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 const kDesk = { viewport: { width: 1440, height: 900 } };
 

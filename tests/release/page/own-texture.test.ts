@@ -1,15 +1,13 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Document, Primitive } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
 import { ball, islandCage } from '../../support/models';
 import { difference, look, modelArea } from '../../support/picture';
 import { primitivesOf, saved, validModel } from '../../support/saved';
-import { drop, glb, Site, settled, shownError } from '../../support/site';
+import { drop, glb, openSite, settled, shownError } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close()); // texels around an island
+const site = await openSite(); // texels around an island
 
 /** Saves the model with the paint in its own textures. */
 async function savedInTexture(page: Page): Promise<{ document: Document; bytes: Buffer; note: string }> {

@@ -1,29 +1,14 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Locator } from 'playwright-core';
 import { glbOf, tetrahedron } from '../../support/glb';
 import { balls, islandCage } from '../../support/models';
 import { difference, look, modelArea } from '../../support/picture';
-import {
-  drop,
-  glb,
-  type ShownPart,
-  Site,
-  settled,
-  shownCounts,
-  shownError,
-  shownParts,
-  type Visit,
-} from '../../support/site';
+import { drop, glb, openSite, type ShownPart, settled, shownCounts, shownError, shownParts } from '../../support/site';
 
-let site: Site;
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit();
-  await visit.page.locator('#parts summary').click();
-});
-after(() => site?.close());
+const site = await openSite();
+const visit = await site.visit();
+await visit.page.locator('#parts summary').click();
 
 const table = (): Locator => visit.page.getByTestId('segment-table');
 /** The choice in a row, found by what a screen reader says. */

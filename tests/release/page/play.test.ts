@@ -1,16 +1,14 @@
 // Play, what a first visitor gets: a model that is dropped is painted, said in words, changed by a tap, explained, and shared.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
 import { head, middleOf, ready } from '../../support/cages';
 import { difference, look, modelArea, watch } from '../../support/picture';
-import { drop, kPlay, Site, settled } from '../../support/site';
+import { drop, kPlay, openSite, settled } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 const kDesk = { viewport: { width: 1440, height: 900 } };
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true };

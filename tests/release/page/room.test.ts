@@ -1,12 +1,10 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { faults } from '../../support/axe';
 import { difference, frames, look, modelArea, watch } from '../../support/picture';
-import { Site, shownError } from '../../support/site';
+import { openSite, shownError } from '../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 /** A device that shows models in the room, or refuses to; its camera is 0.3 m above the floor. */
 const device = (answer: string): string => `

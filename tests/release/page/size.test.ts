@@ -4,7 +4,7 @@ import path from 'node:path';
 import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 import type { Response } from 'playwright-core';
-import { inRepository, Site } from '../../support/site';
+import { inRepository, openSite } from '../../support/site';
 
 /** The built page; tests/run.mjs builds it. */
 const kPage = process.env.CAGECAST_PAGE ?? inRepository('build/web');
@@ -38,36 +38,32 @@ test('all scripts of the page are at most 485 KB gzipped, without the cage modul
 });
 
 test('until the first sample is shown and judged, the browser requests at most 300 KB of scripts, gzipped', async () => {
-  const site = await Site.open();
-  try {
-    const context = await site.browser.newContext({ viewport: { width: 1000, height: 700 } });
-    // When the verdict is there: all other features are requested at once then.
-    await context.addInitScript(() => {
-      new MutationObserver(() => {
-        if (document.querySelector('#fit-verdict:not(:empty)'))
-          document.documentElement.dataset.judged ??= String(Date.now());
-      }).observe(document, { childList: true, subtree: true });
-    });
-    const responses: Response[] = [];
-    context.on('response', (response) => void responses.push(response));
-    const page = await context.newPage();
-    await page.goto(site.url);
-    const judged = await page.locator('[data-judged]').getAttribute('data-judged', { timeout: 60_000 });
-    const first = responses.filter((response) => response.request().timing().startTime < Number(judged));
-    const scripts = new Set(
-      first.map((response) => new URL(response.url(), site.url).href.slice(new URL('.', site.url).href.length)),
-    );
-    const sizes = [...scripts]
-      .filter((name) => name.endsWith('.js'))
-      .map((name) => [name, packed(readFileSync(path.join(site.folder, name)))] as const);
-    const list = sizes.map((size) => size.join(' ')).join(', ');
-    assert.ok(
-      sizes.some(([name]) => name.includes('transfer-worker')),
-      `workers count, too: ${list}`,
-    );
-    const total = sizes.reduce((sum, [, size]) => sum + size, 0);
-    assert.ok(total <= 300_000, `${total} bytes: ${list}`);
-  } finally {
-    await site.close();
-  }
+  const site = await openSite();
+  const context = await site.browser.newContext({ viewport: { width: 1000, height: 700 } });
+  // When the verdict is there: all other features are requested at once then.
+  await context.addInitScript(() => {
+    new MutationObserver(() => {
+      if (document.querySelector('#fit-verdict:not(:empty)'))
+        document.documentElement.dataset.judged ??= String(Date.now());
+    }).observe(document, { childList: true, subtree: true });
+  });
+  const responses: Response[] = [];
+  context.on('response', (response) => void responses.push(response));
+  const page = await context.newPage();
+  await page.goto(site.url);
+  const judged = await page.locator('[data-judged]').getAttribute('data-judged', { timeout: 60_000 });
+  const first = responses.filter((response) => response.request().timing().startTime < Number(judged));
+  const scripts = new Set(
+    first.map((response) => new URL(response.url(), site.url).href.slice(new URL('.', site.url).href.length)),
+  );
+  const sizes = [...scripts]
+    .filter((name) => name.endsWith('.js'))
+    .map((name) => [name, packed(readFileSync(path.join(site.folder, name)))] as const);
+  const list = sizes.map((size) => size.join(' ')).join(', ');
+  assert.ok(
+    sizes.some(([name]) => name.includes('transfer-worker')),
+    `workers count, too: ${list}`,
+  );
+  const total = sizes.reduce((sum, [, size]) => sum + size, 0);
+  assert.ok(total <= 300_000, `${total} bytes: ${list}`);
 });

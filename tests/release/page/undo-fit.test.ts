@@ -1,26 +1,21 @@
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Locator } from 'playwright-core';
 import { image, names, rows, savedTexture } from '../../support/layers';
 import { modelArea } from '../../support/picture';
-import { Site, settled, shownError, type Visit } from '../../support/site';
+import { openSite, settled, shownError } from '../../support/site';
 
-let site: Site;
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit({ viewport: { width: 900, height: 600 } });
-  for (const [name, red] of [
-    ['red.png', 255],
-    ['blue.png', 0],
-  ] as const) {
-    await visit.page.getByTestId('texture-input').setInputFiles(image(name, 64, (x) => [red, x, 255 - red, 200]));
-    assert.equal(await settled(visit.page), 'ready', await shownError(visit.page));
-    await rows(visit.page).filter({ hasText: name }).waitFor();
-  }
-});
-after(() => site?.close());
+const site = await openSite();
+let visit = await site.visit({ viewport: { width: 900, height: 600 } });
+for (const [name, red] of [
+  ['red.png', 255],
+  ['blue.png', 0],
+] as const) {
+  await visit.page.getByTestId('texture-input').setInputFiles(image(name, 64, (x) => [red, x, 255 - red, 200]));
+  assert.equal(await settled(visit.page), 'ready', await shownError(visit.page));
+  await rows(visit.page).filter({ hasText: name }).waitFor();
+}
 
 const control = (role: 'slider' | 'combobox' | 'checkbox' | 'button', name: string): Locator =>
   visit.page.getByTestId('layer-list').getByRole(role, { name });

@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
 import { asset } from '../../support/cages';
 import { difference, frames, look, modelArea } from '../../support/picture';
-import { drop, glb, Site, settled, shownError, shownParts, type Upload } from '../../support/site';
+import { drop, glb, openSite, settled, shownError, shownParts, type Upload } from '../../support/site';
 
 const figure = (): Upload => glb('figure.glb', asset('human-body', 'target.glb'));
 
@@ -32,9 +32,7 @@ const kScreens = [
   { name: 'phone', viewport: { width: 390, height: 844 }, hasTouch: true },
 ] as const;
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 async function open(page: Page, uploads: Upload[]): Promise<void> {
   await drop(page, uploads);

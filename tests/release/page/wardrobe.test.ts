@@ -1,19 +1,17 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { faults } from '../../support/axe';
 import { asset } from '../../support/cages';
 import { validModel } from '../../support/saved';
-import { drop, glb, Site, settled, shownError, type Upload } from '../../support/site';
+import { drop, glb, openSite, settled, shownError, type Upload } from '../../support/site';
 import { unzip } from '../../support/zip';
 
 const figure = (name: string): Upload => glb(`${name}.glb`, asset('human-body', 'target.glb'));
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 /** What the cards say of their avatars, once nothing is done to them any more. */
 async function avatars(page: Page, count: number): Promise<string[]> {

@@ -1,23 +1,18 @@
 // Files of strangers that would cost gigabytes or minutes: each is refused, or shown, and the page goes on.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { costlyFiles, jpegOf, webpOf } from '../../../support/files/costly';
 import { costlyFormats } from '../../../support/files/costly-formats';
 import { glbOf, tetrahedron } from '../../../support/glb';
-import { glb, Site, settled, shownError, type Visit } from '../../../support/site';
+import { glb, openSite, settled, shownError } from '../../../support/site';
 
 /** The most memory that any of them may take, beside what the page has. */
 const kMax = 500e6; // bytes
 
-let site: Site;
+const site = await openSite();
 // One page for all of it: it must come through everything.
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit({ viewport: { width: 700, height: 500 } });
-});
-after(() => site?.close());
+const visit = await site.visit({ viewport: { width: 700, height: 500 } });
 
 /** The processes of the browser; none where their memory cannot be read. */
 async function processes(): Promise<number[]> {

@@ -1,16 +1,14 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import type { Mesh } from 'cagecast';
 import { BufferAttribute, BufferGeometry, Mesh as Drawn, Group } from 'three';
 import { OBJExporter } from 'three/addons/exporters/OBJExporter.js';
 import { asset, ready } from '../../../support/cages';
 import { fbxOf } from '../../../support/models';
-import { drop, kPlay, Site } from '../../../support/site';
+import { drop, kPlay, openSite } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 /** The skin of a head. */
 async function head(): Promise<Mesh> {

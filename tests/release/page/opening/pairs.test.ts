@@ -1,14 +1,12 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { cageGlb } from 'cagecast/cages';
 import type { Page } from 'playwright-core';
 import { faults } from '../../../support/axe';
 import { glbOf, tetrahedron } from '../../../support/glb';
-import { drop, glb, kNoWebGl, Site, settled, shownError, type Upload } from '../../../support/site';
+import { drop, glb, kNoWebGl, openSite, settled, shownError, type Upload } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 const thing = (name: string, size = 1): Upload => glb(name, glbOf(tetrahedron(size), 'thing'));
 const shown = (page: Page, slot: 'target' | 'cage', name: string): Promise<void> =>

@@ -1,12 +1,10 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page, Route } from 'playwright-core';
 import { faults } from '../../../support/axe';
-import { kNoWebGl, Site, settled, shownError } from '../../../support/site';
+import { kNoWebGl, openSite, settled, shownError } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 const kHuman = /\/human\/target\.glb/;
 

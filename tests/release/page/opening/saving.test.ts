@@ -1,12 +1,10 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { saved } from '../../../support/saved';
-import { passed, Site, settled, shownError } from '../../../support/site';
+import { openSite, passed, settled, shownError } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 const kWorker = /\/export-worker-[^/]*\.js$/;
 /** Lives, as it says by its lock, and never answers. */

@@ -1,15 +1,13 @@
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../../support/axe';
 import { asset } from '../../../support/cages';
 import { image, names, rows, savedTexture } from '../../../support/layers';
-import { drop, glb, kPlay, Site, settled, shownError, shownParts, type Visit } from '../../../support/site';
+import { drop, glb, kPlay, openSite, settled, shownError, shownParts, type Visit } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 async function ready(page: Page): Promise<void> {
   assert.equal(await settled(page), 'ready', await shownError(page));

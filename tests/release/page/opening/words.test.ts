@@ -1,13 +1,11 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page, Route } from 'playwright-core';
 import { fitted, head, ready } from '../../../support/cages';
 import { saved } from '../../../support/saved';
-import { drop, Site, settled } from '../../../support/site';
+import { drop, openSite, settled } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 /** The page's words on the shown model: all visible notes and counts, without those on this visit. */
 async function words(page: Page): Promise<string[]> {

@@ -1,16 +1,14 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
 import { faults } from '../../../support/axe';
 import { asset, middleOf, ready } from '../../../support/cages';
 import { difference, look, modelArea } from '../../../support/picture';
-import { drop, glb, passed, Site, shownCounts } from '../../../support/site';
+import { drop, glb, openSite, passed, shownCounts } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 /** Opens a head in one piece, eyes and all, with a cage that was made for it, and begins to mark. */
 async function begin(page: Page): Promise<void> {

@@ -1,19 +1,14 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { PNG } from 'pngjs';
 import { filled, names, savedTexture, texel } from '../../../support/layers';
 import { ball, islandCage } from '../../../support/models';
 import { type Area, look, modelArea } from '../../../support/picture';
-import { drop, Site, settled, shownError, type Visit } from '../../../support/site';
+import { drop, openSite, settled, shownError } from '../../../support/site';
 
 const kWindow = { width: 900, height: 500 };
-let site: Site;
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit({ viewport: kWindow, deviceScaleFactor: 1 });
-});
-after(() => site?.close());
+const site = await openSite();
+const visit = await site.visit({ viewport: kWindow, deviceScaleFactor: 1 });
 
 type Spot = readonly [x: number, y: number];
 

@@ -1,17 +1,12 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { type Report, report } from '../../../support/command';
 import { type Area, difference, frames, look, modelArea, shareOfHue } from '../../../support/picture';
-import { inRepository, Site, setThreshold, type Visit } from '../../../support/site';
+import { inRepository, openSite, setThreshold } from '../../../support/site';
 
-let site: Site;
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit({ viewport: { width: 960, height: 600 }, deviceScaleFactor: 1 });
-});
-after(() => site?.close());
+const site = await openSite();
+const visit = await site.visit({ viewport: { width: 960, height: 600 }, deviceScaleFactor: 1 });
 
 const kLizard = (file: string): string => inRepository('examples/samples/lizard', `${file}.glb`);
 const bubble = (page: Page): Promise<string> => page.getByTestId('explain-bubble').innerText();

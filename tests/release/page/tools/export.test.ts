@@ -1,23 +1,11 @@
 import assert from 'node:assert/strict';
-import { mkdtemp, rm } from 'node:fs/promises';
-import { tmpdir } from 'node:os';
-import path from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { glbOf, tetrahedron } from '../../../support/glb';
 import { difference, look, modelArea } from '../../../support/picture';
-import { drop, glb, Site, setThreshold, settled, shownCounts, shownError, shownParts } from '../../../support/site';
+import { drop, glb, openSite, setThreshold, settled, shownCounts, shownError, shownParts } from '../../../support/site';
 
-let site: Site;
-let folder: string;
-before(async () => {
-  site = await Site.open();
-  folder = await mkdtemp(path.join(tmpdir(), 'cagecast-take-'));
-});
-after(async () => {
-  await site?.close();
-  await rm(folder, { recursive: true, force: true });
-});
+const site = await openSite();
 
 /** Changes the part of the address that says what to show. */
 function goTo(page: Page, hash: string): Promise<void> {

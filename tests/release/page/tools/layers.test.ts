@@ -1,16 +1,11 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Locator } from 'playwright-core';
 import { filled, image, names, rows, savedTexture, texel } from '../../../support/layers';
-import { Site, settled, shownError, type Visit } from '../../../support/site';
+import { openSite, settled, shownError } from '../../../support/site';
 
-let site: Site;
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit({ viewport: { width: 900, height: 500 } });
-});
-after(() => site?.close());
+const site = await openSite();
+const visit = await site.visit({ viewport: { width: 900, height: 500 } });
 
 const control = (role: 'slider' | 'combobox' | 'checkbox' | 'button', name: string): Locator =>
   visit.page.getByTestId('layer-list').getByRole(role, { name });

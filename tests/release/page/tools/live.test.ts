@@ -1,14 +1,12 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { kDeforms } from '../../../../web/src/state/deform';
 import { ball, islandCage, islandPaint } from '../../../support/models';
 import { difference, frames, look, modelArea, shareOfHue, watch } from '../../../support/picture';
-import { drop, Site, settled, shownCounts, shownError } from '../../../support/site';
+import { drop, openSite, settled, shownCounts, shownError } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 /** Moves the model as far as that, and waits until it is on show. */
 async function bend(page: Page, amount: number): Promise<void> {

@@ -1,20 +1,15 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
 import { ball, islandCage } from '../../../support/models';
 import { difference, look, modelArea, shareOfHue } from '../../../support/picture';
-import { drop, Site, settled, shownError, type Upload, type Visit } from '../../../support/site';
+import { drop, openSite, settled, shownError, type Upload } from '../../../support/site';
 
 const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
 
-let site: Site;
-let visit: Visit;
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit({ viewport: { width: 900, height: 560 } });
-});
-after(() => site?.close());
+const site = await openSite();
+const visit = await site.visit({ viewport: { width: 900, height: 560 } });
 
 const choose = (page: Page, mode: (typeof kModes)[number]): Promise<void> =>
   page.locator(`#view-mode input[value=${mode}]`).check({ force: true });

@@ -1,14 +1,12 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { islandCage, islandPaint, morphingBalls } from '../../../support/models';
 import { difference, frames, look, modelArea, watch } from '../../../support/picture';
 import { saved, validModel } from '../../../support/saved';
-import { drop, kNoWebGl, Site, settled, shownError, type Upload } from '../../../support/site';
+import { drop, kNoWebGl, openSite, settled, shownError, type Upload } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 const slider = (page: Page, name: string) => page.getByTestId('morphs').getByLabel(name);
 

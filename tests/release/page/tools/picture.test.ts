@@ -1,15 +1,13 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { PNG } from 'pngjs';
 import { share } from '../../../../web/share';
 import { faults } from '../../../support/axe';
 import { difference, look, modelArea, watch } from '../../../support/picture';
 import { saved } from '../../../support/saved';
-import { Site, settled } from '../../../support/site';
+import { openSite, settled } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 test('light and background change the picture, go into links, and are saved; the turntable turns the model', async () => {
   const { page, complaints } = await site.visit(

@@ -1,13 +1,11 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { difference, modelArea, shareOfHue } from '../../../support/picture';
-import { kPlay, Site } from '../../../support/site';
+import { kPlay, openSite } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open('real')));
-after(() => site?.close());
+const site = await openSite('real');
 
 const kScript = /\/index-[^/]*\.js$/;
 const kOrange = 24;

@@ -1,29 +1,22 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import type { CDPSession } from 'playwright-core';
+import { test } from 'node:test';
 import type { PNG } from 'pngjs';
 import { filled, names, savedTexture } from '../../../support/layers';
 import { difference, look, modelArea } from '../../../support/picture';
-import { Site, type Visit } from '../../../support/site';
+import { openSite } from '../../../support/site';
 
-let site: Site;
-let visit: Visit;
-let session: CDPSession;
+const site = await openSite();
 // On a phone: what works there by hand works elsewhere too.
-before(async () => {
-  site = await Site.open();
-  visit = await site.visit({
-    viewport: { width: 390, height: 700 },
-    hasTouch: true,
-    isMobile: true,
-    deviceScaleFactor: 0.5,
-  });
-  const { page } = visit;
-  await page.locator('#view-mode input[value=result]').check({ force: true });
-  session = await page.context().newCDPSession(page);
-  await page.getByRole('button', { name: 'Remove Tiger stripes' }).click();
+const visit = await site.visit({
+  viewport: { width: 390, height: 700 },
+  hasTouch: true,
+  isMobile: true,
+  deviceScaleFactor: 0.5,
 });
-after(() => site?.close());
+const { page } = visit;
+await page.locator('#view-mode input[value=result]').check({ force: true });
+const session = await page.context().newCDPSession(page);
+await page.getByRole('button', { name: 'Remove Tiger stripes' }).click();
 
 type Point = readonly [x: number, y: number];
 

@@ -1,18 +1,16 @@
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
 import { faults } from '../../../support/axe';
 import { filled, names, savedTexture } from '../../../support/layers';
 import { ball, islandCage } from '../../../support/models';
 import { type Area, difference, look, modelArea, shareOfHue } from '../../../support/picture';
-import { drop, Site, settled, shownError } from '../../../support/site';
+import { drop, openSite, settled, shownError } from '../../../support/site';
 
 const kGreen = 140; // the hue of the paint; the ball is blue
 const kGreenPaint = '#00c040';
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 /** Opens a ball in a cube whose six sides are islands of the texture, and nothing on it. */
 async function openBall(page: Page): Promise<Area> {

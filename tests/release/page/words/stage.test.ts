@@ -1,14 +1,12 @@
 // Words of other languages are longer, or of other letters: what is on the stage and in the panel has room for them.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { stageFaults } from '../../../support/page/stage-faults';
 import { kLanguages } from '../../../support/page/words';
-import { kPlay, Site } from '../../../support/site';
+import { kPlay, openSite } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 const kSizes = [
   [390, 844],

@@ -1,15 +1,13 @@
 // The page in other languages: all that it says in its main flows is in the dictionaries, and is shown by them.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../../support/axe';
 import { fitted, head, middleOf, ready } from '../../../support/cages';
 import { dictionaryOf, kCollectTexts, kLanguages, type Language, textsOf } from '../../../support/page/words';
-import { drop, glb, kPlay, Site, settled } from '../../../support/site';
+import { drop, glb, kPlay, openSite, settled } from '../../../support/site';
 
-let site: Site;
-before(async () => void (site = await Site.open()));
-after(() => site?.close());
+const site = await openSite();
 
 const kDesk = { viewport: { width: 1440, height: 900 } };
 const kFirstVisit = `localStorage.removeItem('cagecast-guide');`;
