@@ -1,7 +1,7 @@
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import type { CageModel, Template } from 'cagecast/cages';
-import { cageModel, cageTemplate, withBaseColors } from 'cagecast/gltf';
+import { cageModel, cageTemplate } from 'cagecast/gltf';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
@@ -18,9 +18,7 @@ async function readDocument(path: string) {
 /** Reads a target: its mesh, the names of its parts, its joints, and base colours, as far as they are PNGs. */
 export async function readTarget(path: string): Promise<CageModel> {
   const { document, extensions } = await readDocument(path);
-  return withBaseColors(cageModel(document, { extensions }), document, async (bytes) =>
-    PNG.sync.read(Buffer.from(bytes)),
-  );
+  return cageModel(document, { extensions, decode: async (bytes) => PNG.sync.read(Buffer.from(bytes)) });
 }
 
 /** Reads a cage, and the landmarks that its file names. */

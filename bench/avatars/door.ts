@@ -6,8 +6,7 @@ import { readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { cageGlb } from 'cagecast/cages';
-import { toGlb } from 'cagecast/formats';
-import { cagecast, cageModel, cageTemplate } from 'cagecast/gltf';
+import { cagecast, cageModel, cageTemplate, toGlb } from 'cagecast/gltf';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
@@ -51,7 +50,7 @@ async function score(file: string, cage: string, { face, parts }: Avatar): Promi
   const isGltf = /\.(glb|vrm)$/.test(file);
   const document = await (isGltf ? io.read(file) : io.readBinary(await toGlb(readFileSync(file))));
   const fitted = await io.read(cage);
-  const model = cageModel(document);
+  const model = await cageModel(document);
   let zones = new Uint8Array();
   await document.transform(
     cagecast({ cage: fitted, onResult: (result) => void (zones = Uint8Array.from(result.zones)) }),

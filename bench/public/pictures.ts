@@ -1,6 +1,6 @@
 import { ColorUtils, Document, NodeIO } from '@gltf-transform/core';
 import type { Mesh } from 'cagecast';
-import { thumbnail } from 'cagecast/glb';
+import { thumbnail } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import type { Labels } from './labels.js';
 

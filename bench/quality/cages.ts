@@ -1,6 +1,5 @@
-import { transfer } from 'cagecast';
+import { inspect, transfer } from 'cagecast';
 import { type Cage, fitCage, type Landmarks, makeCage, terminate } from 'cagecast/cages';
-import { inspect } from 'cagecast/inspect';
 import { type FitScore, FitScorer } from './fit-score.js';
 import { type Figure, loadFigure, loadFigures } from './models.js';
 import { type Score, score } from './score.js';

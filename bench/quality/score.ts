@@ -1,5 +1,5 @@
 import { cutBorders, type Mesh, project, type TransferResult } from 'cagecast';
-import { applySplit } from 'cagecast/parts';
+import { applySplit } from 'cagecast/engines';
 import {
   boxOf,
   doubleAreaNormal,

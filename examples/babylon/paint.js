@@ -1,5 +1,5 @@
 import { MaterialPluginBase } from '@babylonjs/core';
-import { applySplit, applySplitToSkin, joinParts, paintedVertices, prepareParts } from 'cagecast/parts';
+import { applySplit, applySplitToSkin, joinParts, paintedVertices, prepareParts } from 'cagecast/engines';
 
 /** The meshes that have vertices of their own, as `joinParts` takes them, where they are in the scene. */
 const withVertices = (meshes) => meshes.filter((mesh) => mesh.geometry && !mesh.isAnInstance);

@@ -1,7 +1,6 @@
 import { init } from 'cagecast';
-import { bake, layOver } from 'cagecast/bake';
-import { applyTransfer, extract } from 'cagecast/three';
-import { createPainter } from 'cagecast/three/paint';
+import { bakeTexture, layOver } from 'cagecast/engines';
+import { applyTransfer, createPainter, extract } from 'cagecast/three';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
@@ -40,7 +39,7 @@ control('save').onclick = () => {
   const context = Object.assign(document.createElement('canvas'), { width: 1024, height: 1024 }).getContext('2d');
   context.drawImage(head.scene.getObjectByName('skin').material.map.image, 0, 0, 1024, 1024);
   const parts = model.parts.filter(({ name }) => name === 'skin'); // those that this texture is for
-  const baked = bake(model.mesh, applied.result, layers.toImageData(), { width: 1024, parts });
+  const baked = bakeTexture(model.mesh, applied.result, layers.toImageData(), { width: 1024, parts });
   const { data } = layOver(context.getImageData(0, 0, 1024, 1024), baked);
   context.putImageData(new ImageData(data, 1024), 0, 0);
   Object.assign(document.createElement('a'), { href: context.canvas.toDataURL(), download: 'skin.png' }).click();

@@ -1,4 +1,4 @@
-import { applySplit, applySplitToSkin, joinParts, paintedVertices, prepareParts } from 'cagecast/parts';
+import { applySplit, applySplitToSkin, joinParts, paintedVertices, prepareParts } from 'cagecast/engines';
 import {
   Mesh,
   Morph,

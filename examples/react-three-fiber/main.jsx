@@ -1,7 +1,7 @@
 import { VRMLoaderPlugin, VRMUtils } from '@pixiv/three-vrm';
 import { Canvas, useLoader, useThree } from '@react-three/fiber';
 import { loadTemplate } from 'cagecast/cages';
-import { paintGlb } from 'cagecast/glb';
+import { paintGlb } from 'cagecast/gltf';
 import { useCagecast, useLayers, usePainter } from 'cagecast/react';
 import { StrictMode, Suspense, useEffect, useLayoutEffect, useState, useTransition } from 'react';
 import { createRoot } from 'react-dom/client';

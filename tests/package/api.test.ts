@@ -75,9 +75,9 @@ describe('init', () => {
         await init({ module: compiled.cagecast });
         console.log(transfer(mesh, mesh).zones.length);
       }
-      const cages = await import('cagecast/cages/sync');
+      const cages = await import('cagecast/cages');
       await cages.init({ module: compiled['cagecast-cages'] });
-      console.log(cages.excludedByName(['eye'])[0]);`;
+      console.log((await cages.excludedByName(['eye']))[0]);`;
     const failure = 'badOption init: options.module is "cagecast.wasm", neither a WebAssembly.Module nor its bytes';
     assert.equal(printed(script), `${failure}\n3\n${failure}\n3\ntrue`);
   });

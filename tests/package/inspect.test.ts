@@ -1,8 +1,16 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
-import { init, type Mesh, project, transfer } from 'cagecast';
-import { type FindingCode, type Inspection, inspect, suggest, surestThreshold } from 'cagecast/inspect';
+import {
+  type FindingCode,
+  type Inspection,
+  init,
+  inspect,
+  type Mesh,
+  project,
+  surestThreshold,
+  transfer,
+} from 'cagecast';
 import { ball, head, join3d, within } from './scenes.js';
 
 before(init);
@@ -458,36 +466,31 @@ test('a target of one triangle, and one without area, can be looked at', () => {
   inspect(cage, join3d(tiny, target));
 });
 
-for (const [fn, look] of Object.entries({ inspect, suggest }))
-  test(`${fn} names itself, the argument and its value in errors, also of meshes whose result is given`, () => {
-    const result = transfer(cage, target);
-    const other = transfer(
-      cage,
-      ball([0, 0, 0], () => 1, 8, 12),
-    );
-    const call = look as (...args: unknown[]) => unknown;
-    const cases: [unknown[], RegExp, string?][] = [
-      [[cage, target, null], /: options is null, not an object$/, 'badOption'],
-      [[cage, undefined, { result }], /: target\.positions is undefined, not a typed array/],
-      [[{}, target, { result }], /: cage\.positions is undefined, not a typed array/],
-      [[cage, target, { result: 5 }], /: result is 5; pass what transfer\(\) returned$/],
-      [
-        [cage, target, { result: { ...result, segmentStats: 5 } }],
-        /: result\.segmentStats is 5, not an array; pass what/,
-      ],
-      [
-        [cage, target, { result: project(cage, target) }],
-        /: result\.cosmeticTriangles is undefined, as in a projection that/,
-      ],
-      [
-        [cage, target, { result: other }],
-        /: result\.zones has \d+ entries, not 1 for each of the \d+/,
-        'resultMismatch',
-      ],
-    ];
-    for (const [args, message, code = 'badArgument'] of cases)
-      assert.throws(() => call(...args), { name: 'CagecastError', code, fn, message });
-  });
+test('inspect names itself, the argument and its value in errors, also of meshes whose result is given', () => {
+  const result = transfer(cage, target);
+  const other = transfer(
+    cage,
+    ball([0, 0, 0], () => 1, 8, 12),
+  );
+  const call = inspect as (...args: unknown[]) => unknown;
+  const cases: [unknown[], RegExp, string?][] = [
+    [[cage, target, null], /: options is null, not an object$/, 'badOption'],
+    [[cage, undefined, { result }], /: target\.positions is undefined, not a typed array/],
+    [[{}, target, { result }], /: cage\.positions is undefined, not a typed array/],
+    [[cage, target, { result: 5 }], /: result is 5; pass what transfer\(\) returned$/],
+    [
+      [cage, target, { result: { ...result, segmentStats: 5 } }],
+      /: result\.segmentStats is 5, not an array; pass what/,
+    ],
+    [
+      [cage, target, { result: project(cage, target) }],
+      /: result\.cosmeticTriangles is undefined, as in a projection that/,
+    ],
+    [[cage, target, { result: other }], /: result\.zones has \d+ entries, not 1 for each of the \d+/, 'resultMismatch'],
+  ];
+  for (const [args, message, code = 'badArgument'] of cases)
+    assert.throws(() => call(...args), { name: 'CagecastError', code, fn: 'inspect', message });
+});
 
 test('the guide explains every finding, and none that does not exist', () => {
   const named = (file: string, pattern: RegExp) =>

@@ -2,16 +2,8 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 import type { LoadedCage } from 'cagecast/three';
-import {
-  createLayers,
-  createPainter,
-  Edits,
-  History,
-  LayerStack,
-  type Layers,
-  type StickerPicture,
-} from 'cagecast/three/paint';
 import { Group, Mesh, SphereGeometry, Texture } from 'three';
+import { createLayers, createPainter, Edits, History, LayerStack, type Layers, type StickerPicture } from '#three';
 import { imageSize } from '../../wasm/src/gltf/image-file.js';
 import { jpegOf, pngOf, webpOf } from '../support/files/costly.js';
 import { allocatedBy, renderer } from '../support/no-renderer.js';
@@ -139,7 +131,7 @@ test('a region that the cage does not have is an error that lists those that it 
     [{ scene: new Group().add(new Mesh(known)) }, 'the cage has these: "lips"'],
   ] as const) {
     const layers = createLayers({ renderer, cage });
-    const message = `cagecast/three/paint: region is "lip", which is not known; ${why}`;
+    const message = `cagecast/three: region is "lip", which is not known; ${why}`;
     assert.throws(() => layers.add(texture, { region: 'lip' }), { code: 'badOption', message });
     assert.throws(() => layers.set(layers.add(texture), { region: 'lip' }), { code: 'badOption', message });
   }
@@ -176,7 +168,7 @@ test('what is no saved layers is refused, and changes nothing', async () => {
   ] as const)
     await assert.rejects(layers.load(saved as never), {
       name: 'CagecastError',
-      message: `cagecast/three/paint: ${message}`,
+      message: `cagecast/three: ${message}`,
     });
   assert.deepEqual(namesOf(layers), ['star']);
 });
@@ -267,7 +259,7 @@ test('what is refused names the argument and its value, changes nothing and leav
   ];
   for (const [code, cases] of Object.entries({ badOption: badOptions, badArgument: badArguments }))
     for (const [call, reason] of cases)
-      assert.throws(call, { name: 'CagecastError', code, message: `cagecast/three/paint: ${reason}` }, reason);
+      assert.throws(call, { name: 'CagecastError', code, message: `cagecast/three: ${reason}` }, reason);
   for (const call of [() => layers.remove(gone), () => layers.move(gone, 0), () => layers.set(gone, {})])
     assert.throws(call, { code: 'badArgument', message: 'That layer was removed.' });
   assert.deepEqual([layers.list, layers.canUndo, layers.history.held], [[layer], false, false]);

@@ -41,7 +41,7 @@ const readers: Record<Reader, (file: GltfFile) => Promise<Mesh>> = {
     const document = isText(bytes)
       ? await io.readJSON({ json: JSON.parse(Buffer.from(bytes).toString()), resources: {} })
       : await io.readBinary(Uint8Array.from(bytes));
-    const { positions, indices, groups } = cageModel(document);
+    const { positions, indices, groups } = await cageModel(document);
     let uvs: Float32Array | undefined;
     try {
       ({ uvs } = cageTemplate(document));

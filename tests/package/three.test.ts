@@ -1,8 +1,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 import { setFlagsFromString } from 'node:v8';
-import { classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
-import { inspect as inspectArrays } from 'cagecast/inspect';
+import { classify, init, inspect, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
 import {
   type ApplyOptions,
   applyTransfer,
@@ -10,7 +9,7 @@ import {
   cageModel,
   deserialize,
   extract,
-  inspect,
+  inspectModel,
   type Loaded,
   type LoadedCage,
   prepareTransfer,
@@ -581,7 +580,7 @@ describe('applyTransfer', () => {
   });
 
   test('of two copies of the module on a page, the one that paints last is seen, by programs of its own', async () => {
-    const copy = (await import(`${import.meta.resolve('cagecast/three')}?copy`)) as typeof import('cagecast/three');
+    const copy = (await import(`${import.meta.resolve('#three')}?copy`)) as typeof import('#three');
     const [target, other] = [meshOf(scene.target), meshOf(scene.target)];
     const [first, second] = [new Texture(), new Texture()];
     const before = applyTransfer(target, { cage: cage(), texture: first });
@@ -784,7 +783,7 @@ describe('geometries', () => {
     assert.notDeepEqual(attribute(second.geometry, 'uv1'), attribute(first.geometry, 'uv1'));
   });
 
-  test('are what they were, to begin with and in the end, however many transfers there are', () => {
+  test('are what they were, to begin with and in the end, however many transfers there are', async () => {
     for (const borders of ['triangle', 'cut'] as const) {
       const target = meshOf(scene.target);
       target.geometry.morphAttributes.position = [new Float32BufferAttribute(scene.target.positions, 3)];
@@ -799,7 +798,7 @@ describe('geometries', () => {
       for (let i = 0; i < 7; ++i) all.push(show());
       assert.deepEqual(arraysOf(target), first);
       assert.deepEqual(extract(target).mesh, extracted);
-      assert.deepEqual(cageModel(target).positions, extracted.positions);
+      assert.deepEqual((await cageModel(target)).positions, extracted.positions);
       show();
       assert.deepEqual(arraysOf(target), first, 'and after it was read');
       applyTransfer(target, { saved, texture: new Texture() }).dispose();
@@ -860,7 +859,7 @@ describe('geometries', () => {
   });
 });
 
-describe('inspect', () => {
+describe('inspectModel', () => {
   after(terminate);
 
   test('says of loaded models what it says of their arrays, with the names of parts and the landmarks of the cage', async () => {
@@ -868,29 +867,29 @@ describe('inspect', () => {
     target.children[0]!.name = 'skin';
     const around = cage();
     const arrays = [extract(around, 'cage').mesh, extract(target).mesh] as const;
-    const found = await inspect(target, { cage: around, threshold: 0.6 });
-    assert.deepEqual(found, inspectArrays(...arrays, { threshold: 0.6 }));
+    const found = await inspectModel(target, { cage: around, threshold: 0.6 });
+    assert.deepEqual(found, inspect(...arrays, { threshold: 0.6 }));
     assert.ok(found.segments.some(({ part }) => part === 'skin'));
     applyTransfer(target, { cage: around });
-    assert.deepEqual(await inspect(target, { cage: around, threshold: 0.6 }), found, 'also once it is painted');
+    assert.deepEqual(await inspectModel(target, { cage: around, threshold: 0.6 }), found, 'also once it is painted');
     const { positions } = extract(target).mesh;
     const top = positions.reduce((most, y, i) => (i % 3 === 1 && y > positions[3 * most + 1]! ? (i - 1) / 3 : most), 0);
     const [x, y, z] = positions.subarray(3 * top, 3 * top + 3);
     const eyes = { eye_centre_left: [x! + 0.1, y!, z!], eye_centre_right: [x! - 0.1, y!, z!] } as const;
     Object.assign(around.userData, { landmarks: eyes });
-    const strict = await inspect(target, { cage: around, threshold: 1 });
-    assert.deepEqual(strict, inspectArrays(...arrays, { threshold: 1, landmarks: eyes }));
+    const strict = await inspectModel(target, { cage: around, threshold: 1 });
+    assert.deepEqual(strict, inspect(...arrays, { threshold: 1, landmarks: eyes }));
   });
 
   test('takes the cages in a file, and names what is wrong', async () => {
     const { scene: model } = await new GLTFLoader().parseAsync(Uint8Array.from(cagedFigure()).buffer, '');
-    assert.notEqual((await inspect(model)).verdict, 'unfit');
-    await assert.rejects(inspect(meshOf(scene.target)), /^CagecastError: inspect: options.cage is undefined/);
+    assert.notEqual((await inspectModel(model)).verdict, 'unfit');
+    await assert.rejects(inspectModel(meshOf(scene.target)), /^CagecastError: inspectModel: options.cage is undefined/);
     await assert.rejects(
-      inspect(meshOf(scene.target), { cage: cage(), tint: 1 } as never),
+      inspectModel(meshOf(scene.target), { cage: cage(), tint: 1 } as never),
       /options.tint is not an option/,
     );
-    const late = inspect(meshOf(scene.target), { cage: cage(), signal: AbortSignal.abort() });
+    const late = inspectModel(meshOf(scene.target), { cage: cage(), signal: AbortSignal.abort() });
     await assert.rejects(late, /abort/);
   });
 });

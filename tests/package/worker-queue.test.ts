@@ -112,7 +112,11 @@ test('init starts as many workers as it is told, which all stay; other numbers a
       /^CagecastError: init: options.workers is .*, not 1 to 64$/,
     );
   await assert.rejects(init(4 as never), /options is 4, not an object/);
-  await assert.rejects(init({ worker: 4 } as never), /options.worker is not an option; init takes: workers/);
+  await assert.rejects(
+    init({ wokers: 4 } as never),
+    /options.wokers is not an option; init takes: workers, worker, mod/,
+  );
+  await assert.rejects(init({ worker: 4 } as never), /options.worker is 4, not true or false/);
   const started = init({ workers: most + 3 });
   assert.equal(workers.length, most + 3);
   for (const worker of workers) await worker.answer();

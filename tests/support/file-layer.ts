@@ -35,8 +35,8 @@ export async function loadFileLayer(): Promise<FileLayer> {
       {
         name: 'index',
         setup: ({ onResolve }) =>
-          onResolve({ filter: /^(\.\.\/)+index\.js$/ }, ({ path, resolveDir }) =>
-            resolve(resolveDir, path) === resolve('wasm/src/index.js') ? { path: index, external: true } : undefined,
+          onResolve({ filter: /^(\.\.\/)+api\/index\.js$/ }, ({ path, resolveDir }) =>
+            resolve(resolveDir, path) === resolve('wasm/src/api/index.js') ? { path: index, external: true } : undefined,
           ),
       },
     ],

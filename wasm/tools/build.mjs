@@ -37,22 +37,20 @@ const stamp = at('build', preset, 'package.stamp');
 /** Template cages, which the package ships. */
 const kTemplates = 'examples/samples/templates';
 
-/** Folders of wasm/src and the files that are made of their index.ts. One that imports another has it as a file beside it. */
-const kEntries = {
-  inspect: 'inspect',
-  bake: 'bake',
-  parts: 'parts',
-  three: 'three',
-  'three/painting': 'three-paint',
-  react: 'react',
-  'three/webgpu': 'three-webgpu',
-  'three/painting-webgpu': 'three-paint-webgpu',
-  viewer: 'viewer',
-  gltf: 'gltf',
-  glb: 'glb',
-  formats: 'formats',
-  worker: 'worker',
-  cages: 'cages',
+/** Modules of wasm/src, and the files that are made of them. One that imports another has it as a file beside it. */
+const kModules = {
+  'inspect/index': 'inspect',
+  'bake/index': 'bake',
+  'engines/index': 'engines',
+  'three/internals': 'three-internals',
+  'three/index': 'three',
+  'three/webgpu/index': 'three-webgpu',
+  'react/index': 'react',
+  'viewer/index': 'viewer',
+  'gltf/index': 'gltf',
+  'gltf/files': 'gltf-files',
+  'worker/index': 'worker',
+  'cages/index': 'cages',
 };
 
 /** Options of esbuild for every file of the package. */
@@ -169,16 +167,16 @@ async function bundleEntries(bundle) {
     external: ['./index.js', 'three', 'react', '@react-three/fiber'],
     plugins: [wasmModules('wasm-file.ts', { index: './index.js' })],
   };
-  await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager, ...reading('cagecast') });
-  for (const [folder, name] of Object.entries(kEntries))
-    await bundle(`${folder}/index.ts`, `${name}.js`, 'neutral', shared);
+  for (const [module, name] of Object.entries(kModules)) await bundle(`${module}.ts`, `${name}.js`, 'neutral', shared);
   await bundle('worker/worker-thread.ts', 'worker-thread.js', 'neutral', shared);
+  const alone = { plugins: [wasmModules('wasm-file.ts')] };
+  await bundle('index.ts', 'slim.js', 'neutral', { ...alone, ...eager, ...reading('cagecast') });
   // What makes cages has a WebAssembly module of its own; its worker is a file that needs no other script.
-  const alone = { ...reading('cagecast-cages'), plugins: [wasmModules('wasm-file.ts')] };
-  await bundle('cages/cages-thread.ts', 'cages-thread.js', 'neutral', alone);
-  await bundle('cages/sync.ts', 'cages-sync.js', 'neutral', alone);
+  const cages = { ...alone, ...reading('cagecast-cages') };
+  await bundle('cages/cages-thread.ts', 'cages-thread.js', 'neutral', cages);
+  await bundle('cages/sync.ts', 'cages-sync.js', 'neutral', cages);
   // Workers have no import map, so three.js is in it, of the version whose loaders are guarded.
-  await bundle('formats/formats-thread.ts', 'formats-thread.js', 'neutral', { sourcemap: false });
+  await bundle('gltf/formats/formats-thread.ts', 'formats-thread.js', 'neutral', { sourcemap: false });
 }
 
 /** Options for a script that reads a WebAssembly file beside it. */
@@ -230,16 +228,15 @@ function wasmModules(wasm, { index } = {}) {
     setup(build) {
       build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
       if (index) {
-        // An entry imports the others as files of their own.
-        const entries = {
-          ...Object.fromEntries(
-            Object.entries(kEntries).map(([folder, name]) => [`${folder}/index.js`, `./${name}.js`]),
-          ),
+        // A module imports the others as files of their own.
+        const files = {
+          ...Object.fromEntries(Object.entries(kModules).map(([module, name]) => [`${module}.js`, `./${name}.js`])),
           'cages/sync.js': './cages-sync.js',
+          'api/index.js': index,
           'index.js': index,
         };
-        build.onResolve({ filter: /^\.\..*\/(index|sync)\.js$/ }, ({ path, resolveDir }) => {
-          const file = entries[relative(at('wasm/src'), join(resolveDir, path)).replaceAll('\\', '/')];
+        build.onResolve({ filter: /^\.{1,2}\/.*\b(files|index|internals|sync)\.js$/ }, ({ path, resolveDir }) => {
+          const file = files[relative(at('wasm/src'), join(resolveDir, path)).replaceAll('\\', '/')];
           return file ? { path: file, external: true } : undefined;
         });
       }

@@ -1,5 +1,5 @@
 import { init } from 'cagecast';
-import { type Composite, Edits, History, LayerStack } from 'cagecast/three/paint';
+import { type Composite, Edits, History, LayerStack } from '#three';
 import { Drawings } from './loading/drawn/drawings';
 import { loaderFor } from './loading/load-model';
 import { makeChecker } from './loading/load-paint';

@@ -1,5 +1,5 @@
 // What the first picture and its verdict do without.
-import type { Composite, Edits, History, LayerStack } from 'cagecast/three/paint';
+import type { Composite, Edits, History, LayerStack } from '#three';
 import { Explain } from './explain/explain-tool';
 import { FilmStrip } from './explain/film-strip';
 import { ExportPanel } from './export/export-panel';

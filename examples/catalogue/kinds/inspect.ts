@@ -1,7 +1,6 @@
-import { CagecastError, init, type Mesh, transfer } from 'cagecast';
+import { CagecastError, init, inspect, type Mesh, transfer } from 'cagecast';
 import type { CageModel } from 'cagecast/cages';
 import { cageModel, cageTemplate } from 'cagecast/gltf';
-import { inspect } from 'cagecast/inspect';
 import { Failure } from '../failure.ts';
 import type { Facts, Kind } from './kind.ts';
 import { inputFailure, readModel } from './model.ts';
@@ -15,7 +14,7 @@ export const inspectKind: Kind = {
     const cage = await readModel('cage', inputs['cage']!);
     await init();
     try {
-      return { facts: fit(cageTemplate(cage), cageModel(target), settings) };
+      return { facts: fit(cageTemplate(cage), await cageModel(target), settings) };
     } catch (error) {
       throw error instanceof CagecastError ? inputFailure(error) : error;
     }

@@ -14,7 +14,7 @@ export const transferKind: Kind = {
     const cage = await readModel('cage', inputs['cage']!);
     try {
       const { borders, ...options } = settings;
-      const [source, target] = [cageTemplate(cage), cageModel(document)];
+      const [source, target] = [cageTemplate(cage), await cageModel(document)];
       let result: TransferResult | undefined;
       await document.transform(
         cagecast({ ...settings, cage: source, texture: inputs['texture'], onResult: (one) => (result = one) }),

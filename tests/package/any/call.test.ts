@@ -2,8 +2,17 @@
 // seed; CAGECAST_SEED and CAGECAST_RUNS try others, and more of them.
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
-import { CagecastError, classify, cutBorders, init, type Mesh, project, splitVertices, transfer } from 'cagecast';
-import { inspect, suggest } from 'cagecast/inspect';
+import {
+  CagecastError,
+  classify,
+  cutBorders,
+  init,
+  inspect,
+  type Mesh,
+  project,
+  splitVertices,
+  transfer,
+} from 'cagecast';
 import fc from 'fast-check';
 import { optionFlags } from '../../../wasm/src/generated/options.js';
 import { tetrahedron } from '../../support/gltf.js';
@@ -170,7 +179,6 @@ describe('for any arguments at all: a clear error, or a result, and the next cal
     ['transfer with a cage', (mesh, options) => transfer(mesh as Mesh & { uvs: Float32Array }, target, options)],
     ['project', (mesh, options) => project(cage, mesh, options)],
     ['inspect', (mesh, options) => inspect(cage, mesh, options)],
-    ['suggest', (mesh, options) => suggest(cage, mesh, options)],
     ['cutBorders', (mesh, options) => cutBorders(cage, target, mesh as never, options)],
     ['splitVertices', (mesh, options) => splitVertices(mesh, options as never)],
     ['classify', (mesh, options) => classify(mesh as never, options)],

@@ -8,6 +8,7 @@ import {
   classify,
   cutBorders,
   init,
+  inspect,
   type Locks,
   type Mesh,
   type Projection,
@@ -16,7 +17,6 @@ import {
   type TransferResult,
   transfer,
 } from 'cagecast';
-import { inspect, suggest } from 'cagecast/inspect';
 import fc from 'fast-check';
 import { tetrahedron } from '../../support/gltf.js';
 import { head } from '../scenes.js';
@@ -66,7 +66,7 @@ const fault = seldom(fc.constantFrom('option', 'index', 'position', 'cage', 'mas
 const step = fc.record({
   fn: fc.oneof(
     { weight: 8, arbitrary: fc.constantFrom('transfer', 'project', 'classify', 'cutBorders', 'splitVertices') },
-    { weight: 1, arbitrary: fc.constantFrom('inspect', 'suggest') },
+    { weight: 1, arbitrary: fc.constant('inspect') },
   ),
   scene: fc.nat({ max: 2 }),
   options: validOptions,
@@ -122,8 +122,6 @@ function callOf(step: Step, all: { cage: Mesh; target: Mesh }[], kept: Kept): Ca
       return () => splitVertices(target, result?.cornerUvs as Float32Array);
     case 'inspect':
       return () => inspect(cage, target, options);
-    case 'suggest':
-      return () => suggest(cage, target, options);
     default:
       return (reuse) => transfer(cage, target, { ...whole, reuse: reuse as TransferResult });
   }

@@ -2,8 +2,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { CagecastError } from 'cagecast';
-import { fill, type Image, type Layout, layOver, resize } from 'cagecast/bake';
+import { type Image, layOver, resize } from 'cagecast/engines';
 import fc from 'fast-check';
+import { fill, type Layout } from '#bake';
 
 const { CAGECAST_RUNS = 60, CAGECAST_SEED = 1 } = process.env;
 const runs = { numRuns: Number(CAGECAST_RUNS), seed: Number(CAGECAST_SEED) };

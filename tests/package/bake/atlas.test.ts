@@ -4,7 +4,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { before, test } from 'node:test';
 import type { GLTF } from '@gltf-transform/core';
 import { init } from 'cagecast';
-import { thumbnail } from 'cagecast/glb';
+import { thumbnail } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { fails, json, ok } from '../../support/command.js';
 import { GlbMaker, unpackGlb, validate } from '../../support/gltf.js';

@@ -2,8 +2,9 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { before, test } from 'node:test';
 import { CagecastError, init, type Mesh, type TransferResult, transfer } from 'cagecast';
-import { bake, cageTexture, fill, type Image, type Layout, layOver, resize } from 'cagecast/bake';
+import { bakeTexture, cageTexture, type Image, layOver, resize } from 'cagecast/engines';
 import { PNG } from 'pngjs';
+import { fill, type Layout } from '#bake';
 import { readPlain } from '../scenes.js';
 import { picture, randomNumbers, smoothImage, texelsOf } from './reference';
 
@@ -83,7 +84,7 @@ const resultOf = (mesh: Mesh, uvs = mesh.uvs!): Pick<TransferResult, 'uvs' | 'co
 test('a square with the same UVs in both textures copies the paint, byte for byte', () => {
   const mesh = square();
   const image = smoothImage(64, 64, false);
-  const { data, mask } = bake(mesh, resultOf(mesh), image, { width: 64 });
+  const { data, mask } = bakeTexture(mesh, resultOf(mesh), image, { width: 64 });
   for (let at = 0; at < data.length; at += 4)
     assert.ok(
       image.data[at + 3]! < 8 || apart([...data.subarray(at, at + 4)], [...image.data.subarray(at, at + 4)]) <= 1,
@@ -94,7 +95,7 @@ test('a square with the same UVs in both textures copies the paint, byte for byt
 test('the gutter has the colour of the edge; beyond it, and in the mask, nothing is', () => {
   const mesh = square(0.25, 0.5);
   const red = { width: 1, height: 1, data: new Uint8Array([230, 30, 40, 255]) };
-  const baked = bake(mesh, resultOf(mesh), red, { width: 64, gutter: 5 });
+  const baked = bakeTexture(mesh, resultOf(mesh), red, { width: 64, gutter: 5 });
   for (let y = 0; y < 64; ++y)
     for (let x = 0; x < 64; ++x) {
       const beyond = Math.max(16 - x, x - 47, 16 - y, y - 47);
@@ -107,7 +108,7 @@ test('what must not be painted keeps its texels clear, though its neighbours are
   const mesh = square();
   const result = resultOf(mesh);
   result.cosmeticTriangles[0] = 0;
-  const baked = bake(mesh, result, smoothImage(8, 8), { width: 64 });
+  const baked = bakeTexture(mesh, result, smoothImage(8, 8), { width: 64 });
   for (let y = 0; y < 64; ++y)
     for (let x = 0; x < 64; ++x) {
       if (x > y) assert.equal(texel(baked, x, y)[3], 0);
@@ -122,9 +123,9 @@ test('mirrored halves that share texels are reported, with the names of the part
   const both = { indices: new Uint32Array([...mesh.indices, ...mesh.indices.map((v) => v + 4)]), uvs };
   const parts = ['left', 'right'].map((name, p) => ({ name, firstTriangle: 2 * p, triangleCount: 2 }));
   const result = { ...resultOf(mesh), uvs, cosmeticTriangles: new Uint8Array(4).fill(1) };
-  const { overlap } = bake(both, result, smoothImage(16, 16), { width: 64, parts });
+  const { overlap } = bakeTexture(both, result, smoothImage(16, 16), { width: 64, parts });
   assert.deepEqual(overlap, { texels: 1, lost: 0.5, parts: ['left', 'right'] });
-  const alone = bake(both, result, smoothImage(16, 16), { width: 64, parts: parts.slice(0, 1) });
+  const alone = bakeTexture(both, result, smoothImage(16, 16), { width: 64, parts: parts.slice(0, 1) });
   assert.deepEqual(alone.overlap, { texels: 0, lost: 0, parts: [] });
   assert.equal(texel(alone, 50, 32)[3], 0, 'the other half of the texture is empty');
 });
@@ -135,11 +136,11 @@ test('a normal map is turned with the UVs: a quarter turn, a mirror, and back', 
   const mirrored = Float32Array.from([1, 0, 0, 0, 0, 1, 1, 1]);
   const normals = { width: 1, height: 1, data: new Uint8Array([204, 128, 230, 255]) }; // leans to +x
   const leaning = (uvs: Float32Array): number[] =>
-    texel(bake({ ...mesh, uvs }, resultOf(mesh), normals, { width: 16, kind: 'normal' }), 8, 8);
+    texel(bakeTexture({ ...mesh, uvs }, resultOf(mesh), normals, { width: 16, kind: 'normal' }), 8, 8);
   assert.ok(apart(leaning(mesh.uvs), [204, 128, 230, 255]) <= 2, String(leaning(mesh.uvs)));
   assert.ok(apart(leaning(mirrored), [51, 128, 230, 255]) <= 2, String(leaning(mirrored)));
   assert.ok(apart(leaning(turned), [128, 51, 230, 255]) <= 2, String(leaning(turned)));
-  const there = bake({ ...mesh, uvs: turned }, resultOf(mesh), normals, { width: 16, kind: 'normal' });
+  const there = bakeTexture({ ...mesh, uvs: turned }, resultOf(mesh), normals, { width: 16, kind: 'normal' });
   const back = cageTexture({ ...mesh, uvs: turned }, resultOf(mesh), there, { width: 16, kind: 'normal' });
   assert.ok(apart(texel(back, 8, 8), [204, 128, 230, 255]) <= 2);
 });
@@ -155,7 +156,7 @@ test('a texel at a border shows what its triangle shows there, not what lies bey
     cornerUvs: new Float32Array(0),
     cosmeticTriangles: new Uint8Array(4).fill(1),
   };
-  const baked = bake({ indices, uvs }, result, reddish, { width: 64, gutter: 0 });
+  const baked = bakeTexture({ indices, uvs }, result, reddish, { width: 64, gutter: 0 });
   assert.equal(texel(baked, 49, 3)[3], 255);
   for (let i = 0; i < 64 * 64; ++i)
     if (baked.mask[i] !== 0) assert.deepEqual([...baked.data.subarray(4 * i, 4 * i + 4)], [230, 30, 40, 255]);
@@ -200,7 +201,7 @@ test('other values than colours are averaged as they are', () => {
   const mesh = square();
   const image = { width: 2, height: 1, data: new Uint8Array([0, 40, 0, 255, 200, 40, 0, 255]) };
   const middle = (kind: 'color' | 'data') =>
-    texel(bake(mesh, resultOf(mesh), image, { width: 3, height: 1, gutter: 0, kind }), 1, 0)[0]!;
+    texel(bakeTexture(mesh, resultOf(mesh), image, { width: 3, height: 1, gutter: 0, kind }), 1, 0)[0]!;
   assert.ok(Math.abs(middle('data') - 100) <= 1);
   assert.ok(middle('color') > 130, 'colours are mixed in linear light');
 });
@@ -209,7 +210,7 @@ test('what is baked lies over an image of the same size; alpha and bytes beyond 
   const mesh = square(0.25, 0.5);
   const red = { width: 1, height: 1, data: new Uint8Array([230, 30, 40, 255]) };
   const base = smoothImage(64, 64, false);
-  const baked = bake(mesh, resultOf(mesh), red, { width: 64, gutter: 0 });
+  const baked = bakeTexture(mesh, resultOf(mesh), red, { width: 64, gutter: 0 });
   const laid = layOver(base, baked);
   for (let y = 0; y < 64; ++y)
     for (let x = 0; x < 64; ++x) {
@@ -250,7 +251,7 @@ test('there and back, from the cage to the lizard’s atlas and to the cage, the
     [read('tiger'), 4.3],
   ];
   for (const [paint, most] of paints) {
-    const atlas = bake(target, result, paint, { width: side });
+    const atlas = bakeTexture(target, result, paint, { width: side });
     const back = cageTexture(target, result, atlas, { width: side });
     const before = resize(paint, side, side);
     let [sum, covered] = [0, 0];
@@ -273,44 +274,44 @@ test('what cannot be baked is one clear error', () => {
   const mesh = square();
   const [result, paint] = [resultOf(mesh), smoothImage(4, 4)];
   const cases: [() => unknown, RegExp][] = [
-    [() => bake({ indices: mesh.indices }, result, paint), /^bake: target has no UVs/],
+    [() => bakeTexture({ indices: mesh.indices }, result, paint), /^bakeTexture: target has no UVs/],
     [
-      () => bake({ ...mesh, uvs: mesh.uvs.map((u, i) => (i === 5 ? NaN : u)) }, result, paint),
-      /^bake: target\.uvs\[5\] is NaN/,
+      () => bakeTexture({ ...mesh, uvs: mesh.uvs.map((u, i) => (i === 5 ? NaN : u)) }, result, paint),
+      /^bakeTexture: target\.uvs\[5\] is NaN/,
     ],
     [
-      () => bake({ ...mesh, indices: new Uint32Array([0, 1, 9]) }, result, paint),
+      () => bakeTexture({ ...mesh, indices: new Uint32Array([0, 1, 9]) }, result, paint),
       /target\.indices\[2\] = 9 is out of range \(4 UVs\)/,
     ],
     [
-      () => bake(mesh, { ...result, cosmeticTriangles: new Uint8Array(7) }, paint),
+      () => bakeTexture(mesh, { ...result, cosmeticTriangles: new Uint8Array(7) }, paint),
       /result\.cosmeticTriangles has 7 entries, the target needs 2/,
     ],
     [
-      () => bake(mesh, result, { ...paint, data: new Uint8Array(5) }),
+      () => bakeTexture(mesh, result, { ...paint, data: new Uint8Array(5) }),
       /image\.data has 5 bytes, not 4 for each of 4 × 4/,
     ],
     [
-      () => bake(mesh, result, paint, { kind: 'hue' as 'color' }),
+      () => bakeTexture(mesh, result, paint, { kind: 'hue' as 'color' }),
       /options\.kind is "hue"; there are: color, data, normal/,
     ],
-    [() => bake(mesh, result, paint, { wrap: 'fold' as 'clamp' }), /options\.wrap is "fold"; there are/],
-    [() => bake(mesh, result, paint, { gutter: -1 }), /options\.gutter is -1/],
+    [() => bakeTexture(mesh, result, paint, { wrap: 'fold' as 'clamp' }), /options\.wrap is "fold"; there are/],
+    [() => bakeTexture(mesh, result, paint, { gutter: -1 }), /options\.gutter is -1/],
     [
-      () => bake(mesh, result, paint, { size: 2048 } as object),
-      /^bake: options\.size is not an option; there are: width, height, kind, gutter, wrap, parts$/,
+      () => bakeTexture(mesh, result, paint, { size: 2048 } as object),
+      /^bakeTexture: options\.size is not an option; there are: width, height, kind, gutter, wrap, parts$/,
     ],
     [() => cageTexture(mesh, result, paint, { size: 64 } as object), /^cageTexture: options\.size is not an option/],
     [
-      () => bake(mesh, result, paint, { parts: [{ name: 'x', firstTriangle: 1, triangleCount: 2 }] }),
+      () => bakeTexture(mesh, result, paint, { parts: [{ name: 'x', firstTriangle: 1, triangleCount: 2 }] }),
       /options\.parts\[0\] is not/,
     ],
     [
-      () => bake({ ...mesh, positions: new Float32Array(3) }, result, paint, { kind: 'normal' }),
+      () => bakeTexture({ ...mesh, positions: new Float32Array(3) }, result, paint, { kind: 'normal' }),
       /target\.positions has 3 numbers/,
     ],
     [
-      () => bake({ ...mesh, uvs: mesh.uvs.map((u) => 1e6 * u) }, result, paint),
+      () => bakeTexture({ ...mesh, uvs: mesh.uvs.map((u) => 1e6 * u) }, result, paint),
       /triangle 0 of "target": a triangle extends over more than 64 textures/,
     ],
     [() => cageTexture({ indices: mesh.indices }, result, paint), /^cageTexture: target has no UVs/],
@@ -320,7 +321,7 @@ test('what cannot be baked is one clear error', () => {
   ];
   for (const size of [0, 1e5, NaN, 2.5, -1])
     cases.push([
-      () => bake(mesh, result, paint, { width: size }),
+      () => bakeTexture(mesh, result, paint, { width: size }),
       new RegExp(`options\\.width is ${size}, not a whole number of texels from 1 to 8192`),
     ]);
   for (const [call, message] of cases)

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { CagecastError, classify, cutBorders, init, type Masks, project, transfer, Zone } from 'cagecast';
-import { type Image, maskTriangles, maskVertices } from 'cagecast/bake';
+import { type Image, maskTriangles, maskVertices } from 'cagecast/engines';
 import { applyTransfer, modelMasks } from 'cagecast/three';
 import {
   BufferAttribute,

@@ -6,7 +6,7 @@ import { before, describe, test } from 'node:test';
 import { Document, type GLTF, type Material, NodeIO, TextureInfo } from '@gltf-transform/core';
 import { ALL_EXTENSIONS, KHRMaterialsTransmission, KHRMaterialsVariants } from '@gltf-transform/extensions';
 import { init } from 'cagecast';
-import type { Image } from 'cagecast/bake';
+import type { Image } from 'cagecast/engines';
 import { type BakeReport, bake, cagecast, type ImageCodec } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { fails, ok } from '../../support/command.js';

@@ -1,4 +1,5 @@
-import type { Image, Layout } from 'cagecast/bake';
+import type { Image } from 'cagecast/engines';
+import type { Layout } from '#bake';
 
 /** A number from 0 to 1 at each call, the same for the same seed. */
 export function randomNumbers(seed: number): () => number {

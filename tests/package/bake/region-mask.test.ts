@@ -1,8 +1,8 @@
 // Masks of regions of a cage.
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
-import { regionMask } from 'cagecast/bake';
 import { loadTemplate, type TemplateName, terminate } from 'cagecast/cages';
+import { regionMask } from 'cagecast/engines';
 
 after(terminate);
 

@@ -4,9 +4,8 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { type CagecastError, init, type Mesh, type TransferResult, transfer } from 'cagecast';
-import { type Baked, type Image, relayPaint } from 'cagecast/bake';
-import { loadTemplate } from 'cagecast/cages';
-import * as sync from 'cagecast/cages/sync';
+import { fitCage, loadTemplate, makeCage } from 'cagecast/cages';
+import { type Baked, type Image, relayPaint } from 'cagecast/engines';
 import { cageModel, cageTemplate } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { fails, json } from '../../support/command.js';
@@ -16,7 +15,7 @@ import { ball, join3d, modelFolders, within } from '../scenes.js';
 import { picture, randomNumbers } from './reference.js';
 
 const { folder } = temporaryFolder('relay');
-before(() => Promise.all([init(), sync.init()]));
+before(init);
 
 const kSize = 512;
 /** A paint of distinct patches. */
@@ -74,11 +73,11 @@ describe('on heads', () => {
   for (const one of heads)
     test(`a made cage and a fitted template show what the model's own cage shows, and the other way round: ${one}`, async () => {
       const read = (name: string) => new NodeIO().read(`${one}/${name}.glb`);
-      const model = cageModel(await read('target'));
+      const model = await cageModel(await read('target'));
       const cages = {
         own: cageTemplate(await read('cage')),
-        made: sync.makeCage(model, { voxels: 80 }),
-        fitted: sync.fitCage(await loadTemplate('human-head'), model).cage,
+        made: await makeCage(model, { voxels: 80 }),
+        fitted: (await fitCage(await loadTemplate('human-head'), model)).cage,
       };
       const results = Object.fromEntries(Object.entries(cages).map(([name, cage]) => [name, transfer(cage, model)]));
       const image = patches();

@@ -4,7 +4,7 @@ import { readFileSync } from 'node:fs';
 import { after, test } from 'node:test';
 import { CagecastError } from 'cagecast';
 import { cageGlb, terminate as endCages, loadTemplate } from 'cagecast/cages';
-import { type PaintOptions, paintGlb } from 'cagecast/glb';
+import { type PaintOptions, paintGlb } from 'cagecast/gltf';
 import { terminate as endWorker } from 'cagecast/worker';
 import { build } from 'esbuild';
 import { ok } from '../../support/command.js';
@@ -161,7 +161,7 @@ test('what cannot be used is named, with what helps', async () => {
 });
 
 test('nothing of Node is imported as it is loaded', async () => {
-  const contents = "import { paintGlb } from 'cagecast/glb'; console.log(paintGlb);";
+  const contents = "import { paintGlb } from 'cagecast/gltf'; console.log(paintGlb);";
   const { outputFiles } = await build({
     stdin: { contents, resolveDir: import.meta.dirname },
     bundle: true,

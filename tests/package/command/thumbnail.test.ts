@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from 'node:fs';
 import { after, test } from 'node:test';
 import type { GLTF } from '@gltf-transform/core';
 import type { CagecastError } from 'cagecast';
-import { paintGlb, type ThumbnailOptions, thumbnail } from 'cagecast/glb';
+import { paintGlb, type ThumbnailOptions, thumbnail } from 'cagecast/gltf';
 import { terminate } from 'cagecast/worker';
 import { PNG } from 'pngjs';
 import { fails, json, ok, run } from '../../support/command.js';

@@ -4,7 +4,7 @@ import { writeFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { CagecastError } from 'cagecast';
-import { type Companions, toGlb } from 'cagecast/formats';
+import { type Companions, toGlb } from 'cagecast/gltf';
 import { run } from '../../support/command.js';
 import { countingEnds } from '../../support/ended-workers.js';
 import { costlyFormats, inheritedNames, kInherited } from '../../support/files/costly-formats.js';

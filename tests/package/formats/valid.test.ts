@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
-import { toGlb } from 'cagecast/formats';
+import { toGlb } from 'cagecast/gltf';
 import { pngOf } from '../../support/files/costly.js';
 import { usdaOf } from '../../support/files/costly-formats.js';
 import { validate } from '../../support/gltf.js';

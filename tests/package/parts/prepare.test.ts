@@ -8,7 +8,7 @@ import {
   type PrepareOptions,
   paintedVertices,
   prepareParts,
-} from 'cagecast/parts';
+} from 'cagecast/engines';
 import { prepareParts as prepareInWorker, terminate } from 'cagecast/worker';
 import { head } from '../scenes.js';
 

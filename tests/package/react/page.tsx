@@ -2,7 +2,7 @@
 import { createRoot, extend, type ReconcilerRoot } from '@react-three/fiber';
 import { type Cage, loadTemplate } from 'cagecast/cages';
 import { Cagecast, type CagecastOptions, type Painted, useCagecast, useLayers, usePainter } from 'cagecast/react';
-import type { Layers, Painter } from 'cagecast/three/paint';
+import type { Layers, Painter } from 'cagecast/three';
 import { Component, type ReactNode, StrictMode, Suspense, startTransition, useState } from 'react';
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';

@@ -1,6 +1,12 @@
 // What layers make of the surface besides its colour, and the tint beneath them. Runs in the browser.
-import { applyTransfer } from 'cagecast/three';
-import { createLayers, createPainter, type Layers, type LayersOptions, type NewLayer } from 'cagecast/three/paint';
+import {
+  applyTransfer,
+  createLayers,
+  createPainter,
+  type Layers,
+  type LayersOptions,
+  type NewLayer,
+} from 'cagecast/three';
 import {
   Color,
   DataTexture,

@@ -1,14 +1,7 @@
 // Layers of paint in one texture. Runs in the browser.
 import { applyTransfer } from 'cagecast/three';
-import {
-  type Blend,
-  createLayers,
-  createPainter,
-  LayerPainter,
-  type Painter,
-  type SavedLayers,
-} from 'cagecast/three/paint';
 import { DataTexture, MeshBasicMaterial, SRGBColorSpace, WebGLRenderer } from 'three';
+import { type Blend, createLayers, createPainter, LayerPainter, type Painter, type SavedLayers } from '#three';
 import {
   cage,
   clear,

@@ -1,6 +1,14 @@
 // Brush, eraser, stickers and pointers. Runs in the browser.
-import { type Applied, applyTransfer, modelMasks } from 'cagecast/three';
-import { createLayers, createPainter, type Layers, type Painter, type StrokePoint } from 'cagecast/three/paint';
+import {
+  type Applied,
+  applyTransfer,
+  createLayers,
+  createPainter,
+  type Layers,
+  modelMasks,
+  type Painter,
+  type StrokePoint,
+} from 'cagecast/three';
 import {
   Bone,
   Group,

@@ -1,5 +1,5 @@
 // Models, views and assertions of all scenes. Runs in the browser.
-import type { Painter } from 'cagecast/three/paint';
+import type { Painter } from 'cagecast/three';
 import {
   AmbientLight,
   Bone,

@@ -1,6 +1,5 @@
 // What others have to do with a painted model, too: its materials, their hooks, earlier transfers. Runs in the browser.
-import { applyTransfer } from 'cagecast/three';
-import { createLayers, createPainter } from 'cagecast/three/paint';
+import { applyTransfer, createLayers, createPainter } from 'cagecast/three';
 import {
   Box3,
   BufferAttribute,

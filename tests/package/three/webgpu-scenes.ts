@@ -1,8 +1,14 @@
 // Paint with WebGPURenderer, on its WebGL back end, beside what WebGLRenderer draws. Runs in the browser.
 import { MToonMaterial } from '@pixiv/three-vrm';
 import { MToonNodeMaterial } from '@pixiv/three-vrm/nodes';
-import { type Applied, type ApplyOptions, applyTransfer } from 'cagecast/three';
-import { createLayers, createPainter, type Layers } from 'cagecast/three/paint';
+import {
+  type Applied,
+  type ApplyOptions,
+  applyTransfer,
+  createLayers,
+  createPainter,
+  type Layers,
+} from 'cagecast/three';
 import {
   AmbientLight,
   Box3,
@@ -232,12 +238,12 @@ export const webgpuScenes: Scenes = {
       () => painted(modelOf(new MeshStandardNodeMaterial()), { texture: flat(0xdd3311) }),
       /has a node material, which shows options\.texture once the page imports cagecast\/three\/webgpu; else give options\.material$/,
     );
-    await import('cagecast/three/webgpu');
+    const { enableLayers } = await import('cagecast/three/webgpu');
     refuses(
       () => createLayers({ renderer: webgpu }),
-      /is a WebGPURenderer, for which the page has to import cagecast\/three\/paint\/webgpu$/,
+      /is a WebGPURenderer: call enableLayers\(\) of cagecast\/three\/webgpu once$/,
     );
-    await import('cagecast/three/paint/webgpu');
+    enableLayers();
   },
 
   async 'a head from a file: its paint, soft borders, cut borders, and nothing after dispose'() {

@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { Cage } from 'cagecast/cages';
-import { Edits, History, LayerStack, maxLayers } from 'cagecast/three/paint';
 import { Bone } from 'three';
+import { Edits, History, LayerStack, maxLayers } from '#three';
 import { CageMaker, type Engine } from '../../../web/src/state/cage-maker';
 import { followPaints } from '../../../web/src/state/follow-paints';
 import { type Fitting, madeOf, sampleOf } from '../../../web/src/state/made-cages';

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { History } from 'cagecast/three/paint';
+import { History } from '#three';
 import { ControlSteps } from '../../../web/src/state/control-steps';
 
 test('what differs after a click is a step; equal changes in quick succession are one; those of another model are dropped', (t) => {

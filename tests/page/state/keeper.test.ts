@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { type Command, Edits, History, LayerStack } from 'cagecast/three/paint';
+import { type Command, Edits, History, LayerStack } from '#three';
 import { barePart } from '../../../web/src/state/project/bare-part';
 import { cagePart } from '../../../web/src/state/project/cage-part';
 import { Keeper, type Offer } from '../../../web/src/state/project/keeper';

@@ -1,7 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { classify, init, transfer } from 'cagecast';
-import type { Finding } from 'cagecast/inspect';
+import { classify, type Finding, init, transfer } from 'cagecast';
 import { codeFor } from '../../../web/src/export/code';
 import { choicesOf, kFirstRules, type Locks } from '../../../web/src/state/choices';
 import { choicesWithout, projectBy } from '../../../web/src/state/left-out';

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { maxLayers } from 'cagecast/three/paint';
+import { maxLayers } from '#three';
 import { type LinkState, readLink, writeLink } from '../../../web/src/export/link';
 import { Strokes } from '../../../web/src/export/strokes';
 import { kFirstView } from '../../../web/src/state/view-state';

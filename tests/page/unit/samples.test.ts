@@ -3,7 +3,7 @@ import { existsSync, readFileSync, statSync } from 'node:fs';
 import { before, test } from 'node:test';
 import { type Document, NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { paintGlb } from 'cagecast/glb';
+import { paintGlb } from 'cagecast/gltf';
 import { MeshoptDecoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
 import type { Sample } from '../../../web/src/state/sample';

@@ -55,7 +55,7 @@ describe('a template', () => {
 describe('a head', () => {
   let model: CageModel;
   before(async () => {
-    model = cageModel(await new NodeIO().read('examples/samples/human/target.glb'));
+    model = await cageModel(await new NodeIO().read('examples/samples/human/target.glb'));
   });
 
   test('has no landmarks that are not finite, however it is turned', async () => {

@@ -37,21 +37,18 @@ describe('TypeScript before 5.7', () => {
     'cagecast',
     'cagecast/slim',
     'cagecast/worker',
-    'cagecast/inspect',
-    'cagecast/parts',
+    'cagecast',
+    'cagecast/engines',
     'cagecast/cages',
-    'cagecast/cages/sync',
-    'cagecast/glb',
-    'cagecast/formats',
+    'cagecast/gltf',
   ];
   const consumer = `
     type IsAny<T> = 0 extends 1 & T ? true : false;
     type Anys<T> = { [K in keyof T]-?: IsAny<T[K]> extends true ? K : never }[keyof T];
-    import { init, transfer, type Classification, type CutTarget, type Mesh, type Projection, type SplitVertices, type TransferResult } from 'cagecast';
+    import { type Classification, type CutTarget, init, inspect, type Inspection, type Mesh, type Projection, type SplitVertices, transfer, type TransferResult } from 'cagecast';
     import { transfer as transferAsync } from 'cagecast/worker';
     import { makeCage, type Cage } from 'cagecast/cages';
     import { applyTransfer, type Applied, type Extracted } from 'cagecast/three';
-    import { inspect, type Inspection } from 'cagecast/inspect';
     import { cagecast } from 'cagecast/gltf';
     type All = [Classification, CutTarget, Mesh, Projection, SplitVertices, TransferResult, Cage, Applied, Extracted, Extracted['mesh'], Inspection, ReturnType<typeof applyTransfer>];
     const none: [{ [K in keyof All]: Anys<All[K]> }[number], IsAny<typeof cagecast>, IsAny<typeof inspect>] extends [never, false, false] ? true : 'any' = true;

@@ -56,7 +56,7 @@ globalThis.answer = await core();`;
 /** Each file of the package that a script names: the WebAssembly of the core, both workers, and a template. */
 export const programOf = (entry: string): string => `${coreOf(entry)}
 import * as worker from 'cagecast/worker';
-import { CagecastError as CagesError, loadTemplate, makeCage } from 'cagecast/cages';
+import { loadTemplate, makeCage } from 'cagecast/cages';
 const tetrahedron = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]), indices: new Uint32Array([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]) };
 const steps = [
   core,
@@ -67,7 +67,7 @@ const steps = [
   async () => {
     const shares = [];
     const { uvs, positions, indices } = await makeCage(tetrahedron, { triangles: 100, voxels: 40, onProgress: (share) => shares.push(share) });
-    const failed = await makeCage({ ...tetrahedron, indices: new Uint32Array(0) }).catch((error) => error instanceof CagesError && error.code);
+    const failed = await makeCage({ ...tetrahedron, indices: new Uint32Array(0) }).catch((error) => error.name === 'CagecastError' && error.code);
     return [indices.length > 100, uvs.length / 2 === positions.length / 3, shares.at(-1), failed].join(' ');
   },
   async () => (await loadTemplate('car')).kind,

@@ -120,9 +120,8 @@ describe('the packed package', () => {
     linkPackages(folder, ['cagecast'], join(user, 'node_modules'));
     const program = `import { Document } from '@gltf-transform/core';
       import { BoxGeometry, Group, Mesh, SphereGeometry, Texture } from 'three';
-      import { cutBorders, type CutTarget, init, type Mesh as Arrays } from 'cagecast';
+      import { cutBorders, type CutTarget, init, inspect, type Inspection, type Mesh as Arrays, type Verdict } from 'cagecast';
       import { cagecast } from 'cagecast/gltf';
-      import { inspect, type Inspection, type Verdict } from 'cagecast/inspect';
       import { applyTransfer, extract, type Applied } from 'cagecast/three';
       await init();
       const scene = new Group().add(new Mesh(new BoxGeometry(1, 1, 1, 3, 3, 3)));
@@ -167,12 +166,13 @@ describe('the packed package', () => {
   test('runs in Node, by all of its entries, and in a worker thread', () => {
     for (const entry of ['cagecast', 'cagecast/slim'])
       assert.equal(printed('program.js', `${programOf(entry)} ${print}`), JSON.stringify(answer));
-    const sync = `
-      import { excludedByName, init, makeCage } from 'cagecast/cages/sync';
-      await init();
+    const here = `
+      import { excludedByName, init, makeCage } from 'cagecast/cages';
+      await init({ worker: false });
       const model = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]), indices: new Uint32Array([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]) };
-      console.log(excludedByName(['eye'])[0], makeCage(model, { triangles: 100, voxels: 40 }).indices.constructor.name);`;
-    assert.equal(printed('sync.js', sync), 'true Uint32Array');
+      const cage = await makeCage(model, { triangles: 100, voxels: 40 });
+      console.log((await excludedByName(['eye']))[0], cage.indices.constructor.name);`;
+    assert.equal(printed('here.js', here), 'true Uint32Array');
     writeFileSync(join(user, 'core.js'), coreScript('cagecast'));
     const threads = `
       import { Worker, isMainThread, parentPort } from 'node:worker_threads';

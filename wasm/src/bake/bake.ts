@@ -1,5 +1,5 @@
+import { CagecastError, type Mesh, type TransferResult } from '../api/index.js';
 import { show } from '../core/error.js';
-import { CagecastError, type Mesh, type TransferResult } from '../index.js';
 import { type Image, wrongArgument } from './image.js';
 import { type Baked, checkFill, type FillOptions, fill, type Layout, paintedOnly } from './layout.js';
 
@@ -17,7 +17,7 @@ export interface BakePart {
   triangleCount: number;
 }
 
-/** Options of `bake` and `cageTexture`. */
+/** Options of `bakeTexture` and `cageTexture`. */
 export interface BakeOptions extends FillOptions {
   /** The parts that have this texture; other triangles are left out. Default: all, as one part called "target". */
   parts?: readonly BakePart[] | undefined;
@@ -37,11 +37,11 @@ export interface BakeOptions extends FillOptions {
  *
  * @example
  * const result = transfer(cage, head);
- * const { data } = bake(head, result, { width: 2048, height: 2048, data: rgba }, { width: 1024 });
+ * const { data } = bakeTexture(head, result, { width: 2048, height: 2048, data: rgba }, { width: 1024 });
  */
-export function bake(target: BakeTarget, result: BakeResult, paint: Image, options: BakeOptions = {}): Baked {
-  const read = layoutsOf('bake', target, result, options);
-  return fill('bake', read, paint, options);
+export function bakeTexture(target: BakeTarget, result: BakeResult, paint: Image, options: BakeOptions = {}): Baked {
+  const read = layoutsOf('bakeTexture', target, result, options);
+  return fill('bakeTexture', read, paint, options);
 }
 
 /**
@@ -49,12 +49,12 @@ export function bake(target: BakeTarget, result: BakeResult, paint: Image, optio
  * the cage lies over nothing that may be painted stays transparent, but for the gutter. Where parts of the model lie over each
  * other, the one nearest to the cage is seen. Texels of the atlas that are not painted do not show at borders.
  *
- * Cost and errors as for `bake`, and a third as much for each texel of the atlas.
+ * Cost and errors as for `bakeTexture`, and a third as much for each texel of the atlas.
  *
  * @param atlas  The model's own texture; it repeats.
  *
  * @example
- * const moved = bake(other, transfer(cage, other), cageTexture(head, transfer(cage, head), headTexture));
+ * const moved = bakeTexture(other, transfer(cage, other), cageTexture(head, transfer(cage, head), headTexture));
  */
 export function cageTexture(target: BakeTarget, result: BakeResult, atlas: Image, options: BakeOptions = {}): Baked {
   const there = layoutsOf('cageTexture', target, result, options);

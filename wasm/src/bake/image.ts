@@ -1,5 +1,5 @@
+import { CagecastError } from '../api/index.js';
 import { show } from '../core/error.js';
-import { CagecastError } from '../index.js';
 
 /** An image: 4 bytes per pixel (red, green, blue, alpha), not premultiplied, upper row first, as in glTF's UV space. */
 export interface Image {

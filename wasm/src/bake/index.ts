@@ -1,9 +1,6 @@
-/**
- * Baking: the paint in a model's own UVs, and back. Needs neither three.js nor a canvas: typed arrays in, bytes of RGBA out.
- * @module cagecast/bake
- */
+/** Baking: the paint in a model's own UVs, and back. */
 
-export { type BakeOptions, type BakePart, type BakeResult, type BakeTarget, bake, cageTexture } from './bake.js';
+export { type BakeOptions, type BakePart, type BakeResult, type BakeTarget, bakeTexture, cageTexture } from './bake.js';
 export { type Image, mostTexels, resize } from './image.js';
 export { areaOf, type Baked, type FillOptions, fill, type Layout, layOver } from './layout.js';
 export { type MaskImages, maskTriangles, maskVertices } from './mask-triangles.js';

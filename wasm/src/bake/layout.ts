@@ -1,5 +1,5 @@
+import { CagecastError } from '../api/index.js';
 import { show } from '../core/error.js';
-import { CagecastError } from '../index.js';
 import { dot } from '../inspect/geometry.js';
 import { fillGutter } from './gutter.js';
 import { checkImage, checkNames, checkSize, colorByte, type Image, linearOf, wrongArgument } from './image.js';
@@ -88,7 +88,7 @@ export function checkFill(fn: string, options: FillOptions = {}): Fill {
 
 /**
  * Fills a texture by an image. Painted triangles come in the order of the layouts; those with the orientation of the texture
- * first, so that one of two mirrored halves is complete. Cost: as of `bake`.
+ * first, so that one of two mirrored halves is complete. Cost: as of `bakeTexture`.
  * @throws {CagecastError} `badArgument`
  */
 export function fill(fn: string, layouts: readonly Layout[], image: Image, options?: FillOptions): Baked {

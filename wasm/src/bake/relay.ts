@@ -1,4 +1,4 @@
-import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../index.js';
+import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../api/index.js';
 import { boxOf } from '../inspect/geometry.js';
 import { cornersOf, nearestFirst } from './bake.js';
 import { checkImage, checkNames, type Image } from './image.js';
@@ -35,13 +35,13 @@ const kReach = 0.05;
  * several share a place in `to`, the one nearest to `to` is seen. Where `to` goes on and `from` has a hole or ends, the nearest paint
  * goes on, as far as 5 % of the diagonal of `from` or the model; what else `from` does not paint, such as eyes, stays transparent.
  *
- * Needs `init`. Cost: of two transfers, and as of `bake`: about a second for 1024². Memory: 32 bytes a texel.
+ * Needs `init`. Cost: of two transfers, and as of `bakeTexture`: about a second for 1024². Memory: 32 bytes a texel.
  *
  * @param image  In the UVs of `from`; it repeats.
  * @param from   The cage that the image was drawn for.
  * @param to     Another cage, around the same model; its UVs should be within 0..1.
  * @throws {CagecastError} `badArgument` for an image that is none, and if nothing of the model is painted by both cages; else as
- * `transfer` and `bake`.
+ * `transfer` and `bakeTexture`.
  *
  * @example
  * const fitted = (await fitCage(await loadTemplate('human-head'), head)).cage;

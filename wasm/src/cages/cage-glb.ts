@@ -1,5 +1,5 @@
+import { CagecastError } from '../api/index.js';
 import { show } from '../core/error.js';
-import { CagecastError } from '../index.js';
 import { boxOf, type Vector } from '../inspect/geometry.js';
 import { packGlb } from '../parts/glb.js';
 import type { Cage, Template } from './types.js';

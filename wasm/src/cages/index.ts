@@ -3,14 +3,15 @@
  *
  * Each call takes seconds and runs in a worker. The first call starts one, others at the same time start more, up to the number of
  * cores, at least two and at most four, or what `init({ workers })` says; further calls wait. One worker, or as many as `init` was told,
- * stay when nothing is left to do. A worker loads its
- * WebAssembly, `cagecast-cages.wasm`, when it starts: until a function is called, nothing of it is loaded.
+ * stay when nothing is left to do. With `worker: false`, and where there are no workers, a call runs on the thread that makes it. The
+ * WebAssembly, `cagecast-cages.wasm`, is loaded by the first call.
  * @module cagecast/cages
  */
 
-import type { Mesh } from '../api/mesh.js';
-import type { PartNames } from '../api/parts.js';
-import { CagecastError } from '../index.js';
+import { CagecastError, type InitOptions, type Mesh, type PartNames } from '../api/index.js';
+import { faultOfNames } from '../api/option-names.js';
+import { isRecord, show } from '../core/error.js';
+import { nodeModule } from '../core/node.js';
 import { type CallOptions, type OnProgress, type WorkerOptions, WorkerQueue } from '../worker/queue.js';
 import { spawn } from './spawn-cages.js';
 import type {
@@ -31,7 +32,6 @@ export { type TemplateName, templateNames } from './template-names.js';
 export { loadTemplate } from './templates.js';
 export type * from './types.js';
 export type { WorkerOptions };
-export { CagecastError };
 
 /** Options of every call. */
 export interface CageCallOptions extends CallOptions {
@@ -40,7 +40,15 @@ export interface CageCallOptions extends CallOptions {
    * throws, the call is cancelled, and its promise rejects with what was thrown.
    */
   onProgress?: OnProgress | undefined;
+  /**
+   * Whether the call runs in a worker. Without, it keeps its thread busy, and `signal` ends it at its start only. Default: as
+   * `init` was told; else true where there are workers: in browsers, Node, Deno and Bun, but not in edge functions.
+   */
+  worker?: boolean | undefined;
 }
+
+/** Options of `init`. */
+export interface CagesInitOptions extends WorkerOptions, InitOptions, Pick<CageCallOptions, 'worker'> {}
 
 /** Workers at most: each has a memory of its own, and more of them than cores gain nothing. */
 const kMaxWorkers = 4;
@@ -48,11 +56,41 @@ const cores = globalThis.navigator?.hardwareConcurrency ?? kMaxWorkers;
 
 const queue = new WorkerQueue(spawn, Math.max(2, Math.min(kMaxWorkers, cores)));
 
-/** A rejection if a document or a scene is given instead of a model: it cannot be sent to the worker. */
-function unreadOf(fn: string, model: Partial<CageModel> | undefined): Promise<never> | undefined {
-  if (typeof model !== 'object' || model === null || model.positions !== undefined) return undefined;
-  const text = 'model has no positions; see cageModel of cagecast/gltf and cagecast/three';
-  return Promise.reject(new CagecastError('badArgument', fn, text, { argument: 'model' }));
+/** Whether `init` was told that calls have a worker. */
+let told: boolean | undefined;
+
+/** Whether calls run in a worker, if they do not say so themselves. */
+const usual = (): boolean => told ?? (typeof Worker === 'function' || nodeModule('node:worker_threads') !== undefined);
+
+/** Calls a function, in a worker or here. @param args  Its other arguments. */
+function call<T>(fn: keyof typeof import('./sync.js'), args: unknown[], options: CageCallOptions): Promise<T> {
+  if (!isRecord(options)) return queue.withOptions<T>(fn, args, options);
+  const { worker = usual(), ...given } = options;
+  return isChoice(fn, worker) ? queue.withOptions<T>(fn, args, given) : callHere<T>(fn, args, given);
+}
+
+/** @throws {CagecastError} `badOption` */
+function isChoice(fn: string, worker: unknown): boolean {
+  if (typeof worker === 'boolean') return worker;
+  throw new CagecastError('badOption', fn, `options.worker is ${show(worker)}, not true or false`);
+}
+
+async function callHere<T>(
+  fn: keyof typeof import('./sync.js'),
+  args: unknown[],
+  { signal, move: _, ...options }: CageCallOptions,
+): Promise<T> {
+  signal?.throwIfAborted();
+  const here = await import('./sync.js');
+  await here.init();
+  return (here[fn] as (...args: unknown[]) => T)(...args, options);
+}
+
+/** @throws {CagecastError} if a document, a scene or a promise is given instead of a model, which cannot be sent to a worker. */
+function checkIsRead(fn: string, model: Partial<CageModel> | undefined): void {
+  if (typeof model !== 'object' || model === null || model.positions !== undefined) return;
+  const text = 'model has no positions; await cageModel() of cagecast/gltf or cagecast/three';
+  throw new CagecastError('badArgument', fn, text, { argument: 'model' });
 }
 
 /**
@@ -68,8 +106,9 @@ function unreadOf(fn: string, model: Partial<CageModel> | undefined): Promise<ne
  * const cage = await makeCage({ positions, indices, groups, parts: ['skin', 'eye_left', 'eye_right'] });
  * const result = transfer(cage, { positions, indices, groups });
  */
-export function makeCage(model: CageModel, options: MakeOptions & CageCallOptions = {}): Promise<Cage> {
-  return unreadOf('makeCage', model) ?? queue.withOptions('makeCage', [model], options);
+export async function makeCage(model: CageModel, options: MakeOptions & CageCallOptions = {}): Promise<Cage> {
+  checkIsRead('makeCage', model);
+  return call('makeCage', [model], options);
 }
 
 /**
@@ -88,15 +127,17 @@ export async function fitCage(
   landmarks?: Landmarks,
   options: FitOptions & CageCallOptions = {},
 ): Promise<Fit> {
-  return unreadOf('fitCage', model) ?? queue.withOptions('fitCage', [template, model, landmarks], options);
+  checkIsRead('fitCage', model);
+  return call('fitCage', [template, model, landmarks], options);
 }
 
 /**
  * Finds the landmarks of a head or a figure by names of parts, names of joints and shape.
  * @throws {CagecastError} as `makeCage`.
  */
-export function findLandmarks(model: CageModel, options: CageCallOptions = {}): Promise<FoundLandmarks> {
-  return unreadOf('findLandmarks', model) ?? queue.withOptions('findLandmarks', [model], options);
+export async function findLandmarks(model: CageModel, options: CageCallOptions = {}): Promise<FoundLandmarks> {
+  checkIsRead('findLandmarks', model);
+  return call('findLandmarks', [model], options);
 }
 
 /**
@@ -105,12 +146,13 @@ export function findLandmarks(model: CageModel, options: CageCallOptions = {}): 
  * @param cage  With UVs.
  * @throws {CagecastError} as `fitCage`.
  */
-export function refineCage(
+export async function refineCage(
   cage: Mesh | Cage | Template,
   model: CageModel,
   options: RefineOptions & CageCallOptions = {},
 ): Promise<Cage> {
-  return unreadOf('refineCage', model) ?? queue.withOptions('refineCage', [cage, model], options);
+  checkIsRead('refineCage', model);
+  return call('refineCage', [cage, model], options);
 }
 
 /**
@@ -119,16 +161,25 @@ export function refineCage(
  * @param names  As those of a `Mesh`.
  * @throws {CagecastError} `badArgument`
  */
-export function excludedByName(names: PartNames, options: CallOptions = {}): Promise<boolean[]> {
-  return queue.withOptions('excludedByName', [names], options);
+export function excludedByName(
+  names: PartNames,
+  options: Omit<CageCallOptions, 'onProgress'> = {},
+): Promise<boolean[]> {
+  return call('excludedByName', [names], options);
 }
 
 /**
  * Starts a worker and loads its WebAssembly before it is needed, or several. Not necessary: every call does it.
- * @throws {CagecastError} `badOption`; `unsupported` if a worker cannot start.
+ * @param options  `module` is for calls without a worker, and the first one counts.
+ * @throws {CagecastError} `badOption`; `unsupported` if a worker cannot start, or the WebAssembly.
  */
-export function init(options: WorkerOptions = {}): Promise<void> {
-  return queue.init(options);
+export async function init(options: CagesInitOptions = {}): Promise<void> {
+  const fault = faultOfNames('init', 'options', options, ['workers', 'worker', 'module']);
+  if (fault !== undefined) throw new CagecastError('badOption', 'init', fault);
+  const { module, worker = module === undefined ? usual() : false, ...workers } = options;
+  if (isChoice('init', worker)) await queue.init(workers);
+  else await (await import('./sync.js')).init({ module });
+  if (options.worker !== undefined || module !== undefined) told = worker;
 }
 
 /** Ends the workers and frees their memory. Pending calls reject with code `aborted`; the next call starts a new worker. */

@@ -8,7 +8,7 @@ const functions = {
   fitCage,
   findLandmarks,
   refineCage,
-  excludedByName: (names) => excludedByName(names as string[]),
+  excludedByName,
 } as Record<string, (...args: unknown[]) => unknown>;
 
 /** Milliseconds between two messages about progress: smooth for people. */

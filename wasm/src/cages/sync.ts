@@ -1,10 +1,4 @@
-/**
- * The functions of `cagecast/cages`, run at once on the thread that calls them: for a worker of your own. They take seconds.
- * Their memory is freed once the event loop turns: in a long loop, `await` something between calls.
- *
- * Errors are of the class `CagecastError` that is exported here.
- * @module cagecast/cages/sync
- */
+// The functions of `cagecast/cages` on the thread that calls them. Their memory is freed once the event loop turns.
 import createModule from '#cages-glue';
 import { checkNames, type Mesh } from '../api/mesh.js';
 import { kPartLists } from '../api/option-names.js';
@@ -43,9 +37,6 @@ import type {
   RefineOptions,
   Template,
 } from './types.js';
-
-export type * from './types.js';
-export { CagecastError, type InitOptions };
 
 /** An option of every call. */
 export interface SyncOptions {
@@ -176,7 +167,7 @@ export function refineCage(
  * @param names  As those of a `Mesh`.
  * @throws {CagecastError} `badArgument`
  */
-export function excludedByName(names: PartNames): boolean[] {
+export function excludedByName(names: PartNames, _options?: object): boolean[] {
   const fn = 'excludedByName';
   checkNames(fn, 'names', names);
   return freshModule(fn).excludedByName(joinedNames(names));

@@ -1,6 +1,6 @@
+import { CagecastError } from '../api/index.js';
 import { show } from '../core/error.js';
 import { readFile } from '../core/read-file.js';
-import { CagecastError } from '../index.js';
 import { readTemplate as withExtras } from '../parts/template-extras.js';
 import { type TemplateName, templateNames } from './template-names.js';
 import type { Cage } from './types.js';

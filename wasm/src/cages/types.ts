@@ -16,7 +16,7 @@ export type Outline = readonly (readonly [u: number, v: number])[];
 
 /**
  * Regions of a cage by name, such as `lips`, in its UVs: what an odd number of a region's outlines surrounds. They are known wherever
- * the cage is fitted to; `regionMask` of `cagecast/bake` makes images of them.
+ * the cage is fitted to; `regionMask` of `cagecast/engines` makes images of them.
  */
 export type Regions = Record<string, readonly Outline[]>;
 

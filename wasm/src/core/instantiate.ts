@@ -3,7 +3,7 @@ import { CagecastError, notStarted, show } from './error.js';
 /** Options of `init`. */
 export interface InitOptions {
   /**
-   * The WebAssembly, compiled or as bytes: what `cagecast/cagecast.wasm` is, or for `cagecast/cages/sync` `cagecast/cagecast-cages.wasm`. For
+   * The WebAssembly, compiled or as bytes: what `cagecast/cagecast.wasm` is, or for `cagecast/cages` `cagecast/cagecast-cages.wasm`. For
    * hosts that neither fetch files of the package nor compile at run time, such as edge functions. Default: the package's own.
    */
   module?: object | undefined;

@@ -1,11 +1,11 @@
 /**
- * Cagecast as a function for glTF-Transform: adds a UV set, the Non-Cosmetic Zones and an overlay to a document; and the functions
- * of `cagecast/cages` for documents.
+ * Model files: a model in, the painted file or a picture out, in Node, pages and edge functions; other formats as GLBs; checks of files
+ * of strangers. And functions for glTF-Transform, which add a UV set, the Non-Cosmetic Zones and an overlay to a document.
  * @module cagecast/gltf
  */
 import type { Document, Transform } from '@gltf-transform/core';
+import type { Mesh, TransferOptions, TransferResult } from '../api/index.js';
 import type { Parts } from '../api/parts.js';
-import type { Mesh, TransferOptions, TransferResult } from '../index.js';
 import { noteOf } from '../inspect/bare.js';
 import { type Borders, isCut } from '../parts/cut-part.js';
 import type { LeftOut } from '../parts/drawn.js';
@@ -19,19 +19,20 @@ export type { MaskSources } from './bake/mask-sources.js';
 export type { BakeReport, ImageCodec, Paints } from './bake/plan.js';
 export { type CheckOptions, checkGltf, checkImage } from './checks/check-gltf.js';
 export type { ReadLimits } from './checks/read-limits.js';
+export { addCage, type CageModelOptions, cageModel, cageTemplate } from './document/document-cages.js';
 export {
-  addCage,
-  cageModel,
-  cageTemplate,
-  type DecodingOptions,
-  type FileOptions,
-  findLandmarks,
-  fitCage,
-  makeCage,
-  refineCage,
-  withBaseColors,
-} from './document/document-cages.js';
-/** @internal */
+  type Angles,
+  type Companions,
+  type FormatLimits,
+  type PaintedGlb,
+  type PaintOptions,
+  paintGlb,
+  type Thumbnail,
+  type ThumbnailOptions,
+  thumbnail,
+  toGlb,
+  type ViewName,
+} from './files.js';
 export { imageSize } from './image-file.js';
 export { type FileKind, type Format, fileKind } from './kinds.js';
 export type { LeftOut, Parts };
@@ -76,8 +77,7 @@ export interface CagecastOptions extends Omit<TransferOptions, 'parts'>, MaskSou
  * each gets a copy. An earlier transfer to the document is replaced. Cut borders add vertices that blend existing ones, in all
  * attributes, skin weights and morph deltas. If the transform throws, the document is unchanged.
  *
- * glTF-Transform itself drops extensions that it does not know, such as those of VRM, when it reads a file: avatars are for `paintGlb` of
- * `cagecast/glb`.
+ * glTF-Transform itself drops extensions that it does not know, such as those of VRM, when it reads a file: avatars are for `paintGlb`.
  *
  * Functions that change vertices, such as `simplify`, `weld` and `join`, belong before this one: simplified afterwards, an overlay
  * no longer lies on its surface, and UVs that were written anew stay beside those of a later transfer. `prune` takes UVs that no

@@ -1,4 +1,4 @@
-/** Formats that `toGlb` of `cagecast/formats` makes a GLB of. */
+/** Formats that `toGlb` makes a GLB of. */
 export type Format = 'fbx' | 'obj' | 'ply' | 'stl' | 'usd';
 
 /** A kind of file that people have, but that is no glTF. */
@@ -90,5 +90,5 @@ export function fileKind(bytes: Uint8Array): FileKind | undefined {
 /** What a file is that is no glTF, and what to do with it. */
 export function adviceOn(bytes: Uint8Array): string | undefined {
   const kind = fileKind(bytes);
-  return kind && `is ${kind.name}; ${kind.advice ?? 'toGlb of cagecast/formats makes a GLB of it'}`;
+  return kind && `is ${kind.name}; ${kind.advice ?? 'toGlb of cagecast/gltf makes a GLB of it'}`;
 }

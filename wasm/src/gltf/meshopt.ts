@@ -1,5 +1,5 @@
+import { CagecastError } from '../api/index.js';
 import { notStarted } from '../core/error.js';
-import { CagecastError } from '../index.js';
 
 // Imported only when they are needed, as their scripts start WebAssembly as soon as they run.
 

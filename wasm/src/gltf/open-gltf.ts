@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { CagecastError } from '../index.js';
+import { CagecastError } from '../api/index.js';
 import { type AccessorData, decodeAccessors } from './accessors.js';
 import { checkGeometry, dracoOf } from './checks/check-geometry.js';
 import { checkRest } from './checks/check-rest.js';

@@ -1,4 +1,4 @@
-import type { CutTarget, TransferResult } from '../index.js';
+import type { CutTarget, TransferResult } from '../api/index.js';
 import type { Split } from '../parts/blend.js';
 import { type PreparedPart, preparePart } from '../parts/prepare.js';
 import { isMirrored } from './matrix.js';

@@ -1,8 +1,8 @@
+import { CagecastError } from '../api/index.js';
 import { numbersNamed } from '../api/parts.js';
 import { cageGlb } from '../cages/cage-glb.js';
 import type { Cage } from '../cages/types.js';
 import { show } from '../core/error.js';
-import { CagecastError } from '../index.js';
 import { turnedBack } from '../inspect/backward.js';
 import { groupsNamed } from '../parts/drawn.js';
 import { moveApart } from '../parts/own-cages.js';

@@ -1,4 +1,4 @@
-import { CagecastError, type Mesh, type TransferResult } from '../index.js';
+import { CagecastError, type Mesh, type TransferResult } from '../api/index.js';
 import type { Finding } from './finding.js';
 import { boxOf, dot, doubleAreaNormal, joined, minus, pointAt, vertexAreas } from './geometry.js';
 import { reverse } from './reverse.js';

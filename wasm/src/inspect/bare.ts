@@ -1,4 +1,4 @@
-import type { Mesh, SegmentStats, TransferResult } from '../index.js';
+import type { Mesh, SegmentStats, TransferResult } from '../api/index.js';
 import { percent } from './finding.js';
 import { boxOf, cross, dot, doubleAreaNormal, minus, pointAt, type Vector, vertexAreas } from './geometry.js';
 import { type PartName, partsOf } from './scene.js';

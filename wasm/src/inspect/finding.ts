@@ -1,4 +1,4 @@
-import type { Locks } from '../index.js';
+import type { Locks } from '../api/index.js';
 
 /** A segment of the target and its part. */
 export interface Place {
@@ -14,7 +14,7 @@ export interface Place {
 export interface Finding {
   /** What it is, for programs. */
   code: FindingCode;
-  /** Its severity: from `unfitFrom` on the cage is unfit, from `usableFrom` on at best usable; less is a remark. */
+  /** Its severity: from 1 on the cage is unfit, from 0.25 on at best usable; less is a remark. */
   weight: number;
   /** What the problem is, with numbers, for people. */
   sentence: string;
@@ -65,14 +65,14 @@ export type FindingCode =
 export type Verdict = 'good' | 'usable' | 'unfit';
 
 /** A finding of this weight alone makes a cage unfit. */
-export const unfitFrom = 1;
+const kUnfitFrom = 1;
 /** A finding of this weight keeps a cage from being good. */
-export const usableFrom = 0.25;
+const kUsableFrom = 0.25;
 
 /** The verdict that findings add up to. */
 export function verdictOf(findings: readonly Finding[]): Verdict {
   const heaviest = findings.reduce((most, { weight }) => Math.max(most, weight), 0);
-  return heaviest >= unfitFrom ? 'unfit' : heaviest >= usableFrom ? 'usable' : 'good';
+  return heaviest >= kUnfitFrom ? 'unfit' : heaviest >= kUsableFrom ? 'usable' : 'good';
 }
 
 /** "12.3 %"; "0.25 %", "0.04 %" below one. */

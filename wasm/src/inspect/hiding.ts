@@ -1,4 +1,4 @@
-import { type TransferOptions, transfer } from '../index.js';
+import { type TransferOptions, transfer } from '../api/index.js';
 import { type Finding, percent } from './finding.js';
 import { partsOf, type Scene } from './scene.js';
 

@@ -1,5 +1,5 @@
+import type { TransferResult } from '../api/index.js';
 import type { Mesh } from '../api/mesh.js';
-import type { TransferResult } from '../index.js';
 
 /** A target without the parts that its transfer ignored, and the result for the rest. */
 export function withoutIgnored(target: Mesh, result: TransferResult): { target: Mesh; result: TransferResult } {

@@ -1,22 +1,11 @@
-/**
- * Checks whether a cage fits a target: verdict, reasons and advice.
- * @module cagecast/inspect
- */
+// Checks whether a cage fits a target: verdict, reasons and advice.
 
+import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../api/index.js';
 import { numbersNamed, type PartOf, type Parts } from '../api/parts.js';
 import { show } from '../core/error.js';
-import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../index.js';
 import { checkBackward } from './backward.js';
 import { checkFace, type Spots } from './face.js';
-import {
-  type Finding,
-  type FindingCode,
-  type Place,
-  unfitFrom,
-  usableFrom,
-  type Verdict,
-  verdictOf,
-} from './finding.js';
+import { type Finding, type FindingCode, type Place, type Verdict, verdictOf } from './finding.js';
 import { joined } from './geometry.js';
 import { checkHiding } from './hiding.js';
 import { checkHoles, type Hole, holesOf, spanPoints } from './holes.js';
@@ -33,7 +22,7 @@ import { checkUvs, type UvLayout, uvLayoutOf } from './uv.js';
 
 export { surestThreshold } from './surest-threshold.js';
 export type { Finding, FindingCode, Hole, Inside, Place, Placement, Segment, Spots, Topology, UvLayout, Verdict };
-export { unfitFrom, usableFrom };
+export { verdictOf };
 
 /** Options of `inspect`: those of the transfer, and its result if there is one. */
 export interface InspectOptions extends TransferOptions {
@@ -72,7 +61,7 @@ export interface Inspection {
  * if (verdict === 'unfit') console.warn(findings[0].sentence, findings[0].advice);
  */
 export function inspect(cage: Mesh, target: Mesh, options?: InspectOptions): Inspection {
-  const { scene, orientation, findings: outcome, ...outcomes } = outcomeOf('inspect', cage, target, options);
+  const { scene, orientation, findings: outcome, ...outcomes } = outcomeOf(cage, target, options);
   const topology = topologyOf(scene);
   const uv = uvLayoutOf(scene);
   const findings = heaviestFirst([...outcome, ...checkTopology(scene, topology), ...checkUvs(scene, uv)]);
@@ -89,33 +78,19 @@ export function inspect(cage: Mesh, target: Mesh, options?: InspectOptions): Ins
   };
 }
 
-/**
- * Finds what the user of a result should check, the most severe first: a cage inside the target or misplaced, parts with close
- * verdicts, holes that no part explains, too little to paint. Each finding has a sentence, an
- * advice, the segments concerned, and the locks that reverse the verdicts on them.
- *
- * These are the findings of `inspect` except those about the surface and the UVs of the cage. Cost: up to that of `inspect`.
- * @throws {CagecastError} as `transfer` does.
- *
- * @example
- * const result = transfer(cage, target);
- * for (const { sentence, advice, locks } of suggest(cage, target, { result })) console.log(sentence, advice);
- */
-export function suggest(cage: Mesh, target: Mesh, options?: InspectOptions): Finding[] {
-  return heaviestFirst(outcomeOf('suggest', cage, target, options).findings);
-}
-
 const heaviestFirst = (findings: readonly Finding[]): Finding[] => [...findings].sort((a, b) => b.weight - a.weight);
 
+const fn = 'inspect';
+
 /** The placement of the cage, and the findings about it and about the result. */
-function outcomeOf(fn: string, cage: Mesh, whole: Mesh, given: InspectOptions = {}) {
+function outcomeOf(cage: Mesh, whole: Mesh, given: InspectOptions = {}) {
   if (typeof given !== 'object' || given === null)
     throw new CagecastError('badOption', fn, `options is ${show(given)}, not an object`);
   const { result: known, landmarks, parts, ...others } = given;
   if (known !== undefined) {
-    checkArrays(fn, 'cage', cage, ['positions', 'indices', 'uvs']);
-    checkArrays(fn, 'target', whole, ['positions', 'indices']);
-    checkResult(fn, known, whole);
+    checkArrays('cage', cage, ['positions', 'indices', 'uvs']);
+    checkArrays('target', whole, ['positions', 'indices']);
+    checkResult(known, whole);
   }
   const { target, result } = withoutIgnored(whole, known ?? transfer(cage, whole, { ...others, parts }));
   const options = { ...others, parts: numbered(whole, parts) };
@@ -148,7 +123,7 @@ function outcomeOf(fn: string, cage: Mesh, whole: Mesh, given: InspectOptions = 
 }
 
 /** Checks that a mesh has arrays: without a transfer, nothing else does. */
-function checkArrays(fn: string, name: string, mesh: Mesh, fields: (keyof Mesh)[]): void {
+function checkArrays(name: string, mesh: Mesh, fields: (keyof Mesh)[]): void {
   for (const field of fields)
     if (!ArrayBuffer.isView(mesh?.[field]))
       throw new CagecastError('badArgument', fn, `${name}.${field} is ${show(mesh?.[field])}, not a typed array`, {
@@ -157,7 +132,7 @@ function checkArrays(fn: string, name: string, mesh: Mesh, fields: (keyof Mesh)[
 }
 
 /** Checks that a result is complete and belongs to this target. */
-function checkResult(fn: string, result: TransferResult, { positions }: Mesh): void {
+function checkResult(result: TransferResult, { positions }: Mesh): void {
   const wrong = (text: string) =>
     new CagecastError('badArgument', fn, `result${text}; pass what transfer() returned`, { argument: 'result' });
   if (typeof result !== 'object' || result === null) throw wrong(` is ${show(result)}`);

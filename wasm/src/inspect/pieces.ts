@@ -1,4 +1,4 @@
-import { CagecastError, project, type TransferOptions } from '../index.js';
+import { CagecastError, project, type TransferOptions } from '../api/index.js';
 import { counted, type Finding } from './finding.js';
 import type { Scene } from './scene.js';
 import { hasArea } from './segments.js';

@@ -1,4 +1,4 @@
-import type { SegmentStats } from '../index.js';
+import type { SegmentStats } from '../api/index.js';
 import { type Finding, percent } from './finding.js';
 import { type Box, boxOf, cross, doubleAreaNormal, minus, pointAt, quantiles, type Vector } from './geometry.js';
 import { partsOf, type Scene } from './scene.js';

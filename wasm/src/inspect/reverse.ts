@@ -1,4 +1,4 @@
-import { project } from '../index.js';
+import { project } from '../api/index.js';
 import { joined, nearestPoint, pointAt, type Vector } from './geometry.js';
 import type { Scene } from './scene.js';
 

@@ -1,6 +1,6 @@
+import { project, type TransferOptions, type TransferResult, Visibility } from '../api/index.js';
 import type { Mesh } from '../api/mesh.js';
 import { optionTable } from '../generated/options.js';
-import { project, type TransferOptions, type TransferResult, Visibility } from '../index.js';
 import { type Box, boxOf, dot, doubleAreaNormal, minus, nearestPoint, pointAt, vertexAreas } from './geometry.js';
 import { type Surface, surfaceOf } from './surface.js';
 

@@ -1,4 +1,4 @@
-import type { ClassifyOptions, Locks, SegmentStats } from '../index.js';
+import type { ClassifyOptions, Locks, SegmentStats } from '../api/index.js';
 import { counted, type Finding, type Place, percent } from './finding.js';
 import { grouped } from './geometry.js';
 import { partsOf, type Scene } from './scene.js';

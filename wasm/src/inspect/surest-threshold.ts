@@ -1,5 +1,5 @@
+import { CagecastError, type SegmentStats } from '../api/index.js';
 import { show } from '../core/error.js';
-import { CagecastError, type SegmentStats } from '../index.js';
 
 /** Coverages below this count as this. */
 const kMin = 0.05;

@@ -1,6 +1,3 @@
-import { faultOfNames, optionNames } from '../api/option-names.js';
-import { show } from '../core/error.js';
-import { plainArray, showArray } from '../core/typed-arrays.js';
 import {
   CagecastError,
   type Classification,
@@ -10,7 +7,10 @@ import {
   type TransferOptions,
   type TransferResult,
   transfer,
-} from '../index.js';
+} from '../api/index.js';
+import { faultOfNames, optionNames } from '../api/option-names.js';
+import { show } from '../core/error.js';
+import { plainArray, showArray } from '../core/typed-arrays.js';
 import { heaviestOf } from './blend.js';
 import { type Borders, cutPart, isCut, type PartCut } from './cut-part.js';
 import {

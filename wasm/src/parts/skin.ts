@@ -6,7 +6,7 @@ const kSame = 1e-3;
 /** The cosine of the angle from which on a rig is turned against all that is above it. */
 const kTurned = Math.SQRT1_2;
 /** The cosine of the angle by which a rig's axes may be off those of the scene. */
-const kAligned = Math.cos((5 * Math.PI) / 180);
+const kAligned = /* @__PURE__ */ Math.cos((5 * Math.PI) / 180);
 
 /** A mesh of a model. Matrices are column by column. */
 export interface ModelMesh<Node> {

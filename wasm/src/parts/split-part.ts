@@ -1,4 +1,4 @@
-import { splitVertices, type TransferResult } from '../index.js';
+import { splitVertices, type TransferResult } from '../api/index.js';
 
 /** Where a part is in the arrays of a target. */
 export interface PartRange {

@@ -1,10 +1,11 @@
 // Fits and transfers of models, kept as long as the models are: a component that React begins to draw once more finds them here.
-import { loadTemplate } from '../cages/index.js';
+import { fitCage, loadTemplate } from '../cages/index.js';
 import type { TemplateName } from '../cages/template-names.js';
 import type { Fit, Landmarks, Template } from '../cages/types.js';
 import {
   type ApplyOptions,
-  fitCage,
+  cageModel,
+  cageTemplate,
   type Loaded,
   type LoadedCage,
   prepareTransfer,
@@ -135,7 +136,8 @@ async function run(
   if (template === undefined)
     return { cage: options.cage, fit: undefined, saved: await prepareTransfer(model, { ...options, signal }) };
   const loaded = typeof template === 'string' ? await loadTemplate(template) : template;
-  const fit = await fitCage(loaded, model, landmarks, { signal });
+  const from = 'positions' in loaded ? loaded : cageTemplate(loaded);
+  const fit = await fitCage(from, await cageModel(model), landmarks, { signal });
   const saved = await prepareTransfer(model, { ...options, cage: fit.cage, signal });
   return { cage: fit.cage, fit, saved };
 }

@@ -1,6 +1,6 @@
 import { use, useEffect, useLayoutEffect, useState } from 'react';
 import { type Applied, type ApplyOptions, applyTransfer, type Loaded } from '../three/index.js';
-import type { Layers } from '../three/painting/index.js';
+import type { Layers } from '../three/internals.js';
 import { type Fitted, type FittingOptions, Holder, taskOf } from './tasks.js';
 import { type LayerItem, useOwnLayers } from './use-layers.js';
 

@@ -2,7 +2,7 @@ import { useFrame, useThree } from '@react-three/fiber';
 import { useEffect, useState } from 'react';
 import type { Texture } from 'three';
 import type { LoadedCage } from '../three/index.js';
-import { createLayers, type Layer, type Layers, type LayersOptions, type NewLayer } from '../three/painting/index.js';
+import { createLayers, type Layer, type Layers, type LayersOptions, type NewLayer } from '../three/internals.js';
 
 /** A layer of a list: its texture, and how it is blended. */
 export interface LayerItem extends Omit<NewLayer, 'place' | 'undoable'> {

@@ -1,6 +1,6 @@
 import { useThree } from '@react-three/fiber';
 import { useEffect, useState } from 'react';
-import { createPainter, type Painter, type PainterOptions } from '../three/painting/index.js';
+import { createPainter, type Painter, type PainterOptions } from '../three/internals.js';
 import type { Painted } from './use-cagecast.js';
 
 /** What pointers do, and how: fields of `Painter`. */

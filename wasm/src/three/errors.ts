@@ -1,7 +1,7 @@
+import { CagecastError, type Code, type ErrorDetails } from '../api/index.js';
 import { faultOfNames } from '../api/option-names.js';
 import { faultOfParts } from '../api/parts.js';
 import { show } from '../core/error.js';
-import { CagecastError, type Code, type ErrorDetails } from '../index.js';
 
 /** The error of an argument: `badArgument` of `cagecast/three`, unless it says otherwise. */
 export const wrong = (
@@ -15,12 +15,9 @@ export const wrong = (
 export const notA = (what: string, name: string, value: unknown, fn?: string, code?: Code): CagecastError =>
   wrong(`${name} is ${show(value)}, not ${what}`, fn, code);
 
-/** The entry of layers and painting, which their errors begin with. */
-export const kPaint = 'cagecast/three/paint';
-
 /** Checks an option of layers or painting. @throws {CagecastError} `badOption` that names it and its value, unless that fits. */
 export function check(fits: boolean, name: string, value: unknown, what: string): void {
-  if (!fits) throw notA(what, name, value, kPaint, 'badOption');
+  if (!fits) throw notA(what, name, value, undefined, 'badOption');
 }
 
 /** @throws {CagecastError} `badOption` for a colour that is not six hexadecimal digits. */

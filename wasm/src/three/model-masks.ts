@@ -1,7 +1,7 @@
 import type { Texture } from 'three';
+import type { Masks } from '../api/index.js';
 import type { Parts } from '../api/parts.js';
 import { type Image, maskTriangles, maskVertices } from '../bake/index.js';
-import type { Masks } from '../index.js';
 import { localIndices } from '../parts/prepare.js';
 import { valuesOf } from './apply/attributes.js';
 import { extract } from './apply/extract-scene.js';

@@ -1,7 +1,7 @@
 import { MeshStandardMaterial, type Texture } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { CagecastError, init, type Preset } from '../api/index.js';
 import { kPartLists } from '../api/option-names.js';
-import { CagecastError, init, type Preset } from '../index.js';
 import type { Inspection } from '../inspect/index.js';
 import {
   type Applied,

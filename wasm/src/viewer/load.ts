@@ -1,7 +1,7 @@
 import { Cache, type Light, type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from 'three';
 import type { GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import type { CagecastError } from '../api/index.js';
 import { checkGltf, checkImage } from '../gltf/checks/check-gltf.js';
-import type { CagecastError } from '../index.js';
 
 /** A file, and where it came from. */
 export interface Fetched {

@@ -1,5 +1,5 @@
 /**
- * The functions of `cagecast` and `cagecast/inspect`, off the main thread: the same names and arguments, with promises.
+ * The functions of `cagecast`, off the main thread: the same names and arguments, with promises.
  *
  * All calls share one worker, which starts with the first call and runs them in order; a service with more cores calls
  * `init({ workers })`, after which each call takes the first worker that is idle, or waits for one.
@@ -18,8 +18,8 @@ import {
   type SplitVertices,
   type TransferOptions,
   type TransferResult,
-} from '../index.js';
-import type { Finding, Inspection, InspectOptions } from '../inspect/index.js';
+} from '../api/index.js';
+import type { Inspection, InspectOptions } from '../inspect/index.js';
 import type { Prepared, PrepareOptions } from '../parts/prepare.js';
 import { type CallOptions, type WorkerOptions, WorkerQueue } from './queue.js';
 import { spawn } from './spawn.js';
@@ -76,14 +76,9 @@ export function cutBorders(
   return withOptions('cutBorders', [cage, target, result && { zones, segments, segmentStats }], options);
 }
 
-/** As `inspect` of `cagecast/inspect`, off the main thread. */
+/** As `inspect` of `cagecast`, off the main thread. */
 export function inspect(cage: Mesh, target: Mesh, options: InspectOptions & CallOptions = {}): Promise<Inspection> {
   return withOptions('inspect', [cage, target], options);
-}
-
-/** As `suggest` of `cagecast/inspect`, off the main thread. */
-export function suggest(cage: Mesh, target: Mesh, options: InspectOptions & CallOptions = {}): Promise<Finding[]> {
-  return withOptions('suggest', [cage, target], options);
 }
 
 /** As `presetOptions` of `cagecast`, off the main thread. */
@@ -91,7 +86,7 @@ export function presetOptions(preset?: Preset, options: CallOptions = {}): Promi
   return withOptions('presetOptions', [preset], options);
 }
 
-/** As `prepareParts` of `cagecast/parts`, off the main thread. */
+/** As `prepareParts` of `cagecast/engines`, off the main thread. */
 export function prepareParts(
   cage: Mesh | undefined,
   target: Mesh,

@@ -1,4 +1,4 @@
-import type { CagecastError } from '../index.js';
+import type { CagecastError } from '../api/index.js';
 
 /** A call for a worker: a function by name, and its arguments. */
 export interface Request {

@@ -1,5 +1,5 @@
-import { classify, cutBorders, init, presetOptions, project, splitVertices, transfer } from '../index.js';
-import { inspect, suggest } from '../inspect/index.js';
+import { classify, cutBorders, init, presetOptions, project, splitVertices, transfer } from '../api/index.js';
+import { inspect } from '../inspect/index.js';
 import { prepareParts } from '../parts/prepare.js';
 import { answer } from './answer.js';
 import type { Reply, Request } from './protocol.js';
@@ -14,7 +14,6 @@ const functions = {
   presetOptions,
   prepareParts,
   inspect,
-  suggest,
 } as Record<string, (...args: unknown[]) => unknown>;
 
 /** Carries out a call. @returns the reply, and the buffers in it that are to be moved, not copied. */

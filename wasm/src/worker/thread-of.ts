@@ -47,7 +47,7 @@ export function threadOfNode<Message = Request, Answer = Reply>(
   const threads = nodeModule('node:worker_threads');
   if (!threads)
     throw new Error(
-      'it has no workers, nor process.getBuiltinModule, as Node 20.16 has; cagecast and cagecast/cages/sync need none',
+      'it has no workers, nor process.getBuiltinModule, as Node 20.16 has; cagecast, and cagecast/cages with worker: false, need none',
     );
   const worker = new threads.Worker(new URL(url), options);
   worker.on('message', onReply);

@@ -1,4 +1,4 @@
-import { maxLayers } from 'cagecast/three/paint';
+import { maxLayers } from '#three';
 import { type Choice, kMaxWeld, type Locks, type Rules } from '../state/choices';
 import { type ChosenShape, kDeforms } from '../state/deform';
 import type { Angle } from '../state/view-state';

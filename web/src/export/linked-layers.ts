@@ -1,4 +1,4 @@
-import { type Blend, blendModes, type Edits, type Layer, type LayerStack, type Style } from 'cagecast/three/paint';
+import { type Blend, blendModes, type Edits, type Layer, type LayerStack, type Style } from '#three';
 import type { Opener } from '../loading/opener';
 import { paintName } from '../loading/samples';
 import { pngOf } from '../platform/png';

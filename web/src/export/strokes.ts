@@ -1,5 +1,5 @@
-import { type Layer, PaintedSheet, readStraight } from 'cagecast/three/paint';
 import type { WebGLRenderer } from 'three';
+import { type Layer, PaintedSheet, readStraight } from '#three';
 import { loadPaint } from '../loading/load-paint';
 import type { Paint } from '../state/paint';
 

@@ -1,5 +1,5 @@
-import { extract } from 'cagecast/three';
 import type { Mesh, Object3D } from 'three';
+import { extract } from '#three';
 import type { ExtractedMesh, Model, Primitive } from '../state/model';
 
 /**

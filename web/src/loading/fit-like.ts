@@ -1,5 +1,5 @@
 import type { Cage, CageModel, Template, TemplateName } from 'cagecast/cages';
-import { cageModel, withBaseColors } from 'cagecast/three';
+import { cageModel } from '#three';
 import { placeAround } from '../state/cage-maker';
 import { type Fitting, noteMade } from '../state/made-cages';
 import { type Model, originOf } from '../state/model';
@@ -16,7 +16,7 @@ const kReach = 0.2; // of the diagonal of the model
  */
 export async function fitLike(cage: Model, model: Model, progress: FitProgress): Promise<File> {
   const engine = await import('cagecast/cages');
-  const target = await withBaseColors(cageModel(model.loaded), model.loaded);
+  const target = await cageModel(model.loaded);
   const found = await templateOf(cage, engine);
   const fileOf = (fitted: Cage): File =>
     new File([engine.cageGlb({ ...fitted, origin: originOf(model) })], model.name.replace(/(\.\w+)?$/, '-cage.glb'));

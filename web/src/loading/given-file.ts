@@ -75,7 +75,7 @@ export async function readAsGltf(
     const found = companionOf(name, companions, file);
     return found && new Uint8Array(await found.arrayBuffer());
   };
-  const { toGlb } = await import('cagecast/formats');
+  const { toGlb } = await import('cagecast/gltf');
   const glb = (await toGlb(new Uint8Array(bytes), { read, signal })) as Uint8Array<ArrayBuffer>;
   const made = new File([glb], `${file.name.replace(/\.[^.]*$/, '')}.glb`);
   return { file: made, bytes: glb.buffer };

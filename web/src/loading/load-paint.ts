@@ -1,5 +1,5 @@
-import { maxCompositeSize } from 'cagecast/three/paint';
 import { CanvasTexture, RepeatWrapping, SRGBColorSpace, Texture } from 'three';
+import { maxCompositeSize } from '#three';
 import type { Paint } from '../state/paint';
 
 const kLargest = maxCompositeSize;

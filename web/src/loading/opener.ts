@@ -1,4 +1,4 @@
-import type { Edits, LayerStack, Sheet } from 'cagecast/three/paint';
+import type { Edits, LayerStack, Sheet } from '#three';
 import { onFace } from '../platform/face';
 import { element, showError } from '../platform/page';
 import type { Locks } from '../state/choices';

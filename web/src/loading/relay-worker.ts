@@ -1,5 +1,5 @@
 import { init, type Mesh, type TransferOptions } from 'cagecast';
-import { type Baked, type Image, relayPaint } from 'cagecast/bake';
+import { type Baked, type Image, relayPaint } from 'cagecast/engines';
 import { answerBy } from '../platform/ask-worker';
 
 /** A paint that is to be carried from one cage of a model to another. */

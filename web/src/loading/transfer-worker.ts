@@ -47,7 +47,7 @@ async function answerTo({ id, task, cage, target, options }: Request) {
   if (task === 'cut') {
     return cutBorders(cage, target, options.result, options.rules);
   }
-  const { inspect } = await import('cagecast/inspect');
+  const { inspect } = await import('#inspect');
   return inspect(cage, target, options);
 }
 

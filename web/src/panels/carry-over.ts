@@ -1,5 +1,5 @@
-import { Composite, readStraight } from 'cagecast/three/paint';
 import type { WebGLRenderer } from 'three';
+import { Composite, readStraight } from '#three';
 import { loadPaint } from '../loading/load-paint';
 import type { RelayRequest } from '../loading/relay-worker';
 import { askWorker } from '../platform/ask-worker';

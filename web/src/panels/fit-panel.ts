@@ -1,5 +1,5 @@
-import type { Lock } from 'cagecast';
-import { type Finding, type Inspection, unfitFrom } from 'cagecast/inspect';
+import type { Finding, Inspection, Lock } from 'cagecast';
+import { verdictOf } from '#inspect';
 import { TransferClient } from '../loading/transfer-client';
 import { make } from '../platform/make';
 import { element } from '../platform/page';
@@ -109,7 +109,7 @@ export class FitPanel {
       : `${share} the visible surface can be painted.`;
     const remedies = findings.flatMap((finding) => remedyFor(finding, inspection, this.#session, this.#maker) ?? []);
     const { isFresh, isOthers } = this.#maker;
-    const reasons = findings.filter(({ weight }) => weight >= unfitFrom);
+    const reasons = findings.filter((finding) => verdictOf([finding]) === 'unfit');
     // Where keeping a part is enough, another cage would be judged by the same rules.
     const [kept] = (!isOthers && reasons.every(({ locks }) => locks) && reasons[0]?.places) || [];
     if (kept) remedies.push({ title: `Keep “${kept.part}”`, run: () => this.#session.lock([kept.segment], 'keep') });

@@ -1,12 +1,4 @@
-import {
-  type Blend,
-  blendModes,
-  type Edits,
-  type Layer,
-  type LayerStack,
-  maxLayers,
-  type Style,
-} from 'cagecast/three/paint';
+import { type Blend, blendModes, type Edits, type Layer, type LayerStack, maxLayers, type Style } from '#three';
 import { announce, element } from '../platform/page';
 
 // One transparent pixel.

@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/paint';
+import type { History } from '#three';
 import { readLink } from '../export/link';
 import { loadPaint } from '../loading/load-paint';
 import type { Opener } from '../loading/opener';

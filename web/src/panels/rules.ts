@@ -1,5 +1,5 @@
 import type { Preset } from 'cagecast';
-import type { Borders } from 'cagecast/three';
+import type { Borders } from '#three';
 import { element } from '../platform/page';
 import type { Session } from '../state/session';
 

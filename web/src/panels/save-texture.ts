@@ -1,5 +1,5 @@
-import { type Composite, readStraight } from 'cagecast/three/paint';
 import type { WebGLRenderer } from 'three';
+import { type Composite, readStraight } from '#three';
 import { download } from '../platform/download';
 import { requireGraphics } from '../platform/graphics';
 import { element, showError } from '../platform/page';

@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/paint';
+import type { History } from '#three';
 import type { Locks, Rules } from '../state/choices';
 import { type Controlled, ControlSteps } from '../state/control-steps';
 import type { ChosenShape } from '../state/deform';

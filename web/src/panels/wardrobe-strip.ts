@@ -1,5 +1,5 @@
-import type { LayerStack } from 'cagecast/three/paint';
 import type { Texture } from 'three';
+import type { LayerStack } from '#three';
 import { exportAll } from '../export/export-all';
 import { entriesOf, keptEntry, sampleEntry } from '../loading/entries';
 import { fitLike } from '../loading/fit-like';

@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/paint';
+import type { History } from '#three';
 
 const kSaving = ['export-glb', 'save-texture', 'save-project'];
 

@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/paint';
+import type { History } from '#three';
 import { announce, element, showError } from './page';
 
 /** Connects the undo and redo buttons, and their keys anywhere on the page. */

@@ -1,5 +1,5 @@
 import type { Mesh } from 'cagecast';
-import { moveApart } from 'cagecast/three';
+import { moveApart } from '#three';
 import type { ExtractedMesh, Model } from './model';
 
 /** What a transfer takes of a cage and a target: of parts that have cages of their own, each with its own. */

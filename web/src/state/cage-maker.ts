@@ -1,7 +1,6 @@
 import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
-import { cageModel, withBaseColors } from 'cagecast/three';
-import { Emitter } from 'cagecast/three/paint';
 import { type Bone, Box3, Vector3 } from 'three';
+import { cageModel, Emitter } from '#three';
 import { type Fitting, kMaxAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
@@ -141,7 +140,7 @@ export class CageMaker extends Emitter<{
     const options = { signal: abort.signal, onProgress: report };
     try {
       const engine = await this.#workshop.engine();
-      const model = await withBaseColors(cageModel(target.loaded), target.loaded);
+      const model = await cageModel(target.loaded);
       const context = { engine, model, options };
       const { positions } = target.mesh;
       const named = likelyTemplate(positions, namesIn(target));
@@ -248,7 +247,7 @@ export class CageMaker extends Emitter<{
         ...{ holes: {}, kind: 'automatic', ...extrasOf(current), landmarks: {} },
         ...{ positions: rest.slice(), indices: indices.slice(), uvs: uvs.slice() },
       } as Cage;
-      const model = await withBaseColors(cageModel(read.loaded), read.loaded);
+      const model = await cageModel(read.loaded);
       if (abort.signal.aborted) return;
       const result = await work.call(this, { engine, model, old, options });
       if (abort.signal.aborted) return;
@@ -357,7 +356,7 @@ export function placeAround(cage: Cage, model: ArrayLike<number>): Cage {
 
 interface Context {
   engine: Engine;
-  model: ReturnType<typeof cageModel>;
+  model: CageModel;
   /** The current cage, undeformed. */
   old: Cage;
   options: { signal: AbortSignal; onProgress(share: number, step: string): void };

@@ -1,5 +1,5 @@
 import type { ClassifyOptions, Lock, Preset } from 'cagecast';
-import { type Borders, bareGroups } from 'cagecast/three';
+import { type Borders, bareGroups } from '#three';
 import type { ExtractedMesh, Model } from './model';
 import type { SplitProjection } from './transfers';
 

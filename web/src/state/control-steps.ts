@@ -1,4 +1,4 @@
-import type { Command, History } from 'cagecast/three/paint';
+import type { Command, History } from '#three';
 
 /** A state that people change by controls of the page, other than the layers. */
 export interface Controlled<State = unknown> {

@@ -1,4 +1,4 @@
-import type { Edits, LayerStack } from 'cagecast/three/paint';
+import type { Edits, LayerStack } from '#three';
 import type { Model } from './model';
 import { type Paint, titleOf } from './paint';
 import { haveSameUvs } from './same-uvs';

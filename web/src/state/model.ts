@@ -1,5 +1,5 @@
-import type { LoadedGltf, Part } from 'cagecast/three';
 import type { AnimationClip, Mesh, Object3D } from 'three';
+import type { LoadedGltf, Part } from '#three';
 import type { Sample } from './sample';
 
 /** One triangle mesh of the scene, and the ranges of its elements in the concatenated arrays; its name is for people. */

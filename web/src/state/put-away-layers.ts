@@ -1,4 +1,4 @@
-import { type Edits, Emitter, type Layer, type LayerStack, maxLayers, type Sheet } from 'cagecast/three/paint';
+import { type Edits, Emitter, type Layer, type LayerStack, maxLayers, type Sheet } from '#three';
 import type { Model } from './model';
 import type { Paint } from './paint';
 import { haveSameUvs } from './same-uvs';

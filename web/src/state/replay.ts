@@ -1,4 +1,4 @@
-import { Emitter } from 'cagecast/three/paint';
+import { Emitter } from '#three';
 
 /** A listener, and what it listens to. */
 interface Heard<Events> {

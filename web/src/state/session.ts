@@ -1,5 +1,12 @@
-import { CagecastError, type Classification, classify, init, type Projection, type Timings } from 'cagecast';
-import type { Inspection } from 'cagecast/inspect';
+import {
+  CagecastError,
+  type Classification,
+  classify,
+  type Inspection,
+  init,
+  type Projection,
+  type Timings,
+} from 'cagecast';
 import {
   BareMarks,
   bareGroupsOf,

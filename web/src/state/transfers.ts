@@ -1,6 +1,8 @@
 import type {
   CagecastError,
   CutTarget,
+  Inspection,
+  InspectOptions,
   Mesh,
   Projection,
   ProjectOptions,
@@ -9,7 +11,6 @@ import type {
   TransferOptions,
   TransferResult,
 } from 'cagecast';
-import type { Inspection, InspectOptions } from 'cagecast/inspect';
 import type { Model } from './model';
 
 /** A projection, and the split vertices that the view needs. */

@@ -1,5 +1,4 @@
-import type { SegmentStats } from 'cagecast';
-import type { Finding, Inspection } from 'cagecast/inspect';
+import type { Finding, Inspection, SegmentStats } from 'cagecast';
 import type { CageMaker } from './cage-maker';
 import { leavingOut } from './left-out';
 import { madeOf } from './made-cages';

@@ -1,4 +1,4 @@
-import { Composite, type LayerStack } from 'cagecast/three/paint';
+import { Composite, type LayerStack } from '#three';
 import type { Viewer } from './viewer';
 
 /** Shows the composite of the layers on the model. */

@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/paint';
+import type { History } from '#three';
 import { element } from '../platform/page';
 import type { CameraControls, Side } from './camera-controls';
 

@@ -1,8 +1,7 @@
 // What holds of any file that somebody takes for a model: it is read, or refused by an error for people; and nothing else changes.
 import assert from 'node:assert/strict';
 import { CagecastError } from 'cagecast';
-import { toGlb } from 'cagecast/formats';
-import { checkGltf, checkImage, fileKind } from 'cagecast/gltf';
+import { checkGltf, checkImage, fileKind, toGlb } from 'cagecast/gltf';
 import { validate } from '../../../support/gltf.js';
 
 /** A model and the files beside it, by their names; the model is the first. */

@@ -1,4 +1,5 @@
 import type { Command } from 'commander';
+import { CagecastError, type CutTarget } from '../../api/index.js';
 import { type Baked, type Image, mostTexels } from '../../bake/index.js';
 import { type AtlasReport, packTextures } from '../../gltf/bake/atlas.js';
 import { FileModel } from '../../gltf/bake/bake-file.js';
@@ -6,7 +7,6 @@ import { type BakeReport, bakeModel, type ImageCodec, type Paints } from '../../
 import { removeOverlays } from '../../gltf/earlier-in-file.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError, withName } from '../../gltf/input-error.js';
-import { CagecastError, type CutTarget } from '../../index.js';
 import { percent } from '../../inspect/finding.js';
 import { grouped } from '../../inspect/geometry.js';
 import type { Borders } from '../../parts/cut-part.js';

@@ -1,3 +1,4 @@
+import type { CutTarget } from '../../api/index.js';
 import { mostTexels } from '../../bake/image.js';
 import { type Baked, cageTexture, fill, type Image, type Layout, resize, type Wrap } from '../../bake/index.js';
 import { FileModel } from '../../gltf/bake/bake-file.js';
@@ -7,7 +8,6 @@ import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
 import { partsNamed } from '../../gltf/read-model.js';
 import type { UvLayout } from '../../gltf/uv-layout.js';
-import type { CutTarget } from '../../index.js';
 import { decodeImage } from '../io/images.js';
 import { listed, quoted } from '../model/text.js';
 import { noSuchName } from '../transfer/part-names.js';

@@ -1,8 +1,8 @@
 // Flags that several commands have, as commander parses them.
 import { type Command, InvalidArgumentError, Option } from 'commander';
-import { type FormatLimits, formatDefaults } from '../../formats/limits.js';
 import { optionFlags } from '../../generated/options.js';
 import { defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
+import { type FormatLimits, formatDefaults } from '../../gltf/formats/limits.js';
 import { standard } from '../io/files.js';
 import type { ReadOptions } from '../model/reading.js';
 import { colorAttributes, holdsColors, kChoices, kSettingNames, type Layer, type Settings } from '../model/settings.js';

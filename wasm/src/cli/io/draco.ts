@@ -2,8 +2,8 @@ import decoderBinary from 'draco3dgltf/draco_decoder_gltf.wasm';
 import createDecoderModule from 'draco3dgltf/draco_decoder_gltf_nodejs.js';
 import encoderBinary from 'draco3dgltf/draco_encoder.wasm';
 import createEncoderModule from 'draco3dgltf/draco_encoder_gltf_nodejs.js';
+import { CagecastError } from '../../api/index.js';
 import { notStarted } from '../../core/error.js';
-import { CagecastError } from '../../index.js';
 
 /** Starts the Draco decoder, from the copy that the build puts into this script. @throws {CagecastError} `unsupported` */
 export const createDracoDecoder = (): Promise<unknown> => start(createDecoderModule, decoderBinary);

@@ -1,5 +1,5 @@
-import type { FormatLimits } from '../../formats/limits.js';
 import { defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
+import type { FormatLimits } from '../../gltf/formats/limits.js';
 
 /** How files are read. */
 export interface ReadOptions {

@@ -1,7 +1,7 @@
+import type { Preset, PresetOptions } from '../../api/index.js';
 import { optionFlags } from '../../generated/options.js';
 import { type Form, forms } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
-import type { Preset, PresetOptions } from '../../index.js';
 import type { Borders } from '../../parts/cut-part.js';
 import { type Json, pathOf } from './json.js';
 import { shown } from './text.js';

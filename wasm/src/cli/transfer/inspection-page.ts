@@ -1,8 +1,8 @@
 import { PNG } from 'pngjs';
-import { Picture, type Rgb } from '../../glb/thumbnail/picture.js';
-import { Seen } from '../../glb/thumbnail/seen.js';
-import { type View, viewAt, views } from '../../glb/thumbnail/views.js';
 import { InputError } from '../../gltf/input-error.js';
+import { Picture, type Rgb } from '../../gltf/thumbnail/picture.js';
+import { Seen } from '../../gltf/thumbnail/seen.js';
+import { type View, viewAt, views } from '../../gltf/thumbnail/views.js';
 import { counted, percent, verdictOf } from '../../inspect/finding.js';
 import { boxOf, pointAt, type Vector } from '../../inspect/geometry.js';
 import { type Scene, sceneOf } from '../../inspect/scene.js';

@@ -9,9 +9,8 @@ import {
   type Inspection,
   inspect,
   type Segment,
-  unfitFrom,
-  usableFrom,
   type Verdict,
+  verdictOf,
 } from '../../inspect/index.js';
 import type { Sources } from '../model/sources.js';
 import { integer, short } from '../model/text.js';
@@ -91,12 +90,15 @@ const kConclusions: Record<Verdict, string> = {
   unfit: 'UNFIT: the cage does not fit.',
 };
 
+/** Of a finding, by the verdict on it alone. */
+const kMarks: Record<Verdict, string> = { good: '·', usable: '!', unfit: '✗' };
+
 /** The verdict and the findings, for people. */
 export function conclusionOf({ verdict, findings }: Inspection): string[] {
   return [
     kConclusions[verdict],
     ...findings.flatMap((finding) => [
-      `${finding.weight >= unfitFrom ? '✗' : finding.weight >= usableFrom ? '!' : '·'} ${finding.sentence}.`,
+      `${kMarks[verdictOf([finding])]} ${finding.sentence}.`,
       `  → ${adviceOn(finding)}`,
     ]),
   ];

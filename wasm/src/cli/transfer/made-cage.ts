@@ -1,3 +1,4 @@
+import { CagecastError } from '../../api/index.js';
 import { findLandmarks, fitCage, init, makeCage } from '../../cages/sync.js';
 import type { Cage, CageModel, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../../cages/types.js';
 import { FileModel } from '../../gltf/bake/bake-file.js';
@@ -5,7 +6,6 @@ import { baseColorsOf } from '../../gltf/bake/base-colors.js';
 import { cageModelOf } from '../../gltf/cage-file.js';
 import { InputError } from '../../gltf/input-error.js';
 import type { ReadModel } from '../../gltf/read-model.js';
-import { CagecastError } from '../../index.js';
 import { decodeImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 

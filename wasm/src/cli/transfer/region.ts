@@ -1,10 +1,10 @@
 import { basename } from 'node:path';
+import type { CutTarget, TransferResult } from '../../api/index.js';
 import { dracoOf, meshoptView } from '../../gltf/checks/check-geometry.js';
 import type { Form } from '../../gltf/glb-writer.js';
 import { naming } from '../../gltf/input-error.js';
 import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/overlay.js';
 import { writeTransfer } from '../../gltf/write-transfer.js';
-import type { CutTarget, TransferResult } from '../../index.js';
 import { packDraco } from '../io/draco-write.js';
 import type { Io } from '../io/io.js';
 import type { TransferCommand } from '../model/sources.js';

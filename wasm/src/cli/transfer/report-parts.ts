@@ -1,7 +1,7 @@
 // What the reports of `transfer` and `inspect` have in common.
 
+import { presetOptions, type TransferResult } from '../../api/index.js';
 import type { ReadModel } from '../../gltf/read-model.js';
-import { presetOptions, type TransferResult } from '../../index.js';
 import { type Bare, bareOf, bareText } from '../../inspect/bare.js';
 import { percent } from '../../inspect/finding.js';
 import { boxOf } from '../../inspect/geometry.js';

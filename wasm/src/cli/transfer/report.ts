@@ -1,6 +1,6 @@
+import type { SegmentStats, TransferResult } from '../../api/index.js';
 import { type Part, primitivePath } from '../../gltf/extract-file.js';
 import type { Added } from '../../gltf/write-transfer.js';
-import type { SegmentStats, TransferResult } from '../../index.js';
 import { vertexAreas } from '../../inspect/geometry.js';
 import type { Finding, Segment, Verdict } from '../../inspect/index.js';
 import { hasArea, segmentsOf } from '../../inspect/segments.js';

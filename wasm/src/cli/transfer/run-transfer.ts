@@ -1,7 +1,3 @@
-import { FileModel } from '../../gltf/bake/bake-file.js';
-import { masksOf } from '../../gltf/bake/mask-sources.js';
-import { naming } from '../../gltf/input-error.js';
-import { bareParts, besideOf, movedApart, type ReadModel, readBack, turned, withUvs } from '../../gltf/read-model.js';
 import {
   type CutTarget,
   cutBorders,
@@ -10,7 +6,11 @@ import {
   type TransferOptions,
   type TransferResult,
   transfer,
-} from '../../index.js';
+} from '../../api/index.js';
+import { FileModel } from '../../gltf/bake/bake-file.js';
+import { masksOf } from '../../gltf/bake/mask-sources.js';
+import { naming } from '../../gltf/input-error.js';
+import { bareParts, besideOf, movedApart, type ReadModel, readBack, turned, withUvs } from '../../gltf/read-model.js';
 import { isBackward } from '../../inspect/backward.js';
 import { boxOf } from '../../inspect/geometry.js';
 import { readImage } from '../io/images.js';

@@ -1,7 +1,7 @@
 import type { Document } from '@gltf-transform/core';
+import type { Mesh, TransferOptions } from '../../api/index.js';
 import type { Parts } from '../../api/parts.js';
 import { mostTexels } from '../../bake/index.js';
-import type { Mesh, TransferOptions } from '../../index.js';
 import { type Borders, isCut } from '../../parts/cut-part.js';
 import { addTransfer } from '../document/add-transfer.js';
 import { removeOverlays } from '../document/earlier-in-document.js';

@@ -1,5 +1,5 @@
+import type { Masks } from '../../api/index.js';
 import { type MaskImages, maskTriangles, maskVertices } from '../../bake/index.js';
-import type { Masks } from '../../index.js';
 import { InputError } from '../input-error.js';
 import { endOf } from '../pieces.js';
 import { layUvs } from '../uv-layout.js';

@@ -1,3 +1,4 @@
+import { CagecastError, type CutTarget, type TransferResult } from '../../api/index.js';
 import {
   areaOf,
   type Baked,
@@ -10,7 +11,6 @@ import {
   type Wrap,
 } from '../../bake/index.js';
 import { kMaxLayers } from '../../bake/pattern.js';
-import { CagecastError, type CutTarget, type TransferResult } from '../../index.js';
 import { applySplit } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
 import { type AccessorData, decodeFloats } from '../accessors.js';

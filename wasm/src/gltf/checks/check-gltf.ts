@@ -1,6 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
+import { CagecastError } from '../../api/index.js';
 import { type ErrorDetails, show } from '../../core/error.js';
-import { CagecastError } from '../../index.js';
 import { isDataUri, readDataUri } from '../data-uri.js';
 import { InputError } from '../input-error.js';
 import { parseGltf } from '../parse.js';

@@ -11,7 +11,7 @@ import type {
   TextureInfo,
   TypedArray,
 } from '@gltf-transform/core';
-import type { CutTarget, TransferResult } from '../../index.js';
+import type { CutTarget, TransferResult } from '../../api/index.js';
 import { type AttributeArray, applySplit, ruleOf, splitSkin } from '../../parts/blend.js';
 import type { PreparedPart } from '../../parts/prepare.js';
 import {

@@ -1,6 +1,6 @@
 import type { Document, Node } from '@gltf-transform/core';
-import * as cages from '../../cages/index.js';
-import { CagecastError, type Mesh } from '../../index.js';
+import { CagecastError } from '../../api/index.js';
+import type { Cage, CageModel, Template } from '../../cages/types.js';
 import { faceHints } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { vrmExpressions } from '../../parts/morph-names.js';
@@ -18,29 +18,29 @@ import {
   partNames,
   skinOf,
 } from './extract-document.js';
-import { isDocument, read, wrong } from './transfer-document.js';
+import { read, wrong } from './transfer-document.js';
 
-/** What glTF-Transform does not keep of a file. */
-export interface FileOptions {
+/** Options of `cageModel`. */
+export interface CageModelOptions {
   /** The `extensions` of the file's JSON. A VRM's skeleton and expressions are in them: without it, names of nodes and morph targets count. */
   extensions?: VrmExtensions | undefined;
-}
-
-/** Options of calls that may look for a painted face. */
-export interface DecodingOptions extends FileOptions {
   /**
-   * Decodes an image, as for `bake`; base colours are looked at for a painted face then, as by `withBaseColors`. What it rejects is
-   * left out. Default: they are not looked at.
+   * Decodes an image, as for `bake`, so that a face that is only painted can be found. Images for which it rejects are left out.
+   * Default: colours are not looked at.
    */
   decode?: ImageCodec['decode'] | undefined;
 }
 
 /**
  * What `cagecast/cages` needs of a document: the triangles of its default scene, a part for each primitive of each node, the
- * joints of its skins, in the bind pose, and where its morph targets say that its face is.
+ * joints of its skins, in the bind pose, where its morph targets say that its face is, and what its parts look like.
+ * Cost: with `decode`, that of decoding, and some milliseconds for each image.
  * @throws {CagecastError} `badArgument` that names the primitive.
+ *
+ * @example
+ * const fit = await fitCage(template, await cageModel(document, { decode })); // of cagecast/cages
  */
-export function cageModel(document: Document, { extensions }: FileOptions = {}): cages.CageModel {
+export async function cageModel(document: Document, { extensions, decode }: CageModelOptions = {}): Promise<CageModel> {
   const { mesh, parts } = read('cageModel', 'model', document, () => extractDocument(document));
   const { positions, indices, groups } = mesh;
   return {
@@ -50,38 +50,15 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
     names: parts.map(partNames),
     ...skeletonOf(document, parts, vrmBones(extensions)),
     hints: faceHints(morphedParts(document, parts, positions, vrmExpressions(extensions))),
+    ...(decode && (await baseColorsOf(new DocumentModel(document, parts), decode))),
   };
-}
-
-/**
- * Adds to a model of `cageModel` what its parts look like, so that a face that is only painted can be found.
- * @param decode  Decodes an image, as for `bake`. Images for which it rejects are left out.
- * Cost: that of decoding, and some milliseconds for each image.
- * @throws {CagecastError} `badArgument` that names the primitive.
- *
- * @example
- * const fit = await fitCage(template, await withBaseColors(cageModel(document), document, decode)); // of cagecast/cages
- */
-export async function withBaseColors(
-  model: cages.CageModel,
-  document: Document,
-  decode: ImageCodec['decode'],
-): Promise<cages.CageModel> {
-  const { parts } = read('withBaseColors', 'document', document, () => extractDocument(document));
-  return { ...model, ...(await baseColorsOf(new DocumentModel(document, parts), decode)) };
-}
-
-/** A model, with base colours if images can be decoded. */
-async function modelOf(document: Document, { extensions, decode }: DecodingOptions): Promise<cages.CageModel> {
-  const model = cageModel(document, { extensions });
-  return decode ? withBaseColors(model, document, decode) : model;
 }
 
 /**
  * A document as a template: its mesh, and the landmarks that the `extras` of its cage's node or mesh have.
  * @throws {CagecastError} `badArgument`, `missingUvs`
  */
-export function cageTemplate(document: Document): cages.Template {
+export function cageTemplate(document: Document): Template {
   return read('cageTemplate', 'template', document, () => {
     const { mesh, parts } = extractDocument(document, undefined, 'cage');
     if (mesh.uvs === undefined)
@@ -98,55 +75,6 @@ export function cageTemplate(document: Document): cages.Template {
 }
 
 /**
- * As `makeCage` of `cagecast/cages`, for the default scene of a document.
- * @throws {CagecastError} as `makeCage` and `cageModel`.
- */
-export async function makeCage(
-  document: Document,
-  { extensions, decode, ...options }: cages.MakeOptions & cages.CageCallOptions & DecodingOptions = {},
-): Promise<cages.Cage> {
-  return cages.makeCage(await modelOf(document, { extensions, decode }), options);
-}
-
-/**
- * As `fitCage` of `cagecast/cages`, for documents.
- * @throws {CagecastError} as `fitCage`, `cageModel` and `cageTemplate`.
- */
-export async function fitCage(
-  template: Document | cages.Template,
-  document: Document,
-  landmarks?: cages.Landmarks,
-  { extensions, decode, ...options }: cages.FitOptions & cages.CageCallOptions & DecodingOptions = {},
-): Promise<cages.Fit> {
-  const from = isDocument(template) ? cageTemplate(template) : template;
-  return cages.fitCage(from, await modelOf(document, { extensions, decode }), landmarks, options);
-}
-
-/**
- * As `findLandmarks` of `cagecast/cages`, for the default scene of a document.
- * @throws {CagecastError} as `findLandmarks` and `cageModel`.
- */
-export async function findLandmarks(
-  document: Document,
-  { extensions, decode, ...options }: cages.CageCallOptions & DecodingOptions = {},
-): Promise<cages.FoundLandmarks> {
-  return cages.findLandmarks(await modelOf(document, { extensions, decode }), options);
-}
-
-/**
- * As `refineCage` of `cagecast/cages`, for documents.
- * @throws {CagecastError} as `refineCage`, `cageModel` and `cageTemplate`.
- */
-export async function refineCage(
-  cage: Document | Mesh | cages.Cage | cages.Template,
-  document: Document,
-  { extensions, ...options }: cages.RefineOptions & cages.CageCallOptions & FileOptions = {},
-): Promise<cages.Cage> {
-  const from = isDocument(cage) ? cageTemplate(cage) : cage;
-  return cages.refineCage(from, cageModel(document, { extensions }), options);
-}
-
-/**
  * Adds a cage to a document: a node named `cage` in its default scene, with landmarks, holes and kind in its `extras`, so that the
  * document is a template. `cageGlb` of `cagecast/cages` writes a file at once.
  * @throws {CagecastError} `badArgument`
@@ -156,7 +84,7 @@ export async function refineCage(
  */
 export function addCage<D extends Document>(
   document: D,
-  cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
+  cage: Pick<Cage, 'positions' | 'uvs' | 'indices'> & Partial<Cage>,
 ): { document: D; node: Node } {
   const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic', regions, bare } = cage;
   const root = read('addCage', 'document', document, () => document.getRoot());

@@ -7,8 +7,8 @@ import type {
   Primitive,
   TextureInfo,
 } from '@gltf-transform/core';
+import type { Mesh } from '../../api/index.js';
 import type { Parts } from '../../api/parts.js';
-import type { Mesh } from '../../index.js';
 import type { Vector } from '../../inspect/geometry.js';
 import { identity, type Matrix, multiply } from '../../parts/affine.js';
 import {

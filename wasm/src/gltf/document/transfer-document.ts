@@ -1,6 +1,4 @@
 import type { Document } from '@gltf-transform/core';
-import { faultOfParts, type Parts } from '../../api/parts.js';
-import { show } from '../../core/error.js';
 import {
   CagecastError,
   type CutTarget,
@@ -10,7 +8,9 @@ import {
   type TransferOptions,
   type TransferResult,
   transfer,
-} from '../../index.js';
+} from '../../api/index.js';
+import { faultOfParts, type Parts } from '../../api/parts.js';
+import { show } from '../../core/error.js';
 import { groupsNamed } from '../../parts/drawn.js';
 import { moved } from '../../parts/origin.js';
 import { hasCages, moveApart } from '../../parts/own-cages.js';

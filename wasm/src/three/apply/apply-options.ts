@@ -1,7 +1,7 @@
 import type { Material, Mesh, Texture } from 'three';
+import type { Classification, TransferOptions, TransferResult } from '../../api/index.js';
 import { optionNames } from '../../api/option-names.js';
 import type { Parts } from '../../api/parts.js';
-import type { Classification, TransferOptions, TransferResult } from '../../index.js';
 import type { Borders } from '../../parts/cut-part.js';
 import type { Prepared } from '../../parts/prepare.js';
 import { checkNames, checkParts, notA, wrong } from '../errors.js';

@@ -8,8 +8,8 @@ import {
   type Texture,
   Vector3,
 } from 'three';
+import type { Mesh as CageArrays, Classification } from '../../api/index.js';
 import { show } from '../../core/error.js';
-import type { Mesh as CageArrays, Classification } from '../../index.js';
 import { noteOf } from '../../inspect/bare.js';
 import type { Prepared } from '../../parts/prepare.js';
 import type { PartRange } from '../../parts/split-part.js';

@@ -1,5 +1,5 @@
 import type { BufferGeometry } from 'three';
-import type { CutTarget } from '../../index.js';
+import type { CutTarget } from '../../api/index.js';
 import { type PreparedPart, preparePart } from '../../parts/prepare.js';
 import type { PartRange } from '../../parts/split-part.js';
 import { atOnce, remake, replace } from './remake.js';

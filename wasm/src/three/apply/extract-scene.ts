@@ -8,9 +8,9 @@ import {
   type SkinnedMesh,
   type Mesh as ThreeMesh,
 } from 'three';
+import type { CagecastError, Mesh } from '../../api/index.js';
 import type { Parts } from '../../api/parts.js';
 import { show } from '../../core/error.js';
-import type { CagecastError, Mesh } from '../../index.js';
 import type { Vector } from '../../inspect/geometry.js';
 import { chooseParts, groupsNamed, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
 import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/origin.js';

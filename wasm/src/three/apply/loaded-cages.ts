@@ -1,5 +1,5 @@
 import { type BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
-import * as cages from '../../cages/index.js';
+import type { Cage, CageModel, Template } from '../../cages/types.js';
 import { faceHints } from '../../parts/face-hints.js';
 import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { vrmExpressions } from '../../parts/morph-names.js';
@@ -8,23 +8,22 @@ import { wrong } from '../errors.js';
 import { baseColorsOf } from './base-colors.js';
 import { asItWas, extract, extrasOf, morphedParts, type Part } from './extract-scene.js';
 import { isSkinned } from './flags.js';
-import {
-  geometryOf,
-  isArrays,
-  isLoadedGltf,
-  type Loaded,
-  type LoadedCage,
-  type LoadedGltf,
-  objectOf,
-} from './models.js';
+import { geometryOf, isLoadedGltf, type Loaded, type LoadedCage, type LoadedGltf, objectOf } from './models.js';
 import { skinOf } from './places.js';
 
 /**
  * What `cagecast/cages` needs of a model: its triangles, a part for each mesh or material group, the joints of its skeletons, in the
- * bind pose, and where its morph targets say that its face is.
+ * bind pose, where its morph targets say that its face is, and what its parts look like, so that a face that is only painted can be
+ * found. Textures whose pixels cannot be read are left out: compressed ones, and images of another origin that does not allow it.
+ * Cost: some milliseconds for each texture, each in a task of its own; nothing for a texture that was read before.
  * @throws {CagecastError} `badArgument` that names the mesh.
  */
-export function cageModel(model: Loaded): cages.CageModel {
+export async function cageModel(model: Loaded): Promise<CageModel> {
+  return { ...shapeOf(model), ...(await baseColorsOf(objectOf(model))) };
+}
+
+/** Of the model for cages, all but its colours. */
+function shapeOf(model: Loaded): CageModel {
   const object = objectOf(model);
   return asItWas(object, undefined, () => {
     const { mesh, parts, names } = extract(object, 'model');
@@ -41,19 +40,6 @@ export function cageModel(model: Loaded): cages.CageModel {
   });
 }
 
-/**
- * Adds to a model of `cageModel` what its parts look like, so that a face that is only painted can be found. `makeCage`, `fitCage` and
- * `findLandmarks` of this module do so. Textures whose pixels cannot be read are left out: compressed ones, and images of another origin
- * that does not allow it.
- * Cost: some milliseconds for each texture, each in a task of its own; nothing for a texture that was read before.
- * @throws {CagecastError} `badArgument` that names the mesh.
- */
-export async function withBaseColors(model: cages.CageModel, loaded: Loaded): Promise<cages.CageModel> {
-  return { ...model, ...(await baseColorsOf(objectOf(loaded))) };
-}
-
-const modelOf = (model: Loaded): Promise<cages.CageModel> => withBaseColors(cageModel(model), model);
-
 /** The names of the expressions that use the morph targets of a mesh. */
 function expressionsOf(loaded: LoadedGltf): (mesh: Part['mesh'], target: number) => string[] {
   const expressions = vrmExpressions(extensionsOf(loaded));
@@ -65,7 +51,7 @@ function expressionsOf(loaded: LoadedGltf): (mesh: Part['mesh'], target: number)
  * A loaded cage as a template: its mesh, and the landmarks in its `userData`, where GLTFLoader puts the `extras` of a node or mesh.
  * @throws {CagecastError} `badArgument`, `missingUvs`
  */
-export function cageTemplate(model: LoadedCage): cages.Template {
+export function cageTemplate(model: LoadedCage): Template {
   const { mesh, parts } = extract(model, 'template');
   if (mesh.uvs === undefined)
     throw wrong('template has a mesh without the attribute uv', 'cageTemplate', 'missingUvs', { argument: 'template' });
@@ -82,50 +68,11 @@ export function cageTemplate(model: LoadedCage): cages.Template {
   return readTemplate({ positions, indices, uvs }, sources, (text) => wrong(text, 'cageTemplate'));
 }
 
-/** As `makeCage` of `cagecast/cages`, for a loaded model. @throws {CagecastError} */
-export async function makeCage(
-  model: Loaded,
-  options: cages.MakeOptions & cages.CageCallOptions = {},
-): Promise<cages.Cage> {
-  return cages.makeCage(await modelOf(model), options);
-}
-
-/** As `fitCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */
-export async function fitCage(
-  template: Loaded | cages.Template,
-  model: Loaded,
-  landmarks?: cages.Landmarks,
-  options: cages.FitOptions & cages.CageCallOptions = {},
-): Promise<cages.Fit> {
-  return cages.fitCage(
-    isArrays(template) ? template : cageTemplate(template),
-    await modelOf(model),
-    landmarks,
-    options,
-  );
-}
-
-/** As `findLandmarks` of `cagecast/cages`, for a loaded model. @throws {CagecastError} */
-export async function findLandmarks(model: Loaded, options: cages.CageCallOptions = {}): Promise<cages.FoundLandmarks> {
-  return cages.findLandmarks(await modelOf(model), options);
-}
-
-/** As `refineCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */
-export async function refineCage(
-  cage: LoadedCage,
-  model: Loaded,
-  options: cages.RefineOptions & cages.CageCallOptions = {},
-): Promise<cages.Cage> {
-  return cages.refineCage(isArrays(cage) ? cage : cageTemplate(cage), cageModel(model), options);
-}
-
 /**
  * The geometry of a cage, with normals, to be shown. Landmarks, holes and kind are in its `userData`, which GLTFExporter
  * does not write: `cageGlb` of `cagecast/cages` writes a file with them.
  */
-export function cageGeometry(
-  cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
-): BufferGeometry {
+export function cageGeometry(cage: Pick<Cage, 'positions' | 'uvs' | 'indices'> & Partial<Cage>): BufferGeometry {
   const geometry = geometryOf(cage);
   geometry.computeVertexNormals();
   return geometry;

@@ -1,4 +1,4 @@
-import type { Mesh, TransferOptions } from '../../index.js';
+import type { Mesh, TransferOptions } from '../../api/index.js';
 import { hash, pack, unpack } from '../../parts/pack.js';
 import type { Prepared } from '../../parts/prepare.js';
 import { notA, wrong } from '../errors.js';

@@ -1,6 +1,6 @@
 import { BufferAttribute, type BufferGeometry, type Material, type Mesh } from 'three';
+import type { Mesh as Arrays, Classification } from '../../api/index.js';
 import { show } from '../../core/error.js';
-import type { Mesh as Arrays, Classification } from '../../index.js';
 import { borderDistances } from '../../parts/border-distance.js';
 import { decideAgain, type PreparedPart, withCopies } from '../../parts/prepare.js';
 import { separatePaint, verticesOf } from '../../parts/split-part.js';

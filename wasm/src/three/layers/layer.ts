@@ -1,5 +1,5 @@
 import { SRGBColorSpace, type Texture } from 'three';
-import { check, checkColor, checkShare, kPaint, notA } from '../errors.js';
+import { check, checkColor, checkShare, notA } from '../errors.js';
 
 /** How the colour of a layer is blended with the layers below: as in “Compositing and Blending” of the W3C, in linear light. */
 export const blendModes = ['normal', 'multiply', 'screen', 'add'] as const;
@@ -105,7 +105,7 @@ export function freeName(kind: string, layers: readonly Layer[]): string {
 
 /** @throws {CagecastError} `badArgument` if a value is not a texture. */
 export function checkTexture(texture: Texture, argument: string): void {
-  if (texture?.isTexture !== true) throw notA('a Texture', argument, texture, kPaint);
+  if (texture?.isTexture !== true) throw notA('a Texture', argument, texture);
 }
 
 /** One layer of paint. A change of the stack makes a new object; the `id` stays. */

@@ -1,6 +1,6 @@
 import type { Texture, WebGLRenderer } from 'three';
 import type { LoadedCage } from '../apply/models.js';
-import { check, kPaint, notA, wrong } from '../errors.js';
+import { check, notA, wrong } from '../errors.js';
 import { readStraight } from '../gpu/straight.js';
 import { BaseTint } from './base-tint.js';
 import { Composite, maxCompositeSize } from './composite.js';
@@ -20,8 +20,8 @@ import { LayerStack } from './stack.js';
 export interface LayersOptions {
   /**
    * Draws the texture; the models that show it have to be drawn by the same one. For a `WebGPURenderer`, a `WebGLRenderer` of their own
-   * draws the layers, and an `update` that has changed them copies the texture, for which it waits for the GPU; the page imports
-   * `cagecast/three/paint/webgpu`.
+   * draws the layers, and an `update` that has changed them copies the texture, for which it waits for the GPU; the page calls
+   * `enableLayers` of `cagecast/three/webgpu` once.
    */
   renderer: WebGLRenderer | OtherRenderer;
   /** The cage, for layers that are seen within one of its regions. Default: there are no regions. */
@@ -88,7 +88,7 @@ export class Layers extends Emitter<{
     const isOther = (renderer as OtherRenderer | undefined)?.isWebGPURenderer === true;
     // Other renderers have no such map.
     if (!isOther && typeof (renderer as WebGLRenderer | undefined)?.properties?.get !== 'function')
-      throw wrong('options.renderer is neither a WebGLRenderer nor a WebGPURenderer', kPaint);
+      throw wrong('options.renderer is neither a WebGLRenderer nor a WebGPURenderer');
     if (size !== undefined) check(kSizes.includes(size), 'size', size, `one of ${kSizes.join(', ')}`);
     this.#regions = cage && regionsOf(cage);
     this.canvas = renderer.domElement;
@@ -229,7 +229,7 @@ export class Layers extends Emitter<{
    */
   toImageData(size = this.composite.size): ImageData {
     if (!(Number.isInteger(size) && size > 0 && size <= maxCompositeSize))
-      throw notA(`an integer from 1 to ${maxCompositeSize}`, 'size', size, kPaint);
+      throw notA(`an integer from 1 to ${maxCompositeSize}`, 'size', size);
     this.update();
     return readStraight(this.renderer, this.composite.texture, size);
   }
@@ -291,11 +291,11 @@ export class Layers extends Emitter<{
 
   #checkReadable(texture: Texture | null | undefined, name: string): void {
     if (this.#copied && texture?.isRenderTargetTexture)
-      throw wrong(`${name} is drawn by another renderer than the layers, which cannot read it`, kPaint);
+      throw wrong(`${name} is drawn by another renderer than the layers, which cannot read it`);
   }
 
   #nameOf(layer: Pick<Layer, 'id'>): string {
-    if (typeof layer?.id !== 'number') throw notA('a layer', 'layer', layer, kPaint);
+    if (typeof layer?.id !== 'number') throw notA('a layer', 'layer', layer);
     return this.list.find(({ id }) => id === layer.id)?.name ?? 'a layer';
   }
 }

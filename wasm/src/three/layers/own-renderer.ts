@@ -1,6 +1,6 @@
 import type { WebGLRenderer } from 'three';
 import { type Canvas, makeCanvas } from '../canvas.js';
-import { kPaint, wrong } from '../errors.js';
+import { wrong } from '../errors.js';
 
 /** A `WebGPURenderer` of three.js, as far as it is used here. */
 export interface OtherRenderer {
@@ -10,7 +10,7 @@ export interface OtherRenderer {
 
 let make: ((canvas: Canvas) => WebGLRenderer) | undefined;
 
-/** For `cagecast/three/paint/webgpu`: pages without it need no `WebGLRenderer`, which `three/webgpu` does not have. @internal */
+/** For `enableLayers`: pages that do not call it need no `WebGLRenderer`, which `three/webgpu` does not have. */
 export function setOwnRenderer(maker: (canvas: Canvas) => WebGLRenderer): void {
   make = maker;
 }
@@ -21,18 +21,14 @@ let users = 0;
 
 /**
  * Lends a renderer that draws layers without a model. Give it back by `giveBack`.
- * @throws {CagecastError} `badArgument` without that entry, `unsupported` without WebGL 2.
+ * @throws {CagecastError} `badArgument` without `enableLayers`, `unsupported` without WebGL 2.
  */
 export function lendRenderer(): WebGLRenderer {
-  if (!make)
-    throw wrong(
-      'options.renderer is a WebGPURenderer, for which the page has to import cagecast/three/paint/webgpu',
-      kPaint,
-    );
+  if (!make) throw wrong('options.renderer is a WebGPURenderer: call enableLayers() of cagecast/three/webgpu once');
   try {
     own ??= make(makeCanvas(1, 1));
   } catch {
-    throw wrong('layers need WebGL 2, also beside a WebGPURenderer', kPaint, 'unsupported');
+    throw wrong('layers need WebGL 2, also beside a WebGPURenderer', undefined, 'unsupported');
   }
   ++users;
   return own;

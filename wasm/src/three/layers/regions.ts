@@ -3,7 +3,7 @@ import { regionMask } from '../../bake/region-mask.js';
 import { show } from '../../core/error.js';
 import { isRegion, type Outline } from '../../parts/template.js';
 import { type LoadedCage, objectOf } from '../apply/models.js';
-import { kPaint, wrong } from '../errors.js';
+import { wrong } from '../errors.js';
 
 /** Outlines in UVs, by the names of regions. */
 export type Regions = Readonly<Record<string, readonly Outline[]>>;
@@ -37,7 +37,7 @@ export function checkRegion(name: string | null | undefined, regions: Regions | 
     : known.length > 0
       ? `the cage has these: ${known.map(show).join(', ')}`
       : 'the cage has none';
-  throw wrong(`region is ${show(name)}, which is not known; ${why}`, kPaint, 'badOption');
+  throw wrong(`region is ${show(name)}, which is not known; ${why}`, undefined, 'badOption');
 }
 
 /** The masks of regions in one texture, so that any number of layers needs one unit of the GPU. */

@@ -1,8 +1,8 @@
 import { SRGBColorSpace, Texture, type WebGLRenderer } from 'three';
+import { CagecastError } from '../../api/index.js';
 import { show } from '../../core/error.js';
-import { CagecastError } from '../../index.js';
 import { toPng } from '../canvas.js';
-import { checkColor, kPaint, notA, wrong } from '../errors.js';
+import { checkColor, notA, wrong } from '../errors.js';
 import { kWhole, toTexels } from '../gpu/rect.js';
 import { readStraight } from '../gpu/straight.js';
 import { kWhite } from './base-tint.js';
@@ -102,9 +102,9 @@ export async function loadLayers(
   regions: Regions | undefined,
 ): Promise<{ layers: LoadedLayer[]; baseTint: string }> {
   const { version, layers, baseTint = kWhite } = Object(saved) as Partial<SavedLayers>;
-  if (!Array.isArray(layers)) throw notA('what save returned', 'saved', saved, kPaint);
-  if (version !== kVersion) throw wrong(`saved.version is ${show(version)}, not ${kVersion}`, kPaint);
-  if (layers.length > maxLayers) throw wrong(`saved.layers are ${layers.length}, more than ${maxLayers}`, kPaint);
+  if (!Array.isArray(layers)) throw notA('what save returned', 'saved', saved);
+  if (version !== kVersion) throw wrong(`saved.version is ${show(version)}, not ${kVersion}`);
+  if (layers.length > maxLayers) throw wrong(`saved.layers are ${layers.length}, more than ${maxLayers}`);
   checkColor('saved.baseTint', baseTint);
   const placeOf = (i: number): string => `saved.layers[${i}]`;
   const styles = Array.from(layers, (layer, i) => checkLayer(layer, placeOf(i), regions));
@@ -143,17 +143,17 @@ interface CheckedLayer {
 /** Checks all of a layer but its images. @param place  Of the layer, for messages. @returns its style. @throws {CagecastError} */
 function checkLayer(layer: SavedLayer, place: string, regions: Regions | undefined): Partial<Style> {
   const { name, painting, normal: _, ...rest } = Object(layer) as SavedLayer;
-  if (typeof name !== 'string') throw notA('a name', `${place}.name`, name, kPaint);
-  if (name.length > kMaxName) throw wrong(`${place}.name has ${name.length} characters, more than ${kMaxName}`, kPaint);
+  if (typeof name !== 'string') throw notA('a name', `${place}.name`, name);
+  if (name.length > kMaxName) throw wrong(`${place}.name has ${name.length} characters, more than ${kMaxName}`);
   if (painting !== undefined && !paintingSizes.includes(painting))
-    throw notA(paintingSizes.join(' or '), `${place}.painting`, painting, kPaint);
+    throw notA(paintingSizes.join(' or '), `${place}.painting`, painting);
   try {
     const style = readStyle(rest);
     checkRegion(style.region, regions);
     return style;
   } catch (error) {
     if (!(error instanceof CagecastError)) throw error;
-    throw wrong(`${place}.${error.reason}`, kPaint, error.code, { cause: error });
+    throw wrong(`${place}.${error.reason}`, undefined, error.code, { cause: error });
   }
 }
 

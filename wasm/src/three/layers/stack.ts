@@ -1,5 +1,5 @@
-import type { CagecastError } from '../../index.js';
-import { kPaint, notA, wrong } from '../errors.js';
+import type { CagecastError } from '../../api/index.js';
+import { notA, wrong } from '../errors.js';
 import { Emitter } from './emitter.js';
 import { checkTexture, difference, type Layer, plainStyle, readStyle, type Sheet, type Style } from './layer.js';
 
@@ -101,7 +101,7 @@ export class LayerStack extends Emitter<StackEvents> {
   /** Moves a layer. @param place From 0, the lowest; what is out of range is clamped. */
   move(layer: Pick<Layer, 'id'>, place: number): void {
     const from = this.#indexOf(layer);
-    if (!Number.isInteger(place)) throw notA('an integer', 'the place of a layer', place, kPaint);
+    if (!Number.isInteger(place)) throw notA('an integer', 'the place of a layer', place);
     const to = Math.max(0, Math.min(this.#layers.length - 1, place));
     if (from === to) return;
     const layers = [...this.#layers];

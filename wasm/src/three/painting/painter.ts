@@ -1,7 +1,9 @@
 import { type Camera, Raycaster, type Texture, Vector2, Vector3 } from 'three';
 import { show } from '../../core/error.js';
-import { check, checkColor, checkShare, kPaint, notA, wrong } from '../errors.js';
-import { type Applied, extract, type LoadedCage } from '../index.js';
+import type { Applied } from '../apply/apply-options.js';
+import { extract } from '../apply/extract-scene.js';
+import type { LoadedCage } from '../apply/models.js';
+import { check, checkColor, checkShare, notA, wrong } from '../errors.js';
 import { Emitter } from '../layers/emitter.js';
 import { createLayers, type Layers, type LayersOptions } from '../layers/layers.js';
 import type { PaintingSize } from '../layers/painted-sheet.js';
@@ -81,9 +83,9 @@ export class Painter extends Emitter<{
     const { layers, renderer, texture, applied, cage, size } = options ?? {};
     this.#models = [applied].flat();
     if (this.#models.some((model) => typeof model?.setTexture !== 'function'))
-      throw wrong('options.applied is not what applyTransfer returned', kPaint);
+      throw wrong('options.applied is not what applyTransfer returned');
     const { positions, indices, uvs } = extract(cage, 'cage').mesh;
-    if (!uvs) throw wrong('options.cage has no UVs', kPaint);
+    if (!uvs) throw wrong('options.cage has no UVs');
     this.layers = layers ?? createLayers({ renderer, cage } as LayersOptions);
     if (texture && !layers) this.layers.add(texture, { undoable: false });
     this.#painter = new LayerPainter(this.layers);
@@ -143,7 +145,7 @@ export class Painter extends Emitter<{
    */
   sticker(picture: StickerPicture, place: StickerPlace): void {
     checkPicture(picture);
-    if (!('at' in Object(place))) throw notA('an object with "at"', 'the place', place, kPaint);
+    if (!('at' in Object(place))) throw notA('an object with "at"', 'the place', place);
     const surface = this.#surfaceAt(place.at);
     if (!surface) return;
     this.#beginSticker(picture, place)(surface, place.up);
@@ -277,7 +279,7 @@ export class Painter extends Emitter<{
 
   #stroke(points: readonly (StrokePoint | undefined)[], style: BrushStyle): void {
     checkBrush(style);
-    if (!Array.isArray(points)) throw notA('an array', 'points', points, kPaint);
+    if (!Array.isArray(points)) throw notA('an array', 'points', points);
     const texels = this.#painter.cageTexels;
     if (!texels) return; // disposed of
     const stroke = new Stroke(texels, { radius: (style.size / 2) * texels.diagonal, mirror: style.mirror });
@@ -300,7 +302,7 @@ export class Painter extends Emitter<{
     const { toCage, surface, x, y } = Object(point) as Partial<Spot & { x: number; y: number }>;
     const { cageTexels: texels } = this.#painter;
     if (toCage) return texels && surface;
-    if (![x, y].every(Number.isFinite)) throw wrong(`a point is (${show(x)}, ${show(y)}), not a UV`, kPaint);
+    if (![x, y].every(Number.isFinite)) throw wrong(`a point is (${show(x)}, ${show(y)}), not a UV`);
     return texels?.at(x!, y!);
   }
 }
@@ -313,7 +315,7 @@ function follow(layers: Layers, painter: LayerPainter): () => void {
 
 /** @throws {CagecastError} `badArgument` */
 function checkCamera(camera: Camera): void {
-  if (!camera?.isCamera) throw notA('a Camera', 'camera', camera, kPaint);
+  if (!camera?.isCamera) throw notA('a Camera', 'camera', camera);
 }
 
 /** @throws {CagecastError} `badOption` that names the field and its value. */

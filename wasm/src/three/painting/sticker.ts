@@ -1,6 +1,6 @@
 import { CanvasTexture, SRGBColorSpace, Vector3, type WebGLRenderer } from 'three';
 import { type Canvas, type Context, makeCanvas } from '../canvas.js';
-import { kPaint, notA, wrong } from '../errors.js';
+import { notA, wrong } from '../errors.js';
 import { Composite } from '../layers/composite.js';
 import { plainStyle } from '../layers/layer.js';
 import type { SurfacePoint } from './cage-texels.js';
@@ -86,7 +86,7 @@ export class StickerSheet {
 /** @throws {CagecastError} `badArgument` */
 export function checkPicture(picture: StickerPicture): void {
   const given = Object(picture);
-  if (!('text' in given || given.image)) throw notA('a text or an image', 'the picture', picture, kPaint);
+  if (!('text' in given || given.image)) throw notA('a text or an image', 'the picture', picture);
 }
 
 function drawText({ text, color, outline, font: family = 'system-ui, sans-serif' }: StickerText): Canvas {
@@ -117,7 +117,7 @@ function drawText({ text, color, outline, font: family = 'system-ui, sans-serif'
 function drawImage(image: StickerImage): Canvas {
   // The width of an element is that of its place on the page.
   const { naturalWidth: wide = image.width, naturalHeight: high = image.height } = image as HTMLImageElement;
-  if (!(wide * high > 0)) throw wrong('the image is not loaded yet', kPaint);
+  if (!(wide * high > 0)) throw wrong('the image is not loaded yet');
   const scale = (kSide - 2 * kMargin) / Math.max(wide, high);
   const [width, height] = [wide, high].map((side) => Math.max(1, Math.round(side * scale))) as [number, number];
   const canvas = makeCanvas(width + 2 * kMargin, height + 2 * kMargin);

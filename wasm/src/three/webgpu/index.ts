@@ -1,5 +1,6 @@
 /**
- * Paint of `cagecast/three` with the `WebGPURenderer` of three.js r178 or newer: import it once, and nothing else changes.
+ * Paint of `cagecast/three` with the `WebGPURenderer` of three.js r178 or newer: import it once, and nothing else changes; for layers and
+ * painting, call `enableLayers` once.
  *
  * @example
  * import 'cagecast/three/webgpu';
@@ -8,7 +9,7 @@
  * applyTransfer(head, { cage, texture });
  * @module cagecast/three/webgpu
  */
-import { Color, DoubleSide, type Material, Matrix3, Texture, Vector3 } from 'three';
+import { Color, DoubleSide, type Material, Matrix3, Texture, Vector3, WebGLRenderer } from 'three';
 import {
   attribute,
   diffuseColor,
@@ -29,7 +30,7 @@ import {
   vec4,
 } from 'three/tsl';
 import type { Node } from 'three/webgpu';
-import { setNodePainter } from '../index.js';
+import { setNodePainter, setOwnRenderer } from '../internals.js';
 import type { NodeBuilder, NodePainter, ShownOn, ShownPaint } from '../materials/node-paint.js';
 import { paintAttribute } from '../materials/paint-shader.js';
 
@@ -187,3 +188,18 @@ const painter: NodePainter = {
 };
 
 setNodePainter(painter);
+
+/**
+ * Lets `createLayers` and `createPainter` take a `WebGPURenderer`: a `WebGLRenderer` of their own draws the layers. Pages that do not call it
+ * carry none.
+ *
+ * @example
+ * import { enableLayers } from 'cagecast/three/webgpu';
+ * import { createPainter } from 'cagecast/three';
+ *
+ * enableLayers();
+ * const painter = createPainter({ renderer: webgpuRenderer, texture, applied, cage });
+ */
+export function enableLayers(): void {
+  setOwnRenderer((canvas) => new WebGLRenderer({ canvas, antialias: false, depth: false }));
+}

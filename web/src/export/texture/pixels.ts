@@ -1,4 +1,4 @@
-import type { Image } from 'cagecast/bake';
+import type { Image } from 'cagecast/engines';
 import { encodePng } from '../../platform/encode-png';
 import { readKtx2 } from './ktx2';
 

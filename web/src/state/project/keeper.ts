@@ -1,4 +1,4 @@
-import type { Command, History } from 'cagecast/three/paint';
+import type { Command, History } from '#three';
 import type { Model } from '../model';
 import type { Session } from '../session';
 import { type Files, filesIn, kVersion, type Project, type Snapshot } from './project';

@@ -8,7 +8,7 @@ import {
   paintingSizes,
   type Sheet,
   type Style,
-} from 'cagecast/three/paint';
+} from '#three';
 import type { Paint } from '../paint';
 import type { PutAwayLayers } from '../put-away-layers';
 import { kChecker, type Samples } from '../sample';

@@ -1,4 +1,4 @@
-import { Emitter } from 'cagecast/three/paint';
+import { Emitter } from '#three';
 import type { Avatar } from './avatar';
 
 /** The avatars of the wardrobe, and what is to be done with them, one after the other. */

@@ -1,5 +1,5 @@
-import type { Command, History } from 'cagecast/three/paint';
 import type { Vector3 } from 'three';
+import type { Command, History } from '#three';
 import { announce, element } from '../../platform/page';
 import type { Model } from '../../state/model';
 import type { Session } from '../../state/session';

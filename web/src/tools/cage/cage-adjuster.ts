@@ -1,4 +1,3 @@
-import type { Command, History } from 'cagecast/three/paint';
 import {
   BufferGeometry,
   LineBasicMaterial,
@@ -10,6 +9,7 @@ import {
   Sphere,
   Vector3,
 } from 'three';
+import type { Command, History } from '#three';
 import { announce, element } from '../../platform/page';
 import type { CageMaker } from '../../state/cage-maker';
 import type { Model } from '../../state/model';

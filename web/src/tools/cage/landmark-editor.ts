@@ -1,5 +1,5 @@
-import type { Command, History } from 'cagecast/three/paint';
 import { Box3, Plane, Vector3 } from 'three';
+import type { Command, History } from '#three';
 import { announce, element } from '../../platform/page';
 import type { CageMaker } from '../../state/cage-maker';
 import { type Fitting, kMaxAsked, madeOf, readable } from '../../state/made-cages';

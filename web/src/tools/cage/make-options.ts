@@ -1,6 +1,5 @@
 import type { CageModel } from 'cagecast/cages';
-import { cageModel } from 'cagecast/three';
-import type { History } from 'cagecast/three/paint';
+import { extract, type History } from '#three';
 import { make } from '../../platform/make';
 import { announce, element } from '../../platform/page';
 import type { CageMaker } from '../../state/cage-maker';
@@ -94,7 +93,7 @@ export class MakeOptionsPanel {
       // The model on the stage has overlays.
       this.#maker.read(target),
     ]);
-    const { names = [] } = cageModel(read.loaded);
+    const { names } = extract(read.loaded);
     const bare = await engine.excludedByName(names);
     const { primitives } = target.mesh;
     if (target !== this.#target || names.length !== primitives.length || names.length < 2) return;

@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/paint';
+import type { History } from '#three';
 import { element } from '../../platform/page';
 import type { CageMaker } from '../../state/cage-maker';
 import type { Session } from '../../state/session';

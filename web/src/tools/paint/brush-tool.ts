@@ -1,4 +1,4 @@
-import { type PointerPosition, PointerStroke } from 'cagecast/three/paint';
+import { type PointerPosition, PointerStroke } from '#three';
 import type { Spot } from '../../view/pick';
 import type { Tool } from '../../view/pointing';
 import type { PaintOptions } from './paint-options';

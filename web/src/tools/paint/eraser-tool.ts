@@ -1,5 +1,5 @@
-import { type CageTexels, type Capsule, PaintedSheet, type PaintingSize, StickersSheet } from 'cagecast/three/paint';
 import { MathUtils, type Vector3 } from 'three';
+import { type CageTexels, type Capsule, PaintedSheet, type PaintingSize, StickersSheet } from '#three';
 import { clearError, showError } from '../../platform/page';
 import type { Spot } from '../../view/pick';
 import type { BrushTool } from './brush-tool';

@@ -1,4 +1,4 @@
-import { type Composite, readStraight } from 'cagecast/three/paint';
+import { type Composite, readStraight } from '#three';
 import { announce, element } from '../../platform/page';
 import type { Spot } from '../../view/pick';
 import type { Viewer } from '../../view/viewer';

@@ -1,4 +1,4 @@
-import type { PointerPosition } from 'cagecast/three/paint';
+import type { PointerPosition } from '#three';
 import { element } from '../../platform/page';
 import type { Spot } from '../../view/pick';
 import type { Tool } from '../../view/pointing';

@@ -1,4 +1,4 @@
-import { Emitter, type PaintingSize, paintingSizes } from 'cagecast/three/paint';
+import { Emitter, type PaintingSize, paintingSizes } from '#three';
 import { element } from '../../platform/page';
 
 /** The painting tools; each shows its own options. */

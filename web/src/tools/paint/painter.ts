@@ -9,7 +9,7 @@ import {
   type PointerView,
   readStraight,
   StickersSheet,
-} from 'cagecast/three/paint';
+} from '#three';
 import { showError } from '../../platform/page';
 import type { ExtractedMesh } from '../../state/model';
 import type { Shown } from '../../state/scene';

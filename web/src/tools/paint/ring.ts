@@ -1,4 +1,4 @@
-import type { Aim } from 'cagecast/three/paint';
+import type { Aim } from '#three';
 import { element } from '../../platform/page';
 
 /** The outline of the brush at the pointer. */

@@ -1,4 +1,4 @@
-import type { StickerFrame as Frame } from 'cagecast/three/paint';
+import type { StickerFrame as Frame } from '#three';
 import { element } from '../../platform/page';
 import type { Viewer } from '../../view/viewer';
 

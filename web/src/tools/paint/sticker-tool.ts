@@ -1,3 +1,4 @@
+import { Vector3 } from 'three';
 import {
   type CageTexels,
   type StickerFrame as Frame,
@@ -7,8 +8,7 @@ import {
   type StickerPicture,
   type StickersSheet,
   type SurfacePoint,
-} from 'cagecast/three/paint';
-import { Vector3 } from 'three';
+} from '#three';
 import { announce } from '../../platform/page';
 import type { Spot } from '../../view/pick';
 import type { Viewer } from '../../view/viewer';

@@ -1,5 +1,4 @@
 import type { Classification, CutTarget, SplitVertices } from 'cagecast';
-import { cutGeometry } from 'cagecast/three';
 import {
   BufferAttribute,
   BufferGeometry,
@@ -11,6 +10,7 @@ import {
   SRGBColorSpace,
   type Texture,
 } from 'three';
+import { cutGeometry } from '#three';
 import { reverseWinding } from '../../loading/extract-mesh';
 import { disposeAfterFrame } from '../../platform/programs';
 import type { Primitive } from '../../state/model';

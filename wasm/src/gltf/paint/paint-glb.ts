@@ -1,0 +1,209 @@
+import {
+  CagecastError,
+  type Code,
+  init,
+  type Mesh,
+  type TransferOptions,
+  type TransferResult,
+} from '../../api/index.js';
+import { faultOfNames, optionNames } from '../../api/option-names.js';
+import { faultOfParts, type Parts } from '../../api/parts.js';
+import { cageGlb } from '../../cages/cage-glb.js';
+import type { CageCallOptions, Fit, Landmarks, TemplateName } from '../../cages/index.js';
+import type { Template } from '../../cages/types.js';
+import { show } from '../../core/error.js';
+import { isBackward } from '../../inspect/backward.js';
+import { noteOf } from '../../inspect/bare.js';
+import { type Borders, isCut } from '../../parts/cut-part.js';
+import { cutBorders, transfer } from '../../worker/index.js';
+import { extract } from '../extract-file.js';
+import { InputError } from '../input-error.js';
+import { openGltf } from '../open-gltf.js';
+import { type Paint, paintOf } from '../overlay.js';
+import { bareParts, errorInFile, movedApart, type ReadModel, turned, withUvs } from '../read-model.js';
+import { writeTransfer } from '../write-transfer.js';
+import { fitTo } from './fit.js';
+
+/** Options of `paintGlb`: those of `transfer`, and what to paint. Of `cage` and `template`, one is needed. */
+export interface PaintOptions
+  extends Omit<TransferOptions, 'parts' | 'locks' | 'masks'>,
+    Pick<CageCallOptions, 'signal' | 'onProgress'> {
+  /** The image that was drawn in the cage's UVs: the bytes of a PNG, JPEG, WebP or KTX2 file. */
+  texture: Uint8Array;
+  /** The cage in its place around the model, with UVs: the bytes of a GLB, or a mesh, such as a `Cage`, in the space of the model's scene. */
+  cage?: Uint8Array | Mesh | undefined;
+  /**
+   * A cage that is first fitted to the model: the name of one that comes with the package, which loads its file, or its own GLB's bytes, or a
+   * `Template`.
+   */
+  template?: TemplateName | Uint8Array | Template | undefined;
+  /** Spots of the model for the fit, in the space of its scene; they override those that are found. Default: none. */
+  landmarks?: Landmarks | undefined;
+  /** Where the paint ends: at existing triangle edges (`triangle`, the default), or exactly at holes and seams, where triangles are cut (`cut`). */
+  borders?: Borders | undefined;
+  /**
+   * What counts, by the names of nodes, meshes and materials. What a viewer does not draw is ignored, and so are cages, markers and
+   * collision shapes; glasses, hats, weapons and what the cage was made without are excluded, by their names; unless `keep` names them.
+   */
+  parts?: Parts | undefined;
+  /** Whether every primitive also gets the cage's UVs and `_NCZ` as attributes, for programs that read them. Default: false. */
+  attributes?: boolean | undefined;
+}
+
+const kOptions = [
+  ...['texture', 'cage', 'template', 'landmarks', 'borders', 'attributes', 'signal', 'onProgress'],
+  ...optionNames('transfer').filter((name) => !['locks', 'masks', 'reuse'].includes(name)),
+];
+
+/** What `paintGlb` made. */
+export interface PaintedGlb {
+  /** The painted file: a GLB, or the VRM that it was. */
+  bytes: Uint8Array;
+  /** Triangles of the model as it was, and how many of them are painted. */
+  triangles: { painted: number; total: number };
+  /** Why nothing, or less than 5 % of what the cage covers, is painted, and what helps. */
+  note: string | undefined;
+  /** Names of the parts that stay bare because of their names: glasses, hats, and what the cage was made without. */
+  bare: string[];
+  /** The fit, if there was a template. Its cage is in the space of the model's scene, and can be given as `cage` the next time. */
+  fit: Fit | undefined;
+}
+
+/**
+ * Paints a model: the bytes of a GLB or VRM in, those of the painted file out.
+ *
+ * What `cagecast transfer` does: each primitive gets an overlay of its triangles that may be painted. All else stays byte for byte, with every extension, those of VRM 0 and 1 too; an earlier transfer is replaced. The file must hold its buffers and
+ * images itself. What meshopt compresses stays so; Draco is refused.
+ *
+ * Fit and transfer run in workers where there are any. Nothing is loaded over the network but for a template by its name, and for a fit
+ * `cagecast-cages.wasm`, unless `init` of `cagecast/cages` was given it.
+ * Cost: reading and writing take about as long as copying the file some times; a fit takes seconds.
+ * @throws {CagecastError} `badArgument` that names the argument, the element of the file and the value; `badOption`; as `transfer`, and with a
+ * template as `fitCage`. With `signal`, its reason.
+ *
+ * @example
+ * import { paintGlb } from 'cagecast/gltf';
+ *
+ * const { bytes, note } = await paintGlb(await readFile('avatar.vrm'), { template: 'human-head', texture: await readFile('paint.png') });
+ */
+export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promise<PaintedGlb> {
+  const fault = faultOfNames('paintGlb', 'options', options, kOptions) ?? faultOfParts('paintGlb', options.parts);
+  if (fault !== undefined) throw new CagecastError('badOption', 'paintGlb', fault);
+  const {
+    texture,
+    cage,
+    template,
+    landmarks,
+    borders,
+    attributes = false,
+    parts: patterns,
+    signal,
+    onProgress = () => {},
+    ...rules
+  } = options;
+  if (!(bytes instanceof Uint8Array)) throw wrong('bytes', bytes, 'a Uint8Array');
+  if (typeof attributes !== 'boolean') throw wrong('options.attributes', attributes, 'true or false', 'badOption');
+  if (!(texture instanceof Uint8Array)) throw wrong('texture', texture, 'a Uint8Array');
+  if ((cage === undefined) === (template === undefined)) {
+    const what = cage === undefined ? 'neither cage nor template is' : 'cage and template are both';
+    throw new CagecastError('badArgument', 'paintGlb', `${what} given; one of them is needed`, { argument: 'cage' });
+  }
+  const cuts = isCut('paintGlb', borders);
+  try {
+    const paint = readPaint(texture);
+    await init();
+    signal?.throwIfAborted();
+    onProgress(0, 'reading');
+    const target = await readModel('bytes', bytes, { parts: patterns });
+    const fit = template && (await fitTo(target, template, { landmarks, signal, onProgress }));
+    const around = await readCage(fit?.cage ?? cage!, target);
+    signal?.throwIfAborted();
+    onProgress(0.9, 'transferring');
+    const bare = bareParts(target, around);
+    const { kept, excluded } = target.extracted;
+    const named = { keep: kept, exclude: [...bare, ...excluded] };
+    const pair = movedApart(target, around);
+    const { source, result } = await transferred(pair, target, { ...rules, parts: named, signal });
+    const arrays = [source.extracted.mesh, pair.target.extracted.mesh] as const;
+    const cut = cuts ? await cutBorders(...arrays, result, { ...rules, parts: named, signal }) : undefined;
+    onProgress(0.95, 'writing');
+    const { data } = await writeTransfer(target.file, target.extracted, result, {
+      paints: [paint],
+      cut,
+      hasAttributes: attributes,
+    });
+    signal?.throwIfAborted();
+    onProgress(1, 'writing');
+    const { mesh, parts } = target.extracted;
+    return {
+      bytes: data,
+      triangles: {
+        painted: result.cosmeticTriangles.reduce((sum, one) => sum + one, 0),
+        total: result.cosmeticTriangles.length,
+      },
+      note: noteOf(mesh, result, parts, around.extracted.mesh),
+      bare: [...new Set(bare.filter((p) => !kept.includes(p)).map((p) => parts[p]!.name))],
+      fit,
+    };
+  } catch (error) {
+    throw error instanceof InputError
+      ? new CagecastError('badArgument', 'paintGlb', error.message, {
+          argument: error.message.split(/\W/, 1)[0],
+          cause: error,
+        })
+      : error;
+  }
+}
+
+/** A transfer, and the cage as it was for it: turned, if it faced the other way. */
+async function transferred(
+  { target, wholeCage: cage }: ReturnType<typeof movedApart>,
+  whole: ReadModel,
+  options: Parameters<typeof transfer>[2],
+): Promise<{ source: ReadModel; result: TransferResult }> {
+  const call = async (source: ReadModel) => {
+    try {
+      return { source, result: await transfer(source.extracted.mesh, target.extracted.mesh, options) };
+    } catch (error) {
+      const isOfMesh = ['cage', 'target'].includes((error as CagecastError).argument ?? '');
+      throw isOfMesh ? errorInFile(error, { target: whole, cage }) : error;
+    }
+  };
+  const first = await call(cage);
+  const isApart = target !== whole;
+  if (isApart || !isBackward(cage.extracted.mesh, target.extracted.mesh, first.result)) return first;
+  return call(turned(cage));
+}
+
+/** Reads a target, or a cage around one. @throws {InputError} that names the argument. */
+async function readModel(
+  name: string,
+  bytes: Uint8Array,
+  { beside, parts }: { beside?: ReadModel; parts?: Parts | undefined } = {},
+): Promise<ReadModel> {
+  const file = await openGltf(name, bytes);
+  const extracted = extract(file, beside?.extracted.origin ?? 'own', beside ? 'cage' : parts);
+  if (extracted.mesh.indices.length > 0) return { file, extracted };
+  throw new InputError('has no triangles in its scene; at least one is needed').in(name);
+}
+
+async function readCage(cage: Uint8Array | Mesh, target: ReadModel): Promise<ReadModel> {
+  if (cage instanceof Uint8Array) return withUvs(await readModel('cage', cage, { beside: target }));
+  if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'the bytes of a GLB, or a mesh');
+  if (cage.uvs === undefined)
+    throw wrong('cage.uvs', cage.uvs, "a Float32Array: the texture is drawn in the cage's UVs");
+  return readModel('cage', cageGlb({ ...cage, uvs: cage.uvs }), { beside: target });
+}
+
+function readPaint(texture: Uint8Array): Paint {
+  try {
+    return paintOf(texture, 'paint', ['image/png', 'image/jpeg', 'image/webp', 'image/ktx2']);
+  } catch (error) {
+    throw error instanceof InputError ? error.in('texture') : error;
+  }
+}
+
+const wrong = (name: string, value: unknown, type: string, code: Code = 'badArgument') =>
+  new CagecastError(code, 'paintGlb', `${name} is ${show(value)}, not ${type}`, {
+    argument: name.split('.')[0],
+  });
