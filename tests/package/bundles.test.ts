@@ -51,7 +51,7 @@ const kPages: [what: string, most: number, script: string][] = [
     console.log(enableLayers, createLayers);`,
   ],
   ['layers', 17_500, "import { createLayers } from 'cagecast/three'; console.log(createLayers);"],
-  ['<cagecast-viewer>', 48_500, "import 'cagecast/viewer';"],
+  ['<cagecast-viewer>', 162_000, "import 'cagecast/viewer';"],
   ['useCagecast', 73_500, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
   ['inspect', 29_500, "import { inspect } from 'cagecast'; console.log(inspect);"],
   ['bakeTexture', 6500, "import { bakeTexture } from 'cagecast/engines'; console.log(bakeTexture);"],

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { CagecastError, type Code, classify, init, type Mesh, project, transfer } from 'cagecast';
-import { optionFlags } from '../../wasm/src/generated/options.js';
+import { optionValues } from '../../wasm/src/generated/options.js';
 import { printed } from '../support/script.js';
 import { head, random, smallest } from './scenes.js';
 
@@ -111,7 +111,7 @@ describe('errors', () => {
     [inCage({ uvs: 'uv' }), 'cage.uvs is "uv", not a Float32Array'],
     [inTarget({ groups: [0, 0, 0] }), 'target.groups is of type Array, not a Uint32Array'],
   ];
-  const all = ['preset', ...optionFlags.map(({ name }) => name), 'steps', 'parts', 'locks', 'masks', 'reuse'].join(
+  const all = ['preset', ...optionValues.map(({ name }) => name), 'steps', 'parts', 'locks', 'masks', 'reuse'].join(
     ', ',
   );
   const ofOptions: [options: unknown, sentence: string | RegExp, at?: number][] = [

@@ -53,7 +53,7 @@ describe('the worker', () => {
     await init();
   });
 
-  test('inspects as cagecast/inspect does', async () => {
+  test('inspects as on this thread', async () => {
     const turned = { ...cage, indices: cage.indices.slice().reverse() };
     for (const [around, options] of [
       [cage, { parts: { keep: ['skin'] } }],

@@ -36,7 +36,9 @@ export async function loadFileLayer(): Promise<FileLayer> {
         name: 'index',
         setup: ({ onResolve }) =>
           onResolve({ filter: /^(\.\.\/)+api\/index\.js$/ }, ({ path, resolveDir }) =>
-            resolve(resolveDir, path) === resolve('wasm/src/api/index.js') ? { path: index, external: true } : undefined,
+            resolve(resolveDir, path) === resolve('wasm/src/api/index.js')
+              ? { path: index, external: true }
+              : undefined,
           ),
       },
     ],

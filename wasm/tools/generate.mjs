@@ -49,7 +49,6 @@ const field = (option) =>
   comment(`${option.text} ${capital(rangeOf(option))}. ${defaultsOf(option)}`) +
   `  ${option.name}?: ${typeOf(option)} | undefined;\n`;
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
-const flagOf = ({ name }) => `--${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}`;
 
 function makeOptions(options) {
   const of = (stage, isStep) => options.filter((option) => option.stage === stage && option.isStep === isStep);
@@ -58,11 +57,11 @@ function makeOptions(options) {
   const row = ({ name, stage, isStep, kind, type }) =>
     `  ${name}: { stage: '${stage}', isStep: ${isStep}, kind: '${kind}'${type ? `, type: '${type}'` : ''} },\n`;
   const literal = (text) => (text.includes("'") ? (text.includes('"') ? `\`${text}\`` : `"${text}"`) : `'${text}'`);
-  const flag = (option) => {
+  const values = (option) => {
     const range = `[${option.range.map(quoted).join(', ')}]`;
     const [standard, paper] = [quoted(option.standard), quoted(option.paper)];
     const text = literal(option.text);
-    return `  {\n    name: '${option.name}',\n    flag: '${flagOf(option)}',\n    kind: '${option.kind}',\n    range: ${range},\n    standard: ${standard},\n    paper: ${paper},\n    text: ${text},\n  },\n`;
+    return `  {\n    name: '${option.name}',\n    kind: '${option.kind}',\n    range: ${range},\n    standard: ${standard},\n    paper: ${paper},\n    text: ${text},\n  },\n`;
   };
   return [
     kHead('options.def'),
@@ -71,9 +70,9 @@ function makeOptions(options) {
     interfaceOf('ProjectSteps', 'Switches for single steps in `project`, for measuring them.', of('project', true)),
     interfaceOf('ClassifySteps', 'Switches for single steps in `classify`, for measuring them.', of('classify', true)),
     `/** Every option: which function reads it, whether it is in \`steps\`, and what its values are. */\nexport const optionTable = {\n${options.map(row).join('')}} as const;\n`,
-    `/** The command's flags, one for each option outside \`steps\`. */\nexport const optionFlags = [\n${options
+    `/** The values of each option outside \`steps\`, for the command and its configurations. */\nexport const optionValues = [\n${options
       .filter(({ isStep }) => !isStep)
-      .map(flag)
+      .map(values)
       .join('')}] as const;\n`,
   ].join('\n');
 }
@@ -111,7 +110,6 @@ function makePage(options) {
   const made = {
     'table: options': table(others),
     'table: steps': table(steps),
-    flags: others.map((option) => `\`${flagOf(option)}\``).join(', '),
   };
   const page = readFileSync(new URL('../../docs/options.md', import.meta.url), 'utf8');
   return Object.entries(made).reduce((text, [mark, content]) => {

@@ -14,7 +14,7 @@ import {
   transfer,
 } from 'cagecast';
 import fc from 'fast-check';
-import { optionFlags } from '../../../wasm/src/generated/options.js';
+import { optionValues } from '../../../wasm/src/generated/options.js';
 import { tetrahedron } from '../../support/gltf.js';
 import { mesh, ofStage, resultOf, runs, validOptions } from './any.js';
 
@@ -37,7 +37,7 @@ const junk = fc.oneof(
 const anyOf = (...names: string[]) =>
   fc.record(Object.fromEntries(names.map((name) => [name, junk])), { requiredKeys: [] });
 const anyOptions = fc.oneof(
-  anyOf('preset', ...optionFlags.map(({ name }) => name)),
+  anyOf('preset', ...optionValues.map(({ name }) => name)),
   anyOf('steps', 'locks', 'reuse', 'result', 'parts'),
   anyOf('interiorSamples', 'floor', 'projection', 'nothing').map((steps) => ({ steps })),
   anyOf('segments', 'groups').map((locks) => ({ locks })),

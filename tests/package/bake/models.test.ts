@@ -249,9 +249,9 @@ describe('documents and files', () => {
       return islands(pngIn('masked.png'));
     };
     assert.equal(await command(''), '111111');
-    assert.equal(await command(' --never-mask left.png'), '001111');
-    assert.equal(await command(' --always-mask left.png --exclude box'), '110000');
-    assert.equal(await command(' --always-mask all.png --never-mask left.png'), '001111');
+    assert.equal(await command(' --mask never=left.png'), '001111');
+    assert.equal(await command(' --mask always=left.png --exclude box'), '110000');
+    assert.equal(await command(' --mask always=all.png --mask never=left.png'), '001111');
     const document = await box();
     await baked(document, { maskImages: { never: left } });
     assert.equal(islands(colorsOf(document)), '001111');
@@ -267,7 +267,7 @@ describe('documents and files', () => {
     await colored.transform(cagecast({ cage: await io.read('cage.glb'), maskColors: '_MASK', onResult }));
     assert.equal(painted, (uvs.getCount() * 4) / 6);
     const none = /box\.glb: no part has COLOR_0 of 3 or 4 numbers/;
-    await fails(1, none, 'bake box.glb --cage cage.glb --texture red.png --mask-colors COLOR_0 -o none.png');
+    await fails(1, none, 'bake box.glb --cage cage.glb --texture red.png --mask colors=COLOR_0 -o none.png');
   });
 
   test('a texture that is used in another way, too, stays; the paint gets one of its own', async () => {
@@ -591,8 +591,8 @@ describe('cagecast bake', () => {
       ],
       ['bake image.glb --cage cage.glb --texture red.png -o no.glb', 1, `image.glb: ${nothing}s texture has no image`],
       ['bake box.glb --cage cage.glb -o no.glb', 2, /there is nothing to bake/],
-      [`${whole} --mask-colors POSITION -o no.glb`, 2, /It is not COLOR_0, COLOR_1, … or an attribute of/],
-      [`${whole} --never-mask no.glb -o no.glb`, 2, /no\.glb would overwrite .*no\.glb, which/],
+      [`${whole} --mask colors=POSITION -o no.glb`, 2, /POSITION is not COLOR_0, COLOR_1, … or an attribute of/],
+      [`${whole} --mask never=no.glb -o no.glb`, 2, /no\.glb would overwrite .*no\.glb, which/],
       [`${whole} --back -o no.png`, 2, /--back takes no paint/],
       [`${whole} --part nose -o no.png`, 1, /--part nose: no node or material has this name; there are: box, own/],
       [`${whole} -o nowhere/out.png`, 1, 'nowhere/out.png: cannot be written (its folder does not exist)'],

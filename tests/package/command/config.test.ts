@@ -54,11 +54,11 @@ test('settings come from the nearest file above the target; characters by name w
   assert.equal((await optionsOf('transfer heads/101.glb --cage cage.glb')).threshold, 0.3);
 });
 
-test('--config names another file, --no-config none; the output says which file was used', async () => {
+test('--config names another file, --config none none; the output says which file was used', async () => {
   set({ threshold: 0.4, occlusionReach: 'Infinity' });
   set({ threshold: 0.2, borders: 'cut', compress: 'meshopt' }, 'other.json');
   assert.equal((await optionsOf(transfer)).occlusionReach, 'Infinity');
-  assert.equal((await optionsOf(`${transfer} --no-config`)).config, null);
+  assert.equal((await optionsOf(`${transfer} --config none`)).config, null);
   assert.equal((await optionsOf(`${transfer} --config other.json`)).threshold, 0.2);
   const written = await ok(`${transfer} --config other.json -o out.glb`);
   assert.match(written, /settings from other\.json\n$/);
@@ -93,7 +93,7 @@ test('where a part is both kept and excluded, what is said later counts, else ke
 test('masks are paths from the folder of the file; those of characters and lines are added, and flags replace them', async () => {
   set({ alwaysMask: 'gone.png' });
   await fails(1, `${config}: "alwaysMask": ${at('gone.png')}: no such file`, transfer);
-  await fails(1, 'other.png: no such file', `${transfer} --never-mask other.png`);
+  await fails(1, 'other.png: no such file', `${transfer} --mask never=other.png`);
   write('white.png', png(255, 1));
   write('black.png', png(0, 1));
   set({});
@@ -101,7 +101,7 @@ test('masks are paths from the folder of the file; those of characters and lines
   set({ neverMask: 'white.png' });
   const masked = await painted(); // A vertex that no triangle has is beyond all masks.
   assert.ok(masked < all / 4);
-  assert.equal(await painted(' --always-mask black.png'), all);
+  assert.equal(await painted(' --mask always=black.png'), all);
   assert.equal((await lineOf({ alwaysMask: 'black.png' })).counts.cosmetic, masked);
   set({ neverMask: 'white.png', characters: { 'a*': { alwaysMask: 'black.png' } } });
   assert.equal(await painted(), masked);
@@ -114,7 +114,7 @@ test('a file that was found may be a stranger’s: it is a regular file, and its
   };
   execFileSync('mkfifo', [found, 'heads/pipe.png']);
   await refused(/heads\/cagecast\.config\.json: is a device or a pipe, not a file\n$/);
-  await ok(`${inspect} --no-config`);
+  await ok(`${inspect} --config none`);
   rmSync(found);
   const outside =
     /heads\/cagecast\.config\.json: "neverMask": .*cage\.glb: is outside the folder of the file that refers to it; --allow-outside permits it\n$/;

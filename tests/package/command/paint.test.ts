@@ -14,7 +14,7 @@ import { io, jsonOf, png, workplace, write } from './workplace.js';
 const scene = head(5, 12);
 const { cage } = workplace('paint', { ...scene, target: { ...scene.target, uvs: undefined } });
 const transfer = 'transfer target.glb --cage cage.glb';
-const loose = '--threshold 0 --min-covered 0';
+const loose = '--threshold 0 --set minCovered=0';
 
 interface Report {
   counts: object;

@@ -175,7 +175,7 @@ test('so is a cage, a texture, or a path that leads to no file', async () => {
     ['--cage .', /\.: is a folder, not a file/],
     ['--cage cage.glb --texture text.png -o o.glb', /text\.png: is not a PNG, JPEG, WebP or KTX2 image/],
     ['--cage cage.glb --texture half.png -o o.glb', /half\.png: is truncated: the PNG image is incomplete/],
-    ['--cage cage.glb --never-mask text.png', /text\.png: is not a PNG, JPEG or WebP image/],
+    ['--cage cage.glb --mask never=text.png', /text\.png: is not a PNG, JPEG or WebP image/],
   ] as const)
     await fails(1, message, `transfer target.glb ${line}`);
   await fails(1, 'gone.glb: no such file', 'transfer gone.glb --cage cage.glb');

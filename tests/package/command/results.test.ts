@@ -93,7 +93,10 @@ test('the preset and single options are obeyed', async () => {
     ['--threshold 0', { threshold: 0 }],
     ['--threshold 1', { threshold: 1 }],
     ['--preset paper', { preset: 'paper' }],
-    ['--min-covered 1 --poke-through 0.1 --occlusion-reach 0', { minCovered: 1, pokeThrough: 0.1, occlusionReach: 0 }],
+    [
+      '--set minCovered=1 --set pokeThrough=0.1 --set occlusionReach=0',
+      { minCovered: 1, pokeThrough: 0.1, occlusionReach: 0 },
+    ],
   ] as const)
     assert.equal((await json<Report>(`${plain} ${flags}`)).triangles.cosmetic, painted(options), flags);
   assert.notEqual(painted({}), painted({ preset: 'paper' }));

@@ -15,7 +15,7 @@ test('--version prints the version of package.json; help is a flag and a command
     assert.match(await ok(line), /^Usage: cagecast.*Example/s, line);
   assert.match(
     (await ok('help transfer')).replace(/\s+/g, ' '),
-    /as covered; a share of the target's diagonal, 0 to 1; default: 0\.0025, or 0 with --preset paper/,
+    /as in code: seams \(default: corner\), .*pokeThrough \(default: 0\.0025\)/,
   );
 });
 
@@ -44,12 +44,13 @@ const wrong: [line: string, message: RegExp][] = [
   [`${transfer} --threshold 2`, /--threshold.*'2' is invalid.*not a number within 0\.\.1/],
   [`${transfer} --threshold half`, /not a number within 0\.\.1/],
   [`${transfer} --threshold `, /not a number within 0\.\.1/],
-  [`${transfer} --weld-tolerance 1`, /not a number within 0\.\.0\.01/],
-  [`${transfer} --occlusion-reach -1`, /not a number within 0\.\.Infinity/],
-  [`${transfer} --min-covered 2`, /not a number within 0\.\.1/],
-  [`${transfer} --seams none`, /--seams.*'none' is invalid.*vertex, corner/],
+  [`${transfer} --set weldTolerance=1`, /"weldTolerance" is 1, not a number within 0\.\.0\.01/],
+  [`${transfer} --set tint=1`, /There are seams, weldTolerance, occlusionReach, pokeThrough, motion, minCovered\./],
+  [`${transfer} --set occlusionReach=-1`, /not a number within 0\.\.Infinity/],
+  [`${transfer} --set minCovered=2`, /not a number within 0\.\.1/],
+  [`${transfer} --set seams=none`, /"seams" is "none", not one of vertex, corner/],
   [`${transfer} --preset papre`, /--preset.*'papre' is invalid.*paper/],
-  [`${transfer} --mask-colors NORMAL`, /It is not COLOR_0, COLOR_1, … or an attribute of an own name/],
+  [`${transfer} --mask colors=NORMAL`, /NORMAL is not COLOR_0, COLOR_1, … or an attribute of an own name/],
   [`${transfer} --limit vertices=2`, /There are the limits bytes, nesting/],
   [`${transfer} --limit bytes=many`, /A limit is a whole number, such as bytes=5000/],
   [`${transfer} --output out.obj`, /must end in \.glb or \.vrm or \.gltf/],
@@ -112,7 +113,7 @@ const wrong: [line: string, message: RegExp][] = [
   ['batch  --cage cage.glb', /TARGETS is empty/],
   ['batch target.glb --cage - -o {name}.glb', /its jobs have no standard input/],
   [`${batch} --region -=p.png`, /its jobs have no standard input/],
-  [`${batch} --never-mask -`, /its jobs have no standard input/],
+  [`${batch} --mask never=-`, /its jobs have no standard input/],
   ['batch --manifest - --config -', /only one file can be the standard input/],
   [`${batch} -o -`, /the standard output has its lines/],
   [`${batch} --results -`, /the standard output has its lines/],

@@ -248,10 +248,10 @@ test('split vertices keep skins, morphs, colours and attributes of others; all e
   assert.deepEqual([weights, extras, primitives[0]!.extras], [[0.25], { targetNames: ['smile'] }, { part: 'skin' }]);
 });
 
-test('with --seams vertex no vertex is added, and every byte and member stays what it was', async () => {
+test('with --set seams=vertex no vertex is added, and every byte and member stays what it was', async () => {
   write('rich.glb', rich());
   assert.deepEqual(await validate('rich.glb'), []);
-  await ok('transfer rich.glb --cage cage.glb --seams vertex --texture paint.png -o rich-out.glb');
+  await ok('transfer rich.glb --cage cage.glb --set seams=vertex --texture paint.png -o rich-out.glb');
   assert.deepEqual(await validate('rich-out.glb'), []);
   const [before, after] = [glb('rich.glb'), glb('rich-out.glb')];
   const assertHolds = (whole: unknown, part: unknown, path = ''): void => {

@@ -111,7 +111,7 @@ test('pieces that almost touch are joined with a click; choices follow the piece
   await page.ready();
   const { segmentStats, weldTolerance } = session.shown!.projection;
   assert.deepEqual([segmentStats.length, weldTolerance, session.locks], [1, 1e-5, { 0: 'keep' }]);
-  assert.match(codeFor(session).command, /--weld-tolerance 0\.00001 /);
+  assert.match(codeFor(session).command, /--set weldTolerance=0\.00001 /);
   session.setRules({ weldTolerance: 0 });
   await page.ready();
   assert.deepEqual(session.locks, { 0: 'keep', 1: 'keep' });

@@ -31,7 +31,11 @@ test('all scripts of the page are at most 485 KB gzipped, without the cage modul
     /^((FBX|OBJ|MTL|PLY|STL|USD)Loader|formats-thread|fflate)/.test(name);
   const sum = (of: typeof scripts) => of.reduce((sum, { script }) => sum + packed(script), 0);
   const cages = scripts.filter(isCageModule);
-  assert.equal(cages.length, 3, `the cage module, and with and without its thread: ${cages.map(({ name }) => name).join(', ')}`);
+  assert.equal(
+    cages.length,
+    3,
+    `the cage module, and with and without its thread: ${cages.map(({ name }) => name).join(', ')}`,
+  );
   const total = sum(scripts.filter((one) => !isCageModule(one) && !isOfFormats(one)));
   assert.ok(total > 100_000, 'they were found');
   assert.ok(total <= 485_000, `${total} bytes`);

@@ -99,11 +99,10 @@ export const optionTable = {
   partialTriangles: { stage: 'classify', isStep: true, kind: 'toggle' },
 } as const;
 
-/** The command's flags, one for each option outside `steps`. */
-export const optionFlags = [
+/** The values of each option outside `steps`, for the command and its configurations. */
+export const optionValues = [
   {
     name: 'threshold',
-    flag: '--threshold',
     kind: 'share',
     range: [0, 1],
     standard: 0.5,
@@ -112,7 +111,6 @@ export const optionFlags = [
   },
   {
     name: 'seams',
-    flag: '--seams',
     kind: 'choice',
     range: ['vertex', 'corner'],
     standard: 'corner',
@@ -121,7 +119,6 @@ export const optionFlags = [
   },
   {
     name: 'weldTolerance',
-    flag: '--weld-tolerance',
     kind: 'length',
     range: [0, 0.01],
     standard: 0,
@@ -130,7 +127,6 @@ export const optionFlags = [
   },
   {
     name: 'occlusionReach',
-    flag: '--occlusion-reach',
     kind: 'length',
     range: [0, Infinity],
     standard: 0.03,
@@ -139,7 +135,6 @@ export const optionFlags = [
   },
   {
     name: 'pokeThrough',
-    flag: '--poke-through',
     kind: 'length',
     range: [0, 1],
     standard: 0.0025,
@@ -148,7 +143,6 @@ export const optionFlags = [
   },
   {
     name: 'motion',
-    flag: '--motion',
     kind: 'toggle',
     range: [false, true],
     standard: true,
@@ -157,7 +151,6 @@ export const optionFlags = [
   },
   {
     name: 'minCovered',
-    flag: '--min-covered',
     kind: 'share',
     range: [0, 1],
     standard: 0.2,

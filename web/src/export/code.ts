@@ -66,7 +66,7 @@ function commandLine(shown: Shown, rules: Rules, locks: Readonly<Locks>): string
   ];
   if (preset) words.push(`--preset ${preset}`);
   if (threshold !== undefined) words.push(`--threshold ${threshold}`);
-  if (weldTolerance) words.push(`--weld-tolerance ${weldTolerance}`);
+  if (weldTolerance) words.push(`--set weldTolerance=${weldTolerance}`);
   if (borders) words.push(`--borders ${borders}`);
   for (const name of new Set(namesLeftOut(shown))) words.push(`--ignore ${shell(name)}`);
   const partly: string[] = [];

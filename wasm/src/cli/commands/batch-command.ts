@@ -128,7 +128,7 @@ function faultOf(targets: readonly string[], flags: BatchFlags): string | undefi
   if (targets.length > 0 === (manifest !== undefined)) return 'give either TARGETS or --manifest';
   if (resume && results === undefined) return '--resume needs --results, which says what is done';
   if ([output, report, results].includes(standard)) return 'a batch writes files; the standard output has its lines';
-  if ([...common.inputsOf({ ...flags, config: false }), ...targets].includes(standard))
+  if ([...common.inputsOf({ ...flags, config: undefined }), ...targets].includes(standard))
     return 'a batch reads files; its jobs have no standard input';
   if (manifest === standard && flags.config === standard) return 'only one file can be the standard input';
   const withoutOutput = manifest === undefined ? common.outputFault(flags) : undefined;

@@ -1,18 +1,30 @@
 // Flags that several commands have, as commander parses them.
 import { type Command, InvalidArgumentError, Option } from 'commander';
-import { optionFlags } from '../../generated/options.js';
+import { optionValues } from '../../generated/options.js';
 import { defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 import { type FormatLimits, formatDefaults } from '../../gltf/formats/limits.js';
 import { standard } from '../io/files.js';
 import type { ReadOptions } from '../model/reading.js';
-import { colorAttributes, holdsColors, kChoices, kSettingNames, type Layer, type Settings } from '../model/settings.js';
+import {
+  colorAttributes,
+  holdsColors,
+  kChoices,
+  kSettingNames,
+  type Layer,
+  type Settings,
+  settingsOf,
+} from '../model/settings.js';
 import { kAutoCage, type Region } from '../model/sources.js';
 import { areBounds, boundsText, type UvBounds } from '../model/uv-bounds.js';
 import { Configuration, configName } from './config-file.js';
 
 /** The flags that say what is painted. */
-export interface SettingFlags extends Settings {
-  config?: string | false;
+export interface SettingFlags
+  extends Pick<Settings, 'preset' | 'threshold' | 'keep' | 'exclude' | 'borders' | 'compress'> {
+  /** Other options, by their names. */
+  set?: Settings;
+  mask?: Pick<Settings, 'neverMask' | 'alwaysMask' | 'maskColors'>;
+  config?: string | undefined;
 }
 
 /** The flags that say which part of a cage counts. */
@@ -89,46 +101,30 @@ const kCageFileFlags = [
   ...kPartFlags,
 ];
 
-/** A flag of true or false. */
-function whether(flags: string, help: string): Option {
-  const option = new Option(flags, help).choices(['true', 'false']);
-  const checked = option.parseArg!;
-  return option.argParser((word: string, before: unknown) => checked(word, before as never) === ('true' as unknown));
-}
+const kThreshold = optionValues.find(({ name }) => name === 'threshold')!;
+const kOthers = optionValues.filter((option) => option !== kThreshold);
 
-/** A flag for each option of core/include/cagecast/options.def. Words in commander's help begin in lower case. */
-const optionOf = (option: (typeof optionFlags)[number]): Option => {
-  const { flag, kind, range, standard, paper, text } = option;
-  const limits = range[1] === Infinity ? `at least ${range[0]}` : `${range[0]} to ${range[1]}`;
-  const help = [
-    `${text[0]!.toLowerCase()}${text.slice(1).replace(/\.$/, '')}`,
-    ...(kind === 'choice' || kind === 'toggle'
-      ? []
-      : [kind === 'length' ? `a share of the target's diagonal, ${limits}` : limits]),
-    `default: ${standard}${standard === paper ? '' : `, or ${paper} with --preset paper`}`,
-  ].join('; ');
-  if (kind === 'toggle') return whether(`${flag} <WHETHER>`, help);
-  return kind === 'choice'
-    ? new Option(`${flag} <HOW>`, help).choices(range)
-    : parsed(`${flag} <SHARE>`, help, numberWithin(range[0], range[1]));
-};
+/** A text as commander has it: from a small letter on, without a full stop. */
+const clause = (text: string): string => `${text[0]!.toLowerCase()}${text.slice(1).replace(/\.$/, '')}`;
 
 const kSettingFlags = [
   choice('--preset <NAME>', 'values of the options that are not given', kChoices.preset),
-  ...optionFlags.map(optionOf),
-  ...kPartFlags,
-  new Option('--never-mask <IMAGE>', "never paint where this image, in TARGET's own UVs, is white"),
-  new Option('--always-mask <IMAGE>', 'paint where this one is white, whatever the rules say'),
+  parsed('--threshold <SHARE>', `${clause(kThreshold.text)}; default: ${kThreshold.standard}`, numberWithin(0, 1)),
   parsed(
-    '--mask-colors <ATTRIBUTE>',
-    'never paint red vertices, always green ones; by an attribute such as COLOR_0',
-    (name) => {
-      if (!holdsColors(name)) throw new InvalidArgumentError(`It is not ${colorAttributes}.`);
-      return name;
-    },
+    '--set <NAME=VALUE>',
+    `set another option, as in code: ${kOthers.map(({ name, standard }) => `${name} (default: ${standard})`).join(', ')}; may be repeated`,
+    optionOf,
   ),
-  new Option('--config <FILE>', `settings for all files, and by their names (default: the nearest ${configName})`),
-  new Option('--no-config', `read no ${configName}`),
+  ...kPartFlags,
+  parsed(
+    '--mask <KIND=SOURCE>',
+    "paint by a mask in TARGET's own UVs: never=IMAGE never where it is white, always=IMAGE there, whatever the rules say; colors=ATTRIBUTE, such as COLOR_0, never red vertices, always green ones; may be repeated",
+    maskOf,
+  ),
+  new Option(
+    '--config <FILE>',
+    `settings for all files, and by their names; none reads none (default: the nearest ${configName})`,
+  ),
 ];
 
 const kCageFlags = [
@@ -183,15 +179,22 @@ export function addFlags(command: Command, ...headings: (keyof typeof kGroups)[]
   return command;
 }
 
+/** The name that stands for no configuration; a file of it is ./none. */
+const kNoConfig = 'none';
+
 /** What the flags say of settings. */
 const flagsLayer = (flags: SettingFlags): Layer => ({
-  settings: Object.fromEntries(Object.entries(flags).filter(([name]) => kSettingNames.includes(name))),
+  settings: {
+    ...Object.fromEntries(Object.entries(flags).filter(([name]) => kSettingNames.includes(name))),
+    ...flags.set,
+    ...flags.mask,
+  },
   isFlags: true,
 });
 
 /** Returns what finds the settings of a target: those of its configuration file, then flags. */
 export function layersFor(flags: SettingFlags & ReadFlags): (target: string) => Promise<Layer[]> {
-  const files = new Configuration(flags.config, readingOf(flags));
+  const files = new Configuration(flags.config === kNoConfig ? false : flags.config, readingOf(flags));
   return async (target) => [...(await files.layersFor(target)), flagsLayer(flags)];
 }
 
@@ -208,18 +211,11 @@ interface InputFlags extends SettingFlags, CageFlags {
 }
 
 /** The files that flags name as inputs. */
-export const inputsOf = ({
-  cage,
-  referenceCage,
-  texture,
-  region = [],
-  neverMask,
-  alwaysMask,
-  config,
-}: InputFlags): string[] =>
+export const inputsOf = ({ cage, referenceCage, texture, region = [], mask = {}, config }: InputFlags): string[] =>
   [
     ...[cage, ...region.map((one) => one.cage)].filter((path) => path !== kAutoCage),
-    ...[referenceCage, texture, ...region.map((one) => one.texture), neverMask, alwaysMask, config || undefined],
+    ...[referenceCage, texture, ...region.map((one) => one.texture), mask.neverMask, mask.alwaysMask],
+    config === kNoConfig ? undefined : config,
   ].filter((path) => path !== undefined);
 
 /** What is wrong with flags about an output that is not given, if anything is. */
@@ -286,4 +282,27 @@ function limitOf(text: string, before: Limits = {}): Limits {
   if (!names.includes(name)) throw new InvalidArgumentError(`There are the limits ${names.join(', ')}.`);
   if (!/^\d+$/.test(value)) throw new InvalidArgumentError(`A limit is a whole number, such as ${name}=5000.`);
   return { ...before, [name]: Number(value) };
+}
+
+function optionOf(text: string, before: Settings = {}): Settings {
+  const [name = '', value = ''] = text.split('=', 2);
+  const names = kOthers.map((option) => option.name) as string[];
+  if (!names.includes(name)) throw new InvalidArgumentError(`There are ${names.join(', ')}.`);
+  const word = { true: true, false: false, Infinity: 'Infinity' }[value];
+  const number = value.trim() === '' ? Number.NaN : Number(value);
+  try {
+    return { ...before, ...settingsOf({ [name]: word ?? (Number.isNaN(number) ? value : number) }, '') };
+  } catch (error) {
+    throw new InvalidArgumentError((error as Error).message);
+  }
+}
+
+const kMasks: Record<string, keyof Settings> = { never: 'neverMask', always: 'alwaysMask', colors: 'maskColors' };
+
+function maskOf(text: string, before: Settings = {}): Settings {
+  const [, kind = '', source = ''] = /^(\w+)=(.+)$/.exec(text) ?? [];
+  const name = kMasks[kind];
+  if (!name) throw new InvalidArgumentError('It is not never=IMAGE, always=IMAGE or colors=ATTRIBUTE.');
+  if (kind === 'colors' && !holdsColors(source)) throw new InvalidArgumentError(`${source} is not ${colorAttributes}.`);
+  return { ...before, [name]: source };
 }

@@ -37,7 +37,7 @@ The attribute _NCZ (Non-Cosmetic Zone) of a vertex is 0 where it may be painted.
   3  culled: the cage covers too little of its segment (connected part), or has a hole meant for that segment
 A cage that faces the other way, as on a model of VRM 0, is turned by half if it then fits clearly better; the summary says so.
 What an earlier transfer added is replaced. Where triangles need different UVs, copies of vertices are added after the others (not
-with --seams vertex); --borders cut adds some, too; Draco changes their order. --region adds UVs and zones of its own (_NCZ_1, …).
+with --set seams=vertex); --borders cut adds some, too; Draco changes their order. --region adds UVs and zones of its own (_NCZ_1, …).
 Of a file with meshes that are named as outer cages (Head_OuterCage of Head_Geo), these are the cage, each of the part of its name.
 --cage auto makes a cage as cagecast make does. Parts that a cage was made without stay bare, unless --keep names them. For a file
 named auto, write ./auto.

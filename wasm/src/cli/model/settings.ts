@@ -1,5 +1,5 @@
 import type { Preset, PresetOptions } from '../../api/index.js';
-import { optionFlags } from '../../generated/options.js';
+import { optionValues } from '../../generated/options.js';
 import { type Form, forms } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
 import type { Borders } from '../../parts/cut-part.js';
@@ -41,7 +41,7 @@ export const kSettingNames: readonly string[] = [
   ...Object.keys(kChoices),
   ...['keep', 'exclude', 'ignore'],
   ...kMaskNames,
-  ...optionFlags.map(({ name }) => name),
+  ...optionValues.map(({ name }) => name),
 ];
 
 /** What holds colours, and whether a name is of that kind. */
@@ -76,7 +76,7 @@ export function settingsOf(given: Json, folder: string): Settings {
     if (path !== undefined) settings[name] = path;
   }
   take('maskColors', holdsColors, colorAttributes);
-  for (const { name, kind, range } of optionFlags) {
+  for (const { name, kind, range } of optionValues) {
     if (kind === 'choice' || kind === 'toggle') takeChoice(name, range);
     else {
       const [least, most] = range as readonly [number, number];
@@ -150,7 +150,7 @@ export interface ResolvedSettings {
 export function resolveSettings(layers: readonly Layer[]): ResolvedSettings {
   const all = Object.assign({}, ...layers.map(({ settings }) => settings)) as Settings;
   const { preset = 'default', borders = 'triangle', compress = 'keep' } = all;
-  const given = optionFlags.map(({ name }) => [name, all[name]]).filter(([, value]) => value !== undefined);
+  const given = optionValues.map(({ name }) => [name, all[name]]).filter(([, value]) => value !== undefined);
   const config = layers.find((layer) => layer.config)?.config?.path;
   return {
     rules: {

@@ -106,7 +106,7 @@ export function conclusionOf({ verdict, findings }: Inspection): string[] {
 
 /** What to do about a finding, with the flags that reverse its verdicts, if there are any. */
 export function adviceOn({ advice, places = [], locks, ignore = [], numbers: { weldTolerance } }: Finding): string {
-  if (weldTolerance !== undefined) return `${advice} By: --weld-tolerance ${weldTolerance}`;
+  if (weldTolerance !== undefined) return `${advice} By: --set weldTolerance=${weldTolerance}`;
   if (ignore.length > 0) return `${advice} By: ${ignore.map((name) => `--ignore "${name}"`).join(' ')}`;
   const locked = places.filter(({ segment }) => locks?.[segment] !== undefined);
   const flags = new Set(locked.map(({ segment, part }) => `--${locks![segment]} "${part}"`));
