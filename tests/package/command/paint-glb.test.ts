@@ -4,11 +4,13 @@ import { readFileSync } from 'node:fs';
 import { after, test } from 'node:test';
 import { CagecastError } from 'cagecast';
 import { cageGlb, terminate as endCages, loadTemplate } from 'cagecast/cages';
+import type { Image } from 'cagecast/engines';
 import { type PaintOptions, paintGlb } from 'cagecast/gltf';
 import { terminate as endWorker } from 'cagecast/worker';
 import { build } from 'esbuild';
 import { ok } from '../../support/command.js';
-import { glbOf, unpackGlb, validate } from '../../support/gltf.js';
+import { GlbMaker, glbOf, unpackGlb, validate } from '../../support/gltf.js';
+import { ball } from '../scenes.js';
 import { inRepository, png, workplace, write, writeChanged } from './workplace.js';
 
 const { cage, target } = workplace('glb');
@@ -103,6 +105,47 @@ test('a template is fitted first, here by its bytes; the cage that this makes ca
     onProgress: (share) => share > 0.2 && abort.abort(),
   });
   await assert.rejects(aborted, { name: 'AbortError' });
+});
+
+/** An egg that faces +z, with a texture of `paintedFace`. */
+function paintedEgg(): Uint8Array {
+  const egg = ball([0, 0, 0], () => 1, 40, 80);
+  const positions = egg.positions.map((x, i) => x * [0.7, 1, 0.85][i % 3]!);
+  const uvs = Float32Array.from({ length: (2 * positions.length) / 3 }, (_, i) => {
+    const [x, y, z] = positions.subarray(3 * (i >> 1));
+    return z! <= 0 ? 0.001 : i % 2 === 0 ? 0.5 + 0.5 * x! : 0.5 - 0.5 * y!;
+  });
+  const maker = new GlbMaker();
+  maker.json.images = [{ bufferView: maker.view(png(200)), mimeType: 'image/png' }];
+  maker.json.textures = [{ source: 0 }];
+  maker.json.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }];
+  maker.node({ mesh: maker.mesh({ positions, indices: egg.indices, uvs }, { material: 0 }) });
+  return new Uint8Array(maker.finish());
+}
+
+/** A face as seen from the front, whose corners are -1 and 1: hair, eyes and lips on skin. */
+function paintedFace(): Image {
+  const [width, height] = [256, 256];
+  const data = new Uint8Array(4 * width * height);
+  for (let i = 0; i < width * height; ++i) {
+    const [x, y] = [(i % width) / 128 - 1, 1 - Math.floor(i / width) / 128];
+    const [across, up] = [Math.abs(x) - 0.27, y - 0.05];
+    const isEye = Math.hypot(across / 0.13, up / 0.08) < 1;
+    const isLip = Math.hypot(x / 0.2, (y + 0.45) / 0.06) < 1;
+    const isHair = y > 0.5 || Math.abs(x) > 0.6;
+    data.set(isEye ? [60, 90, 140] : isLip ? [180, 90, 90] : isHair ? [70, 45, 30] : [224, 172, 140], 4 * i);
+    data[4 * i + 3] = 255;
+  }
+  return { width, height, data };
+}
+
+test('a face that is only painted is found by the images that the caller decodes', async () => {
+  const guessed = async (options: object) =>
+    (await paintGlb(paintedEgg(), { template: 'human-head', texture, ...options })).fit!.guessed;
+  assert.ok((await guessed({})).includes('eye_centre_left'));
+  assert.ok(!(await guessed({ decode: paintedFace })).includes('eye_centre_left'));
+  const none = () => Promise.reject(new Error('KTX2'));
+  assert.ok((await guessed({ decode: none })).includes('eye_centre_left'));
 });
 
 test('what cannot be used is named, with what helps', async () => {

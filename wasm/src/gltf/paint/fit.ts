@@ -9,13 +9,18 @@ import {
 import type { Template } from '../../cages/types.js';
 import type { Vector } from '../../inspect/geometry.js';
 import { landmarksMoved, moved } from '../../parts/origin.js';
+import { FileModel } from '../bake/bake-file.js';
+import { baseColorsOf } from '../bake/base-colors.js';
+import type { ImageCodec } from '../bake/plan.js';
 import { cageModelOf, templateOf } from '../cage-file.js';
 import { extract } from '../extract-file.js';
+import { hostDecode } from '../host-decode.js';
 import { openGltf } from '../open-gltf.js';
 import { type ReadModel, withUvs } from '../read-model.js';
 
 interface FitCall extends Pick<CageCallOptions, 'signal' | 'onProgress'> {
   landmarks?: Landmarks | undefined;
+  decode?: ImageCodec['decode'] | undefined;
 }
 
 /** Of the progress, the share at which a fit ends. */
@@ -25,7 +30,7 @@ const kFitted = 0.9;
 export async function fitTo(
   model: ReadModel,
   template: TemplateName | Uint8Array | Template,
-  { landmarks, signal, onProgress }: FitCall,
+  { landmarks, decode = hostDecode(), signal, onProgress }: FitCall,
 ): Promise<Fit> {
   const from = await readTemplate(template);
   const { origin } = model.extracted;
@@ -34,7 +39,9 @@ export async function fitTo(
     signal,
     onProgress: (share: number, stage: string) => onProgress?.(kFitted * share, stage),
   };
-  const fit = await fitCage(from, cageModelOf(model.file, model.extracted), given, calling);
+  const { file, extracted } = model;
+  const colors = decode && (await baseColorsOf(new FileModel(file, extracted.parts), decode));
+  const fit = await fitCage(from, { ...cageModelOf(file, extracted), ...colors }, given, calling);
   const back = origin.map((x) => -x) as unknown as Vector;
   return {
     ...fit,

@@ -16,6 +16,7 @@ import { isBackward } from '../../inspect/backward.js';
 import { noteOf } from '../../inspect/bare.js';
 import { type Borders, isCut } from '../../parts/cut-part.js';
 import { cutBorders, transfer } from '../../worker/index.js';
+import type { ImageCodec } from '../bake/plan.js';
 import { extract } from '../extract-file.js';
 import { InputError } from '../input-error.js';
 import { openGltf } from '../open-gltf.js';
@@ -39,6 +40,11 @@ export interface PaintOptions
   template?: TemplateName | Uint8Array | Template | undefined;
   /** Spots of the model for the fit, in the space of its scene; they override those that are found. Default: none. */
   landmarks?: Landmarks | undefined;
+  /**
+   * Decodes an image of the model for the fit, so that a face that is only painted is found. What it rejects is left out. Default: what a
+   * browser has for it; in other hosts, colours are not looked at.
+   */
+  decode?: ImageCodec['decode'] | undefined;
   /** Where the paint ends: at existing triangle edges (`triangle`, the default), or exactly at holes and seams, where triangles are cut (`cut`). */
   borders?: Borders | undefined;
   /**
@@ -51,7 +57,7 @@ export interface PaintOptions
 }
 
 const kOptions = [
-  ...['texture', 'cage', 'template', 'landmarks', 'borders', 'attributes', 'signal', 'onProgress'],
+  ...['texture', 'cage', 'template', 'landmarks', 'decode', 'borders', 'attributes', 'signal', 'onProgress'],
   ...optionNames('transfer').filter((name) => !['locks', 'masks', 'reuse'].includes(name)),
 ];
 
@@ -94,6 +100,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     cage,
     template,
     landmarks,
+    decode,
     borders,
     attributes = false,
     parts: patterns,
@@ -108,6 +115,8 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     const what = cage === undefined ? 'neither cage nor template is' : 'cage and template are both';
     throw new CagecastError('badArgument', 'paintGlb', `${what} given; one of them is needed`, { argument: 'cage' });
   }
+  if (decode !== undefined && typeof decode !== 'function')
+    throw wrong('options.decode', decode, 'a function', 'badOption');
   const cuts = isCut('paintGlb', borders);
   try {
     const paint = readPaint(texture);
@@ -115,7 +124,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     signal?.throwIfAborted();
     onProgress(0, 'reading');
     const target = await readModel('bytes', bytes, { parts: patterns });
-    const fit = template && (await fitTo(target, template, { landmarks, signal, onProgress }));
+    const fit = template && (await fitTo(target, template, { landmarks, decode, signal, onProgress }));
     const around = await readCage(fit?.cage ?? cage!, target);
     signal?.throwIfAborted();
     onProgress(0.9, 'transferring');

@@ -1,9 +1,9 @@
 import { CagecastError, type Mesh } from '../../api/index.js';
 import { partsNamed } from '../../api/parts.js';
 import { type Drawn, extract, extractDrawn, namedParts, type WhichCount } from '../extract-file.js';
+import { hostDecode } from '../host-decode.js';
 import { InputError, naming } from '../input-error.js';
 import { type GltfFile, openGltf } from '../open-gltf.js';
-import { hostDecode } from './decode.js';
 import { drawSurfaces } from './draw.js';
 import { framed, headPoints, pointsOf } from './frame.js';
 import { kSize, type Thumbnail, type ThumbnailOptions } from './options.js';

@@ -1,4 +1,4 @@
-import type { Image } from '../../bake/image.js';
+import type { Image } from '../bake/image.js';
 
 /** Decodes an image by what a browser has for it; undefined where that is missing, as in Node. */
 export const hostDecode = (): ((bytes: Uint8Array, mimeType: string) => Promise<Image>) | undefined =>
