@@ -255,7 +255,7 @@ function wasmModules(wasm, { index } = {}) {
   };
 }
 
-/** Makes types fit for TypeScript before 5.7, to which `Float32Array<ArrayBuffer>` is an error; what is written instead is just that since then. */
+/** Makes types fit for TypeScript before 5.7, to which `Float32Array<ArrayBuffer>` is an error; its replacement is the same type since then. */
 function widenTypes(path) {
   const text = readFileSync(path, 'utf8');
   writeFileSync(path, text.replace(/\b(\w+Array)<ArrayBuffer>/g, "ReturnType<$1Constructor['from']>"));

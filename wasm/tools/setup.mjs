@@ -27,7 +27,7 @@ function linksFuzzTarget() {
   return spawnSync('clang++', args, { input }).status === 0;
 }
 
-/** What is needed beyond Node: how to see that it is there, and the Debian package that brings it. */
+/** Programs beyond Node: how to find each, and its Debian package. */
 const kNeeds = {
   emscripten: { what: 'Emscripten 3.1.6 or newer (emcc)', there: command('emcc') },
   cmake: { what: 'CMake 3.25 or newer', there: command('cmake') },

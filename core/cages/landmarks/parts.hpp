@@ -41,7 +41,7 @@ struct Figure {
 
 Figure readFigure(const Model& model);
 
-/// What the joints of a figure's head hold, with its eyes and mouth; the whole figure if nothing says what that is.
+/// The part of a figure that its head's joints hold, with eyes and mouth; the whole figure if no joint is a head's.
 /// @param model  That the figure was read from.
 Figure headOf(const Figure& figure, const Model& model);
 

@@ -53,7 +53,7 @@ struct Timings {
   double total = 0;     ///< The whole call.
 };
 
-/// What the rules on segments have against one: of each rule, the ratio of what the segment has to what it needs. It
+/// The ratios of a segment, by rule: of an amount that it has to the amount that the rule asks for. It
 /// meets a rule from 1 on; infinity if the rule asks for nothing, and until `classify` has decided. A, E, C and K are
 /// as in docs/method.md.
 struct Ratios {

@@ -100,7 +100,7 @@ bool PieceMerger::listAround(std::uint32_t vertex) noexcept {
 }
 
 /// Whether a vertex, whose triangles are listed, may be moved to one of its neighbours.
-/// @param[in,out] thinnest  The least height that the triangles may get; then that which they get.
+/// @param[in,out] thinnest  The least height of a triangle: first the allowed one, then the real one.
 bool PieceMerger::mayMove(std::uint32_t vertex, std::uint32_t to, double& thinnest) const noexcept {
   const List<std::uint8_t>& onBorder = triangle_.out.onBorder;
   double least = triangle_.input.diagonal;

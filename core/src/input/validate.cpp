@@ -64,7 +64,7 @@ std::size_t firstNonFinite(std::span<const float> values) {
 /// Finds the box around positions.
 /// @return false if any is not finite.
 bool bound(std::span<const float> positions, Bounds& box) {
-  // Four vertices fill three vectors. Which lane holds which axis repeats after that.
+  // Four vertices fill three vectors; after them, axes lie in the same lanes again.
   Rows rows[3];
   const float* p = positions.data();
   const float* const end = p + positions.size();

@@ -80,7 +80,7 @@ TEST_CASE("rigs are recognised by the names of their joints", "[cages][landmarks
       "DEF-", {"spine_01", "spine004_02", "spine006_051", "upper_armL_03", "forearmR_04", "shinR_05", "_rootJoint"});
   CHECK(numbered.name == "Rigify");
   CHECK(placeOf(numbered.joints, "joint_head")->x == 2);
-  // Rigs with names of their own: the words say what is what, and which side.
+  // Rigs with names of their own: words name the joint and its side.
   const std::vector<std::vector<std::string>> others = {
       {"pelvis", "neck_01", "head", "clavicle_l", "upperarm_l", "upperarm_twist_01_l", "lowerarm_l", "hand_l",
        "thigh_r", "calf_r", "foot_r"},

@@ -478,7 +478,7 @@ TEST_CASE("a thing as compact as a head is one if it has eyes", "[cages][make]")
   const TriangleMesh mesh = meshOf(cage);
   CHECK(boundaryLoops(mesh).size() == 2);
   for (const double x : {-0.35, 0.35}) CHECK(hasHoleAt(mesh, {x, 0.2, 1}, 0.2));
-  // Without eyes, or where names or a person say what is what, it is what it was.
+  // Without eyes, or with names or marks, nothing changes.
   CHECK(made(bust(0).model()).kind == Kind::prop);
   MakeOptions options;
   const std::vector<std::uint32_t> all = allParts(closed);

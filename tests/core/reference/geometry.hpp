@@ -91,7 +91,7 @@ class Surface {
   std::vector<Node> nodes_;
 };
 
-/// The triangles that take part: all but those whose area is zero.
+/// The triangles with an area; others take no part.
 /// @param positions  Where each vertex of the mesh is.
 Surface usableTriangles(const MeshView& mesh, const std::vector<Vec>& positions);
 

@@ -38,7 +38,7 @@ constexpr double kDepthNoise = 1e-6;
 // Sums of areas that differ by less than this share may differ only by the order of adding.
 constexpr double kSumNoise = 1e-12;
 
-/// Everything that could be true of one yes-or-no question: what is, and what might be if rays were turned a little.
+/// The possible answers to a question: with the rays as they are, and with rays turned a little.
 struct Verdict {
   bool is = false, might = false, must = false;
 };

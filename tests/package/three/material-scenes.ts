@@ -1,4 +1,4 @@
-// Paint on materials: what is seen of it, what it costs, and what goes with a model. Runs in the browser.
+// Paint on materials: how it looks, its cost, and its copies with a model. Runs in the browser.
 import {
   MToonMaterial,
   VRMExpression,

@@ -51,7 +51,7 @@ function mustRun(program, args, options) {
   process.exit(1);
 }
 
-/** Writes a file if that changes it, so that what was compiled from it stays. */
+/** Writes a file if its content is new, so that compiled objects stay. */
 function put(file, text) {
   if (existsSync(file) && readFileSync(file).equals(text)) return;
   mkdirSync(dirname(file), { recursive: true });
@@ -172,7 +172,7 @@ function readVerdicts() {
 }
 
 function chosenMutants(places, sample, seed) {
-  // For each mutant of a header, all that includes it is compiled again: only those that are asked for by name.
+  // A mutant of a header compiles every file that includes it: only by name.
   const isChosen = (file) =>
     places.some((place) => file === place || (file.startsWith(`${place}/`) && file.endsWith('.cpp')));
   const files = filesBelow(join(root, 'core/src')).filter(isChosen).sort();

@@ -6,7 +6,7 @@ import { checkImage, checkNames, checkSize, colorByte, type Image, linearOf, wro
 import { kMaxLayers } from './pattern.js';
 import { type Corners, type Kind, Raster, type Wrap } from './raster.js';
 
-/** Triangles that lie in two textures: in the one that is filled, and in the image that fills it. */
+/** Triangles in two textures: the filled one, and the image that fills it. */
 export interface Layout {
   /** What a report calls them. */
   name: string;

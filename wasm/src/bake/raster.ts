@@ -125,7 +125,7 @@ export class Raster {
   /**
    * Draws a triangle.
    * @param own    6 numbers: the UVs of its corners in the texture.
-   * @param shown  What it shows; undefined for triangles that are not painted, which only take their place.
+   * @param shown  Its place in the image; undefined for unpainted triangles, which only take room.
    * @param part   The number of the part that it belongs to.
    */
   draw(own: Corners, shown: Shown | undefined, part: number): void {

@@ -110,7 +110,7 @@ export interface Fit {
   cage: Cage;
   /** Landmarks of the model that were used, given and found. */
   used: Landmarks;
-  /** How certain each of `used` is, 0..1; 1 for those that were given, or that a bone tells. */
+  /** How certain each of `used` is, 0..1; 1 for a given one, or the place of a bone. */
   confidence: Record<string, number>;
   /** Landmarks of the template that were not found: give these for a better fit. */
   missing: string[];

@@ -107,7 +107,7 @@ function copyViews(views: Record<string, unknown>, reusable: Reusable): object {
   return Object.fromEntries(copies);
 }
 
-/** Whether there is room in an array for just what a view shows. An empty one may be what is left of one that was moved away. */
+/** Whether an array has just the room for a view. An empty one may have been moved away. */
 const fits = (array: Reusable[string] | undefined, { length }: Uint8Array): boolean =>
   array !== undefined && length > 0 && realLength(array) === length;
 

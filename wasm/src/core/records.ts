@@ -30,7 +30,7 @@ export interface Timings {
 }
 
 /**
- * What the rules on segments have against one: of each rule, the ratio of what the segment has to what it needs. It meets a rule from
+ * The ratios of a segment, by rule: of an amount that it has to the amount that the rule asks for. It meets a rule from
  * 1 on; `Infinity` if the rule asks for nothing, and after `project`.
  */
 export interface Ratios {

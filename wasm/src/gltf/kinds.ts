@@ -87,7 +87,7 @@ export function fileKind(bytes: Uint8Array): FileKind | undefined {
   return bytes.byteLength === stlHead + stlTriangle * triangles ? binaryStl : undefined;
 }
 
-/** What a file is that is no glTF, and what to do with it. */
+/** The kind of a file other than glTF, and the way out. */
 export function adviceOn(bytes: Uint8Array): string | undefined {
   const kind = fileKind(bytes);
   return kind && `is ${kind.name}; ${kind.advice ?? 'toGlb of cagecast/gltf makes a GLB of it'}`;

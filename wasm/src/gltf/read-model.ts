@@ -43,7 +43,7 @@ export function besideOf({ extracted: { origin } }: ReadModel, cage: ReadModel):
   return isBeside ? cage : { ...cage, extracted: extract(cage.file, origin, 'cage') };
 }
 
-/** The parts of a target that stay bare by their names: what a figure wears, and what the cage was made without. */
+/** The parts of a target that stay bare by name: things a figure wears, and parts excluded when the cage was made. */
 export function bareParts({ file, extracted: { parts, accessories } }: ReadModel, cage: ReadModel): number[] {
   const { meshes, nodes } = cage.file.json;
   const extras = cage.extracted.parts.flatMap(({ mesh, node }) => [meshes![mesh]!.extras, nodes![node]!.extras]);

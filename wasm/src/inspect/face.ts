@@ -35,7 +35,7 @@ export function checkFace({ target, areas, result, parts, isInRegion }: Scene, l
     const [a, b, c] = corners.map((v) => pointAt(positions, v)) as [Vector, Vector, Vector];
     if (dot(doubleAreaNormal(a, b, c), front) > 0) for (const v of corners) facing[v] = 1;
   }
-  /** By segment: what is seen of the face, and what of that is bare. */
+  /** By segment: the area of the face in view, and its bare share. */
   const seen = new Map<number, { all: number; bare: number; first: number }>();
   for (let v = 0; v < areas.length; ++v) {
     const zone = result.zones[v]!;

@@ -13,7 +13,7 @@ const kUnevenFrom = 0.02;
 const kFarCage = 0.15;
 /** A cage must lie over at least this share of the exposed area; a face is a hundredth of a body. */
 const kMinBeneath = 0.002;
-/** A target that is so many times as large as what is painted of it has something in it that is not part of the model. */
+/** A target this many times as large as its painted part has something foreign in it. */
 const kTooLarge = 10;
 /** A cage is unfit if the target is so many times as large. */
 const kFarTooLarge = 100;

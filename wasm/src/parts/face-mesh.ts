@@ -1,7 +1,7 @@
 import { kBrow, kEye, kLids, kLips, kMiddle, kMouth, kRight, type Uv } from './face-mesh-uvs.js';
 import type { CageExtras, TemplateMesh } from './template.js';
 
-/** Of MediaPipe's canonical face: its points, and its triangles at most, which is with those that fill eyes and mouth. */
+/** Of MediaPipe's canonical face: its points, and its triangles with filled eyes and mouth. */
 const kPoints = 468;
 const kMaxTriangles = 898;
 

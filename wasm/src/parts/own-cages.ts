@@ -1,4 +1,4 @@
-// Files that have their cages with them, as Roblox's: `Head_Geo` and `Head_OuterCage`. Names say which belongs to which.
+// Files with cages of their own, as Roblox's: `Head_OuterCage` is the cage of `Head_Geo`, by name.
 import type { Mesh } from '../api/mesh.js';
 import { show } from '../core/error.js';
 

@@ -9,7 +9,7 @@ export interface LayerItem extends Omit<NewLayer, 'place' | 'undoable'> {
   texture: Texture;
 }
 
-/** Options of `useLayers`: those of `createLayers`, whose renderer is that of the canvas. */
+/** Options of `useLayers`: those of `createLayers`, with the renderer of the canvas. */
 export interface UseLayersOptions extends Omit<LayersOptions, 'renderer'> {
   /** By what the model's own colour is multiplied beneath all layers, #rrggbb. Default: that of the stack, white at first. */
   baseTint?: string | undefined;

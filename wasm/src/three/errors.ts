@@ -11,7 +11,7 @@ export const wrong = (
   details?: ErrorDetails,
 ): CagecastError => new CagecastError(code, fn, reason, details);
 
-/** The error of a value that is not what it should be. @param what  With its article, such as "a Texture". */
+/** The error of a wrong value. @param what  The expected kind with its article, such as "a Texture". */
 export const notA = (what: string, name: string, value: unknown, fn?: string, code?: Code): CagecastError =>
   wrong(`${name} is ${show(value)}, not ${what}`, fn, code);
 

@@ -1,4 +1,4 @@
-// The files that the lint looks at: what Git tracks or would track, so that build outputs never count.
+// The files for the lint: tracked by Git, or new; build outputs never count.
 import { execFileSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { join } from 'node:path';

@@ -39,7 +39,7 @@ function problemsOf(root, program, ...args) {
 /** The file in node_modules/.bin stands in for npx, which takes half a second to find it. */
 const biome = join(repository, 'node_modules/@biomejs/biome/bin/biome');
 
-/** What is checked, by name: each returns the lines that say what is wrong. */
+/** The checks, by name: each returns a line for each fault. */
 const kSteps = {
   arrows: (root, files) => checkArrows(root, files),
   limits: (root, files) => checkLimits(root, files),

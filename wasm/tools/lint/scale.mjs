@@ -56,7 +56,7 @@ function flagsOf(page, command) {
 }
 
 /**
- * What the project weighs. Lines of code are those that are neither empty nor a comment alone.
+ * The project's weight. Lines of code are neither empty nor a comment alone.
  * @param {string} root  The repository.
  * @param {string[]} files  Paths from there.
  * @return {Record<string, number>}

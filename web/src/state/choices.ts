@@ -31,7 +31,7 @@ export const asLock = (choice: Choice): Lock => (choice === 'always' ? 'keep' : 
 export const knownLocks = (locks: Locks, { segmentStats }: Pick<SplitProjection, 'segmentStats'>): Locks =>
   Object.fromEntries(Object.entries(locks).filter(([segment]) => Number(segment) < segmentStats.length));
 
-/** Parts that stay bare by default: clothes of a figure, and those without which the cage was made. */
+/** Parts that stay bare by default: clothes of a figure, and parts excluded when the cage was made. */
 export const bareGroupsOf = (pair: Record<'target' | 'cage', { mesh: ExtractedMesh }> | undefined): number[] =>
   pair ? bareGroups(pair.cage.mesh, pair.target.mesh) : [];
 

@@ -13,7 +13,7 @@ namespace cagecast {
 class OccludedPoints {
  public:
   /// Those in segments of which anything is covered. Allocates from the scene's arena.
-  /// @param hiddenByOwn  Only those that their own segment hides and that were not recovered.
+  /// @param hiddenByOwn  Only points under their own segment, and not recovered.
   OccludedPoints(const Scene& scene, const PointData& data, const Array<SegmentStats>& stats,
                  bool hiddenByOwn = false) noexcept;
 

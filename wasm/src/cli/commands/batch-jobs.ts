@@ -133,7 +133,7 @@ async function jobOfLine(line: string, folder: string, defaults: JobDefaults): P
   );
 }
 
-/** A path of a line, which may be that of no file but of a cage to be made. @throws {InputError} that names the member. */
+/** A path of a line, or the word for a cage to be made. @throws {InputError} with the member's name. */
 const pathIn = (given: Json, name: string, folder: string): string | undefined =>
   name === 'cage' && given[name] === kAutoCage ? kAutoCage : pathOf(given, name, folder);
 

@@ -11,7 +11,7 @@ export type AnyReport = Pick<Report, 'target' | 'segments'> &
   Partial<Omit<Report, 'target' | 'segments'>> &
   Partial<Omit<InspectionReport, 'target' | 'segments' | 'cage' | 'options' | 'versions' | 'counts'>>;
 
-/** Checks a value. @param place  Its name in messages. @throws {InputError} that says what it is and what it has to be. */
+/** Checks a value. @param place  Its name in messages. @throws {InputError} with the value and the expected kind. */
 type Check = (value: unknown, place: string) => void;
 
 /** Returns a check by a test. @param called  What passes it. */

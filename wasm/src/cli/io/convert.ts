@@ -7,7 +7,7 @@ import { quoted } from '../model/text.js';
 import { readBeside } from './files.js';
 
 /**
- * Makes a GLB of a file of another format. Files beside it, such as images, are read as those of a glTF are; those that are missing are named.
+ * Makes a GLB of a file of another format. Files beside it, such as images, are read as those of a glTF; missing ones are named.
  * @throws {InputError} with a message that does not name the file.
  */
 export async function convert(

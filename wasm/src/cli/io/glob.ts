@@ -6,7 +6,7 @@ import { listingError } from './files.js';
  * The files that a pattern names, in order: `*` matches any text within a name, `**` any folders. Names that begin with a dot are
  * only matched by patterns that do. Links to folders are followed, except by `**`, which could go round in circles. A pattern without
  * `*` is returned as it is.
- * @throws {InputError} that names a folder that cannot be listed; one that is not there has no files.
+ * @throws {InputError} with the name of a folder that cannot be listed; a missing one has no files.
  */
 export function filesOf(pattern: string): string[] {
   if (!pattern.includes('*')) return [pattern];

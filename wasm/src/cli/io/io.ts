@@ -12,7 +12,7 @@ export interface Streams {
 /** Characters of a progress bar. */
 const kBarLength = 24;
 
-/** What a command has of the process that runs it: where it prints, a line that shows its progress, and its exit code. */
+/** The process, as a command sees it: its output, a line of progress, and its exit code. */
 export class Io {
   exitCode = 0;
   readonly #streams: Streams;

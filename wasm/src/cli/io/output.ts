@@ -54,7 +54,7 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
 }
 
 /**
- * Finds out before a command begins what would keep it from writing: files that cannot be written, or that it reads or writes as well.
+ * Finds, before a command begins, the reasons why it could not write: a file is read-only, an input, or another output.
  * @throws {UsageError} if an output is an input or another output, or two of either are the standard one.
  * @throws {InputError} that names the file that cannot be written.
  */

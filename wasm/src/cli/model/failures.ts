@@ -25,7 +25,7 @@ export const reasons: Readonly<Record<string, string>> = {
   ENAMETOOLONG: 'its name is too long',
 };
 
-/** What an error says of what went wrong. Others than those of files, of the system and of the package are defects. */
+/** The message of an error. Errors of other kinds than files, system and package are defects. */
 export function messageOf(error: unknown): string {
   if (error instanceof InputError || error instanceof CagecastError) return error.message;
   const { syscall, path, code = '' } = (error ?? {}) as NodeJS.ErrnoException;

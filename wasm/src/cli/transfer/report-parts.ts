@@ -13,7 +13,7 @@ import type { Run } from './run-transfer.js';
 
 export const versions = () => ({ cagecast: CAGECAST_VERSION, node: process.versions.node });
 
-/** What a report says of a target; with files that are missing, the parts that are left out, and those that stay bare by their names. */
+/** A target in a report; with missing files, left-out parts, and parts that stay bare by name. */
 export const targetReport = (
   file: string,
   {
@@ -84,7 +84,7 @@ const kMaxNames = 12;
 export const missingLine = (missing: readonly string[] = []): Line =>
   missing.length > 0 && `missing: ${listed(missing, kMaxNames)}`;
 
-/** Says which files are missing, and which parts are left out or stay bare without a flag that says so, if there are any. */
+/** Names the missing files, and the parts that are left out or stay bare without a flag. */
 export const leftOutLines = ({ missing, leftOut, bare }: TargetReport): Line[] => [
   missingLine(missing),
   leftOut.length > 0 && `left out: ${leftOutText(leftOut)}`,

@@ -88,7 +88,7 @@ export interface Report {
 /** Triangles of a target. */
 interface Triangles {
   total: number;
-  /** Those that may be painted, and whose UVs are where a texture is. */
+  /** Triangles that may be painted, with UVs inside the texture. */
   cosmetic: number;
   /** With bounds of UVs: those that might be painted, but are outside of them. */
   outOfBounds?: number;

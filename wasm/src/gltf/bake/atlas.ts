@@ -16,7 +16,7 @@ import { type ImageCodec, type Slot, slots } from './plan.js';
 
 /** What became of the materials of a file. */
 export interface AtlasReport {
-  /** Materials that share textures now, by their names; those that are one together. */
+  /** Materials with shared textures, by name; merged ones together. */
   packed: string[][];
   /** The textures that they share. */
   textures: { slot: Slot; size: number; mimeType: string }[];
@@ -159,7 +159,7 @@ async function packable(file: GltfFile, json: GLTF.IGLTF, number: number, codec:
   return { number, material, set, uses, images };
 }
 
-/** An ORM image whose red, which meant nothing, is that of no occlusion. */
+/** An ORM image with its unused red set to no occlusion. */
 const withoutOcclusion = (image: Image): Image => ({
   ...image,
   data: image.data.map((byte, i) => (i % 4 === 0 ? 255 : byte)),

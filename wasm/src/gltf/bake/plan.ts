@@ -90,7 +90,7 @@ export const isPainted = (
 export interface ImageCodec {
   /** @throws {Error} if it cannot read such a file; the parts with this texture are not baked then. */
   decode: (bytes: Uint8Array, mimeType: string) => Promise<Image>;
-  /** @param mimeType  Of the image that it takes the place of; undefined for a new one. What it makes may be of any type that glTF has. */
+  /** @param mimeType  Of the replaced image; undefined for a new one. The result may have any type of glTF. */
   encode: (image: Image, mimeType?: string) => Promise<Uint8Array>;
 }
 
@@ -114,7 +114,7 @@ export interface BakeReport {
     mimeType: string;
     before: string | undefined;
   }[];
-  /** The parts that should be painted but have no texture that can hold it, and why; with a variant's material, if it is about that. */
+  /** Parts whose textures cannot hold the paint, and why; with the material, if it is a variant's. */
   left: { part: string; material?: string; reason: string }[];
 }
 
@@ -272,7 +272,7 @@ export const kOutside =
 /** Whether nothing of a paint is in a texture. */
 export const isEmpty = ({ mask }: Baked): boolean => mask.every((one) => one === 0);
 
-/** The triangles that lie on a shared texture; those of a part that several materials lay there in the same way only once. */
+/** The triangles on a shared texture; once, where several materials lay a part in the same way. */
 function layoutsOn<Material, Texture>(
   model: BakeModel<Material, Texture>,
   { slot, users }: SharedTexture<Material, Texture>,

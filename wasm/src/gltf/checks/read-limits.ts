@@ -33,7 +33,7 @@ export const defaultLimits: Readonly<ReadLimits> = {
   expansion: 100,
 };
 
-/** The error of a file that exceeds a limit. @param what  What exceeds it, with the number. */
+/** The error of a file over a limit. @param what  The subject, with its number. */
 export function exceeds<Limit extends string>(
   what: string,
   limit: Limit,

@@ -283,7 +283,7 @@ function putAt(info: TextureInfo, set: number): void {
   if (transform) info.setExtension('KHR_texture_transform', transform.clone().setTexCoord(null));
 }
 
-/** What gives a material the maps that light a base; the overlay gets the UVs and tangents that they need. */
+/** Gives a material the maps that light a base, and the overlay their UVs and tangents. */
 function mapsOn(primitive: Primitive, overlay: Primitive): ((material: Material) => void)[] {
   const base = primitive.getMaterial();
   const sets: string[] = [];

@@ -25,7 +25,7 @@ export interface CageModelOptions {
   /** The `extensions` of the file's JSON. A VRM's skeleton and expressions are in them: without it, names of nodes and morph targets count. */
   extensions?: VrmExtensions | undefined;
   /**
-   * Decodes an image, as for `bake`, so that a face that is only painted can be found. Images for which it rejects are left out.
+   * Decodes an image, as for `bake`, to find a face that is only painted. Rejected images are left out.
    * Default: colours are not looked at.
    */
   decode?: ImageCodec['decode'] | undefined;

@@ -2,7 +2,7 @@ import type { Document, Primitive, Property } from '@gltf-transform/core';
 import { isOfTransfer } from '../overlay.js';
 import { type DocumentPart, isOverlay } from './extract-document.js';
 
-/** Disposes a property that nothing in its document uses, and then what only that used. */
+/** Disposes an unused property, and then the properties that only it used. */
 export function disposeUnused(document: Document, property: Property): void {
   if (property.isDisposed() || property.listParents().some((parent) => parent.propertyType !== 'Root')) return;
   const used = document.getGraph().listChildren(property);

@@ -2,7 +2,7 @@ import { defaultLimits, type ReadLimits } from '../checks/read-limits.js';
 
 /** What reading a model of another format may cost. A few bytes can otherwise demand all memory, or never end. */
 export interface FormatLimits extends Pick<ReadLimits, 'bytes' | 'nesting' | 'instances' | 'parts' | 'expansion'> {
-  /** Files beside the model that are asked for, those that are not there included. Default: 1000 */
+  /** Files beside the model that are asked for, also missing ones. Default: 1000 */
   files: number;
   /** Corners of a polygon. Default: 2000 */
   corners: number;

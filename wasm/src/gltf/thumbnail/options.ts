@@ -11,7 +11,7 @@ export interface ThumbnailOptions {
    * if no joint is called a head; or an azimuth and an elevation. Default: `front`, which is +z, and −z of a VRM 0.
    */
   view?: ViewName | Angles | undefined;
-  /** Patterns for names of nodes, meshes and materials: what is to fill the picture, in which `*` stands for any text. Default: all that is drawn. */
+  /** The parts that fill the picture, as patterns for names of nodes, meshes and materials; `*` is any text. Default: all drawn ones. */
   frame?: readonly string[] | undefined;
   /** What is to fill the picture, by a cage around it: the bytes of a GLB, or a mesh, in the space of the model's scene. */
   cage?: Uint8Array | Pick<Mesh, 'positions'> | undefined;

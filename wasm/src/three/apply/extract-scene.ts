@@ -102,7 +102,7 @@ export function extractNear(
   return asItWas(object, channel, () => extractNow(model, argument, origin, parts));
 }
 
-/** Calls a function while an object is what it was before transfers: all, or those whose place one into a channel takes. */
+/** Calls a function while an object is as before its transfers: before all, or those that one into a channel replaces. */
 export function asItWas<T>(object: Object3D | BufferGeometry, channel: Channel | undefined, call: () => T): T {
   const geometries = new Set<BufferGeometry>();
   if (isGeometry(object)) geometries.add(object);

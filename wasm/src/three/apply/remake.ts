@@ -20,7 +20,7 @@ const semantics: Record<string, string> = {
   skinWeight: 'WEIGHTS_0',
 };
 
-/** What an attribute is called in glTF, where those that the format does not know begin with a line. */
+/** The name of an attribute in glTF; one of an own name begins with a line. */
 const semanticOf = (name: string): string =>
   semantics[name] ?? (/^(position|uv\d?|color(_\d+)?)$/.test(name) ? name : `_${name}`);
 

@@ -2,7 +2,7 @@ import type { CallOptions } from '../../worker/index.js';
 
 /** Options of a call that does not block. */
 export interface Calling extends Pick<CallOptions, 'signal'> {
-  /** How far the call is: a share 0..1 that never falls, and what it does. What it throws rejects the call. */
+  /** How far the call is: a share 0..1 that never falls, and the step. An error in it rejects the call. */
   onProgress?: ((share: number, stage: string) => void) | undefined;
 }
 

@@ -107,7 +107,7 @@ export function rewind(geometry: BufferGeometry, channel?: Channel): Writer[] {
   return gone.reverse();
 }
 
-/** Notes what a transfer has made of a geometry that was rewound. @param before  What `beforeOf` said. */
+/** Notes the result of a transfer to a rewound geometry. @param before  The result of `beforeOf`. */
 export function noteWrite(geometry: BufferGeometry, write: Pick<Write, 'writer' | 'channel' | 'before'>): void {
   writes.set(geometry, [...(writes.get(geometry) ?? []), { ...write, ...madeOf(geometry) }]);
 }

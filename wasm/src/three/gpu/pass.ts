@@ -83,7 +83,7 @@ export function drawerOf(geometry: BufferGeometry, material: Material): (rendere
   return (renderer) => renderer.render(scene, camera);
 }
 
-/** Runs something that draws to a target, over what that shows, and makes the renderer what it was. */
+/** Draws to a target, over its content, and restores the renderer. */
 export function drawTo(renderer: WebGLRenderer, target: WebGLRenderTarget, draw: () => void): void {
   const { autoClear, xr } = renderer;
   const before = renderer.getRenderTarget();

@@ -32,7 +32,7 @@ export class History extends Emitter<{ change: undefined }> {
     return this.#undone.at(-1);
   }
 
-  /** Adds a command that was just done; clears those that were undone. */
+  /** Adds a command after it was done; clears the undone ones. */
   add(command: Command): void {
     this.#done.push(command);
     this.#undone = [];

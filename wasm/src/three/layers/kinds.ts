@@ -15,7 +15,7 @@ const isLoaded = ({ image, version, isRenderTargetTexture }: Texture): boolean =
 
 const glows = ({ emissive }: Layer): boolean => emissive > 0;
 
-/** The layers that change what a texture shows, of those that are seen. */
+/** The visible layers that change a texture. */
 export function layersOf(kind: Kind, layers: readonly Layer[]): readonly Layer[] {
   if (kind === 'color') return layers.filter(({ blend }) => blend !== 'none');
   if (kind === 'surface') return layers.filter(({ roughness, metalness }) => roughness !== null || metalness !== null);

@@ -217,7 +217,7 @@ export class Layers extends Emitter<{
     this.announce();
   }
 
-  /** Tells that the texture will change. For painters that have told `composite` what changed. @internal */
+  /** Announces a change of the texture, after `composite` was told its place. For painters. @internal */
   announce(): void {
     this.emit('change', undefined);
   }

@@ -45,7 +45,7 @@ export class PaintedSheet implements Sheet {
 
   /** Copies a part of the target into the bytes and returns it. @param rect In texels. Waits for the GPU. */
   readBack(renderer: WebGLRenderer, rect: Rect): Uint8Array {
-    // A context that is lost gives no texels: those that were painted before stay.
+    // A lost context gives no texels: earlier ones stay.
     if (renderer.getContext().isContextLost()) return this.get(rect);
     const [width, height] = [rect.right - rect.left, rect.bottom - rect.top];
     const part = new Uint8Array(4 * width * height);

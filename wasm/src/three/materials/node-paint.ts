@@ -9,7 +9,7 @@ export interface NodeBuilder {
   geometry: { hasAttribute(name: string): boolean };
 }
 
-/** The methods by which a material is built for `WebGPURenderer`. That copies them from materials that are not its own, too. */
+/** The methods by which a material is built for `WebGPURenderer`, which copies them from other materials, too. */
 export interface NodeHooks {
   setupDiffuseColor(this: NodeHooks, builder: NodeBuilder): void;
   setupVariants(this: NodeHooks, builder: NodeBuilder): void;

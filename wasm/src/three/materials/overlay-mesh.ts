@@ -36,7 +36,7 @@ const kFollowed = [
  */
 const kLater = 1e-4;
 
-/** Makes a class of meshes whose properties are those of the mesh that holds them. Their copies are such meshes too. */
+/** Makes a class of meshes with the properties of their parent mesh. Copies are such meshes too. */
 function following<C extends typeof Mesh | typeof SkinnedMesh | typeof InstancedMesh>(Base: C): C {
   type Fields = Record<string, unknown> & { parent: (Mesh & Record<string, unknown>) | null; ownFields?: Fields };
   // A field that three's constructors set before the mesh has a parent.

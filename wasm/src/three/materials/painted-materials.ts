@@ -202,7 +202,7 @@ function readPainting(material: Material, record: Patch, painting: Painting): vo
   record.variant = variant;
 }
 
-/** What a material shows of its paint in the frame that is drawn, for `WebGPURenderer`, which calls nothing before it draws. */
+/** The paint of a material in the current frame, for `WebGPURenderer`, which has no call before it draws. */
 function shownOn(material: Material): ShownPaint | undefined {
   const record = patches.get(material);
   if (!record?.painting) return undefined;
