@@ -15,6 +15,7 @@ import {
   kNoWebGl,
   kPlay,
   openSite,
+  ready,
   setThreshold,
   settled,
   shownCounts,
@@ -29,14 +30,10 @@ let visit: Visit;
 let page: Page;
 let area: Area;
 
-async function ready(): Promise<void> {
-  assert.equal(await settled(page), 'ready', await shownError(page));
-}
-
 /** Chooses in a list, and waits for what follows. */
 async function choose(list: string, value: string): Promise<void> {
   await page.getByTestId(list).selectOption(value);
-  await ready();
+  await ready(page);
 }
 
 const isPainted = (primitive: Primitive): boolean => primitive.listSemantics().includes('_NCZ');
@@ -52,7 +49,7 @@ describe('without a picture', () => {
   after(() => assert.deepEqual([visit.complaints, visit.foreign], [[], []]));
 
   test('the page opens with the first sample, and says that there is no picture', async () => {
-    await ready();
+    await ready(page);
     const { cosmetic, occluded, uncovered, culled } = await shownCounts(page);
     assert.ok(cosmetic > 0 && occluded > 0 && uncovered > 0);
     const total = Number((await page.locator('#count-total').textContent())!.replaceAll(',', ''));
@@ -124,7 +121,7 @@ describe('without a picture', () => {
     await page.locator('#sample-select').evaluate(async (select: HTMLSelectElement) => {
       while (select.value !== 'lizard') await new Promise(requestAnimationFrame);
     });
-    await ready();
+    await ready(page);
     assert.deepEqual(await shownCounts(page), before);
     await setThreshold(page, 0.5);
   });
@@ -141,7 +138,7 @@ describe('without a picture', () => {
       glb('thing-cage.glb', glbOf(tetrahedron(2), 'thing')),
     ];
     await drop(page, cube);
-    await ready();
+    await ready(page);
     assert.equal(await shownError(page), '');
     assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
     assert.deepEqual((await page.locator('.files .name').allTextContents()).slice(0, 2), [
@@ -152,7 +149,7 @@ describe('without a picture', () => {
 
   test('own paints are layers, which are restyled, moved and removed, as steps that can be undone', async () => {
     await drop(page, bust());
-    await ready();
+    await ready(page);
     for (const name of ['one.png', 'two.png']) {
       await page.getByTestId('texture-input').setInputFiles(image(name, 8, () => [200, 0, 220, 255]));
       await page.getByTestId('layer-list').getByText(name).waitFor();
@@ -174,7 +171,7 @@ describe('without a picture', () => {
   test('layers of another cage are put away, and brought back', async () => {
     const before = await names(page);
     await page.getByTestId('cage-input').setInputFiles(glb('other-cage.glb', asset('car', 'cage.glb')));
-    await ready();
+    await ready(page);
     await page.getByTestId('put-away').filter({ hasText: '2 layers of earlier cages put away.' }).waitFor();
     await page.locator('#bring-back').click();
     assert.deepEqual((await names(page)).slice(0, 2), before.slice(0, 2));
@@ -183,7 +180,7 @@ describe('without a picture', () => {
 
   test('a model that is opened alone is fitted a template and painted; so is a cage that is made, and another fit', async () => {
     await drop(page, bust().slice(0, 1));
-    await ready();
+    await ready(page);
     assert.match((await page.locator('#cage-note').textContent())!, /^The template was fitted/);
     assert.deepEqual(
       [await page.locator('#texture-name').textContent(), (await names(page)).at(-1)],
@@ -196,12 +193,12 @@ describe('without a picture', () => {
     await page.locator('#texture-name', { hasText: 'Skull' }).waitFor({ state: 'attached' });
     await page.getByTestId('make-cage').click();
     await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
-    await ready();
+    await ready(page);
     assert.ok((await shownCounts(page)).cosmetic > 0);
     assert.deepEqual((await names(page)).at(-1), 'Skull', 'the same paint, drawn for this cage');
     await page.getByTestId('fit-cage').click();
     await page.locator('#cage-note', { hasText: 'was fitted' }).waitFor();
-    await ready();
+    await ready(page);
     const { name, bytes } = await saved(page, 'save-cage');
     assert.equal(name, 'bust-cage.glb');
     await validModel(bytes);
@@ -215,12 +212,12 @@ describe('without a picture', () => {
     ] as const)
       maker.node({ mesh: maker.mesh(tetrahedron(size)), name });
     await drop(page, [glb('knight.glb', maker.finish()), glb('knight-cage.glb', glbOf(tetrahedron(1.5), 'Cage'))]);
-    await ready();
+    await ready(page);
     const before = await shownCounts(page);
     await page.getByRole('button', { name: 'Do it: leave out “Visor”' }).press('Enter');
     const back = page.getByRole('button', { name: 'Take back “Visor”' });
     await back.and(page.locator(':focus')).waitFor();
-    await ready();
+    await ready(page);
     const leftOut = await shownCounts(page);
     assert.notDeepEqual(leftOut, before);
     const { bytes } = await saved(page, 'export-glb');
@@ -233,12 +230,12 @@ describe('without a picture', () => {
     assert.deepEqual(await faults(page), []);
     await page.getByTestId('undo').click();
     await back.waitFor({ state: 'detached' });
-    await ready();
+    await ready(page);
     assert.deepEqual(await shownCounts(page), before);
     await page.getByTestId('redo').click();
     await back.press('Enter');
     await back.waitFor({ state: 'detached' });
-    await ready();
+    await ready(page);
     assert.deepEqual(await shownCounts(page), before);
   });
 
@@ -253,7 +250,7 @@ describe('without a picture', () => {
 
   test('a project that was saved brings everything back, and so does a reload', async () => {
     await setThreshold(page, 0.65);
-    await ready();
+    await ready(page);
     const state = async () => ({
       files: await page.locator('.files .name').allTextContents(),
       counts: await shownCounts(page),
@@ -270,7 +267,7 @@ describe('without a picture', () => {
     await page.locator('#threshold').evaluate(async (slider: HTMLInputElement) => {
       while (slider.value !== '0.65') await new Promise(requestAnimationFrame);
     });
-    await ready();
+    await ready(page);
     assert.deepEqual(await state(), before);
     await setThreshold(page, 0.7);
     const changed = await state();
@@ -279,7 +276,7 @@ describe('without a picture', () => {
     await page.getByTestId('kept-note').filter({ hasText: 'Your work is kept on this device' }).waitFor();
     await page.reload();
     await page.getByTestId('ask').filter({ hasText: 'Your last work is back.' }).waitFor();
-    await ready();
+    await ready(page);
     assert.deepEqual(await state(), changed);
     assert.deepEqual(await faults(page), []);
   });
@@ -330,7 +327,7 @@ describe('with a picture', () => {
 
   test('an own paint is drawn on the model, the light changes it, and the cage is drawn', async () => {
     await page.getByTestId('texture-input').setInputFiles(violetPaint());
-    await ready();
+    await ready(page);
     const violet = await look(page, area);
     assert.ok(shareOfHue(violet, 295) > 0.1);
     await page.getByTestId('light').selectOption('evening');
@@ -349,7 +346,7 @@ describe('with a picture', () => {
       .getByTestId('borders-note')
       .filter({ hasText: /^Adds [\d,]+ triangles\.$/ })
       .waitFor();
-    await ready();
+    await ready(page);
     await page.locator('#exact-borders').uncheck({ force: true });
     assert.ok(difference(plain, await look(page, area)) < 0.0005);
   });
@@ -419,7 +416,7 @@ describe('with a picture', () => {
     await cards.nth(1).filter({ hasText: 'other cage' }).waitFor();
     await cards.nth(1).click();
     await page.locator('.avatars li:nth-child(2) .avatar[aria-pressed=true]').waitFor();
-    await ready();
+    await ready(page);
     assert.equal(await page.getByTestId('sample-select').inputValue(), 'human');
     assert.deepEqual(await faults(page), []);
     const { name } = await saved(page, 'export-all');
@@ -429,7 +426,7 @@ describe('with a picture', () => {
       .getByRole('button', { name: /^Remove / })
       .press('Enter');
     await page.locator('.avatars li:only-child .avatar[aria-pressed=true]').waitFor();
-    await ready();
+    await ready(page);
   });
 });
 

@@ -1,18 +1,12 @@
-import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import type { Locator, Page } from 'playwright-core';
 import { modelArea } from './picture';
-import { glb, inRepository, settled, shownError, type Upload } from './site';
+import { glb, inRepository, ready, type Upload } from './site';
 
 export const asset = (...names: string[]): Buffer => readFileSync(inRepository('examples/samples', ...names));
 
 /** A head without a cage. */
 export const head = (): Upload => glb('bust.glb', asset('human', 'target.glb'));
-
-/** Waits until the page is ready. */
-export async function ready(page: Page): Promise<void> {
-  assert.equal(await settled(page), 'ready', await shownError(page));
-}
 
 /** Waits until the page works, and then until it is ready again. */
 export async function worked(page: Page): Promise<void> {

@@ -1,3 +1,4 @@
+import assert from 'node:assert/strict';
 import { mkdtemp, rm } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
@@ -166,6 +167,11 @@ export async function settled(page: Page): Promise<string> {
     { timeout: kPatience },
   );
   return (await status.jsonValue())!;
+}
+
+/** Waits until the page shows what it was given. @throws AssertionError with what it says instead. */
+export async function ready(page: Page): Promise<void> {
+  assert.equal(await settled(page), 'ready', await shownError(page));
 }
 
 /** Number of target vertices per zone. */

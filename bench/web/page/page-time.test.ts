@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { islandCage, lumpyBall } from '../../../tests/support/models';
-import { drop, glb, inRepository, openSite, settled, shownCounts, shownError } from '../../../tests/support/site';
+import { drop, glb, inRepository, openSite, ready, settled, shownCounts } from '../../../tests/support/site';
 import { compute, kComputation, longestTask, mainThreadWork } from './processor-time';
 
 /** Milliseconds that a task of the page's main thread may take. */
@@ -42,7 +42,7 @@ test('with the CPU slowed four times, less than a second of computing before the
 /** Opens a model in a small window. */
 async function open(page: Page, model: Buffer): Promise<void> {
   await drop(page, [glb('model.glb', model)]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
 }
 
 const nextPicture = (page: Page): Promise<unknown> =>
@@ -93,7 +93,7 @@ for (const [title, button, model] of [
     await open(page, await model());
     const longest = await longestTask(page, async () => {
       await page.getByTestId(button).click();
-      assert.equal(await settled(page), 'ready', await shownError(page));
+      await ready(page);
       await page.locator('#cage-note:not(:empty)').waitFor();
     });
     assert.ok(longest < kMaxMs, `the longest task takes ${longest} ms`);

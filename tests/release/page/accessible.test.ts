@@ -4,7 +4,7 @@ import { faults } from '../../support/axe';
 import { image } from '../../support/layers';
 import { islandCage, morphingBalls } from '../../support/models';
 import { saved } from '../../support/saved';
-import { drop, glb, openSite, settled, shownError } from '../../support/site';
+import { drop, glb, openSite, ready, settled } from '../../support/site';
 
 const site = await openSite();
 
@@ -47,7 +47,7 @@ test('axe finds no problems with own files: morphs, an animation, layers, notes,
     await morphingBalls({ animated: true }),
     image('paint.png', 8, () => [200, 60, 30, 255]),
   ]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await page.getByTestId('add-painting').click();
   await page.locator('#parts summary').click();
   await page.getByTestId('segment-table').locator('tbody select').first().selectOption('exclude');
@@ -65,7 +65,7 @@ test('axe finds no problems with own files: morphs, an animation, layers, notes,
   await page.getByTestId('progress').waitFor();
   assert.deepEqual(await faults(page), [], 'while it works');
   letGo();
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
 });
 
 test('axe finds no problems without WebGL', async () => {

@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { faults } from '../../support/axe';
-import { asset, dragBy, head, ready, savedCage, workedFor } from '../../support/cages';
+import { asset, dragBy, head, savedCage, workedFor } from '../../support/cages';
 import { difference, look, modelArea } from '../../support/picture';
 import { saved, validModel } from '../../support/saved';
-import { drop, glb, openSite, passed, setThreshold, shownCounts, shownParts } from '../../support/site';
+import { drop, glb, openSite, passed, ready, setThreshold, shownCounts, shownParts } from '../../support/site';
 
 const site = await openSite();
 

@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { faults } from '../../support/axe';
-import { asset, head, ready, worked } from '../../support/cages';
+import { asset, head, worked } from '../../support/cages';
 import { GlbMaker, tetrahedron } from '../../support/glb';
 import { difference, look, modelArea } from '../../support/picture';
-import { drop, glb, openSite, shownError, shownParts } from '../../support/site';
+import { drop, glb, openSite, ready, shownError, shownParts } from '../../support/site';
 
 const site = await openSite();
 

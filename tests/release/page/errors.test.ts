@@ -8,7 +8,7 @@ import { NodeIO } from '@gltf-transform/core';
 import { PNG } from 'pngjs';
 import { glbOf, tetrahedron } from '../../support/glb';
 import { texturedBox } from '../../support/models';
-import { drop, glb, inRepository, openSite, settled, shownCounts, shownError } from '../../support/site';
+import { drop, glb, inRepository, openSite, ready, settled, shownCounts, shownError } from '../../support/site';
 
 const site = await openSite();
 // One page for all of it: it must come through everything.
@@ -46,7 +46,7 @@ test('a damaged image is shown in white, and reported', async () => {
     const document = await io.readBinary(new Uint8Array((await texturedBox(png)).buffer));
     document.getRoot().listTextures()[0]!.setMimeType(mimeType).setImage(new Uint8Array(image));
     await page.getByTestId('target-input').setInputFiles(glb('box.glb', Buffer.from(await io.writeBinary(document))));
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
     assert.match(await shownError(page), says, kind);
     assert.match(await shownError(page), / White is shown in its place\.$/);
     assert.ok((await shownCounts(page)).cosmetic > 0);
@@ -54,7 +54,7 @@ test('a damaged image is shown in white, and reported', async () => {
   // It was read, and need not be said again.
   await page.locator('#alert-close').click();
   await page.getByTestId('preset').selectOption('paper');
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   assert.equal(await shownError(page), '');
   assert.ok(
     complaints.every((complaint) => /Couldn't load texture|blob:/.test(complaint)),
@@ -82,7 +82,7 @@ test('folders can be dropped; empty ones and files that are too large are report
     await writeFile(path.join(folder, 'avatar/fitting/cage.glb'), glbOf(tetrahedron(9), 'thing'));
     await dropFolder('avatar');
     await page.locator('#target-name', { hasText: 'head.glb' }).waitFor();
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
     assert.equal(await page.locator('#cage-name').textContent(), 'cage.glb');
     const { cosmetic } = await shownCounts(page);
     // Files of one name, in the folders of their models.
@@ -98,7 +98,7 @@ test('folders can be dropped; empty ones and files that are too large are report
     await dropFolder('pair');
     await page.getByRole('button', { name: 'Only pair/second/scene.gltf' }).click();
     await page.locator('#target-name', { hasText: 'scene.gltf' }).waitFor();
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
     assert.equal((await shownCounts(page)).cosmetic, cosmetic);
 
     const huge = path.join(folder, 'huge.glb');
@@ -126,7 +126,7 @@ test('missing samples are reported, and own files work', async () => {
   assert.match(await shownError(page), /samples could not be loaded/);
   await page.getByTestId('target-input').setInputFiles(glb('thing.glb', glbOf(sound, 'thing')));
   await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', glbOf(tetrahedron(2), 'thing')));
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
 });
 
@@ -139,21 +139,21 @@ test('a worker that fails to start is reported, and the next transfer starts ano
   assert.match(await shownError(page), /the transfer could not be started/);
   await page.unroute(kWorker);
   await page.getByTestId('sample-select').selectOption({ index: 1 });
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.equal(await shownError(page), '');
 });
 
 test('warnings about files stay while borders are cut', async () => {
   const { page } = await site.visit();
   await page.getByTestId('exact-borders').check({ force: true });
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   await drop(page, [
     glb('a.glb', glbOf(tetrahedron(1), 'thing')),
     glb('b.glb', glbOf(tetrahedron(2), 'thing')),
     glb('cage.glb', glbOf(tetrahedron(4), 'thing')),
   ]);
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   await page.locator('#borders-note', { hasText: 'Adds' }).waitFor();
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   assert.match(await shownError(page), / was ignored: /);
 });

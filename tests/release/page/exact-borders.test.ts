@@ -4,7 +4,7 @@ import type { Page } from 'playwright-core';
 import { cancelOnceShown, kSlowWorker } from '../../support/cancel';
 import { ball, islandCage, islandPaint } from '../../support/models';
 import { difference, look, modelArea, shareOfHue } from '../../support/picture';
-import { drop, openSite, setThreshold, settled, shownError } from '../../support/site';
+import { drop, openSite, ready, setThreshold } from '../../support/site';
 
 const site = await openSite();
 const visit = await site.visit();
@@ -17,7 +17,7 @@ const chooseMode = (page: Page, value: string): Promise<void> =>
 /** Waits until the model is shown as it was cut. */
 async function cut(page: Page): Promise<void> {
   await page.waitForFunction(() => /Adds/.test(document.querySelector('[data-testid=borders-note]')!.textContent!));
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
 }
 
 /** Notes what is said of borders, from now on. */
@@ -52,7 +52,7 @@ test('another threshold, lock or paint is shown at once, and cut again if the zo
   await cut(page);
   assert.ok(difference(before, await look(page, area)) < 0.0005);
   await page.getByTestId('texture-input').setInputFiles(islandPaint());
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.match((await note(page))!, isCut);
   assert.deepEqual(complaints, []);
 });
@@ -76,7 +76,7 @@ for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'sk
   test(`a cut model is painted like a whole one: ${name}`, async () => {
     const { page, complaints } = await site.visit();
     await drop(page, [await ball(options), await islandCage(1), islandPaint()]);
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
     await chooseMode(page, 'result');
     const area = await modelArea(page);
     const hues = async (): Promise<number[]> => {

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { PNG } from 'pngjs';
 import { difference, look, modelArea, shareOfHue } from '../../support/picture';
-import { drop, openSite, setThreshold, settled, shownError, type Visit, violetPaint } from '../../support/site';
+import { drop, openSite, ready, setThreshold, type Visit, violetPaint } from '../../support/site';
 
 const site = await openSite();
 // One page for all of it: a file's result must not depend on the files before.
@@ -15,7 +15,7 @@ async function fresh(): Promise<Visit> {
   await setThreshold(page, 0.5);
   await page.getByTestId('preset').selectOption('default');
   await page.locator('input[value=compare]').check({ force: true });
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   return visit;
 }
 
@@ -32,7 +32,7 @@ test('a model is drawn by the programs of the one before, if it is of the same k
   /** Shows a sample. @returns How many programs were linked so far, and the picture. */
   const show = async (sample: string): Promise<[linked: number, picture: PNG]> => {
     await page.getByTestId('sample-select').selectOption(sample);
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
     const picture = await look(page, area);
     return [Number(await page.evaluate(() => document.body.dataset['linked'] ?? 0)), picture];
   };
@@ -64,7 +64,7 @@ test('an own paint, PNG or JPEG, is drawn on the model', async () => {
   const area = await modelArea(page);
   assert.ok(shareOfHue(await look(page, area), 295) < 0.01);
   await page.getByTestId('texture-input').setInputFiles(violetPaint());
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   const violet = shareOfHue(await look(page, area), 295);
   assert.ok(violet > 0.1, `${violet} of the picture is violet`);
 
@@ -79,7 +79,7 @@ test('an own paint, PNG or JPEG, is drawn on the model', async () => {
   await page
     .getByTestId('texture-input')
     .setInputFiles({ name: 'green.jpg', mimeType: 'image/jpeg', buffer: Buffer.from(jpeg, 'base64') });
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   const green = shareOfHue(await look(page, area), 140);
   assert.ok(green > 0.1, `${green} of the picture is green`);
   assert.deepEqual(complaints, []);

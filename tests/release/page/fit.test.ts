@@ -9,10 +9,9 @@ import {
   inRepository,
   openSite,
   passed,
+  ready,
   setThreshold,
-  settled,
   shownCounts,
-  shownError,
   shownParts,
 } from '../../support/site';
 
@@ -39,7 +38,7 @@ test('a finding highlights its part, and locks it as proposed', async () => {
   await page.getByTestId('sample-select').selectOption({ index: 0 });
   await page.getByTestId('preset').selectOption('paper');
   await setThreshold(page, 0.36);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   const eye = page
     .getByTestId('inspect-panel')
     .locator('li')
@@ -66,13 +65,13 @@ test('a finding highlights its part, and locks it as proposed', async () => {
   await eye.waitFor({ state: 'detached' });
   await page.getByTestId('preset').selectOption('default');
   await setThreshold(page, 0.5);
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
 });
 
 test('where a part only falls below the threshold, the stage offers to keep it, and not another cage', async () => {
   const { page } = visit;
   await page.getByTestId('sample-select').selectOption('human');
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await setThreshold(page, 1);
   const remedy = page.getByTestId('stage-remedy');
   await remedy.waitFor();
@@ -85,7 +84,7 @@ test('where a part only falls below the threshold, the stage offers to keep it, 
   assert.notEqual(await page.locator('#stage-verdict').getAttribute('data-verdict'), 'unfit');
   assert.ok((await shownCounts(page)).cosmetic > 0, 'the part is painted');
   await setThreshold(page, 0.5);
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
 });
 
 test('a large model is inspected on request', async () => {
@@ -97,7 +96,7 @@ test('a large model is inspected on request', async () => {
     glb('target.glb', glbOf({ ...small, indices }, 'thing')),
     glb('cage.glb', glbOf(tetrahedron(2), 'thing')),
   ]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await passed(page, 1500);
   assert.equal(await page.locator('#fit-verdict').textContent(), '');
   await page.getByRole('button', { name: 'Inspect the cage' }).click();

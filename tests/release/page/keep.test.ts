@@ -7,7 +7,7 @@ import { asset } from '../../support/cages';
 import { filled, image, names, rows, savedTexture } from '../../support/layers';
 import { modelArea } from '../../support/picture';
 import { saved } from '../../support/saved';
-import { drop, glb, openSite, settled, shownCounts, shownError, shownParts } from '../../support/site';
+import { drop, glb, openSite, ready, settled, shownCounts, shownError, shownParts } from '../../support/site';
 
 const site = await openSite();
 
@@ -17,12 +17,12 @@ async function openOwn(page: Page): Promise<void> {
     glb('bust.glb', asset('human', 'target.glb')),
     glb('bust-cage.glb', asset('human-misaligned', 'cage.glb')),
   ]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
 }
 
 /** All that somebody would miss. */
 async function state(page: Page) {
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await page.locator('#live[aria-busy=true]').waitFor({ state: 'detached' });
   const texture = await savedTexture(page);
   const value = (id: string): Promise<string> => page.getByTestId(id).inputValue();
@@ -84,7 +84,7 @@ async function work(page: Page): Promise<void> {
   await page.getByLabel(`Override for ${part}`, { exact: true }).selectOption('exclude');
   await page.getByTestId('threshold').fill('0.7');
   await page.getByTestId('preset').selectOption('paper');
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await page.getByTestId('amount').fill('0.4');
   await page.getByTestId('light').selectOption('soft');
   await page.getByLabel('Own background').check();
@@ -118,7 +118,7 @@ test('a reload in the middle of a painting brings everything back, files include
   await button.focus();
   await Promise.all([page.waitForEvent('load'), page.keyboard.press('Enter')]);
   await line.filter({ hasText: 'put aside' }).waitFor();
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.deepEqual((await names(page)).length, 1, 'the layers of the sample');
   assert.equal(await page.getByTestId('threshold').inputValue(), '0.5');
   assert.deepEqual(await faults(page), []);
@@ -212,7 +212,7 @@ test('the works of open tabs are kept however many there are, and a work whose f
   await waitFor(page, 'a');
   await page.reload();
   await page.getByTestId('ask').filter({ hasText: 'Your last work is back.' }).waitFor();
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.equal(await page.locator('#target-name').textContent(), 'a.glb');
   assert.equal(await page.getByTestId('threshold').inputValue(), '0.7');
   assert.deepEqual(complaints, []);

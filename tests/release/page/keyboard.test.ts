@@ -4,7 +4,7 @@ import path from 'node:path';
 import { test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
-import { inRepository, openSite, settled, shownCounts, shownError } from '../../support/site';
+import { inRepository, openSite, ready, shownCounts } from '../../support/site';
 import { temporaryFolder } from '../../support/temporary';
 
 const site = await openSite();
@@ -35,17 +35,17 @@ test('keyboard only: load files, change the rules, and save the model', async ()
   const sample = await shownCounts(page);
   await tabTo(page, 'target-input');
   await chooseFile(page, inRepository('examples/samples/human/target.glb'));
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await tabTo(page, 'cage-input');
   await chooseFile(page, inRepository('examples/samples/human/cage.glb'));
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   const loaded = await shownCounts(page);
   assert.notDeepEqual(loaded, sample);
 
   await tabTo(page, 'preset');
   await page.keyboard.press('p'); // for “Paper”
   assert.equal(await page.getByTestId('preset').inputValue(), 'paper');
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.notDeepEqual(await shownCounts(page), loaded);
   await tabTo(page, 'threshold');
   await page.keyboard.press('End');

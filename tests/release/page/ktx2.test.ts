@@ -8,7 +8,7 @@ import { texel } from '../../support/layers';
 import { islandCage, lumpyBall } from '../../support/models';
 import { look, modelArea, shareOfHue } from '../../support/picture';
 import { saved, validModel } from '../../support/saved';
-import { glb, inRepository, openSite, settled, shownCounts, shownError, type Upload } from '../../support/site';
+import { glb, inRepository, openSite, ready, settled, shownCounts, shownError, type Upload } from '../../support/site';
 
 const site = await openSite();
 
@@ -61,7 +61,7 @@ test('KTX2 textures work under the content security policy, are saved unchanged,
   await settled(page);
   for (const [kind, image] of Object.entries(kImages)) {
     await page.getByTestId('target-input').setInputFiles(await ballWith(image));
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
     assert.ok((await shownCounts(page)).cosmetic > 0);
     await page.locator('#show-paint').uncheck({ force: true });
     const shown = shareOfHue(await look(page, await modelArea(page)), kHue);
@@ -113,7 +113,7 @@ test('a damaged KTX2 texture is shown in white, and reported', async () => {
   await page.getByTestId('cage-input').setInputFiles(await islandCage(1));
   await settled(page);
   await page.getByTestId('target-input').setInputFiles(await ballWith(ktx2Of(...kColor).slice(0, 150)));
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.equal(
     await shownError(page),
     'target.glb: image “colour” cannot be shown: the KTX2 file is cut short after 150 bytes. White is shown in its place.',

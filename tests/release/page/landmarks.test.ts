@@ -10,13 +10,12 @@ import {
   heldBack,
   holdingBack,
   placeOf,
-  ready,
   savedCage,
   worked,
   workedFor,
 } from '../../support/cages';
 import { difference, look, modelArea } from '../../support/picture';
-import { drop, glb, openSite, type Visit } from '../../support/site';
+import { drop, glb, openSite, ready, type Visit } from '../../support/site';
 
 const site = await openSite();
 

@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { cancelOnceShown, kSlowWorker } from '../../support/cancel';
 import { islandCage, lumpyBall } from '../../support/models';
-import { openSite, settled, shownCounts, shownError } from '../../support/site';
+import { openSite, ready, settled, shownCounts } from '../../support/site';
 import { temporaryFolder } from '../../support/temporary';
 
 const kSide = 150; // 45,000 triangles; bench/web/page measures with 500,000
@@ -34,7 +34,7 @@ test('while a large model is transferred, progress is shown', async () => {
   await settled(page);
   const stages = await watchProgress(page);
   await page.getByTestId('target-input').setInputFiles(target);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   const { cosmetic, occluded, uncovered, culled } = await shownCounts(page);
   assert.ok(cosmetic + occluded + uncovered + culled > kSide ** 2);
   assert.ok((await stages()).length >= 2, (await stages()).join());
@@ -54,7 +54,7 @@ for (const way of ['button', 'Escape'] as const) {
     assert.deepEqual(await shownCounts(page), before);
     // It is no loss: another sample opens at once.
     await page.getByTestId('sample-select').selectOption({ index: 1 });
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
     assert.notDeepEqual(await shownCounts(page), before);
     assert.deepEqual(complaints, []);
   });

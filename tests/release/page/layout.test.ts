@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { PNG } from 'pngjs';
-import { asset, fitted, head, ready } from '../../support/cages';
+import { asset, fitted, head } from '../../support/cages';
 import { stageFaults } from '../../support/page/stage-faults';
 import { difference, look, modelArea } from '../../support/picture';
-import { drop, glb, kPlay, openSite, type Visit } from '../../support/site';
+import { drop, glb, kPlay, openSite, ready, type Visit } from '../../support/site';
 
 const site = await openSite();
 let visit = await site.visit({ hasTouch: true });

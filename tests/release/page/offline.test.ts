@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
 import { test } from 'node:test';
-import { openSite, settled, shownCounts, shownError } from '../../support/site';
+import { openSite, ready, settled, shownCounts, shownError } from '../../support/site';
 
 const site = await openSite();
 
@@ -11,7 +11,7 @@ test('after one visit the page works offline, with every sample and decoder', as
   await page.evaluate(() => navigator.serviceWorker.ready);
   await page.context().setOffline(true);
   await page.goto(`${site.url}?from=a-friend#later`);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.deepEqual(await shownCounts(page), online);
 
   const names = await page
@@ -82,13 +82,13 @@ test('it works offline if the server redirects index.html to the folder, beside 
     const copies = ['one/', 'other/'].map((name) => server.resolvedUrls!.local[0] + name);
     for (const copy of copies) {
       await page.goto(copy);
-      assert.equal(await settled(page), 'ready', await shownError(page));
+      await ready(page);
       await page.evaluate(() => navigator.serviceWorker.ready);
     }
     await context.setOffline(true);
     for (const copy of copies) {
       await page.goto(copy);
-      assert.equal(await settled(page), 'ready', await shownError(page));
+      await ready(page);
     }
   } finally {
     await context.close();

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { difference, frames, look, modelArea, watch } from '../../support/picture';
-import { openSite, settled, shownError } from '../../support/site';
+import { openSite, ready } from '../../support/site';
 
 const kFrames = 30; // in which whatever moves does
 
@@ -14,7 +14,7 @@ test('the page retimes the transfer once the browser has compiled it', async () 
   for (let i = 0; i < 10 && Number(await page.getByTestId('time-total').textContent()) >= 200; i++)
     for (const preset of ['paper', 'default']) {
       await page.getByTestId('preset').selectOption(preset);
-      assert.equal(await settled(page), 'ready', await shownError(page));
+      await ready(page);
     }
   // Shown only where it was much longer.
   await page.locator('#time-first', { hasText: /^[\d.]+ ms the first time/ }).waitFor({ state: 'attached' });

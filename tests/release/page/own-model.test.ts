@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { head, middleOf, ready } from '../../support/cages';
+import { head, middleOf } from '../../support/cages';
 import { rows } from '../../support/layers';
 import { lumpyBall } from '../../support/models';
-import { drop, openSite } from '../../support/site';
+import { drop, openSite, ready } from '../../support/site';
 
 const site = await openSite();
 

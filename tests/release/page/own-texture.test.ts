@@ -5,7 +5,7 @@ import type { Page } from 'playwright-core';
 import { ball, islandCage } from '../../support/models';
 import { difference, look, modelArea } from '../../support/picture';
 import { primitivesOf, saved, validModel } from '../../support/saved';
-import { drop, glb, openSite, settled, shownError } from '../../support/site';
+import { drop, glb, openSite, ready, shownError } from '../../support/site';
 
 const site = await openSite(); // texels around an island
 
@@ -26,13 +26,13 @@ test('a saved model with baked paint looks like the painted model on the page', 
   const painted = await look(page, area);
   const { bytes } = await savedInTexture(page);
   await page.getByTestId('target-input').setInputFiles(glb('painted.glb', bytes));
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await page.locator('#show-paint').uncheck({ force: true });
   const again = await look(page, area);
   assert.ok(difference(painted, again) < 0.03, `${difference(painted, again)} of the picture differs`);
   await page.locator('#show-paint').check({ force: true });
   await page.getByTestId('sample-select').selectOption({ index: 0 });
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   await page.locator('#show-paint').uncheck({ force: true });
   assert.ok(difference(painted, await look(page, area)) > 0.1, 'the paint is no small thing');
 });
@@ -40,7 +40,7 @@ test('a saved model with baked paint looks like the painted model on the page', 
 test('parts without a texture keep an overlay and are named; the choice is disabled without any texture', async () => {
   const { page } = await site.visit();
   await page.getByTestId('sample-select').selectOption('car');
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   const { document, note } = await savedInTexture(page);
   assert.match(
     note,
@@ -56,7 +56,7 @@ test('parts without a texture keep an overlay and are named; the choice is disab
   assert.ok(bases.every((primitive) => primitive.getMaterial()?.getBaseColorTexture() === null));
 
   await drop(page, [await islandCage(1), { ...(await ball()), name: 'target.glb' }]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.equal(await page.locator('#paint-into [value=texture]').isDisabled(), true);
   assert.equal(await page.locator('#paint-into [value=overlay]').isChecked(), true);
   assert.equal(primitivesOf(await validModel((await saved(page, 'export-glb')).bytes)).filter(isOverlay).length, 1);

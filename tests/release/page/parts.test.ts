@@ -4,7 +4,7 @@ import type { Locator } from 'playwright-core';
 import { glbOf, tetrahedron } from '../../support/glb';
 import { balls, islandCage } from '../../support/models';
 import { difference, look, modelArea } from '../../support/picture';
-import { drop, glb, openSite, type ShownPart, settled, shownCounts, shownError, shownParts } from '../../support/site';
+import { drop, glb, openSite, ready, type ShownPart, shownCounts, shownParts } from '../../support/site';
 
 const site = await openSite();
 const visit = await site.visit();
@@ -91,7 +91,7 @@ test('of very many parts the largest fifty are listed; overrides of another mode
   const [first] = await shownParts(page);
   await choice(first!).selectOption('keep');
   await drop(page, [await balls(130), await islandCage(1)]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   const parts = await shownParts(page);
   assert.equal(parts.length, 50);
   assert.ok(parts.every(({ lock }) => lock === 'auto'));
@@ -103,7 +103,7 @@ test('of very many parts the largest fifty are listed; overrides of another mode
   assert.match((await table().locator('caption').textContent())!, /50 largest of 130/);
 
   await page.getByTestId('target-input').setInputFiles(glb('thing.glb', glbOf(tetrahedron(0.5), 'thing')));
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.deepEqual(await shownParts(page), [
     { name: 'thing', points: 4, covered: '100 %', culled: false, lock: 'auto' },
   ]);

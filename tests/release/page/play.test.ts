@@ -4,9 +4,9 @@ import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
-import { head, middleOf, ready } from '../../support/cages';
+import { head, middleOf } from '../../support/cages';
 import { difference, look, modelArea, watch } from '../../support/picture';
-import { drop, kPlay, openSite, settled } from '../../support/site';
+import { drop, kPlay, openSite, ready } from '../../support/site';
 
 const site = await openSite();
 
@@ -178,6 +178,6 @@ test('on a phone the stage fills the screen, and the panel is a sheet: closed, o
   await page.getByTestId('sheet').click();
   await page.locator('#sample-select').focus();
   assert.deepEqual(await heights(), [less, more], 'the keyboard gets there');
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   assert.deepEqual(complaints, []);
 });

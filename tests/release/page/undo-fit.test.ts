@@ -4,7 +4,7 @@ import { test } from 'node:test';
 import type { Locator } from 'playwright-core';
 import { image, names, rows, savedTexture } from '../../support/layers';
 import { modelArea } from '../../support/picture';
-import { openSite, settled, shownError } from '../../support/site';
+import { openSite, ready } from '../../support/site';
 
 const site = await openSite();
 let visit = await site.visit({ viewport: { width: 900, height: 600 } });
@@ -13,7 +13,7 @@ for (const [name, red] of [
   ['blue.png', 0],
 ] as const) {
   await visit.page.getByTestId('texture-input').setInputFiles(image(name, 64, (x) => [red, x, 255 - red, 200]));
-  assert.equal(await settled(visit.page), 'ready', await shownError(visit.page));
+  await ready(visit.page);
   await rows(visit.page).filter({ hasText: name }).waitFor();
 }
 
@@ -76,7 +76,7 @@ test('every edit of a layer is an undo step, also between strokes', async () => 
       'choosing UV checker',
       async () => {
         await page.getByRole('radio', { name: 'UV checker' }).check({ force: true });
-        assert.equal(await settled(page), 'ready', await shownError(page));
+        await ready(page);
       },
     ],
     ['adding a painting', () => page.getByTestId('add-painting').click()],
@@ -234,7 +234,7 @@ test('undo is blocked during an edit, which is kept', async () => {
 test('undo does not affect the paint of a model opened since', async () => {
   const { page } = visit;
   await page.getByRole('radio', { name: 'Tiger stripes' }).check({ force: true });
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.match(await undoTitle(), /choosing Tiger stripes/);
   await control('button', 'Reorder red.png').focus();
   const before = await names(page);
@@ -242,11 +242,11 @@ test('undo does not affect the paint of a model opened since', async () => {
   const after = await names(page);
   assert.notDeepEqual(after, before);
   await page.getByTestId('sample-select').selectOption('human');
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   await page.locator('#undo[title*="replacing "]').waitFor({ state: 'attached' }); // once the work is stored
   await page.keyboard.press('Control+z');
   await page.getByTestId('layer-list').getByText('Tiger stripes').waitFor();
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   assert.deepEqual(await names(page), after);
   assert.match(await undoTitle(), /^Undo$/, 'as after a reload');
 });

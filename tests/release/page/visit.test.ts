@@ -4,7 +4,7 @@ import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
 import { asset } from '../../support/cages';
 import { difference, frames, look, modelArea } from '../../support/picture';
-import { drop, glb, openSite, settled, shownError, shownParts, type Upload } from '../../support/site';
+import { drop, glb, openSite, ready, shownParts, type Upload } from '../../support/site';
 
 const figure = (): Upload => glb('figure.glb', asset('human-body', 'target.glb'));
 
@@ -36,7 +36,7 @@ const site = await openSite();
 
 async function open(page: Page, uploads: Upload[]): Promise<void> {
   await drop(page, uploads);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
 }
 
 /** Waits for the verdict on the cage. */

@@ -6,7 +6,7 @@ import { PNG } from 'pngjs';
 import { faults } from '../../support/axe';
 import { asset } from '../../support/cages';
 import { validModel } from '../../support/saved';
-import { drop, glb, openSite, settled, shownError, type Upload } from '../../support/site';
+import { drop, glb, openSite, ready, shownError, type Upload } from '../../support/site';
 import { unzip } from '../../support/zip';
 
 const figure = (name: string): Upload => glb(`${name}.glb`, asset('human-body', 'target.glb'));
@@ -150,7 +150,7 @@ test('figures dropped together get the template of the first; a stroke is on all
   }
   await page.locator('.avatars .avatar').nth(1).click();
   await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'two' }).waitFor();
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.ok(await page.getByTestId('save-cage').isVisible(), 'the cage that was fitted to it can be saved');
   await page.getByTestId('landmarks').waitFor();
   assert.equal(await page.locator('#tools input[data-key=b]').isChecked(), true, 'the brush stays in the hand');

@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { costlyFiles, jpegOf, webpOf } from '../../../support/files/costly';
 import { costlyFormats } from '../../../support/files/costly-formats';
 import { glbOf, tetrahedron } from '../../../support/glb';
-import { glb, openSite, settled, shownError } from '../../../support/site';
+import { glb, openSite, ready, settled, shownError } from '../../../support/site';
 
 /** The most memory that any of them may take, beside what the page has. */
 const kMax = 500e6; // bytes
@@ -48,7 +48,7 @@ for (const [name, { bytes, refusal }] of Object.entries(costlyFiles))
     if (refusal) assert.match(said, new RegExp(`^costly\\.glb: ${refusal.source}`));
     assert.ok(taken < kMax, `${Math.round(taken / 1e6)} MB`);
     await page.getByTestId('target-input').setInputFiles(glb('sound.glb', sound));
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
   });
 
 const soundFile = glb('sound.glb', sound);
@@ -67,7 +67,7 @@ for (const [title, { name, bytes, beside, refusal }] of Object.entries(costlyFor
       if (!/neither/.test(refusal.source)) assert.match(said, new RegExp(`^${name}: .*${refusal.source}`));
       assert.ok(taken < kMax, `${Math.round(taken / 1e6)} MB`);
       await page.getByTestId('target-input').setInputFiles(soundFile);
-      assert.equal(await settled(page), 'ready', await shownError(page));
+      await ready(page);
     });
 
 test('a model of another format whose reading does not end: Escape and the next model end its worker at once', async () => {
@@ -96,7 +96,7 @@ test('a model of another format whose reading does not end: Escape and the next 
   const replaced = second.waitForEvent('close', beforeLimit);
   await page.getByTestId('target-input').setInputFiles(soundFile);
   await replaced;
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.equal(readers().length, 0);
 });
 
@@ -129,5 +129,5 @@ test('a link with strokes of a billion pixels', async () => {
   );
   assert.ok(taken < kMax, `${Math.round(taken / 1e6)} MB`);
   await page.getByTestId('target-input').setInputFiles(glb('sound.glb', sound));
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
 });

@@ -4,9 +4,9 @@ import { NodeIO } from '@gltf-transform/core';
 import type { Mesh } from 'cagecast';
 import { BufferAttribute, BufferGeometry, Mesh as Drawn, Group } from 'three';
 import { OBJExporter } from 'three/addons/exporters/OBJExporter.js';
-import { asset, ready } from '../../../support/cages';
+import { asset } from '../../../support/cages';
 import { fbxOf } from '../../../support/models';
-import { drop, kPlay, openSite } from '../../../support/site';
+import { drop, kPlay, openSite, ready } from '../../../support/site';
 
 const site = await openSite();
 

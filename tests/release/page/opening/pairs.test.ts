@@ -4,17 +4,13 @@ import { cageGlb } from 'cagecast/cages';
 import type { Page } from 'playwright-core';
 import { faults } from '../../../support/axe';
 import { glbOf, tetrahedron } from '../../../support/glb';
-import { drop, glb, kNoWebGl, openSite, settled, shownError, type Upload } from '../../../support/site';
+import { drop, glb, kNoWebGl, openSite, ready, type Upload } from '../../../support/site';
 
 const site = await openSite();
 
 const thing = (name: string, size = 1): Upload => glb(name, glbOf(tetrahedron(size), 'thing'));
 const shown = (page: Page, slot: 'target' | 'cage', name: string): Promise<void> =>
   page.locator(`#${slot}-name`, { hasText: name }).waitFor();
-
-async function ready(page: Page): Promise<void> {
-  assert.equal(await settled(page), 'ready', await shownError(page));
-}
 
 test('of two models that come together, neither is taken as the cage of the other: the page asks, and the keyboard answers', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 700, height: 600 } });

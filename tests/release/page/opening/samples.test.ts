@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { Page, Route } from 'playwright-core';
 import { faults } from '../../../support/axe';
-import { kNoWebGl, openSite, settled, shownError } from '../../../support/site';
+import { kNoWebGl, openSite, ready, settled, shownError } from '../../../support/site';
 
 const site = await openSite();
 
@@ -43,15 +43,15 @@ test('a sample that does not come is said to after ten seconds, and can be asked
   assert.deepEqual(await faults(page), []);
   await asked.continue();
   await box.waitFor({ state: 'hidden' });
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
 
   await page.getByTestId('sample-select').selectOption('lizard');
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   await choose();
   await page.unroute(kHuman);
   await box.getByRole('button', { name: 'Try again' }).click();
   await page.locator('#target-name', { hasText: 'target.glb' }).waitFor();
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   assert.equal(await page.getByTestId('sample-select').inputValue(), 'human');
   assert.ok(await box.isHidden());
 
@@ -88,6 +88,6 @@ test('so can the list of samples', async () => {
   await page.getByTestId('ask').filter({ hasText: 'The samples: not loaded.' }).waitFor();
   await page.unroute(/\/samples\/index\.json/);
   await page.getByRole('button', { name: 'Try again' }).click();
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await page.waitForFunction(() => document.querySelector<HTMLSelectElement>('#sample-select')!.options.length > 2);
 });

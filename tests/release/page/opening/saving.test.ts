@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { saved } from '../../../support/saved';
-import { openSite, passed, settled, shownError } from '../../../support/site';
+import { openSite, passed, ready, shownError } from '../../../support/site';
 
 const site = await openSite();
 
@@ -32,7 +32,7 @@ test('a bake whose worker fails, ends without a word, or never answers leaves a 
   const says = async (pattern: RegExp): Promise<void> => {
     await page.locator('#error', { hasText: pattern }).waitFor();
     assert.match(await shownError(page), /Save it with the paint as an overlay, or by “cagecast bake”/);
-    assert.equal(await settled(page), 'ready');
+    await ready(page);
     assert.equal(await isBusy(page), null);
     await page.locator('#alert-close').click();
   };
@@ -59,13 +59,13 @@ test('a bake whose worker fails, ends without a word, or never answers leaves a 
     await cancel();
     await page.getByTestId('export-note').filter({ hasText: 'The model was not saved.' }).waitFor();
     assert.equal(await isBusy(page), null);
-    assert.equal(await settled(page), 'ready');
+    await ready(page);
   }
   // Nor does another model that comes meanwhile.
   await begin(page);
   await page.getByTestId('sample-select').selectOption('human');
   await page.locator('#export-glb:not([aria-busy])').waitFor();
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
 
   await page.unroute(kWorker);
   assert.ok((await saved(page, 'export-glb')).bytes.length > 1000);

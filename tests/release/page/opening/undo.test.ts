@@ -5,13 +5,9 @@ import type { Page } from 'playwright-core';
 import { faults } from '../../../support/axe';
 import { asset } from '../../../support/cages';
 import { image, names, rows, savedTexture } from '../../../support/layers';
-import { drop, glb, kPlay, openSite, settled, shownError, shownParts, type Visit } from '../../../support/site';
+import { drop, glb, kPlay, openSite, ready, shownParts, type Visit } from '../../../support/site';
 
 const site = await openSite();
-
-async function ready(page: Page): Promise<void> {
-  assert.equal(await settled(page), 'ready', await shownError(page));
-}
 
 const dino = () => [
   glb('dino.glb', asset('human', 'target.glb')),

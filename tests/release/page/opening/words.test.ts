@@ -1,9 +1,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { Page, Route } from 'playwright-core';
-import { fitted, head, ready } from '../../../support/cages';
+import { fitted, head } from '../../../support/cages';
 import { saved } from '../../../support/saved';
-import { drop, openSite, settled } from '../../../support/site';
+import { drop, openSite, ready, settled } from '../../../support/site';
 
 const site = await openSite();
 

@@ -4,9 +4,9 @@ import { test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
 import { faults } from '../../../support/axe';
-import { asset, middleOf, ready } from '../../../support/cages';
+import { asset, middleOf } from '../../../support/cages';
 import { difference, look, modelArea } from '../../../support/picture';
-import { drop, glb, openSite, passed, shownCounts } from '../../../support/site';
+import { drop, glb, openSite, passed, ready, shownCounts } from '../../../support/site';
 
 const site = await openSite();
 

@@ -4,7 +4,7 @@ import type { PNG } from 'pngjs';
 import { filled, names, savedTexture, texel } from '../../../support/layers';
 import { ball, islandCage } from '../../../support/models';
 import { type Area, look, modelArea } from '../../../support/picture';
-import { drop, openSite, settled, shownError } from '../../../support/site';
+import { drop, openSite, ready, shownError } from '../../../support/site';
 
 const kWindow = { width: 900, height: 500 };
 const site = await openSite();
@@ -38,7 +38,7 @@ const kHard = { 'brush-hardness': '100', 'brush-opacity': '100', 'brush-color': 
 test('a stroke skips unpainted zones, and continues behind them', async () => {
   const { page, complaints } = visit;
   await page.getByTestId('sample-select').selectOption({ index: 0 });
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   const area = await modelArea(page);
   await page.locator('#view-mode input[value=naive]').check({ force: true });
   const naive = await look(page, area);
@@ -137,7 +137,7 @@ test('a stroke that goes on while another model comes stays with its cage', asyn
   assert.ok((await names(page)).includes('Painting 1'));
   await begin();
   await drop(page, [await ball(), await islandCage(1)]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await page.mouse.move(x + 0.6 * width, y + 0.5 * height, { steps: 4 });
   await page.mouse.up();
   assert.deepEqual(await names(page), ['Flowers']);

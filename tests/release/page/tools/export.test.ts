@@ -3,7 +3,7 @@ import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { glbOf, tetrahedron } from '../../../support/glb';
 import { difference, look, modelArea } from '../../../support/picture';
-import { drop, glb, openSite, setThreshold, settled, shownCounts, shownError, shownParts } from '../../../support/site';
+import { drop, glb, openSite, ready, setThreshold, settled, shownCounts, shownParts } from '../../../support/site';
 
 const site = await openSite();
 
@@ -45,7 +45,7 @@ test('a link restores sample, paint, rules, locks, view and camera, in this visi
   assert.ok(link.startsWith(`${site.url}#`), link);
 
   const check = async (page: Page): Promise<void> => {
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
     assert.deepEqual(await shownCounts(page), seen.counts);
     assert.deepEqual(await shownParts(page), seen.parts);
     assert.equal(await page.locator('.paints input').nth(1).isChecked(), seen.paint);

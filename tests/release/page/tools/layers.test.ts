@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { Locator } from 'playwright-core';
 import { filled, image, names, rows, savedTexture, texel } from '../../../support/layers';
-import { openSite, settled, shownError } from '../../../support/site';
+import { openSite, ready, settled, shownError } from '../../../support/site';
 
 const site = await openSite();
 const visit = await site.visit({ viewport: { width: 900, height: 500 } });
@@ -20,7 +20,7 @@ test('layers are reordered with the keys, which keep the focus, and by dragging'
   await control('button', 'Remove Tiger stripes').click();
   for (const upload of [image('below.png', 64, () => red), image('above.png', 64, () => blue)]) {
     await page.getByTestId('texture-input').setInputFiles(upload);
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
     await rows(page).filter({ hasText: upload.name }).waitFor();
   }
   await assertTop(blue);

@@ -4,7 +4,7 @@ import type { Page } from 'playwright-core';
 import { kDeforms } from '../../../../web/src/state/deform';
 import { ball, islandCage, islandPaint } from '../../../support/models';
 import { difference, frames, look, modelArea, shareOfHue, watch } from '../../../support/picture';
-import { drop, openSite, settled, shownCounts, shownError } from '../../../support/site';
+import { drop, openSite, ready, shownCounts, shownError } from '../../../support/site';
 
 const site = await openSite();
 
@@ -36,7 +36,7 @@ test('a deformed model is shown with its paint, and returns to the same pixels',
   const bent = await look(page, area);
   for (const preset of ['paper', 'default']) {
     await page.getByTestId('preset').selectOption(preset);
-    assert.equal(await settled(page), 'ready', await shownError(page));
+    await ready(page);
     await page.locator('#live[aria-busy=false]').waitFor();
   }
   assert.ok(difference(bent, await look(page, area)) < 0.001, 'the cage is shown where it is moved to');
@@ -66,7 +66,7 @@ test('Animate runs until it is switched off or another model is opened', async (
   assert.equal(await amount(), last, 'it has stopped');
   await page.getByTestId('deform-moves').check();
   await page.getByTestId('sample-select').selectOption({ index: 1 });
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await page.waitForFunction(() => !document.querySelector<HTMLInputElement>('#deform-moves')!.checked);
   assert.equal(await page.getByTestId('amount').inputValue(), '0');
   assert.deepEqual(complaints, []);
@@ -76,7 +76,7 @@ test('an animated model plays with its paint', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 600 } });
   const paint = islandPaint();
   await drop(page, [await islandCage(1), { ...(await ball({ animated: true })), name: 'target.glb' }, paint]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await page.locator('input[value=result]').check({ force: true });
   const area = await modelArea(page);
   const rest = await look(page, area);

@@ -4,7 +4,7 @@ import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
 import { ball, islandCage } from '../../../support/models';
 import { difference, look, modelArea, shareOfHue } from '../../../support/picture';
-import { drop, openSite, settled, shownError, type Upload } from '../../../support/site';
+import { drop, openSite, ready, type Upload } from '../../../support/site';
 
 const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
 
@@ -18,7 +18,7 @@ const ticks = (page: Page): Promise<string[]> => page.locator('#legend .ticks sp
 async function open(...files: Upload[]): Promise<Page> {
   const { page } = visit;
   await drop(page, files);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   return page;
 }
 
@@ -72,11 +72,11 @@ test('stretch is shown on painted triangles, and reveals one that spans half of 
 
   // Per vertex, a triangle over an edge of the cage takes in all that lies between two islands.
   await page.getByTestId('preset').selectOption('paper');
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   const smeared = shareOfHue(await look(page, area), blue);
   assert.ok(smeared > 0.005, `${smeared} of the picture is crammed`);
   await page.getByTestId('preset').selectOption('default');
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   assert.ok(difference(even, await look(page, area)) < 0.0005);
 
   await page

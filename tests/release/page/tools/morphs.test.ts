@@ -4,7 +4,7 @@ import type { Page } from 'playwright-core';
 import { islandCage, islandPaint, morphingBalls } from '../../../support/models';
 import { difference, frames, look, modelArea, watch } from '../../../support/picture';
 import { saved, validModel } from '../../../support/saved';
-import { drop, kNoWebGl, openSite, settled, shownError, type Upload } from '../../../support/site';
+import { drop, kNoWebGl, openSite, ready, shownError, type Upload } from '../../../support/site';
 
 const site = await openSite();
 
@@ -23,7 +23,7 @@ async function morph(page: Page, name: string, weight: number): Promise<void> {
 
 async function open(page: Page, uploads: Upload[]): Promise<void> {
   await drop(page, uploads);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
 }
 
 test('every morph has a slider, even without a name', async () => {
@@ -36,7 +36,7 @@ test('every morph has a slider, even without a name', async () => {
     Array.from({ length: 20 }, (_, n) => `Morph ${n + 1}`),
   );
   await page.getByTestId('sample-select').selectOption('lizard');
-  assert.equal(await settled(page), 'ready');
+  await ready(page);
   assert.equal(await page.getByTestId('morphs').isVisible(), false);
 });
 

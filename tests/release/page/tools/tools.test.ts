@@ -6,7 +6,7 @@ import { faults } from '../../../support/axe';
 import { filled, names, savedTexture } from '../../../support/layers';
 import { ball, islandCage } from '../../../support/models';
 import { type Area, difference, look, modelArea, shareOfHue } from '../../../support/picture';
-import { drop, openSite, settled, shownError } from '../../../support/site';
+import { drop, openSite, ready } from '../../../support/site';
 
 const kGreen = 140; // the hue of the paint; the ball is blue
 const kGreenPaint = '#00c040';
@@ -15,7 +15,7 @@ const site = await openSite();
 /** Opens a ball in a cube whose six sides are islands of the texture, and nothing on it. */
 async function openBall(page: Page): Promise<Area> {
   await drop(page, [await ball(), await islandCage(1)]);
-  assert.equal(await settled(page), 'ready', await shownError(page));
+  await ready(page);
   await page.locator('input[value=result]').check({ force: true });
   for (const name of await names(page)) await page.getByRole('button', { name: `Remove ${name}`, exact: true }).click();
   await page.locator('#view').press('Home');

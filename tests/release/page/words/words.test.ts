@@ -3,9 +3,9 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../../support/axe';
-import { fitted, head, middleOf, ready } from '../../../support/cages';
+import { fitted, head, middleOf } from '../../../support/cages';
 import { dictionaryOf, kCollectTexts, kLanguages, type Language, textsOf } from '../../../support/page/words';
-import { drop, glb, kPlay, openSite, settled } from '../../../support/site';
+import { drop, glb, kPlay, openSite, ready, settled } from '../../../support/site';
 
 const site = await openSite();
 
