@@ -196,18 +196,12 @@ TEST_CASE("quantised numbers are decoded", "[gltf]") {
     const Floats positions = readable(file.bytes()).positions;
     CHECK(Floats(positions.begin(), positions.begin() + 5) == Floats{1, -1, -1, 0, 1 / 32767.0f});
   }
-  SECTION("normalised UVs of bytes and shorts") {
-    const auto uvsOf = [](File own, int view, int componentType) {
-      own.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":1})";
-      own.accessor(view, componentType, "VEC2", 5, R"(,"normalized":true)");
-      return readable(own.bytes()).uvs;
-    };
+  SECTION("normalised UVs of bytes") {
     file = points();
-    const Floats expected{0, 1, 0.2f, 0.4f, 0, 0, 0, 0, 0, 1};
-    const int bytes = file.view<std::uint8_t>({0, 255, 0, 0, 51, 102, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 0, 0}, 4);
-    CHECK(uvsOf(file, bytes, kUnsignedByte) == expected);
-    const int shorts = file.view<std::uint16_t>({0, 65535, 13107, 26214, 0, 0, 0, 0, 0, 65535});
-    CHECK(uvsOf(file, shorts, kUnsignedShort) == expected);
+    const int view = file.view<std::uint8_t>({0, 255, 0, 0, 51, 102, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 0, 0}, 4);
+    file.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":1})";
+    file.accessor(view, kUnsignedByte, "VEC2", 5, R"(,"normalized":true)");
+    CHECK(readable(file.bytes()).uvs == Floats{0, 1, 0.2f, 0.4f, 0, 0, 0, 0, 0, 1});
   }
 }
 
@@ -356,7 +350,6 @@ TEST_CASE("a skinned mesh at rest is where its skeleton holds it, not where its 
 }
 
 TEST_CASE("a rig of another unit or axis than the scene places its mesh", "[gltf]") {
-  checkNear(readable(figure(128).bytes()).positions, kPoints);
   SECTION("an armature in centimetres") {
     File file = heldPoints(100);
     file.nodes = R"({"mesh":0,"skin":0},
@@ -365,12 +358,6 @@ TEST_CASE("a rig of another unit or axis than the scene places its mesh", "[gltf
     file.sceneNodes = "1,0";
     file.extra = R"(,"skins":[)" + skinOf(file, "[2,3]", {smaller(1, 0, -50, 0), smaller(1, 0, -200, 0)}, 3) + "]";
     checkNear(readable(file.bytes()).positions, kPoints);
-  }
-  SECTION("turned from z to y") {
-    // A quarter round x: (x, y, z) comes to (x, z, -y).
-    const double half = std::sqrt(0.5);
-    const std::string turned = R"(,"rotation":[)" + std::to_string(-half) + ",0,0," + std::to_string(half) + "]";
-    checkNear(readable(figure(4, turned).bytes()).positions, {0, 0, 0, 1, 0, 0, 1, 0, -1, 0, 0, -1, 0, 1, 0});
   }
   SECTION("mirrored: triangles are turned round") {
     const gltf::Model model = readable(figure(1, R"(,"scale":[-1,1,1])").bytes());
@@ -402,23 +389,17 @@ TEST_CASE("a quantised skinned mesh is decoded by its inverse bind matrices", "[
   }
 }
 
-TEST_CASE("a posed figure is taken in its bind pose", "[gltf]") {
-  CHECK(readable(figure(1, "", kBent).bytes()).positions == kPoints);
-  SECTION("by the first joint of its skin if it is stored in another unit") {
-    checkNear(readable(figure(64, R"(,"translation":[5,0,0])", kBent).bytes()).positions, movedPoints(5, 0, 0));
-  }
-  SECTION("by the first that holds it if the first has another size") {
-    File file = heldPoints(64);
-    file.nodes = R"({"mesh":0,"skin":0},{"scale":[1.05,1.05,1.05]},{"translation":[0,1,0]},{"translation":[0,2,0]})";
-    file.sceneNodes = "0,1,2,3";
-    file.accessors.clear();
-    file.accessor(0, kFloat, "VEC3", 5);
-    file.accessor(file.view<std::uint8_t>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0}), kUnsignedByte,
-                  "VEC4", 5);
-    file.accessor(2, kFloat, "VEC4", 5);
-    file.extra = R"(,"skins":[)" + skinOf(file, "[1,2,3]", {smaller(64), smaller(64), smaller(64)}, 3) + "]";
-    checkNear(readable(file.bytes()).positions, movedPoints(0, 1, 0));
-  }
+TEST_CASE("a posed figure is placed by the first joint that holds it if the first of all has another size", "[gltf]") {
+  File file = heldPoints(64);
+  file.nodes = R"({"mesh":0,"skin":0},{"scale":[1.05,1.05,1.05]},{"translation":[0,1,0]},{"translation":[0,2,0]})";
+  file.sceneNodes = "0,1,2,3";
+  file.accessors.clear();
+  file.accessor(0, kFloat, "VEC3", 5);
+  file.accessor(file.view<std::uint8_t>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0}), kUnsignedByte,
+                "VEC4", 5);
+  file.accessor(2, kFloat, "VEC4", 5);
+  file.extra = R"(,"skins":[)" + skinOf(file, "[1,2,3]", {smaller(64), smaller(64), smaller(64)}, 3) + "]";
+  checkNear(readable(file.bytes()).positions, movedPoints(0, 1, 0));
 }
 
 TEST_CASE("all meshes of a figure are at rest, or none is", "[gltf]") {
@@ -484,12 +465,6 @@ TEST_CASE("joints that hold nothing do not place a mesh", "[gltf]") {
   SECTION("those whose inverse bind matrices are missing") {
     file.extra = R"(,"skins":[)" + skinOf(file, "[2,3,4]", {smaller(1)}, 4) + "]";
     CHECK(with(R"(,"JOINTS_0":1,"WEIGHTS_0":2)") == movedPoints(5, 0, 0));
-  }
-  SECTION("those in a cycle are where the scene is") {
-    file.nodes = R"({"mesh":0,"skin":0},{"children":[2]},{"children":[1]})";
-    file.sceneNodes = "0";
-    file.extra = R"(,"skins":[)" + skinOf(file, "[1,2]", {smaller(1, 3, 0, 0), smaller(1, 3, 0, 0)}, 4) + "]";
-    CHECK(with(R"(,"JOINTS_0":1,"WEIGHTS_0":2)") == movedPoints(3, 0, 0));
   }
   SECTION("a skin without joints") {
     file.extra = R"(,"skins":[{"joints":[]}])";
@@ -691,13 +666,11 @@ TEST_CASE("Draco as it is in the wild, accessors without data, is an error that 
 TEST_CASE("broken references are errors that name them", "[gltf]") {
   File file = triangle();
   file.accessor(-1, kFloat, "VEC3", 0);
-  file.accessor(0, kFloat, "VEC2", 4);
   const char *indices = R"("indices":1)", *count = R"("VEC3","count":5)", *node = R"({"mesh":0,"name":"thing"})";
   const char *view = R"("byteOffset":0,"byteLength":60)", *type = R"(5126,"type":"VEC3","count":5)";
   checkErrors(
       file,
-      {{count, R"("VEC3","count":2)", "meshes[0].primitives[0].indices[2] = 2 is out of range (2 vertices)"},
-       {indices, R"("indices":0)", "primitives[0].indices has component type 5126"},
+      {{indices, R"("indices":0)", "primitives[0].indices has component type 5126"},
        {indices, R"("mode":7)", "meshes[0].primitives[0].mode = 7"},
        {indices, R"("mode":-2)", "meshes[0].primitives[0].mode = -2"},
        {count, R"("VEC3","count":6)", "bufferViews[0] (60 bytes)"},
@@ -710,10 +683,7 @@ TEST_CASE("broken references are errors that name them", "[gltf]") {
        {node, R"({"mesh":3})", "meshes[3]"},
        {indices, R"("indices":1,"material":3)", "materials[3]"},
        {R"("scenes":[{"nodes":[0)", R"("scenes":[{"nodes":[5)", "nodes[5]"},
-       {type, R"(5126,"type":"VEC2","count":5)", "accessors[0]"},
-       {type, R"(5126,"type":"VEC2","count":5)", "3 components"},
        {type, R"(5127,"type":"VEC3","count":5)", ""},
-       {R"("POSITION":0)", R"("POSITION":0,"TEXCOORD_0":3)", "TEXCOORD_0 has 4 elements for 5 vertices"},
        {node, R"({"mesh":0,"matrix":[1,2,3,4,5]})", "nodes[0].matrix has 5 numbers, not 16"},
        {node, R"({"mesh":0,"children":[1]},{"children":[0]})", "its own ancestor"},
        {node, R"({"children":[1,1]},{"mesh":0})", "twice"},
