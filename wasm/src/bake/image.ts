@@ -91,38 +91,63 @@ export function resize(image: Image, width: number, height: number): Image {
   if (from.width === width && from.height === height) return from;
   const [columns, rows] = [spansOf(from.width, width), spansOf(from.height, height)];
   const data = new Uint8ClampedArray(4 * width * height);
+  const { data: source } = from;
+  const blended = new Float64Array(4 * from.width); // a row of the new height in the old width, weighted by alpha
   for (let y = 0; y < height; ++y) {
-    for (let x = 0; x < width; ++x) {
-      let [r, g, b, a, sum] = [0, 0, 0, 0, 0];
-      for (const [row, down] of rows[y]!) {
-        for (const [column, across] of columns[x]!) {
-          const at = 4 * (row * from.width + column);
-          const share = down * across;
-          const weight = share * (from.data[at + 3]! || kFaint);
-          r += weight * from.data[at]!;
-          g += weight * from.data[at + 1]!;
-          b += weight * from.data[at + 2]!;
-          a += weight;
-          sum += share;
-        }
+    blended.fill(0);
+    let wholeDown = 0;
+    for (let j = rows.starts[y]!; j < rows.starts[y + 1]!; ++j) {
+      const down = rows.weights[j]!;
+      wholeDown += down;
+      for (let i = 0, at = blended.length * rows.places[j]!; i < blended.length; i += 4, at += 4) {
+        const weight = down * (source[at + 3]! || kFaint);
+        blended[i]! += weight * source[at]!;
+        blended[i + 1]! += weight * source[at + 1]!;
+        blended[i + 2]! += weight * source[at + 2]!;
+        blended[i + 3]! += weight;
       }
-      data.set([r / a, g / a, b / a, a / sum], 4 * (y * width + x));
+    }
+    for (let x = 0, to = 4 * width * y; x < width; ++x, to += 4) {
+      let [r, g, b, a, whole] = [0, 0, 0, 0, 0];
+      for (let j = columns.starts[x]!; j < columns.starts[x + 1]!; ++j) {
+        const [across, i] = [columns.weights[j]!, 4 * columns.places[j]!];
+        r += across * blended[i]!;
+        g += across * blended[i + 1]!;
+        b += across * blended[i + 2]!;
+        a += across * blended[i + 3]!;
+        whole += across;
+      }
+      data[to] = r / a;
+      data[to + 1] = g / a;
+      data[to + 2] = b / a;
+      data[to + 3] = a / (whole * wholeDown);
     }
   }
   return { width, height, data };
 }
 
-/** For each pixel of a new row, the pixels of the old one that it covers, and how much of each; at least two are blended. */
-function spansOf(before: number, after: number): [number, number][][] {
+/** The pixels of an old line that each pixel of a new one covers, and how much of each; at least two are blended. */
+interface Spans {
+  /** 1 per new pixel, and an end: where its pixels begin in the other arrays. */
+  starts: Uint32Array;
+  places: Uint32Array;
+  weights: Float64Array;
+}
+
+function spansOf(before: number, after: number): Spans {
   const scale = before / after;
   const reach = Math.max(scale, 1);
-  return Array.from({ length: after }, (_, place) => {
+  const starts = new Uint32Array(after + 1);
+  const [places, weights]: [number[], number[]] = [[], []];
+  for (let place = 0; place < after; ++place) {
     const middle = (place + 0.5) * scale;
-    const span: [number, number][] = [];
     for (let i = Math.floor(middle - reach); i <= Math.ceil(middle + reach); ++i) {
       const weight = 1 - Math.abs(i + 0.5 - middle) / reach;
-      if (weight > 0) span.push([Math.min(before - 1, Math.max(0, i)), weight]);
+      if (weight <= 0) continue;
+      places.push(Math.min(before - 1, Math.max(0, i)));
+      weights.push(weight);
     }
-    return span;
-  });
+    starts[place + 1] = places.length;
+  }
+  return { starts, places: Uint32Array.from(places), weights: Float64Array.from(weights) };
 }
