@@ -122,6 +122,7 @@ val fitCageCall(const val& from, const val& target, const val& landmarks, const 
   setCage(out, cage);
   out.set("missing", listed(cage.missing));
   out.set("guessed", listed(cage.guessed));
+  out.set("bare", listed(cage.bare));
   return out;
 }
 

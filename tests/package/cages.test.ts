@@ -298,6 +298,26 @@ describe('fitCage', () => {
     for (const name of Object.keys(used)) assert.ok(confidence[name]! > 0 && confidence[name]! <= 1);
   });
 
+  test('of a head leaves clothes bare, unless they are kept', async () => {
+    const [x, y, z] = template.landmarks['chin']!;
+    const [count, group] = [model.positions.length / 3, model.names!.length];
+    const shirt = [x, y - 0.1, z, x + 0.1, y - 0.1, z, x, y - 0.2, z].map((v, i) => 2 * v + (i % 3 === 1 ? 5 : 0));
+    const dressed = {
+      ...model,
+      positions: Float32Array.of(...model.positions, ...shirt),
+      indices: Uint32Array.of(...model.indices, count, count + 1, count + 2),
+      groups: Uint32Array.of(...model.groups!, group, group, group),
+      names: [...model.names!, ['Shirt']],
+      vertexJoints: undefined,
+      uvs: undefined,
+      baseColors: undefined,
+    };
+    for (const keep of [[], ['Shirt']]) {
+      const { cage } = await fitCage(template, dressed, {}, { parts: { keep } });
+      assert.equal(cage.bare?.includes('Shirt'), keep.length === 0);
+    }
+  });
+
   test('finds landmarks', async () => {
     const { landmarks, confidence, kind, rig, missing } = await findLandmarks(model);
     assert.ok(Object.keys(landmarks).length > 5);

@@ -202,8 +202,8 @@ std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& tar
   return anchors;
 }
 
-std::vector<bool> belowRim(const TemplateCage& cage, const std::vector<Vec3>& positions, const TriangleMesh& target) {
-  constexpr double kBelow = 0.06;  ///< In diagonals: what a neck goes into is still seen.
+std::vector<bool> belowRim(const TemplateCage& cage, const std::vector<Vec3>& positions, const TriangleMesh& target,
+                           double slack) {
   std::vector<bool> out(target.triangles.size());
   if (cage.rim < 0) return out;
   const std::vector<std::uint32_t>& loop = cage.loops[static_cast<std::size_t>(cage.rim)];
@@ -211,7 +211,7 @@ std::vector<bool> belowRim(const TemplateCage& cage, const std::vector<Vec3>& po
   const Rim rim = sampleRim(placed, loop, kRimStep * cage.diagonal, meanOf(positions) - middleOf(placed, loop));
   for (std::size_t t = 0; t < out.size(); ++t)
     out[t] = std::all_of(target.triangles[t].begin(), target.triangles[t].end(), [&](std::uint32_t v) {
-      return dot(target.positions[v] - rim.centre, rim.normal) < -kBelow * cage.diagonal;
+      return dot(target.positions[v] - rim.centre, rim.normal) < -slack * cage.diagonal;
     });
   return out;
 }

@@ -11,10 +11,6 @@ namespace {
 /// Parts of a face that hardly move against each other, by the beginnings of their landmarks' names.
 constexpr const char* kFace[] = {"eye_", "nose_tip", "nasion", "glabella", "lip_", "mouth_corner", "chin"};
 
-bool isOfFace(const std::string& name) {
-  return std::any_of(std::begin(kFace), std::end(kFace), [&](const char* begin) { return name.starts_with(begin); });
-}
-
 /// The landmarks at each of three holes.
 std::vector<std::string> landmarksAt(std::size_t hole) {
   if (hole == 2) return {"lip_upper", "lip_lower", "mouth_corner_left", "mouth_corner_right"};
@@ -33,6 +29,10 @@ Axes upright(Axes axes, const Vec3& up) {
 }
 
 }  // namespace
+
+bool isOfFace(const std::string& name) {
+  return std::any_of(std::begin(kFace), std::end(kFace), [&](const char* begin) { return name.starts_with(begin); });
+}
 
 Face faceOf(const std::vector<Landmark>& from, const std::vector<Landmark>& to, const Axes& axes, const Vec3& up) {
   Face face;

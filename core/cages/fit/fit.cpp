@@ -166,6 +166,8 @@ class Fit {
     if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMaxBeyond * cage.diagonal))
       return {Code::noFit, Argument::model};
     write(cage, positions, out);
+    if (isHead(from_))
+      out.bare = partsBesideHead(model_, skin_, skinOf_, belowRim(cage, positions, skin_, 0), pairs_.to);
     return report(progress_, 1, "done") ? Status{} : kAborted;
   }
 
@@ -343,6 +345,9 @@ class Fit {
       figure_.components.push_back(parts.components[t]);
     }
     skin_ = subset(mesh, isSkin);
+    skinOf_.clear();
+    for (std::size_t t = 0; t < isSkin.size(); ++t)
+      if (isSkin[t]) skinOf_.push_back(parts.triangleOf[t]);
     figure_.mesh = subset(mesh, isFigure);
     figure_.covers = subset(mesh, isCover);
   }
@@ -354,9 +359,10 @@ class Fit {
   Pairs pairs_;
   Similarity map_;  ///< From the template's space to the target's.
   Face face_;
-  std::vector<Bone> bones_;  ///< None for heads.
-  TriangleMesh skin_;        ///< The target without excluded parts, in the template's space.
-  EyedFigure figure_;        ///< Eyes fill their sockets.
+  std::vector<Bone> bones_;            ///< None for heads.
+  TriangleMesh skin_;                  ///< The target without excluded parts, in the template's space.
+  std::vector<std::uint32_t> skinOf_;  ///< Per triangle of it: the model's.
+  EyedFigure figure_;                  ///< Eyes fill their sockets.
 };
 
 }  // namespace

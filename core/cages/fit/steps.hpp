@@ -40,6 +40,9 @@ TemplateCage prepareTemplate(const Template& from);
 /// Whether a landmark lies on the skin: joints and the centres of eyes do not.
 bool isOnSkin(const std::string& name);
 
+/// Whether a landmark is one of eyes, nose, mouth or chin.
+bool isOfFace(const std::string& name);
+
 Axes axesOf(const std::vector<Landmark>& landmarks);
 
 /// The boundary loop that is a rim: the longest one, if it is longer than `kMinRim` diagonals and less lies within it
@@ -104,7 +107,17 @@ std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& tar
 
 /// Whether each triangle of a target is wholly below the rim of a cage: a template of a head does not see it.
 /// @param positions  Of the cage where it is.
-std::vector<bool> belowRim(const TemplateCage& cage, const std::vector<Vec3>& positions, const TriangleMesh& target);
+/// @param slack  How far below it has to be, in diagonals: what a neck goes into is still seen.
+std::vector<bool> belowRim(const TemplateCage& cage, const std::vector<Vec3>& positions, const TriangleMesh& target,
+                           double slack = 0.06);
+
+/// The parts of a model without paint under the template of a head: clothes by name, parts held by no joint of head or
+/// neck, and parts below the rim but for a tenth. Never a part with the face.
+/// @param skin  Of the target; `triangleOf` are its triangles in the model.
+/// @param isBelow  Per triangle of it: whether it is below the rim.
+std::vector<std::uint32_t> partsBesideHead(const Model& model, const TriangleMesh& skin,
+                                           const std::vector<std::uint32_t>& triangleOf,
+                                           const std::vector<bool>& isBelow, const std::vector<Landmark>& landmarks);
 
 /// Pairs along the lower edge of a jaw of which only the chin is known, as where a mouth is open or the chin double:
 /// all of it moves with the chin, less and less towards the lobes of the ears. Empty if menton is known.

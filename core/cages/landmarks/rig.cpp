@@ -196,9 +196,8 @@ std::vector<RigJoint> jointsByWords(const std::vector<SidedName>& names) {
   return out;
 }
 
-/// Whether each joint is that of a head, or below it.
-std::vector<bool> belowHead(const std::vector<Joint>& joints, const std::vector<SidedName>& names) {
-  const std::size_t head = findByWords(names, "head|頭", "", std::vector<bool>(names.size()));
+/// Whether each joint is a certain one, or below it.
+std::vector<bool> belowJoint(const std::vector<Joint>& joints, std::size_t root) {
   std::vector<bool> out(joints.size()), isKnown(joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) {
     // Up to the head or to what is known, which a circle of parents is, too, once it is passed.
@@ -207,9 +206,9 @@ std::vector<bool> belowHead(const std::vector<Joint>& joints, const std::vector<
     for (; at >= 0 && !isKnown[static_cast<std::size_t>(at)]; at = joints[path.back()].parent) {
       path.push_back(static_cast<std::size_t>(at));
       isKnown[path.back()] = true;
-      if (path.back() == head) break;
+      if (path.back() == root) break;
     }
-    const bool isBelow = at >= 0 && (static_cast<std::size_t>(at) == head || out[static_cast<std::size_t>(at)]);
+    const bool isBelow = at >= 0 && (static_cast<std::size_t>(at) == root || out[static_cast<std::size_t>(at)]);
     for (const std::size_t joint : path) out[joint] = isBelow;
   }
   return out;
@@ -248,7 +247,8 @@ Rig recogniseRig(const std::vector<Joint>& joints) {
   Rig rig{kNames[most - found.begin()]};
   std::vector<RigJoint> best = std::move(*most);
   const std::vector<SidedName> sided = sidedNames(own);
-  rig.isHead = belowHead(joints, sided);
+  const std::size_t head = findByWords(sided, "head|頭", "", std::vector<bool>(sided.size()));
+  rig.isNeck = rig.isHead = belowJoint(joints, head);
   if (std::vector<RigJoint> others = jointsByWords(sided); others.size() > best.size() + kClearlyMore) {
     best = std::move(others);
     rig.name = "other";
@@ -257,7 +257,12 @@ Rig recogniseRig(const std::vector<Joint>& joints) {
     rig.name = "unknown";
     return rig;
   }
-  for (const RigJoint& one : best) rig.joints.push_back({one.landmark, joints[one.joint].position, 1});
+  for (const RigJoint& one : best) {
+    rig.joints.push_back({one.landmark, joints[one.joint].position, 1});
+    if (one.landmark != "joint_neck") continue;
+    const std::vector<bool> isNeck = belowJoint(joints, one.joint);
+    for (std::size_t j = 0; j < joints.size(); ++j) rig.isNeck[j] = rig.isNeck[j] || isNeck[j];
+  }
   return rig;
 }
 

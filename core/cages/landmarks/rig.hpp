@@ -12,6 +12,7 @@ struct Rig {
   std::string name = {};              ///< As in `FoundLandmarks::rig`; empty without joints.
   std::vector<Landmark> joints = {};  ///< `joint_hips` and so on: those that it has.
   std::vector<bool> isHead = {};      ///< Per joint of the model: whether it is the head's, or below it.
+  std::vector<bool> isNeck = {};      ///< The same of the neck, with the head.
 
   [[nodiscard]] bool known() const noexcept { return !joints.empty(); }
 };

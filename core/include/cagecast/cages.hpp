@@ -142,6 +142,8 @@ struct FittedCage : Cage {
   /// Landmarks that are used with a guess of where they are, as fewer than four were known: the model is taken for the
   /// template's own, stretched to its size. Ask for these first.
   std::vector<std::string> guessed;
+  /// Parts without paint under a template of a head, by group: clothes, and parts below its neck.
+  std::vector<std::uint32_t> bare;
 };
 
 /// Moves a template cage onto another model; triangles, UVs and holes stay.

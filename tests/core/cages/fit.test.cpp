@@ -637,6 +637,38 @@ TEST_CASE("a neck may be ragged, and what is far from the template's is none, ho
   CHECK(rimAnchors(cage, mapped(head, [&](const Vec3& p) { return p + away; }), axes).empty());
 }
 
+TEST_CASE("the template of a head leaves clothes bare, and what no joint of head or neck holds", "[cages][fit]") {
+  Model model;
+  model.parts = {"Face", "Wolf3D_Outfit_Top", "a", "b", "c", "Body/Skin", "Suit_Head"};
+  for (const char* name : {"Hips", "Spine2", "LeftArm", "RightArm", "Neck", "Head"})
+    model.joints.push_back({name, {}, static_cast<std::int32_t>(model.joints.size()) - 1});
+  const std::vector<std::uint16_t> held = {5, 4, 1, 4, 4, 4, 5};  // a: by the spine.
+  std::vector<float> positions;
+  std::vector<std::uint32_t> indices, groups, triangleOf;
+  std::vector<std::uint16_t> joints;
+  for (std::uint32_t p = 0; p < held.size(); ++p) {
+    const float y = -static_cast<float>(p);
+    positions.insert(positions.end(), {0, y, 0, 1, y, 0, 0, y, 1});
+    indices.insert(indices.end(), {3 * p, 3 * p + 1, 3 * p + 2});
+    groups.insert(groups.end(), 3, p);
+    joints.insert(joints.end(), 3, held[p]);
+    triangleOf.push_back(p);
+  }
+  model.mesh = {positions, indices, {}, groups};
+  model.vertexJoints = joints;
+  std::vector<Landmark> face{{"nose_tip", {0.2F, 0, 0.2F}}};
+  const TriangleMesh skin = weldExactly(model.mesh);
+  std::vector<bool> isBelow(held.size(), true);
+  isBelow[3] = false;
+  const auto beside = [&] { return partsBesideHead(model, skin, triangleOf, isBelow, face); };
+  CHECK(beside() == std::vector<std::uint32_t>{1, 2, 4, 6});
+  face[0].position[1] = -6;
+  CHECK(beside() == std::vector<std::uint32_t>{0, 1, 2, 4});
+  // Without names nothing can be said, whatever the numbers of groups.
+  model.parts.clear();
+  CHECK(beside().empty());
+}
+
 TEST_CASE("a rim of very many points, and one that is huge, are read in no time", "[cages][fit]") {
   const OwnedModel cageMesh = headMesh(kOwn, 20, 12, 0.04);
   const TemplateCage cage = prepareTemplate({cageMesh.view(), headLandmarks(kOwn)});

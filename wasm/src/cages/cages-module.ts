@@ -16,6 +16,7 @@ export interface CageAnswer extends Answer {
 export interface FitAnswer extends CageAnswer {
   missing: string[];
   guessed: string[];
+  bare: number[];
 }
 export interface FoundAnswer extends Answer {
   landmarks: CoreLandmark[];

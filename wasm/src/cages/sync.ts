@@ -108,7 +108,7 @@ export function fitCage(
         report,
       ),
     result: (answer, module, parts) => ({
-      cage: cageOf(module, answer, { ...kept, bare: bareNames(module, model, parts) }),
+      cage: cageOf(module, answer, { ...kept, bare: bareNames(module, model, parts, answer.bare) }),
       used: landmarksOf(answer.landmarks),
       confidence: confidenceOf(answer.landmarks),
       missing: answer.missing,
@@ -284,15 +284,19 @@ const landmarksOf = (landmarks: readonly CoreLandmark[]): Landmarks =>
 const confidenceOf = (landmarks: readonly CoreLandmark[]): Record<string, number> =>
   Object.fromEntries(landmarks.map(({ name, confidence }) => [name, confidence]));
 
-/** The names that only excluded parts of a model have; nothing if there are none. */
+/**
+ * The names that only excluded parts of a model have; nothing if there are none.
+ * @param beside  Further parts that stay bare unless they are kept.
+ */
 function bareNames(
   module: CagesModule,
   { names = [] }: CageModel,
   { keep, exclude }: PartNumbers,
+  beside: readonly number[] = [],
 ): string[] | undefined {
   const isExcluded = module
     .excludedByName(joinedNames(names))
-    .map((is, p) => !keep?.includes(p) && (is || exclude?.includes(p) === true));
+    .map((is, p) => !keep?.includes(p) && (is || exclude?.includes(p) === true || beside.includes(p)));
   const those = (fits: boolean) => names.flatMap((own, p) => (isExcluded[p] === fits ? own : []));
   const others = new Set(those(false));
   const bare = [...new Set(those(true))].filter((name) => name !== '' && !others.has(name));
