@@ -255,10 +255,15 @@ function wasmModules(wasm, { index } = {}) {
   };
 }
 
-/** Makes types fit for TypeScript before 5.7, to which `Float32Array<ArrayBuffer>` is an error; its replacement is the same type since then. */
+/**
+ * Makes types fit for TypeScript before 5.7, to which `Float32Array<ArrayBuffer>` is an error; its replacement is the same type since then.
+ * And for projects without glTF-Transform, which only functions on documents need.
+ */
 function widenTypes(path) {
-  const text = readFileSync(path, 'utf8');
-  writeFileSync(path, text.replace(/\b(\w+Array)<ArrayBuffer>/g, "ReturnType<$1Constructor['from']>"));
+  const text = readFileSync(path, 'utf8')
+    .replace(/\b(\w+Array)<ArrayBuffer>/g, "ReturnType<$1Constructor['from']>")
+    .replace(/^import .*'@gltf-transform\/core';$/gm, '// @ts-ignore It is an optional peer.\n$&');
+  writeFileSync(path, text);
 }
 
 /** Makes a source map fit to be packed: without the text of the WebAssembly module, with paths from dist/ on. */

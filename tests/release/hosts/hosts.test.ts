@@ -37,7 +37,6 @@ describe('TypeScript before 5.7', () => {
     'cagecast',
     'cagecast/slim',
     'cagecast/worker',
-    'cagecast',
     'cagecast/engines',
     'cagecast/cages',
     'cagecast/gltf',
