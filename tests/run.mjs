@@ -145,6 +145,10 @@ async function buildSite() {
   const server = await preview({ ...options, preview: { host: '127.0.0.1', port: 0 } });
   process.env.CAGECAST_SITE = server.resolvedUrls.local[0];
   process.env.CAGECAST_PAGE = outDir;
+  // One browser for all files of tests: it ends with this process.
+  const { tsImport } = await import('tsx/esm/api');
+  const { serveChromium } = await tsImport('./support/chromium.ts', import.meta.url);
+  process.env.CAGECAST_BROWSER = (await serveChromium()).wsEndpoint();
 }
 
 const matches = (text, pattern) => text.match(pattern)?.length ?? 0;

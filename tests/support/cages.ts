@@ -1,6 +1,7 @@
 import { readFileSync } from 'node:fs';
 import type { Locator, Page } from 'playwright-core';
 import { modelArea } from './picture';
+import { saved } from './saved';
 import { glb, inRepository, ready, type Upload } from './site';
 
 export const asset = (...names: string[]): Buffer => readFileSync(inRepository('examples/samples', ...names));
@@ -86,7 +87,6 @@ export async function heldBack(page: Page): Promise<void> {
 
 /** The `extras` of the cage that the page saves. */
 export async function savedCage(page: Page): Promise<{ landmarks: Record<string, number[]> }> {
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('save-cage').click()]);
-  const file = readFileSync(await download.path());
-  return JSON.parse(file.subarray(20, 20 + file.readUInt32LE(12)).toString()).nodes[0].extras;
+  const { bytes } = await saved(page, 'save-cage');
+  return JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)).toString()).nodes[0].extras;
 }

@@ -1,6 +1,6 @@
 import { execFileSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
-import { type Browser, chromium } from 'playwright-core';
+import { type Browser, type BrowserServer, chromium, type LaunchOptions } from 'playwright-core';
 
 /**
  * The list below the address bar: two pages of their own that each new window loads, with 400 requests. Together they are 6 of the 15
@@ -47,32 +47,33 @@ const kWebGpu = ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader'];
 /** Mesa without a screen, and not by the machine's graphics card. */
 const kMesa = { EGL_PLATFORM: 'surfaceless', LIBGL_ALWAYS_SOFTWARE: '1', GALLIUM_DRIVER: 'llvmpipe' };
 
+interface Look {
+  /** Whether pages may draw with WebGL, by the processor. */
+  drawing: boolean;
+  /** Default: Mesa's, where Linux has it. */
+  renderer?: Renderer | undefined;
+  /** Whether they may draw with WebGPU, too. */
+  webgpu?: boolean | undefined;
+}
+
 /**
  * Starts the Chromium that is installed, or the one that the environment variable CHROMIUM gives the path of.
- * @param drawing   Whether pages may draw with WebGL, by the processor.
- * @param renderer  Default: Mesa's, where Linux has it.
- * @param webgpu    Whether they may draw with WebGPU, too.
  * @throws Error that says what to install, if there is none.
  */
-export function launchChromium({
-  drawing,
-  renderer = kRenderer,
-  webgpu = false,
-}: {
-  drawing: boolean;
-  renderer?: Renderer | undefined;
-  webgpu?: boolean | undefined;
-}): Promise<Browser> {
-  return chromium.launch({
-    executablePath: process.env['CHROMIUM'] ?? installed(),
-    args: [
-      ...kQuiet,
-      ...(drawing ? [...kDrawing, ...kRenderers[renderer]] : ['--disable-gpu']),
-      ...(webgpu ? kWebGpu : []),
-    ],
-    env: { ...process.env, ...kMesa },
-  });
-}
+export const launchChromium = (look: Look): Promise<Browser> => chromium.launch(optionsOf(look));
+
+/** Starts a Chromium that draws, for `chromium.connect` of other processes: a start takes many seconds of processor time. */
+export const serveChromium = (): Promise<BrowserServer> => chromium.launchServer(optionsOf({ drawing: true }));
+
+const optionsOf = ({ drawing, renderer = kRenderer, webgpu = false }: Look): LaunchOptions => ({
+  executablePath: process.env['CHROMIUM'] ?? installed(),
+  args: [
+    ...kQuiet,
+    ...(drawing ? [...kDrawing, ...kRenderers[renderer]] : ['--disable-gpu']),
+    ...(webgpu ? kWebGpu : []),
+  ],
+  env: { ...process.env, ...kMesa } as Record<string, string>,
+});
 
 function installed(): string {
   try {

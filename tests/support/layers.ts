@@ -1,6 +1,6 @@
-import { readFile } from 'node:fs/promises';
 import type { Locator, Page } from 'playwright-core';
 import { PNG } from 'pngjs';
+import { saved } from './saved';
 import type { Upload } from './site';
 
 /** A PNG file. @param colorAt Red, green, blue, alpha; 0..255. */
@@ -12,11 +12,7 @@ export function image(name: string, size: number, colorAt: (x: number, y: number
 
 /** The composite of the layers as saved by the page; by a key, as the mouse may be in use. */
 export async function savedTexture(page: Page): Promise<PNG> {
-  const [download] = await Promise.all([
-    page.waitForEvent('download'),
-    page.getByTestId('save-texture').press('Enter'),
-  ]);
-  return PNG.sync.read(await readFile(await download.path()));
+  return PNG.sync.read((await saved(page, 'save-texture', 'Enter')).bytes);
 }
 
 /** Red, green, blue and alpha of a texel, 0..255. */

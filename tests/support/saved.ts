@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
-import { readFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
+import { buffer } from 'node:stream/consumers';
 import { type Document, NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import type { Page } from 'playwright-core';
@@ -10,12 +10,11 @@ const { validateBytes } = createRequire(import.meta.url)('gltf-validator') as {
   validateBytes(bytes: Uint8Array): Promise<{ issues: { numErrors: number; messages: unknown[] } }>;
 };
 
-/** The file that a button saves. */
-export async function saved(page: Page, button: string): Promise<{ name: string; bytes: Buffer }> {
-  const coming = page.waitForEvent('download');
-  await page.getByTestId(button).click();
-  const file = await coming;
-  return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
+/** The file that a button saves. @param key  Presses it by this key, as the mouse may be in use. */
+export async function saved(page: Page, button: string, key?: string): Promise<{ name: string; bytes: Buffer }> {
+  const place = page.getByTestId(button);
+  const [file] = await Promise.all([page.waitForEvent('download'), key ? place.press(key) : place.click()]);
+  return { name: file.suggestedFilename(), bytes: await buffer(await file.createReadStream()) };
 }
 
 /** Reads a model and asserts that it is valid glTF. */

@@ -4,7 +4,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import type { Browser, BrowserContext, BrowserContextOptions, Page } from 'playwright-core';
+import { type Browser, type BrowserContext, type BrowserContextOptions, chromium, type Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { launchChromium } from './chromium';
 
@@ -83,14 +83,16 @@ export class Site {
 
   /**
    * Starts Chromium, and builds and serves the page on a free port, unless the environment variables CAGECAST_SITE and
-   * CAGECAST_PAGE give the URL and the folder of a page that is served already.
+   * CAGECAST_PAGE give the URL and the folder of a page that is served already, and CAGECAST_BROWSER that of a browser.
    * @param look  `real`: by Chromium's own renderer, with antialiasing and anisotropy. Default: in less time.
    */
   static async open(look: Look = 'cheap'): Promise<Site> {
-    const { CAGECAST_SITE: url, CAGECAST_PAGE: folder } = process.env;
+    const { CAGECAST_SITE: url, CAGECAST_PAGE: folder, CAGECAST_BROWSER: server } = process.env;
     const [served, browser] = await Promise.all([
       url && folder ? { url, folder, stop: async () => {} } : serve(),
-      launchChromium({ drawing: true, renderer: look === 'real' ? 'swiftshader' : undefined }),
+      server && look === 'cheap'
+        ? chromium.connect(server)
+        : launchChromium({ drawing: true, renderer: look === 'real' ? 'swiftshader' : undefined }),
     ]);
     return new Site(served.url, served.folder, browser, look, async () => {
       await browser.close();

@@ -1,11 +1,11 @@
 // Play, what a first visitor gets: a model that is dropped is painted, said in words, changed by a tap, explained, and shared.
 import assert from 'node:assert/strict';
-import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
 import { head, middleOf } from '../../support/cages';
 import { difference, look, modelArea, watch } from '../../support/picture';
+import { saved } from '../../support/saved';
 import { drop, kPlay, openSite, ready } from '../../support/site';
 
 const site = await openSite();
@@ -145,11 +145,9 @@ test('a link carries strokes; opened, they are where they were, and are carried 
 test('a film of five seconds is saved', async () => {
   const { page, complaints } = await site.visit(kDesk, kPlay);
   const before = await page.getByTestId('share-link').getAttribute('href');
-  const waiting = page.waitForEvent('download');
-  await page.getByTestId('save-film').click();
-  const download = await waiting;
-  assert.match(download.suggestedFilename(), /^cagecast\.(webm|mp4)$/);
-  assert.ok((await readFile(await download.path())).length > 5000);
+  const { name, bytes } = await saved(page, 'save-film');
+  assert.match(name, /^cagecast\.(webm|mp4)$/);
+  assert.ok(bytes.length > 5000);
   await page.getByTestId('share-link').focus();
   assert.equal(await page.getByTestId('share-link').getAttribute('href'), before, 'the camera is where it was');
   assert.deepEqual(complaints, []);

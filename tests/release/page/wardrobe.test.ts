@@ -1,11 +1,10 @@
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { faults } from '../../support/axe';
 import { asset } from '../../support/cages';
-import { validModel } from '../../support/saved';
+import { saved, validModel } from '../../support/saved';
 import { drop, glb, openSite, ready, shownError, type Upload } from '../../support/site';
 import { unzip } from '../../support/zip';
 
@@ -129,9 +128,9 @@ test('figures dropped together get the template of the first; a stroke is on all
   const { places, spent } = await stroke(page, { x: at.x + 0.26 * at.width, y: at.y + 0.24 * at.height });
   assert.equal(places.length, 6, `in ${spent} ms, at ${JSON.stringify(places)}`);
 
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('export-all').click()]);
-  assert.equal(download.suggestedFilename(), 'avatars-painted.zip');
-  const files = unzip(readFileSync(await download.path()));
+  const { name, bytes } = await saved(page, 'export-all');
+  assert.equal(name, 'avatars-painted.zip');
+  const files = unzip(bytes);
   assert.deepEqual(
     [...files.keys()],
     names.map((name) => `${name}-painted.glb`),

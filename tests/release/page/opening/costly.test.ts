@@ -10,6 +10,7 @@ import { glb, openSite, ready, settled, shownError } from '../../../support/site
 /** The most memory that any of them may take, beside what the page has. */
 const kMax = 500e6; // bytes
 
+delete process.env['CAGECAST_BROWSER']; // whose memory others take, too
 const site = await openSite();
 // One page for all of it: it must come through everything.
 const visit = await site.visit({ viewport: { width: 700, height: 500 } });

@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
 import { faults } from '../../../support/axe';
 import { asset, middleOf } from '../../../support/cages';
 import { difference, look, modelArea } from '../../../support/picture';
+import { saved } from '../../../support/saved';
 import { drop, glb, openSite, passed, ready, shownCounts } from '../../../support/site';
 
 const site = await openSite();
@@ -23,8 +23,7 @@ async function begin(page: Page): Promise<void> {
 
 /** How many edges of the saved cage have one triangle only. */
 async function openEdges(page: Page): Promise<number> {
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('save-cage').click()]);
-  const document = await new NodeIO().readBinary(readFileSync(await download.path()));
+  const document = await new NodeIO().readBinary((await saved(page, 'save-cage')).bytes);
   const [primitive] = document.getRoot().listMeshes()[0]!.listPrimitives();
   const position = primitive!.getAttribute('POSITION')!;
   const corners = [...primitive!.getIndices()!.getArray()!].map((vertex) => position.getElement(vertex, []).join());
