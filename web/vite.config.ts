@@ -61,6 +61,15 @@ function onlyGltfDraco(): Plugin {
   };
 }
 
+/** Each import is the browser's own: what Vite puts around it tells errors to a `window`, which workers lack, instead of naming the script. */
+function plainImports(): Plugin {
+  return {
+    name: 'cagecast-plain-imports',
+    transform: (_, id) =>
+      id.endsWith('vite/preload-helper.js') ? 'export const __vitePreload = (load) => load();' : undefined,
+  };
+}
+
 /** Builds workers together with the page, so that they share scripts with it: with copies of their own, all scripts are 523 KB, not 476. */
 function sharingWorkers(): Plugin {
   return {
@@ -80,7 +89,7 @@ export default defineConfig({
   root: fileURLToPath(new URL('.', import.meta.url)),
   // Relative, so that the page can be served from any folder.
   base: './',
-  plugins: [slim(), samples(), onlyGltfDraco(), sharingWorkers(), basis(), share(), precache()],
+  plugins: [slim(), samples(), onlyGltfDraco(), plainImports(), sharingWorkers(), basis(), share(), precache()],
   build: {
     outDir: path.join(kRepository, 'build/web'),
     emptyOutDir: true,
