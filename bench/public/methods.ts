@@ -134,7 +134,7 @@ export async function run(
     return {
       seconds: secondsOf(reply['seconds']),
       zones: zonesOf(`${folder}/zones.npy`, vertices),
-      ...(before !== undefined && after !== undefined && { memory: after - before }),
+      ...(before !== undefined && after !== undefined && { memory: Math.max(0, after - before) }),
     };
   } catch (error) {
     return { failed: isLate ? `took more than ${timeout} s` : (error as Error).message };
