@@ -224,12 +224,15 @@ describe('makeCage', () => {
       [call({}, { triangles: 0.5 }), 'badOption', 'options.triangles is 0.5, not a whole number'],
       [call({}, { onProgress: 1 }), 'badOption', 'options.onProgress is 1, not a function'],
       [call({}, { worker: 1 }), 'badOption', 'options.worker is 1, not true or false'],
+      [call({}, { worker: false, onProgress: 1 }), 'badOption', 'options.onProgress is 1, not a function'],
+      [call({}, { worker: false, signal: 1 }), 'badOption', 'options.signal is 1, not an AbortSignal'],
       [call({}, { signal: 1 }), 'badOption', 'options.signal is 1, not an AbortSignal'],
       [call({ indices: new Uint32Array(0) }), 'badModel', 'model has no triangles; at least one is needed'],
       [call({ positions: nan }), 'badModel', 'model.positions[4] = NaN is not a finite number'],
     ]);
     await assertFailures('excludedByName', [
       [() => excludedByName('eye' as never, here), 'badArgument', 'names is "eye", not an array'],
+      [() => excludedByName(['eye'], { worker: 1 as never }), 'badOption', 'options.worker is 1, not true or false'],
     ]);
   });
 

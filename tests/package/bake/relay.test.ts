@@ -12,19 +12,14 @@ import { fails, json } from '../../support/command.js';
 import { glbOf } from '../../support/gltf.js';
 import { temporaryFolder } from '../../support/temporary.js';
 import { ball, join3d, modelFolders, within } from '../scenes.js';
-import { picture, randomNumbers } from './reference.js';
+import { picture } from './reference.js';
 
 const { folder } = temporaryFolder('relay');
 before(init);
 
 const kSize = 512;
-/** A paint of distinct patches. */
-function patches(cells = 20): Image {
-  const random = randomNumbers(5);
-  const colors = Array.from({ length: cells ** 2 }, () => [255 * random(), 255 * random(), 255 * random(), 255]);
-  const cellOf = (at: number) => Math.floor((at * cells) / kSize);
-  return picture(kSize, (x, y) => colors[cellOf(y) * cells + cellOf(x)]!);
-}
+/** A paint in which each place has a colour of its own. */
+const places = (): Image => picture(kSize, (x, y) => [x / 2, y / 2, 128, 255]);
 
 /** The texel at the middle of a triangle. */
 function texelAt({ width, height }: Image, { cornerUvs }: TransferResult, triangle: number): [number, number] {
@@ -37,15 +32,8 @@ const colorAt = ({ data, width }: Image, [x, y]: readonly [number, number]) =>
 const apart = (a: ArrayLike<number>, b: ArrayLike<number>) =>
   Math.max(...[0, 1, 2, 3].map((k) => Math.abs(a[k]! - b[k]!)));
 
-/** A colour that is more than this off is another one. Within so many texels of the edge of a patch, colours are mixed. */
-const [kTolerance, kEdge] = [12, 2];
-
-/** Whether a picture has one colour around a texel. */
-function isPlain(image: Image, [x, y]: readonly [number, number]): boolean {
-  const around = [-kEdge, 0, kEdge].flatMap((dx) => [-kEdge, 0, kEdge].map((dy) => [x + dx, y + dy] as const));
-  const isIn = ([u, v]: readonly [number, number]) => u >= 0 && v >= 0 && u < image.width && v < image.height;
-  return around.filter(isIn).every((at) => apart(colorAt(image, at), colorAt(image, [x, y])) === 0);
-}
+/** A colour that is more than this off is another one. */
+const kTolerance = 12;
 
 /**
  * Of the triangles that both cages paint, the share in whose middle `to` with the relayed paint shows another colour than `from` with
@@ -53,9 +41,7 @@ function isPlain(image: Image, [x, y]: readonly [number, number]): boolean {
  */
 function compare(image: Image, relayed: Image, from: TransferResult, to: TransferResult) {
   const isShared = (t: number) => from.cosmeticTriangles[t] === 1 && to.cosmeticTriangles[t] === 1;
-  const shared = [...from.cosmeticTriangles.keys()].filter(
-    (t) => isShared(t) && isPlain(image, texelAt(image, from, t)),
-  );
+  const shared = [...from.cosmeticTriangles.keys()].filter(isShared);
   let [wrong, clear] = [0, 0];
   for (const t of shared) {
     const shown = colorAt(relayed, texelAt(relayed, to, t));
@@ -80,7 +66,7 @@ describe('on heads', () => {
         fitted: (await fitCage(await loadTemplate('human-head'), model)).cage,
       };
       const results = Object.fromEntries(Object.entries(cages).map(([name, cage]) => [name, transfer(cage, model)]));
-      const image = patches();
+      const image = places();
       const ways = [
         ['own', 'made'],
         ['own', 'fitted'],
@@ -91,8 +77,8 @@ describe('on heads', () => {
         const relayed = relayPaint(image, cages[a], cages[b], model);
         assert.deepEqual([relayed.width, relayed.height], [kSize, kSize]);
         const { wrong, clear } = compare(image, relayed, results[a]!, results[b]!);
-        // Patches meet within triangles; holes are filled less far where the first cage is smaller.
-        assert.ok(wrong < 0.011 && clear < 0.007, `from ${a} to ${b}: ${wrong} differ, ${clear} show nothing`);
+        // Holes are filled less far where the first cage is smaller: on lips, nothing is shown then.
+        assert.ok(wrong < 0.004 && clear < 0.007, `from ${a} to ${b}: ${wrong} differ, ${clear} show nothing`);
       }
     });
 });
@@ -138,10 +124,10 @@ describe('holes', () => {
 
   test('where only the second one has a hole, nothing of the model is lost: the other way round, it is as before', () => {
     const open = within(turned(whole), below(0.9));
-    const image = patches();
+    const image = places();
     const there = relayPaint(image, whole, open, skin);
     const { wrong, clear } = compare(image, there, transfer(whole, skin), transfer(open, skin));
-    assert.ok(wrong + clear < 0.01, `${wrong}, ${clear}`);
+    assert.ok(wrong + clear < 0.001, `${wrong}, ${clear}`);
   });
 
   test('a part of its own that shows through a hole of the first cage stays transparent', () => {
@@ -166,7 +152,7 @@ describe('holes', () => {
 
 test('a cage in another layout shows the same picture turned; normals turn with it', () => {
   const size = 256;
-  const relayed = relayPaint(patches(), whole, turned(whole), skin, { width: size });
+  const relayed = relayPaint(places(), whole, turned(whole), skin, { width: size });
   assert.equal(relayed.height, size);
   const lean = picture(16, () => [218, 128, 218, 255]); // to the right, as u grows
   const normals = relayPaint(lean, whole, turned(whole), skin, { kind: 'normal', width: size });
@@ -241,7 +227,7 @@ test('errors name the argument', () => {
 });
 
 test('the command writes the same as a PNG', async () => {
-  const image = patches(7);
+  const image = places();
   const path = (name: string) => `${folder}/${name}`;
   writeFileSync(path('ball.glb'), glbOf({ ...skin, uvs: undefined }));
   writeFileSync(path('from.glb'), glbOf(whole));

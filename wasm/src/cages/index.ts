@@ -12,7 +12,7 @@ import { CagecastError, type InitOptions, type Mesh, type PartNames } from '../a
 import { faultOfNames } from '../api/option-names.js';
 import { isRecord, show } from '../core/error.js';
 import { nodeModule } from '../core/node.js';
-import { type CallOptions, type OnProgress, type WorkerOptions, WorkerQueue } from '../worker/queue.js';
+import { type CallOptions, faultOfCall, type OnProgress, type WorkerOptions, WorkerQueue } from '../worker/queue.js';
 import { spawn } from './spawn-cages.js';
 import type {
   Cage,
@@ -56,7 +56,7 @@ const cores = globalThis.navigator?.hardwareConcurrency ?? kMaxWorkers;
 
 const queue = new WorkerQueue(spawn, Math.max(2, Math.min(kMaxWorkers, cores)));
 
-/** Whether `init` was told that calls have a worker. */
+/** What `init` was told of `worker`. */
 let told: boolean | undefined;
 
 /** Whether calls run in a worker, if they do not say so themselves. */
@@ -66,25 +66,22 @@ const usual = (): boolean => told ?? (typeof Worker === 'function' || nodeModule
 function call<T>(fn: keyof typeof import('./sync.js'), args: unknown[], options: CageCallOptions): Promise<T> {
   if (!isRecord(options)) return queue.withOptions<T>(fn, args, options);
   const { worker = usual(), ...given } = options;
-  return isChoice(fn, worker) ? queue.withOptions<T>(fn, args, given) : callHere<T>(fn, args, given);
+  return worker === true ? queue.withOptions<T>(fn, args, given) : callHere<T>(fn, args, { worker, ...given });
 }
 
-/** @throws {CagecastError} `badOption` */
-function isChoice(fn: string, worker: unknown): boolean {
-  if (typeof worker === 'boolean') return worker;
-  throw new CagecastError('badOption', fn, `options.worker is ${show(worker)}, not true or false`);
-}
-
-async function callHere<T>(
-  fn: keyof typeof import('./sync.js'),
-  args: unknown[],
-  { signal, move: _, ...options }: CageCallOptions,
-): Promise<T> {
+async function callHere<T>(fn: keyof typeof import('./sync.js'), args: unknown[], given: CageCallOptions): Promise<T> {
+  const { worker, signal, move: _, ...options } = given;
+  const fault = faultOfWorker(worker) ?? faultOfCall(given);
+  if (fault !== undefined) throw new CagecastError('badOption', fn, fault);
   signal?.throwIfAborted();
   const here = await import('./sync.js');
   await here.init();
   return (here[fn] as (...args: unknown[]) => T)(...args, options);
 }
+
+/** What is wrong with a choice of `worker`, if anything is. */
+const faultOfWorker = (worker: unknown): string | undefined =>
+  typeof worker === 'boolean' ? undefined : `options.worker is ${show(worker)}, not true or false`;
 
 /** @throws {CagecastError} if a document, a scene or a promise is given instead of a model, which cannot be sent to a worker. */
 function checkIsRead(fn: string, model: Partial<CageModel> | undefined): void {
@@ -103,7 +100,7 @@ function checkIsRead(fn: string, model: Partial<CageModel> | undefined): void {
  * @example
  * import { makeCage } from 'cagecast/cages';
  *
- * const cage = await makeCage({ positions, indices, groups, parts: ['skin', 'eye_left', 'eye_right'] });
+ * const cage = await makeCage({ positions, indices, groups, names: ['skin', 'eye_left', 'eye_right'] });
  * const result = transfer(cage, { positions, indices, groups });
  */
 export async function makeCage(model: CageModel, options: MakeOptions & CageCallOptions = {}): Promise<Cage> {
@@ -174,12 +171,13 @@ export function excludedByName(
  * @throws {CagecastError} `badOption`; `unsupported` if a worker cannot start, or the WebAssembly.
  */
 export async function init(options: CagesInitOptions = {}): Promise<void> {
-  const fault = faultOfNames('init', 'options', options, ['workers', 'worker', 'module']);
+  const names = faultOfNames('init', 'options', options, ['workers', 'worker', 'module']);
+  const { module, worker = module === undefined ? usual() : false, ...workers } = options ?? {};
+  const fault = names ?? faultOfWorker(worker);
   if (fault !== undefined) throw new CagecastError('badOption', 'init', fault);
-  const { module, worker = module === undefined ? usual() : false, ...workers } = options;
-  if (isChoice('init', worker)) await queue.init(workers);
-  else await (await import('./sync.js')).init({ module });
   if (options.worker !== undefined || module !== undefined) told = worker;
+  if (worker) await queue.init(workers);
+  else await (await import('./sync.js')).init({ module });
 }
 
 /** Ends the workers and frees their memory. Pending calls reject with code `aborted`; the next call starts a new worker. */

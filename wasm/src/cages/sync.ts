@@ -167,7 +167,7 @@ export function refineCage(
  * @param names  As those of a `Mesh`.
  * @throws {CagecastError} `badArgument`
  */
-export function excludedByName(names: PartNames, _options?: object): boolean[] {
+export function excludedByName(names: PartNames): boolean[] {
   const fn = 'excludedByName';
   checkNames(fn, 'names', names);
   return freshModule(fn).excludedByName(joinedNames(names));

@@ -28,6 +28,16 @@ const kMaxWorkers = 64;
 /** How far a call is: a share 0..1 that never falls, and what it does. */
 export type OnProgress = (share: number, stage: string) => void;
 
+/** What is wrong with the options of a call, if anything is. */
+export function faultOfCall({ signal, move, onProgress }: CallOptions & { onProgress?: unknown }): string | undefined {
+  if (signal !== undefined && typeof signal?.addEventListener !== 'function')
+    return `options.signal is ${show(signal)}, not an AbortSignal`;
+  if (move !== undefined && typeof move !== 'boolean') return `options.move is ${show(move)}, not true or false`;
+  if (onProgress !== undefined && typeof onProgress !== 'function')
+    return `options.onProgress is ${show(onProgress)}, not a function`;
+  return undefined;
+}
+
 interface Job {
   request: Request;
   move: boolean;
@@ -80,12 +90,8 @@ export class WorkerQueue {
   withOptions<T>(fn: string, args: unknown[], options: CallOptions & { onProgress?: OnProgress | undefined }) {
     if (!isRecord(options)) return this.call<T>(fn, [...args, options], {});
     const { signal, move, onProgress, ...rest } = options;
-    const wrong = (text: string) => Promise.reject<T>(new CagecastError('badOption', fn, `options.${text}`));
-    if (signal !== undefined && typeof signal?.addEventListener !== 'function')
-      return wrong(`signal is ${show(signal)}, not an AbortSignal`);
-    if (move !== undefined && typeof move !== 'boolean') return wrong(`move is ${show(move)}, not true or false`);
-    if (onProgress !== undefined && typeof onProgress !== 'function')
-      return wrong(`onProgress is ${show(onProgress)}, not a function`);
+    const fault = faultOfCall(options);
+    if (fault !== undefined) return Promise.reject<T>(new CagecastError('badOption', fn, fault));
     return this.call<T>(fn, [...args, rest], { signal, move, onProgress });
   }
 

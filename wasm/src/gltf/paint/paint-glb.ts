@@ -41,8 +41,8 @@ export interface PaintOptions
   /** Spots of the model for the fit, in the space of its scene; they override those that are found. Default: none. */
   landmarks?: Landmarks | undefined;
   /**
-   * Decodes an image of the model for the fit, so that a face that is only painted is found. What it rejects is left out. Default: what a
-   * browser has for it; in other hosts, colours are not looked at.
+   * Decodes an image of the model for the fit, to find a face that is only painted. Rejected images are left out. Default: the
+   * browser's own; other hosts have none, and look at no colours.
    */
   decode?: ImageCodec['decode'] | undefined;
   /** Where the paint ends: at existing triangle edges (`triangle`, the default), or exactly at holes and seams, where triangles are cut (`cut`). */

@@ -13,8 +13,8 @@ import { skinOf } from './places.js';
 
 /**
  * What `cagecast/cages` needs of a model: its triangles, a part for each mesh or material group, the joints of its skeletons, in the
- * bind pose, where its morph targets say that its face is, and what its parts look like, so that a face that is only painted can be
- * found. Textures whose pixels cannot be read are left out: compressed ones, and images of another origin that does not allow it.
+ * bind pose, the place of its face by its morph targets, and the colours of its parts, by which a painted face is found.
+ * Textures whose pixels cannot be read are left out: compressed ones, and images of another origin that does not allow it.
  * Cost: some milliseconds for each texture, each in a task of its own; nothing for a texture that was read before.
  * @throws {CagecastError} `badArgument` that names the mesh.
  */
