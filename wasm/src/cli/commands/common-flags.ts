@@ -284,6 +284,13 @@ function limitOf(text: string, before: Limits = {}): Limits {
   return { ...before, [name]: Number(value) };
 }
 
+/** What to write for an unknown flag that is called as an option, if it is. @param text  Commander's message. */
+export function insteadOf(text: string): string {
+  const [, flag = ''] = /unknown option '--([\w-]+)/.exec(text) ?? [];
+  const name = flag.replace(/-(\w)/g, (_, letter: string) => letter.toUpperCase());
+  return kOthers.some((option) => option.name === name) ? `; it is set by --set ${name}=VALUE` : '';
+}
+
 function optionOf(text: string, before: Settings = {}): Settings {
   const [name = '', value = ''] = text.split('=', 2);
   const names = kOthers.map((option) => option.name) as string[];

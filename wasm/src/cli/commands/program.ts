@@ -5,6 +5,7 @@ import { oneLine } from '../model/text.js';
 import { addBakeCommand } from './bake-command.js';
 import { addBatchCommand } from './batch-command.js';
 import { addCageCommands } from './cage-commands.js';
+import { insteadOf } from './common-flags.js';
 import { addDiffCommand } from './diff-command.js';
 import { addInspectCommand } from './inspect-command.js';
 import { addRelayCommand } from './relay-command.js';
@@ -24,7 +25,7 @@ export function makeProgram(io: Io): Command {
     .configureOutput({
       writeOut: (text) => io.out(text),
       writeErr: (text) => io.err(text),
-      outputError: (text, write) => write(`cagecast: ${oneLine(inOneLine(text))}\n`),
+      outputError: (text, write) => write(`cagecast: ${oneLine(inOneLine(text))}${insteadOf(text)}\n`),
     })
     .addHelpText(
       'after',
