@@ -14,13 +14,27 @@ export interface Question {
 const box = element('ask', HTMLElement);
 let timer: ReturnType<typeof setTimeout> | undefined;
 let shown: Question | undefined;
+/** A message that came while people had to answer. */
+let waiting: Question | undefined;
 /** What had the focus before the box took it. */
 let before: Element | null = null;
 
-/** Shows a message on the stage in place of the last one. @returns Takes it away, unless another one has taken its place. */
+/**
+ * Shows a message on the stage in place of the last one; after it, if people must answer that first.
+ * @returns Takes it away, unless another one has taken its place.
+ */
 export function ask(question: Question): () => void {
+  if (shown?.isDialog && !question.isDialog) waiting = question;
+  else show(question);
+  return () => {
+    if (waiting === question) waiting = undefined;
+    if (shown === question) close();
+  };
+}
+
+function show(question: Question): void {
   if (!box.contains(document.activeElement)) before = document.activeElement;
-  close();
+  hide();
   const { text, answers, isDialog = false, lasts } = question;
   shown = question;
   box.role = isDialog ? 'dialog' : 'status';
@@ -36,7 +50,6 @@ export function ask(question: Question): () => void {
     else close();
   };
   if (lasts) timer = setTimeout(leave, lasts);
-  return () => shown === question && close();
 }
 
 function button(className: string, title: string, run: () => void): HTMLButtonElement {
@@ -49,6 +62,13 @@ function button(className: string, title: string, run: () => void): HTMLButtonEl
 }
 
 function close(): void {
+  hide();
+  const next = waiting;
+  waiting = undefined;
+  if (next) show(next);
+}
+
+function hide(): void {
   clearTimeout(timer);
   shown = undefined;
   const hadFocus = box.contains(document.activeElement);

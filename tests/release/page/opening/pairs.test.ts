@@ -62,3 +62,24 @@ test('a cage is known by its name, or by what is in it; of two cages, the page a
   await drop(page, [thing('a.glb'), thing('b.glb')]);
   await page.getByRole('dialog', { name: 'Which one?' }).waitFor(); // there is no wardrobe
 });
+
+test('a message that comes while the page asks waits for the answer', async () => {
+  // Storage that answers when it is told to.
+  const slow = `const stored = new Promise((resolve) => Object.assign(globalThis, { store: resolve }));
+    Object.defineProperty(IDBTransaction.prototype, 'oncomplete', {
+      set(then) { this.addEventListener('complete', (event) => stored.then(() => then.call(this, event))); },
+    });`;
+  const { page } = await site.visit({ viewport: { width: 700, height: 600 } }, kNoWebGl + slow);
+  for (const name of ['a', 'b']) {
+    await drop(page, [thing(`${name}.glb`), thing(`${name}-cage.glb`, 2)]);
+    await shown(page, 'target', `${name}.glb`);
+    await ready(page);
+  }
+  await drop(page, [thing('cage-1.glb'), thing('cage-2.glb', 2)]);
+  const question = page.getByRole('dialog', { name: /Which one is the model/ });
+  await question.waitFor();
+  await page.evaluate('store()');
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await question.getByRole('button', { name: 'Dismiss the message' }).click();
+  await page.locator('#ask[role=status]', { hasText: 'Replaced a.' }).waitFor();
+});
