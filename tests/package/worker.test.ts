@@ -4,17 +4,7 @@ import { before, describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import type { CagecastError, Mesh } from 'cagecast';
 import * as direct from 'cagecast';
-import {
-  classify,
-  cutBorders,
-  init,
-  inspect,
-  presetOptions,
-  project,
-  splitVertices,
-  terminate,
-  transfer,
-} from 'cagecast/worker';
+import { classify, cutBorders, init, inspect, project, splitVertices, terminate, transfer } from 'cagecast/worker';
 import { countingEnds } from '../support/ended-workers.js';
 import { printed } from '../support/script.js';
 import { head } from './scenes.js';
@@ -49,7 +39,6 @@ describe('the worker', () => {
     const result = direct.transfer(cage, target);
     assert.deepEqual(await splitVertices(target, result.cornerUvs), direct.splitVertices(target, result.cornerUvs));
     assert.deepEqual(await cutBorders(cage, target, result), direct.cutBorders(cage, target, result));
-    assert.deepEqual(await presetOptions('paper'), direct.presetOptions('paper'));
     await init();
   });
 

@@ -16,9 +16,7 @@ export {
   type Placement,
   type Segment,
   type Spots,
-  surestThreshold,
   type Topology,
   type UvLayout,
   type Verdict,
-  verdictOf,
 } from './inspect/index.js';

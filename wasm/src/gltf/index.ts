@@ -33,7 +33,6 @@ export {
   toGlb,
   type ViewName,
 } from './files.js';
-export { imageSize } from './image-file.js';
 export { type FileKind, type Format, fileKind } from './kinds.js';
 export type { LeftOut, Parts };
 

@@ -17,10 +17,10 @@ import { checkPlacement, type Placement, placementOf } from './placement.js';
 import { reverse } from './reverse.js';
 import { type PartName, sceneOf } from './scene.js';
 import { checkSegments, hasArea, type Segment, segmentsOf } from './segments.js';
+import { surestThreshold } from './surest-threshold.js';
 import { checkTopology, type Topology, topologyOf } from './topology.js';
 import { checkUvs, type UvLayout, uvLayoutOf } from './uv.js';
 
-export { surestThreshold } from './surest-threshold.js';
 export type { Finding, FindingCode, Hole, Inside, Place, Placement, Segment, Spots, Topology, UvLayout, Verdict };
 export { verdictOf };
 
@@ -47,6 +47,11 @@ export interface Inspection {
   holes: Hole[];
   /** Those that have an area, in the order of their numbers. */
   segments: Segment[];
+  /**
+   * The `threshold` that is farthest from the coverage of every segment: in the middle, by ratio, of the widest gap between coverages,
+   * of which those below 0.05 count as 0.05. In 0.05..1; 0.5 if nothing of the target is exposed.
+   */
+  surestThreshold: number;
 }
 
 /**
@@ -113,7 +118,16 @@ function outcomeOf(cage: Mesh, whole: Mesh, given: InspectOptions = {}) {
     ...checkHiding(scene, options),
     ...checkPieces(scene, options),
   ];
-  return { scene, orientation, findings, placement, inside, holes, segments: segments.filter(hasArea) };
+  return {
+    scene,
+    orientation,
+    findings,
+    placement,
+    inside,
+    holes,
+    segments: segments.filter(hasArea),
+    surestThreshold: surestThreshold(result.segmentStats),
+  };
 
   // One cause, one finding: everything else is judged as if inward-facing triangles were flipped.
   function uprightScene() {

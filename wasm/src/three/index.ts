@@ -12,7 +12,6 @@ export {
   type Blend,
   type Borders,
   type BrushStyle,
-  blendModes,
   type Calling,
   type ChangeOptions,
   cageGeometry,
@@ -56,5 +55,4 @@ export {
   type Style,
   serialize,
   type Tool,
-  zoneAttribute,
 } from './internals.js';

@@ -11,8 +11,6 @@ import {
   type ClassifyOptions,
   type CutTarget,
   type Mesh,
-  type Preset,
-  type PresetOptions,
   type Projection,
   type ProjectOptions,
   type SplitVertices,
@@ -24,8 +22,10 @@ import type { Prepared, PrepareOptions } from '../parts/prepare.js';
 import { type CallOptions, type WorkerOptions, WorkerQueue } from './queue.js';
 import { spawn } from './spawn.js';
 
-export * from '../index.js';
+export type * from '../index.js';
+export { Visibility, Zone } from '../index.js';
 export type { CallOptions, WorkerOptions };
+export { CagecastError };
 
 const queue = new WorkerQueue(spawn);
 
@@ -79,11 +79,6 @@ export function cutBorders(
 /** As `inspect` of `cagecast`, off the main thread. */
 export function inspect(cage: Mesh, target: Mesh, options: InspectOptions & CallOptions = {}): Promise<Inspection> {
   return withOptions('inspect', [cage, target], options);
-}
-
-/** As `presetOptions` of `cagecast`, off the main thread. */
-export function presetOptions(preset?: Preset, options: CallOptions = {}): Promise<PresetOptions> {
-  return withOptions('presetOptions', [preset], options);
 }
 
 /** As `prepareParts` of `cagecast/engines`, off the main thread. */

@@ -1,4 +1,4 @@
-import { classify, cutBorders, init, presetOptions, project, splitVertices, transfer } from '../api/index.js';
+import { classify, cutBorders, init, project, splitVertices, transfer } from '../api/index.js';
 import { inspect } from '../inspect/index.js';
 import { prepareParts } from '../parts/prepare.js';
 import { answer } from './answer.js';
@@ -11,7 +11,6 @@ const functions = {
   classify,
   splitVertices,
   cutBorders,
-  presetOptions,
   prepareParts,
   inspect,
 } as Record<string, (...args: unknown[]) => unknown>;

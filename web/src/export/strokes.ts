@@ -64,8 +64,8 @@ export class Strokes {
    */
   static async check(text: string): Promise<File | undefined> {
     const bytes = bytesOf(text.slice(kPrefix.length));
-    const { imageSize } = await import('cagecast/gltf');
-    const size = bytes && imageSize(bytes);
+    const { checkImage } = await import('cagecast/gltf');
+    const size = bytes && checkImage(bytes);
     if (!size) return undefined;
     const { width, height } = size;
     if (width !== height || !kSizes.includes(width)) {

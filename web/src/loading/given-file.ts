@@ -1,5 +1,5 @@
 // What the page needs for files that are not its own: it loads when there is one.
-import { checkGltf, checkImage, fileKind, imageSize } from 'cagecast/gltf';
+import { checkGltf, checkImage, fileKind } from 'cagecast/gltf';
 import { reasonOf } from '../state/wording';
 import { companionOf } from './file-paths';
 
@@ -15,11 +15,11 @@ export async function checkCost(bytes: ArrayBuffer, companions: readonly File[])
   }
 }
 
-/** Refuses a picture whose pixels would take all memory. @throws Error that names the file. */
-export async function checkPicture(file: File): Promise<void> {
+/** Refuses a picture whose pixels would take all memory. @returns the size that it says to have. @throws Error that names the file. */
+export async function checkPicture(file: File): Promise<ReturnType<typeof checkImage>> {
   const bytes = await file.arrayBuffer().catch(() => new ArrayBuffer(0)); // what decodes it says what is wrong
   try {
-    checkImage(new Uint8Array(bytes));
+    return checkImage(new Uint8Array(bytes));
   } catch (error) {
     throw new Error(`${file.name}: ${reasonOf(error)}`, { cause: error });
   }
@@ -44,8 +44,7 @@ export async function checkPictures(
   const bytes = [...new Set([...files, ...painted.files])].reduce((sum, { size }) => sum + size, 0);
   const most = Math.max(kMaxPixels, (kExpansion * bytes) / 4);
   for (const file of files) {
-    await checkPicture(file);
-    const { width, height } = imageSize(new Uint8Array(await file.arrayBuffer())) ?? { width: 0, height: 0 };
+    const { width, height } = (await checkPicture(file)) ?? { width: 0, height: 0 };
     pixels += width * height;
     if (pixels <= most) continue;
     const [w, h, all, limit] = [width, height, pixels, most].map((n) => Math.floor(n).toLocaleString('en'));

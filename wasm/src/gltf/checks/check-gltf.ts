@@ -2,6 +2,7 @@ import type { GLTF } from '@gltf-transform/core';
 import { CagecastError } from '../../api/index.js';
 import { type ErrorDetails, show } from '../../core/error.js';
 import { isDataUri, readDataUri } from '../data-uri.js';
+import { imageSize } from '../image-file.js';
 import { InputError } from '../input-error.js';
 import { parseGltf } from '../parse.js';
 import { checkGeometry } from './check-geometry.js';
@@ -56,12 +57,17 @@ export function checkGltf(bytes: Uint8Array, { limits = {}, otherBytes = 0, ...o
  * Checks an image before anything decodes it: a kilobyte can stand for gigabytes. It is refused if it would take more than 256 MiB and
  * more than `expansion` times its size. For images beside a glTF, and for paints. What has another format passes.
  * @param bytes  The whole file.
+ * @returns its size in pixels, read from its header; undefined for formats other than PNG, JPEG, WebP, KTX2, AVIF, GIF, BMP and ICO.
  * @throws {CagecastError} `badArgument` that names the pixels and the limit.
  */
-export function checkImage(bytes: Uint8Array, { limits = {} }: Pick<CheckOptions, 'limits'> = {}): void {
+export function checkImage(
+  bytes: Uint8Array,
+  { limits = {} }: Pick<CheckOptions, 'limits'> = {},
+): { width: number; height: number } | undefined {
   requireBytes('checkImage', bytes);
   try {
     checkImages([['it', bytes]], bytes.byteLength, limitsOf('checkImage', limits));
+    return imageSize(bytes);
   } catch (error) {
     throw error instanceof InputError ? wrong('checkImage', error.message, { cause: error }) : error;
   }
