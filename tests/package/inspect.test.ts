@@ -89,6 +89,22 @@ describe('inspect', () => {
     assert.equal(find(inspect(open, skin), 'faceBare'), undefined);
   });
 
+  test('eyes that are painted, and those that nothing tells of, keep a figure from being good', () => {
+    const eyes = { eye_centre_left: [0.25, 0.1, 0.85], eye_centre_right: [-0.25, 0.1, 0.85] } as const;
+    const skin = ball([0, 0, 0], () => 1, 24, 48);
+    const shell = ball([0, 0, 0], () => 1.1, 16, 24) as Whole;
+    const painted = inspect(shell, skin, { landmarks: eyes });
+    assert.deepEqual([painted.verdict, find(painted, 'eyesPainted').numbers], ['usable', { left: 1, right: 1 }]);
+    assert.deepEqual(codes(inspect(shell, skin, { landmarks: { nose_tip: [0, 0, 1] } })), ['eyesUnknown']);
+    assert.equal(inspect(shell, skin, { landmarks: { wheel_front_centre_left: [0, 0, 1] } }).verdict, 'good');
+    // Two pieces before the skin are eyes, and can be kept bare.
+    const one = ([x, y, z]: readonly number[]) => ball([x!, y!, z! + 0.08], () => 0.12, 12, 24);
+    const eyed = join3d(skin, one(eyes.eye_centre_left), one(eyes.eye_centre_right));
+    const { locks } = find(inspect(shell, eyed, { landmarks: eyes }), 'eyesPainted');
+    assert.deepEqual(locks, { 1: 'exclude', 2: 'exclude' });
+    assert.deepEqual(codes(inspect(shell, eyed, { landmarks: eyes, locks })), []);
+  });
+
   test('pieces that almost touch are found, with the tolerance that joins them', () => {
     // Each triangle has corners of its own, off by noise.
     const torn: Mesh = {

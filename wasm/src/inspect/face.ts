@@ -1,5 +1,5 @@
 import { type Finding, percent } from './finding.js';
-import { dot, doubleAreaNormal, minus, pointAt, type Vector } from './geometry.js';
+import { cross, dot, doubleAreaNormal, minus, pointAt, type Vector } from './geometry.js';
 import { partsOf, type Scene } from './scene.js';
 
 /** Named spots of a target, x, y and z. */
@@ -13,19 +13,38 @@ const kBack = 0.9;
 /** The share of a face's skin from which on its bareness is a finding: more than brows and lids. */
 const kBare = 0.25;
 
+/** Both eyes, how far they are apart, and axes to the face's left, up and forward; forward is level. */
+interface FaceFrame {
+  left: Vector;
+  right: Vector;
+  size: number;
+  across: Vector;
+  up: Vector;
+  front: Vector;
+}
+
+/** The frame of a face; undefined without the centres of both eyes. */
+export function faceFrameOf({ eye_centre_left: left, eye_centre_right: right }: Spots): FaceFrame | undefined {
+  if (!left || !right) return undefined;
+  const apart = minus(left, right);
+  const size = Math.hypot(...apart);
+  const across: Vector = [apart[0] / size, apart[1] / size, apart[2] / size];
+  const front: Vector = [-across[2], 0, across[0]];
+  return { left, right, size, across, up: cross(front, across), front };
+}
+
 /**
  * Reports a face that stays bare: of the segment that most of the face is of, what faces the front and is not hidden.
  * @param landmarks  Of the target. Without both `eye_centre_*` nothing is known of its face.
  */
 export function checkFace({ target, areas, result, parts, isInRegion }: Scene, landmarks: Spots = {}): Finding[] {
-  const { eye_centre_left: leftEye, eye_centre_right: rightEye } = landmarks;
-  if (!leftEye || !rightEye) return [];
-  const apart = minus(leftEye as Vector, rightEye as Vector);
-  const size = Math.hypot(...apart);
-  const front: Vector = [-apart[2] / size, 0, apart[0] / size];
+  const frame = faceFrameOf(landmarks);
+  if (!frame) return [];
+  const { left, right, size, across, front } = frame;
   const isOfFace = (v: number) => {
-    const d = minus(pointAt(target.positions, v), rightEye as Vector);
-    const [aside, up, forward] = [dot(d, apart) / size ** 2 - 0.5, (d[1] - apart[1] / 2) / size, dot(d, front) / size];
+    const d = minus(pointAt(target.positions, v), right);
+    const up = (d[1] - (left[1] - right[1]) / 2) / size;
+    const [aside, forward] = [dot(d, across) / size - 0.5, dot(d, front) / size];
     return Math.abs(aside) < kAside && up < kUp && up > -kDown && forward > -kBack;
   };
   const facing = new Uint8Array(areas.length);

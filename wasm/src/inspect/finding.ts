@@ -55,6 +55,8 @@ export type FindingCode =
   // The result.
   | 'nothingToPaint'
   | 'faceBare'
+  | 'eyesUnknown'
+  | 'eyesPainted'
   | 'holeUnexplained'
   | 'segmentInDoubt'
   | 'muchCulled'

@@ -4,6 +4,7 @@ import { CagecastError, type Mesh, type TransferOptions, type TransferResult, tr
 import { numbersNamed, type PartOf, type Parts } from '../api/parts.js';
 import { show } from '../core/error.js';
 import { checkBackward } from './backward.js';
+import { checkEyes } from './eyes.js';
 import { checkFace, type Spots } from './face.js';
 import { type Finding, type FindingCode, type Place, type Verdict, verdictOf } from './finding.js';
 import { joined } from './geometry.js';
@@ -114,6 +115,7 @@ function outcomeOf(cage: Mesh, whole: Mesh, given: InspectOptions = {}) {
     ...checkInside(inside),
     ...checkHoles(holes, segments),
     ...checkFace(scene, landmarks),
+    ...checkEyes(scene, segments, landmarks),
     ...checkSegments(scene, segments, options),
     ...checkHiding(scene, options),
     ...checkPieces(scene, options),
