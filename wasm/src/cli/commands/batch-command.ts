@@ -29,13 +29,12 @@ A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
 Its members: target, cage, referenceCage, uvBounds, texture, regions, output, report, and any setting of cagecast.config.json.
 A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
-failed or skipped), ms, counts, triangles, and error, verdict, findings (codes), note (why next to nothing may be painted) and
-isTurned (the cage faced the other way, so it was turned by half) if there are. After the lines, a summary goes
-to the standard error; with --quiet, only the errors of jobs go there.
-The cages of a batch are left out of the files that a pattern names.
-A job that fails does not stop the others. Files are complete or not there, even if the batch is killed. Missing folders are made.
+failed or skipped), ms, counts, triangles; if there are, also error, verdict, findings (codes), note (why next to nothing may be
+painted) and isTurned (the cage was turned by half). Then a summary goes to the standard error; with --quiet, only errors go there.
+The cages of a batch are left out of the files that a pattern names. Missing folders are made.
+A job that fails does not stop the others. Files are complete or not there, even if the batch is killed.
 With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure or another batch.
-Exit codes: 0 all done, 1 a job failed, 2 wrong usage, 3 no job failed, but --fail-on found a cage that does not fit as demanded.
+Exit codes: 1 a job failed, 3 none failed, but --fail-on found a cage that does not fit as demanded.
 
 Examples:
   cagecast batch 'in/**/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'

@@ -61,7 +61,7 @@ const rulesOf = ({ ignore = [], keep = [], exclude = [] }: CageFileFlags): Rules
 /** The parts that flags name. */
 const partsOf = (flags: CageFileFlags, model: ReadModel) => transferOptions(rulesOf(flags), model, []).parts;
 
-const kExitCodes = '\nExit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.';
+const kExitCode = '\nExit code 3: the cage is unfit.';
 
 /** Adds the commands that make and fit cages. */
 export function addCageCommands(program: Command, io: Io): void {
@@ -94,7 +94,7 @@ export function addCageCommands(program: Command, io: Io): void {
   make
     .addHelpText(
       'after',
-      `${kExitCodes}
+      `${kExitCode}
 
 Example: cagecast make head.glb --exclude visor --keep 'hair*' --triangles 800 -o cage.glb`,
     )
@@ -120,7 +120,7 @@ Example: cagecast make head.glb --exclude visor --keep 'hair*' --triangles 800 -
     .addHelpText(
       'after',
       `
-Files of landmarks are JSON, name → [x, y, z] in the model's space: { "nose_tip": [0, 1.52, 0.11], … }${kExitCodes}
+Files of landmarks are JSON, name → [x, y, z] in the model's space: { "nose_tip": [0, 1.52, 0.11], … }${kExitCode}
 
 Examples:
   cagecast fit head.glb --template human-head -o cage.glb

@@ -42,8 +42,7 @@ export function addDiffCommand(program: Command, io: Io): void {
     .addHelpText(
       'after',
       `
-Exit codes: 0 nothing changed by more than the tolerance, 1 a file cannot be used, 2 wrong usage, 4 a share changed by
-more, the verdict is worse, a part or a region is new or gone, or a report is gone.
+Exit code 4: a share changed by more than the tolerance, the verdict is worse, a part or a region is new or gone, or a report is gone.
 
 Example: cagecast diff approved build --tolerance 0.005`,
     )

@@ -33,8 +33,7 @@ export function addInspectCommand(program: Command, io: Io): void {
     .addHelpText(
       'after',
       `
-The verdict is good, usable (fits, with reservations) or unfit. The most important reasons come first.
-Exit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.
+The verdict is good, usable (fits, with reservations) or unfit, with exit code 3. The most important reasons come first.
 
 Example: cagecast inspect head.glb --cage cage.glb --html report.html`,
     )

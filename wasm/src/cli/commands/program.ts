@@ -31,13 +31,8 @@ export function makeProgram(io: Io): Command {
       'after',
       `
 Examples:
-  cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
-  cagecast bake head.glb --cage cage.glb --texture paint.png -o painted.glb
-  cagecast inspect head.glb --cage cage.glb
   cagecast make head.glb -o cage.glb
-  cagecast fit head.glb --template template.glb -o cage.glb
-  cagecast batch 'heads/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
-  cagecast thumbnail painted.glb -o painted.png
+  cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
 
 Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make, fit or batch finds a cage unfit,
 4 diff finds a change over the limit.`,

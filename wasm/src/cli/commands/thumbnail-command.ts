@@ -46,7 +46,7 @@ const kHelp = `
 Shown: base colours with their textures, vertex colours, alpha, overlays of paint, in a light from the eye; skins in their bind pose.
 Hidden nodes, cages and markers are left out. A texture that cannot be decoded is not shown; the summary says so.
 face is the head from the front, if a joint is called so. front is +z, of a VRM 0 -z.
-If one of several models cannot be used, the others are drawn, and the exit code is 1. Folders of paths with {name} or {dir} are made.
+If one of several models cannot be used, the others are drawn, and the exit code is 1. Missing folders are made.
 
 Examples:
   cagecast thumbnail painted.vrm --view face --size 512 -o painted.png

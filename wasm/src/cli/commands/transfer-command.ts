@@ -26,7 +26,7 @@ export const addTarget = (command: Command): Command =>
     .argument('<TARGET>', 'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ')
     .option(
       '--cage <CAGE>',
-      'GLB, glTF, VRM, FBX, OBJ, PLY, STL or USDZ with UVs that the texture was drawn for; auto makes one (default: the meshes of TARGET that are named as outer cages of others)',
+      'a file of the same kinds but STL, with UVs that the texture was drawn for; auto makes one (default: the meshes of TARGET that are named as outer cages of others)',
     );
 
 /** What its help says after the flags. */
@@ -35,18 +35,16 @@ The attribute _NCZ (Non-Cosmetic Zone) of a vertex is 0 where it may be painted.
   1  occluded: another surface of the target lies over it
   2  uncovered: the cage has a hole over it, or it lies outside the cage
   3  culled: the cage covers too little of its segment (connected part), or has a hole meant for that segment
-A cage that faces the other way, as on a model of VRM 0, is turned by half if it then fits clearly better; the summary says so.
-What an earlier transfer added is replaced. Where triangles need different UVs, copies of vertices are added after the others (not
-with --set seams=vertex); --borders cut adds some, too; Draco changes their order. --region adds UVs and zones of its own (_NCZ_1, …).
-Of a file with meshes that are named as outer cages (Head_OuterCage of Head_Geo), these are the cage, each of the part of its name.
---cage auto makes a cage as cagecast make does. Parts that a cage was made without stay bare, unless --keep names them. For a file
-named auto, write ./auto.
+Cages: a mesh named Head_OuterCage is the cage of Head_Geo alone. --cage auto makes a cage as cagecast make does; a file named auto
+is ./auto. Parts that a cage was made without stay bare, unless --keep names them. A cage that faces the other way, as on a model of
+VRM 0, is turned by half if it then fits clearly better; the summary says so.
+OUT: what an earlier transfer added is replaced. Where triangles need different UVs, copies of vertices are added after the others
+(not with --set seams=vertex); --borders cut adds some, too; Draco changes their order. --region adds UVs and zones of its own
+(_NCZ_1, …). An overlay fills what a material cuts out by its alpha (MASK), as between hairs; cagecast bake does not.
 --uv-bounds and --reference-cage are about --cage alone. Within the bounds, the UVs in OUT are 0..1. A triangle across them is
-painted whole, also with --borders cut; zones do not depend on them.
-<UDIM> stands for the tiles of the cage's UVs: 1001, 1002 to its right, 1011 above. A triangle shows the tile that the centre of
-its UVs is in.
-An overlay fills what a material cuts out by its alpha (MASK), as between hairs; cagecast bake does not.
-Of several scenes, the default one is read. A mesh of many instances (EXT_mesh_gpu_instancing) is taken where its first one is.
+painted whole; zones do not depend on them.
+<UDIM> stands for the tiles of the cage's UVs: 1001, 1002 to its right, 1011 above. A triangle shows the tile of its UVs' centre.
+Of several scenes, the default one is read; of the instances of a mesh (EXT_mesh_gpu_instancing), the first.
 A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
 
 Examples:
