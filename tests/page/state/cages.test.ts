@@ -5,7 +5,7 @@ import { Bone } from 'three';
 import { Edits, History, LayerStack, maxLayers } from '#three';
 import { CageMaker, type Engine } from '../../../web/src/state/cage-maker';
 import { followPaints } from '../../../web/src/state/follow-paints';
-import { type Fitting, madeOf, sampleOf } from '../../../web/src/state/made-cages';
+import { type Fitting, knownLandmarks, madeOf, sampleOf } from '../../../web/src/state/made-cages';
 import { PutAwayLayers } from '../../../web/src/state/put-away-layers';
 import { tetrahedron } from '../../support/glb';
 import { begin, cageGlb, Gate, paintOf, quiet, until } from './harness';
@@ -28,6 +28,7 @@ async function workshop() {
       state.tried.push(name);
       return { landmarks: points(6) };
     },
+    findLandmarks: async () => ({ landmarks: points(2) }),
     makeCage: async (_: object, { signal }: { signal: AbortSignal }) => gate.wait(signal).then(box),
     refineCage: async (cage: Cage) => ({ ...cage, positions: cage.positions.map((x) => (state.moves ? x * 1.1 : x)) }),
     async fitCage(_: object, __: object, given: object, { signal }: { signal: AbortSignal }) {
@@ -72,6 +73,8 @@ test('a cage is made for the model, fitted to it, moved, and turned; the page kn
   await page.ready();
   assert.deepEqual([page.shown[1], maker.isMade, maker.isFresh], ['a-cage.glb', true, true]);
   assert.match(page.notes.note, /^A cage of 4 triangles was made\. Save it/);
+  const known = () => Object.keys(knownLandmarks(session.shown!.target, session.shown!.cage)!).join('');
+  assert.equal(known(), 'ab', 'the verdict is of a face that was looked for');
   await maker.flip([1]);
   await page.ready();
   assert.deepEqual([...session.shown!.cage.mesh.indices.subarray(3, 6)], [0, 3, 1]);
@@ -88,7 +91,7 @@ test('a cage is made for the model, fitted to it, moved, and turned; the page kn
   await page.ready();
   const { fitting } = madeOf(file())!;
   assert.deepEqual([fitting!.given, fitting!.template, fitting], [{ a: [1, 2, 3] }, 'human-head', page.fitting]);
-  assert.equal(maker.isMade, false);
+  assert.deepEqual([maker.isMade, known()], [false, 'abcdef']);
   session.reportInspection({ verdict: 'usable', findings: [] } as never);
   assert.equal(page.notes.missing, 'Landmarks that were not found: nose tip, left ear lobe.');
   const changed = await maker.change({ positions: session.shown!.cage.mesh.positions.map((x) => 2 * x) });

@@ -8,6 +8,7 @@ import {
   type ApplyOptions,
   applyTransfer,
   applyTransferAsync,
+  cageTemplate,
   deserialize,
   extract,
   serialize,
@@ -336,9 +337,9 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   async #inspector(gltf: GLTF, around: GLTF, parts: ApplyOptions['parts']) {
     const [{ inspect }] = await Promise.all([import('../inspect/index.js'), init()]);
     const { mesh, kept: keep, excluded: exclude } = extract(gltf.scene, 'target', parts);
-    const { mesh: cage } = extract(around.scene, 'cage');
+    const [{ mesh: cage }, { landmarks }] = [extract(around.scene, 'cage'), cageTemplate(around)];
     return ({ result }: Applied, { feather, opacity, borders, ...options }: ApplyOptions): Check => {
-      const { verdict, findings } = inspect(cage, mesh, { ...options, parts: { keep, exclude }, result });
+      const { verdict, findings } = inspect(cage, mesh, { ...options, parts: { keep, exclude }, result, landmarks });
       return { verdict, findings };
     };
   }

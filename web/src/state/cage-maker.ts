@@ -1,7 +1,7 @@
 import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
 import { type Bone, Box3, Vector3 } from 'three';
 import { cageModel, Emitter } from '#three';
-import { type Fitting, kMaxAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
+import { type Fitting, kMaxAsked, madeOf, noteFound, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
 import { type Box, boxOf, diagonalOfBox } from './surface';
@@ -141,7 +141,7 @@ export class CageMaker extends Emitter<{
     try {
       const engine = await this.#workshop.engine();
       const model = await cageModel(target.loaded);
-      const context = { engine, model, options };
+      const context = { engine, model, options, target };
       const { positions } = target.mesh;
       const named = likelyTemplate(positions, namesIn(target));
       // A figure that the body does not fit, such as a toy, gets a cage of its own: a head's would leave the rest bare.
@@ -249,7 +249,7 @@ export class CageMaker extends Emitter<{
       } as Cage;
       const model = await cageModel(read.loaded);
       if (abort.signal.aborted) return;
-      const result = await work.call(this, { engine, model, old, options });
+      const result = await work.call(this, { engine, model, old, options, target });
       if (abort.signal.aborted) return;
       const { cage, note, fitting, isNew } = result;
       const isChanged = cage.uvs === old.uvs;
@@ -267,12 +267,14 @@ export class CageMaker extends Emitter<{
     }
   }
 
-  async #make({ engine, model, options }: Omit<Context, 'old'>): Promise<Result> {
+  async #make({ engine, model, options, target }: Omit<Context, 'old'>): Promise<Result> {
     const { options: chosen, marks: parts } = this.choices?.(model) ?? {};
     const { bare } = this.#session;
     // What was marked on the model is not painted, whatever is chosen for its part.
     const marks = bare && parts ? parts.map((mark, t) => mark | bare[t]!) : (bare ?? parts);
     const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
+    const { landmarks } = await engine.findLandmarks(model, { signal: options.signal });
+    noteFound(target, landmarks);
     const note = `A cage of ${cage.indices.length / 3} triangles was made. Save it with the paint that you draw for it.`;
     return { cage, note, isNew: true };
   }
@@ -357,6 +359,8 @@ export function placeAround(cage: Cage, model: ArrayLike<number>): Cage {
 interface Context {
   engine: Engine;
   model: CageModel;
+  /** What the model was read from. */
+  target: Model;
   /** The current cage, undeformed. */
   old: Cage;
   options: { signal: AbortSignal; onProgress(share: number, step: string): void };
