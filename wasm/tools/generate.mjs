@@ -100,23 +100,14 @@ export type ${type} = (typeof ${type})[keyof typeof ${type}];
   return kHead('result.hpp') + types.map(one).join('');
 }
 
-/** The page about options: its text as it is here, with what follows from the list between marks. */
+/** The page about options: its text as it is here, with the table that follows from the list between marks. */
 function makePage(options) {
   const row = (option) =>
     `| \`${option.name}\` | ${rangeOf(option).replace(/\|/g, '\\|')} | \`${option.standard}\` | \`${option.paper}\` | ${option.stage} | ${option.text} |\n`;
   const head = '| Option | Values | `default` | `paper` | Read by | What it does |\n|---|---|---|---|---|---|\n';
-  const table = (some) => `\n${head}${some.map(row).join('')}`;
-  const [steps, others] = [true, false].map((isStep) => options.filter((option) => option.isStep === isStep));
-  const made = {
-    'table: options': table(others),
-    'table: steps': table(steps),
-  };
+  const rows = options.filter(({ isStep }) => !isStep).map(row);
   const page = readFileSync(new URL('../../docs/options.md', import.meta.url), 'utf8');
-  return Object.entries(made).reduce((text, [mark, content]) => {
-    const [start, end] = [`<!-- ${mark} -->`, '<!-- end -->'];
-    const first = text.indexOf(start) + start.length;
-    return text.slice(0, first) + content + text.slice(text.indexOf(end, first));
-  }, page);
+  return page.replace(/(?<=<!-- table -->\n)[\s\S]*(?=<!-- end -->)/, () => head + rows.join(''));
 }
 
 /**
