@@ -50,7 +50,8 @@ const here = { worker: false } as const;
 const { at } = temporaryFolder('cages');
 Object.assign(globalThis, { self: globalThis }); // which GLTFLoader expects
 
-const read = (bytes: Uint8Array): Promise<Document> => new NodeIO().readBinary(new Uint8Array(bytes));
+const read = (bytes: Uint8Array): Promise<Document> =>
+  new NodeIO().registerExtensions(KHRONOS_EXTENSIONS).readBinary(new Uint8Array(bytes));
 const load = (bytes: Uint8Array): Promise<Loaded> => new GLTFLoader().parseAsync(Uint8Array.from(bytes).buffer, '');
 const near = (a: ArrayLike<number>, b: readonly number[], what: string) =>
   b.forEach((x, k) => assert.ok(Math.abs(a[k]! - x) < 1e-5, `${what}: ${Array.from(a)}, not ${b}`));
@@ -505,6 +506,10 @@ function figure(extensions: object = {}): Uint8Array {
   return maker.finish();
 }
 
+/** What each source of a model says of it: a document, and a loaded scene. */
+const modelsOf = async (bytes: Uint8Array, extensions = {}) =>
+  [await gltf.cageModel(await read(bytes), { extensions }), await three.cageModel(await load(bytes))] as const;
+
 describe('cageModel', () => {
   test('gives joints where the extracted mesh has them, in its own space and unit, in the bind pose', async () => {
     const loaded = await load(figure());
@@ -541,9 +546,7 @@ describe('cageModel', () => {
     const { attributes, indices } = maker.json.meshes[mesh]!.primitives[0]!;
     maker.json.meshes[mesh]!.primitives = [0, 1, 2].map((material) => ({ attributes, indices, material }) as never);
     maker.node({ name: 'all', mesh });
-    const file = maker.finish();
-    const document = await new NodeIO().registerExtensions(KHRONOS_EXTENSIONS).readBinary(new Uint8Array(file));
-    for (const { names } of [await gltf.cageModel(document), await three.cageModel(await load(file))])
+    for (const { names } of await modelsOf(maker.finish()))
       assert.deepEqual(
         names!.map((own) => own.includes('glass')),
         [true, true, false],
@@ -630,11 +633,7 @@ describe('cageModel', () => {
       [{ VRM: 3 }, ['J_Hips', 'J_Head']],
       [{ VRMC_vrm: { humanoid: { humanBones: { hips: null, head: { node: 99 } } } } }, ['J_Hips', 'J_Head']],
     ] as const) {
-      const bytes = figure(extensions);
-      for (const { joints } of [
-        await gltf.cageModel(await read(bytes), { extensions }),
-        await three.cageModel(await load(bytes)),
-      ])
+      for (const { joints } of await modelsOf(figure(extensions), extensions))
         assert.deepEqual(
           joints!.map(({ name }) => name),
           names,
@@ -664,11 +663,7 @@ describe('cageModel', () => {
     const off = (place: readonly number[] | undefined, [x, y]: readonly [number, number]) =>
       Math.hypot(Math.abs(place![0]!) - x, place![1]! - y) / (kFace.eye[1] - kFace.mouth[1]);
     for (const [targets, extensions = {}] of cases) {
-      const bytes = faceAvatar(targets, extensions);
-      const models = [
-        await gltf.cageModel(await read(bytes), { extensions }),
-        await three.cageModel(await load(bytes)),
-      ];
+      const models = await modelsOf(faceAvatar(targets, extensions), extensions);
       assert.deepEqual(models[1]!.hints, models[0]!.hints);
       const hints = models[0]!.hints!;
       const what = `${Object.keys(targets)} ${JSON.stringify(hints)}`;
@@ -682,12 +677,7 @@ describe('cageModel', () => {
       [bare, { VRM: { blendShapeMaster: { blendShapeGroups: [null, { binds: [null, { mesh: 9 }] }] } } }],
       [{ Fcl_MTH_Angry: 'jaw', eyeLookUpLeft: 'left eye' }],
     ] as typeof cases) {
-      const bytes = faceAvatar(targets, extensions);
-      for (const { hints } of [
-        await gltf.cageModel(await read(bytes), { extensions }),
-        await three.cageModel(await load(bytes)),
-      ])
-        assert.deepEqual(hints, {});
+      for (const { hints } of await modelsOf(faceAvatar(targets, extensions), extensions)) assert.deepEqual(hints, {});
     }
   });
 
@@ -703,12 +693,11 @@ describe('cageModel', () => {
     maker.json.meshes[mesh!]!.primitives.push(maker.json.meshes[eye!]!.primitives[0]!);
     maker.json.meshes[mesh!]!.name = 'Face.mesh';
     maker.node({ name: 'Face', mesh: mesh! });
-    const bytes = maker.finish();
-    assert.deepEqual((await gltf.cageModel(await read(bytes))).names, [
+    const [{ names: own }, { names }] = await modelsOf(maker.finish());
+    assert.deepEqual(own, [
       ['Face', 'Face.mesh', 'skin', 'Face/skin'],
       ['Face', 'Face.mesh', 'EyeWhite', 'Face/EyeWhite'],
     ]);
-    const { names } = await three.cageModel(await load(bytes));
     assert.ok(names!.length === 2 && names![0]!.includes('skin') && names![1]!.includes('EyeWhite'));
   });
 
@@ -719,13 +708,11 @@ describe('cageModel', () => {
       const corners = Uint32Array.from(indices).filter((_, i, all) => groups![all[i - (i % 3)]!] === group);
       maker.node({ name, mesh: maker.mesh({ positions, indices: corners }) });
     });
-    const bytes = maker.finish();
-    const document = await read(bytes);
-    const expected = await makeCage(await gltf.cageModel(document), options);
+    const [document, model] = await modelsOf(maker.finish());
+    const expected = await makeCage(document, options);
     assert.deepEqual(expected.bare, ['Eye.L', 'Eye.R']);
     // GLTFLoader takes points out of names.
     const bare = ['EyeL', 'Eye.L', 'EyeR', 'Eye.R'];
-    const model = await three.cageModel((await load(bytes)).scene);
     assert.deepEqual(await makeCage(model, options), { ...expected, bare });
   });
 });

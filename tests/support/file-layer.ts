@@ -6,12 +6,12 @@ import { temporaryFolder } from './temporary.js';
 
 /** What the command reads and writes files by, which the package does not export. */
 export type FileLayer = Pick<typeof import('../../wasm/src/cli/io/read-gltf.js'), 'readGltf'> &
-  Pick<typeof import('../../wasm/src/gltf/extract-file.js'), 'extract'> &
+  Pick<typeof import('../../wasm/src/scene/extract.js'), 'extract'> &
   Pick<typeof import('../../wasm/src/gltf/write-transfer.js'), 'writeTransfer'> &
   Pick<typeof import('../../wasm/src/gltf/overlay.js'), 'paintOf'> &
   Pick<typeof import('../../wasm/src/cli/model/reading.js'), 'defaultReading'>;
 
-const kModules = ['cli/io/read-gltf', 'gltf/extract-file', 'gltf/write-transfer', 'gltf/overlay', 'cli/model/reading'];
+const kModules = ['cli/io/read-gltf', 'scene/extract', 'gltf/write-transfer', 'gltf/overlay', 'cli/model/reading'];
 
 /** Bundles the file layer, whose decoders are files that only a bundler reads. It uses the package's own index. */
 export async function loadFileLayer(): Promise<FileLayer> {

@@ -1,5 +1,5 @@
 import { show } from '../core/error.js';
-import { InputError } from './input-error.js';
+import { InputError } from '../scene/input-error.js';
 
 /** Whether a URI holds its data itself. */
 export const isDataUri = (uri: string): boolean => /^data:/i.test(uri);

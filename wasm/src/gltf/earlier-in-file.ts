@@ -1,7 +1,8 @@
 import type { GLTF } from '@gltf-transform/core';
+import { isOverlay } from '../scene/overlay-mark.js';
 import { extensionsByType, type GlbWriter } from './glb-writer.js';
 import { dropProperties } from './output/vrm-materials.js';
-import { isOfTransfer, isOverlay } from './overlay.js';
+import { isOfTransfer } from './overlay.js';
 
 /** Removes the UVs and zones of an earlier transfer from primitives. */
 export function removeAttributes({ json }: GlbWriter, primitives: readonly GLTF.IMeshPrimitive[]): void {

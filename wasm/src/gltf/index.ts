@@ -9,14 +9,15 @@ import type { Parts } from '../api/parts.js';
 import { noteOf } from '../inspect/bare.js';
 import { type Borders, isCut } from '../parts/cut-part.js';
 import type { LeftOut } from '../parts/drawn.js';
+import type { Piece } from '../scene/pieces.js';
 import type { MaskSources } from './bake/mask-sources.js';
 import { addTransfer } from './document/add-transfer.js';
 import { transferDocument, wrong } from './document/transfer-document.js';
-import type { Piece } from './pieces.js';
 
+export type { ImageCodec } from '../scene/materials.js';
 export { type BakeOptions, bake } from './bake/bake-document.js';
 export type { MaskSources } from './bake/mask-sources.js';
-export type { BakeReport, ImageCodec, Paints } from './bake/plan.js';
+export type { BakeReport, Paints } from './bake/plan.js';
 export { type CheckOptions, checkGltf, checkImage } from './checks/check-gltf.js';
 export type { ReadLimits } from './checks/read-limits.js';
 export { addCage, type CageModelOptions, cageModel, cageTemplate } from './document/document-cages.js';

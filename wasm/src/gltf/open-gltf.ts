@@ -1,17 +1,20 @@
 import type { GLTF } from '@gltf-transform/core';
 import { CagecastError } from '../api/index.js';
-import { type AccessorData, decodeAccessors } from './accessors.js';
+import type { AccessorData } from '../scene/accessor.js';
+import { firstLine, InputError } from '../scene/input-error.js';
+import type { ImageBytes, SceneSource } from '../scene/source.js';
+import { decodeAccessors } from './accessors.js';
 import { checkGeometry, dracoOf } from './checks/check-geometry.js';
 import { checkRest } from './checks/check-rest.js';
 import { withDracoCounts } from './checks/draco-header.js';
 import { checkLimits } from './checks/limits.js';
 import { checkBytes, defaultLimits, exceeds, type ReadLimits } from './checks/read-limits.js';
 import { isDataUri, readDataUri } from './data-uri.js';
-import { firstLine, InputError } from './input-error.js';
+import { imageType } from './image-file.js';
 import { parseGltf } from './parse.js';
 
 /** A glTF file as it is, and its accessors decoded. */
-export interface GltfFile {
+export interface GltfFile extends SceneSource {
   /** As the caller named it, for messages. */
   path: string;
   /** The JSON as it stands in the file. Not to be changed. */
@@ -59,7 +62,8 @@ export async function openGltf(
     checkLimits(withDracoCounts(json, buffers), all, limits);
     const isDraco = json.meshes?.some(({ primitives }) => primitives.some(dracoOf)) ?? false;
     const accessors = await (isDraco ? decodeDraco : decodeAccessors)(json, buffers);
-    return { path, json, buffers, accessors, readUri };
+    const imageOf = (texture: number) => readImage({ json, buffers, readUri }, texture);
+    return { path, json, buffers, accessors, readUri, imageOf };
   } catch (error) {
     if (error instanceof InputError) throw error.in(path);
     if (error instanceof CagecastError) throw error; // of this host, not of the file
@@ -97,4 +101,32 @@ async function readBuffers(
     buffers.push(bytes);
   }
   return buffers;
+}
+
+/** Extensions that give a texture another image than its own `source`. */
+export const sourceExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
+
+/** The image of a texture. */
+export function sourceOf({ source, extensions }: GLTF.ITexture): number | undefined {
+  const other = sourceExtensions.map((name) => (extensions?.[name] as { source?: number } | undefined)?.source);
+  return other.find((found) => found !== undefined) ?? source;
+}
+
+/** Reads the image of a texture. @throws {InputError} if it is in a file that cannot be read. */
+async function readImage(
+  { json, buffers, readUri }: Pick<GltfFile, 'json' | 'buffers' | 'readUri'>,
+  texture: number,
+): Promise<ImageBytes | undefined> {
+  const source = sourceOf(json.textures![texture]!);
+  const image = source === undefined ? undefined : json.images?.[source];
+  if (!image) return undefined;
+  let bytes: Uint8Array;
+  if (image.uri !== undefined) bytes = await readUri(`images[${source}]`, image.uri);
+  else {
+    const view = json.bufferViews?.[image.bufferView ?? -1];
+    const buffer = view && buffers[view.buffer];
+    if (!buffer) return undefined;
+    bytes = buffer.subarray(view.byteOffset ?? 0, (view.byteOffset ?? 0) + view.byteLength);
+  }
+  return { bytes, mimeType: imageType(bytes) ?? image.mimeType ?? 'an unknown type' };
 }

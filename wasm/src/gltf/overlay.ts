@@ -1,24 +1,10 @@
 import type { GLTF } from '@gltf-transform/core';
+import { InputError } from '../scene/input-error.js';
+import { uvLayoutOf } from '../scene/uv-layout.js';
 import { imageIsWhole, imageType, ktx2Problem } from './image-file.js';
-import { InputError } from './input-error.js';
-import { uvLayoutOf } from './uv-layout.js';
 
 /** The attribute with the `Zone` of each vertex, a byte: 0 may be painted, other values are Non-Cosmetic Zones. */
 export const zoneAttribute = '_NCZ';
-
-/**
- * Marks overlays in their `extras`, so that they are skipped when the model is read again; and their materials, as tools that join
- * primitives keep only these. `cagecast/three` uses the same name.
- */
-export const overlayMark = { cagecastOverlay: true } as const;
-
-/** Whether a primitive is an overlay, by the `extras` of it and of its material. */
-export const isMarked = (...extras: readonly (object | undefined)[]): boolean =>
-  extras.some((one) => (one as Partial<typeof overlayMark> | undefined)?.cagecastOverlay);
-
-/** Whether a primitive of a file is an overlay. */
-export const isOverlay = ({ extras, material = -1 }: GLTF.IMeshPrimitive, { materials }: GLTF.IGLTF): boolean =>
-  isMarked(extras, materials?.[material]?.extras);
 
 /** Marks the UVs of a transfer in the `extras` of their accessor, so that the next one can replace them. */
 export const uvsMark = { cagecastUvs: true } as const;

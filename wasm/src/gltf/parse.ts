@@ -1,9 +1,9 @@
 import type { GLTF } from '@gltf-transform/core';
 import { show } from '../core/error.js';
+import { InputError } from '../scene/input-error.js';
 import { checkLists } from './checks/check-geometry.js';
 import { checkNesting } from './checks/limits.js';
 import type { ReadLimits } from './checks/read-limits.js';
-import { InputError } from './input-error.js';
 import { adviceOn } from './kinds.js';
 
 /** The JSON of a GLB or glTF file, and the GLB's bytes. @throws {InputError} with a message that does not name the file. */

@@ -1,8 +1,8 @@
 import type { CutTarget, TransferResult } from '../api/index.js';
 import type { Split } from '../parts/blend.js';
 import { type PreparedPart, preparePart } from '../parts/prepare.js';
-import { isMirrored } from './matrix.js';
-import type { Piece } from './pieces.js';
+import { isMirrored } from '../scene/matrix.js';
+import type { Piece } from '../scene/pieces.js';
 
 /** What a result makes of one part of a target. @param cut  The whole target with cut borders, if they are cut. */
 export const preparePiece = (

@@ -1,7 +1,8 @@
 import type { GLTF } from '@gltf-transform/core';
+import { instancing } from '../scene/instancing.js';
+import { isOverlay } from '../scene/overlay-mark.js';
 import { dracoOf } from './checks/check-geometry.js';
-import { instancing } from './instancing.js';
-import { isOfTransfer, isOverlay } from './overlay.js';
+import { isOfTransfer } from './overlay.js';
 
 /** Where the number of an accessor or of a view stands: a key of an object. */
 export type Visit = (owner: Record<string, number>, key: string) => void;

@@ -3,9 +3,10 @@ import type { CutTarget } from '../api/cut-borders.js';
 import type { TransferResult } from '../api/result.js';
 import { applySplit, ruleOf, splitSkin } from '../parts/blend.js';
 import type { PreparedPart } from '../parts/prepare.js';
+import type { Extracted, Part } from '../scene/extract.js';
+import { overlayMark } from '../scene/overlay-mark.js';
 import { dracoOf } from './checks/check-geometry.js';
 import { removeAttributes, removeOverlays } from './earlier-in-file.js';
-import type { Extracted, Part } from './extract-file.js';
 import { type Form, GlbWriter } from './glb-writer.js';
 import type { GltfFile } from './open-gltf.js';
 import { dracoExtension, markForDraco, unmarkDraco } from './output/draco-marks.js';
@@ -21,7 +22,6 @@ import {
   freeUvSet,
   isMorphed,
   isOverlaid,
-  overlayMark,
   type Paint,
   unlitExtension,
   uvsMark,

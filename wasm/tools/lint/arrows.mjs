@@ -18,6 +18,7 @@ const kPackageOrder = [
   'engines',
   'worker',
   'cages',
+  'scene',
   'gltf',
   'three',
   'react',

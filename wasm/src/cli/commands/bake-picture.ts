@@ -1,13 +1,12 @@
 import type { CutTarget } from '../../api/index.js';
 import { mostTexels } from '../../bake/image.js';
 import { type Baked, cageTexture, fill, type Image, type Layout, resize, type Wrap } from '../../bake/index.js';
-import { FileModel } from '../../gltf/bake/bake-file.js';
-import { colorUseOf, isEmpty, isPainted, kOutside, layoutOf, scaledTo, uvsOf } from '../../gltf/bake/plan.js';
-import type { Part } from '../../gltf/extract-file.js';
-import { GlbWriter } from '../../gltf/glb-writer.js';
-import { InputError } from '../../gltf/input-error.js';
+import { isEmpty, isPainted, kOutside, layoutOf, scaledTo } from '../../gltf/bake/plan.js';
 import { partsNamed } from '../../gltf/read-model.js';
-import type { UvLayout } from '../../gltf/uv-layout.js';
+import type { Part } from '../../scene/extract.js';
+import { InputError } from '../../scene/input-error.js';
+import { Materials } from '../../scene/materials.js';
+import type { UvLayout } from '../../scene/uv-layout.js';
 import { decodeImage } from '../io/images.js';
 import { listed, quoted } from '../model/text.js';
 import { noSuchName } from '../transfer/part-names.js';
@@ -39,12 +38,12 @@ export async function paintForModel(
   cut: CutTarget | undefined,
   paint: Image,
 ): Promise<Picture> {
-  const model = await fileModel(run);
+  const model = materialsOf(run);
   const { parts, texture } = oneTexture(model, run, part);
   const own = await imageOf(model, texture, size === undefined);
   const layouts = layoutsOf(model, parts, run, cut);
   const [width, height] = own ? scaledTo(own, size) : [size ?? kSide, size ?? kSide];
-  const wraps = colorUseOf(model, parts[0]!)?.wraps;
+  const wraps = model.colorUseOf(parts[0]!)?.wraps;
   const image = fill('bake', layouts, paint, { width, height, wrap: wraps });
   if (wraps?.includes('clamp') && isEmpty(image)) throw new InputError(`${quoted(parts[0]!.name)}: ${kOutside}`);
   return { image, parts };
@@ -56,23 +55,21 @@ export async function paintOfModel(
   run: Run,
   cut: CutTarget | undefined,
 ): Promise<Picture> {
-  const model = await fileModel(run);
+  const model = materialsOf(run);
   const { parts, texture } = oneTexture(model, run, part);
   const own = await imageOf(model, texture, true);
   const layouts = layoutsOf(model, parts, run, cut);
   if (!own) throw new InputError('its painted parts have no texture to take the paint from');
   const shown = parts.every((part) => isOpaque(model, part)) ? withoutAlpha(own) : own;
-  const there = unrolled(shown, layouts, colorUseOf(model, parts[0]!)!.wraps);
+  const there = unrolled(shown, layouts, model.colorUseOf(parts[0]!)!.wraps);
   return { image: cageTextureOf(there, distancesOf(parts, run, cut), size), parts };
 }
 
-async function fileModel({ target: { file, extracted } }: Run): Promise<FileModel> {
-  return new FileModel(file, extracted.parts, await GlbWriter.from(file, 'keep'));
-}
+const materialsOf = ({ target: { file, extracted } }: Run) => new Materials(file, extracted.parts);
 
 /** The image of a texture, if there is one. @param isNeeded  Whether one that cannot be decoded is an error. */
-async function imageOf(model: FileModel, texture: number | undefined, isNeeded: boolean): Promise<Image | undefined> {
-  const file = texture === undefined ? undefined : await model.imageOf(texture);
+async function imageOf(model: Materials, texture: number | undefined, isNeeded: boolean): Promise<Image | undefined> {
+  const file = texture === undefined ? undefined : await model.source.imageOf(texture);
   return (
     file &&
     decodeImage(file.bytes).catch((error: unknown) => {
@@ -83,7 +80,7 @@ async function imageOf(model: FileModel, texture: number | undefined, isNeeded: 
 }
 
 /** How the triangles of parts lie in their texture and in the cage's. */
-function layoutsOf(model: FileModel, parts: readonly Part[], run: Run, cut: CutTarget | undefined): Layout[] {
+function layoutsOf(model: Materials, parts: readonly Part[], run: Run, cut: CutTarget | undefined): Layout[] {
   return parts.map((part) => layoutOf(model, part, uvLayoutOf(model, part), { result: run.result, cut }));
 }
 
@@ -94,7 +91,7 @@ const withoutAlpha = (image: Image): Image => ({
 });
 
 /** Whether a part's material pays no heed to the alpha of its texture. */
-function isOpaque(model: FileModel, part: Part): boolean {
+function isOpaque(model: Materials, part: Part): boolean {
   const material = model.materialOf(part);
   return material !== undefined && model.isOpaque(material);
 }
@@ -193,11 +190,11 @@ function cageTextureOf({ image, layouts }: ModelTexture, distances: readonly num
 }
 
 /** The UVs by which a texture lies on a part: those of its own, else the first. */
-const uvLayoutOf = (model: FileModel, part: Part): UvLayout =>
-  colorUseOf(model, part) ?? { set: 'TEXCOORD_0', transform: undefined };
+const uvLayoutOf = (model: Materials, part: Part): UvLayout =>
+  model.colorUseOf(part) ?? { set: 'TEXCOORD_0', transform: undefined };
 
 /** The parts that share one texture. @throws {InputError} if there are several textures, or a part has no UVs. */
-function oneTexture(model: FileModel, { result, target }: Run, names: readonly string[]) {
+function oneTexture(model: Materials, { result, target }: Run, names: readonly string[]) {
   const meant = names.flatMap((name) => {
     const found = partsNamed(name, target);
     if (found.length === 0) throw noSuchName(`--part ${name}`, target);
@@ -206,15 +203,15 @@ function oneTexture(model: FileModel, { result, target }: Run, names: readonly s
   const isChosen = (p: number) => names.length === 0 || meant.includes(p);
   const all = target.extracted.parts;
   const chosen = all.filter((part, p) => isPainted(part, result) && isChosen(p));
-  const textured = chosen.filter((part) => colorUseOf(model, part));
+  const textured = chosen.filter((part) => model.colorUseOf(part));
   const painted = textured.length > 0 ? textured : chosen;
   if (painted.length === 0) throw new InputError('nothing of it may be painted');
-  const withoutUvs = painted.find((part) => !uvsOf(model, part, uvLayoutOf(model, part).set));
+  const withoutUvs = painted.find((part) => !model.uvsOf(part, uvLayoutOf(model, part).set));
   if (withoutUvs)
     throw new InputError(
       `${quoted(withoutUvs.name)} has no ${uvLayoutOf(model, withoutUvs).set}: a texture can only be laid on a model that is unwrapped`,
     );
-  const textures = new Set(painted.map((part) => colorUseOf(model, part)?.texture));
+  const textures = new Set(painted.map((part) => model.colorUseOf(part)?.texture));
   if (textures.size > 1)
     throw new InputError(
       `its painted parts have ${textures.size} textures, which a PNG cannot hold; choose parts of one by --part: ${listNames(painted.map(({ name }) => name))}`,
@@ -225,7 +222,7 @@ function oneTexture(model: FileModel, { result, target }: Run, names: readonly s
     texture === undefined || names.length > 0
       ? painted
       : all.filter(
-          (part) => colorUseOf(model, part)?.texture === texture && uvsOf(model, part, uvLayoutOf(model, part).set),
+          (part) => model.colorUseOf(part)?.texture === texture && model.uvsOf(part, uvLayoutOf(model, part).set),
         );
   return { parts, texture };
 }

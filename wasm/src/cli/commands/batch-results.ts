@@ -1,7 +1,7 @@
 import { appendFileSync, existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { dirname } from 'node:path';
-import { firstLine, InputError } from '../../gltf/input-error.js';
 import type { Verdict } from '../../inspect/index.js';
+import { firstLine, InputError } from '../../scene/input-error.js';
 import { canonicalPath, writing } from '../io/output.js';
 import type { Outcome } from './batch-worker.js';
 

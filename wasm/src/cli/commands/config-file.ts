@@ -2,7 +2,7 @@ import { lstatSync } from 'node:fs';
 import { realpath } from 'node:fs/promises';
 import { basename, dirname, extname, join, relative, resolve } from 'node:path';
 import { matcher } from '../../core/patterns.js';
-import { InputError, naming } from '../../gltf/input-error.js';
+import { InputError, naming } from '../../scene/input-error.js';
 import { isOutside, readBeside, readBytes, standard } from '../io/files.js';
 import { isObject, parseObject, refuseUnknown } from '../model/json.js';
 import type { ReadOptions } from '../model/reading.js';

@@ -1,11 +1,11 @@
 import { type Command, InvalidArgumentError } from 'commander';
 import type { Mesh } from '../../api/index.js';
-import { firstLine, InputError, withName } from '../../gltf/input-error.js';
 import type { GltfFile } from '../../gltf/open-gltf.js';
 import { drawFile } from '../../gltf/thumbnail/draw-file.js';
 import { isColor, kLargest, kSize, kSmallest, type Thumbnail } from '../../gltf/thumbnail/options.js';
 import { type Angles, type ViewName, views } from '../../gltf/thumbnail/views.js';
 import { moved } from '../../parts/origin.js';
+import { firstLine, InputError, withName } from '../../scene/input-error.js';
 import { standard } from '../io/files.js';
 import { filesOf } from '../io/glob.js';
 import { decodeImage, encoderFor, imageEndings } from '../io/images.js';

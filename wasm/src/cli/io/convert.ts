@@ -1,7 +1,7 @@
 import { dirname, resolve } from 'node:path';
 import { CagecastError } from '../../api/index.js';
 import { toGlb } from '../../gltf/formats/to-glb.js';
-import { InputError } from '../../gltf/input-error.js';
+import { InputError } from '../../scene/input-error.js';
 import type { ReadOptions } from '../model/reading.js';
 import { quoted } from '../model/text.js';
 import { readBeside } from './files.js';

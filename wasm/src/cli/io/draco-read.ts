@@ -1,8 +1,8 @@
 import { type GLTF, type JSONDocument, Logger, NodeIO } from '@gltf-transform/core';
 import { EXTMeshoptCompression, KHRDracoMeshCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
-import type { AccessorData } from '../../gltf/accessors.js';
 import { meshoptView } from '../../gltf/checks/check-geometry.js';
 import { meshoptDecoder } from '../../gltf/meshopt.js';
+import type { AccessorData } from '../../scene/accessor.js';
 import { createDracoDecoder } from './draco.js';
 
 const geometryExtensions = [KHRMeshQuantization, EXTMeshoptCompression, KHRDracoMeshCompression];

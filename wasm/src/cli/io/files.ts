@@ -3,7 +3,7 @@ import { type FileHandle, open, readdir, realpath, stat } from 'node:fs/promises
 import { basename, dirname, isAbsolute, relative, resolve } from 'node:path';
 import { checkBytes, defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 import { decodedUri } from '../../gltf/data-uri.js';
-import { firstLine, InputError } from '../../gltf/input-error.js';
+import { firstLine, InputError } from '../../scene/input-error.js';
 import { reasons } from '../model/failures.js';
 import type { ReadOptions } from '../model/reading.js';
 

@@ -3,7 +3,7 @@ import { join } from 'node:path';
 import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
 import { imageIsWhole, imageSize, imageType, pngLength } from '../../gltf/image-file.js';
-import { firstLine, InputError, naming } from '../../gltf/input-error.js';
+import { firstLine, InputError, naming } from '../../scene/input-error.js';
 import type { ReadOptions } from '../model/reading.js';
 import { readBeside, readBytes } from './files.js';
 

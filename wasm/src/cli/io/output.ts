@@ -18,7 +18,7 @@ import {
 } from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
 import { isatty } from 'node:tty';
-import { firstLine, InputError } from '../../gltf/input-error.js';
+import { firstLine, InputError } from '../../scene/input-error.js';
 import { reasons, UsageError } from '../model/failures.js';
 import { standard } from './files.js';
 import type { Io } from './io.js';

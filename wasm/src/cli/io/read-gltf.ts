@@ -1,7 +1,7 @@
 import { dirname } from 'node:path';
-import { naming } from '../../gltf/input-error.js';
 import { fileKind } from '../../gltf/kinds.js';
 import { type GltfFile, openGltf } from '../../gltf/open-gltf.js';
+import { naming } from '../../scene/input-error.js';
 import { defaultReading, type ReadOptions } from '../model/reading.js';
 import { convert } from './convert.js';
 import { decodeDraco } from './draco-read.js';

@@ -1,5 +1,5 @@
 import { CagecastError } from '../../api/index.js';
-import { firstLine, InputError } from '../../gltf/input-error.js';
+import { firstLine, InputError } from '../../scene/input-error.js';
 
 /** What the command ends with if it does not end with 0. */
 export const kExit = {

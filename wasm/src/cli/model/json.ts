@@ -1,5 +1,5 @@
 import { resolve } from 'node:path';
-import { firstLine, InputError } from '../../gltf/input-error.js';
+import { firstLine, InputError } from '../../scene/input-error.js';
 import { shown } from './text.js';
 
 /** An object from JSON. */

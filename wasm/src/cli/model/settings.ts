@@ -1,8 +1,8 @@
 import type { Preset, PresetOptions } from '../../api/index.js';
 import { optionValues } from '../../generated/options.js';
 import { type Form, forms } from '../../gltf/glb-writer.js';
-import { InputError } from '../../gltf/input-error.js';
 import type { Borders } from '../../parts/cut-part.js';
+import { InputError } from '../../scene/input-error.js';
 import { type Json, pathOf } from './json.js';
 import { shown } from './text.js';
 

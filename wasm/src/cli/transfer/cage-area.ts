@@ -1,5 +1,5 @@
-import { InputError } from '../../gltf/input-error.js';
 import type { ReadModel } from '../../gltf/read-model.js';
+import { InputError } from '../../scene/input-error.js';
 import type { UvBounds } from '../model/uv-bounds.js';
 
 /** A cage whose UVs are 0..1 within bounds: a texture covers just these. @throws {InputError} if no triangle reaches into them. */

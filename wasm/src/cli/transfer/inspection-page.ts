@@ -1,11 +1,11 @@
 import { PNG } from 'pngjs';
-import { InputError } from '../../gltf/input-error.js';
 import { Picture, type Rgb } from '../../gltf/thumbnail/picture.js';
 import { Seen } from '../../gltf/thumbnail/seen.js';
 import { type View, viewAt, views } from '../../gltf/thumbnail/views.js';
 import { counted, percent, verdictOf } from '../../inspect/finding.js';
 import { boxOf, pointAt, type Vector } from '../../inspect/geometry.js';
 import { type Scene, sceneOf } from '../../inspect/scene.js';
+import { InputError } from '../../scene/input-error.js';
 import { integer } from '../model/text.js';
 import { kZoneNames } from '../model/zones.js';
 import { adviceOn, holeTable, type InspectionReport, segmentTable } from './inspection.js';

@@ -1,7 +1,7 @@
-import { extract, type WhichCount } from '../../gltf/extract-file.js';
-import { InputError } from '../../gltf/input-error.js';
 import { errorInFile, type ReadModel } from '../../gltf/read-model.js';
 import { hasCages } from '../../parts/own-cages.js';
+import { extract, type WhichCount } from '../../scene/extract.js';
+import { InputError } from '../../scene/input-error.js';
 import type { Io } from '../io/io.js';
 import { readGltf } from '../io/read-gltf.js';
 import type { ReadOptions } from '../model/reading.js';

@@ -1,7 +1,7 @@
 import type { Lock, TransferOptions } from '../../api/index.js';
-import { InputError } from '../../gltf/input-error.js';
 import { type Named, partsNamed, type ReadModel } from '../../gltf/read-model.js';
 import { leftOutText } from '../../parts/drawn.js';
+import { InputError } from '../../scene/input-error.js';
 import type { Rules } from '../model/settings.js';
 import { cut, kMaxCharacters, listed } from '../model/text.js';
 

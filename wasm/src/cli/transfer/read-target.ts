@@ -1,6 +1,7 @@
-import type { WhichCount } from '../../gltf/extract-file.js';
+import type { GltfFile } from '../../gltf/open-gltf.js';
 import type { ReadModel } from '../../gltf/read-model.js';
 import { partsNamed } from '../../gltf/read-model.js';
+import type { WhichCount } from '../../scene/extract.js';
 import type { Io } from '../io/io.js';
 import type { ReadOptions } from '../model/reading.js';
 import type { Rules } from '../model/settings.js';
@@ -23,9 +24,9 @@ export function readTarget(
 
 /** What is drawn or kept, without the parts that are ignored; see `readTarget`. */
 export function allBut({ ignored, names }: Pick<Rules, 'ignored' | 'names'>): Exclude<WhichCount, 'cage'> {
-  return (parts, file) => {
+  return (parts, source) => {
     const out = new Set<number>();
-    const all = { file, extracted: { parts: [...parts] } };
+    const all = { file: source as GltfFile, extracted: { parts: [...parts] } };
     const kept = new Set(names.flatMap(({ lock, pattern }) => (lock === 'keep' ? partsNamed(pattern, all) : [])));
     for (const rule of ignored) {
       const found = partsNamed(rule.pattern, all);

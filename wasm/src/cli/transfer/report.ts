@@ -1,10 +1,10 @@
 import type { SegmentStats, TransferResult } from '../../api/index.js';
-import { type Part, primitivePath } from '../../gltf/extract-file.js';
 import type { Added } from '../../gltf/write-transfer.js';
 import { vertexAreas } from '../../inspect/geometry.js';
 import type { Finding, Segment, Verdict } from '../../inspect/index.js';
 import { hasArea, segmentsOf } from '../../inspect/segments.js';
 import type { Borders } from '../../parts/cut-part.js';
+import { type Part, primitivePath } from '../../scene/extract.js';
 import type { Region, TransferCommand } from '../model/sources.js';
 import type { PerZone } from '../model/zones.js';
 import { countOf, type RegionRun } from './region.js';

@@ -1,9 +1,9 @@
 import { basename } from 'node:path';
 import type { ReadLimits } from '../../gltf/checks/read-limits.js';
-import { partOf, primitivePath } from '../../gltf/extract-file.js';
-import { InputError, naming } from '../../gltf/input-error.js';
 import { type Paint, paintOf, tileAt } from '../../gltf/overlay.js';
 import type { ReadModel } from '../../gltf/read-model.js';
+import { partOf, primitivePath } from '../../scene/extract.js';
+import { InputError, naming } from '../../scene/input-error.js';
 import { readBytes } from '../io/files.js';
 import { quoted } from '../model/text.js';
 import { tilePath } from '../model/uv-bounds.js';

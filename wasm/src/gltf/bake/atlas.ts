@@ -1,18 +1,18 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { Image } from '../../bake/index.js';
 import { grouped } from '../../inspect/geometry.js';
-import { decodeFloats } from '../accessors.js';
+import { decodeFloats } from '../../scene/accessor.js';
+import { firstLine, InputError } from '../../scene/input-error.js';
+import { type ImageCodec, Materials, type Slot, slots } from '../../scene/materials.js';
+import { isMarked } from '../../scene/overlay-mark.js';
+import { layUvs, uvLayoutOf } from '../../scene/uv-layout.js';
 import { GlbWriter } from '../glb-writer.js';
 import { imageType } from '../image-file.js';
-import { firstLine, InputError } from '../input-error.js';
 import type { GltfFile } from '../open-gltf.js';
-import { isMarked } from '../overlay.js';
+import { sourceExtensions } from '../open-gltf.js';
 import { storedUvs } from '../primitive-group.js';
 import { drop, eachImage, eachMaterial, eachTexture, materialBinds, numbersOf } from '../references.js';
-import { layUvs, uvLayoutOf } from '../uv-layout.js';
 import { flat, type Place, placed, put, tinted } from './atlas-image.js';
-import { FileModel, sourceExtensions } from './bake-file.js';
-import { type ImageCodec, type Slot, slots } from './plan.js';
 
 /** What became of the materials of a file. */
 export interface AtlasReport {
@@ -58,7 +58,7 @@ export async function packTextures(
   side?: number,
 ): Promise<{ bytes: Uint8Array | undefined; report: AtlasReport }> {
   const report: AtlasReport = { packed: [], textures: [], left: [] };
-  const model = new FileModel(file, []);
+  const model = new Materials(file, []);
   const unknown = file.json.extensionsUsed?.find((name) => !kKnown.test(name));
   if (unknown) {
     const left = (_: unknown, m: number) => ({ material: model.nameOf(m), reason: `${unknown} may refer to it` });
@@ -142,11 +142,11 @@ async function packable(file: GltfFile, json: GLTF.IGLTF, number: number, codec:
     uses.push({ primitive, uvs });
   }
   const images: Packed['images'] = {};
-  const model = new FileModel(file, []);
+  const model = new Materials(file, []);
   for (const slot of slots) {
     const use = model.useOf(number, slot);
     if (!use) continue;
-    const found = await model.imageOf(use.texture);
+    const found = await file.imageOf(use.texture);
     if (!found) return 'its texture has no image';
     try {
       const image = await codec.decode(found.bytes, found.mimeType);

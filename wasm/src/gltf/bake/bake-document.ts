@@ -3,11 +3,12 @@ import type { Mesh, TransferOptions } from '../../api/index.js';
 import type { Parts } from '../../api/parts.js';
 import { mostTexels } from '../../bake/index.js';
 import { type Borders, isCut } from '../../parts/cut-part.js';
+import { type ImageCodec, type Slot, slots } from '../../scene/materials.js';
 import { addTransfer } from '../document/add-transfer.js';
 import { removeOverlays } from '../document/earlier-in-document.js';
 import { ofArgument, transferDocument, wrong } from '../document/transfer-document.js';
 import type { MaskSources } from './mask-sources.js';
-import { type BakeReport, bakeModel, type ImageCodec, type Paints, type Slot, slots } from './plan.js';
+import { type BakeReport, bakeModel, type Paints } from './plan.js';
 
 /** Options of `bake`: those of `transfer`, and what to bake. */
 export interface BakeOptions extends Omit<TransferOptions, 'parts'>, MaskSources {
@@ -79,7 +80,10 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
     }).catch((error) => {
       throw ofArgument('bake', 'target', error);
     });
-    removeOverlays(document, target.parts);
+    removeOverlays(
+      document,
+      target.parts.map((part) => target.source.partOf(part).node),
+    );
     if (paint) addTransfer(document, target, result, { paint, cut, baked });
     onBaked?.(report);
   };

@@ -1,117 +1,25 @@
 import type { GLTF } from '@gltf-transform/core';
-import type { Wrap } from '../../bake/index.js';
-import type { AccessorData } from '../accessors.js';
-import type { Part } from '../extract-file.js';
+import type { Part } from '../../scene/extract.js';
+import { infoOf, Materials, type Slot, type TextureUse } from '../../scene/materials.js';
 import type { GlbWriter } from '../glb-writer.js';
 import { imageType } from '../image-file.js';
-import type { GltfFile } from '../open-gltf.js';
-import { uvLayoutOf } from '../uv-layout.js';
-import { type BakeModel, type Slot, type TextureUse, wrapOf } from './plan.js';
+import { type GltfFile, sourceExtensions, sourceOf } from '../open-gltf.js';
+import type { BakeModel } from './plan.js';
 
-/** Extensions that give a texture another image than its own `source`. */
-export const sourceExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
-
-/** The image of a texture. */
-function sourceOf({ source, extensions }: GLTF.ITexture): number | undefined {
-  const other = sourceExtensions.map((name) => (extensions?.[name] as { source?: number } | undefined)?.source);
-  return other.find((found) => found !== undefined) ?? source;
-}
-
-/** A file as baking sees it. Materials and textures are their numbers. What is painted goes to a writer of the file. */
-export class FileModel implements BakeModel<number, number> {
-  readonly #file: GltfFile;
-  readonly #json: GLTF.IGLTF;
+/** A file whose materials are painted. What is painted goes to a writer of the file. */
+export class FileModel extends Materials implements BakeModel {
   readonly #writer: GlbWriter | undefined;
-  readonly parts: readonly Part[];
 
   /** @param writer  Without one, nothing can be replaced. */
   constructor(file: GltfFile, parts: readonly Part[], writer?: GlbWriter) {
-    this.#file = file;
-    this.#json = writer?.json ?? file.json;
+    super(file, parts, writer?.json);
     this.#writer = writer;
-    this.parts = parts;
   }
 
-  #primitive({ mesh, primitive }: Part): GLTF.IMeshPrimitive {
-    return this.#file.json.meshes![mesh]!.primitives[primitive]!;
-  }
-
-  #material(number: number): GLTF.IMaterial {
-    return this.#json.materials![number]!;
-  }
-
-  materialOf(part: Part): number | undefined {
-    const { material } = this.#primitive(part);
-    return material !== undefined && this.#json.materials?.[material] ? material : undefined;
-  }
-
-  variantsOf(part: Part): number[] {
-    const { mappings = [] } = (this.#primitive(part).extensions?.['KHR_materials_variants'] ?? {}) as {
-      mappings?: { material: number }[];
-    };
-    return mappings.map(({ material }) => material).filter((material) => this.#json.materials?.[material]);
-  }
-
-  nameOf(material: number): string {
-    return this.#material(material).name ?? `materials[${material}]`;
-  }
-
-  attributeOf(part: Part, semantic: string): AccessorData | undefined {
-    return this.#file.accessors[this.#primitive(part).attributes[semantic] ?? -1];
-  }
-
-  useOf(material: number, slot: Slot): TextureUse<number> | undefined {
-    const info = infoOf(this.#material(material), slot);
-    if (!info) return undefined;
-    if (!this.#json.textures?.[info.index]) return undefined;
-    return { texture: info.index, ...uvLayoutOf(info), wraps: this.wrapsOf(info.index) };
-  }
-
-  /** How a texture goes on beyond its border. */
-  wrapsOf(texture: number): [Wrap, Wrap] {
-    const { wrapS, wrapT } = this.#json.samplers?.[this.#json.textures![texture]!.sampler ?? -1] ?? {};
-    return [wrapOf(wrapS), wrapOf(wrapT)];
-  }
-
-  factorOf(material: number, slot: Slot): [number, number, number] {
-    const {
-      baseColorFactor = [1, 1, 1],
-      roughnessFactor = 1,
-      metallicFactor = 1,
-    } = this.#material(material).pbrMetallicRoughness ?? {};
-    if (slot === 'normal') return [1, 1, 1];
-    if (slot === 'orm') return [1, roughnessFactor, metallicFactor];
-    return [baseColorFactor[0]!, baseColorFactor[1]!, baseColorFactor[2]!];
-  }
-
-  isOpaque(material: number): boolean {
-    return (this.#material(material).alphaMode ?? 'OPAQUE') === 'OPAQUE';
-  }
-
-  hasOcclusion(material: number): boolean {
-    return this.#material(material).occlusionTexture !== undefined;
-  }
-
-  async imageOf(texture: number): Promise<{ bytes: Uint8Array; mimeType: string } | undefined> {
-    const { json, buffers } = this.#file;
-    const source = sourceOf(json.textures![texture]!);
-    const image = source === undefined ? undefined : json.images?.[source];
-    if (!image) return undefined;
-    let bytes: Uint8Array;
-    if (image.uri !== undefined) bytes = await this.#file.readUri(`images[${source}]`, image.uri);
-    else {
-      const view = json.bufferViews?.[image.bufferView ?? -1];
-      const buffer = view && buffers[view.buffer];
-      if (!buffer) return undefined;
-      bytes = buffer.subarray(view.byteOffset ?? 0, (view.byteOffset ?? 0) + view.byteLength);
-    }
-    return { bytes, mimeType: imageType(bytes) ?? image.mimeType ?? 'an unknown type' };
-  }
-
-  replace(materials: readonly number[], slot: Slot, bytes: Uint8Array, use: TextureUse<number>): void {
-    const [json, writer] = [this.#json, this.#writer!];
+  replace(materials: readonly number[], slot: Slot, bytes: Uint8Array, use: TextureUse): void {
+    const [json, writer] = [this.json, this.#writer!];
     const before = json.textures![use.texture]!;
-    const isOwn = infoOf(this.#material(materials[0]!), slot) !== undefined;
+    const isOwn = infoOf(this.material(materials[0]!), slot) !== undefined;
     const name = before.name ?? json.images?.[sourceOf(before) ?? -1]?.name ?? 'painted';
     let number = writer.addTexture({ bytes, mimeType: imageType(bytes) ?? 'image/png', name });
     const made = json.textures![number]!;
@@ -136,14 +44,14 @@ export class FileModel implements BakeModel<number, number> {
     }
     for (const material of materials) {
       if (isOwn && slot === 'color') this.#followInExtensions(material, use.texture, number);
-      lay(this.#material(material), slot, number);
-      resetFactors(this.#material(material), slot);
+      lay(this.material(material), slot, number);
+      resetFactors(this.material(material), slot);
     }
   }
 
   /** Makes the materials of avatars, which name their textures once more, show a new one, too. */
   #followInExtensions(material: number, before: number, now: number): void {
-    const vrm = this.#json.extensions?.['VRM'] as
+    const vrm = this.json.extensions?.['VRM'] as
       | {
           materialProperties?: {
             textureProperties?: Record<string, number>;
@@ -155,7 +63,7 @@ export class FileModel implements BakeModel<number, number> {
     // The factor, once more: it is in the texture now.
     if (colors?.['_Color']) colors['_Color'] = [1, 1, 1, colors['_Color'][3] ?? 1];
     for (const [name, texture] of Object.entries(textures)) if (texture === before) textures[name] = now;
-    const mtoon = this.#material(material).extensions?.['VRMC_materials_mtoon'] as
+    const mtoon = this.material(material).extensions?.['VRMC_materials_mtoon'] as
       | { shadeMultiplyTexture?: GLTF.ITextureInfo }
       | undefined;
     if (mtoon?.shadeMultiplyTexture?.index === before) mtoon.shadeMultiplyTexture.index = now;
@@ -163,7 +71,7 @@ export class FileModel implements BakeModel<number, number> {
 
   /** Whether the standard materials and their extensions, which add to them, use a texture in no other way. */
   #isOnlyFor(texture: number, materials: readonly number[], slot: Slot): boolean {
-    return (this.#json.materials ?? []).every((material, m) => {
+    return (this.json.materials ?? []).every((material, m) => {
       const { pbrMetallicRoughness: pbr, normalTexture, occlusionTexture, emissiveTexture } = material;
       const uses: [GLTF.ITextureInfo | undefined, Slot | undefined][] = [
         [pbr?.baseColorTexture, 'color'],
@@ -184,11 +92,6 @@ function addedTextures({ extensions }: GLTF.IMaterial): GLTF.ITextureInfo[] {
     .filter(([name]) => /^KHR_materials_(?!pbrSpecularGlossiness)/.test(name))
     .flatMap(([, added]) => Object.values((added ?? {}) as object))
     .filter((value) => Number.isInteger(value?.index));
-}
-
-function infoOf(material: GLTF.IMaterial, slot: Slot): GLTF.ITextureInfo | undefined {
-  if (slot === 'color') return material.pbrMetallicRoughness?.baseColorTexture;
-  return slot === 'normal' ? material.normalTexture : material.pbrMetallicRoughness?.metallicRoughnessTexture;
 }
 
 /** Gives a material a texture. A new one lies as that of the base colour does. */

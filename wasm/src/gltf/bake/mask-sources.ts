@@ -1,9 +1,9 @@
 import type { Masks } from '../../api/index.js';
 import { type MaskImages, maskTriangles, maskVertices } from '../../bake/index.js';
-import { InputError } from '../input-error.js';
-import { endOf } from '../pieces.js';
-import { layUvs } from '../uv-layout.js';
-import { type BakeModel, colorsOf, colorUseOf, uvsOf } from './plan.js';
+import { InputError } from '../../scene/input-error.js';
+import type { Materials } from '../../scene/materials.js';
+import { endOf } from '../../scene/pieces.js';
+import { layUvs } from '../../scene/uv-layout.js';
 
 /** Where masks can come from, beside arrays. */
 export interface MaskSources {
@@ -23,8 +23,8 @@ export interface MaskSources {
  * Masks for the arrays of a model: given ones first, then those of colours and images.
  * @throws {InputError} if no part has UVs or colours for them.
  */
-export function masksOf<Material, Texture>(
-  model: BakeModel<Material, Texture>,
+export function masksOf(
+  model: Materials,
   given: Masks | undefined,
   { images, colors }: { images: MaskImages | undefined; colors: string | undefined },
 ): Masks | undefined {
@@ -35,13 +35,13 @@ export function masksOf<Material, Texture>(
   let hasUvs = false;
   let hasColors = false;
   for (const part of parts) {
-    const found = colors === undefined ? undefined : colorsOf(model, part, colors);
+    const found = colors === undefined ? undefined : model.colorsOf(part, colors);
     if (found && found.size >= 3) {
       hasColors = true;
       vertices.set(maskVertices(found.values, found.size as 3 | 4), part.firstVertex);
     }
-    const use = colorUseOf(model, part);
-    const stored = shown && uvsOf(model, part, use?.set ?? 'TEXCOORD_0');
+    const use = model.colorUseOf(part);
+    const stored = shown && model.uvsOf(part, use?.set ?? 'TEXCOORD_0');
     if (!stored) continue;
     hasUvs = true;
     const uvs = layUvs(stored, use?.transform);

@@ -1,98 +1,30 @@
 import { CagecastError, type CutTarget, type TransferResult } from '../../api/index.js';
-import {
-  areaOf,
-  type Baked,
-  fill,
-  type Image,
-  type Kind,
-  type Layout,
-  layOver,
-  resize,
-  type Wrap,
-} from '../../bake/index.js';
+import { areaOf, type Baked, fill, type Image, type Kind, type Layout, layOver, resize } from '../../bake/index.js';
 import { kMaxLayers } from '../../bake/pattern.js';
 import { applySplit } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
-import { type AccessorData, decodeFloats } from '../accessors.js';
+import type { Part } from '../../scene/extract.js';
+import { type ImageCodec, type Materials, type Slot, slots, type TextureUse } from '../../scene/materials.js';
+import { requireFinite } from '../../scene/pieces.js';
+import { layUvs, type UvLayout } from '../../scene/uv-layout.js';
 import { imageType } from '../image-file.js';
-import { type Piece, requireFinite } from '../pieces.js';
 import { preparePiece } from '../primitive-group.js';
-import { layUvs, type UvLayout } from '../uv-layout.js';
 
-/** What of a material a paint goes to: its base colour, its normals, or occlusion, roughness and metalness. */
-export const slots = ['color', 'normal', 'orm'] as const;
-export type Slot = (typeof slots)[number];
 const kindOf: Record<Slot, Kind> = { color: 'color', normal: 'normal', orm: 'data' };
 
-/** How a texture is used by a material. */
-export interface TextureUse<Texture> extends UvLayout {
-  texture: Texture;
-  wraps: readonly [Wrap, Wrap];
-}
+export type { ImageCodec };
 
-/** A wrap mode by its number in glTF. */
-export const wrapOf = (wrap?: number): Wrap => (wrap === 33071 ? 'clamp' : wrap === 33648 ? 'mirror' : 'repeat');
-
-/** A model as baking sees it: a document, or a file as it is. */
-export interface BakeModel<Material, Texture> {
-  parts: readonly Piece[];
-  materialOf(part: Piece): Material | undefined;
-  /** The materials that variants give a part instead of its own. */
-  variantsOf(part: Piece): Material[];
-  nameOf(material: Material): string;
-  attributeOf(part: Piece, semantic: string): AccessorData | undefined;
-  useOf(material: Material, slot: Slot): TextureUse<Texture> | undefined;
-  /** By what the values of the texture are multiplied. */
-  factorOf(material: Material, slot: Slot): readonly [number, number, number];
-  /** Whether the alpha of its base colour does not count. */
-  isOpaque(material: Material): boolean;
-  /** Whether a texture shows occlusion: the metallic-roughness one, or one of its own. */
-  hasOcclusion(material: Material): boolean;
-  imageOf(texture: Texture): Promise<{ bytes: Uint8Array; mimeType: string } | undefined>;
+/** A model whose materials can be painted. */
+export interface BakeModel extends Materials {
   /** Gives materials a new texture in a slot, a file with the factor in it. @param use  Whose UVs and wrap modes it has. */
-  replace(materials: readonly Material[], slot: Slot, bytes: Uint8Array, use: TextureUse<Texture>): void;
-}
-
-/** The UVs of a part in a set, if it has one that is complete. */
-export function uvsOf(model: BakeModel<unknown, unknown>, part: Piece, set: string): Float32Array | undefined {
-  const accessor = model.attributeOf(part, set);
-  return accessor?.getElementSize() === 2 && accessor.getCount() === part.vertexCount
-    ? decodeFloats(accessor)
-    : undefined;
-}
-
-/** The colours of a part by an attribute, and how many numbers each has. */
-export function colorsOf(
-  model: BakeModel<unknown, unknown>,
-  part: Piece,
-  semantic: string,
-): { values: Float32Array; size: number } | undefined {
-  const accessor = model.attributeOf(part, semantic);
-  return accessor && { values: decodeFloats(accessor), size: accessor.getElementSize() };
-}
-
-/** How the texture of its base colour lies on a part, if it has one. */
-export function colorUseOf<Material, Texture>(
-  model: BakeModel<Material, Texture>,
-  part: Piece,
-): TextureUse<Texture> | undefined {
-  const material = model.materialOf(part);
-  return material === undefined ? undefined : model.useOf(material, 'color');
+  replace(materials: readonly number[], slot: Slot, bytes: Uint8Array, use: TextureUse): void;
 }
 
 /** Whether a triangle of a part may be painted. */
 export const isPainted = (
-  { firstTriangle, triangleCount }: Piece,
+  { firstTriangle, triangleCount }: Part,
   { cosmeticTriangles }: Pick<TransferResult, 'cosmeticTriangles'>,
 ): boolean => cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount).includes(1);
-
-/** Reads and writes image files. */
-export interface ImageCodec {
-  /** @throws {Error} if it cannot read such a file; the parts with this texture are not baked then. */
-  decode: (bytes: Uint8Array, mimeType: string) => Promise<Image>;
-  /** @param mimeType  Of the replaced image; undefined for a new one. The result may have any type of glTF. */
-  encode: (image: Image, mimeType?: string) => Promise<Uint8Array>;
-}
 
 /** Paints in the cage's UVs: colours; a normal map; occlusion, roughness and metalness in red, green and blue. Each has an alpha. */
 export interface Paints {
@@ -140,40 +72,37 @@ const kNewSide = 1024;
 const slotNames: Record<Slot, string> = { color: 'base colour', normal: 'normal', orm: 'metallic-roughness' };
 
 /** A part, and its material or one that a variant gives it. */
-interface User<Material> {
-  part: Piece;
-  material: Material | undefined;
+interface User {
+  part: Part;
+  material: number | undefined;
 }
 
 /** A texture with a factor, and the materials that use it so, with all their parts, painted or not. */
-interface SharedTexture<Material, Texture> {
+interface SharedTexture {
   /** How the texture is used: whoever uses it in the same way shares its copy. */
   key: string;
   slot: Slot;
-  use: TextureUse<Texture>;
+  use: TextureUse;
   /** Whether the material has no texture in this slot yet. */
   isNew: boolean;
   /** Whether the red of its texture meant nothing, and will be occlusion. */
   redIsNew: boolean;
   factor: readonly [number, number, number];
-  users: (User<Material> & { material: Material })[];
+  users: (User & { material: number })[];
 }
 
 /**
  * Bakes paints into the textures of a model; see `bake` of cagecast/gltf. If it throws, the model is unchanged.
  * @returns what was done, and the parts that are baked.
  */
-export async function bakeModel<Material, Texture>(
-  model: BakeModel<Material, Texture>,
-  input: BakeInput,
-): Promise<{ report: BakeReport; baked: Set<Piece> }> {
+export async function bakeModel(model: BakeModel, input: BakeInput): Promise<{ report: BakeReport; baked: Set<Part> }> {
   const report: BakeReport = { textures: [], left: [] };
-  const baked = new Set<Piece>();
+  const baked = new Set<Part>();
   const replacements: (() => void)[] = [];
   for (const slot of slots) {
     const paint = input.paints[slot];
     if (!paint) continue;
-    const refused = new Map<User<Material>, string>();
+    const refused = new Map<User, string>();
     for (const shared of listTextures(model, slot, refused)) {
       const painted = new Set(shared.users.map(({ part }) => part).filter((part) => isPainted(part, input.result)));
       if (painted.size === 0) continue;
@@ -199,13 +128,9 @@ export async function bakeModel<Material, Texture>(
 }
 
 /** The textures that can be painted. @param refused  Gets what cannot be, and why. */
-function listTextures<Material, Texture>(
-  model: BakeModel<Material, Texture>,
-  slot: Slot,
-  refused: Map<User<Material>, string>,
-): SharedTexture<Material, Texture>[] {
-  const textures: SharedTexture<Material, Texture>[] = [];
-  const users = new Map<Material, Piece[]>();
+function listTextures(model: BakeModel, slot: Slot, refused: Map<User, string>): SharedTexture[] {
+  const textures: SharedTexture[] = [];
+  const users = new Map<number, Part[]>();
   for (const part of model.parts)
     for (const material of new Set([model.materialOf(part), ...model.variantsOf(part)]))
       if (material === undefined) refused.set({ part, material }, 'it has no material');
@@ -215,7 +140,7 @@ function listTextures<Material, Texture>(
     const use = own ?? model.useOf(material, 'color');
     const reason = !use
       ? 'its material has no texture'
-      : parts.some((part) => !uvsOf(model, part, use.set))
+      : parts.some((part) => !model.uvsOf(part, use.set))
         ? `it has no ${use.set}, the UVs of its texture`
         : slot === 'color' && parts.some((part) => isTinted(model, part))
           ? 'its vertices have colours'
@@ -238,15 +163,15 @@ function listTextures<Material, Texture>(
 }
 
 /** Whether its vertices have colours, by which its texture is multiplied. Many programs write white ones. */
-function isTinted<Material, Texture>(model: BakeModel<Material, Texture>, part: Piece): boolean | undefined {
-  const colors = colorsOf(model, part, 'COLOR_0');
+function isTinted(model: BakeModel, part: Part): boolean | undefined {
+  const colors = model.colorsOf(part, 'COLOR_0');
   return colors?.values.some((value, i) => i % colors.size < 3 && value !== 1);
 }
 
 /** Bakes a shared texture. @returns what was baked, the whole texture as a file, and the type of the one before; or why not. */
-async function bakeTexture<Material, Texture>(
-  model: BakeModel<Material, Texture>,
-  shared: SharedTexture<Material, Texture>,
+async function bakeTexture(
+  model: BakeModel,
+  shared: SharedTexture,
   paint: Image,
   input: BakeInput,
 ): Promise<(Baked & { bytes: Uint8Array; before: string | undefined }) | string> {
@@ -261,7 +186,7 @@ async function bakeTexture<Material, Texture>(
   if (use.wraps.includes('clamp') && isEmpty(baked)) return kOutside;
   if (baked.overlap.lost > kMaxLost) return 'most of its paint would lie on that of others';
   const image = layOver(base, baked, slot === 'normal' ? [1, 1, 1] : factor);
-  const before = shared.isNew ? undefined : (await model.imageOf(use.texture))?.mimeType;
+  const before = shared.isNew ? undefined : (await model.source.imageOf(use.texture))?.mimeType;
   return { ...baked, bytes: await input.codec.encode(image, before), before };
 }
 
@@ -273,11 +198,7 @@ export const kOutside =
 export const isEmpty = ({ mask }: Baked): boolean => mask.every((one) => one === 0);
 
 /** The triangles on a shared texture; once, where several materials lay a part in the same way. */
-function layoutsOn<Material, Texture>(
-  model: BakeModel<Material, Texture>,
-  { slot, users }: SharedTexture<Material, Texture>,
-  input: BakeInput,
-): Layout[] {
+function layoutsOn(model: BakeModel, { slot, users }: SharedTexture, input: BakeInput): Layout[] {
   const known = new Set<string>();
   return users.flatMap(({ part, material }) => {
     const use = model.useOf(material, slot) ?? model.useOf(material, 'color')!;
@@ -289,9 +210,9 @@ function layoutsOn<Material, Texture>(
 }
 
 /** The image of a shared texture, or what stands for it: a flat normal map, say. */
-async function baseOf<Material, Texture>(
-  model: BakeModel<Material, Texture>,
-  { use, isNew, redIsNew, slot }: SharedTexture<Material, Texture>,
+async function baseOf(
+  model: BakeModel,
+  { use, isNew, redIsNew, slot }: SharedTexture,
   { codec, size }: BakeInput,
 ): Promise<Image | string> {
   if (isNew) {
@@ -299,7 +220,7 @@ async function baseOf<Material, Texture>(
     const color = slot === 'normal' ? [128, 128, 255, 255] : [255, 255, 255, 255];
     return { width: side, height: side, data: new Uint8ClampedArray(4 * side * side).map((_, i) => color[i % 4]!) };
   }
-  const file = await model.imageOf(use.texture);
+  const file = await model.source.imageOf(use.texture);
   if (!file) return 'its texture has no image';
   let image: Image;
   try {
@@ -326,14 +247,14 @@ export function scaledTo({ width, height }: Image, size = Math.max(width, height
 }
 
 /** The triangles of a part, cut where the result is, in the UVs of a texture and in the cage's. */
-export function layoutOf<Material, Texture>(
-  model: BakeModel<Material, Texture>,
-  part: Piece,
+export function layoutOf(
+  model: Materials,
+  part: Part,
   { set, transform }: UvLayout,
   { result, cut }: Pick<BakeInput, 'result' | 'cut'>,
 ): Layout {
   const prepared = preparePiece(part, result, cut);
-  const stored = uvsOf(model, part, set)!;
+  const stored = model.uvsOf(part, set)!;
   requireFinite(`"${part.name}"`, set, stored, 2);
   const ofCorners = (values: Float32Array, size: number) =>
     gather(applySplit(values, size, prepared), size, prepared.indices);

@@ -1,6 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import { show } from '../../core/error.js';
-import { InputError } from '../input-error.js';
+import { InputError } from '../../scene/input-error.js';
 
 const componentBytes: Record<number, number> = { 5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4 };
 const typeComponents: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16 };
@@ -237,12 +237,6 @@ function checkNodes(json: GLTF.IGLTF): void {
         throw new InputError(`nodes[${node}] is a root of scenes[${s}] and a child of nodes[${parents[node]}]`);
     }
   });
-}
-
-/** The nodes that are children of none. */
-export function topNodes(nodes: readonly GLTF.INode[]): number[] {
-  const children = new Set(nodes.flatMap((node) => node.children ?? []));
-  return [...nodes.keys()].filter((node) => !children.has(node));
 }
 
 /** The Draco form of a primitive, if it has one. */

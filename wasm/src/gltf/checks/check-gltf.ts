@@ -1,9 +1,9 @@
 import type { GLTF } from '@gltf-transform/core';
 import { CagecastError } from '../../api/index.js';
 import { type ErrorDetails, show } from '../../core/error.js';
+import { InputError } from '../../scene/input-error.js';
 import { isDataUri, readDataUri } from '../data-uri.js';
 import { imageSize } from '../image-file.js';
-import { InputError } from '../input-error.js';
 import { parseGltf } from '../parse.js';
 import { checkGeometry } from './check-geometry.js';
 import { checkImages } from './check-images.js';

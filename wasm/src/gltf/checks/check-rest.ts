@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { InputError } from '../input-error.js';
+import { InputError } from '../../scene/input-error.js';
 import { isObject, requireList } from './check-geometry.js';
 
 /**

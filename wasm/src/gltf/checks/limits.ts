@@ -1,8 +1,9 @@
 import type { GLTF } from '@gltf-transform/core';
-import { instancing } from '../instancing.js';
-import { isMarked } from '../overlay.js';
-import { hasTriangles } from '../pieces.js';
-import { bytesOf, dracoOf, meshoptView, topNodes } from './check-geometry.js';
+import { instancing } from '../../scene/instancing.js';
+import { isMarked } from '../../scene/overlay-mark.js';
+import { hasTriangles } from '../../scene/pieces.js';
+import { topNodes } from '../../scene/source.js';
+import { bytesOf, dracoOf, meshoptView } from './check-geometry.js';
 import { checkExpansion } from './check-images.js';
 import { exceeds, type ReadLimits } from './read-limits.js';
 

@@ -1,4 +1,4 @@
-import { InputError } from '../input-error.js';
+import { InputError } from '../../scene/input-error.js';
 
 /** What reading a glTF file may cost. A few bytes can otherwise demand all memory and hours. */
 export interface ReadLimits {

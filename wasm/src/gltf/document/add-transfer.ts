@@ -14,22 +14,24 @@ import type {
 import type { CutTarget, TransferResult } from '../../api/index.js';
 import { type AttributeArray, applySplit, ruleOf, splitSkin } from '../../parts/blend.js';
 import type { PreparedPart } from '../../parts/prepare.js';
+import { overlayMark } from '../../scene/overlay-mark.js';
+import type { Piece } from '../../scene/pieces.js';
+import { uvLayoutOf } from '../../scene/uv-layout.js';
 import {
   cosmeticCorners,
   type Finish,
   freeUvSet,
   isMorphed,
   isOverlaid,
-  overlayMark,
   type Paint,
   unlitExtension,
   uvsMark,
   zoneAttribute,
 } from '../overlay.js';
-import type { Piece } from '../pieces.js';
 import { preparePiece, type SharedVertices, shareVertices, sparseElements, storedUvs } from '../primitive-group.js';
+import { type DocumentPart, infoOf } from './document-source.js';
 import { disposeUnused, removeAttributes, removeOverlays } from './earlier-in-document.js';
-import { type DocumentPart, type ExtractedDocument, uvLayoutOf } from './extract-document.js';
+import type { ExtractedDocument } from './transfer-document.js';
 
 /** A part, and what it becomes. */
 interface Member extends PreparedPart {
@@ -47,12 +49,16 @@ interface Member extends PreparedPart {
  */
 export function addTransfer(
   document: Document,
-  { parts }: ExtractedDocument,
+  target: Pick<ExtractedDocument, 'source' | 'parts'>,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
   { paint, cut, baked }: { paint: Paint | undefined; cut: CutTarget | undefined; baked?: ReadonlySet<Piece> },
 ): void {
+  const parts = target.parts.map((part) => target.source.partOf(part));
   const primitiveOf = separatePrimitives(document, parts);
-  removeOverlays(document, parts);
+  removeOverlays(
+    document,
+    parts.map(({ node }) => node),
+  );
   removeAttributes(document, primitiveOf);
   const overlay = paint && new OverlayWriter(document, paint);
   const members = parts.map(
@@ -60,7 +66,7 @@ export function addTransfer(
       ...preparePiece(part, result, cut),
       part,
       primitive: primitiveOf[p]!,
-      overlay: baked?.has(part) ? undefined : overlay,
+      overlay: baked?.has(target.parts[p]!) ? undefined : overlay,
     }),
   );
   for (const group of groupsOf(members)) addToGroup(document, group);
@@ -292,7 +298,7 @@ function mapsOn(primitive: Primitive, overlay: Primitive): ((material: Material)
     info: TextureInfo | null | undefined,
     set: (material: Material, texture: Texture) => TextureInfo,
   ): ((material: Material) => void)[] => {
-    const { set: name } = uvLayoutOf(info);
+    const { set: name } = uvLayoutOf(info ? { index: 0, ...infoOf(info) } : undefined);
     const uvs = texture && info && primitive.getAttribute(name);
     if (!texture || !info || !uvs) return [];
     if (!sets.includes(name)) sets.push(name);

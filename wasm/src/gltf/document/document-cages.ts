@@ -1,23 +1,12 @@
 import type { Document, Node } from '@gltf-transform/core';
 import { CagecastError } from '../../api/index.js';
 import type { Cage, CageModel, Template } from '../../cages/types.js';
-import { faceHints } from '../../parts/face-hints.js';
-import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
-import { vrmExpressions } from '../../parts/morph-names.js';
-import { readTemplate } from '../../parts/template-extras.js';
-import { baseColorsOf } from '../bake/base-colors.js';
-import type { ImageCodec } from '../bake/plan.js';
-import { InputError } from '../input-error.js';
+import type { VrmExtensions } from '../../parts/joints.js';
+import { cageModelOf, templateOf } from '../../scene/cage-model.js';
+import { extract } from '../../scene/extract.js';
+import type { ImageCodec } from '../../scene/materials.js';
 import { createAccessor } from './add-transfer.js';
-import { DocumentModel } from './document-model.js';
-import {
-  type DocumentPart,
-  extractDocument,
-  jointMatrix,
-  morphedParts,
-  partNames,
-  skinOf,
-} from './extract-document.js';
+import { DocumentSource } from './document-source.js';
 import { read, wrong } from './transfer-document.js';
 
 /** Options of `cageModel`. */
@@ -41,17 +30,11 @@ export interface CageModelOptions {
  * const fit = await fitCage(template, await cageModel(document, { decode })); // of cagecast/cages
  */
 export async function cageModel(document: Document, { extensions, decode }: CageModelOptions = {}): Promise<CageModel> {
-  const { mesh, parts } = read('cageModel', 'model', document, () => extractDocument(document));
-  const { positions, indices, groups } = mesh;
-  return {
-    positions,
-    indices,
-    groups,
-    names: parts.map(partNames),
-    ...skeletonOf(document, parts, vrmBones(extensions)),
-    hints: faceHints(morphedParts(document, parts, positions, vrmExpressions(extensions))),
-    ...(decode && (await baseColorsOf(new DocumentModel(document, parts), decode))),
-  };
+  const { source, ...extracted } = read('cageModel', 'model', document, () => {
+    const source = new DocumentSource(document, extensions);
+    return { source, ...extract(source) };
+  });
+  return cageModelOf(source, extracted, decode);
 }
 
 /**
@@ -60,17 +43,13 @@ export async function cageModel(document: Document, { extensions, decode }: Cage
  */
 export function cageTemplate(document: Document): Template {
   return read('cageTemplate', 'template', document, () => {
-    const { mesh, parts } = extractDocument(document, undefined, 'cage');
-    if (mesh.uvs === undefined)
+    const source = new DocumentSource(document);
+    const extracted = extract(source, undefined, 'cage');
+    if (extracted.mesh.uvs === undefined)
       throw new CagecastError('missingUvs', 'cageTemplate', 'template has a primitive without UVs', {
         argument: 'template',
       });
-    const sources = parts.flatMap((part) => [
-      { ...part, extras: part.mesh.getExtras(), place: `mesh of "${part.name}"` },
-      { ...part, extras: part.node.getExtras(), place: `"${part.name}"` },
-    ]);
-    const { positions, indices, uvs } = mesh;
-    return readTemplate({ positions, indices, uvs }, sources, (text) => new InputError(text));
+    return templateOf(source, extracted);
   });
 }
 
@@ -104,25 +83,4 @@ export function addCage<D extends Document>(
     >);
   (root.getDefaultScene() ?? root.listScenes()[0] ?? document.createScene()).addChild(node);
   return { document, node };
-}
-
-function skeletonOf(document: Document, parts: readonly DocumentPart[], bones: Map<number, string>) {
-  const nodes = document.getRoot().listNodes();
-  const boneOf = new Map([...bones].flatMap(([n, bone]) => (nodes[n] ? [[nodes[n], bone] as const] : [])));
-  const nameOf = (node: Node) => boneOf.get(node) ?? (node.getName() || `nodes[${nodes.indexOf(node)}]`);
-  const atNode = (node: Node): ReadJoint<Node> => ({
-    node,
-    name: nameOf(node),
-    position: jointMatrix(node).slice(12, 15) as [number, number, number],
-  });
-  const joints = parts.flatMap(({ node: holder, matrix }) => {
-    const skin = holder.getSkin();
-    const inverses = skin?.getInverseBindMatrices()?.getArray();
-    return (skin?.listJoints() ?? []).map((node, j) => {
-      const position = inverses ? jointPlace(matrix, inverses.subarray(16 * j)) : undefined;
-      return position ? { node, name: nameOf(node), position } : atNode(node);
-    });
-  });
-  const held = parts.map((part) => ({ ...part, skin: skinOf(part) }));
-  return readSkeleton([...joints, ...[...boneOf.keys()].map(atNode)], held, (node) => node.getParentNode());
 }

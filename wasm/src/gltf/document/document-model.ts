@@ -1,84 +1,39 @@
-import type { Accessor, Document, ExtensionProperty, Material, Texture, TextureInfo } from '@gltf-transform/core';
-import { type BakeModel, type Paints, type TextureUse, wrapOf } from '../bake/plan.js';
+import type { Document, ExtensionProperty, Material, Texture, TextureInfo } from '@gltf-transform/core';
+import type { Part } from '../../scene/extract.js';
+import { Materials, type Slot, type TextureUse } from '../../scene/materials.js';
+import type { BakeModel } from '../bake/plan.js';
 import { imageType } from '../image-file.js';
-import { type DocumentPart, uvLayoutOf } from './extract-document.js';
+import type { DocumentSource } from './document-source.js';
 
-/** The extension of glTF-Transform, which is no dependency. */
-interface MaterialMappings extends ExtensionProperty {
-  listMappings(): { getMaterial(): Material | null }[];
-}
-
-/** A document as baking sees it. */
-export class DocumentModel implements BakeModel<Material, Texture> {
+/** A document whose materials are painted. */
+export class DocumentModel extends Materials implements BakeModel {
   readonly #document: Document;
-  readonly parts: readonly DocumentPart[];
+  readonly #source: DocumentSource;
 
-  constructor(document: Document, parts: readonly DocumentPart[]) {
+  constructor(document: Document, source: DocumentSource, parts: readonly Part[]) {
+    super(source, parts);
     this.#document = document;
-    this.parts = parts;
+    this.#source = source;
   }
 
-  materialOf(part: DocumentPart): Material | undefined {
-    return part.primitive.getMaterial() ?? undefined;
-  }
-
-  variantsOf({ primitive }: DocumentPart): Material[] {
-    const mappings = primitive.getExtension('KHR_materials_variants') as MaterialMappings | null;
-    return mappings?.listMappings().flatMap((mapping) => mapping.getMaterial() ?? []) ?? [];
-  }
-
-  nameOf(material: Material): string {
-    return material.getName();
-  }
-
-  attributeOf({ primitive }: DocumentPart, semantic: string): Accessor | undefined {
-    return primitive.getAttribute(semantic) ?? undefined;
-  }
-
-  useOf(material: Material, slot: keyof Paints): TextureUse<Texture> | undefined {
-    const [texture, info] = textureIn(material, slot);
-    if (!texture || !info) return undefined;
-    return { texture, ...uvLayoutOf(info), wraps: [wrapOf(info.getWrapS()), wrapOf(info.getWrapT())] };
-  }
-
-  factorOf(material: Material, slot: keyof Paints): [number, number, number] {
-    if (slot === 'normal') return [1, 1, 1];
-    if (slot === 'orm') return [1, material.getRoughnessFactor(), material.getMetallicFactor()];
-    const [r, g, b] = material.getBaseColorFactor();
-    return [r, g, b];
-  }
-
-  isOpaque(material: Material): boolean {
-    return material.getAlphaMode() === 'OPAQUE';
-  }
-
-  hasOcclusion(material: Material): boolean {
-    return material.getOcclusionTexture() !== null;
-  }
-
-  async imageOf(texture: Texture): Promise<{ bytes: Uint8Array; mimeType: string } | undefined> {
-    const bytes = texture.getImage();
-    return bytes ? { bytes, mimeType: texture.getMimeType() } : undefined;
-  }
-
-  replace(materials: readonly Material[], slot: keyof Paints, png: Uint8Array, use: TextureUse<Texture>): void {
+  replace(materials: readonly number[], slot: Slot, png: Uint8Array, use: TextureUse): void {
+    const before = this.#source.textureOf(use.texture);
     const painted = this.#document
-      .createTexture(use.texture.getName())
+      .createTexture(before.getName())
       .setMimeType(imageType(png) ?? 'image/png')
       .setImage(png as Uint8Array<ArrayBuffer>);
-    for (const material of materials) setTexture(material, slot, painted);
-    const { texture } = use;
-    if (texture.listParents().every((parent) => parent.propertyType === 'Root')) texture.dispose();
+    for (const material of materials) setTexture(this.#source.materials[material]!, slot, painted);
+    if (before.listParents().every((parent) => parent.propertyType === 'Root')) before.dispose();
   }
 }
 
-function textureIn(material: Material, slot: keyof Paints): [Texture | null, TextureInfo | null] {
+function textureIn(material: Material, slot: Slot): [Texture | null, TextureInfo | null] {
   if (slot === 'color') return [material.getBaseColorTexture(), material.getBaseColorTextureInfo()];
   if (slot === 'normal') return [material.getNormalTexture(), material.getNormalTextureInfo()];
   return [material.getMetallicRoughnessTexture(), material.getMetallicRoughnessTextureInfo()];
 }
 
-function setTexture(material: Material, slot: keyof Paints, painted: Texture): void {
+function setTexture(material: Material, slot: Slot, painted: Texture): void {
   if (slot === 'color') {
     material.setBaseColorTexture(painted).setBaseColorFactor([1, 1, 1, material.getBaseColorFactor()[3]]);
     return;

@@ -1,6 +1,6 @@
-import type { Document, Primitive, Property } from '@gltf-transform/core';
+import type { Document, Node, Primitive, Property } from '@gltf-transform/core';
+import { isMarked } from '../../scene/overlay-mark.js';
 import { isOfTransfer } from '../overlay.js';
-import { type DocumentPart, isOverlay } from './extract-document.js';
 
 /** Disposes an unused property, and then the properties that only it used. */
 export function disposeUnused(document: Document, property: Property): void {
@@ -22,12 +22,12 @@ export function removeAttributes(document: Document, primitives: readonly Primit
   }
 }
 
-/** Removes the overlays of earlier transfers from the meshes of parts, with all that only they used. */
-export function removeOverlays(document: Document, parts: readonly DocumentPart[]): void {
-  for (const { node } of parts) {
+/** Removes the overlays of earlier transfers from the meshes of nodes, with all that only they used. */
+export function removeOverlays(document: Document, nodes: Iterable<Node>): void {
+  for (const node of nodes) {
     const mesh = node.getMesh()!;
     for (const primitive of mesh.listPrimitives()) {
-      if (!isOverlay(primitive)) continue;
+      if (!isMarked(primitive.getExtras(), primitive.getMaterial()?.getExtras())) continue;
       mesh.removePrimitive(primitive);
       disposeUnused(document, primitive);
     }

@@ -11,15 +11,15 @@ import {
 } from '../../api/index.js';
 import { faultOfParts, type Parts } from '../../api/parts.js';
 import { show } from '../../core/error.js';
-import { groupsNamed } from '../../parts/drawn.js';
-import { moved } from '../../parts/origin.js';
+import { moved, type Origin } from '../../parts/origin.js';
 import { hasCages, moveApart } from '../../parts/own-cages.js';
-import { bareNames } from '../../parts/template-extras.js';
+import { extrasIn, partsWithout } from '../../scene/cage-model.js';
+import { type Extracted, extract } from '../../scene/extract.js';
+import { InputError } from '../../scene/input-error.js';
 import { type MaskSources, masksOf } from '../bake/mask-sources.js';
-import { InputError } from '../input-error.js';
 import { type Paint, paintOf } from '../overlay.js';
 import { DocumentModel } from './document-model.js';
-import { type DocumentPart, type ExtractedDocument, extractDocument, partNames } from './extract-document.js';
+import { DocumentSource } from './document-source.js';
 
 /** Options of a transfer from a cage to a document. */
 interface DocumentTransferOptions extends Omit<TransferOptions, 'parts'>, MaskSources {
@@ -66,15 +66,16 @@ export async function transferDocument(
   const { origin } = target;
   const around = isDocument(cage ?? document)
     ? within(caller, 'cage', () => extractDocument((cage ?? document) as Document, origin, 'cage'))
-    : { mesh: moved(cage as Mesh, origin), parts: [] };
+    : { mesh: moved(cage as Mesh, origin), parts: [], source: undefined };
   if (cage === undefined && !hasCages(around.parts)) throw wrong(caller, 'cage', cage, kNoCage);
   const apart = within(caller, 'target', () => moveApart(around, target, (text) => new InputError(text)));
   const [source, own] = [apart?.cage ?? around.mesh, apart?.target ?? target.mesh];
-  const model = new DocumentModel(document, target.parts);
+  const model = new DocumentModel(document, target.source, target.parts);
   const masks = within(caller, 'target', () =>
     masksOf(model, options.masks, { images: maskImages, colors: maskColors }),
   );
-  const bare = [...target.accessories, ...excludedParts(target.parts, cage, around.parts)];
+  const extras = around.source ? extrasIn(around.source, around.parts) : [];
+  const bare = [...target.accessories, ...partsWithout(target.source, target.parts, [cage, ...extras])];
   const rules = { ...options, masks, parts: { keep: target.kept, exclude: [...bare, ...target.excluded] } };
   const result = transfer(source, own, rules);
   const cut = cuts ? cutBorders(source, own, result, rules) : undefined;
@@ -82,14 +83,18 @@ export async function transferDocument(
   return { target, around: around.mesh, model, result, cut, paint };
 }
 
-/** The parts of a target that a cage was made without. */
-function excludedParts(
-  parts: readonly DocumentPart[],
-  cage: Document | Mesh | undefined,
-  around: readonly DocumentPart[],
-): number[] {
-  const extras = around.flatMap(({ node, mesh }) => [node.getExtras(), mesh.getExtras()]);
-  return groupsNamed(bareNames([cage, ...extras]), parts.map(partNames));
+/** The triangles of a document's scene, and the document as they are read of it. */
+export interface ExtractedDocument extends Extracted {
+  source: DocumentSource;
+}
+
+function extractDocument(
+  document: Document,
+  origin: Origin,
+  whichCount: Parts | 'cage' | undefined,
+): ExtractedDocument {
+  const source = new DocumentSource(document);
+  return { ...extract(source, origin, whichCount), source };
 }
 
 /** What a cage has to be. */

@@ -1,7 +1,7 @@
 // What runs in a worker: it reads one file, and is ended.
 
+import { firstLine } from '../../scene/input-error.js';
 import { listen } from '../../worker/thread-of.js';
-import { firstLine } from '../input-error.js';
 import type { Answer, Question } from './protocol.js';
 import { countArrays } from './reading/count-arrays.js';
 

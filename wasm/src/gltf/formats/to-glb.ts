@@ -1,7 +1,7 @@
 import { CagecastError } from '../../api/index.js';
 import { isRecord, show } from '../../core/error.js';
+import { firstLine, InputError } from '../../scene/input-error.js';
 import { exceeds } from '../checks/read-limits.js';
-import { firstLine, InputError } from '../input-error.js';
 import { type Format, fileKind } from '../kinds.js';
 import { checks } from './checks/index.js';
 import { type FormatLimits, limitsOf } from './limits.js';

@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import type { Part } from '../extract-file.js';
+import type { Part } from '../../scene/extract.js';
 
 /**
  * Gives every node of the transfer a mesh of its own. Other nodes, such as those of other scenes, share an unchanged copy. The first

@@ -1,8 +1,8 @@
 import { CagecastError, type Mesh } from '../../api/index.js';
 import { partsNamed } from '../../api/parts.js';
-import { type Drawn, extract, extractDrawn, namedParts, type WhichCount } from '../extract-file.js';
+import { type Drawn, extract, extractDrawn, namedParts, type WhichCount } from '../../scene/extract.js';
+import { InputError, naming } from '../../scene/input-error.js';
 import { hostDecode } from '../host-decode.js';
-import { InputError, naming } from '../input-error.js';
 import { type GltfFile, openGltf } from '../open-gltf.js';
 import { drawSurfaces } from './draw.js';
 import { framed, headPoints, pointsOf } from './frame.js';

@@ -1,6 +1,6 @@
 import { pointAt, type Vector } from '../../inspect/geometry.js';
-import { skeletonOf } from '../cage-file.js';
-import type { Drawn, Part } from '../extract-file.js';
+import { skeletonOf } from '../../scene/cage-model.js';
+import type { Drawn, Part } from '../../scene/extract.js';
 import type { GltfFile } from '../open-gltf.js';
 import type { Framing } from './picture.js';
 import type { Surface } from './surfaces.js';

@@ -1,5 +1,5 @@
 import type { Vector } from '../../inspect/geometry.js';
-import { InputError } from '../input-error.js';
+import { InputError } from '../../scene/input-error.js';
 
 /** Corners lie on a grid of so many places per sample, so that it is exact which side of an edge a sample is on. */
 const kGrid = 256;

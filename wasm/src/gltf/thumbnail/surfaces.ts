@@ -4,13 +4,13 @@ import { checkImage, type Image } from '../../bake/image.js';
 import { opaque } from '../../bake/small-image.js';
 import { inverted, type Matrix } from '../../parts/affine.js';
 import { movePoints } from '../../parts/points.js';
-import { decodeFloats } from '../accessors.js';
-import { FileModel } from '../bake/bake-file.js';
-import { laidUvs, remembered } from '../bake/base-colors.js';
-import { colorsOf, type ImageCodec } from '../bake/plan.js';
-import type { Part } from '../extract-file.js';
-import { firstLine } from '../input-error.js';
-import { isMirrored } from '../matrix.js';
+import { decodeFloats } from '../../scene/accessor.js';
+import { laidUvs, remembered } from '../../scene/base-colors.js';
+import type { Part } from '../../scene/extract.js';
+import { firstLine } from '../../scene/input-error.js';
+import type { ImageCodec } from '../../scene/materials.js';
+import { Materials } from '../../scene/materials.js';
+import { isMirrored } from '../../scene/matrix.js';
 import type { GltfFile } from '../open-gltf.js';
 import { unlitExtension } from '../overlay.js';
 import { Texture } from './texture.js';
@@ -48,11 +48,11 @@ export async function surfacesOf(
   decode: ImageCodec['decode'],
   undecoded: string[],
 ): Promise<Surface[]> {
-  const model = new FileModel(file, parts);
+  const model = new Materials(file, parts);
   const imageOf = remembered(async (texture: number): Promise<Image | undefined> => {
     const { name = `textures[${texture}]` } = file.json.textures![texture]!;
     try {
-      const found = await model.imageOf(texture);
+      const found = await file.imageOf(texture);
       if (!found) throw new Error('it has no image');
       return checkImage('decode', 'its result', await decode(found.bytes, found.mimeType));
     } catch (error) {
@@ -82,7 +82,7 @@ export async function surfacesOf(
         normals: normals && movedNormals(part.matrix, decodeFloats(normals)),
         texture: uvs && (await (mode === 'OPAQUE' ? opaqueOf : clearOf)(use!.texture)),
         uvs,
-        colors: colorsOf(model, part, 'COLOR_0'),
+        colors: model.colorsOf(part, 'COLOR_0'),
         factor: material.pbrMetallicRoughness?.baseColorFactor ?? [1, 1, 1, 1],
         mode,
         cutoff,

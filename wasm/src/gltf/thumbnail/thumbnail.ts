@@ -1,7 +1,7 @@
 import { CagecastError, type Code } from '../../api/index.js';
 import { faultOfNames } from '../../api/option-names.js';
 import { show } from '../../core/error.js';
-import { InputError } from '../input-error.js';
+import { InputError } from '../../scene/input-error.js';
 import { openGltf } from '../open-gltf.js';
 import { drawFile } from './draw-file.js';
 import { isColor, kLargest, kSmallest, type Thumbnail, type ThumbnailOptions } from './options.js';

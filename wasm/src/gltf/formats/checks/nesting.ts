@@ -1,5 +1,5 @@
+import type { InputError } from '../../../scene/input-error.js';
 import { exceeds } from '../../checks/read-limits.js';
-import type { InputError } from '../../input-error.js';
 import type { FormatLimits } from '../limits.js';
 
 /** Checks how deep the braces of a text are nested. @param what  Stands in them. */

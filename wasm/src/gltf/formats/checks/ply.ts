@@ -1,4 +1,4 @@
-import { InputError } from '../../input-error.js';
+import { InputError } from '../../../scene/input-error.js';
 
 /** Bytes that a number takes in a binary file. */
 const sizes: Record<string, number> = {

@@ -1,4 +1,4 @@
-import { InputError } from '../../input-error.js';
+import { InputError } from '../../../scene/input-error.js';
 
 /** Checks that whatever is begun in the text of an STL is ended, too: the loader looks for each end in all that follows. */
 export function checkStl(bytes: Uint8Array): void {

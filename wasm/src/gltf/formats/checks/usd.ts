@@ -1,5 +1,5 @@
+import { InputError } from '../../../scene/input-error.js';
 import { exceeds } from '../../checks/read-limits.js';
-import { InputError } from '../../input-error.js';
 import type { FormatLimits } from '../limits.js';
 import { checkBraces } from './nesting.js';
 

@@ -1,7 +1,7 @@
 import { ShapeUtils } from 'three';
 import { USDComposer } from 'three/addons/loaders/usd/USDComposer.js';
+import { InputError } from '../../../scene/input-error.js';
 import { exceeds } from '../../checks/read-limits.js';
-import { InputError } from '../../input-error.js';
 import type { FormatLimits } from '../limits.js';
 
 /** What its declarations leave out of the composer of USD. */

@@ -1,5 +1,5 @@
 import type { Matrix } from '../parts/affine.js';
-import { type AccessorData, decodeFloats } from './accessors.js';
+import { type AccessorData, decodeFloats } from './accessor.js';
 import { InputError } from './input-error.js';
 import { localMatrix } from './matrix.js';
 

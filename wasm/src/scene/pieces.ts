@@ -4,7 +4,7 @@ import type { Matrix } from '../parts/affine.js';
 import { joinParts } from '../parts/join-parts.js';
 import { fromOrigin, type Origin, originOf } from '../parts/origin.js';
 import { morphed } from '../parts/points.js';
-import { type AccessorData, decodeFloats } from './accessors.js';
+import { type AccessorData, decodeFloats } from './accessor.js';
 import { InputError } from './input-error.js';
 import { layUvs, type UvLayout } from './uv-layout.js';
 
