@@ -64,7 +64,9 @@ export function renumber(pieces: readonly Piece[]): void {
 }
 
 /** How many vertices and triangles there are in pieces. */
-export function endOf(pieces: readonly Piece[]): [vertices: number, triangles: number] {
+export function endOf(
+  pieces: readonly Pick<Piece, 'firstVertex' | 'vertexCount' | 'firstTriangle' | 'triangleCount'>[],
+): [vertices: number, triangles: number] {
   const last = pieces.at(-1);
   return last ? [last.firstVertex + last.vertexCount, last.firstTriangle + last.triangleCount] : [0, 0];
 }

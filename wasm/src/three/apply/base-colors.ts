@@ -1,7 +1,7 @@
 import type { BufferGeometry, MeshStandardMaterial, Object3D, Texture } from 'three';
 import { type Image, resize } from '../../bake/index.js';
-import { opaque, smallSize } from '../../bake/small-image.js';
-import type { BaseColor, CageModel } from '../../cages/types.js';
+import { smallSize } from '../../bake/small-image.js';
+import { type Pictures, picturesOf, readBaseColors } from '../../scene/base-colors.js';
 import { type Context, makeCanvas } from '../canvas.js';
 import { valuesOf } from './attributes.js';
 import { asItWas, extract, type Part } from './extract-scene.js';
@@ -18,36 +18,29 @@ type Source = Partial<Omit<Image, 'data'>> & { data?: unknown };
  * What the parts of a scene look like, as `CageModel` has it. Each texture is read once, in a task of its own; one whose pixels cannot be
  * read (compressed, of another origin, not loaded) is left out.
  */
-export async function baseColorsOf(
-  object: Object3D | BufferGeometry,
-): Promise<Required<Pick<CageModel, 'uvs' | 'baseColors'>>> {
+export function baseColorsOf(object: Object3D | BufferGeometry): ReturnType<typeof readBaseColors<Texture>> {
   const { vertices, parts } = asItWas(object, undefined, () => {
     const { mesh, parts } = extract(object, 'model');
-    const looks = parts.map((part) => {
-      const materials = materialOfGroups(part) as (Partial<MeshStandardMaterial> | undefined)[];
-      const map = materials.find((material) => material?.map)?.map ?? undefined;
-      return { firstVertex: part.firstVertex, materials, map, own: map && uvsOf(part) };
-    });
-    return { vertices: mesh.positions.length / 3, parts: looks };
+    return { vertices: mesh.positions.length / 3, parts: parts.map(coloredPart) };
   });
-  const uvs = new Float32Array(2 * vertices);
-  const baseColors: BaseColor[] = [];
-  for (const { firstVertex, materials, map, own } of parts) {
-    if (own) uvs.set(own, 2 * firstVertex);
-    for (const material of materials) {
-      const { color, transparent, alphaTest = 0 } = material ?? {};
-      // The UVs of a part are those of one texture.
-      const image = own && material?.map?.channel === map!.channel ? await imageOf(material.map) : undefined;
-      baseColors.push({
-        factor: color?.isColor ? [within(color.r), within(color.g), within(color.b)] : undefined,
-        image: image && (transparent || alphaTest > 0 ? image.asIs : image.opaque),
-      });
-    }
-  }
-  return { uvs, baseColors };
+  return readBaseColors(vertices, parts, imageOf);
 }
 
-const within = (x: number) => Math.min(1, Math.max(0, x));
+/** A part, and what its material groups look like. */
+function coloredPart(part: Part) {
+  const materials = materialOfGroups(part) as (Partial<MeshStandardMaterial> | undefined)[];
+  const shown = materials.find((material) => material?.map)?.map;
+  const groups = materials.map((material) => {
+    const { color, transparent, alphaTest = 0, map } = material ?? {};
+    return {
+      factor: color?.isColor ? [color.r, color.g, color.b] : undefined,
+      // The UVs of a part are those of one texture.
+      texture: map && map.channel === shown!.channel ? map : undefined,
+      isOpaque: !transparent && alphaTest === 0,
+    };
+  });
+  return { firstVertex: part.firstVertex, uvs: shown ? uvsOf(part) : undefined, groups };
+}
 
 /** Where a part is in its texture; undefined if its UVs do not say. */
 function uvsOf(part: Part): Float32Array | undefined {
@@ -58,12 +51,6 @@ function uvsOf(part: Part): Float32Array | undefined {
   return laid.every(Number.isFinite) ? laid : undefined;
 }
 
-/** A small image, with its alpha and without. */
-interface Pictures {
-  asIs: Image;
-  opaque: Image;
-}
-
 /** What was read of each source of a texture, and in which version. */
 const known = new WeakMap<object, { version: number; pictures: Pictures | undefined }>();
 
@@ -72,7 +59,7 @@ async function imageOf({ source, flipY }: Texture): Promise<Pictures | undefined
   if (before?.version === source.version) return before.pictures;
   await new Promise((resolve) => setTimeout(resolve));
   const image = read(source.data as Source | undefined, flipY);
-  const pictures = image && { asIs: image, opaque: opaque(image) };
+  const pictures = image && picturesOf(image);
   known.set(source, { version: source.version, pictures });
   return pictures;
 }

@@ -17,6 +17,7 @@ import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/ori
 import { morphed, movePoints } from '../../parts/points.js';
 import { type MorphedPart, posesOf } from '../../parts/poses.js';
 import { bareNames } from '../../parts/template-extras.js';
+import { endOf } from '../../scene/pieces.js';
 import { wrong } from '../errors.js';
 import { type Attribute, targetDeltas, valuesOf } from './attributes.js';
 import { isGeometry, isInstanced, isMesh, isObject, isOfInstances } from './flags.js';
@@ -169,12 +170,6 @@ export const bareGroups = (
   { bare }: { bare: readonly string[] },
   { accessories, names }: { accessories: readonly number[]; names: readonly (readonly string[])[] },
 ): number[] => [...new Set([...accessories, ...groupsNamed(bare, names)])];
-
-/** Where the next part begins: how many vertices and triangles there are before it. */
-function endOf(parts: readonly Part[]): [vertices: number, triangles: number] {
-  const last = parts.at(-1);
-  return last ? [last.firstVertex + last.vertexCount, last.firstTriangle + last.triangleCount] : [0, 0];
-}
 
 function listParts(
   object: Object3D | BufferGeometry,

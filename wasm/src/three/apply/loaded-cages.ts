@@ -1,9 +1,9 @@
-import { type BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
+import type { BufferGeometry, Object3D } from 'three';
 import type { Cage, CageModel, Template } from '../../cages/types.js';
-import { faceHints } from '../../parts/face-hints.js';
-import { jointPlace, type ReadJoint, readSkeleton, type VrmExtensions, vrmBones } from '../../parts/joints.js';
+import { type VrmExtensions, vrmBones } from '../../parts/joints.js';
 import { vrmExpressions } from '../../parts/morph-names.js';
 import { readTemplate } from '../../parts/template-extras.js';
+import { cageModelWith, readJoints } from '../../scene/cage-model.js';
 import { wrong } from '../errors.js';
 import { baseColorsOf } from './base-colors.js';
 import { asItWas, extract, extrasOf, morphedParts, type Part } from './extract-scene.js';
@@ -27,16 +27,8 @@ function shapeOf(model: Loaded): CageModel {
   const object = objectOf(model);
   return asItWas(object, undefined, () => {
     const { mesh, parts, names } = extract(object, 'model');
-    const { positions, indices, groups } = mesh;
-    const bones = isLoadedGltf(model) ? bonesOf(model) : new Map<Object3D, string>();
-    return {
-      positions,
-      indices,
-      groups,
-      names,
-      ...skeletonOf(parts, bones),
-      hints: faceHints(morphedParts(parts, positions, isLoadedGltf(model) ? expressionsOf(model) : undefined)),
-    };
+    const [bones, expressions] = isLoadedGltf(model) ? [bonesOf(model), expressionsOf(model)] : [new Map()];
+    return cageModelWith(mesh, names, skeletonOf(parts, bones), morphedParts(parts, mesh.positions, expressions));
   });
 }
 
@@ -95,22 +87,13 @@ function bonesOf(loaded: LoadedGltf): Map<Object3D, string> {
 }
 
 function skeletonOf(parts: readonly Part[], bones: Map<Object3D, string>) {
-  const nameOf = (bone: Object3D) => bones.get(bone) ?? bone.name;
-  const joints = parts.flatMap(({ mesh, matrix }) => {
-    if (!mesh || !isSkinned(mesh)) return [];
-    const { skeleton, bindMatrix } = mesh as typeof mesh & { skeleton?: Skeleton };
-    return (skeleton?.bones ?? []).map((bone, b) => {
-      const inverse = new Matrix4().multiplyMatrices(skeleton!.boneInverses[b]!, bindMatrix);
-      const position = jointPlace(matrix.elements, inverse.elements);
-      return position ? { node: bone, name: nameOf(bone), position } : atObject(bone);
-    });
-  });
-  function atObject(node: Object3D): ReadJoint<Object3D> {
-    return { node, name: nameOf(node), position: new Vector3().setFromMatrixPosition(node.matrixWorld).toArray() };
-  }
-  const held = parts.flatMap(({ mesh, vertexCount }) => {
+  const held = parts.flatMap(({ mesh, matrix, vertexCount }) => {
     const skin = mesh && isSkinned(mesh) ? skinOf(mesh) : undefined;
-    return mesh ? [{ node: mesh as Object3D, vertexCount, skin }] : [];
+    return mesh ? [{ node: mesh as Object3D, matrix: matrix.elements, vertexCount, skin }] : [];
   });
-  return readSkeleton([...joints, ...[...bones.keys()].map(atObject)], held, (bone) => bone.parent);
+  return readJoints(held, bones.keys(), {
+    nameOf: (bone) => bones.get(bone) ?? bone.name,
+    matrixOf: ({ matrixWorld }) => matrixWorld.elements,
+    parentOf: ({ parent }) => parent,
+  });
 }
