@@ -30,6 +30,8 @@ export interface Avatar {
   kind: 'head' | 'figure' | 'animal' | 'thing';
   /** `held`: not looked at while rules are written. By the hash: an even first digit is open. */
   half: 'open' | 'held';
+  /** The doors whose pictures could be put before users untouched, by eye. Default: nobody has looked. */
+  ships?: Door[];
   face?: Face;
   parts?: Parts;
 }

@@ -54,6 +54,20 @@ function sumsOf(all: readonly Avatar[], rows: Rows): string {
   return table(['Faces right', ...kDoors], lines);
 }
 
+/** How many of each verdict ship by eye, of those that were looked at. */
+function verdictsOf(all: readonly Avatar[], rows: Rows): string {
+  const seen = all.flatMap(({ file, ships }) =>
+    kDoors.flatMap((door) => {
+      const { verdict } = rows[file]?.[door] ?? {};
+      return ships && verdict ? [{ verdict, isShipped: ships.includes(door) }] : [];
+    }),
+  );
+  const count = (verdict: string, isShipped: boolean): string =>
+    `${seen.filter((one) => one.verdict === verdict && one.isShipped === isShipped).length}`;
+  const lines = ['good', 'usable', 'unfit'].map((verdict) => [verdict, count(verdict, true), count(verdict, false)]);
+  return table(['Verdict', 'Ships', 'Does not'], lines);
+}
+
 /** @param half  The half whose avatars are shown one by one. */
 function linesOf(all: readonly Avatar[], rows: Rows, half: string): string {
   const number = (value: number | null | undefined, digits: number): string => value?.toFixed(digits) ?? '–';
@@ -114,6 +128,6 @@ for (const avatar of all) {
   }
   writeFileSync(join(output, 'rows.json'), `${JSON.stringify(rows, null, 1)}\n`);
 }
-const text = `${sumsOf(all, rows)}\n${linesOf(all, rows, values.half)}`;
+const text = `${sumsOf(all, rows)}\n${verdictsOf(all, rows)}\n${linesOf(all, rows, values.half)}`;
 writeFileSync(join(output, 'table.md'), text);
 console.log(text);
