@@ -154,6 +154,16 @@ const scenes: Scenes = {
     await stage.end();
   },
 
+  'the cage of a model that came alone is chosen': async () => {
+    const stage = new Stage();
+    const model = await loadHuman();
+    const setRef = (is: Painted | null) => void (painted = is ?? undefined);
+    await stage.show(<Cagecast model={model} template="auto" texture={flat(0xff0000)} ref={setRef} />);
+    await stage.seen('red');
+    equal([painted?.choice?.template, painted?.choice?.verdict], ['human-head', 'good']);
+    await stage.end();
+  },
+
   'a template is fitted, and models are swapped in transitions': async () => {
     const stage = new Stage();
     const [one, other] = await Promise.all([loadHuman(), loadHuman()]);

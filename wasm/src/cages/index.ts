@@ -12,7 +12,9 @@ import { CagecastError, type InitOptions, type Mesh, type PartNames } from '../a
 import { faultOfNames } from '../api/option-names.js';
 import { isRecord, show } from '../core/error.js';
 import { nodeModule } from '../core/node.js';
+import { inspect } from '../worker/index.js';
 import { type CallOptions, faultOfCall, type OnProgress, type WorkerOptions, WorkerQueue } from '../worker/queue.js';
+import { type Choice, type ChooseOptions, choose } from './choose.js';
 import { spawn } from './spawn-cages.js';
 import type {
   Cage,
@@ -27,6 +29,7 @@ import type {
 } from './types.js';
 
 export { cageGlb } from './cage-glb.js';
+export type { Choice, ChooseOptions, Tried } from './choose.js';
 export { objTemplate } from './obj-template.js';
 export { type TemplateName, templateNames } from './template-names.js';
 export { loadTemplate } from './templates.js';
@@ -126,6 +129,31 @@ export async function fitCage(
 ): Promise<Fit> {
   checkIsRead('fitCage', model);
   return call('fitCage', [template, model, landmarks], options);
+}
+
+/**
+ * Chooses the cage of a model that came alone. Fits the templates that it likely needs, one after another, until one is good; if none
+ * is, makes a cage, too. The best verdict of `inspect` counts, then the order: models with the same template can wear the same paint.
+ *
+ * Cost: of one `fitCage`, if that is good; else also of `makeCage`. `inspect` runs in the worker of `cagecast/worker`.
+ * @throws {CagecastError} as `makeCage`, if there is no cage at all.
+ *
+ * @example
+ * import { chooseCage } from 'cagecast/cages';
+ *
+ * const { cage, template, verdict, tried } = await chooseCage(await cageModel(gltf));
+ */
+export async function chooseCage(model: CageModel, options: ChooseOptions & CageCallOptions = {}): Promise<Choice> {
+  checkIsRead('chooseCage', model);
+  const { worker, ...given } = options;
+  const engine = {
+    fitCage: (template: Template, of: CageModel, landmarks: Landmarks | undefined, one: FitOptions & CageCallOptions) =>
+      fitCage(template, of, landmarks, { worker, ...one }),
+    makeCage: (of: CageModel, one: MakeOptions & CageCallOptions) => makeCage(of, { worker, ...one }),
+    findLandmarks: (of: CageModel, one: CageCallOptions) => findLandmarks(of, { worker, ...one }),
+    inspect,
+  };
+  return choose(engine, model, given);
 }
 
 /**

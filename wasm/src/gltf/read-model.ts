@@ -1,13 +1,13 @@
 import { CagecastError } from '../api/index.js';
 import { numbersNamed } from '../api/parts.js';
 import { cageGlb } from '../cages/cage-glb.js';
-import type { Cage } from '../cages/types.js';
+import type { Cage, Landmarks } from '../cages/types.js';
 import { show } from '../core/error.js';
 import { turnedBack } from '../inspect/backward.js';
 import { groupsNamed } from '../parts/drawn.js';
 import { moveApart } from '../parts/own-cages.js';
 import { bareNames } from '../parts/template-extras.js';
-import { partNamesOf } from './cage-file.js';
+import { partNamesOf, templateOf } from './cage-file.js';
 import { type Extracted, extract, namedParts, type Part, partOf, primitivePath, uvLayout } from './extract-file.js';
 import { InputError } from './input-error.js';
 import { type GltfFile, openGltf } from './open-gltf.js';
@@ -35,6 +35,15 @@ export function withUvs(model: ReadModel): ReadModel {
 export async function readBack(cage: Cage, path: string, { extracted: { origin } }: ReadModel): Promise<ReadModel> {
   const file = await openGltf(path, cageGlb({ ...cage, origin }));
   return { file, extracted: extract(file, origin, 'cage') };
+}
+
+/** The landmarks in a cage's extras: of the model that it was made for or fitted to. None if they are damaged. */
+export function landmarksIn({ file, extracted }: ReadModel): Landmarks {
+  try {
+    return templateOf(file, extracted).landmarks;
+  } catch {
+    return {};
+  }
 }
 
 /** A cage around the origin of its target. */

@@ -63,8 +63,14 @@ export type FindingCode =
   | 'muchHidden'
   | 'piecesApart';
 
-/** Whether a cage fits its target: well, with reservations, or not at all. */
-export type Verdict = 'good' | 'usable' | 'unfit';
+/** The verdicts, the worst first. */
+export const kVerdicts = ['unfit', 'usable', 'good'] as const;
+
+/** Whether a cage fits its target: not at all, with reservations, or well. */
+export type Verdict = (typeof kVerdicts)[number];
+
+/** Whether one verdict is worse than another. */
+export const isWorse = (a: Verdict, b: Verdict): boolean => kVerdicts.indexOf(a) < kVerdicts.indexOf(b);
 
 /** A finding of this weight alone makes a cage unfit. */
 const kUnfitFrom = 1;

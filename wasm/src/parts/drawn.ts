@@ -107,11 +107,10 @@ export function chooseParts<Part extends { name: string }>(
       `all parts are left out: ${leftOutText(leftOut)}${typeof which === 'object' ? '; name what counts in parts.keep' : ''}`,
     );
   const those = (fits: (p: number) => boolean) => numbers.flatMap((p, n) => (fits(p) ? [n] : []));
-  const accessories = those((p) => looks[p]!.names.some(isAccessory));
   return {
     parts: numbers.map((p) => parts[p]!),
     leftOut,
-    accessories: accessories.length < numbers.length ? accessories : [],
+    accessories: accessoriesAmong(numbers.map((p) => looks[p]!.names)),
     kept: those((p) => kept.has(p)),
     excluded: those((p) => excluded.has(p)),
   };
@@ -129,6 +128,12 @@ export function leftOutText(leftOut: readonly LeftOut[]): string {
     return `${names.join(', ')} (${kReasons[reason]})`;
   });
   return `${reasons.join(', ')}${more > 0 ? ` and ${more} more` : ''}`;
+}
+
+/** The numbers of parts that a figure wears or carries, by their names; none if all are such. */
+export function accessoriesAmong(names: readonly (readonly (string | undefined)[])[]): number[] {
+  const found = [...names.keys()].filter((p) => names[p]!.some(isAccessory));
+  return found.length < names.length ? found : [];
 }
 
 /** The groups of which a cage leaves some name bare; none if those are all. */

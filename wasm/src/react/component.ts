@@ -21,7 +21,7 @@ export interface CagecastProps extends CagecastOptions {
  * </Suspense>
  */
 export function Cagecast({ model, ref, ...options }: CagecastProps): ReactElement {
-  const { applied, cage, fit, layers } = useCagecast(model, options);
-  useImperativeHandle(ref, () => ({ applied, cage, fit, layers }), [applied, cage, fit, layers]);
+  const { applied, cage, fit, choice, layers } = useCagecast(model, options);
+  useImperativeHandle(ref, () => ({ applied, cage, fit, choice, layers }), [applied, cage, fit, choice, layers]);
   return createElement('primitive', { object: (model as { scene?: object }).scene ?? model });
 }

@@ -1,5 +1,5 @@
 // Fits and transfers of models, kept as long as the models are: a component that React begins to draw once more finds them here.
-import { fitCage, loadTemplate } from '../cages/index.js';
+import { type Choice, chooseCage, fitCage, loadTemplate } from '../cages/index.js';
 import type { TemplateName } from '../cages/template-names.js';
 import type { Fit, Landmarks, Template } from '../cages/types.js';
 import {
@@ -17,10 +17,10 @@ import { wrong } from './errors.js';
 export interface FittingOptions
   extends Omit<ApplyOptions, 'texture' | 'material' | 'opacity' | 'feather' | 'result' | 'saved'> {
   /**
-   * A cage that is first fitted to the model: the name of one that comes with the package, or its own, as a loaded glTF or a `Template`.
-   * Default: `cage`.
+   * A cage that is first fitted to the model: the name of one that comes with the package, or its own, as a loaded glTF or a `Template`;
+   * `auto`: what `chooseCage` of `cagecast/cages` chooses. Default: `cage`.
    */
-  template?: TemplateName | Template | Loaded | undefined;
+  template?: TemplateName | 'auto' | Template | Loaded | undefined;
   /** Spots of the model for the fit; they override those that are found. Default: none. */
   landmarks?: Landmarks | undefined;
 }
@@ -29,8 +29,10 @@ export interface FittingOptions
 export interface Fitted {
   /** The cage that was fitted or given; undefined if the model has its own. */
   cage: LoadedCage | undefined;
-  /** The fit, if there was a template. */
+  /** The fit, if there was one. */
   fit: Fit | undefined;
+  /** With `template: 'auto'`, what was chosen, its verdict, and what was tried. */
+  choice: Choice | undefined;
   saved: Saved;
 }
 
@@ -61,7 +63,7 @@ export class Task {
 }
 
 /**
- * Milliseconds until what nobody wants is ended: in a transition React also draws what is still shown, which wants something else for a
+ * Milliseconds until a task without holders is ended: in a transition React also draws the old components, which want something else for a
  * moment.
  */
 const kPause = 200;
@@ -134,12 +136,24 @@ async function run(
   signal: AbortSignal,
 ): Promise<Fitted> {
   if (template === undefined)
-    return { cage: options.cage, fit: undefined, saved: await prepareTransfer(model, { ...options, signal }) };
+    return {
+      cage: options.cage,
+      fit: undefined,
+      choice: undefined,
+      saved: await prepareTransfer(model, { ...options, signal }),
+    };
+  const read = await cageModel(model);
+  const choice = template === 'auto' ? await chooseCage(read, { landmarks, signal }) : undefined;
+  const fit =
+    template === 'auto' ? choice!.fit : await fitCage(await templateOf(template), read, landmarks, { signal });
+  const cage = choice?.cage ?? fit!.cage;
+  const saved = await prepareTransfer(model, { ...options, cage, signal });
+  return { cage, fit, choice, saved };
+}
+
+async function templateOf(template: Exclude<FittingOptions['template'], 'auto' | undefined>): Promise<Template> {
   const loaded = typeof template === 'string' ? await loadTemplate(template) : template;
-  const from = 'positions' in loaded ? loaded : cageTemplate(loaded);
-  const fit = await fitCage(from, await cageModel(model), landmarks, { signal });
-  const saved = await prepareTransfer(model, { ...options, cage: fit.cage, signal });
-  return { cage: fit.cage, fit, saved };
+  return 'positions' in loaded ? loaded : cageTemplate(loaded);
 }
 
 const ids = new WeakMap<object, number>();

@@ -13,7 +13,7 @@ export interface CagecastOptions
 }
 
 /** What a model is painted by. */
-export interface Painted extends Pick<Fitted, 'cage' | 'fit'> {
+export interface Painted extends Pick<Fitted, 'cage' | 'fit' | 'choice'> {
   /** Undefined until the model is in the scene. */
   applied: Applied | undefined;
   /** The stack that is shown; undefined without layers, and until it is made. */
@@ -46,7 +46,7 @@ export function useCagecast(model: Loaded, options: CagecastOptions = {}): Paint
   const task = taskOf(model, preparing);
   const [holder] = useState(() => new Holder());
   holder.want(task);
-  const { cage, fit, saved } = use(task.promise);
+  const { cage, fit, choice, saved } = use(task.promise);
   useEffect(() => holder.mount(), [holder]);
 
   const own = useOwnLayers(isList(given) ? given : undefined, cage, undefined);
@@ -63,7 +63,7 @@ export function useCagecast(model: Loaded, options: CagecastOptions = {}): Paint
   const applied = state?.of === saved ? state.applied : undefined;
   useLayoutEffect(() => applied?.setTexture(shown), [applied, shown]);
   useLayoutEffect(() => applied?.setOpacity(opacity ?? 1), [applied, opacity]);
-  return { cage, fit, applied, layers };
+  return { cage, fit, choice, applied, layers };
 }
 
 const isList = (layers: CagecastOptions['layers']): layers is readonly LayerItem[] => Array.isArray(layers);

@@ -1,4 +1,5 @@
 /** All of this folder that other folders and the demo page use. What of it is public is in index.ts. */
+export { likelyTemplate } from '../cages/likely-template.js';
 export type { Borders } from '../parts/cut-part.js';
 export type { LeftOut } from '../parts/drawn.js';
 export type { Apart } from '../parts/own-cages.js';

@@ -1,6 +1,6 @@
 import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
-import { type Bone, Box3, Vector3 } from 'three';
-import { cageModel, Emitter } from '#three';
+import type { Bone } from 'three';
+import { cageModel, Emitter, likelyTemplate } from '#three';
 import { type Fitting, kMaxAsked, madeOf, noteFound, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
@@ -10,7 +10,7 @@ import { reasonOf } from './wording';
 /** The engine that makes cages: `cagecast/cages`. It loads when it is asked for. */
 export type Engine = Pick<
   typeof import('cagecast/cages'),
-  'cageGlb' | 'findLandmarks' | 'fitCage' | 'loadTemplate' | 'makeCage' | 'refineCage' | 'templateNames'
+  'cageGlb' | 'chooseCage' | 'findLandmarks' | 'fitCage' | 'loadTemplate' | 'makeCage' | 'refineCage' | 'templateNames'
 >;
 
 /** What a cage maker needs of the page. */
@@ -41,6 +41,7 @@ const kStages: Record<string, string> = {
   enclose: 'Enclosing the model',
   align: 'Moving the cage',
   bend: 'Bending the cage',
+  inspect: 'Looking at the fit',
 };
 
 /**
@@ -60,8 +61,6 @@ export class CageMaker extends Emitter<{
   choices: ((model: CageModel) => { options: MakeOptions; marks?: Uint8Array }) | undefined;
   /** What the last fit that was asked for here came to. */
   latest: Fitting | undefined;
-  /** Fits that nobody has asked for. */
-  readonly #unasked = new WeakSet<File>();
   #opening: AbortController | undefined;
 
   constructor(workshop: Workshop) {
@@ -79,10 +78,7 @@ export class CageMaker extends Emitter<{
     });
     // Of a good cage, nobody needs to know what was not found.
     session.on('inspected', ({ verdict, findings }) => {
-      // It was a guess what the model is. The first inspection decides: later ones are of what the user has chosen, too.
-      const isGuess = this.#unasked.delete(session.shown!.cage.files[0]!);
       if (findings.some(({ code }) => code === 'cageBackward')) void this.#turnBack();
-      else if (verdict === 'unfit' && isGuess) void this.make();
       const missing = (verdict !== 'good' && madeOf(session.shown!.cage.files[0]!)?.fitting?.missing) || [];
       const names = missing.map(readable).join(', ');
       this.emit('notes', { missing: names && `Landmarks that were not found: ${names}.` });
@@ -127,8 +123,7 @@ export class CageMaker extends Emitter<{
   }
 
   /**
-   * The cage of a model that is opened alone: the template that it likely needs, or if too little is found to fit that by, one that is
-   * made for it. Another call, or the end of the request, ends it.
+   * The cage of a model that is opened alone, as `chooseCage` chooses it. Another call, or the end of the request, ends it.
    * @throws Error that names the model.
    */
   async cageFor(target: Model): Promise<Model> {
@@ -141,25 +136,16 @@ export class CageMaker extends Emitter<{
     try {
       const engine = await this.#workshop.engine();
       const model = await cageModel(target.loaded);
-      const context = { engine, model, options, target };
-      const { positions } = target.mesh;
-      const named = likelyTemplate(positions, namesIn(target));
-      // A figure that the body does not fit, such as a toy, gets a cage of its own: a head's would leave the rest bare.
-      const likely = named === 'human-body' ? [named] : new Set([named, likelyTemplate(positions)]);
-      let fitted: Result | undefined;
-      for (const template of likely)
-        fitted ??= await this.#fit(context, template, {}).then(
-          (result) => (result.fitting!.guessed.length === 0 ? result : undefined),
-          (error) => {
-            abort.signal.throwIfAborted();
-            if (error.code !== 'badModel') throw error;
-            return undefined;
-          },
-        );
-      const { cage, ...how } = fitted ?? (await this.#make(context));
+      const { options: chosen, marks } = this.#choicesFor(model);
+      const choice = await engine.chooseCage({ ...model, marks }, { ...chosen, ...options });
+      const { cage, template, fit } = choice;
+      noteFound(target, cage.landmarks);
+      const how =
+        fit && template !== 'made'
+          ? { note: kFitted, fitting: { ...fit, template, given: {} } }
+          : { note: noteOfMade(cage), fitting: undefined, isNew: true };
       const file = new File([engine.cageGlb({ ...cage, origin: originOf(target) })], cageNameFrom(target.name));
-      noteMade(file, { target: target.files[0]!, ...how, fitting: how.fitting });
-      if (fitted) this.#unasked.add(file);
+      noteMade(file, { target: target.files[0]!, ...how });
       return await this.#workshop.loader.load(file);
     } catch (error) {
       throw new Error(`${target.name}: ${reasonOf(error)}`, { cause: error });
@@ -268,15 +254,18 @@ export class CageMaker extends Emitter<{
   }
 
   async #make({ engine, model, options, target }: Omit<Context, 'old'>): Promise<Result> {
-    const { options: chosen, marks: parts } = this.choices?.(model) ?? {};
-    const { bare } = this.#session;
-    // What was marked on the model is not painted, whatever is chosen for its part.
-    const marks = bare && parts ? parts.map((mark, t) => mark | bare[t]!) : (bare ?? parts);
+    const { options: chosen, marks } = this.#choicesFor(model);
     const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
     const { landmarks } = await engine.findLandmarks(model, { signal: options.signal });
     noteFound(target, landmarks);
-    const note = `A cage of ${cage.indices.length / 3} triangles was made. Save it with the paint that you draw for it.`;
-    return { cage, note, isNew: true };
+    return { cage, note: noteOfMade(cage), isNew: true };
+  }
+
+  /** The options of a made cage, and its marks: triangles marked on the model stay bare, whatever is chosen for their part. */
+  #choicesFor(model: CageModel): { options: MakeOptions; marks: Uint8Array | undefined } {
+    const { options = {}, marks: parts } = this.choices?.(model) ?? {};
+    const { bare } = this.#session;
+    return { options, marks: bare && parts ? parts.map((mark, t) => mark | bare[t]!) : (bare ?? parts) };
   }
 
   async #move({ engine, model, old, options }: Context): Promise<Result> {
@@ -301,37 +290,23 @@ export class CageMaker extends Emitter<{
     const note =
       found.guessed.length > 0
         ? `Too little was found to fit the template by, so it was placed by the model’s size: mark ${found.guessed.slice(0, kMaxAsked).map(readable).join(', ')}.`
-        : 'The template was fitted: a paint for it fits every model that it was fitted to.';
+        : kFitted;
     return { cage, note, fitting: { ...found, template: name, given } };
   }
 }
 
-/** Words in names of bones, meshes and materials that tell what a model is; figures have bones of both. */
-const kOfCars = /wheel|windshield|windscreen|bumper|(?<![a-z])(tyre|tire)s?(?![a-z])/i;
-const kOfFigures = [/thigh|leg|shin|calf|knee/i, /arm|elbow|hand|shoulder/i];
+/** What is said of a fit. */
+const kFitted = 'The template was fitted: a paint for it fits every model that it was fitted to.';
+
+const noteOfMade = (cage: Cage): string =>
+  `A cage of ${cage.indices.length / 3} triangles was made. Save it with the paint that you draw for it.`;
 
 /** The names in a model: those of its bones, its meshes and their materials. */
-function namesIn({ scene, mesh }: Model): { bones: string[]; parts: string[] } {
-  const bones: string[] = [];
-  scene.traverse((object) => void ((object as Bone).isBone && bones.push(object.name)));
+function namesIn({ scene, mesh }: Model): { joints: string[]; parts: string[] } {
+  const joints: string[] = [];
+  scene.traverse((object) => void ((object as Bone).isBone && joints.push(object.name)));
   const parts = mesh.primitives.flatMap(({ name, mesh }) => [name, ...[mesh.material].flat().map(({ name }) => name)]);
-  return { bones, parts };
-}
-
-/**
- * The template that a model likely needs; the user may choose another.
- * @param positions 3 each, y being up: its shape decides if no names do.
- */
-export function likelyTemplate(
-  positions: Float32Array,
-  { bones, parts }: { bones: readonly string[]; parts: readonly string[] } = { bones: [], parts: [] },
-): TemplateName {
-  if (kOfFigures.every((words) => bones.some((name) => words.test(name)))) return 'human-body';
-  if (parts.some((name) => kOfCars.test(name))) return 'car';
-  const { x, y, z } = new Box3().setFromArray(positions).getSize(new Vector3());
-  // A figure is flat, whether its arms hang or are stretched out, a car is low; a head is neither.
-  if (z < 0.5 * y) return 'human-body';
-  return y < 0.55 * Math.max(x, z) ? 'car' : 'human-head';
+  return { joints, parts };
 }
 
 /** The name of a cage's file, from that of a model or of an earlier cage. */

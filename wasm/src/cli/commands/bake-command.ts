@@ -16,7 +16,7 @@ import { refuseOverwriting, writeFiles } from '../io/output.js';
 import { readGltf } from '../io/read-gltf.js';
 import { UsageError } from '../model/failures.js';
 import { resolveSettings } from '../model/settings.js';
-import type { Sources } from '../model/sources.js';
+import { isByTemplate, type Sources, texturePath } from '../model/sources.js';
 import { configLine, quoted, takenAway } from '../model/text.js';
 import { allFilesReadBy } from '../transfer/files-read.js';
 import { missingLine } from '../transfer/report-parts.js';
@@ -26,8 +26,7 @@ import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
 import { addTarget } from './transfer-command.js';
 
-interface BakeFlags extends common.SettingFlags, common.ReadFlags, common.PrintFlags {
-  cage?: string;
+interface BakeFlags extends common.SettingFlags, common.AroundFlags, common.ReadFlags, common.PrintFlags {
   /** Files of images in the cage's UVs. */
   texture?: string;
   normal?: string;
@@ -99,14 +98,15 @@ export function addBakeCommand(program: Command, io: Io): void {
     .addOption(common.bordersFlag());
   common.addFlags(command, 'What is painted', 'How files are read', 'What is printed');
   command.addHelpText('after', kHelp).action((target: string, flags: BakeFlags) => {
-    const { cage = target, texture: paint } = flags;
+    const { texture: paint } = flags;
+    const around = common.aroundOf(flags, target);
     const fault = faultOf(flags);
     if (fault !== undefined) throw new UsageError(fault);
     const inputs = [target, ...common.inputsOf(flags), flags.normal, flags.orm];
     return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
       const settings = resolveSettings(await common.layersFor(flags)(target));
       const reading = common.readingOf(flags);
-      return bakeCommand({ ...flags, target, cage, isOwnCage: !flags.cage, paint, ...settings, reading }, io);
+      return bakeCommand({ ...flags, target, ...around, paint, ...settings, reading }, io);
     });
   });
 }
@@ -129,10 +129,17 @@ function faultOf({ output, texture, normal, orm, back, atlas, part = [] }: BakeF
  */
 async function bakeCommand(command: BakeCommand, io: Io): Promise<Found> {
   const { target, paint, normal, orm, reading } = command;
-  const [color, normals, rough] = await Promise.all(
-    [paint, normal, orm].map((path) => (path === undefined ? undefined : readImage(path, reading))),
-  );
+  // What cannot be read is said before what takes long; for a chosen template it is only known then.
+  const readAll = (template: string) =>
+    Promise.all(
+      [paint, normal, orm].map((path) =>
+        path === undefined ? undefined : readImage(texturePath(path, template), reading),
+      ),
+    );
+  const isLate = [paint, normal, orm].some((path) => path && isByTemplate(path));
+  const known = isLate ? undefined : await readAll('');
   const run = await runTransfer(command, io);
+  const [color, normals, rough] = known ?? (await readAll(run.choice?.template ?? ''));
   const cut = command.borders === 'cut' ? cutTarget(run, io) : undefined;
   io.step('baking');
   const isPicture = command.output.toLowerCase().endsWith('.png');

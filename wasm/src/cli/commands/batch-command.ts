@@ -10,8 +10,12 @@ import { jobsOfManifest, jobsOfPatterns, placeholderFault, writtenBy } from './b
 import { type BatchSummary, runJobs } from './batch-run.js';
 import * as common from './common-flags.js';
 
-interface BatchFlags extends common.SettingFlags, common.CageFlags, common.ReadFlags, common.PrintFlags {
-  cage?: string;
+interface BatchFlags
+  extends common.SettingFlags,
+    common.AroundFlags,
+    common.CageFlags,
+    common.ReadFlags,
+    common.PrintFlags {
   texture?: string;
   output?: string;
   report?: string;
@@ -27,10 +31,10 @@ interface BatchFlags extends common.SettingFlags, common.CageFlags, common.ReadF
 const kHelp = `
 A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
-Its members: target, cage, referenceCage, uvBounds, texture, regions, output, report, and any setting of cagecast.config.json.
+Its members: target, cage, template, referenceCage, uvBounds, texture, regions, output, report, and any setting of cagecast.config.json.
 A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
 failed or skipped), ms, counts, triangles; if there are, also error, verdict, findings (codes), note (why next to nothing may be
-painted) and isTurned (the cage was turned by half). Then a summary goes to the standard error; with --quiet, only errors go there.
+painted), isTurned (the cage was turned by half) and template (what --template auto chose, or made). Then a summary goes to the standard error; with --quiet, only errors go there.
 The cages of a batch are left out of the files that a pattern names. Missing folders are made.
 A job that fails does not stop the others. Files are complete or not there, even if the batch is killed.
 With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure or another batch.
@@ -54,7 +58,8 @@ export function addBatchCommand(program: Command, io: Io): void {
       '--cage <CAGE>',
       'the cage of jobs that name none; auto makes one for each target (default: as of transfer)',
     )
-    .option('--texture <PAINT>', 'the texture of jobs that name none')
+    .addOption(common.templateFlag())
+    .option('--texture <PAINT>', 'the texture of jobs that name none; {template} stands for what --template came to')
     .addOption(
       common.parsed(
         '-o, --output <OUT.glb>',
@@ -97,12 +102,12 @@ export function addBatchCommand(program: Command, io: Io): void {
 
 async function runBatch(targets: string[], flags: BatchFlags, io: Io): Promise<void> {
   const { manifest, results, resume = false, failOn, workers, quiet, json } = flags;
-  const { cage, uvBounds, referenceCage, texture, region: regions, output, report } = flags;
+  const { cage, template, uvBounds, referenceCage, texture, region: regions, output, report } = flags;
   const fault = faultOf(targets, flags);
   if (fault !== undefined) throw new UsageError(fault);
   if (quiet) io.silence();
   const defaults = {
-    ...{ cage, uvBounds, referenceCage, texture, regions, output, report, results },
+    ...{ cage, template, uvBounds, referenceCage, texture, regions, output, report, results },
     inspects: failOn === undefined ? undefined : true,
     layersFor: common.layersFor(flags),
     reading: common.readingOf(flags),
@@ -130,6 +135,7 @@ function faultOf(targets: readonly string[], flags: BatchFlags): string | undefi
   if ([...common.inputsOf({ ...flags, config: undefined }), ...targets].includes(standard))
     return 'a batch reads files; its jobs have no standard input';
   if (manifest === standard && flags.config === standard) return 'only one file can be the standard input';
+  if (flags.cage !== undefined && flags.template !== undefined) return common.eitherCage;
   const withoutOutput = manifest === undefined ? common.outputFault(flags) : undefined;
   return withoutOutput ?? placeholderFault(output, report) ?? boundsFault(texture, uvBounds);
 }

@@ -13,6 +13,8 @@ import { kAutoCage, type Region, type TransferCommand } from '../model/sources.j
 import { shown } from '../model/text.js';
 import { areBounds, boundsFault, boundsText } from '../model/uv-bounds.js';
 import { filesReadBy } from '../transfer/files-read.js';
+import { isKnownTemplate } from '../transfer/template.js';
+import { aroundOf } from './common-flags.js';
 
 /** A transfer of a batch. */
 export interface Job {
@@ -114,7 +116,7 @@ function targetOf(line: string, folder: string): string | undefined {
   }
 }
 
-const kPaths = ['target', 'cage', 'referenceCage', 'texture', 'output', 'report'] as const;
+const kPaths = ['target', 'cage', 'template', 'referenceCage', 'texture', 'output', 'report'] as const;
 
 /** The job of a line of a manifest: its settings win over flags. @throws {InputError} that names the member. */
 async function jobOfLine(line: string, folder: string, defaults: JobDefaults): Promise<Job> {
@@ -127,15 +129,25 @@ async function jobOfLine(line: string, folder: string, defaults: JobDefaults): P
   const { uvBounds = defaults.uvBounds, regions } = given;
   if (uvBounds !== undefined && !areBounds(uvBounds))
     throw new InputError(`"uvBounds" is ${shown(uvBounds)}, not an array of ${boundsText}`);
+  const around = (own['cage'] ?? own['template']) ? { cage: undefined, template: undefined } : {};
   return jobOf(
-    { ...defaults, ...own, target, uvBounds, ...(regions !== undefined && { regions: regionsOf(regions, folder) }) },
+    {
+      ...defaults,
+      ...around,
+      ...own,
+      target,
+      uvBounds,
+      ...(regions !== undefined && { regions: regionsOf(regions, folder) }),
+    },
     [...(await defaults.layersFor(target)), { settings: settingsOf(given, folder) }],
   );
 }
 
-/** A path of a line, or the word for a cage to be made. @throws {InputError} with the member's name. */
+/** A path of a line, or a word for a cage. @throws {InputError} with the member's name. */
 const pathIn = (given: Json, name: string, folder: string): string | undefined =>
-  name === 'cage' && given[name] === kAutoCage ? kAutoCage : pathOf(given, name, folder);
+  (name === 'cage' && given[name] === kAutoCage) || (name === 'template' && isKnownTemplate(given[name]))
+    ? (given[name] as string)
+    : pathOf(given, name, folder);
 
 /** @throws {InputError} that names the member, and of which region it is. */
 function regionsOf(regions: unknown, folder: string): Region[] {
@@ -174,7 +186,7 @@ function nameOf(path: string): string {
 
 /** @throws {InputError} if something is missing or wrong. */
 function jobOf({ layersFor: _, results: __, ...given }: JobDefaults & { target: string }, layers: Layer[]): Job {
-  const { target, cage = target, texture, regions = [], output, report } = given;
+  const { target, texture, regions = [], output, report } = given;
   // A configuration may say so for other commands.
   const cuts = resolveSettings(layers.filter(({ config }) => config === undefined)).borders === 'cut';
   if (output === undefined && (cuts || texture !== undefined || regions.length > 0))
@@ -185,8 +197,7 @@ function jobOf({ layersFor: _, results: __, ...given }: JobDefaults & { target: 
   if (fault !== undefined) throw new InputError(fault);
   const command = {
     ...given,
-    cage,
-    isOwnCage: given.cage === undefined,
+    ...aroundOf(given, target),
     output: output && filledFor(target, output),
     report: report && filledFor(target, report),
     ...resolveSettings(layers),

@@ -17,6 +17,7 @@ export type Outcome =
       triangles: Report['triangles'];
       note?: string;
       isTurned?: boolean;
+      template?: string;
       verdict?: Verdict;
       findings?: string[];
     }
@@ -35,7 +36,11 @@ export function serveBatch(): void {
       const { report } = await transferToFile(command, io, readCage);
       const { cage, counts, triangles, note, verdict, findings } = report;
       const inspected = verdict && { verdict, findings: findings!.map(({ code }) => code) };
-      const told = { ...(note && { note }), ...(cage.isTurned && { isTurned: true }) };
+      const told = {
+        ...(note && { note }),
+        ...(cage.isTurned && { isTurned: true }),
+        ...(cage.template && { template: cage.template }),
+      };
       answer({ status: 'done', counts, triangles, ...told, ...inspected });
     } catch (error) {
       answer({ status: 'failed', error: messageOf(error) });

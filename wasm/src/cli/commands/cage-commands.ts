@@ -1,31 +1,24 @@
-import { statSync } from 'node:fs';
-import { fileURLToPath } from 'node:url';
 import { type Command, Option } from 'commander';
 import { cageGlb } from '../../cages/cage-glb.js';
 import { templateNames } from '../../cages/template-names.js';
-import type { Cage, Fit, Kind, Landmarks, Template } from '../../cages/types.js';
-import { templateOf } from '../../gltf/cage-file.js';
-import { InputError, naming } from '../../gltf/input-error.js';
-import { bareParts, type ReadModel, readBack, withUvs } from '../../gltf/read-model.js';
+import type { Cage, Fit, Kind, Landmarks } from '../../cages/types.js';
+import { bareParts, type ReadModel, readBack } from '../../gltf/read-model.js';
 import { counted } from '../../inspect/finding.js';
-import { readObj } from '../../parts/obj.js';
 import { landmarksMoved } from '../../parts/origin.js';
-import { isPosition, readTemplate as withExtras } from '../../parts/template-extras.js';
-import { readBytes, standard } from '../io/files.js';
 import type { Io } from '../io/io.js';
 import { writeFiles } from '../io/output.js';
 import { kExit } from '../model/failures.js';
-import { parseObject } from '../model/json.js';
 import { type Rules, resolveSettings } from '../model/settings.js';
-import { integer, type Line, listed, shown } from '../model/text.js';
+import { kAutoCage } from '../model/sources.js';
+import { integer, type Line, listed } from '../model/text.js';
 import { conclusionOf, inspectionReport } from '../transfer/inspection.js';
 import { inspectionPage } from '../transfer/inspection-page.js';
-import { fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
-import { readModel } from '../transfer/models.js';
+import { chooseCageFor, fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
 import { transferOptions } from '../transfer/part-names.js';
 import { readTarget } from '../transfer/read-target.js';
-import { leftOutLines } from '../transfer/report-parts.js';
+import { choiceLines, leftOutLines } from '../transfer/report-parts.js';
 import { transferModels } from '../transfer/run-transfer.js';
+import { readLandmarks, readTemplate } from '../transfer/template.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
 
@@ -108,7 +101,7 @@ Example: cagecast make head.glb --exclude visor --keep 'hair*' --triangles 800 -
     .description('move a template cage onto TARGET, so that one texture fits both; print a verdict')
     .requiredOption(
       '--template <TEMPLATE>',
-      `GLB, glTF or OBJ of a cage for another model; or ${templateNames.join(', ')}`,
+      `GLB, glTF or OBJ of a cage for another model; or ${templateNames.join(', ')}; or auto: one of those, or a cage made as by make, whichever fits best`,
     )
     .option(
       '--template-landmarks <T.json>',
@@ -144,67 +137,25 @@ async function makeFor(target: string, flags: MakeFlags, io: Io): Promise<Found>
 
 /** Fits a template cage to a model and inspects it. @throws {InputError} that names the file at fault; then no file is written. */
 async function fitTo(path: string, target: string, flags: FitFlags, io: Io): Promise<Found> {
-  const template = await readTemplate(path, flags, io);
+  const template =
+    path === kAutoCage ? undefined : await readTemplate(path, common.readingOf(flags), io, flags.templateLandmarks);
   const given = flags.landmarks === undefined ? undefined : await readLandmarks(flags.landmarks);
   const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags));
   const { origin } = model.extracted;
   const landmarks = given && landmarksMoved(given, origin, -1);
   const files = { template: path, landmarks: flags.landmarks };
-  const fit = await fitCageTo(model, { template, landmarks, files, options: { parts: partsOf(flags, model) } }, io);
-  const used = landmarksMoved(fit.used, origin, 1);
-  return finish(fit.cage, model, flags, io, describeFit({ ...fit, used }, landmarks ?? {}));
-}
-
-/** How many landmarks `fitCage` needs of a template. */
-const kMinLandmarks = 4;
-
-/** Reads a template with its landmarks. @throws {InputError} that names the file at fault. */
-async function readTemplate(path: string, flags: FitFlags, io: Io): Promise<Template> {
-  const { templateLandmarks } = flags;
-  const own = isObj(path) ? await readObjTemplate(path, io) : await readGltfTemplate(path, flags, io);
-  const landmarks = templateLandmarks === undefined ? own.landmarks : await readLandmarks(templateLandmarks);
-  const count = Object.keys(landmarks).length;
-  if (count >= kMinLandmarks) return { ...own, landmarks };
-  const has = `has ${count === 0 ? 'no landmarks' : counted(count, 'landmark')}`;
-  if (templateLandmarks !== undefined)
-    throw new InputError(`${has}; at least ${kMinLandmarks} are needed`).in(templateLandmarks);
-  const place = isObj(path) ? '' : ' in the extras of its nodes and meshes';
-  throw new InputError(
-    `${has}${place}; give at least ${kMinLandmarks} of the model that it was made for: --template-landmarks T.json`,
-  ).in(path);
-}
-
-const isObj = (path: string) => /\.obj$/i.test(path);
-
-async function readGltfTemplate(path: string, flags: FitFlags, io: Io): Promise<Template> {
-  const { file, extracted } = withUvs(await readModel(templateFile(path), common.readingOf(flags), io));
-  return templateOf(file, extracted);
-}
-
-async function readObjTemplate(path: string, io: Io): Promise<Template> {
-  io.step(`reading ${path}`);
-  const wrong = (text: string) => new InputError(text).in(path);
-  return withExtras(readObj(new TextDecoder().decode(await readBytes(path)), wrong), [], wrong);
-}
-
-/** The file of a template: of one that comes with the package if its name is given, and no file is called so. */
-function templateFile(path: string): string {
-  const isFolder = statSync(path, { throwIfNoEntry: false })?.isDirectory();
-  if (path === standard || isFolder === false || /[./\\]/.test(path)) return path;
-  if (!(templateNames as readonly string[]).includes(path))
-    throw new InputError(`no such file, and no template of the package: there are ${templateNames.join(', ')}`).in(
-      path,
-    );
-  return fileURLToPath(new URL(`./templates/${path}.glb`, import.meta.url));
-}
-
-/** Reads landmarks: a JSON object, name → [x, y, z]. @throws {InputError} that names the file and the landmark. */
-function readLandmarks(path: string): Promise<Landmarks> {
-  return naming(path, async () => {
-    const landmarks = parseObject(new TextDecoder().decode(await readBytes(path)));
-    for (const [name, position] of Object.entries(landmarks))
-      if (!isPosition(position)) throw new InputError(`"${name}" is ${shown(position)}, not 3 numbers [x, y, z]`);
-    return landmarks as Landmarks;
+  const sources = { landmarks, files, options: { parts: partsOf(flags, model) } };
+  const chosen = template
+    ? await fitCageTo(model, { ...sources, template }, io).then((fit) => ({ cage: fit.cage, fit, choice: undefined }))
+    : await chooseCageFor(model, sources, io);
+  const { cage, fit, choice } = chosen;
+  const notes = fit
+    ? describeFit({ ...fit, used: landmarksMoved(fit.used, origin, 1) }, landmarks ?? {})
+    : { lines: [], report: {} };
+  return finish(cage, model, flags, io, {
+    ...notes,
+    lines: [...choiceLines(choice), ...notes.lines],
+    report: { ...choice, ...notes.report },
   });
 }
 

@@ -1,9 +1,11 @@
 // Flags that several commands have, as commander parses them.
 import { type Command, InvalidArgumentError, Option } from 'commander';
+import { templateNames } from '../../cages/template-names.js';
 import { optionValues } from '../../generated/options.js';
 import { defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 import { type FormatLimits, formatDefaults } from '../../gltf/formats/limits.js';
 import { standard } from '../io/files.js';
+import { UsageError } from '../model/failures.js';
 import type { ReadOptions } from '../model/reading.js';
 import {
   colorAttributes,
@@ -204,15 +206,46 @@ export const readingOf = ({ allowOutside = false, limit }: ReadFlags): ReadOptio
   limits: { ...defaultLimits, ...limit },
 });
 
-interface InputFlags extends SettingFlags, CageFlags {
+/** The flags that say which cage is meant. */
+export interface AroundFlags {
   cage?: string | undefined;
+  template?: string | undefined;
+}
+
+/** The flag for a cage that is fitted. */
+export const templateFlag = (): Option =>
+  new Option(
+    '--template <TEMPLATE>',
+    `instead of a cage: one that is fitted first, as by fit: ${templateNames.join(', ')}, or a file; auto chooses`,
+  );
+
+export const eitherCage = 'give either --cage or --template';
+
+/** Where a cage comes from, by its flags. @throws {UsageError} */
+export function aroundOf({ cage, template }: AroundFlags, target: string) {
+  if (cage !== undefined && template !== undefined) throw new UsageError(eitherCage);
+  return template === undefined
+    ? { cage: cage ?? target, isOwnCage: cage === undefined }
+    : { cage: kAutoCage, template, isOwnCage: false };
+}
+
+interface InputFlags extends SettingFlags, CageFlags, AroundFlags {
   texture?: string | undefined;
   region?: readonly Region[];
 }
 
 /** The files that flags name as inputs. */
-export const inputsOf = ({ cage, referenceCage, texture, region = [], mask = {}, config }: InputFlags): string[] =>
+export const inputsOf = ({
+  cage,
+  template,
+  referenceCage,
+  texture,
+  region = [],
+  mask = {},
+  config,
+}: InputFlags): string[] =>
   [
+    template,
     ...[cage, ...region.map((one) => one.cage)].filter((path) => path !== kAutoCage),
     ...[referenceCage, texture, ...region.map((one) => one.texture), mask.neverMask, mask.alwaysMask],
     config === kNoConfig ? undefined : config,

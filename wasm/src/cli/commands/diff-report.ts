@@ -1,9 +1,10 @@
 import { InputError, naming } from '../../gltf/input-error.js';
+import { kVerdicts } from '../../inspect/finding.js';
 import { readBytes } from '../io/files.js';
 import { isObject, parseObject } from '../model/json.js';
 import { shown } from '../model/text.js';
 import { kZoneNames } from '../model/zones.js';
-import { type InspectionReport, kVerdicts } from '../transfer/inspection.js';
+import type { InspectionReport } from '../transfer/inspection.js';
 import type { Report } from '../transfer/report.js';
 
 /** What of a report is compared; reports of `transfer` and of `inspect --json` have some of it each. */

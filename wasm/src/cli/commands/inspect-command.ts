@@ -13,7 +13,7 @@ import {
   segmentTable,
 } from '../transfer/inspection.js';
 import { inspectionPage } from '../transfer/inspection-page.js';
-import { leftOutLines, turnedLine, zoneTable } from '../transfer/report-parts.js';
+import { choiceLines, leftOutLines, turnedLine, zoneTable } from '../transfer/report-parts.js';
 import { runTransfer } from '../transfer/run-transfer.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
@@ -45,12 +45,11 @@ Example: cagecast inspect head.glb --cage cage.glb --html report.html`,
 
 /** Checks whether a cage fits a target. @throws {InputError} that names the file at fault. */
 async function inspectTarget(target: string, flags: InspectFlags, io: Io): Promise<Found> {
-  const { cage = target, uvBounds, referenceCage, html } = flags;
+  const { uvBounds, referenceCage, html } = flags;
   const { rules } = resolveSettings(await common.layersFor(flags)(target));
   const sources = {
     target,
-    cage,
-    isOwnCage: !flags.cage,
+    ...common.aroundOf(flags, target),
     uvBounds,
     referenceCage,
     rules,
@@ -94,6 +93,7 @@ function describe(report: InspectionReport, html: string | undefined): Line[] {
     `segments: ${integer(segments.length)}${more(segments.length)}`,
     ...cutNames(segmentTable(segments, kMaxRows)),
     '',
+    ...choiceLines(cage.template && { template: cage.template, tried: cage.tried ?? [] }),
     ...conclusionOf(report),
     html && `wrote ${html}`,
     turnedLine(cage),

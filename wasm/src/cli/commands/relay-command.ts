@@ -19,8 +19,7 @@ import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
 import { addTarget } from './transfer-command.js';
 
-interface RelayFlags extends common.SettingFlags, common.ReadFlags, common.PrintFlags {
-  cage?: string;
+interface RelayFlags extends common.SettingFlags, common.AroundFlags, common.ReadFlags, common.PrintFlags {
   texture: string;
   /** The other cage. */
   to: string;
@@ -71,12 +70,13 @@ export function addRelayCommand(program: Command, io: Io): void {
     );
   common.addFlags(command, 'What is painted', 'How files are read', 'What is printed');
   command.addHelpText('after', kHelp).action((target: string, flags: RelayFlags) => {
-    const { cage = target, texture: paint } = flags;
+    const { texture: paint } = flags;
+    const around = common.aroundOf(flags, target);
     const inputs = [target, ...common.inputsOf(flags), ...common.inputsOf({ cage: flags.to })];
     return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
       const { rules } = resolveSettings(await common.layersFor(flags)(target));
       const reading = common.readingOf(flags);
-      return relayCommand({ ...flags, target, cage, isOwnCage: !flags.cage, paint, rules, reading }, io);
+      return relayCommand({ ...flags, target, ...around, paint, rules, reading }, io);
     });
   });
 }
@@ -87,7 +87,7 @@ async function relayCommand(command: RelayCommand, io: Io): Promise<Found> {
   const image = await readImage(paint, reading);
   const model = await readTarget(target, reading, io, rules);
   const from = await runTransfer(command, io, undefined, model);
-  const to = await runTransfer({ ...command, cage: other }, io, undefined, model);
+  const to = await runTransfer({ ...command, cage: other, template: undefined }, io, undefined, model);
   io.step('carrying the paint over');
   const [width, height] = scaledTo(image, size);
   const { mesh } = model.extracted;

@@ -9,9 +9,12 @@ import * as common from './common-flags.js';
 import { perform } from './perform.js';
 
 /** The flags of the commands that transfer to one target. */
-export interface TargetFlags extends common.SettingFlags, common.CageFlags, common.ReadFlags, common.PrintFlags {
-  cage?: string;
-}
+export interface TargetFlags
+  extends common.SettingFlags,
+    common.AroundFlags,
+    common.CageFlags,
+    common.ReadFlags,
+    common.PrintFlags {}
 
 interface TransferFlags extends TargetFlags {
   texture?: string;
@@ -27,7 +30,8 @@ export const addTarget = (command: Command): Command =>
     .option(
       '--cage <CAGE>',
       'a file of the same kinds but STL, with UVs that the texture was drawn for; auto makes one (default: the meshes of TARGET that are named as outer cages of others)',
-    );
+    )
+    .addOption(common.templateFlag());
 
 /** What its help says after the flags. */
 const kHelp = `
@@ -78,12 +82,13 @@ export function addTransferCommand(program: Command, io: Io): void {
     'What is printed',
   );
   command.addHelpText('after', kHelp).action((target: string, flags: TransferFlags) => {
-    const { cage = target, texture, output, report, uvBounds, referenceCage, region: regions } = flags;
+    const { texture, output, report, uvBounds, referenceCage, region: regions } = flags;
+    const around = common.aroundOf(flags, target);
     const fault = common.outputFault(flags) ?? boundsFault(texture, uvBounds);
     if (fault !== undefined) throw new UsageError(fault);
     return perform(io, flags, { inputs: [target, ...common.inputsOf(flags)], outputs: [output, report] }, async () => {
       const settings = resolveSettings(await common.layersFor(flags)(target));
-      const files = { target, cage, isOwnCage: !flags.cage, uvBounds, referenceCage, texture, regions, output, report };
+      const files = { target, ...around, uvBounds, referenceCage, texture, regions, output, report };
       return transferToFile({ ...files, ...settings, reading: common.readingOf(flags) }, io);
     });
   });

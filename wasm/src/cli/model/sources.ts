@@ -6,6 +6,8 @@ import type { UvBounds } from './uv-bounds.js';
 export interface Sources {
   target: string;
   cage: string;
+  /** A cage that is fitted to the target, instead of one: `auto`, the name of one that comes with the package, or a file. */
+  template?: string | undefined;
   /** Whether the cage has to be named as such, as none was given but the target. */
   isOwnCage?: boolean | undefined;
   /** The part of the cage's UVs that the texture covers; by default 0..1. */
@@ -18,6 +20,15 @@ export interface Sources {
 
 /** The name of a cage that is made on the way; a file of this name is `./auto`. */
 export const kAutoCage = 'auto';
+
+/** What stands for the template in the name of a texture. */
+const kTemplate = '{template}';
+
+/** Whether a path names a texture for each template. */
+export const isByTemplate = (path: string): boolean => path.includes(kTemplate);
+
+/** The path of the texture for a template. */
+export const texturePath = (path: string, template: string): string => path.replaceAll(kTemplate, template);
 
 /** A further cage, and the texture that was drawn for it. */
 export interface Region {

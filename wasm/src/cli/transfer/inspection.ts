@@ -1,6 +1,4 @@
-import type { Landmarks } from '../../cages/types.js';
-import { templateOf } from '../../gltf/cage-file.js';
-import type { ReadModel } from '../../gltf/read-model.js';
+import { landmarksIn } from '../../gltf/read-model.js';
 import { percent } from '../../inspect/finding.js';
 import { vertexAreas } from '../../inspect/geometry.js';
 import {
@@ -27,11 +25,6 @@ import {
   versions,
 } from './report-parts.js';
 import type { Run } from './run-transfer.js';
-
-export const kVerdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
-
-/** Whether one verdict is worse than another. */
-export const isWorse = (a: Verdict, b: Verdict): boolean => kVerdicts.indexOf(a) < kVerdicts.indexOf(b);
 
 /** The JSON output of `inspect`: the inspection, and its inputs. */
 export interface InspectionReport extends Inspection {
@@ -73,15 +66,6 @@ export function inspectionReport(
       culled: areas.culled / total,
     },
   };
-}
-
-/** The landmarks in a cage's extras: of the model that it was made for or fitted to. None if they are damaged. */
-function landmarksIn({ file, extracted }: ReadModel): Landmarks {
-  try {
-    return templateOf(file, extracted).landmarks;
-  } catch {
-    return {};
-  }
 }
 
 const kConclusions: Record<Verdict, string> = {

@@ -1,4 +1,5 @@
-import { CagecastError } from '../../api/index.js';
+import { CagecastError, init as initCore } from '../../api/index.js';
+import { type Choice, choose } from '../../cages/choose.js';
 import { findLandmarks, fitCage, init, makeCage } from '../../cages/sync.js';
 import type { Cage, CageModel, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../../cages/types.js';
 import { FileModel } from '../../gltf/bake/bake-file.js';
@@ -6,6 +7,7 @@ import { baseColorsOf } from '../../gltf/bake/base-colors.js';
 import { cageModelOf } from '../../gltf/cage-file.js';
 import { InputError } from '../../gltf/input-error.js';
 import type { ReadModel } from '../../gltf/read-model.js';
+import { inspect } from '../../inspect/index.js';
 import { decodeImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 
@@ -41,6 +43,24 @@ interface FitSources {
   options: FitOptions;
 }
 
+/** What was chosen for a model, and what was tried. */
+export type Chosen = Pick<Choice, 'template' | 'tried'>;
+
+/** Chooses the cage of a model. @throws {InputError} that names the file at fault. */
+export async function chooseCageFor(
+  model: ReadModel,
+  { landmarks, files, options }: Omit<FitSources, 'template'>,
+  io: Io,
+): Promise<{ cage: Cage; fit: Fit | undefined; choice: Chosen }> {
+  await initCore();
+  const read = await cageModelWithColors(model);
+  return calling('choosing the cage', { model: model.file.path, ...files }, io, async (onProgress) => {
+    const engine = { fitCage, makeCage, findLandmarks, inspect };
+    const { cage, fit, template, tried } = await choose(engine, read, { landmarks, ...options, onProgress });
+    return { cage, fit, choice: { template, tried } };
+  });
+}
+
 /** Fits a template to a model. @throws {InputError} that names the file at fault. */
 export async function fitCageTo(
   model: ReadModel,
@@ -59,12 +79,12 @@ async function calling<Result>(
   what: string,
   files: Record<string, string | undefined>,
   io: Io,
-  call: (onProgress: (share: number, stage: string) => void) => Result,
+  call: (onProgress: (share: number, stage: string) => void) => Result | Promise<Result>,
 ): Promise<Result> {
   io.step(what);
   await init();
   try {
-    return call((share, stage) => io.share(`${what}: ${stage}`, share));
+    return await call((share, stage) => io.share(`${what}: ${stage}`, share));
   } catch (error) {
     if (!(error instanceof CagecastError)) throw error;
     throw new InputError(error.reason, { cause: error }).in(files[error.argument ?? 'model'] ?? files['model']!);

@@ -7,7 +7,7 @@ import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/o
 import { writeTransfer } from '../../gltf/write-transfer.js';
 import { packDraco } from '../io/draco-write.js';
 import type { Io } from '../io/io.js';
-import type { TransferCommand } from '../model/sources.js';
+import { isByTemplate, type TransferCommand, texturePath } from '../model/sources.js';
 import { boundsOfTile, isTiled, type UvBounds } from '../model/uv-bounds.js';
 import type { readModel } from './models.js';
 import { readTarget } from './read-target.js';
@@ -53,10 +53,13 @@ export async function transferRegion(
   { readCage, isLast, before, zones = zoneAttribute }: RegionContext,
 ): Promise<RegionRun> {
   const { target, output, reading, uvBounds } = command;
-  const paint = texture === undefined || isTiled(texture) ? undefined : await readPaint(texture, reading.limits);
+  const isKnown = texture !== undefined && !isByTemplate(texture);
+  const known = isKnown && !isTiled(texture) ? await readPaint(texture, reading.limits) : undefined;
   const model = before && (await readTarget(target, reading, io, command.rules, before.bytes));
   const run = await runTransfer(command, io, readCage, model);
-  const tiles = texture !== undefined && isTiled(texture) ? await readTiles(texture, run.cage, reading.limits) : [];
+  const path = texture && texturePath(texture, run.choice?.template ?? '');
+  const tiles = path && isTiled(path) ? await readTiles(path, run.cage, reading.limits) : [];
+  const paint = known ?? (path && !isTiled(path) ? await readPaint(path, reading.limits) : undefined);
   const areas: PaintArea[] = uvBounds ? ['bounded'] : tiles.map(({ tile }) => ({ tile }));
   const paints: Paint[] = (paint ? [paint] : tiles).map((one, i) => ({ ...one, area: areas[i] }));
   const cutMesh = output !== undefined && command.borders === 'cut' ? cutTarget(run, io) : undefined;

@@ -37,14 +37,26 @@ export const targetReport = (
 export type TargetReport = ReturnType<typeof targetReport>;
 
 /** What a report says of a cage, and whether it was turned. */
-export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { isTurned }: Run) => ({
+export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { isTurned, choice }: Run) => ({
   file,
+  ...choice,
   vertices: mesh.positions.length / 3,
   triangles: mesh.indices.length / 3,
   ...(isTurned && { isTurned }),
 });
 
 export type CageReport = ReturnType<typeof cageReport>;
+
+/** What was chosen, and why nothing before it, for people. */
+export function choiceLines(choice: Run['choice']): Line[] {
+  if (!choice) return [];
+  const { template, tried } = choice;
+  const others = tried.filter((one) => one.template !== template);
+  return [
+    template === 'made' ? 'a cage was made for this model' : `the template ${template} was fitted`,
+    ...others.map(({ template, verdict, reason }) => `  ${template}${verdict ? ` is ${verdict}` : ''}: ${reason}`),
+  ];
+}
 
 /** Why next to nothing may be painted, if so, and what helps. */
 export function bareNote({ target: { extracted }, wholeCage, result }: Run): string | undefined {

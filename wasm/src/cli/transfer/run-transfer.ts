@@ -7,6 +7,7 @@ import {
   type TransferResult,
   transfer,
 } from '../../api/index.js';
+import type { Cage } from '../../cages/types.js';
 import { FileModel } from '../../gltf/bake/bake-file.js';
 import { masksOf } from '../../gltf/bake/mask-sources.js';
 import { naming } from '../../gltf/input-error.js';
@@ -19,10 +20,11 @@ import type { ReadOptions } from '../model/reading.js';
 import type { Rules } from '../model/settings.js';
 import { kAutoCage, type Sources } from '../model/sources.js';
 import { withinBounds, withoutLacking } from './cage-area.js';
-import { makeCageFor } from './made-cage.js';
+import { type Chosen, chooseCageFor, fitCageTo, makeCageFor } from './made-cage.js';
 import { cageIn, inFile, readModel } from './models.js';
 import { transferOptions } from './part-names.js';
 import { readTarget } from './read-target.js';
+import { readTemplate } from './template.js';
 
 /** Two models, and what was transferred. */
 export interface Run {
@@ -36,6 +38,8 @@ export interface Run {
   bare?: readonly string[] | undefined;
   /** Whether the cage faced the other way, and was turned by half about the vertical axis. */
   isTurned?: boolean;
+  /** How the cage was come by, if there was a template. */
+  choice?: Chosen | undefined;
   /** What `transfer` was called with. */
   options: TransferOptions;
   result: TransferResult;
@@ -48,23 +52,19 @@ export interface Run {
  * @throws {InputError} that names the file at fault.
  */
 export async function runTransfer(
-  { target: path, cage, isOwnCage, uvBounds, referenceCage, rules, reading }: Sources,
+  { target: path, cage, template, isOwnCage, uvBounds, referenceCage, rules, reading }: Sources,
   io: Io,
   readCage: typeof readModel = readModel,
   read?: ReadModel,
 ): Promise<Run> {
   const target = read ?? (await readTarget(path, reading, io, rules));
   const masks = await readMasks(target, rules.masks, reading);
-  const isMade = cage === kAutoCage;
   const cageOf = async (file: string) =>
     besideOf(target, withUvs(isOwnCage && file === cage ? cageIn(target) : await readCage(file, reading, io)));
-  const whole = isMade
-    ? await readBack(
-        await makeCageFor(target, { parts: transferOptions(rules, target, []).parts }, io),
-        kAutoCage,
-        target,
-      )
-    : await cageOf(cage);
+  const { parts } = transferOptions(rules, target, []);
+  const made = template === undefined ? undefined : await cageByTemplate(target, template, { parts, reading }, io);
+  const own = made?.cage ?? (cage === kAutoCage ? await makeCageFor(target, { parts }, io) : undefined);
+  const whole = own ? await readBack(own, template ?? kAutoCage, target) : await cageOf(cage);
   const bare = bareParts(target, whole);
   const options = { ...transferOptions(rules, target, bare), ...(masks && { masks }) };
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);
@@ -80,7 +80,22 @@ export async function runTransfer(
     wholeCage: run.isTurned ? turned(wholeCage) : wholeCage,
     diagonal,
     bare: [...new Set(names)],
+    choice: made?.choice,
   };
+}
+
+/** A cage that is fitted, or chosen. @throws {InputError} that names the file at fault. */
+async function cageByTemplate(
+  target: ReadModel,
+  template: string,
+  { parts, reading }: Pick<TransferOptions, 'parts'> & { reading: ReadOptions },
+  io: Io,
+): Promise<{ cage: Cage; choice: Chosen }> {
+  const sources = { landmarks: undefined, files: { template }, options: { parts } };
+  if (template === kAutoCage) return chooseCageFor(target, sources, io);
+  const from = await readTemplate(template, reading, io);
+  const { cage } = await fitCageTo(target, { ...sources, template: from }, io);
+  return { cage, choice: { template: template as Chosen['template'], tried: [] } };
 }
 
 /** A run as it is, or with its cage turned by half, if that faces the other way. */

@@ -1,17 +1,17 @@
 import { dirname, join } from 'node:path';
 import type { Form } from '../../gltf/glb-writer.js';
 import { zoneAttribute } from '../../gltf/overlay.js';
-import { counted } from '../../inspect/finding.js';
+import { counted, isWorse } from '../../inspect/finding.js';
 import type { Io } from '../io/io.js';
 import { refuseOverwriting, writeFiles } from '../io/output.js';
 import type { TransferCommand } from '../model/sources.js';
 import { configLine, integer, jsonText, type Line, takenAway } from '../model/text.js';
 import { allFilesReadBy } from './files-read.js';
-import { inspectionReport, isWorse } from './inspection.js';
+import { inspectionReport } from './inspection.js';
 import type { readModel } from './models.js';
 import { compressionOf, transferRegion } from './region.js';
 import { makeReport, type Report, regionReport } from './report.js';
-import { leftOutLines, turnedLine, zoneTable } from './report-parts.js';
+import { choiceLines, leftOutLines, turnedLine, zoneTable } from './report-parts.js';
 
 /**
  * Runs the transfer and writes the requested files.
@@ -29,13 +29,20 @@ export async function transferToFile(
   // As the target was, if it is to be kept.
   const form: Form = compress === 'keep' ? (compressionOf(first.run) ?? 'keep') : compress;
   const report = makeReport(command, first);
-  if (inspects) {
+  if (inspects || command.template !== undefined) {
     const { verdict, findings } = inspectionReport(command, first.run, first.textures);
     Object.assign(report, { verdict, findings });
   }
   let last = first;
   for (const [r, { cage, texture }] of regions.entries()) {
-    const own = { ...command, cage, isOwnCage: false, uvBounds: undefined, referenceCage: undefined };
+    const own = {
+      ...command,
+      cage,
+      template: undefined,
+      isOwnCage: false,
+      uvBounds: undefined,
+      referenceCage: undefined,
+    };
     last = await transferRegion(own, texture, io, {
       readCage,
       isLast: r === regions.length - 1,
@@ -65,7 +72,7 @@ export async function transferToFile(
 
 /** The report for people. */
 function summary(command: TransferCommand, report: Report): Line[] {
-  const { target, cage, counts, areas, triangles, cut, segments, regions, timings, output, note } = report;
+  const { target, cage, counts, areas, triangles, cut, segments, regions, timings, output, note, verdict } = report;
   const culled = segments.filter((segment) => segment.culled).length;
   const { outOfBounds = 0 } = cut?.triangles ?? triangles;
   const cutText = cut ? `; cut along borders, ${shareOf(cut.triangles)}` : '';
@@ -73,6 +80,8 @@ function summary(command: TransferCommand, report: Report): Line[] {
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${counted(segments.length, 'segment')} (${integer(culled)} culled)`,
     ...zoneTable(counts, areas, areas.total),
     `${shareOf(triangles)} triangles may be painted${cutText}; ${timings.total.toFixed(1)} ms`,
+    ...choiceLines(cage.template && { template: cage.template, tried: cage.tried ?? [] }),
+    verdict && `the cage is ${verdict}`,
     turnedLine(cage),
     note,
     outOfBounds > 0 &&

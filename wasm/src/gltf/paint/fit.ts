@@ -1,9 +1,13 @@
+import { type Choice, type ChoiceEngine, choose } from '../../cages/choose.js';
 import {
+  type Cage,
   type CageCallOptions,
   type Fit,
+  findLandmarks,
   fitCage,
   type Landmarks,
   loadTemplate,
+  makeCage,
   type TemplateName,
 } from '../../cages/index.js';
 import type { Template } from '../../cages/types.js';
@@ -19,35 +23,55 @@ import { openGltf } from '../open-gltf.js';
 import { type ReadModel, withUvs } from '../read-model.js';
 
 interface FitCall extends Pick<CageCallOptions, 'signal' | 'onProgress'> {
+  /** `inspect` of `cagecast`, here or in a worker. */
+  inspect: ChoiceEngine['inspect'];
   landmarks?: Landmarks | undefined;
   decode?: ImageCodec['decode'] | undefined;
+}
+
+/** What a template came to on a model, in the space of its scene. */
+interface Fitted extends Pick<Choice, 'cage' | 'fit'>, Partial<Pick<Choice, 'tried'>> {
+  /** What was chosen, for `auto`. */
+  template?: Choice['template'] | undefined;
 }
 
 /** Of the progress, the share at which a fit ends. */
 const kFitted = 0.9;
 
-/** Fits a template to a model. @returns the fit in the space of the model's scene. @throws {InputError}, {CagecastError} */
+/** Fits a template to a model, or chooses its cage. @throws {InputError}, {CagecastError} */
 export async function fitTo(
   model: ReadModel,
-  template: TemplateName | Uint8Array | Template,
-  { landmarks, decode = hostDecode(), signal, onProgress }: FitCall,
-): Promise<Fit> {
-  const from = await readTemplate(template);
-  const { origin } = model.extracted;
+  template: TemplateName | 'auto' | Uint8Array | Template,
+  { inspect, landmarks, decode = hostDecode(), signal, onProgress }: FitCall,
+): Promise<Fitted> {
+  const from = template === 'auto' ? undefined : await readTemplate(template);
+  const { file, extracted } = model;
+  const { origin, kept, excluded } = extracted;
   const given = landmarks && landmarksMoved(landmarks, origin, -1);
   const calling = {
     signal,
     onProgress: (share: number, stage: string) => onProgress?.(kFitted * share, stage),
+    parts: { keep: kept, exclude: excluded },
   };
-  const { file, extracted } = model;
   const colors = decode && (await baseColorsOf(new FileModel(file, extracted.parts), decode));
-  const fit = await fitCage(from, { ...cageModelOf(file, extracted), ...colors }, given, calling);
+  const read = { ...cageModelOf(file, extracted), ...colors };
   const back = origin.map((x) => -x) as unknown as Vector;
-  return {
+  const cageBack = (cage: Cage): Cage => ({
+    ...moved(cage, back),
+    landmarks: landmarksMoved(cage.landmarks, origin, 1),
+  });
+  const fitBack = (fit: Fit): Fit => ({
     ...fit,
     used: landmarksMoved(fit.used, origin, 1),
-    cage: { ...moved(fit.cage, back), landmarks: landmarksMoved(fit.cage.landmarks, origin, 1) },
-  };
+    cage: cageBack(fit.cage),
+  });
+  if (from) {
+    const fit = fitBack(await fitCage(from, read, given, calling));
+    return { cage: fit.cage, fit };
+  }
+  const engine = { fitCage, makeCage, findLandmarks, inspect };
+  const { cage, fit, template: chosen, tried } = await choose(engine, read, { landmarks: given, ...calling });
+  return { cage: cageBack(cage), fit: fit && fitBack(fit), template: chosen, tried };
 }
 
 async function readTemplate(template: TemplateName | Uint8Array | Template): Promise<Template> {

@@ -9,19 +9,20 @@ import {
 import { faultOfNames, optionNames } from '../../api/option-names.js';
 import { faultOfParts, type Parts } from '../../api/parts.js';
 import { cageGlb } from '../../cages/cage-glb.js';
-import type { CageCallOptions, Fit, Landmarks, TemplateName } from '../../cages/index.js';
-import type { Template } from '../../cages/types.js';
+import type { CageCallOptions, Choice, Fit, Landmarks, TemplateName, Tried } from '../../cages/index.js';
+import type { Cage, Template } from '../../cages/types.js';
 import { show } from '../../core/error.js';
 import { isBackward } from '../../inspect/backward.js';
 import { noteOf } from '../../inspect/bare.js';
+import { type Finding, isWorse, kVerdicts, type Verdict } from '../../inspect/finding.js';
 import { type Borders, isCut } from '../../parts/cut-part.js';
-import { cutBorders, transfer } from '../../worker/index.js';
+import { cutBorders, inspect, transfer } from '../../worker/index.js';
 import type { ImageCodec } from '../bake/plan.js';
 import { extract } from '../extract-file.js';
 import { InputError } from '../input-error.js';
 import { openGltf } from '../open-gltf.js';
 import { type Paint, paintOf } from '../overlay.js';
-import { bareParts, errorInFile, movedApart, type ReadModel, turned, withUvs } from '../read-model.js';
+import { bareParts, errorInFile, landmarksIn, movedApart, type ReadModel, turned, withUvs } from '../read-model.js';
 import { writeTransfer } from '../write-transfer.js';
 import { fitTo } from './fit.js';
 
@@ -29,15 +30,20 @@ import { fitTo } from './fit.js';
 export interface PaintOptions
   extends Omit<TransferOptions, 'parts' | 'locks' | 'masks'>,
     Pick<CageCallOptions, 'signal' | 'onProgress'> {
-  /** The image that was drawn in the cage's UVs: the bytes of a PNG, JPEG, WebP or KTX2 file. */
-  texture: Uint8Array;
+  /**
+   * The image that was drawn in the cage's UVs: the bytes of a PNG, JPEG, WebP or KTX2 file. With `template: 'auto'` also a function of
+   * what was chosen, as each template has a paint of its own.
+   */
+  texture: Uint8Array | ((template: Choice['template'], cage: Cage) => Uint8Array | Promise<Uint8Array>);
   /** The cage in its place around the model, with UVs: the bytes of a GLB, or a mesh, such as a `Cage`, in the space of the model's scene. */
   cage?: Uint8Array | Mesh | undefined;
   /**
-   * A cage that is first fitted to the model: the name of one that comes with the package, which loads its file, or its own GLB's bytes, or a
-   * `Template`.
+   * A cage that is fitted to the model first: the name of a template of the package, whose file is loaded, the bytes of a GLB, or a
+   * `Template`. `auto`: what `chooseCage` of `cagecast/cages` chooses.
    */
-  template?: TemplateName | Uint8Array | Template | undefined;
+  template?: TemplateName | 'auto' | Uint8Array | Template | undefined;
+  /** The worst verdict that is painted; with a worse one, `paintGlb` rejects with `badModel`. Default: `unfit`. */
+  atLeast?: Verdict | undefined;
   /** Spots of the model for the fit, in the space of its scene; they override those that are found. Default: none. */
   landmarks?: Landmarks | undefined;
   /**
@@ -57,7 +63,7 @@ export interface PaintOptions
 }
 
 const kOptions = [
-  ...['texture', 'cage', 'template', 'landmarks', 'decode', 'borders', 'attributes', 'signal', 'onProgress'],
+  ...['texture', 'cage', 'template', 'atLeast', 'landmarks', 'decode', 'borders', 'attributes', 'signal', 'onProgress'],
   ...optionNames('transfer').filter((name) => !['locks', 'masks', 'reuse'].includes(name)),
 ];
 
@@ -71,8 +77,16 @@ export interface PaintedGlb {
   note: string | undefined;
   /** Names of the parts that stay bare because of their names: glasses, hats, and what the cage was made without. */
   bare: string[];
-  /** The fit, if there was a template. Its cage is in the space of the model's scene, and can be given as `cage` the next time. */
+  /** Whether the cage fits, as `inspect` says it, and what was found, the most severe first. */
+  verdict: Verdict;
+  findings: Finding[];
+  /** The cage of a template, in the space of the model's scene: it can be given as `cage` the next time. */
+  cage: Cage | undefined;
+  /** The fit, if there was one. */
   fit: Fit | undefined;
+  /** With `template: 'auto'`, what was chosen, and all that was tried. */
+  template: Choice['template'] | undefined;
+  tried: Tried[] | undefined;
 }
 
 /**
@@ -83,7 +97,7 @@ export interface PaintedGlb {
  *
  * Fit and transfer run in workers where there are any. Nothing is loaded over the network but for a template by its name, and for a fit
  * `cagecast-cages.wasm`, unless `init` of `cagecast/cages` was given it.
- * Cost: reading and writing take about as long as copying the file some times; a fit takes seconds.
+ * Cost: reading and writing take about as long as copying the file some times; `inspect` 3 to 15 times a transfer; a fit takes seconds.
  * @throws {CagecastError} `badArgument` that names the argument, the element of the file and the value; `badOption`; as `transfer`, and with a
  * template as `fitCage`. With `signal`, its reason.
  *
@@ -99,6 +113,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     texture,
     cage,
     template,
+    atLeast = 'unfit',
     landmarks,
     decode,
     borders,
@@ -110,7 +125,8 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
   } = options;
   if (!(bytes instanceof Uint8Array)) throw wrong('bytes', bytes, 'a Uint8Array');
   if (typeof attributes !== 'boolean') throw wrong('options.attributes', attributes, 'true or false', 'badOption');
-  if (!(texture instanceof Uint8Array)) throw wrong('texture', texture, 'a Uint8Array');
+  if (!kVerdicts.includes(atLeast))
+    throw wrong('options.atLeast', atLeast, `one of ${kVerdicts.join(', ')}`, 'badOption');
   if ((cage === undefined) === (template === undefined)) {
     const what = cage === undefined ? 'neither cage nor template is' : 'cage and template are both';
     throw new CagecastError('badArgument', 'paintGlb', `${what} given; one of them is needed`, { argument: 'cage' });
@@ -119,13 +135,15 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     throw wrong('options.decode', decode, 'a function', 'badOption');
   const cuts = isCut('paintGlb', borders);
   try {
-    const paint = readPaint(texture);
+    const paintFor = typeof texture === 'function' && template === 'auto' ? texture : undefined;
+    const given = paintFor ? undefined : readPaint(texture);
     await init();
     signal?.throwIfAborted();
     onProgress(0, 'reading');
     const target = await readModel('bytes', bytes, { parts: patterns });
-    const fit = template && (await fitTo(target, template, { landmarks, decode, signal, onProgress }));
-    const around = await readCage(fit?.cage ?? cage!, target);
+    const fitted = template && (await fitTo(target, template, { inspect, landmarks, decode, signal, onProgress }));
+    const around = await readCage(fitted?.cage ?? cage!, target);
+    const paint = given ?? readPaint(await paintFor!(fitted!.template!, fitted!.cage));
     signal?.throwIfAborted();
     onProgress(0.9, 'transferring');
     const bare = bareParts(target, around);
@@ -134,6 +152,16 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     const pair = movedApart(target, around);
     const { source, result } = await transferred(pair, target, { ...rules, parts: named, signal });
     const arrays = [source.extracted.mesh, pair.target.extracted.mesh] as const;
+    const { verdict, findings } = await inspect(...arrays, {
+      ...rules,
+      ...{ parts: named, result, signal, landmarks: landmarksIn(around) },
+    });
+    if (isWorse(verdict, atLeast))
+      throw new CagecastError(
+        'badModel',
+        'paintGlb',
+        `the cage is ${verdict}, not ${atLeast}: ${findings[0]!.sentence}`,
+      );
     const cut = cuts ? await cutBorders(...arrays, result, { ...rules, parts: named, signal }) : undefined;
     onProgress(0.95, 'writing');
     const { data } = await writeTransfer(target.file, target.extracted, result, {
@@ -152,7 +180,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
       },
       note: noteOf(mesh, result, parts, around.extracted.mesh),
       bare: [...new Set(bare.filter((p) => !kept.includes(p)).map((p) => parts[p]!.name))],
-      fit,
+      ...{ verdict, findings, cage: fitted?.cage, fit: fitted?.fit, template: fitted?.template, tried: fitted?.tried },
     };
   } catch (error) {
     throw error instanceof InputError
@@ -204,7 +232,8 @@ async function readCage(cage: Uint8Array | Mesh, target: ReadModel): Promise<Rea
   return readModel('cage', cageGlb({ ...cage, uvs: cage.uvs }), { beside: target });
 }
 
-function readPaint(texture: Uint8Array): Paint {
+function readPaint(texture: unknown): Paint {
+  if (!(texture instanceof Uint8Array)) throw wrong('texture', texture, 'a Uint8Array');
   try {
     return paintOf(texture, 'paint', ['image/png', 'image/jpeg', 'image/webp', 'image/ktx2']);
   } catch (error) {

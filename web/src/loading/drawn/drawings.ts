@@ -1,6 +1,6 @@
 import { Vector3 } from 'three';
+import { likelyTemplate } from '#three';
 import { askWorker } from '../../platform/ask-worker';
-import { likelyTemplate } from '../../state/cage-maker';
 import type { Model } from '../../state/model';
 import type { Paint } from '../../state/paint';
 import { loadPaint } from '../load-paint';

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { likelyTemplate } from '../../../web/src/state/cage-maker';
+import { likelyTemplate } from '../../wasm/src/cages/likely-template.js';
 
 const box = (size: readonly number[]) => Float32Array.from([3, 3, 3, ...size.map((extent) => 3 + extent)]);
 
@@ -17,8 +17,8 @@ test('the template is chosen by the shape: a figure is flat, a car is low, a hea
     assert.equal(likelyTemplate(box(size)), template);
 });
 
-test('names tell more than the shape: a figure has bones of arms and legs, a car has wheels', () => {
-  const likely = (bones: string[], parts: string[]) => likelyTemplate(box([1, 1, 1]), { bones, parts });
+test('names tell more than the shape: a figure has joints of arms and legs, a car has wheels', () => {
+  const likely = (joints: string[], parts: string[]) => likelyTemplate(box([1, 1, 1]), { joints, parts });
   assert.equal(likely(['mixamorig:LeftUpLeg', 'mixamorig:LeftArm'], ['Body']), 'human-body');
   assert.equal(likely(['J_Bip_L_UpperLeg', 'J_Bip_L_Hand'], []), 'human-body');
   assert.equal(likely(['Head', 'Neck', 'Jaw'], ['Skin']), 'human-head');
