@@ -89,10 +89,20 @@ describe('inspect', () => {
     assert.equal(find(inspect(open, skin), 'faceBare'), undefined);
   });
 
-  test('eyes that are painted, and those that nothing tells of, keep a figure from being good', () => {
-    const eyes = { eye_centre_left: [0.25, 0.1, 0.85], eye_centre_right: [-0.25, 0.1, 0.85] } as const;
-    const skin = ball([0, 0, 0], () => 1, 24, 48);
+  const eyes = { eye_centre_left: [0.25, 0.1, 0.85], eye_centre_right: [-0.25, 0.1, 0.85] } as const;
+  const skin = ball([0, 0, 0], () => 1, 24, 48);
+  /** A shell whose poles are above and below. @param side  Where its UVs meet: -1 is behind. */
+  const shellTo = (side: number): Whole => {
     const shell = ball([0, 0, 0], () => 1.1, 16, 24) as Whole;
+    const { positions: p } = shell;
+    return {
+      ...shell,
+      positions: p.map((_, i) => [side * p[i + 1]!, p[i + 1]!, side * p[i - 2]!][i % 3]!),
+    };
+  };
+
+  test('eyes that are painted, and those that nothing tells of, keep a figure from being good', () => {
+    const shell = shellTo(-1);
     const painted = inspect(shell, skin, { landmarks: eyes });
     assert.deepEqual([painted.verdict, find(painted, 'eyesPainted').numbers], ['usable', { left: 1, right: 1 }]);
     assert.deepEqual(codes(inspect(shell, skin, { landmarks: { nose_tip: [0, 0, 1] } })), ['eyesUnknown']);
@@ -103,6 +113,15 @@ describe('inspect', () => {
     const { locks } = find(inspect(shell, eyed, { landmarks: eyes }), 'eyesPainted');
     assert.deepEqual(locks, { 1: 'exclude', 2: 'exclude' });
     assert.deepEqual(codes(inspect(shell, eyed, { landmarks: eyes, locks })), []);
+  });
+
+  test('a seam down the face keeps a cage from being good, one behind does not', () => {
+    const look = (side: number) => codes(inspect(shellTo(side), skin, { landmarks: eyes }));
+    assert.deepEqual(look(-1), ['eyesPainted']);
+    assert.deepEqual(look(1), ['eyesPainted', 'faceSeam']);
+    // What is not painted shows no seam.
+    const bare = inspect(shellTo(1), skin, { landmarks: eyes, parts: { exclude: [0] } });
+    assert.ok(!codes(bare).includes('faceSeam'));
   });
 
   test('pieces that almost touch are found, with the tolerance that joins them', () => {

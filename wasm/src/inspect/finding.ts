@@ -57,6 +57,7 @@ export type FindingCode =
   | 'faceBare'
   | 'eyesUnknown'
   | 'eyesPainted'
+  | 'faceSeam'
   | 'holeUnexplained'
   | 'segmentInDoubt'
   | 'muchCulled'

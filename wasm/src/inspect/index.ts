@@ -17,6 +17,7 @@ import { checkPieces } from './pieces.js';
 import { checkPlacement, type Placement, placementOf } from './placement.js';
 import { reverse } from './reverse.js';
 import { type PartName, sceneOf } from './scene.js';
+import { checkSeam } from './seam.js';
 import { checkSegments, hasArea, type Segment, segmentsOf } from './segments.js';
 import { surestThreshold } from './surest-threshold.js';
 import { checkTopology, type Topology, topologyOf } from './topology.js';
@@ -116,6 +117,7 @@ function outcomeOf(cage: Mesh, whole: Mesh, given: InspectOptions = {}) {
     ...checkHoles(holes, segments),
     ...checkFace(scene, landmarks),
     ...checkEyes(scene, segments, landmarks),
+    ...checkSeam(scene, segments, landmarks),
     ...checkSegments(scene, segments, options),
     ...checkHiding(scene, options),
     ...checkPieces(scene, options),

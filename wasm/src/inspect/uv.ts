@@ -1,7 +1,7 @@
 import { counted, type Finding, percent } from './finding.js';
 import { UnionFind } from './geometry.js';
 import type { Scene } from './scene.js';
-import { countSets } from './surface.js';
+import { countSets, type Edge } from './surface.js';
 
 /** Samples along each side of the texture by which overlaps are found. */
 const kSamples = 1024;
@@ -28,6 +28,16 @@ export interface UvLayout {
   used: number;
 }
 
+/** Whether an edge has different UVs in its triangles, so that charts meet there, or a chart meets itself. */
+export function isSeam({ uses }: Edge, indices: ArrayLike<number>, uvs: ArrayLike<number>): boolean {
+  const ends = uses.map(({ triangle, corner, forward }) => {
+    const [from, to] = [indices[3 * triangle + corner]!, indices[3 * triangle + ((corner + 1) % 3)]!];
+    return forward ? ([from, to] as const) : ([to, from] as const);
+  });
+  const sameUv = (v: number, w: number) => uvs[2 * v] === uvs[2 * w] && uvs[2 * v + 1] === uvs[2 * w + 1];
+  return !ends.every(([from, to]) => sameUv(from, ends[0]![0]) && sameUv(to, ends[0]![1]));
+}
+
 /** Measures a cage's UVs. */
 export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
   const { indices, positions } = cage;
@@ -48,19 +58,14 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
     flatArea += surface.areas[t]!;
   }
 
-  const sameUv = (v: number, w: number) => uvs[2 * v] === uvs[2 * w] && uvs[2 * v + 1] === uvs[2 * w + 1];
   const charts = new UnionFind(surface.areas.length);
   let [seams, seamLength, innerLength] = [0, 0, 0];
-  for (const { a, b, uses } of surface.edges) {
+  for (const edge of surface.edges) {
+    const { a, b, uses } = edge;
     if (uses.length < 2) continue;
-    const ends = uses.map(({ triangle, corner, forward }) => {
-      const [from, to] = [indices[3 * triangle + corner]!, indices[3 * triangle + ((corner + 1) % 3)]!];
-      return forward ? ([from, to] as const) : ([to, from] as const);
-    });
     const size = Math.hypot(...[0, 1, 2].map((k) => positions[3 * a + k]! - positions[3 * b + k]!));
     innerLength += size;
-    const shared = ends.every(([from, to]) => sameUv(from, ends[0]![0]) && sameUv(to, ends[0]![1]));
-    if (shared) for (const { triangle } of uses) charts.join(triangle, uses[0]!.triangle);
+    if (!isSeam(edge, indices, uvs)) for (const { triangle } of uses) charts.join(triangle, uses[0]!.triangle);
     else {
       ++seams;
       seamLength += size;
