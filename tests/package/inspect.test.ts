@@ -93,7 +93,7 @@ describe('inspect', () => {
   const skin = ball([0, 0, 0], () => 1, 24, 48);
   /** A shell whose poles are above and below. @param side  Where its UVs meet: -1 is behind. */
   const shellTo = (side: number): Whole => {
-    const shell = ball([0, 0, 0], () => 1.1, 16, 24) as Whole;
+    const shell = ball([0, 0, 0], () => 1.1, 32, 64) as Whole;
     const { positions: p } = shell;
     return {
       ...shell,
@@ -122,6 +122,39 @@ describe('inspect', () => {
     // What is not painted shows no seam.
     const bare = inspect(shellTo(1), skin, { landmarks: eyes, parts: { exclude: [0] } });
     assert.ok(!codes(bare).includes('faceSeam'));
+  });
+
+  test('a bare patch of the skin keeps a face from being good, but not where eyes and mouth are', () => {
+    const around = shellTo(-1);
+    const { positions: p } = around;
+    const patched = (x: number, y: number) => {
+      const isNear = (v: number) => Math.hypot(p[3 * v]! - x, p[3 * v + 1]! - y) < 0.1 && p[3 * v + 2]! > 0;
+      const indices = around.indices.filter((_, i, all) => !isNear(all[i - (i % 3)]!));
+      return inspect({ ...around, indices }, skin, { landmarks: eyes });
+    };
+    const { numbers, sentence } = find(patched(0.3, -0.3), 'skinBare');
+    assert.ok((numbers['share'] as number) > 0.01 && (numbers['share'] as number) < 0.1, sentence);
+    for (const [x, y] of [
+      [0.25, 0.1],
+      [0, -0.4],
+    ] as const)
+      assert.equal(find(patched(x, y), 'skinBare'), undefined);
+  });
+
+  test('so does a bare collar on a painted body, but not below the cage of a head', () => {
+    const chest = ball([0, -1.8, 0], () => 1, 24, 48);
+    const collar = ball([0, -0.95, 0.9], () => 0.12, 12, 24);
+    const figure = join3d(skin, chest, collar);
+    const whole = join3d(
+      shellTo(-1),
+      ball([0, -1.8, 0], () => 1.1, 16, 24),
+    );
+    const { sentence, places } = find(inspect(whole, figure, { landmarks: eyes }), 'skinBare');
+    assert.match(sentence, /^Patches below the chin are left bare, though the chest is painted: .* most of "group 2"$/);
+    assert.equal(places![0]!.segment, 2);
+    const chosen = inspect(whole, figure, { landmarks: eyes, parts: { exclude: [2] } });
+    assert.equal(find(chosen, 'skinBare'), undefined);
+    assert.equal(find(inspect(shellTo(-1), figure, { landmarks: eyes }), 'skinBare'), undefined);
   });
 
   test('pieces that almost touch are found, with the tolerance that joins them', () => {

@@ -1,6 +1,6 @@
 import { faceFrameOf, type Spots } from './face.js';
 import type { Finding } from './finding.js';
-import { dot, minus, pointAt, type Vector } from './geometry.js';
+import { firstSeen } from './first-seen.js';
 import { partsOf, type Scene } from './scene.js';
 import { placeOfSegment, type Segment } from './segments.js';
 
@@ -22,13 +22,19 @@ export function checkEyes(scene: Scene, segments: readonly Segment[], landmarks:
   if (!frame) return kOfFigures.some((name) => landmarks[name]) ? [kUnknown] : [];
   const { target, result, parts, areas } = scene;
   const { left, right, size } = frame;
-  const spots = [-1, 0, 1].flatMap((x) => [-1, 0, 1].map((y) => [x * kIris * size, y * kIris * size] as const));
-  const axes = [frame.across, frame.up, frame.front] as const;
-  const seen = [left, right].map((eye) => firstTriangles(target, eye, axes, spots));
+  const reach = 1.5 * kIris * size;
+  const grid = {
+    axes: [frame.across, frame.up, frame.front] as const,
+    low: [-reach, -reach],
+    high: [reach, reach],
+  } as const;
+  const seen = [left, right].map((middle) =>
+    firstSeen(target, { ...grid, middle, cells: 3 }).filter((triangle) => triangle >= 0),
+  );
   const painted = seen.map((all) => all.filter((t) => result.cosmeticTriangles[t] === 1));
   const shares = seen.map((all, e) => painted[e]!.length / (all.length || 1));
   if (Math.max(...shares) < kPainted) return [];
-  const vertices = painted.flat().map((t) => target.indices[3 * t]!);
+  const vertices = painted.flatMap((all) => [...all]).map((t) => target.indices[3 * t]!);
   const own = [...new Set(vertices.map((v) => result.segments[v]!))];
   const part = parts[partsOf(parts, areas.length)[vertices[0]!]!]?.name ?? '';
   const isSmall = own.every((s) => segments[s]!.area < kEyeArea * size ** 2);
@@ -55,31 +61,3 @@ const kUnknown: Finding = {
     'Fit a template with the landmarks eye_centre_left and eye_centre_right, or give the eyes a part of their own.',
   numbers: {},
 };
-
-/** The triangles that are seen first from the front at spots around a middle, in a plane of axes across and up. */
-function firstTriangles(
-  { positions, indices }: Scene['target'],
-  middle: Vector,
-  axes: readonly [across: Vector, up: Vector, front: Vector],
-  spots: readonly (readonly [x: number, y: number])[],
-): number[] {
-  const nearest = spots.map(() => ({ depth: -Infinity, triangle: -1 }));
-  const flat = (v: number) => axes.map((axis) => dot(minus(pointAt(positions, v), middle), axis)) as unknown as Vector;
-  const reach = Math.max(...spots.flat().map(Math.abs));
-  for (let t = 0; 3 * t < indices.length; ++t) {
-    const [a, b, c] = [0, 1, 2].map((k) => flat(indices[3 * t + k]!)) as [Vector, Vector, Vector];
-    const isAside = (k: 0 | 1) => Math.min(a[k], b[k], c[k]) > reach || Math.max(a[k], b[k], c[k]) < -reach;
-    if (isAside(0) || isAside(1)) continue;
-    const whole = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-    spots.forEach(([x, y], i) => {
-      const [u, v, w] = [
-        ((b[0] - x) * (c[1] - y) - (c[0] - x) * (b[1] - y)) / whole,
-        ((c[0] - x) * (a[1] - y) - (a[0] - x) * (c[1] - y)) / whole,
-        ((a[0] - x) * (b[1] - y) - (b[0] - x) * (a[1] - y)) / whole,
-      ];
-      const depth = u * a[2] + v * b[2] + w * c[2];
-      if (Math.min(u, v, w) >= 0 && depth > nearest[i]!.depth) nearest[i] = { depth, triangle: t };
-    });
-  }
-  return nearest.flatMap(({ triangle }) => (triangle < 0 ? [] : triangle));
-}

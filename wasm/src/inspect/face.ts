@@ -14,7 +14,7 @@ const kBack = 0.9;
 const kBare = 0.25;
 
 /** Both eyes, how far they are apart, and axes to the face's left, up and forward; forward is level. */
-interface FaceFrame {
+export interface FaceFrame {
   left: Vector;
   right: Vector;
   size: number;

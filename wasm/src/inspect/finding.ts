@@ -58,6 +58,7 @@ export type FindingCode =
   | 'eyesUnknown'
   | 'eyesPainted'
   | 'faceSeam'
+  | 'skinBare'
   | 'holeUnexplained'
   | 'segmentInDoubt'
   | 'muchCulled'

@@ -13,6 +13,7 @@ import { checkHoles, type Hole, holesOf, spanPoints } from './holes.js';
 import { withoutIgnored } from './ignored.js';
 import { checkInside, type Inside, insideOf } from './inside.js';
 import { checkNormals, facingOutward, orientationOf } from './normals.js';
+import { checkPatches } from './patch.js';
 import { checkPieces } from './pieces.js';
 import { checkPlacement, type Placement, placementOf } from './placement.js';
 import { reverse } from './reverse.js';
@@ -118,6 +119,7 @@ function outcomeOf(cage: Mesh, whole: Mesh, given: InspectOptions = {}) {
     ...checkFace(scene, landmarks),
     ...checkEyes(scene, segments, landmarks),
     ...checkSeam(scene, segments, landmarks),
+    ...checkPatches(scene, segments, landmarks),
     ...checkSegments(scene, segments, options),
     ...checkHiding(scene, options),
     ...checkPieces(scene, options),
