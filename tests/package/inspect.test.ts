@@ -157,6 +157,29 @@ describe('inspect', () => {
     assert.equal(find(inspect(shellTo(-1), figure, { landmarks: eyes }), 'skinBare'), undefined);
   });
 
+  test('a hand or an ear that stays bare beside painted skin is named', () => {
+    /** A ball stretched along x, around an arm from -4 to 4. */
+    const along = (radius: number, rings: number): Whole => {
+      const one = ball([0, 0, 0], () => 1, rings, rings) as Whole;
+      return { ...one, positions: one.positions.map((x, i) => (i % 3 === 0 ? 4 * radius * x : 0.5 * radius * x)) };
+    };
+    const [arm, sleeve] = [along(1, 48), along(1.1, 32)];
+    const joints = { joint_elbow_left: [0, 0, 0], joint_wrist_left: [2.5, 0, 0] } as const;
+    const short = within(sleeve, (x) => x < 2.6);
+    const { sentence } = find(inspect(short, arm, { landmarks: joints }), 'limbsBare');
+    assert.equal(sentence, 'Bare beside what is painted: left hand');
+    assert.equal(find(inspect(sleeve, arm, { landmarks: joints }), 'limbsBare'), undefined);
+    assert.equal(find(inspect(short, arm, { landmarks: eyes }), 'limbsBare'), undefined);
+    const chosen = inspect(short, arm, { landmarks: joints, parts: { exclude: [0] } });
+    assert.equal(find(chosen, 'limbsBare'), undefined);
+    const ear = { ear_top_left: [1.2, 0.2, 0], ear_lobe_left: [1.2, -0.2, 0] } as const;
+    const both = join3d(
+      skin,
+      ball([1.2, 0, 0], () => 0.2, 12, 24),
+    );
+    assert.match(find(inspect(shellTo(-1), both, { landmarks: ear }), 'limbsBare').sentence, /: left ear$/);
+  });
+
   test('pieces that almost touch are found, with the tolerance that joins them', () => {
     // Each triangle has corners of its own, off by noise.
     const torn: Mesh = {

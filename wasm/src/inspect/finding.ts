@@ -59,6 +59,7 @@ export type FindingCode =
   | 'eyesPainted'
   | 'faceSeam'
   | 'skinBare'
+  | 'limbsBare'
   | 'holeUnexplained'
   | 'segmentInDoubt'
   | 'muchCulled'

@@ -12,6 +12,7 @@ import { checkHiding } from './hiding.js';
 import { checkHoles, type Hole, holesOf, spanPoints } from './holes.js';
 import { withoutIgnored } from './ignored.js';
 import { checkInside, type Inside, insideOf } from './inside.js';
+import { checkLimbs } from './limbs.js';
 import { checkNormals, facingOutward, orientationOf } from './normals.js';
 import { checkPatches } from './patch.js';
 import { checkPieces } from './pieces.js';
@@ -120,6 +121,7 @@ function outcomeOf(cage: Mesh, whole: Mesh, given: InspectOptions = {}) {
     ...checkEyes(scene, segments, landmarks),
     ...checkSeam(scene, segments, landmarks),
     ...checkPatches(scene, segments, landmarks),
+    ...checkLimbs(scene, segments, landmarks),
     ...checkSegments(scene, segments, options),
     ...checkHiding(scene, options),
     ...checkPieces(scene, options),
