@@ -6,6 +6,7 @@ import { CageMaker, type Engine } from '../../../web/src/state/cage-maker';
 import { followPaints } from '../../../web/src/state/follow-paints';
 import { type Fitting, knownLandmarks, madeOf, sampleOf } from '../../../web/src/state/made-cages';
 import { PutAwayLayers } from '../../../web/src/state/put-away-layers';
+import { remedyFor } from '../../../web/src/state/verdict';
 import { tetrahedron } from '../../support/glb';
 import { begin, cageGlb, Gate, paintOf, quiet, until } from './harness';
 
@@ -71,6 +72,9 @@ test('a cage is made for the model, fitted to it, moved, and turned; the page kn
   assert.match(page.notes.note, /^A cage of 4 triangles was made\. Save it/);
   const known = () => Object.keys(knownLandmarks(session.shown!.target, session.shown!.cage)!).join('');
   assert.equal(known(), 'ab', 'the verdict is of a face that was looked for');
+  const remedy = () =>
+    remedyFor({ code: 'faceSeam' } as never, { inward: { share: 0, triangles: [] } }, session, maker);
+  assert.equal(remedy()!.title, 'Fit a template');
   await maker.flip([1]);
   await page.ready();
   assert.deepEqual([...session.shown!.cage.mesh.indices.subarray(3, 6)], [0, 3, 1]);
@@ -87,7 +91,7 @@ test('a cage is made for the model, fitted to it, moved, and turned; the page kn
   await page.ready();
   const { fitting } = madeOf(file())!;
   assert.deepEqual([fitting!.given, fitting!.template, fitting], [{ a: [1, 2, 3] }, 'human-head', page.fitting]);
-  assert.deepEqual([maker.isMade, known()], [false, 'abcdef']);
+  assert.deepEqual([maker.isMade, known(), remedy()], [false, 'abcdef', undefined]);
   session.reportInspection({ verdict: 'usable', findings: [] } as never);
   assert.equal(page.notes.missing, 'Landmarks that were not found: nose tip, left ear lobe.');
   const changed = await maker.change({ positions: session.shown!.cage.mesh.positions.map((x) => 2 * x) });

@@ -122,6 +122,12 @@ export class CageMaker extends Emitter<{
     return this.#run('Fitting a template', (context) => this.#fit(context, template, given));
   }
 
+  /** Fits the template that the current target likely needs. */
+  fitLikely(): Promise<void> {
+    const { target } = this.#session.shown!;
+    return this.fit(likelyTemplate(target.mesh.positions, namesIn(target)));
+  }
+
   /**
    * The cage of a model that is opened alone, as `chooseCage` chooses it. Another call, or the end of the request, ends it.
    * @throws Error that names the model.

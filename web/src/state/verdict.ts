@@ -62,6 +62,9 @@ const kMovable: readonly Finding['code'][] = [
   'cageInsideTarget',
 ];
 
+/** Findings about a made cage that a template has not, or asks about. */
+const kFittable: readonly Finding['code'][] = ['faceSeam', 'eyesUnknown'];
+
 /** What can be done about a finding. */
 export function remedyFor(
   { code, ignore, numbers }: Finding,
@@ -72,6 +75,7 @@ export function remedyFor(
   // A cage that was moved in vain would be moved in vain again.
   if (kMovable.includes(code) && !maker.refusedToMove && !maker.isFresh)
     return { title: 'Move the cage', run: () => maker.move() };
+  if (kFittable.includes(code) && maker.isMade) return { title: 'Fit a template', run: () => maker.fitLikely() };
   if (code === 'normalsInward') return { title: 'Turn its triangles', run: () => maker.flip(inward.triangles) };
   if (code === 'piecesApart')
     return { title: 'Join pieces', run: () => session.setRules({ weldTolerance: numbers['weldTolerance'] as number }) };
