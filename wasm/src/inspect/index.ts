@@ -32,7 +32,7 @@ export { verdictOf };
 export interface InspectOptions extends TransferOptions {
   /** The result of `transfer` for the same arguments, if it was called already. */
   result?: TransferResult | undefined;
-  /** Spots of the target, as its made or fitted cage has them: with the centres of both eyes, a bare face is a finding. */
+  /** Spots of the target, as its made or fitted cage has them. By them face, eyes, hands and ears are looked at. */
   landmarks?: Spots | undefined;
 }
 
