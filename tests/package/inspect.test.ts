@@ -113,6 +113,9 @@ describe('inspect', () => {
     const { locks } = find(inspect(shell, eyed, { landmarks: eyes }), 'eyesPainted');
     assert.deepEqual(locks, { 1: 'exclude', 2: 'exclude' });
     assert.deepEqual(codes(inspect(shell, eyed, { landmarks: eyes, locks })), []);
+    // What is one part with the skin cannot be kept bare by its name.
+    const fused = { ...eyed, groups: new Uint32Array(eyed.groups.length) };
+    assert.equal(find(inspect(shell, fused, { landmarks: eyes }), 'eyesPainted').locks, undefined);
   });
 
   test('a seam down the face keeps a cage from being good, one behind does not', () => {

@@ -8,8 +8,8 @@ import { placeOfSegment, type Segment } from './segments.js';
 const kIris = 0.06;
 /** The share of these spots from which on an eye counts as painted. */
 const kPainted = 0.5;
-/** A segment of less area, in squares of the distance of the eyes, is an eye or a part of one, and no skin. */
-const kEyeArea = 2;
+/** A part of less area, in squares of the distance of the eyes, is an eye or both, and no skin. */
+const kEyeArea = 4;
 /** Landmarks that only figures and heads have. */
 const kOfFigures = ['joint_head', 'nose_tip', 'chin'];
 
@@ -37,7 +37,9 @@ export function checkEyes(scene: Scene, segments: readonly Segment[], landmarks:
   const vertices = painted.flatMap((all) => [...all]).map((t) => target.indices[3 * t]!);
   const own = [...new Set(vertices.map((v) => result.segments[v]!))];
   const part = parts[partsOf(parts, areas.length)[vertices[0]!]!]?.name ?? '';
-  const isSmall = own.every((s) => segments[s]!.area < kEyeArea * size ** 2);
+  const groups = own.map((s) => segments[s]!.group);
+  const ofThem = segments.reduce((sum, { group, area }) => (groups.includes(group) ? sum + area : sum), 0);
+  const isSmall = ofThem < kEyeArea * size ** 2;
   return [
     {
       code: 'eyesPainted',
