@@ -27,10 +27,20 @@ test('without a command it shows its help and exits 2', async () => {
   assert.match(stderr, /Usage: cagecast/);
 });
 
-test('every command has --json and --quiet', async () => {
+test('every command has --json and --quiet, and the flags that docs/cli.md lists', async () => {
   const names = await commands();
   assert.deepEqual(names, ['transfer', 'inspect', 'bake', 'relay', 'make', 'fit', 'batch', 'diff', 'thumbnail']);
-  for (const name of names) assert.match(await ok(`help ${name}`), /--json .*\n +--quiet /, name);
+  const page = readFileSync(inRepository('docs/cli.md'), 'utf8').split(/^## /m);
+  const sectionOf = (heading: string) => page.find((one) => one.toLowerCase().startsWith(`${heading}\n`))!;
+  for (const name of names) {
+    const help = await ok(`help ${name}`);
+    assert.match(help, /--json .*\n +--quiet /, name);
+    const own = sectionOf(`cagecast ${name}`);
+    const links = /^Also: .*$/m.exec(own)![0].matchAll(/\[([^\]]*)\]/g);
+    const listed = [own, ...[...links].map(([, heading]) => sectionOf(heading!))].join('');
+    const taken = help.match(/(?<=^ {2}(-\w, )?)--(?!help)[\w-]+/gm)!;
+    assert.deepEqual(listed.match(/(?<=^\| `(-\w, )?)--[\w-]+/gm)!.sort(), taken.sort(), name);
+  }
 });
 
 // A space at the end, or two, is an empty argument.

@@ -96,7 +96,7 @@ export function addBakeCommand(program: Command, io: Io): void {
       ),
     )
     .addOption(common.bordersFlag());
-  common.addFlags(command, 'What is painted', 'How files are read', 'What is printed');
+  common.addFlags(command, 'What counts', 'What is painted', 'How files are read', 'What is printed');
   command.addHelpText('after', kHelp).action((target: string, flags: BakeFlags) => {
     const { texture: paint } = flags;
     const around = common.aroundOf(flags, target);

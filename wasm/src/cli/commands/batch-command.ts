@@ -89,14 +89,7 @@ export function addBatchCommand(program: Command, io: Io): void {
         common.wholeNumberWithin(1, 999),
       ),
     );
-  common.addFlags(
-    command,
-    'What is written',
-    'What is painted',
-    'Part of the cage',
-    'How files are read',
-    'What is printed',
-  );
+  common.addFlags(command, ...common.transferGroups);
   command.addHelpText('after', kHelp).action((targets: string[], flags: BatchFlags) => runBatch(targets, flags, io));
 }
 

@@ -100,7 +100,6 @@ const kCageFileFlags = [
     endingIn('.glb'),
   ).makeOptionMandatory(),
   htmlFlag(),
-  ...kPartFlags,
 ];
 
 const kThreshold = optionValues.find(({ name }) => name === 'threshold')!;
@@ -117,7 +116,6 @@ const kSettingFlags = [
     `set another option, as in code: ${kOthers.map(({ name, standard }) => `${name} (default: ${standard})`).join(', ')}; may be repeated`,
     optionOf,
   ),
-  ...kPartFlags,
   parsed(
     '--mask <KIND=SOURCE>',
     "paint by a mask in TARGET's own UVs: never=IMAGE never where it is white, always=IMAGE there, whatever the rules say; colors=ATTRIBUTE, such as COLOR_0, never red vertices, always green ones; may be repeated",
@@ -167,12 +165,23 @@ const kPrintFlags = [new Option('--json', 'print JSON'), new Option('--quiet', '
 /** Groups of flags, by their heading in the help. */
 const kGroups = {
   'What is written': kOutputFlags,
+  'What counts': kPartFlags,
   'What is painted': kSettingFlags,
   'Part of the cage': kCageFlags,
   'Cages that are written': kCageFileFlags,
   'How files are read': kReadFlags,
   'What is printed': kPrintFlags,
 };
+
+/** Groups of the commands that transfer; `inspect` has all but the first. */
+export const transferGroups = [
+  'What is written',
+  'What counts',
+  'What is painted',
+  'Part of the cage',
+  'How files are read',
+  'What is printed',
+] as const;
 
 /** Adds groups of flags, after the flags that a command has for itself. */
 export function addFlags(command: Command, ...headings: (keyof typeof kGroups)[]): Command {

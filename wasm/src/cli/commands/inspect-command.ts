@@ -28,7 +28,7 @@ export function addInspectCommand(program: Command, io: Io): void {
   const command = addTarget(program.command('inspect'))
     .description('check whether the cage fits TARGET; print a verdict, reasons and advice')
     .addOption(common.htmlFlag());
-  common.addFlags(command, 'What is painted', 'Part of the cage', 'How files are read', 'What is printed');
+  common.addFlags(command, ...common.transferGroups.slice(1));
   command
     .addHelpText(
       'after',

@@ -73,14 +73,7 @@ export function addTransferCommand(program: Command, io: Io): void {
       ),
     )
     .addOption(new Option('--report <R.json>', 'counts, areas, segments and timings as JSON'));
-  common.addFlags(
-    command,
-    'What is written',
-    'What is painted',
-    'Part of the cage',
-    'How files are read',
-    'What is printed',
-  );
+  common.addFlags(command, ...common.transferGroups);
   command.addHelpText('after', kHelp).action((target: string, flags: TransferFlags) => {
     const { texture, output, report, uvBounds, referenceCage, region: regions } = flags;
     const around = common.aroundOf(flags, target);
