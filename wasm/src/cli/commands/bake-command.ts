@@ -54,10 +54,10 @@ const kMinAtlas = 64;
 /** What its help says after the flags. */
 const kHelp = `
 A part is not painted if its material has no texture, or its UVs are not an unwrapping; the summary says which. Where UVs
-overlap, as those of mirrored halves do, the part that comes first has the texels. Overlays of an earlier transfer are taken away.
+overlap, as of mirrored halves, the first part has the texels. Overlays of an earlier transfer are taken away.
 
-With --atlas, materials that differ only by textures and factors become one. Materials keep their own textures if UVs leave 0..1, so that
-the texture repeats, and if extensions may refer to them, as those of VRM 0 and MToon do; the summary says which.
+With --atlas, materials that differ only by textures and factors become one. Those whose UVs leave 0..1, or whose extensions may refer
+to textures (VRM 0, MToon), keep their own; the summary says which.
 
 Examples:
   cagecast bake head.glb --cage cage.glb --texture paint.png --normal scales.png --size 2048 -o painted.glb
@@ -96,7 +96,7 @@ export function addBakeCommand(program: Command, io: Io): void {
       ),
     )
     .addOption(common.bordersFlag());
-  common.addFlags(command, 'What counts', 'What is painted', 'How files are read', 'What is printed');
+  common.addFlags(command, 'Parts', 'Painting', 'Reading', 'Printing');
   command.addHelpText('after', kHelp).action((target: string, flags: BakeFlags) => {
     const { texture: paint } = flags;
     const around = common.aroundOf(flags, target);

@@ -83,7 +83,7 @@ export function addCageCommands(program: Command, io: Io): void {
         common.numberWithin(...kClosingRange),
       ),
     );
-  common.addFlags(make, 'Cages that are written', 'What counts', 'How files are read', 'What is printed');
+  common.addFlags(make, 'Cage file', 'Parts', 'Reading', 'Printing');
   make
     .addHelpText(
       'after',
@@ -108,7 +108,7 @@ Example: cagecast make head.glb --exclude visor --keep 'hair*' --triangles 800 -
       'landmarks of the model that TEMPLATE was made for (default: those in the file, as extras.landmarks)',
     )
     .option('--landmarks <L.json>', 'landmarks of TARGET; they override those that are found');
-  common.addFlags(fit, 'Cages that are written', 'What counts', 'How files are read', 'What is printed');
+  common.addFlags(fit, 'Cage file', 'Parts', 'Reading', 'Printing');
   fit
     .addHelpText(
       'after',

@@ -87,10 +87,10 @@ export const htmlFlag = (): Option => parsed('--html <REPORT.html>', 'a page wit
 const kPartFlags = [
   parsed(
     '--keep <NAME>',
-    'paint parts of this node, mesh or material wherever the cage covers them, whatever rules and names say. The whole name; * matches any text, case does not matter; a node that holds others means all below it; may be repeated',
+    'paint parts of this node, mesh or material wherever the cage covers them, whatever rules and names say. The whole name, in any case; * matches any text; a node that holds others means all below it; may be repeated',
     oneMore,
   ),
-  parsed('--exclude <NAME>', 'never paint parts of this node, mesh or material; as --keep', oneMore),
+  parsed('--exclude <NAME>', 'never paint parts of this name; as --keep', oneMore),
 ];
 
 const kCageFileFlags = [
@@ -142,7 +142,7 @@ const kCageFlags = [
 const kReadFlags = [
   parsed(
     '--ignore <NAME>',
-    'leave parts of TARGET out, as if they were not there: nodes, meshes or materials of this name; as --keep. What a viewer does not draw is left out, too, as are cages, markers and collision shapes, by their names, unless --keep names them',
+    'leave parts of this name out, as if they were not there; as --keep. What a viewer does not draw is left out, too, as are cages, markers and collision shapes, by their names, unless --keep names them',
     oneMore,
   ),
   new Option(
@@ -164,24 +164,17 @@ const kPrintFlags = [new Option('--json', 'print JSON'), new Option('--quiet', '
 
 /** Groups of flags, by their heading in the help. */
 const kGroups = {
-  'What is written': kOutputFlags,
-  'What counts': kPartFlags,
-  'What is painted': kSettingFlags,
+  Output: kOutputFlags,
+  Parts: kPartFlags,
+  Painting: kSettingFlags,
   'Part of the cage': kCageFlags,
-  'Cages that are written': kCageFileFlags,
-  'How files are read': kReadFlags,
-  'What is printed': kPrintFlags,
+  'Cage file': kCageFileFlags,
+  Reading: kReadFlags,
+  Printing: kPrintFlags,
 };
 
 /** Groups of the commands that transfer; `inspect` has all but the first. */
-export const transferGroups = [
-  'What is written',
-  'What counts',
-  'What is painted',
-  'Part of the cage',
-  'How files are read',
-  'What is printed',
-] as const;
+export const transferGroups = ['Output', 'Parts', 'Painting', 'Part of the cage', 'Reading', 'Printing'] as const;
 
 /** Adds groups of flags, after the flags that a command has for itself. */
 export function addFlags(command: Command, ...headings: (keyof typeof kGroups)[]): Command {

@@ -36,7 +36,7 @@ export function addDiffCommand(program: Command, io: Io): void {
         )
         .default(0.01),
     );
-  common.addFlags(command, 'What is printed');
+  common.addFlags(command, 'Printing');
   command
     .addHelpText(
       'after',

@@ -68,7 +68,7 @@ export function addRelayCommand(program: Command, io: Io): void {
         common.wholeNumberWithin(1, mostTexels, ' of texels'),
       ),
     );
-  common.addFlags(command, 'What counts', 'What is painted', 'How files are read', 'What is printed');
+  common.addFlags(command, 'Parts', 'Painting', 'Reading', 'Printing');
   command.addHelpText('after', kHelp).action((target: string, flags: RelayFlags) => {
     const { texture: paint } = flags;
     const around = common.aroundOf(flags, target);

@@ -90,7 +90,7 @@ export function addThumbnailCommand(program: Command, io: Io): void {
     )
     .option('--cage <CAGE>', 'the same by a cage around it')
     .addOption(common.parsed('--background <COLOR>', 'as #rrggbb (default: transparent; white in a JPEG)', colorOf));
-  common.addFlags(command, 'How files are read', 'What is printed');
+  common.addFlags(command, 'Reading', 'Printing');
   command.addHelpText('after', kHelp).action((patterns: string[], flags: ThumbnailFlags) => {
     const { output, part, cage } = flags;
     const fault = placeholderFault(output);
