@@ -4,12 +4,11 @@ import { cageGlb } from '../cages/cage-glb.js';
 import type { Cage, Landmarks } from '../cages/types.js';
 import { show } from '../core/error.js';
 import { turnedBack } from '../inspect/backward.js';
-import { groupsNamed } from '../parts/drawn.js';
 import { moveApart } from '../parts/own-cages.js';
-import { bareNames } from '../parts/template-extras.js';
-import { partNamesOf, templateOf } from './cage-file.js';
-import { type Extracted, extract, namedParts, type Part, partOf, primitivePath, uvLayout } from './extract-file.js';
-import { InputError } from './input-error.js';
+import { extrasIn, partsWithout, templateOf } from '../scene/cage-model.js';
+import { type Extracted, extract, namedParts, type Part, partOf, primitivePath, uvLayout } from '../scene/extract.js';
+import { InputError } from '../scene/input-error.js';
+import type { SceneSource } from '../scene/source.js';
 import { type GltfFile, openGltf } from './open-gltf.js';
 
 /** A file, and all triangles of its scene. */
@@ -54,9 +53,8 @@ export function besideOf({ extracted: { origin } }: ReadModel, cage: ReadModel):
 
 /** The parts of a target that stay bare by name: things a figure wears, and parts excluded when the cage was made. */
 export function bareParts({ file, extracted: { parts, accessories } }: ReadModel, cage: ReadModel): number[] {
-  const { meshes, nodes } = cage.file.json;
-  const extras = cage.extracted.parts.flatMap(({ mesh, node }) => [meshes![mesh]!.extras, nodes![node]!.extras]);
-  return [...new Set([...accessories, ...groupsNamed(bareNames(extras), partNamesOf(file, parts))])];
+  const extras = extrasIn(cage.file, cage.extracted.parts);
+  return [...new Set([...accessories, ...partsWithout(file, parts, extras)])];
 }
 
 /**
@@ -90,7 +88,7 @@ export const turned = ({ file, extracted }: ReadModel): ReadModel => ({
 
 /** A model whose parts have names. */
 export interface Named {
-  file: GltfFile;
+  file: SceneSource;
   extracted: Pick<Extracted, 'parts'> & Partial<Extracted>;
 }
 

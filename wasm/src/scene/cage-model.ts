@@ -72,15 +72,10 @@ export async function cageModelOf(
   extracted: Extracted,
   decode: ImageCodec['decode'] | undefined,
 ): Promise<CageModel> {
-  const colors = decode && (await baseColorsOf(new Materials(source, extracted.parts), decode));
-  return { ...shapeOf(source, extracted), ...colors };
-}
-
-/** The same without colours. */
-export function shapeOf(source: SceneSource, extracted: Extracted): CageModel {
   const { mesh, parts } = extracted;
   const morphs = morphedParts(source, parts, mesh.positions);
-  return cageModelWith(mesh, partNamesOf(source, parts), skeletonOf(source, extracted), morphs);
+  const shape = cageModelWith(mesh, partNamesOf(source, parts), skeletonOf(source, extracted), morphs);
+  return { ...shape, ...(decode && (await baseColorsOf(new Materials(source, parts), decode))) };
 }
 
 /** The names of each part; see-through ones are called glass besides. */

@@ -1,7 +1,7 @@
 import { createHash } from 'node:crypto';
 import { existsSync, readFileSync, statSync } from 'node:fs';
 import { basename, dirname, extname } from 'node:path';
-import { firstLine, InputError, naming } from '../../gltf/input-error.js';
+import { firstLine, InputError, naming } from '../../scene/input-error.js';
 import { filesBeside } from '../io/beside.js';
 import { readBytes, standard } from '../io/files.js';
 import { filesOf } from '../io/glob.js';

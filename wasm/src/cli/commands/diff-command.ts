@@ -1,8 +1,8 @@
 import { readdir } from 'node:fs/promises';
 import { join } from 'node:path';
 import type { Command } from 'commander';
-import { InputError, naming } from '../../gltf/input-error.js';
 import { counted, isWorse, percent } from '../../inspect/finding.js';
+import { InputError, naming } from '../../scene/input-error.js';
 import { isFolder, listingError } from '../io/files.js';
 import type { Io } from '../io/io.js';
 import { kExit } from '../model/failures.js';

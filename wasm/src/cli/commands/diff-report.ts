@@ -1,5 +1,5 @@
-import { InputError, naming } from '../../gltf/input-error.js';
 import { kVerdicts } from '../../inspect/finding.js';
+import { InputError, naming } from '../../scene/input-error.js';
 import { readBytes } from '../io/files.js';
 import { isObject, parseObject } from '../model/json.js';
 import { shown } from '../model/text.js';

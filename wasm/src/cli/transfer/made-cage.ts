@@ -2,12 +2,10 @@ import { CagecastError, init as initCore } from '../../api/index.js';
 import { type Choice, choose } from '../../cages/choose.js';
 import { findLandmarks, fitCage, init, makeCage } from '../../cages/sync.js';
 import type { Cage, CageModel, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../../cages/types.js';
-import { FileModel } from '../../gltf/bake/bake-file.js';
-import { baseColorsOf } from '../../gltf/bake/base-colors.js';
-import { cageModelOf } from '../../gltf/cage-file.js';
-import { InputError } from '../../gltf/input-error.js';
 import type { ReadModel } from '../../gltf/read-model.js';
 import { inspect } from '../../inspect/index.js';
+import { cageModelOf } from '../../scene/cage-model.js';
+import { InputError } from '../../scene/input-error.js';
 import { decodeImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 
@@ -30,10 +28,8 @@ export async function landmarksOf(model: ReadModel, io: Io): Promise<Landmarks> 
 }
 
 /** A model with base colours, as far as their images can be read. */
-async function cageModelWithColors({ file, extracted }: ReadModel): Promise<CageModel> {
-  const colors = await baseColorsOf(new FileModel(file, extracted.parts), decodeImage);
-  return { ...cageModelOf(file, extracted), ...colors };
-}
+const cageModelWithColors = ({ file, extracted }: ReadModel): Promise<CageModel> =>
+  cageModelOf(file, extracted, decodeImage);
 
 /** A template, landmarks of the model (none if there is no file of them), and the files that they come from. */
 interface FitSources {

@@ -1,4 +1,3 @@
-import type { GltfFile } from '../../gltf/open-gltf.js';
 import type { ReadModel } from '../../gltf/read-model.js';
 import { partsNamed } from '../../gltf/read-model.js';
 import type { WhichCount } from '../../scene/extract.js';
@@ -26,7 +25,7 @@ export function readTarget(
 export function allBut({ ignored, names }: Pick<Rules, 'ignored' | 'names'>): Exclude<WhichCount, 'cage'> {
   return (parts, source) => {
     const out = new Set<number>();
-    const all = { file: source as GltfFile, extracted: { parts: [...parts] } };
+    const all = { file: source, extracted: { parts: [...parts] } };
     const kept = new Set(names.flatMap(({ lock, pattern }) => (lock === 'keep' ? partsNamed(pattern, all) : [])));
     for (const rule of ignored) {
       const found = partsNamed(rule.pattern, all);

@@ -8,12 +8,12 @@ import {
   transfer,
 } from '../../api/index.js';
 import type { Cage } from '../../cages/types.js';
-import { FileModel } from '../../gltf/bake/bake-file.js';
 import { masksOf } from '../../gltf/bake/mask-sources.js';
-import { naming } from '../../gltf/input-error.js';
 import { bareParts, besideOf, movedApart, type ReadModel, readBack, turned, withUvs } from '../../gltf/read-model.js';
 import { isBackward } from '../../inspect/backward.js';
 import { boxOf } from '../../inspect/geometry.js';
+import { naming } from '../../scene/input-error.js';
+import { Materials } from '../../scene/materials.js';
 import { readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import type { ReadOptions } from '../model/reading.js';
@@ -122,7 +122,7 @@ async function readMasks(
     ),
   );
   const images = never || always ? { never: neverImage, always: alwaysImage } : undefined;
-  return naming(file.path, () => masksOf(new FileModel(file, extracted.parts), undefined, { images, colors }));
+  return naming(file.path, () => masksOf(new Materials(file, extracted.parts), undefined, { images, colors }));
 }
 
 /** Transfers from a cage to a target that are read. @throws {InputError} that names the file at fault. */

@@ -8,16 +8,15 @@ import type { BakeModel } from './plan.js';
 
 /** A file whose materials are painted. What is painted goes to a writer of the file. */
 export class FileModel extends Materials implements BakeModel {
-  readonly #writer: GlbWriter | undefined;
+  readonly #writer: GlbWriter;
 
-  /** @param writer  Without one, nothing can be replaced. */
-  constructor(file: GltfFile, parts: readonly Part[], writer?: GlbWriter) {
-    super(file, parts, writer?.json);
+  constructor(file: GltfFile, parts: readonly Part[], writer: GlbWriter) {
+    super(file, parts, writer.json);
     this.#writer = writer;
   }
 
   replace(materials: readonly number[], slot: Slot, bytes: Uint8Array, use: TextureUse): void {
-    const [json, writer] = [this.json, this.#writer!];
+    const [json, writer] = [this.json, this.#writer];
     const before = json.textures![use.texture]!;
     const isOwn = infoOf(this.material(materials[0]!), slot) !== undefined;
     const name = before.name ?? json.images?.[sourceOf(before) ?? -1]?.name ?? 'painted';

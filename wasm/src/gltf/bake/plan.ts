@@ -12,8 +12,6 @@ import { preparePiece } from '../primitive-group.js';
 
 const kindOf: Record<Slot, Kind> = { color: 'color', normal: 'normal', orm: 'data' };
 
-export type { ImageCodec };
-
 /** A model whose materials can be painted. */
 export interface BakeModel extends Materials {
   /** Gives materials a new texture in a slot, a file with the factor in it. @param use  Whose UVs and wrap modes it has. */

@@ -13,11 +13,9 @@ import {
 import type { Template } from '../../cages/types.js';
 import type { Vector } from '../../inspect/geometry.js';
 import { landmarksMoved, moved } from '../../parts/origin.js';
-import { FileModel } from '../bake/bake-file.js';
-import { baseColorsOf } from '../bake/base-colors.js';
-import type { ImageCodec } from '../bake/plan.js';
-import { cageModelOf, templateOf } from '../cage-file.js';
-import { extract } from '../extract-file.js';
+import { cageModelOf, templateOf } from '../../scene/cage-model.js';
+import { extract } from '../../scene/extract.js';
+import type { ImageCodec } from '../../scene/materials.js';
 import { hostDecode } from '../host-decode.js';
 import { openGltf } from '../open-gltf.js';
 import { type ReadModel, withUvs } from '../read-model.js';
@@ -53,8 +51,7 @@ export async function fitTo(
     onProgress: (share: number, stage: string) => onProgress?.(kFitted * share, stage),
     parts: { keep: kept, exclude: excluded },
   };
-  const colors = decode && (await baseColorsOf(new FileModel(file, extracted.parts), decode));
-  const read = { ...cageModelOf(file, extracted), ...colors };
+  const read = await cageModelOf(file, extracted, decode);
   const back = origin.map((x) => -x) as unknown as Vector;
   const cageBack = (cage: Cage): Cage => ({
     ...moved(cage, back),

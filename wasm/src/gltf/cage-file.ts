@@ -1,1 +1,0 @@
-export { partNamesOf, shapeOf as cageModelOf, skeletonOf, templateOf } from '../scene/cage-model.js';
