@@ -17,6 +17,8 @@ import { frameOf, type Score, scoreOf } from './score.js';
 /** A row of the table. Without a verdict, `failed` says why. */
 export interface Row extends Score {
   verdict?: string;
+  /** What `auto` came to. */
+  template?: string;
   failed?: string;
   /** Processor time of making or fitting. */
   seconds?: number;
@@ -111,7 +113,8 @@ try {
   const before = process.cpuUsage();
   const [what, template] = door.split(' ') as [string, string?];
   const options = template ? ['--template', template] : [];
-  row.verdict = JSON.parse(await command(what, file, ...options, '-o', cage, '--json')).verdict;
+  const report = JSON.parse(await command(what, file, ...options, '-o', cage, '--json'));
+  [row.verdict, row.template] = [report.verdict, report.template];
   const { user, system } = process.cpuUsage(before);
   row.seconds = (user + system) / 1e6;
   writeFileSync(`${to}.paint.png`, loudPaint());

@@ -39,6 +39,6 @@ export interface Avatar {
 export const avatars = (): Avatar[] =>
   JSON.parse(readFileSync(new URL('avatars.json', import.meta.url), 'utf8')) as Avatar[];
 
-/** The doors: a command, and the template of a fit. */
-export const kDoors = ['fit human-head', 'fit human-body', 'make'] as const;
+/** The doors: a command, and the template of a fit; `auto` comes to one of the others. */
+export const kDoors = ['fit human-head', 'fit human-body', 'make', 'fit auto'] as const;
 export type Door = (typeof kDoors)[number];

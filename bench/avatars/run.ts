@@ -54,18 +54,23 @@ function sumsOf(all: readonly Avatar[], rows: Rows): string {
   return table(['Faces right', ...kDoors], lines);
 }
 
-/** How many of each verdict ship by eye, of those that were looked at. */
+/** How many of each door, and of each verdict, ship by eye, of those that were looked at. */
 function verdictsOf(all: readonly Avatar[], rows: Rows): string {
   const seen = all.flatMap(({ file, ships }) =>
     kDoors.flatMap((door) => {
-      const { verdict } = rows[file]?.[door] ?? {};
-      return ships && verdict ? [{ verdict, isShipped: ships.includes(door) }] : [];
+      const { verdict, template } = rows[file]?.[door] ?? {};
+      const same = template === undefined ? door : template === 'made' ? 'make' : (`fit ${template}` as Door);
+      return ships && verdict ? [{ door, verdict, isShipped: ships.includes(same) }] : [];
     }),
   );
+  const shipped = kDoors.map((door) => {
+    const own = seen.filter((one) => one.door === door);
+    return `${own.filter(({ isShipped }) => isShipped).length} of ${own.length}`;
+  });
   const count = (verdict: string, isShipped: boolean): string =>
     `${seen.filter((one) => one.verdict === verdict && one.isShipped === isShipped).length}`;
   const lines = ['good', 'usable', 'unfit'].map((verdict) => [verdict, count(verdict, true), count(verdict, false)]);
-  return table(['Verdict', 'Ships', 'Does not'], lines);
+  return `${table(['Ships by eye', ...kDoors], [['', ...shipped]])}\n${table(['Verdict', 'Ships', 'Does not'], lines)}`;
 }
 
 /** @param half  The half whose avatars are shown one by one. */
