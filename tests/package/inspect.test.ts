@@ -114,7 +114,7 @@ describe('inspect', () => {
     assert.deepEqual(locks, { 1: 'exclude', 2: 'exclude' });
     assert.deepEqual(codes(inspect(shell, eyed, { landmarks: eyes, locks })), []);
     // What is one part with the skin cannot be kept bare by its name.
-    const fused = { ...eyed, groups: new Uint32Array(eyed.groups.length) };
+    const fused = { ...eyed, groups: new Uint32Array(eyed.groups!.length) };
     assert.equal(find(inspect(shell, fused, { landmarks: eyes }), 'eyesPainted').locks, undefined);
   });
 
