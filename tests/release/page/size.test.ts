@@ -23,9 +23,10 @@ test('all scripts of the page are at most 485 KB gzipped, without the cage modul
   const scripts = readdirSync(kPage, { recursive: true, withFileTypes: true })
     .filter(({ name }) => name.endsWith('.js'))
     .map(({ parentPath, name }) => ({ name, script: readFileSync(path.join(parentPath, name)) }));
-  // By what it is, as other scripts may have its name: what makes cages starts this thread.
+  // By content, as other scripts may have its name. It starts two threads: one makes cages, one inspects them.
   const isCageModule = ({ name, script }: (typeof scripts)[number]) =>
-    /^cages-(sync|thread)-/.test(name) || (name.startsWith('cages-') && script.includes('cages-thread-'));
+    /^(cages-(sync|thread)|worker-thread)-/.test(name) ||
+    (name.startsWith('cages-') && script.includes('cages-thread-'));
   // What opens FBX, OBJ, PLY, STL and USD loads when such a file is opened.
   const isOfFormats = ({ name }: (typeof scripts)[number]) =>
     /^((FBX|OBJ|MTL|PLY|STL|USD)Loader|formats-thread|fflate)/.test(name);
@@ -33,8 +34,8 @@ test('all scripts of the page are at most 485 KB gzipped, without the cage modul
   const cages = scripts.filter(isCageModule);
   assert.equal(
     cages.length,
-    3,
-    `the cage module, and with and without its thread: ${cages.map(({ name }) => name).join(', ')}`,
+    4,
+    `the cage module, with and without its thread, and what inspects cages: ${cages.map(({ name }) => name).join(', ')}`,
   );
   const total = sum(scripts.filter((one) => !isCageModule(one) && !isOfFormats(one)));
   assert.ok(total > 100_000, 'they were found');
