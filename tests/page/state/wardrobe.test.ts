@@ -1,6 +1,5 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { noteMade } from '../../../web/src/state/made-cages';
 import type { Model } from '../../../web/src/state/model';
 import type { SplitProjection } from '../../../web/src/state/transfers';
 import type { Avatar, Entry, Figure } from '../../../web/src/state/wardrobe/avatar';
@@ -35,11 +34,6 @@ async function wardrobe() {
       await fits.wait(signal);
       if (name === refused) throw new Error('the cage does not fit');
       return copyOf(name.replace('.', '-cage.'), cage);
-    },
-    async choose({ name }, { signal }) {
-      await fits.wait(signal);
-      if (name === refused) throw new Error('no cage can be made');
-      return fileOf(name.replace('.', '-own-cage.'), 4, 9);
     },
     view,
     errors: { show: (text) => errors.splice(0, errors.length, text), add: (text) => errors.push(text) },
@@ -123,22 +117,6 @@ test('avatars are read one after the other, get the cage on the stage, and stand
   assert.equal(page.session.view.mode, 'result', 'one divider across all would hide more than it shows');
   page.all.remove(page.named('two'));
   assert.deepEqual(page.loader.disposed, ['two.glb']);
-});
-
-test('each gets a cage of its own, as if it was opened alone, where nobody chose the one on the stage, or that does not fit', async () => {
-  const page = await wardrobe();
-  page.refuse('two.glb');
-  await page.add('two');
-  assert.deepEqual(page.errors, ['two: the cage does not fit', 'two: no cage can be made']);
-  assert.equal(page.named('two').cage, undefined);
-  page.refuse('');
-  const chosen = fileOf('chosen.glb', 4, 9);
-  noteMade(chosen, { target: page.session.shown!.target.files[0]!, fitting: undefined });
-  page.session.request({ cage: page.loader.load(chosen) });
-  await page.ready();
-  await page.add('three');
-  const { cage, follows, takesPaint, verdict } = page.named('three');
-  assert.deepEqual([cage!.name, follows, takesPaint, verdict], ['three-own-cage.glb', false, true, 'good']);
 });
 
 test('twelve are taken; more are refused by name, and find room when one is removed', async () => {

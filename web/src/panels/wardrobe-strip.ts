@@ -6,7 +6,6 @@ import { fitLike } from '../loading/fit-like';
 import { TransferClient } from '../loading/transfer-client';
 import { download } from '../platform/download';
 import { addError, announce, element, showError } from '../platform/page';
-import type { CageMaker } from '../state/cage-maker';
 import type { Loader } from '../state/model';
 import type { Sample } from '../state/sample';
 import type { Session } from '../state/session';
@@ -20,8 +19,6 @@ import { WardrobeStage } from '../view/wardrobe/wardrobe-stage';
 export interface WardrobePage {
   session: Session;
   loader: Loader;
-  /** Chooses cages. */
-  maker: Pick<CageMaker, 'choose'>;
   viewer: Viewer;
   stack: LayerStack;
   /** The composite of the layers. */
@@ -68,7 +65,7 @@ export class WardrobeStrip {
   readonly #cards = new Map<Avatar, HTMLLIElement>();
 
   constructor(page: WardrobePage) {
-    const { session, viewer, paint, loader, stack, maker } = page;
+    const { session, viewer, paint, loader, stack } = page;
     this.#page = page;
     this.#stage = new WardrobeStage(session, viewer, paint, () => this.#wardrobe.arrange());
     this.#wardrobe = new Wardrobe({
@@ -76,7 +73,6 @@ export class WardrobeStrip {
       loader,
       transferer: new TransferClient(),
       fit: fitLike,
-      choose: (model, progress) => maker.choose(model, progress),
       view: this.#stage,
       errors: { show: showError, add: addError },
     });

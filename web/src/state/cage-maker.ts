@@ -140,28 +140,24 @@ export class CageMaker extends Emitter<{
       this.#session.reportLoading(kStages[step] ?? 'Fitting a cage', share);
     const options = { signal: abort.signal, onProgress: report };
     try {
-      return await this.#workshop.loader.load(await this.choose(target, options));
+      const engine = await this.#workshop.engine();
+      const model = await cageModel(target.loaded);
+      const { options: chosen, marks } = this.#choicesFor(model);
+      const choice = await engine.chooseCage({ ...model, marks }, { ...chosen, ...options });
+      const { cage, template, fit } = choice;
+      noteFound(target, cage.landmarks);
+      const how =
+        fit && template !== 'made'
+          ? { note: kFitted, fitting: { ...fit, template, given: {} } }
+          : { note: noteOfMade(cage), fitting: undefined, isNew: true };
+      const file = new File([engine.cageGlb({ ...cage, origin: originOf(target) })], cageNameFrom(target.name));
+      noteMade(file, { target: target.files[0]!, ...how });
+      return await this.#workshop.loader.load(file);
     } catch (error) {
       throw new Error(`${target.name}: ${reasonOf(error)}`, { cause: error });
     } finally {
       if (this.#opening === abort) this.#opening = undefined;
     }
-  }
-
-  /** The cage that `chooseCage` chooses for a model, as a file. */
-  async choose(target: Model, options: Context['options']): Promise<File> {
-    const engine = await this.#workshop.engine();
-    const model = await cageModel(target.loaded);
-    const { options: chosen, marks } = this.#choicesFor(model, target);
-    const { cage, template, fit } = await engine.chooseCage({ ...model, marks }, { ...chosen, ...options });
-    noteFound(target, cage.landmarks);
-    const how =
-      fit && template !== 'made'
-        ? { note: kFitted, fitting: { ...fit, template, given: {} } }
-        : { note: noteOfMade(cage), fitting: undefined, isNew: true };
-    const file = new File([engine.cageGlb({ ...cage, origin: originOf(target) })], cageNameFrom(target.name));
-    noteMade(file, { target: target.files[0]!, ...how });
-    return file;
   }
 
   /** Moves, turns and scales the current cage onto the target, and bends it where it is inside. */
@@ -264,7 +260,7 @@ export class CageMaker extends Emitter<{
   }
 
   async #make({ engine, model, options, target }: Omit<Context, 'old'>): Promise<Result> {
-    const { options: chosen, marks } = this.#choicesFor(model, target);
+    const { options: chosen, marks } = this.#choicesFor(model);
     const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
     const { landmarks } = await engine.findLandmarks(model, { signal: options.signal });
     noteFound(target, landmarks);
@@ -272,9 +268,9 @@ export class CageMaker extends Emitter<{
   }
 
   /** The options of a made cage, and its marks: triangles marked on the model stay bare, whatever is chosen for their part. */
-  #choicesFor(model: CageModel, target: Model): { options: MakeOptions; marks: Uint8Array | undefined } {
+  #choicesFor(model: CageModel): { options: MakeOptions; marks: Uint8Array | undefined } {
     const { options = {}, marks: parts } = this.choices?.(model) ?? {};
-    const bare = this.#session.bareOf(target.files);
+    const { bare } = this.#session;
     return { options, marks: bare && parts ? parts.map((mark, t) => mark | bare[t]!) : (bare ?? parts) };
   }
 

@@ -17,8 +17,6 @@ export interface Surroundings {
   transferer: Transferer;
   /** Fits the cage of one model to another, with the same triangles and UVs. @returns The cage as a file. */
   fit(cage: Model, model: Model, progress: FitProgress): Promise<File>;
-  /** Chooses the cage of a model, as if it was opened alone. @returns The cage as a file. */
-  choose(model: Model, progress: FitProgress): Promise<File>;
   /** Draws what the wardrobe has. */
   view: WardrobeView;
   errors: {

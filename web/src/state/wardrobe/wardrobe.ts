@@ -1,4 +1,3 @@
-import { madeOf } from '../made-cages';
 import { asCage, asTarget, type Model, ownCage } from '../model';
 import { haveSameUvs } from '../same-uvs';
 import type { Shown } from '../scene';
@@ -253,7 +252,7 @@ export class Wardrobe {
     return this.#around.loader.load(file!, rest);
   }
 
-  /** Reads a new avatar and its cage. @param common A cage that is fitted to it if it has none; else one is chosen for it. */
+  /** Reads a new avatar and its cage. @param common A cage that is fitted to it if it has none. */
   async #read(avatar: Avatar, { target, cage }: Entry, common: Model | undefined): Promise<void> {
     this.list.update(avatar, { doing: 'Reading' });
     const model = asTarget(await target());
@@ -267,10 +266,7 @@ export class Wardrobe {
       this.#around.loader.dispose(model);
       throw error;
     }
-    // A cage that was chosen for the one on the stage is no wish for others.
-    if (!avatar.cage && common && !madeOf(common.files[0]!))
-      await this.#fit(avatar, model, common, this.#signalOf(avatar));
-    if (!avatar.cage) await this.#fit(avatar, model, undefined, this.#signalOf(avatar));
+    if (!avatar.cage && common) await this.#fit(avatar, model, common, this.#signalOf(avatar));
     await this.#transfers.transfer(avatar, model);
   }
 
@@ -286,7 +282,7 @@ export class Wardrobe {
     this.#fits.delete(avatar);
   }
 
-  #fitLater(avatar: Avatar, cage: Model | undefined): void {
+  #fitLater(avatar: Avatar, cage: Model): void {
     const signal = this.#signalOf(avatar);
     this.list.update(avatar, { doing: 'Waiting' });
     this.list.queue(avatar, async () => {
@@ -299,14 +295,13 @@ export class Wardrobe {
     });
   }
 
-  /** Fits a cage to an avatar, or chooses one. If that is not possible the avatar stays without. */
-  async #fit(avatar: Avatar, model: Model, cage: Model | undefined, signal: AbortSignal): Promise<void> {
+  /** Fits a cage to an avatar. If that is not possible the avatar stays without. */
+  async #fit(avatar: Avatar, model: Model, cage: Model, signal: AbortSignal): Promise<void> {
     const onProgress = (share: number): void =>
       this.list.update(avatar, { doing: `Fitting ${Math.round(100 * share)} %` });
     try {
       onProgress(0);
-      const { fit, choose } = this.#around;
-      const file = await (cage ? fit(cage, model, { signal, onProgress }) : choose(model, { signal, onProgress }));
+      const file = await this.#around.fit(cage, model, { signal, onProgress });
       const fitted = await this.#around.loader.load(file);
       if (signal.aborted) return;
       if (avatar === this.list.active && this.#session.isMakingCage) {
@@ -318,7 +313,7 @@ export class Wardrobe {
         });
         return;
       }
-      Object.assign(avatar, { cage: fitted, follows: cage !== undefined, verdict: '' });
+      Object.assign(avatar, { cage: fitted, follows: true, verdict: '' });
       if (avatar === this.#coming || (avatar === this.list.active && this.#session.keepTarget()))
         this.#session.request({ cage: Promise.resolve(fitted) });
     } catch (error) {
