@@ -1,4 +1,4 @@
-// The cage of a model that came alone: which one is chosen, and that it is said why.
+// The choice of a cage for a model that came alone, and its reasons.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, describe, test } from 'node:test';
@@ -125,6 +125,11 @@ test('transfer, inspect, bake, fit and batch take templates, and a texture for e
     ['lump.glb', 'done', 'made'],
   ]);
   for (const { verdict } of lines) assert.match(verdict, /^(good|usable|unfit)$/);
+  const wrong = await run('transfer human.glb --cage named.glb --texture {template}.png -o out.glb');
+  assert.deepEqual(
+    [wrong.status, wrong.stderr],
+    [1, 'cagecast: {template}.png: {template} stands for what --template comes to; give that, or a file\n'],
+  );
   await assertUsage('transfer human.glb --cage same.glb --template auto', /give either --cage or --template/);
 });
 

@@ -20,12 +20,16 @@ async function workshop() {
     const { uvs, ...mesh } = tetrahedron(1.5);
     return { ...mesh, indices: new Uint32Array(mesh.indices), uvs: uvs.map((uv) => uv / ++count) } as never;
   };
-  const state = { found: 6, moves: true };
+  const state = { found: 6, moves: true, marks: undefined as Uint8Array | undefined };
   const points = (n: number) => Object.fromEntries([...'abcdef'].slice(0, n).map((name) => [name, [0, 0, 0] as const]));
   const engine = {
     cageGlb,
     loadTemplate: async () => ({ landmarks: points(6) }),
     findLandmarks: async () => ({ landmarks: points(2) }),
+    async chooseCage({ marks }: { marks?: Uint8Array }) {
+      state.marks = marks;
+      return { cage: box(), template: 'made', fit: undefined };
+    },
     makeCage: async (_: object, { signal }: { signal: AbortSignal }) => gate.wait(signal).then(box),
     refineCage: async (cage: Cage) => ({ ...cage, positions: cage.positions.map((x) => (state.moves ? x * 1.1 : x)) }),
     async fitCage(_: object, __: object, given: object, { signal }: { signal: AbortSignal }) {
@@ -193,6 +197,16 @@ test('a sample whose cage was moved keeps its paints; a cage that is made for it
   await page.ready();
   assert.equal(page.shown[1], 'target-cage.glb');
   assert.equal(sampleOf(page.session.shown!.cage), undefined);
+});
+
+test('triangles that were marked to stay bare are for their own model, not for one that is opened after it', async () => {
+  const page = await workshop();
+  const { target } = page.session.shown!;
+  page.session.setBare(Uint8Array.of(1, 0, 0, 0));
+  await page.maker.cageFor(target);
+  assert.deepEqual(page.engine.marks, Uint8Array.of(1, 0, 0, 0));
+  await page.maker.cageFor(await page.load('b.glb'));
+  assert.equal(page.engine.marks, undefined);
 });
 
 test('a fit that had to guess says so, and what to mark', async () => {

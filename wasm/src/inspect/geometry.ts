@@ -9,6 +9,12 @@ export const pointAt = (positions: ArrayLike<number>, v: number): Vector => [
   positions[3 * v + 2]!,
 ];
 export const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+/** The point at a share of the way between two; beyond them, if it is not 0..1. */
+export const between = (a: Vector, b: Vector, share: number): Vector => [
+  a[0] + share * (b[0] - a[0]),
+  a[1] + share * (b[1] - a[1]),
+  a[2] + share * (b[2] - a[2]),
+];
 export const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const cross = (a: Vector, b: Vector): Vector => [
   a[1] * b[2] - a[2] * b[1],

@@ -1,6 +1,6 @@
 import type { Spots } from './face.js';
 import type { Finding } from './finding.js';
-import { length, minus, pointAt, type Vector } from './geometry.js';
+import { between, length, minus, pointAt, type Vector } from './geometry.js';
 import type { Scene } from './scene.js';
 import { placeOfSegment, type Segment } from './segments.js';
 
@@ -55,10 +55,9 @@ export function checkLimbs(scene: Scene, segments: readonly Segment[], landmarks
 function handOf(landmarks: Spots, side: string): Limb[] {
   const [elbow, wrist] = [landmarks[`joint_elbow_${side}`], landmarks[`joint_wrist_${side}`]];
   if (!elbow || !wrist) return [];
-  const arm = minus(wrist as Vector, elbow as Vector);
   const at = (share: number): Ball => ({
-    middle: [0, 1, 2].map((k) => wrist[k]! + share * arm[k]!) as unknown as Vector,
-    radius: kHand * length(arm),
+    middle: between(elbow as Vector, wrist as Vector, 1 + share),
+    radius: kHand * length(minus(wrist as Vector, elbow as Vector)),
   });
   return [{ name: `${side} hand`, itself: at(kHand), around: at(-kHand) }];
 }
@@ -67,7 +66,7 @@ function earOf(landmarks: Spots, side: string): Limb[] {
   const [top, lobe] = [landmarks[`ear_top_${side}`], landmarks[`ear_lobe_${side}`]];
   if (!top || !lobe) return [];
   const height = length(minus(top as Vector, lobe as Vector));
-  const middle = [0, 1, 2].map((k) => (top[k]! + lobe[k]!) / 2) as unknown as Vector;
+  const middle = between(top as Vector, lobe as Vector, 0.5);
   const at = (radius: number): Ball => ({ middle, radius: radius * height });
   return [{ name: `${side} ear`, itself: at(kEar), around: at(kBesideEar) }];
 }

@@ -1,7 +1,7 @@
 import { type FaceFrame, faceFrameOf, type Spots } from './face.js';
 import { type Finding, percent } from './finding.js';
 import { firstSeen } from './first-seen.js';
-import { dot, minus, type Vector } from './geometry.js';
+import { between, dot, minus, type Vector } from './geometry.js';
 import type { Scene } from './scene.js';
 import { placeOfSegment, type Segment } from './segments.js';
 
@@ -41,7 +41,7 @@ interface Cell {
 export function checkPatches(scene: Scene, segments: readonly Segment[], landmarks: Spots = {}): Finding[] {
   const frame = faceFrameOf(landmarks);
   if (!frame) return [];
-  const middle = [0, 1, 2].map((k) => (frame.left[k]! + frame.right[k]!) / 2) as unknown as Vector;
+  const middle = between(frame.left, frame.right, 0.5);
   const { size, across, up } = frame;
   /** The middle of landmarks; undefined if none is known. */
   const placeOf = (...names: string[]) => {
@@ -75,7 +75,7 @@ function pictureOf(
   [aside, low, high]: readonly [aside: number, low: number, high: number],
 ): Cell[] {
   const first = firstSeen(target, {
-    middle: [0, 1, 2].map((k) => (left[k]! + right[k]!) / 2) as unknown as Vector,
+    middle: between(left, right, 0.5),
     axes: [across, up, front],
     low: [-aside * size, low * size],
     high: [aside * size, high * size],

@@ -1,6 +1,6 @@
 import { faceFrameOf, type Spots } from './face.js';
 import type { Finding } from './finding.js';
-import { dot, doubleAreaNormal, joined, length, minus, pointAt, type Vector } from './geometry.js';
+import { between, dot, doubleAreaNormal, joined, length, minus, pointAt, type Vector } from './geometry.js';
 import { reverse } from './reverse.js';
 import { partsOf, type Scene } from './scene.js';
 import { placeOfSegment, type Segment } from './segments.js';
@@ -31,7 +31,7 @@ export function checkSeam(scene: Scene, segments: readonly Segment[], landmarks:
     if (edge.uses.length < 2 || !isSeam(edge, cage.indices, cage.uvs)) continue;
     const [a, b] = [pointAt(cage.positions, edge.a), pointAt(cage.positions, edge.b)];
     for (let i = 0.5; i < kPieces; ++i) {
-      const point = [0, 1, 2].map((k) => a[k]! + (i / kPieces) * (b[k]! - a[k]!)) as unknown as Vector;
+      const point = between(a, b, i / kPieces);
       const d = minus(point, right);
       const [x, y] = [dot(d, across) / size - 0.5, dot(d, up) / size];
       if (Math.abs(x) < kAside && y < kUp && y > -kDown && dot(d, front) > 0)

@@ -142,7 +142,7 @@ export class CageMaker extends Emitter<{
     try {
       const engine = await this.#workshop.engine();
       const model = await cageModel(target.loaded);
-      const { options: chosen, marks } = this.#choicesFor(model);
+      const { options: chosen, marks } = this.#choicesFor(model, target);
       const choice = await engine.chooseCage({ ...model, marks }, { ...chosen, ...options });
       const { cage, template, fit } = choice;
       noteFound(target, cage.landmarks);
@@ -260,7 +260,7 @@ export class CageMaker extends Emitter<{
   }
 
   async #make({ engine, model, options, target }: Omit<Context, 'old'>): Promise<Result> {
-    const { options: chosen, marks } = this.#choicesFor(model);
+    const { options: chosen, marks } = this.#choicesFor(model, target);
     const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
     const { landmarks } = await engine.findLandmarks(model, { signal: options.signal });
     noteFound(target, landmarks);
@@ -268,9 +268,9 @@ export class CageMaker extends Emitter<{
   }
 
   /** The options of a made cage, and its marks: triangles marked on the model stay bare, whatever is chosen for their part. */
-  #choicesFor(model: CageModel): { options: MakeOptions; marks: Uint8Array | undefined } {
+  #choicesFor(model: CageModel, target: Model): { options: MakeOptions; marks: Uint8Array | undefined } {
     const { options = {}, marks: parts } = this.choices?.(model) ?? {};
-    const { bare } = this.#session;
+    const bare = this.#session.bareOf(target.files);
     return { options, marks: bare && parts ? parts.map((mark, t) => mark | bare[t]!) : (bare ?? parts) };
   }
 

@@ -10,6 +10,7 @@ const site = await openSite();
 /** The page's words on the shown model: all visible notes and counts, without those on this visit. */
 async function words(page: Page): Promise<string[]> {
   await page.locator('#stage-verdict:not([data-verdict=""])').waitFor();
+  await page.locator('#threshold-flips:not(:empty)').waitFor({ state: 'attached' }); // it is sought a while later
   return page
     .locator(
       '[role=status], .hint, .note, .total, .verdict, .name, .landmark-spots button, #part-menu-text, #stage-notice, .landmark-ask',

@@ -131,16 +131,16 @@ function faultOf({ output, texture, normal, orm, back, atlas, part = [] }: BakeF
 async function bakeCommand(command: BakeCommand, io: Io): Promise<Found> {
   const { target, paint, normal, orm, reading } = command;
   // What cannot be read is said before what takes long; for a chosen template it is only known then.
-  const readAll = (template: string) =>
+  const readAll = (template: string | undefined) =>
     Promise.all(
       [paint, normal, orm].map((path) =>
         path === undefined ? undefined : readImage(texturePath(path, template), reading),
       ),
     );
   const isLate = [paint, normal, orm].some((path) => path && isByTemplate(path));
-  const known = isLate ? undefined : await readAll('');
+  const known = isLate ? undefined : await readAll(undefined);
   const run = await runTransfer(command, io);
-  const [color, normals, rough] = known ?? (await readAll(run.choice?.template ?? ''));
+  const [color, normals, rough] = known ?? (await readAll(run.choice?.template));
   const cut = command.borders === 'cut' ? cutTarget(run, io) : undefined;
   io.step('baking');
   const isPicture = command.output.toLowerCase().endsWith('.png');

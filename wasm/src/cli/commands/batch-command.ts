@@ -31,10 +31,12 @@ interface BatchFlags
 const kHelp = `
 A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
-Its members: target, cage, template, referenceCage, uvBounds, texture, regions, output, report, and any setting of cagecast.config.json.
+Its members: target, cage, template, referenceCage, uvBounds, texture, regions, output, report, and any setting of
+cagecast.config.json.
 A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
 failed or skipped), ms, counts, triangles; if there are, also error, verdict, findings (codes), note (why next to nothing may be
-painted), isTurned (the cage was turned by half) and template (what --template auto chose, or made). Then a summary goes to the standard error; with --quiet, only errors go there.
+painted), isTurned (the cage was turned by half) and template (what --template came to, or made). Then a summary goes to the
+standard error; with --quiet, only errors go there.
 The cages of a batch are left out of the files that a pattern names. Missing folders are made.
 A job that fails does not stop the others. Files are complete or not there, even if the batch is killed.
 With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure or another batch.

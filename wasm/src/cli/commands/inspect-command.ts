@@ -93,7 +93,7 @@ function describe(report: InspectionReport, html: string | undefined): Line[] {
     `segments: ${integer(segments.length)}${more(segments.length)}`,
     ...cutNames(segmentTable(segments, kMaxRows)),
     '',
-    ...choiceLines(cage.template && { template: cage.template, tried: cage.tried ?? [] }),
+    ...choiceLines(cage),
     ...conclusionOf(report),
     html && `wrote ${html}`,
     turnedLine(cage),

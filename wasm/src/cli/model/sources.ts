@@ -1,3 +1,4 @@
+import { InputError } from '../../scene/input-error.js';
 import type { ReadOptions } from './reading.js';
 import type { ResolvedSettings, Rules } from './settings.js';
 import type { UvBounds } from './uv-bounds.js';
@@ -27,8 +28,12 @@ const kTemplate = '{template}';
 /** Whether a path names a texture for each template. */
 export const isByTemplate = (path: string): boolean => path.includes(kTemplate);
 
-/** The path of the texture for a template. */
-export const texturePath = (path: string, template: string): string => path.replaceAll(kTemplate, template);
+/** The path of the texture for a template. @throws {InputError} if it is one for each, and there is no template. */
+export function texturePath(path: string, template: string | undefined): string {
+  if (template === undefined && isByTemplate(path))
+    throw new InputError(`${kTemplate} stands for what --template comes to; give that, or a file`).in(path);
+  return path.replaceAll(kTemplate, template ?? '');
+}
 
 /** A further cage, and the texture that was drawn for it. */
 export interface Region {

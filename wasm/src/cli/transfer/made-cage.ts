@@ -39,8 +39,10 @@ interface FitSources {
   options: FitOptions;
 }
 
-/** What was chosen for a model, and what was tried. */
-export type Chosen = Pick<Choice, 'template' | 'tried'>;
+/** How a model came by its cage: by the name or file of a template, or `made`; and what was tried. */
+export interface Chosen extends Pick<Choice, 'tried'> {
+  template: string;
+}
 
 /** Chooses the cage of a model. @throws {InputError} that names the file at fault. */
 export async function chooseCageFor(

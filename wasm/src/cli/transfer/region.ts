@@ -57,7 +57,7 @@ export async function transferRegion(
   const known = isKnown && !isTiled(texture) ? await readPaint(texture, reading.limits) : undefined;
   const model = before && (await readTarget(target, reading, io, command.rules, before.bytes));
   const run = await runTransfer(command, io, readCage, model);
-  const path = texture && texturePath(texture, run.choice?.template ?? '');
+  const path = texture && texturePath(texture, run.choice?.template);
   const tiles = path && isTiled(path) ? await readTiles(path, run.cage, reading.limits) : [];
   const paint = known ?? (path && !isTiled(path) ? await readPaint(path, reading.limits) : undefined);
   const areas: PaintArea[] = uvBounds ? ['bounded'] : tiles.map(({ tile }) => ({ tile }));

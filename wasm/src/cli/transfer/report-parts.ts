@@ -9,6 +9,7 @@ import { leftOutText } from '../../parts/drawn.js';
 import type { Sources } from '../model/sources.js';
 import { integer, type Line, listed, quoted, table } from '../model/text.js';
 import { kZoneNames, type PerZone } from '../model/zones.js';
+import type { Chosen } from './made-cage.js';
 import type { Run } from './run-transfer.js';
 
 export const versions = () => ({ cagecast: CAGECAST_VERSION, node: process.versions.node });
@@ -48,9 +49,8 @@ export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { i
 export type CageReport = ReturnType<typeof cageReport>;
 
 /** What was chosen, and why nothing before it, for people. */
-export function choiceLines(choice: Run['choice']): Line[] {
-  if (!choice) return [];
-  const { template, tried } = choice;
+export function choiceLines({ template, tried = [] }: Partial<Chosen> = {}): Line[] {
+  if (template === undefined) return [];
   const others = tried.filter((one) => one.template !== template);
   return [
     template === 'made' ? 'a cage was made for this model' : `the template ${template} was fitted`,

@@ -95,7 +95,7 @@ async function cageByTemplate(
   if (template === kAutoCage) return chooseCageFor(target, sources, io);
   const from = await readTemplate(template, reading, io);
   const { cage } = await fitCageTo(target, { ...sources, template: from }, io);
-  return { cage, choice: { template: template as Chosen['template'], tried: [] } };
+  return { cage, choice: { template, tried: [] } };
 }
 
 /** A run as it is, or with its cage turned by half, if that faces the other way. */

@@ -80,7 +80,7 @@ function summary(command: TransferCommand, report: Report): Line[] {
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${counted(segments.length, 'segment')} (${integer(culled)} culled)`,
     ...zoneTable(counts, areas, areas.total),
     `${shareOf(triangles)} triangles may be painted${cutText}; ${timings.total.toFixed(1)} ms`,
-    ...choiceLines(cage.template && { template: cage.template, tried: cage.tried ?? [] }),
+    ...choiceLines(cage),
     verdict && `the cage is ${verdict}`,
     turnedLine(cage),
     note,
