@@ -106,7 +106,7 @@ const nameOf = ({ kind, inputs, settings }: Result): string =>
 const outcomeOf = ({ reason, verdict = 'done' }: Result): string =>
   reason && reason !== 'unfit' ? `failed: ${reason}` : verdict;
 
-/** A finding with the pictures that `cagecast inspect --html` draws; its page is beside the report. */
+/** A finding with the pictures that `cagecast inspect --report` draws; its page is beside the report. */
 async function figure(result: Result, job: CatalogueJob | undefined): Promise<string> {
   const { key, inputs, verdict, findings = [], error } = result;
   const title = text(`${verdict}: ${inputs['target']} in ${inputs['cage']}`);
@@ -118,7 +118,7 @@ async function figure(result: Result, job: CatalogueJob | undefined): Promise<st
   return `<article><h3><a href="worst/${key}.html">${title}</a></h3><p>${why}</p>${pictures.slice(0, 4).join('')}</article>`;
 }
 
-/** The page of `cagecast inspect --html` for a job. */
+/** The page of `cagecast inspect --report` for a job. */
 async function inspection(job: CatalogueJob): Promise<string> {
   const { inputs, settings }: JobData = checkedJob(job).data;
   const folder = await mkdtemp(join(tmpdir(), 'catalogue-'));
@@ -127,7 +127,7 @@ async function inspection(job: CatalogueJob): Promise<string> {
       await writeFile(join(folder, `${name}.glb`), await read(inputs[name]!.place));
     const { locks, steps, ...config } = settings;
     await writeFile(join(folder, 'cagecast.config.json'), JSON.stringify(config));
-    const args = [cli, 'inspect', 'target.glb', '--cage', 'cage.glb', '--html', 'page.html', '--quiet'];
+    const args = [cli, 'inspect', 'target.glb', '--cage', 'cage.glb', '--report', 'page.html', '--quiet'];
     // It exits with 3 for a cage that does not fit, and has written the page then.
     await promisify(execFile)(process.execPath, args, { cwd: folder, timeout: 60_000 }).catch(() => {});
     return await readFile(join(folder, 'page.html'), 'utf8');

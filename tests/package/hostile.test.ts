@@ -160,7 +160,7 @@ describe('a file that demands too much', () => {
     );
     const often = /cannot be drawn: its triangles cover the picture more than 64 times/;
     await fails(1, often, 'thumbnail layers.glb -o layers.png');
-    assert.equal((await run('inspect layers.glb --cage cage.glb --html layers.html')).status, 3);
+    assert.equal((await run('inspect layers.glb --cage cage.glb --report layers.html')).status, 3);
     assert.match(readFileSync('layers.html', 'utf8'), often);
     assert.deepEqual(['made.glb', 'layers.png'].filter(existsSync), []);
   });
@@ -174,7 +174,7 @@ describe('a file that demands too much', () => {
     };
     const costOf = async (target: string, cage: string) => {
       const plain = await micros(`inspect ${target} --cage ${cage}`);
-      return (await micros(`inspect ${target} --cage ${cage} --html out.html`)) - plain;
+      return (await micros(`inspect ${target} --cage ${cage} --report out.html`)) - plain;
     };
     const whole = ball([0, 0, 0], () => 1, 12, 16);
     writeFileSync('open.glb', glbOf({ ...whole, indices: whole.indices.subarray(30) }));
@@ -379,7 +379,7 @@ describe('names', () => {
     const report = await printed('transfer named.glb --cage cage.glb --report -');
     assert.equal(JSON.parse(report).segments[0].part, name);
     assert.equal(JSON.parse(await printed('batch --cage cage.glb', odd)).target, odd);
-    await printed(`${inspect} --html page.html`);
+    await printed(`${inspect} --report page.html`);
     assert.doesNotMatch(readFileSync('page.html', 'utf8'), /<script>alert/);
   });
 

@@ -161,7 +161,7 @@ describe('a lid that is folded away at rest', () => {
       assert.deepEqual(await byThree(glb, options), none);
     }
     assert.deepEqual(await byCommand(glb, '--set', 'motion=false'), none);
-    assert.deepEqual(await byCommand(glb, '--preset', 'paper'), none);
+    assert.deepEqual(await byCommand(glb, '--set', 'preset=paper'), none);
     const { status, stderr } = await cagecast(
       'transfer',
       at('face.glb'),

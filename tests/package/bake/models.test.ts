@@ -145,7 +145,7 @@ describe('documents and files', () => {
       );
       const shown = occlusion === 'none' ? null : occlusion === 'packed' ? rough : textureOf(document, apart);
       materialsOf(document)[0]!.setMetallicRoughnessTexture(rough).setOcclusionTexture(shown).setOcclusionStrength(0.5);
-      const { documents } = await both(document, { paints: { orm: paint } }, '--orm orm.png');
+      const { documents } = await both(document, { paints: { orm: paint } }, '--map orm=orm.png');
       for (const [material] of documents.map(materialsOf)) {
         const image = imageOf(material!.getMetallicRoughnessTexture());
         assert.deepEqual(texel(image, ...kIsland), [200, 60, 90, 255], occlusion);
@@ -292,7 +292,7 @@ describe('documents and files', () => {
     const [material] = materialsOf(glass);
     material!.setMetallicRoughnessTexture(shared).setExtension('KHR_materials_transmission', transmission);
     const rough = { paints: { orm: plain(255, 60, 90, 255) } };
-    for (const [one] of (await both(glass, rough, '--orm rough.png')).documents.map(materialsOf)) {
+    for (const [one] of (await both(glass, rough, '--map orm=rough.png')).documents.map(materialsOf)) {
       const after = one!.getExtension<typeof transmission>('KHR_materials_transmission')!;
       assert.deepEqual(texel(imageOf(after.getTransmissionTexture()), 0, 0), [0, 180, 0, 255]);
       assert.deepEqual(texel(imageOf(one!.getMetallicRoughnessTexture()), ...kIsland), [255, 60, 90, 255]);
@@ -301,7 +301,7 @@ describe('documents and files', () => {
 
   test('maps of normals and of roughness are added to materials that lack them, flat beside the paint', async () => {
     const paints = { normal: plain(204, 128, 230, 255), orm: plain(255, 60, 90, 255) };
-    const flags = `--normal lean.png --orm rough.png --size ${size}`;
+    const flags = `--map normal=lean.png --map orm=rough.png --size ${size}`;
     const near = (a: number[], b: number[]) =>
       assert.ok(
         a.every((value, k) => Math.abs(value - b[k]!) <= 2),

@@ -118,7 +118,7 @@ test('patterns reach into folders, follow links to them, and ** does not go roun
   await ok('transfer sta*r.glb --cage cage.glb -o star.glb --quiet');
 });
 
-test('--fail-on exits 3 for a cage that does not fit, of a region too; reports have the verdict, which diff compares', async () => {
+test('--at-least exits 3 for a cage that does not fit, of a region too; reports have the verdict, which diff compares', async () => {
   const job = { target: 'target.glb', cage: 'cage.glb', report: 'good.json' };
   const regions = [{ cage: 'away.glb', texture: 'paint.png' }];
   writeJobs('verdicts.jsonl', [
@@ -126,7 +126,7 @@ test('--fail-on exits 3 for a cage that does not fit, of a region too; reports h
     { ...job, cage: 'away.glb', report: 'bad.json' },
     { ...job, texture: 'paint.png', regions, output: 'region.glb', report: 'region.json' },
   ]);
-  const judged = await run('batch --manifest verdicts.jsonl --fail-on unfit --workers 1');
+  const judged = await run('batch --manifest verdicts.jsonl --at-least usable --workers 1');
   assert.equal(judged.status, 3);
   assert.match(judged.stderr, /^3 jobs: 3 done, 0 failed, 2 with a cage that does not fit as demanded; /);
   const lines = linesOf(judged.stdout).map(({ output, status, verdict }) => [output, status, verdict]);
@@ -309,15 +309,15 @@ test('--resume adds no line for jobs of one target that are all done, and does a
     cages.map((name) => ({ target: 'target.glb', cage: `${name}.glb`, output: `${name}-out.glb` })),
   );
   const line = 'batch --manifest same.jsonl --results same-results.jsonl --resume --workers 1';
-  assert.equal(await counted(`${line} --fail-on unfit`), '2 jobs: 2 done, 0 failed');
-  assert.equal(await counted(`${line} --fail-on unfit`), '2 jobs: 0 done, 0 failed, 2 done before');
+  assert.equal(await counted(`${line} --at-least usable`), '2 jobs: 2 done, 0 failed');
+  assert.equal(await counted(`${line} --at-least usable`), '2 jobs: 0 done, 0 failed, 2 done before');
   assert.equal(linesIn('same-results.jsonl').length, 2);
   const text = readFileSync('same-results.jsonl', 'utf8');
   write(
     'same-results.jsonl',
     text.replace(/"verdict":"\w+"/, '"verdict":7').replace(/"verdict":"\w+"/, '"other":"good"'),
   );
-  assert.equal(await counted(`${line} --fail-on unfit`), '2 jobs: 2 done, 0 failed');
+  assert.equal(await counted(`${line} --at-least usable`), '2 jobs: 2 done, 0 failed');
 });
 
 test('--resume minds what a glTF has beside it, as it is read and as it is written', async () => {

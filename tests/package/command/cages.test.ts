@@ -23,7 +23,7 @@ function makeHead(maker: GlbMaker): void {
 writeMade('head.glb', makeHead);
 
 test('make writes a cage with holes over the eyes, a report, and the verdict', async () => {
-  const stdout = await ok('make head.glb -o cage.glb --html page.html --triangles 300');
+  const stdout = await ok('make head.glb -o cage.glb --report page.html --triangles 300');
   assert.match(stdout, /^wrote cage\.glb: \d+ vertices, [\d,]+ triangles, \d+ charts?, 2 holes\n/);
   assert.match(stdout, /^(GOOD|USABLE): the cage fits/m);
   assert.match(stdout, /^wrote page\.html$/m);
@@ -81,7 +81,7 @@ test('transfer and inspect --cage auto: they say which parts the cage is made wi
 
 test('fit writes the template moved onto the model, and says what it was moved by', async () => {
   mkdirSync('human-head'); // a folder with the name of a template does not hide it
-  const stdout = await ok(`fit ${human} --template human-head -o fit.glb --html fit.html`);
+  const stdout = await ok(`fit ${human} --template human-head -o fit.glb --report fit.html`);
   assert.match(
     stdout,
     /^wrote fit\.glb: \d+ vertices, \d+ triangles, 1 chart, 4 holes\nlandmarks: \d+ used, 0 of them given\nfound, but not certain \(1 would be\): forehead \(0\.\d\d\), /,
@@ -97,7 +97,7 @@ test('fit takes landmarks of the template and of the model from files', async ()
   write('landmarks.json', JSON.stringify(landmarks));
   write('some.json', JSON.stringify({ nose_tip: landmarks['nose_tip'], chin: landmarks['chin'] }));
   writeChanged('bare.glb', template, (json) => delete json.meshes![0]!.extras);
-  const files = '--template-landmarks landmarks.json --landmarks some.json';
+  const files = '--landmarks template=landmarks.json --landmarks some.json';
   assert.match(
     await ok(`fit ${human} --template bare.glb -o given.glb ${files}`),
     /^landmarks: \d+ used, 2 of them given$/m,
@@ -133,15 +133,15 @@ test('errors are one line that names the file, and write nothing', async () => {
     ['make no.json -o never.glb', /no\.json: is neither a GLB or glTF file nor one of FBX|no\.json: is /],
     ['fit missing.glb --template human-head -o never.glb', /missing\.glb: no such file/],
     [fit('human'), /human: no such file, and no template of the package: there are human-head, /],
-    [fit('bare.glb'), /bare\.glb: has no landmarks in the extras .*; give at least 4 .*--template-landmarks T\.json/],
-    [fit('few.glb'), /few\.glb: has 1 landmark in the extras .*; give at least 4 .*--template-landmarks T\.json/],
+    [fit('bare.glb'), /bare\.glb: has no landmarks in the extras .*; give at least 4 .*--landmarks template=T\.json/],
+    [fit('few.glb'), /few\.glb: has 1 landmark in the extras .*; give at least 4 .*--landmarks template=T\.json/],
     [fit('odd.glb'), /odd\.glb: meshes\[0\]\.extras\.landmarks\.chin is not 3 finite numbers/],
     [fit('human-head', ' --exclude antler'), /target\.glb: --exclude antler: no node or material/],
     [fit('human-head', ' --landmarks missing.json'), /missing\.json: no such file/],
     [fit('human-head', ' --landmarks no.json'), /no\.json: is not JSON \(/],
     [fit('human-head', ' --landmarks list.json'), /list\.json: is not a JSON object/],
     [fit('human-head', ' --landmarks flat.json'), /flat\.json: "chin" is 3, not 3 numbers \[x, y, z\]/],
-    [fit('human-head', ' --template-landmarks none.json'), /none\.json: has no landmarks; at least 4 are needed\n$/],
+    [fit('human-head', ' --landmarks template=none.json'), /none\.json: has no landmarks; at least 4 are needed\n$/],
   ] as const)
     await fails(1, message, line);
   assert.deepEqual(readdirSync('.').sort(), files);

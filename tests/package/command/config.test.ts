@@ -40,7 +40,7 @@ test('settings come from the nearest file above the target; characters by name w
   assert.equal(own.config, config);
   const other = await optionsOf('inspect heads/bao.glb --cage cage.glb');
   assert.deepEqual([other.preset, other.threshold], ['default', 0.4]);
-  const won = await optionsOf(`${transfer} --preset default --threshold 0.6`);
+  const won = await optionsOf(`${transfer} --set preset=default --threshold 0.6`);
   assert.deepEqual([won.preset, won.threshold, won.exclude.length], ['default', 0.6, 2]);
   assert.deepEqual(
     (await optionsOf(`${transfer} --exclude only`)).exclude,

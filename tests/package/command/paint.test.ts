@@ -200,9 +200,9 @@ test('with <UDIM> in its name, each tile of the cage shows its own texture', asy
   }
 });
 
-test('--uv-bounds: the texture covers a part of the UVs, and nothing is painted outside', async () => {
+test('uvBounds: the texture covers a part of the UVs, and nothing is painted outside', async () => {
   await ok(`${transfer} --texture paint.png -o whole.glb`);
-  const bounds = '--uv-bounds 0.25,0.2,0.75,0.6 --texture paint.png';
+  const bounds = '--set uvBounds=0.25,0.2,0.75,0.6 --texture paint.png';
   await ok(`${transfer} ${bounds} -o part.glb`);
   assert.deepEqual(await validate('part.glb'), []);
   const [[before], [after]] = [await overlaysIn('whole.glb'), await overlaysIn('part.glb')];
@@ -221,7 +221,7 @@ test('--uv-bounds: the texture covers a part of the UVs, and nothing is painted 
   assert.deepEqual(counts, [after!.triangles.length, before!.triangles.length - after!.triangles.length]);
   const bare = await ok(`${transfer} --texture paint.png --exclude * -o part.glb`);
   assert.match(bare, /_NCZ; no overlay, as the texture shows nowhere/);
-  await fails(1, 'cage.glb: no triangle has UVs within the bounds 5, 5, 6, 6', `${transfer} --uv-bounds 5,5,6,6`);
+  await fails(1, 'cage.glb: no triangle has UVs within the bounds 5, 5, 6, 6', `${transfer} --set uvBounds=5,5,6,6`);
 });
 
 test('whether a cage fits has nothing to do with what the texture covers, but with where there is none', async () => {
@@ -230,25 +230,25 @@ test('whether a cage fits has nothing to do with what the texture covers, but wi
     return [verdict, findings];
   };
   const plain = await inspected('--cage cage.glb');
-  assert.deepEqual(await inspected('--cage cage.glb --uv-bounds 0.45,0.45,0.5,0.5'), plain);
+  assert.deepEqual(await inspected('--cage cage.glb --set uvBounds=0.45,0.45,0.5,0.5'), plain);
   write('beside.glb', glbOf(uvsMoved((u, v) => [u + 1.1, v])));
   assert.match(JSON.stringify(await inspected('--cage beside.glb')), /uvsOutside/);
   write('four.glb', glbOf(uvsMoved((u, v) => [4 * u, 4 * v])));
-  assert.deepEqual(await inspected('--cage four.glb --uv-bounds 0,0,4,4'), plain);
+  assert.deepEqual(await inspected('--cage four.glb --set uvBounds=0,0,4,4'), plain);
 });
 
 for (const borders of ['triangle', 'cut'])
-  test(`the report of --uv-bounds counts what is painted (--borders ${borders})`, async () => {
+  test(`the report of uvBounds counts what is painted (--borders ${borders})`, async () => {
     const flags = `--texture paint.png --borders ${borders} -o part.glb`;
     await ok(`${transfer} ${flags} --report whole.json`);
-    const bounds = '--uv-bounds 0.25,0.2,0.75,0.6 --reference-cage cage.glb';
+    const bounds = '--set uvBounds=0.25,0.2,0.75,0.6 --set referenceCage=cage.glb';
     const text = await ok(`${transfer} ${flags} ${bounds} --report part.json`);
     const [before, after] = ['whole', 'part'].map((name) => JSON.parse(readFileSync(`${name}.json`, 'utf8')) as Report);
     const { cosmetic, outOfBounds } = (after!.cut ?? after!).triangles;
     assert.equal(cosmetic, (await overlaysIn('part.glb'))[0]!.triangles.length);
     assert.equal(after!.triangles.cosmetic + after!.triangles.outOfBounds!, before!.triangles.cosmetic);
     assert.match(text, new RegExp(`\n${after!.triangles.cosmetic} of \\d+ triangles may be painted`));
-    const more = `\n${outOfBounds!.toLocaleString('en')} more could be painted, but lie outside of --uv-bounds;`;
+    const more = `\n${outOfBounds!.toLocaleString('en')} more could be painted, but lie outside of uvBounds;`;
     assert.ok(text.includes(more), text);
     assert.deepEqual(after!.counts, before!.counts, 'the zones are those of the cage');
     const { uvBounds, referenceCage } = after!.options;
@@ -259,21 +259,21 @@ for (const borders of ['triangle', 'cut'])
     assert.deepEqual(unwritten.triangles, after!.triangles);
   });
 
-test('--reference-cage: triangles whose UVs it lacks count as cut away', async () => {
+test('referenceCage: triangles whose UVs it lacks count as cut away', async () => {
   const kept = right(0);
   write('kept.glb', glbOf(kept));
   const cut = await json<Report>(`transfer target.glb --cage kept.glb ${loose}`);
   // The reference may have another form: only its UVs matter.
   write('reference.glb', glbOf({ ...kept, positions: kept.positions.map((x) => 3 * x + 1) }));
-  const referred = await json<Report>(`${transfer} --reference-cage reference.glb ${loose}`);
+  const referred = await json<Report>(`${transfer} --set referenceCage=reference.glb ${loose}`);
   assert.deepEqual([referred.counts, referred.triangles], [cut.counts, cut.triangles]);
-  const whole = await json<Report>(`${transfer} --reference-cage cage.glb ${loose}`);
+  const whole = await json<Report>(`${transfer} --set referenceCage=cage.glb ${loose}`);
   assert.deepEqual(whole.counts, (await json<Report>(`${transfer} ${loose}`)).counts);
   write('mirrored.glb', glbOf(uvsMoved((u, v) => [1 - u, v])));
-  const mirrored = `transfer target.glb --cage mirrored.glb --reference-cage mirrored.glb ${loose}`;
+  const mirrored = `transfer target.glb --cage mirrored.glb --set referenceCage=mirrored.glb ${loose}`;
   assert.deepEqual((await json<Report>(mirrored)).counts, whole.counts);
   write('away.glb', glbOf(uvsMoved((u, v) => [u + 7, v])));
   const none = 'cage.glb: none of its triangles has UVs that the reference cage away.glb has';
-  await fails(1, none, 'inspect target.glb --cage cage.glb --reference-cage away.glb');
-  await fails(1, /target\.glb: .* has no TEXCOORD_0/, `${transfer} --reference-cage target.glb`);
+  await fails(1, none, 'inspect target.glb --cage cage.glb --set referenceCage=away.glb');
+  await fails(1, /target\.glb: .* has no TEXCOORD_0/, `${transfer} --set referenceCage=target.glb`);
 });

@@ -92,7 +92,7 @@ test('the preset and single options are obeyed', async () => {
   for (const [flags, options] of [
     ['--threshold 0', { threshold: 0 }],
     ['--threshold 1', { threshold: 1 }],
-    ['--preset paper', { preset: 'paper' }],
+    ['--set preset=paper', { preset: 'paper' }],
     [
       '--set minCovered=1 --set pokeThrough=0.1 --set occlusionReach=0',
       { minCovered: 1, pokeThrough: 0.1, occlusionReach: 0 },
@@ -100,7 +100,7 @@ test('the preset and single options are obeyed', async () => {
   ] as const)
     assert.equal((await json<Report>(`${plain} ${flags}`)).triangles.cosmetic, painted(options), flags);
   assert.notEqual(painted({}), painted({ preset: 'paper' }));
-  assert.equal((await json<Report>(`${plain} --preset paper`)).options.occlusionReach, 'Infinity');
+  assert.equal((await json<Report>(`${plain} --set preset=paper`)).options.occlusionReach, 'Infinity');
 });
 
 /** The mesh of one of the groups of the target: head, eye and tongue. */
@@ -178,7 +178,7 @@ test('a line says why next to nothing may be painted, and what helps', async () 
       /^only 1\.\d % .*: most of "skin" is hidden by other surfaces; leave out /m,
     ],
     [
-      'transfer target.glb --cage half.glb --preset paper',
+      'transfer target.glb --cage half.glb --set preset=paper',
       /^nothing .* covers only [\d.]+ % of .* "only"; try --keep "only" or a /m,
     ],
     [
@@ -270,7 +270,7 @@ test('what is not drawn is left out, and what --ignore names; hats stay bare', a
     ['StrawHat'],
   ]);
   const painted = async (flags: string) => (await json<Report>(`${line}${flags}`)).areas.cosmetic;
-  assert.ok((await painted(' --ignore Visor')) > 2 * (await painted(' --exclude Visor --preset paper')));
+  assert.ok((await painted(' --ignore Visor')) > 2 * (await painted(' --exclude Visor --set preset=paper')));
   assert.match(
     await ok(`inspect dressed.glb --cage cage.glb --ignore Visor`),
     /^left out: "Visor" \(ignored\), "Outfit" \(hidden\), "head_OuterCage" \(by name a cage, [^)]+\)\nbare by their names, unless --keep names them: StrawHat$/m,
@@ -397,8 +397,8 @@ test('an advice to override a verdict comes with the flag that does', async () =
   assert.doesNotMatch((await run(`${strict} --keep only`)).stdout, /No part of the target|To override/);
 });
 
-test('--html writes a page that needs nothing else', async () => {
-  assert.match(await ok('inspect target.glb --cage cage.glb --html page.html'), /\nwrote page\.html\n$/);
+test('--report writes a page that needs nothing else', async () => {
+  assert.match(await ok('inspect target.glb --cage cage.glb --report page.html'), /\nwrote page\.html\n$/);
   const html = readFileSync('page.html', 'utf8');
   assert.doesNotMatch(html, /(?:src|href)="(?!data:)|https?:\/\/|<script/);
   const pictures = [...html.matchAll(/data:image\/png;base64,([^"]+)"/g)].map(([, data]) =>

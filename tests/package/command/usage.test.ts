@@ -15,7 +15,7 @@ test('--version prints the version of package.json; help is a flag and a command
     assert.match(await ok(line), /^Usage: cagecast.*Example/s, line);
   assert.match(
     (await ok('help transfer')).replace(/\s+/g, ' '),
-    /as in code: seams \(default: corner\), .*pokeThrough \(default: 0\.0025\)/,
+    /as in code: preset .*, seams \(default: corner\), .*pokeThrough \(default: 0\.0025\)/,
   );
 });
 
@@ -56,11 +56,25 @@ const wrong: [line: string, message: RegExp][] = [
   [`${transfer} --threshold half`, /not a number within 0\.\.1/],
   [`${transfer} --threshold `, /not a number within 0\.\.1/],
   [`${transfer} --set weldTolerance=1`, /"weldTolerance" is 1, not a number within 0\.\.0\.01/],
-  [`${transfer} --set tint=1`, /There are seams, weldTolerance, occlusionReach, pokeThrough, motion, minCovered\./],
+  [
+    `${transfer} --set tint=1`,
+    /There are preset, seams, weldTolerance, occlusionReach, pokeThrough, motion, minCovered, uvBounds, referenceCage\./,
+  ],
   [`${transfer} --set occlusionReach=-1`, /not a number within 0\.\.Infinity/],
   [`${transfer} --set minCovered=2`, /not a number within 0\.\.1/],
   [`${transfer} --set seams=none`, /"seams" is "none", not one of vertex, corner/],
-  [`${transfer} --preset papre`, /--preset.*'papre' is invalid.*paper/],
+  [`${transfer} --set preset=papre`, /"preset" is "papre", not one of default, paper/],
+  [
+    'bake target.glb --cage cage.glb --texture paint.png -o out.glb --set referenceCage=cage.glb',
+    /are options of transfer/,
+  ],
+  [
+    'relay target.glb --cage cage.glb --texture p.png --to cage.glb -o o.png --set uvBounds=0,0,1,1',
+    /of transfer, inspect/,
+  ],
+  ['bake target.glb --cage cage.glb -o out.glb --map gloss=paint.png', /It is not normal=MAP or orm=MAP/],
+  ['inspect target.glb --cage cage.glb --html page.html', /unknown option '--html'; it is --report REPORT\.html/],
+  [`${transfer} --preset paper`, /unknown option '--preset'.*; it is set by --set preset=VALUE/],
   [`${transfer} --mask colors=NORMAL`, /NORMAL is not COLOR_0, COLOR_1, … or an attribute of an own name/],
   [`${transfer} --limit vertices=2`, /There are the limits bytes, nesting/],
   [`${transfer} --limit bytes=many`, /A limit is a whole number, such as bytes=5000/],
@@ -73,10 +87,10 @@ const wrong: [line: string, message: RegExp][] = [
     /not the file of a cage and that of a texture, with = between them/,
   ]),
   ...['0,0,1', '1,0,0,1', '0,0,1,x'].map((bounds): [string, RegExp] => [
-    `${transfer} --uv-bounds ${bounds}`,
+    `${transfer} --set uvBounds=${bounds}`,
     /It is not four numbers U0,V0,U1,V1 with U0 < U1 and V0 < V1/,
   ]),
-  [`${transfer} --texture p.<UDIM>.png --uv-bounds 0,0,1,1 -o out.glb`, /cannot be given with a texture of <UDIM>/],
+  [`${transfer} --texture p.<UDIM>.png --set uvBounds=0,0,1,1 -o out.glb`, /cannot be given with a texture of <UDIM>/],
   ['transfer  --cage cage.glb', /TARGET is empty/],
   ['transfer target.glb --cage ', /--cage is empty/],
   [`${transfer} --report `, /--report is empty/],
@@ -88,14 +102,11 @@ const wrong: [line: string, message: RegExp][] = [
   [`${transfer} -o - --report -`, /only one file can be the standard output/],
   ['transfer - --cage cage.glb --config -', /only one file can be the standard input/],
   ['inspect - --cage cage.glb --config -', /only one file can be the standard input/],
-  ['inspect target.glb --cage cage.glb --html page.txt', /must end in \.html/],
+  ['inspect target.glb --cage cage.glb --report page.txt', /must end in \.html or \.json/],
   ['bake - --cage cage.glb --texture paint.png --config - -o out.glb', /only one file can be the standard input/],
   ['bake target.glb --cage cage.glb -o out.glb', /there is nothing to bake/],
   ['bake target.glb --cage cage.glb -o out.png', /to write a PNG, --texture is needed/],
-  [
-    'bake target.glb --cage cage.glb --texture paint.png --normal paint.png -o out.png',
-    /--normal and --orm need an OUT\.glb/,
-  ],
+  ['bake target.glb --cage cage.glb --texture paint.png --map normal=paint.png -o out.png', /--map needs an OUT\.glb/],
   ['bake target.glb --cage cage.glb --texture paint.png --back -o out.png', /--back takes no paint/],
   [
     'bake target.glb --cage cage.glb --texture paint.png --part only -o out.glb',
@@ -132,7 +143,7 @@ const wrong: [line: string, message: RegExp][] = [
   [`${batch} --borders cut`, /--borders cut needs -o OUT\.glb/],
   [`${batch} -o {foo}.glb`, /\{foo\} is unknown; paths may hold \{name\} and \{dir\}/],
   [`${batch} --report {name}{stem}.json`, /\{stem\} is unknown/],
-  [`${batch} --texture p.<UDIM>.png --uv-bounds 0,0,1,1 -o {name}.glb`, /cannot be given with a texture of <UDIM>/],
+  [`${batch} --texture p.<UDIM>.png --set uvBounds=0,0,1,1 -o {name}.glb`, /cannot be given with a texture of <UDIM>/],
   ['thumbnail', /missing required argument 'MODELS'|required option/],
   ['thumbnail target.glb -o out.gif', /must end in \.png or \.jpg or \.jpeg or \.webp/],
   ['thumbnail target.glb --size 8 -o out.png', /not a whole number of pixels within 16\.\.2048/],
@@ -169,7 +180,7 @@ test('outputs are checked before anything is read', async () => {
   await fails(
     1,
     'gone/page.html: cannot be written (its folder does not exist)',
-    'make x.glb -o o.glb --html gone/page.html',
+    'make x.glb -o o.glb --report gone/page.html',
   );
   assert.equal(readFileSync('kept.glb', 'utf8'), 'before');
 });

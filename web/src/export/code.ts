@@ -64,7 +64,7 @@ function commandLine(shown: Shown, rules: Rules, locks: Readonly<Locks>): string
     shell(shown.cage.name),
     '--texture paint.png',
   ];
-  if (preset) words.push(`--preset ${preset}`);
+  if (preset) words.push(`--set preset=${preset}`);
   if (threshold !== undefined) words.push(`--threshold ${threshold}`);
   if (weldTolerance) words.push(`--set weldTolerance=${weldTolerance}`);
   if (borders) words.push(`--borders ${borders}`);

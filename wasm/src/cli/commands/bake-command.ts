@@ -1,4 +1,4 @@
-import type { Command } from 'commander';
+import { type Command, InvalidArgumentError } from 'commander';
 import { CagecastError, type CutTarget } from '../../api/index.js';
 import { type Baked, type Image, mostTexels } from '../../bake/index.js';
 import { type AtlasReport, packTextures } from '../../gltf/bake/atlas.js';
@@ -30,8 +30,7 @@ import { addTarget } from './transfer-command.js';
 interface BakeFlags extends common.SettingFlags, common.AroundFlags, common.ReadFlags, common.PrintFlags {
   /** Files of images in the cage's UVs. */
   texture?: string;
-  normal?: string;
-  orm?: string;
+  map?: Maps;
   /** A GLB or VRM, or a PNG: the paint alone, in the model's UVs. */
   output: string;
   /** Whether the PNG is in the cage's UVs: what is painted on the model. */
@@ -41,6 +40,16 @@ interface BakeFlags extends common.SettingFlags, common.AroundFlags, common.Read
   size?: number;
   /** Whether the textures are packed; into one of so many texels, if a number. */
   atlas?: true | number;
+}
+
+/** Files of images besides the colours. */
+type Maps = Partial<Record<'normal' | 'orm', string>>;
+
+/** Parses the flag of such a file. */
+function mapOf(text: string, before: Maps = {}): Maps {
+  const [, kind, path] = /^(normal|orm)=(.+)$/s.exec(text) ?? [];
+  if (kind === undefined) throw new InvalidArgumentError('It is not normal=MAP or orm=MAP.');
+  return { ...before, [kind]: path };
 }
 
 /** The arguments of `cagecast bake`. */
@@ -61,7 +70,7 @@ With --atlas, materials that differ only by textures and factors become one. Tho
 to textures (VRM 0, MToon), keep their own; the summary says which.
 
 Examples:
-  cagecast bake head.glb --cage cage.glb --texture paint.png --normal scales.png --size 2048 -o painted.glb
+  cagecast bake head.glb --cage cage.glb --texture paint.png --map normal=scales.png --size 2048 -o painted.glb
   cagecast bake head.glb --cage cage.glb --back -o paint-again.png`;
 
 /** Adds the command that bakes paint into textures. */
@@ -78,8 +87,13 @@ export function addBakeCommand(program: Command, io: Io): void {
         )
         .makeOptionMandatory(),
     )
-    .option('--normal <MAP>', "a normal map in the cage's UV space")
-    .option('--orm <MAP>', 'occlusion, roughness and metalness in it, as in glTF')
+    .addOption(
+      common.parsed(
+        '--map <KIND=MAP>',
+        "normal=MAP, a normal map in the cage's UV space; orm=MAP, occlusion, roughness and metalness in it, as in glTF; may be repeated",
+        mapOf,
+      ),
+    )
     .option('--back', "the way back: write what is painted on TARGET as a PNG in the cage's UV space")
     .addOption(common.parsed('--part <NAME>', 'for a PNG: only these parts; as --keep', common.oneMore))
     .addOption(
@@ -103,7 +117,7 @@ export function addBakeCommand(program: Command, io: Io): void {
     const around = common.aroundOf(flags, target);
     const fault = faultOf(flags);
     if (fault !== undefined) throw new UsageError(fault);
-    const inputs = [target, ...common.inputsOf(flags), flags.normal, flags.orm];
+    const inputs = [target, ...common.inputsOf(flags), ...Object.values(flags.map ?? {})];
     return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
       const settings = resolveSettings(await common.layersFor(flags)(target));
       const reading = common.readingOf(flags);
@@ -113,15 +127,16 @@ export function addBakeCommand(program: Command, io: Io): void {
 }
 
 /** What is wrong with the arguments together, if anything is. */
-function faultOf({ output, texture, normal, orm, back, atlas, part = [] }: BakeFlags): string | undefined {
+function faultOf({ output, texture, map, back, atlas, part = [], set }: BakeFlags): string | undefined {
   const isPicture = output.toLowerCase().endsWith('.png');
-  const hasMaps = normal !== undefined || orm !== undefined;
+  const hasMaps = map !== undefined;
   if (back && (!isPicture || texture !== undefined || hasMaps)) return '--back takes no paint, and writes a PNG';
   if (!back && isPicture && texture === undefined) return 'to write a PNG, --texture is needed';
-  if (isPicture && hasMaps) return '--normal and --orm need an OUT.glb';
+  if (isPicture && hasMaps) return '--map needs an OUT.glb';
   if (isPicture && atlas !== undefined) return '--atlas needs an OUT.glb';
-  if (!back && texture === undefined && !hasMaps) return 'there is nothing to bake: give --texture, --normal or --orm';
-  return !isPicture && part.length > 0 ? '--part is for a PNG; for a GLB, use --exclude' : undefined;
+  if (!back && texture === undefined && !hasMaps) return 'there is nothing to bake: give --texture or --map';
+  if (!isPicture && part.length > 0) return '--part is for a PNG; for a GLB, use --exclude';
+  return common.wholeCageFault(set);
 }
 
 /**
@@ -129,7 +144,7 @@ function faultOf({ output, texture, normal, orm, back, atlas, part = [] }: BakeF
  * @throws {InputError} that names the file at fault; then no file is written.
  */
 async function bakeCommand(command: BakeCommand, io: Io): Promise<Found> {
-  const { target, paint, normal, orm, reading } = command;
+  const { target, paint, map: { normal, orm } = {}, reading } = command;
   // What cannot be read is said before what takes long; for a chosen template it is only known then.
   const readAll = (template: string | undefined) =>
     Promise.all(

@@ -1,4 +1,5 @@
 import { type Command, Option } from 'commander';
+import type { Verdict } from '../../inspect/finding.js';
 import { counted } from '../../inspect/finding.js';
 import { standard } from '../io/files.js';
 import type { Io } from '../io/io.js';
@@ -10,12 +11,7 @@ import { jobsOfManifest, jobsOfPatterns, placeholderFault, writtenBy } from './b
 import { type BatchSummary, runJobs } from './batch-run.js';
 import * as common from './common-flags.js';
 
-interface BatchFlags
-  extends common.SettingFlags,
-    common.AroundFlags,
-    common.CageFlags,
-    common.ReadFlags,
-    common.PrintFlags {
+interface BatchFlags extends common.SettingFlags, common.AroundFlags, common.ReadFlags, common.PrintFlags {
   texture?: string;
   output?: string;
   report?: string;
@@ -23,7 +19,7 @@ interface BatchFlags
   manifest?: string;
   results?: string;
   resume?: boolean;
-  failOn?: 'usable' | 'unfit';
+  atLeast?: Verdict;
   workers?: number;
 }
 
@@ -40,11 +36,11 @@ standard error; with --quiet, only errors go there.
 The cages of a batch are left out of the files that a pattern names. Missing folders are made.
 A job that fails does not stop the others. Files are complete or not there, even if the batch is killed.
 With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure or another batch.
-Exit codes: 1 a job failed, 3 none failed, but --fail-on found a cage that does not fit as demanded.
+Exit codes: 1 a job failed, 3 none failed, but --at-least found a cage that does not fit as demanded.
 
 Examples:
   cagecast batch 'in/**/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
-  cagecast batch --manifest jobs.jsonl --results results.jsonl --resume --fail-on unfit`;
+  cagecast batch --manifest jobs.jsonl --results results.jsonl --resume --at-least usable`;
 
 /** Adds the command that runs many transfers. */
 export function addBatchCommand(program: Command, io: Io): void {
@@ -80,9 +76,9 @@ export function addBatchCommand(program: Command, io: Io): void {
     )
     .addOption(
       new Option(
-        '--fail-on <VERDICT>',
-        'inspect each cage, and exit 3 if one is no better than this; reports have the verdict then',
-      ).choices(['usable', 'unfit']),
+        '--at-least <VERDICT>',
+        'inspect each cage, and exit 3 if one is worse than this; reports have the verdict then',
+      ).choices(['good', 'usable']),
     )
     .addOption(
       common.parsed(
@@ -96,14 +92,15 @@ export function addBatchCommand(program: Command, io: Io): void {
 }
 
 async function runBatch(targets: string[], flags: BatchFlags, io: Io): Promise<void> {
-  const { manifest, results, resume = false, failOn, workers, quiet, json } = flags;
-  const { cage, template, uvBounds, referenceCage, texture, region: regions, output, report } = flags;
+  const { manifest, results, resume = false, atLeast, workers, quiet, json } = flags;
+  const { cage, template, texture, region: regions, output, report } = flags;
+  const { uvBounds, referenceCage } = flags.set ?? {};
   const fault = faultOf(targets, flags);
   if (fault !== undefined) throw new UsageError(fault);
   if (quiet) io.silence();
   const defaults = {
     ...{ cage, template, uvBounds, referenceCage, texture, regions, output, report, results },
-    inspects: failOn === undefined ? undefined : true,
+    inspects: atLeast === undefined ? undefined : true,
     layersFor: common.layersFor(flags),
     reading: common.readingOf(flags),
   };
@@ -111,8 +108,8 @@ async function runBatch(targets: string[], flags: BatchFlags, io: Io): Promise<v
     manifest === undefined
       ? await jobsOfPatterns(targets, defaults)
       : { jobs: await jobsOfManifest(manifest, defaults) };
-  const summary = await runJobs({ jobs, results, resume, failOn, workers, quiet }, io);
-  const savesNothing = !failOn && !results && summary.done > 0 && jobs.every((job) => writtenBy(job).length === 0);
+  const summary = await runJobs({ jobs, results, resume, atLeast, workers, quiet }, io);
+  const savesNothing = !atLeast && !results && summary.done > 0 && jobs.every((job) => writtenBy(job).length === 0);
   const without = leftOut.length > 0 ? `; left out, as they are cages: ${leftOut.join(', ')}` : '';
   const text = `${oneLine(describe(summary) + without)}${savesNothing ? kNothingSaved : ''}\n`;
   if (!quiet) io.err(json ? jsonText({ ...summary, ...(without && { leftOut }) }) : text);
@@ -123,7 +120,7 @@ const kNothingSaved = '\nno model or report written; for these, add -o OUT.glb o
 
 /** What is wrong with the arguments together, if anything is. */
 function faultOf(targets: readonly string[], flags: BatchFlags): string | undefined {
-  const { manifest, results, resume, uvBounds, texture, output, report } = flags;
+  const { manifest, results, resume, texture, output, report } = flags;
   if (targets.length > 0 === (manifest !== undefined)) return 'give either TARGETS or --manifest';
   if (resume && results === undefined) return '--resume needs --results, which says what is done';
   if ([output, report, results].includes(standard)) return 'a batch writes files; the standard output has its lines';
@@ -132,7 +129,7 @@ function faultOf(targets: readonly string[], flags: BatchFlags): string | undefi
   if (manifest === standard && flags.config === standard) return 'only one file can be the standard input';
   if (flags.cage !== undefined && flags.template !== undefined) return common.eitherCage;
   const withoutOutput = manifest === undefined ? common.outputFault(flags) : undefined;
-  return withoutOutput ?? placeholderFault(output, report) ?? boundsFault(texture, uvBounds);
+  return withoutOutput ?? placeholderFault(output, report) ?? boundsFault(texture, flags.set?.uvBounds);
 }
 
 /** A summary for people. */

@@ -20,7 +20,7 @@ interface Batch {
   /** Whether jobs are skipped that `results` says are done. */
   resume: boolean;
   /** The verdict from which on the batch fails; the jobs inspect cages then. */
-  failOn?: 'usable' | 'unfit' | undefined;
+  atLeast?: Verdict | undefined;
   workers?: number | undefined;
   /** Whether errors are printed instead of lines. */
   quiet?: boolean | undefined;
@@ -34,7 +34,7 @@ export interface BatchSummary {
   skipped: number;
   /** Of how many targets next to nothing may be painted. */
   bare: number;
-  /** How many cages got a verdict that `failOn` names, or a worse one. */
+  /** How many cages got a verdict worse than `atLeast`. */
   misfits: number;
   /** The configuration files that settings come from. */
   configs: string[];
@@ -46,7 +46,7 @@ export interface BatchSummary {
  * @throws {InputError} if the results cannot be read or written.
  */
 export async function runJobs(batch: Batch, io: Io): Promise<BatchSummary> {
-  const { jobs, results, resume, failOn, workers, quiet } = batch;
+  const { jobs, results, resume, atLeast, workers, quiet } = batch;
   const began = performance.now();
   if (results !== undefined) openResults(results);
   const before = resume ? readResults(results!) : noResults();
@@ -73,7 +73,7 @@ export async function runJobs(batch: Batch, io: Io): Promise<BatchSummary> {
     ++summary[line.status];
     if (line.status === 'failed' && quiet) io.err(`cagecast: ${oneLine(line.error)}\n`);
     if ('note' in line) ++summary.bare;
-    if (failOn && 'verdict' in line && !isWorse(failOn, line.verdict!)) ++summary.misfits;
+    if (atLeast && 'verdict' in line && isWorse(line.verdict!, atLeast)) ++summary.misfits;
     if (results === undefined) {
       if (!quiet) io.out(jsonText(line));
     } else if (line.status !== 'skipped' || !isLast(job)) append(results, jsonText(line));
@@ -84,7 +84,7 @@ export async function runJobs(batch: Batch, io: Io): Promise<BatchSummary> {
   for (const job of jobs) {
     const known = before.lines.get(job.key);
     const verdict = known && 'verdict' in known ? known.verdict : undefined;
-    const isDone = (failOn === undefined || kVerdicts.includes(verdict!)) && isWritten(job);
+    const isDone = (atLeast === undefined || kVerdicts.includes(verdict!)) && isWritten(job);
     if (job.error !== undefined) take(job, { status: 'failed', ms: 0, error: job.error });
     else if (known && isDone && writtenBy(job).every((path) => before.writers.get(canonicalPath(path)) === job.key))
       take(job, { status: 'skipped', ...(verdict && { verdict }) });

@@ -12,7 +12,7 @@ import { type Rules, resolveSettings } from '../model/settings.js';
 import { kAutoCage } from '../model/sources.js';
 import { integer, type Line, listed } from '../model/text.js';
 import { conclusionOf, inspectionReport } from '../transfer/inspection.js';
-import { inspectionPage } from '../transfer/inspection-page.js';
+import { reportFiles } from '../transfer/inspection-page.js';
 import { chooseCageFor, fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
 import { transferOptions } from '../transfer/part-names.js';
 import { readTarget } from '../transfer/read-target.js';
@@ -30,7 +30,7 @@ const kClosingRange = [0.0005, 0.2] as const;
 
 interface CageFileFlags extends common.ReadFlags, common.PrintFlags {
   output: string;
-  html?: string;
+  report?: string;
   keep?: string[];
   exclude?: string[];
 }
@@ -43,8 +43,19 @@ interface MakeFlags extends CageFileFlags {
 
 interface FitFlags extends CageFileFlags {
   template: string;
-  templateLandmarks?: string;
-  landmarks?: string;
+  landmarks?: LandmarkFiles;
+}
+
+/** Files of landmarks. */
+interface LandmarkFiles {
+  target?: string;
+  template?: string;
+}
+
+/** Parses the flag of a file of landmarks, which may be given for either model. */
+function landmarkFile(text: string, before: LandmarkFiles = {}): LandmarkFiles {
+  const [, path] = /^template=(.+)$/s.exec(text) ?? [];
+  return path === undefined ? { ...before, target: text } : { ...before, template: path };
 }
 
 /** The rules of a transfer with no other flags. */
@@ -92,7 +103,7 @@ export function addCageCommands(program: Command, io: Io): void {
 Example: cagecast make head.glb --exclude visor --keep 'hair*' --triangles 800 -o cage.glb`,
     )
     .action((target: string, flags: MakeFlags) =>
-      perform(io, flags, { inputs: [target], outputs: [flags.output, flags.html] }, () => makeFor(target, flags, io)),
+      perform(io, flags, { inputs: [target], outputs: [flags.output, flags.report] }, () => makeFor(target, flags, io)),
     );
 
   const fit = program
@@ -103,11 +114,13 @@ Example: cagecast make head.glb --exclude visor --keep 'hair*' --triangles 800 -
       '--template <TEMPLATE>',
       `GLB, glTF or OBJ of a cage for another model; or ${templateNames.join(', ')}; or auto: one of those, or a cage made as by make, whichever fits best`,
     )
-    .option(
-      '--template-landmarks <T.json>',
-      'landmarks of the model that TEMPLATE was made for (default: those in the file, as extras.landmarks)',
-    )
-    .option('--landmarks <L.json>', 'landmarks of TARGET; they override those that are found');
+    .addOption(
+      common.parsed(
+        '--landmarks <L.json>',
+        'landmarks of TARGET, which override those that are found; template=T.json, those of the model that TEMPLATE was made for (default: those in its file, as extras.landmarks); may be repeated',
+        landmarkFile,
+      ),
+    );
   common.addFlags(fit, 'Cage file', 'Parts', 'Reading', 'Printing');
   fit
     .addHelpText(
@@ -117,11 +130,11 @@ Files of landmarks are JSON, name → [x, y, z] in the model's space: { "nose_ti
 
 Examples:
   cagecast fit head.glb --template human-head -o cage.glb
-  cagecast fit head.glb --template template.glb --landmarks head.json -o cage.glb --html report.html`,
+  cagecast fit head.glb --template template.glb --landmarks head.json -o cage.glb --report report.html`,
     )
     .action((target: string, flags: FitFlags) => {
-      const inputs = [flags.template, target, flags.templateLandmarks, flags.landmarks];
-      return perform(io, flags, { inputs, outputs: [flags.output, flags.html] }, () =>
+      const inputs = [flags.template, target, ...Object.values(flags.landmarks ?? {})];
+      return perform(io, flags, { inputs, outputs: [flags.output, flags.report] }, () =>
         fitTo(flags.template, target, flags, io),
       );
     });
@@ -138,12 +151,13 @@ async function makeFor(target: string, flags: MakeFlags, io: Io): Promise<Found>
 /** Fits a template cage to a model and inspects it. @throws {InputError} that names the file at fault; then no file is written. */
 async function fitTo(path: string, target: string, flags: FitFlags, io: Io): Promise<Found> {
   const template =
-    path === kAutoCage ? undefined : await readTemplate(path, common.readingOf(flags), io, flags.templateLandmarks);
-  const given = flags.landmarks === undefined ? undefined : await readLandmarks(flags.landmarks);
+    path === kAutoCage ? undefined : await readTemplate(path, common.readingOf(flags), io, flags.landmarks?.template);
+  const own = flags.landmarks?.target;
+  const given = own === undefined ? undefined : await readLandmarks(own);
   const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags));
   const { origin } = model.extracted;
   const landmarks = given && landmarksMoved(given, origin, -1);
-  const files = { template: path, landmarks: flags.landmarks };
+  const files = { template: path, landmarks: own };
   const sources = { landmarks, files, options: { parts: partsOf(flags, model) } };
   const chosen = template
     ? await fitCageTo(model, { ...sources, template }, io).then((fit) => ({ cage: fit.cage, fit, choice: undefined }))
@@ -210,15 +224,16 @@ async function finish(
   io: Io,
   notes: FitNotes = { lines: [], report: {} },
 ): Promise<Found> {
-  const { output, html } = flags;
+  const { output } = flags;
   const rules = rulesOf(flags);
   const written = await readBack(cage, output, model);
   const options = transferOptions(rules, model, bareParts(model, written));
   const run = await transferModels(model, written, options, io);
   io.step('inspecting');
   const report = inspectionReport({ target: model.file.path, cage: output, rules }, run, []);
-  const page = html === undefined ? [] : [{ path: html, data: inspectionPage(report, run) }];
-  writeFiles([{ path: output, data: cageGlb({ ...cage, origin: model.extracted.origin }) }, ...page], io);
+  const all = { ...report, ...notes.report };
+  const cageFile = { path: output, data: cageGlb({ ...cage, origin: model.extracted.origin }) };
+  writeFiles([cageFile, ...reportFiles(flags.report, all, run)], io);
   const conclusion = conclusionOf(report);
   const { verdict, uv, holes } = report;
   const lines = [
@@ -228,8 +243,8 @@ async function finish(
     verdict !== 'good' && notes.advice,
     ...conclusion,
     verdict === 'unfit' && notes.otherwise,
-    html && `wrote ${html}`,
+    flags.report && `wrote ${flags.report}`,
   ];
   const exitCode = verdict === 'unfit' ? kExit.unfit : 0;
-  return { lines, report: { ...report, ...notes.report }, exitCode };
+  return { lines, report: all, exitCode };
 }

@@ -21,16 +21,15 @@ import { areBounds, boundsText, type UvBounds } from '../model/uv-bounds.js';
 import { Configuration, configName } from './config-file.js';
 
 /** The flags that say what is painted. */
-export interface SettingFlags
-  extends Pick<Settings, 'preset' | 'threshold' | 'keep' | 'exclude' | 'borders' | 'compress'> {
+export interface SettingFlags extends Pick<Settings, 'threshold' | 'keep' | 'exclude' | 'borders' | 'compress'> {
   /** Other options, by their names. */
-  set?: Settings;
+  set?: Settings & CageSettings;
   mask?: Pick<Settings, 'neverMask' | 'alwaysMask' | 'maskColors'>;
   config?: string | undefined;
 }
 
-/** The flags that say which part of a cage counts. */
-export interface CageFlags {
+/** Options of `--set` that say which part of a cage counts. */
+interface CageSettings {
   uvBounds?: UvBounds;
   referenceCage?: string;
 }
@@ -80,8 +79,13 @@ const kOutputFlags = [
   ).default([], 'none'),
 ];
 
-/** The flag for a page about a cage. */
-export const htmlFlag = (): Option => parsed('--html <REPORT.html>', 'a page with pictures', endingIn('.html'));
+/** The flag for a report about a cage. */
+export const reportFlag = (): Option =>
+  parsed(
+    '--report <REPORT>',
+    'an .html page with pictures, or what --json prints as .json',
+    endingIn('.html', '.json'),
+  );
 
 /** What counts, by name; `--ignore` is one of the flags for reading. */
 const kPartFlags = [
@@ -99,21 +103,34 @@ const kCageFileFlags = [
     'where to write the cage; - for the standard output',
     endingIn('.glb'),
   ).makeOptionMandatory(),
-  htmlFlag(),
+  reportFlag(),
 ];
+
+/** Options of `--set` about the cage alone. */
+const kCageSettings =
+  "uvBounds=U0,V0,U1,V1 (the part of the cage's UVs that the texture covers; nothing is painted outside; default: all, and the texture covers 0..1), referenceCage=CAGE (another version of the cage; where its UVs have no triangle, --cage counts as having a hole)";
 
 const kThreshold = optionValues.find(({ name }) => name === 'threshold')!;
 const kOthers = optionValues.filter((option) => option !== kThreshold);
+const kSetNames: readonly string[] = ['preset', ...kOthers.map(({ name }) => name), 'uvBounds', 'referenceCage'];
+
+/** Flags that were called otherwise. */
+const kRenamed: Record<string, string> = {
+  html: '--report REPORT.html',
+  normal: '--map normal=MAP',
+  orm: '--map orm=MAP',
+  templateLandmarks: '--landmarks template=T.json',
+  failOn: '--at-least VERDICT',
+};
 
 /** A text as commander has it: from a small letter on, without a full stop. */
 const clause = (text: string): string => `${text[0]!.toLowerCase()}${text.slice(1).replace(/\.$/, '')}`;
 
 const kSettingFlags = [
-  choice('--preset <NAME>', 'values of the options that are not given', kChoices.preset),
   parsed('--threshold <SHARE>', `${clause(kThreshold.text)}; default: ${kThreshold.standard}`, numberWithin(0, 1)),
   parsed(
     '--set <NAME=VALUE>',
-    `set another option, as in code: ${kOthers.map(({ name, standard }) => `${name} (default: ${standard})`).join(', ')}; may be repeated`,
+    `set another option, as in code: preset (default or paper: values of the options that are not given), ${kOthers.map(({ name, standard }) => `${name} (default: ${standard})`).join(', ')}, ${kCageSettings}; may be repeated`,
     optionOf,
   ),
   parsed(
@@ -124,18 +141,6 @@ const kSettingFlags = [
   new Option(
     '--config <FILE>',
     `settings for all files, and by their names; none reads none (default: the nearest ${configName})`,
-  ),
-];
-
-const kCageFlags = [
-  parsed(
-    '--uv-bounds <U0,V0,U1,V1>',
-    "the part of the cage's UVs that the texture covers; what lies outside is not painted (default: all; the texture covers 0..1)",
-    boundsOf,
-  ),
-  new Option(
-    '--reference-cage <CAGE>',
-    'another version of the cage. Where its UVs have no triangle, --cage counts as having a hole',
   ),
 ];
 
@@ -167,14 +172,13 @@ const kGroups = {
   Output: kOutputFlags,
   Parts: kPartFlags,
   Painting: kSettingFlags,
-  'Part of the cage': kCageFlags,
   'Cage file': kCageFileFlags,
   Reading: kReadFlags,
   Printing: kPrintFlags,
 };
 
 /** Groups of the commands that transfer; `inspect` has all but the first. */
-export const transferGroups = ['Output', 'Parts', 'Painting', 'Part of the cage', 'Reading', 'Printing'] as const;
+export const transferGroups = ['Output', 'Parts', 'Painting', 'Reading', 'Printing'] as const;
 
 /** Adds groups of flags, after the flags that a command has for itself. */
 export function addFlags(command: Command, ...headings: (keyof typeof kGroups)[]): Command {
@@ -189,8 +193,7 @@ const kNoConfig = 'none';
 /** What the flags say of settings. */
 const flagsLayer = (flags: SettingFlags): Layer => ({
   settings: {
-    ...Object.fromEntries(Object.entries(flags).filter(([name]) => kSettingNames.includes(name))),
-    ...flags.set,
+    ...Object.fromEntries(Object.entries({ ...flags, ...flags.set }).filter(([name]) => kSettingNames.includes(name))),
     ...flags.mask,
   },
   isFlags: true,
@@ -231,25 +234,23 @@ export function aroundOf({ cage, template }: AroundFlags, target: string) {
     : { cage: kAutoCage, template, isOwnCage: false };
 }
 
-interface InputFlags extends SettingFlags, CageFlags, AroundFlags {
+interface InputFlags extends SettingFlags, AroundFlags {
   texture?: string | undefined;
   region?: readonly Region[];
 }
 
+/** Why a command that paints with the whole cage does not take some of `--set`, if they are given. */
+export const wholeCageFault = ({ uvBounds, referenceCage }: CageSettings = {}): string | undefined =>
+  (uvBounds ?? referenceCage) === undefined
+    ? undefined
+    : 'uvBounds and referenceCage are options of transfer, inspect and batch alone';
+
 /** The files that flags name as inputs. */
-export const inputsOf = ({
-  cage,
-  template,
-  referenceCage,
-  texture,
-  region = [],
-  mask = {},
-  config,
-}: InputFlags): string[] =>
+export const inputsOf = ({ cage, template, texture, region = [], set = {}, mask = {}, config }: InputFlags): string[] =>
   [
     template,
     ...[cage, ...region.map((one) => one.cage)].filter((path) => path !== kAutoCage),
-    ...[referenceCage, texture, ...region.map((one) => one.texture), mask.neverMask, mask.alwaysMask],
+    ...[set.referenceCage, texture, ...region.map((one) => one.texture), mask.neverMask, mask.alwaysMask],
     config === kNoConfig ? undefined : config,
   ].filter((path) => path !== undefined);
 
@@ -323,13 +324,16 @@ function limitOf(text: string, before: Limits = {}): Limits {
 export function insteadOf(text: string): string {
   const [, flag = ''] = /unknown option '--([\w-]+)/.exec(text) ?? [];
   const name = flag.replace(/-(\w)/g, (_, letter: string) => letter.toUpperCase());
-  return kOthers.some((option) => option.name === name) ? `; it is set by --set ${name}=VALUE` : '';
+  if (kSetNames.includes(name)) return `; it is set by --set ${name}=VALUE`;
+  const now = kRenamed[name];
+  return now === undefined ? '' : `; it is ${now}`;
 }
 
-function optionOf(text: string, before: Settings = {}): Settings {
-  const [name = '', value = ''] = text.split('=', 2);
-  const names = kOthers.map((option) => option.name) as string[];
-  if (!names.includes(name)) throw new InvalidArgumentError(`There are ${names.join(', ')}.`);
+function optionOf(text: string, before: Settings & CageSettings = {}): Settings & CageSettings {
+  const [, name = text, value = ''] = /^(.*?)=(.*)$/s.exec(text) ?? [];
+  if (!kSetNames.includes(name)) throw new InvalidArgumentError(`There are ${kSetNames.join(', ')}.`);
+  if (name === 'uvBounds') return { ...before, uvBounds: boundsOf(value) };
+  if (name === 'referenceCage' && value !== '') return { ...before, referenceCage: value };
   const word = { true: true, false: false, Infinity: 'Infinity' }[value];
   const number = value.trim() === '' ? Number.NaN : Number(value);
   try {

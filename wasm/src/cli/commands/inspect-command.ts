@@ -12,7 +12,7 @@ import {
   inspectionReport,
   segmentTable,
 } from '../transfer/inspection.js';
-import { inspectionPage } from '../transfer/inspection-page.js';
+import { reportFiles } from '../transfer/inspection-page.js';
 import { choiceLines, leftOutLines, turnedLine, zoneTable } from '../transfer/report-parts.js';
 import { runTransfer } from '../transfer/run-transfer.js';
 import * as common from './common-flags.js';
@@ -20,14 +20,14 @@ import { type Found, perform } from './perform.js';
 import { addTarget, type TargetFlags } from './transfer-command.js';
 
 interface InspectFlags extends TargetFlags {
-  html?: string;
+  report?: string;
 }
 
 /** Adds the command that judges a cage. */
 export function addInspectCommand(program: Command, io: Io): void {
   const command = addTarget(program.command('inspect'))
     .description('check whether the cage fits TARGET; print a verdict, reasons and advice')
-    .addOption(common.htmlFlag());
+    .addOption(common.reportFlag());
   common.addFlags(command, ...common.transferGroups.slice(1));
   command
     .addHelpText(
@@ -35,17 +35,17 @@ export function addInspectCommand(program: Command, io: Io): void {
       `
 The verdict is good, usable (fits, with reservations) or unfit, with exit code 3. The most important reasons come first.
 
-Example: cagecast inspect head.glb --cage cage.glb --html report.html`,
+Example: cagecast inspect head.glb --cage cage.glb --report report.html`,
     )
     .action((target: string, flags: InspectFlags) => {
-      const files = { inputs: [target, ...common.inputsOf(flags)], outputs: [flags.html] };
+      const files = { inputs: [target, ...common.inputsOf(flags)], outputs: [flags.report] };
       return perform(io, flags, files, () => inspectTarget(target, flags, io));
     });
 }
 
 /** Checks whether a cage fits a target. @throws {InputError} that names the file at fault. */
 async function inspectTarget(target: string, flags: InspectFlags, io: Io): Promise<Found> {
-  const { uvBounds, referenceCage, html } = flags;
+  const { uvBounds, referenceCage } = flags.set ?? {};
   const { rules } = resolveSettings(await common.layersFor(flags)(target));
   const sources = {
     target,
@@ -58,15 +58,15 @@ async function inspectTarget(target: string, flags: InspectFlags, io: Io): Promi
   const run = await runTransfer(sources, io);
   io.step('inspecting');
   const report = inspectionReport(sources, run, uvBounds ? [uvBounds] : []);
-  if (html !== undefined) writeFiles([{ path: html, data: inspectionPage(report, run) }], io);
+  writeFiles(reportFiles(flags.report, report, run), io);
   const exitCode = report.verdict === 'unfit' ? kExit.unfit : 0;
-  return { lines: describe(report, html), report, exitCode };
+  return { lines: describe(report, flags.report), report, exitCode };
 }
 
 /** How many rows a table has at most. */
 const kMaxRows = 15;
 
-function describe(report: InspectionReport, html: string | undefined): Line[] {
+function describe(report: InspectionReport, written: string | undefined): Line[] {
   const { target, cage, counts, coverage, placement, inside, inward, topology, uv, holes, segments } = report;
   const { outside, distances } = placement;
   const cutNames = (rows: string[][]) => table(rows.map(([name, ...cells]) => [cut(name!, 50), ...cells]));
@@ -95,7 +95,7 @@ function describe(report: InspectionReport, html: string | undefined): Line[] {
     '',
     ...choiceLines(cage),
     ...conclusionOf(report),
-    html && `wrote ${html}`,
+    written && `wrote ${written}`,
     turnedLine(cage),
     ...leftOutLines(target),
     configLine(report.options.config),

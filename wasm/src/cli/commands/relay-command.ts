@@ -8,6 +8,7 @@ import { percent } from '../../inspect/finding.js';
 import { encodePng, readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import { refuseOverwriting, writeFiles } from '../io/output.js';
+import { UsageError } from '../model/failures.js';
 import { resolveSettings } from '../model/settings.js';
 import type { Sources } from '../model/sources.js';
 import { configLine, integer } from '../model/text.js';
@@ -72,6 +73,8 @@ export function addRelayCommand(program: Command, io: Io): void {
   command.addHelpText('after', kHelp).action((target: string, flags: RelayFlags) => {
     const { texture: paint } = flags;
     const around = common.aroundOf(flags, target);
+    const fault = common.wholeCageFault(flags.set);
+    if (fault !== undefined) throw new UsageError(fault);
     const inputs = [target, ...common.inputsOf(flags), ...common.inputsOf({ cage: flags.to })];
     return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
       const { rules } = resolveSettings(await common.layersFor(flags)(target));

@@ -9,12 +9,7 @@ import * as common from './common-flags.js';
 import { perform } from './perform.js';
 
 /** The flags of the commands that transfer to one target. */
-export interface TargetFlags
-  extends common.SettingFlags,
-    common.AroundFlags,
-    common.CageFlags,
-    common.ReadFlags,
-    common.PrintFlags {}
+export interface TargetFlags extends common.SettingFlags, common.AroundFlags, common.ReadFlags, common.PrintFlags {}
 
 interface TransferFlags extends TargetFlags {
   texture?: string;
@@ -45,8 +40,8 @@ VRM 0, is turned by half if it then fits clearly better; the summary says so.
 OUT: what an earlier transfer added is replaced. Where triangles need different UVs, copies of vertices are added after the others
 (not with --set seams=vertex); --borders cut adds some, too; Draco changes their order. --region adds UVs and zones of its own
 (_NCZ_1, …). An overlay fills what a material cuts out by its alpha (MASK), as between hairs; cagecast bake does not.
---uv-bounds and --reference-cage are about --cage alone. Within the bounds, the UVs in OUT are 0..1. A triangle across them is
-painted whole; zones do not depend on them.
+uvBounds and referenceCage are about --cage alone. Within the bounds, the UVs in OUT are 0..1. A triangle across them is painted
+whole; zones do not depend on them.
 <UDIM> stands for the tiles of the cage's UVs: 1001, 1002 to its right, 1011 above. A triangle shows the tile of its UVs' centre.
 Of several scenes, the default one is read; of the instances of a mesh (EXT_mesh_gpu_instancing), the first.
 A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
@@ -75,7 +70,8 @@ export function addTransferCommand(program: Command, io: Io): void {
     .addOption(new Option('--report <R.json>', 'counts, areas, segments and timings as JSON'));
   common.addFlags(command, ...common.transferGroups);
   command.addHelpText('after', kHelp).action((target: string, flags: TransferFlags) => {
-    const { texture, output, report, uvBounds, referenceCage, region: regions } = flags;
+    const { texture, output, report, region: regions } = flags;
+    const { uvBounds, referenceCage } = flags.set ?? {};
     const around = common.aroundOf(flags, target);
     const fault = common.outputFault(flags) ?? boundsFault(texture, uvBounds);
     if (fault !== undefined) throw new UsageError(fault);

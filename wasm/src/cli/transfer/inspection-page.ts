@@ -6,7 +6,7 @@ import { counted, percent, verdictOf } from '../../inspect/finding.js';
 import { boxOf, pointAt, type Vector } from '../../inspect/geometry.js';
 import { type Scene, sceneOf } from '../../inspect/scene.js';
 import { InputError } from '../../scene/input-error.js';
-import { integer } from '../model/text.js';
+import { integer, jsonText } from '../model/text.js';
 import { kZoneNames } from '../model/zones.js';
 import { adviceOn, holeTable, type InspectionReport, segmentTable } from './inspection.js';
 import type { Run } from './run-transfer.js';
@@ -37,8 +37,19 @@ const shownViews: readonly { name: string; view: View }[] = [
   { name: 'its right', view: viewAt(views.right) },
 ];
 
+/** The file of a report, if one is asked for: a page with pictures, or JSON, by how its name ends. */
+export function reportFiles(
+  path: string | undefined,
+  report: InspectionReport,
+  run: Run,
+): { path: string; data: string }[] {
+  if (path === undefined) return [];
+  const isPage = path.toLowerCase().endsWith('.html');
+  return [{ path, data: isPage ? inspectionPage(report, run) : jsonText(report, 2) }];
+}
+
 /** Writes an inspection as a self-contained page, with pictures of zones, fit and UVs. */
-export function inspectionPage(report: InspectionReport, { target, cage, result }: Run): string {
+function inspectionPage(report: InspectionReport, { target, cage, result }: Run): string {
   const { verdict, findings, holes, segments, placement, uv, options } = report;
   const { mesh, parts } = target.extracted;
   const scene = sceneOf(cage.extracted.mesh, mesh, result, { threshold: options.threshold }, parts);

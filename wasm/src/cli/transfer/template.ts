@@ -46,7 +46,7 @@ export async function readTemplate(
     throw new InputError(`${has}; at least ${kMinLandmarks} are needed`).in(templateLandmarks);
   const place = isObj(path) ? '' : ' in the extras of its nodes and meshes';
   throw new InputError(
-    `${has}${place}; give at least ${kMinLandmarks} of the model that it was made for: --template-landmarks T.json`,
+    `${has}${place}; give at least ${kMinLandmarks} of the model that it was made for: --landmarks template=T.json`,
   ).in(path);
 }
 

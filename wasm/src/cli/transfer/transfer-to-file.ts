@@ -85,7 +85,7 @@ function summary(command: TransferCommand, report: Report): Line[] {
     turnedLine(cage),
     note,
     outOfBounds > 0 &&
-      `${integer(outOfBounds)} more could be painted, but lie outside of --uv-bounds; zones do not depend on the bounds`,
+      `${integer(outOfBounds)} more could be painted, but lie outside of uvBounds; zones do not depend on the bounds`,
     ...(output === null ? [] : outputLines(output, report)),
     ...regions.flatMap((one) => [
       `${one.cage}: ${shareOf(one.triangles)} triangles more may be painted, by ${one.texture}`,
