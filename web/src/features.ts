@@ -62,7 +62,8 @@ export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
   const wardrobe =
     stage &&
     setUpWardrobe({
-      ...{ session, loader: page.loader, viewer: stage.viewer, stack, paint: stage.composite.texture, png },
+      ...{ session, loader: page.loader, maker: page.maker, viewer: stage.viewer },
+      ...{ stack, drawings: opener.drawings, paint: stage.composite.texture, png },
       samples: () => opener.samples,
     });
   opener.wardrobe = wardrobe;

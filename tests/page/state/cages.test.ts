@@ -76,13 +76,14 @@ test('a cage is made for the model, fitted to it, moved, and turned; the page kn
   assert.match(page.notes.note, /^A cage of 4 triangles was made\. Save it/);
   const known = () => Object.keys(knownLandmarks(session.shown!.target, session.shown!.cage)!).join('');
   assert.equal(known(), 'ab', 'the verdict is of a face that was looked for');
-  const remedy = () =>
-    remedyFor({ code: 'faceSeam' } as never, { inward: { share: 0, triangles: [] } }, session, maker);
-  assert.equal(remedy()!.title, 'Fit a template');
+  const remedy = (code: string) =>
+    remedyFor({ code } as never, { inward: { share: 0, triangles: [] } }, session, maker);
+  assert.equal(remedy('faceSeam')!.title, 'Fit a template');
   await maker.flip([1]);
   await page.ready();
   assert.deepEqual([...session.shown!.cage.mesh.indices.subarray(3, 6)], [0, 3, 1]);
   assert.deepEqual([page.shown[1], maker.isMade, maker.isFresh], ['a-cage.glb', true, false]);
+  assert.equal(remedy('cageTooFar')!.title, 'Move the cage');
   page.engine.moves = false;
   await maker.move();
   assert.match(await page.failed(), /^a\.glb: the cage a-cage\.glb cannot be moved into place/);
@@ -95,7 +96,10 @@ test('a cage is made for the model, fitted to it, moved, and turned; the page kn
   await page.ready();
   const { fitting } = madeOf(file())!;
   assert.deepEqual([fitting!.given, fitting!.template, fitting], [{ a: [1, 2, 3] }, 'human-head', page.fitting]);
-  assert.deepEqual([maker.isMade, known(), remedy()], [false, 'abcdef', undefined]);
+  assert.deepEqual(
+    [maker.isMade, known(), remedy('faceSeam'), remedy('cageTooFar')],
+    [false, 'abcdef', undefined, undefined],
+  );
   session.reportInspection({ verdict: 'usable', findings: [] } as never);
   assert.equal(page.notes.missing, 'Landmarks that were not found: nose tip, left ear lobe.');
   const changed = await maker.change({ positions: session.shown!.cage.mesh.positions.map((x) => 2 * x) });

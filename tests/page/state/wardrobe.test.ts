@@ -1,10 +1,19 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { Texture } from 'three';
+import { noteMade } from '../../../web/src/state/made-cages';
 import type { Model } from '../../../web/src/state/model';
+import type { Paint } from '../../../web/src/state/paint';
 import type { SplitProjection } from '../../../web/src/state/transfers';
 import type { Avatar, Entry, Figure } from '../../../web/src/state/wardrobe/avatar';
 import { Wardrobe } from '../../../web/src/state/wardrobe/wardrobe';
 import { begin, copyOf, FakeTransferer, fileOf, Gate, quiet, until } from './harness';
+
+/** A cage as one that was made here. */
+function asMade(target: File, cage: Model): Model {
+  noteMade(cage.files[0]!, { target, fitting: undefined });
+  return cage;
+}
 
 /** A wardrobe beside a model with its cage, `one.glb`. */
 async function wardrobe() {
@@ -14,12 +23,22 @@ async function wardrobe() {
   await page.ready();
   const [fits, transferer] = [new Gate(), new FakeTransferer()];
   const errors: string[] = [];
+  /** What figures wear: the paint of the stage, or one of their own. */
+  const worn = new Map<string, unknown>();
+  let drawing = '';
+  const drawn: string[] = [];
+  const draw = async (cage: Model): Promise<Paint> => {
+    drawn.push(`${drawing} ${cage.name}`);
+    if (drawing === 'broken') throw new Error('it cannot be drawn');
+    return { name: drawing, texture: new Texture(), picture: '', drawn: drawing };
+  };
   let figures: readonly (Figure | undefined)[] | undefined;
   let refused: string | undefined;
   const view = {
     stand(model: Model, projection: SplitProjection | undefined): Figure {
       const setProjection = (next: SplitProjection): unknown => Object.assign(figure, { projection: next });
-      const figure = { model, projection, takesPaint: false, setProjection, classify() {}, dispose() {} };
+      const setPaint = (paint: unknown): unknown => worn.set(model.name, paint);
+      const figure = { model, projection, setPaint, setProjection, classify() {}, dispose() {} };
       return figure;
     },
     arrange: (all: typeof figures) => void (figures = all),
@@ -35,6 +54,12 @@ async function wardrobe() {
       if (name === refused) throw new Error('the cage does not fit');
       return copyOf(name.replace('.', '-cage.'), cage);
     },
+    async choose({ name, files }, { signal }) {
+      await fits.wait(signal);
+      if (name === refused) throw new Error('no cage can be made');
+      return asMade(files[0]!, await page.load(name.replace('.', '-chosen.'), 4, name.length));
+    },
+    drawing: () => (drawing === '' ? undefined : { name: drawing, draw }),
     view,
     errors: { show: (text) => errors.splice(0, errors.length, text), add: (text) => errors.push(text) },
   });
@@ -58,6 +83,14 @@ async function wardrobe() {
     stage: page.transferer,
     entry,
     named,
+    worn,
+    drawn,
+    /** Chooses a base paint that is drawn; none if the name is empty. */
+    async drawAs(name: string): Promise<void> {
+      drawing = name;
+      all.refresh();
+      await all.list.done;
+    },
     get figures() {
       return figures;
     },
@@ -117,6 +150,57 @@ test('avatars are read one after the other, get the cage on the stage, and stand
   assert.equal(page.session.view.mode, 'result', 'one divider across all would hide more than it shows');
   page.all.remove(page.named('two'));
   assert.deepEqual(page.loader.disposed, ['two.glb']);
+});
+
+test('without a cage of the user’s own on the stage, each gets the one that is chosen for it, and the paint of all whose UVs are the same', async () => {
+  const page = await wardrobe();
+  const own = page.session.shown!.target.files[0]!;
+  page.session.request({ cage: page.load('one-chosen.glb', 4, 7).then((cage) => asMade(own, cage)) });
+  await page.ready();
+  page.refuse('four.glb');
+  await page.add('two', 'three', 'four');
+  const { two, three, four } = Object.fromEntries(page.all.list.all.map((avatar) => [avatar.name, avatar]));
+  assert.deepEqual([two!.cage!.name, two!.takesPaint, two!.follows], ['two-chosen.glb', true, false]);
+  assert.deepEqual([three!.cage!.name, three!.takesPaint], ['three-chosen.glb', false]);
+  assert.deepEqual([four!.cage, page.errors], [undefined, ['four: no cage can be made']]);
+});
+
+test('a base that is drawn is drawn for other cages, too: again when it or the cage changes, not for what takes the paint of the stage', async () => {
+  const page = await wardrobe();
+  await page.all.add([
+    page.entry('two', page.load('two-own.glb', 4, 1)),
+    page.entry('three', page.load('cage.glb', 4)),
+  ]);
+  assert.deepEqual([page.worn.get('two.glb'), page.worn.get('three.glb')], [undefined, 'stage']);
+  await page.drawAs('tiger');
+  await page.drawAs('tiger');
+  const two = page.named('two');
+  assert.deepEqual([page.worn.get('two.glb'), page.drawn], [two.own!.paint.texture, ['tiger two-own.glb']]);
+  await page.drawAs('flowers');
+  await page.choose('two');
+  await page.done();
+  assert.deepEqual(
+    page.drawn,
+    ['tiger', 'flowers'].map((name) => `${name} two-own.glb`).concat('flowers cage.glb', 'flowers cage.glb'),
+  );
+  await page.drawAs('');
+  assert.equal(page.worn.get('three.glb'), undefined);
+  await page.drawAs('broken');
+  await page.drawAs('broken');
+  assert.deepEqual(page.errors, ['it cannot be drawn', 'it cannot be drawn'], 'of one and three, once each');
+});
+
+test('what takes the place of a sample does not get that sample’s cage', async () => {
+  const page = await wardrobe();
+  const sample = { name: 'car', title: 'Car', target: 'car.glb', cage: 'car-cage.glb', paints: [] };
+  const ofSample = async (loading: Promise<Model>): Promise<Model> => ({ ...(await loading), sample });
+  const car = { target: ofSample(page.load('car.glb')), cage: ofSample(page.load('car-cage.glb', 4, 2)) };
+  page.session.request(car, {}, true);
+  await page.ready();
+  await page.all.add([page.entry('two'), page.entry('three')], page.all.list.active);
+  await until(() => page.shown[0] === 'two.glb');
+  await page.ready();
+  assert.deepEqual([page.names, page.shown[1]], ['[two] three', 'two-chosen.glb']);
 });
 
 test('twelve are taken; more are refused by name, and find room when one is removed', async () => {

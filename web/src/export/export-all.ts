@@ -7,7 +7,8 @@ import type { PaintInto } from './export-messages';
 
 /**
  * Writes the avatars as GLBs with the paint, all in one ZIP file.
- * @param png  The composite of the layers.
+ * @param avatars  Each is painted.
+ * @param png  The composite of the layers, for those that take it.
  * @param report Called with how many are done.
  * @returns The file, and what went wrong with some of them.
  * @throws Error if nothing could be written.
@@ -38,7 +39,7 @@ export async function exportAll(
         projection,
         choices: avatar === active ? choices : choicesOf(avatar.locks, bare, projection, session.bareOf(avatar.files)),
       };
-      const { glb } = await exportGlb(scene, png, into);
+      const { glb } = await exportGlb(scene, avatar.takesPaint ? png : avatar.own!.paint.file!, into);
       const { name } = avatar.files[0]!;
       files.push({ name: freeName(avatar.sample?.name ?? nameOf(name), endingOf(name), files), blob: glb });
     } catch (error) {

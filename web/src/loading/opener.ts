@@ -28,7 +28,7 @@ export class Opener implements Samples {
   readonly #edits: Edits;
   readonly #select = element('sample-select', HTMLSelectElement);
   readonly #loader: Loader;
-  readonly #drawings: Drawings;
+  readonly drawings: Drawings;
   /** Takes several models. */
   wardrobe: Pick<WardrobeOfPage, 'take'> | undefined;
   #samples: Sample[] = [];
@@ -51,7 +51,7 @@ export class Opener implements Samples {
 
   constructor(session: Session, stack: LayerStack, edits: Edits, loader: Loader, drawings: Drawings) {
     this.#session = session;
-    this.#drawings = drawings;
+    this.drawings = drawings;
     session.paintFor = (cage) => this.#paintFor(cage);
     this.#stack = stack;
     this.#edits = edits;
@@ -129,15 +129,15 @@ export class Opener implements Samples {
   /** Loads a paint of any sample. @param name By `paintName`. @returns Undefined if there is none. */
   async paint(name: string): Promise<Paint | undefined> {
     if (name === kChecker) return this.#session.checker;
-    const drawn = this.#drawings.find(name);
-    if (drawn) return this.#drawings.draw(drawn, this.#session.shown!.cage);
+    const drawn = this.drawings.find(name);
+    if (drawn) return this.drawings.draw(drawn, this.#session.shown!.cage);
     const found = this.find(name);
     return found && this.#fetchPaint(found.sample, found.paint);
   }
 
   /** Whether there is a paint of that name, by `paintName`. */
   has(name: string): boolean {
-    return name === kChecker || this.#drawings.find(name) !== undefined || this.find(name) !== undefined;
+    return name === kChecker || this.drawings.find(name) !== undefined || this.find(name) !== undefined;
   }
 
   /** A sample's paint by `paintName`. */
@@ -163,8 +163,8 @@ export class Opener implements Samples {
 
   /** Draws the named paint, or what a cage begins with. */
   #drawFor(cage: Model, name = ''): Promise<Paint> {
-    const drawn = this.#drawings.find(name) ?? this.#drawings.firstFor(cage);
-    return this.#drawings.draw(drawn, cage).catch(() => this.#session.checker);
+    const drawn = this.drawings.find(name) ?? this.drawings.firstFor(cage);
+    return this.drawings.draw(drawn, cage).catch(() => this.#session.checker);
   }
 
   /** Opens the user's own files. */
@@ -294,7 +294,7 @@ export class Opener implements Samples {
     if (this.#offered?.cage !== cage) this.#offered = { cage, pictures: [] };
     const offered = this.#offered;
     this.#listPaints(offered);
-    const pictures = await this.#drawings.pictures(cage).catch(() => []);
+    const pictures = await this.drawings.pictures(cage).catch(() => []);
     if (offered !== this.#offered || offered.pictures === pictures) return;
     offered.pictures = pictures;
     this.#listPaints(offered);
@@ -303,7 +303,7 @@ export class Opener implements Samples {
   #listPaints({ cage, pictures }: { cage: Model; pictures: readonly string[] }): void {
     const { checker } = this.#session;
     const sample = sampleOf(cage);
-    const drawn = this.#drawings.listFor(cage);
+    const drawn = this.drawings.listFor(cage);
     const choices: (Choice & { drawn?: string; load(): Promise<Paint> })[] = [
       ...(sample?.paints ?? []).map((paint) => ({
         title: paint.title,
@@ -312,7 +312,7 @@ export class Opener implements Samples {
       })),
       ...drawn.flatMap((paint, i) => {
         const [title, picture] = [paint.title, pictures[i]];
-        return picture ? [{ title, picture, drawn: paint.name, load: () => this.#drawings.draw(paint, cage) }] : [];
+        return picture ? [{ title, picture, drawn: paint.name, load: () => this.drawings.draw(paint, cage) }] : [];
       }),
       { title: checker.name, picture: checker.picture, load: async () => checker },
     ];

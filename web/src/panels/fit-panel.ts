@@ -108,12 +108,12 @@ export class FitPanel {
       ? `The cage covers ${region} of the model only: ${share} its visible surface can be painted.`
       : `${share} the visible surface can be painted.`;
     const remedies = findings.flatMap((finding) => remedyFor(finding, inspection, this.#session, this.#maker) ?? []);
-    const { isFresh, isOthers } = this.#maker;
+    const { isFresh, isMade, isOthers } = this.#maker;
     const reasons = findings.filter((finding) => verdictOf([finding]) === 'unfit');
     // Where keeping a part is enough, another cage would be judged by the same rules.
     const [kept] = (!isOthers && reasons.every(({ locks }) => locks) && reasons[0]?.places) || [];
     if (kept) remedies.push({ title: `Keep “${kept.part}”`, run: () => this.#session.lock([kept.segment], 'keep') });
-    const making = verdict === 'unfit' && !isFresh && !kept ? [this.#making] : [];
+    const making = verdict === 'unfit' && !(isFresh && isMade) && !kept ? [this.#making] : [];
     // The cage of another model is not meant for this one.
     if (isOthers) remedies.unshift(...making);
     const content: HTMLElement[] = [

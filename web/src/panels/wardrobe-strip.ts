@@ -1,16 +1,20 @@
 import type { Texture } from 'three';
 import type { LayerStack } from '#three';
 import { exportAll } from '../export/export-all';
+import type { Drawings } from '../loading/drawn/drawings';
 import { entriesOf, keptEntry, sampleEntry } from '../loading/entries';
 import { fitLike } from '../loading/fit-like';
 import { TransferClient } from '../loading/transfer-client';
 import { download } from '../platform/download';
 import { addError, announce, element, showError } from '../platform/page';
+import type { CageMaker } from '../state/cage-maker';
 import type { Loader } from '../state/model';
+import type { Paint } from '../state/paint';
 import type { Sample } from '../state/sample';
 import type { Session } from '../state/session';
 import { type Avatar, kMaxAvatars } from '../state/wardrobe/avatar';
 import type { KeptWardrobe } from '../state/wardrobe/kept';
+import type { Surroundings } from '../state/wardrobe/surroundings';
 import { Wardrobe } from '../state/wardrobe/wardrobe';
 import type { Viewer } from '../view/viewer';
 import { WardrobeStage } from '../view/wardrobe/wardrobe-stage';
@@ -21,6 +25,8 @@ export interface WardrobePage {
   loader: Loader;
   viewer: Viewer;
   stack: LayerStack;
+  maker: Pick<CageMaker, 'choose'>;
+  drawings: Pick<Drawings, 'find' | 'draw'>;
   /** The composite of the layers. */
   paint: Texture;
   /** Encodes it. */
@@ -73,6 +79,8 @@ export class WardrobeStrip {
       loader,
       transferer: new TransferClient(),
       fit: fitLike,
+      drawing: () => this.#drawing(),
+      choose: (model, progress) => page.maker.choose(model, progress),
       view: this.#stage,
       errors: { show: showError, add: addError },
     });
@@ -108,6 +116,12 @@ export class WardrobeStrip {
     }
     const { active } = this.#wardrobe.list;
     this.#addAll(entries, instead && active.sample ? active : undefined);
+  }
+
+  #drawing(): ReturnType<Surroundings['drawing']> {
+    const { stack, drawings } = this.#page;
+    const drawn = drawings.find((stack.base?.sheet as Partial<Paint> | undefined)?.drawn ?? '');
+    return drawn && { name: drawn.name, draw: (cage) => drawings.draw(drawn, cage) };
   }
 
   /** Moves the focus to the avatar on the stage, or to the first where that one is still to come. */
@@ -168,7 +182,9 @@ export class WardrobeStrip {
     const cards = avatars.map((avatar) => this.#cards.get(avatar)!);
     if (cards.some((card, at) => card !== this.#list.children[at])) this.#list.replaceChildren(...cards);
     const ready = avatars.filter(({ files, doing }) => files.length > 0 && doing === '');
-    const taking = ready.filter(({ takesPaint }) => takesPaint);
+    // What is painted by hand is for the cage on the stage alone.
+    const isDrawn = this.#page.stack.layers.length === 1;
+    const taking = ready.filter(({ takesPaint, own }) => takesPaint || (own && isDrawn));
     const note = element('wardrobe-note', HTMLElement);
     note.hidden = taking.length === ready.length || ready.length < 2;
     const text = `${taking.length} of ${ready.length} avatars take this paint; the cages of the others differ.`;
@@ -176,7 +192,7 @@ export class WardrobeStrip {
     if (!note.hidden && this.#said !== text) said.textContent = this.#said = text;
     for (const control of [element('wardrobe-input', HTMLInputElement), element('wardrobe-sample', HTMLSelectElement)])
       control.disabled = avatars.length >= kMaxAvatars;
-    this.#export.disabled = taking.length === 0;
+    this.#export.disabled = !ready.some(isPainted);
   }
 
   #makeCard(avatar: Avatar): HTMLLIElement {
@@ -218,7 +234,7 @@ export class WardrobeStrip {
     button.ariaBusy = 'true';
     const { session, png } = this.#page;
     const { all: avatars, active } = this.#wardrobe.list;
-    const taking = avatars.filter(({ takesPaint, doing }) => takesPaint && doing === '');
+    const taking = avatars.filter((avatar) => isPainted(avatar) && avatar.doing === '');
     try {
       const report = (done: number): void => void (button.textContent = `Saving ${done + 1} of ${taking.length}`);
       const { file, count, troubles } = await exportAll(taking, session, active, await png(), report);
@@ -240,6 +256,8 @@ export class WardrobeStrip {
   }
 }
 
+const isPainted = ({ takesPaint, own }: Avatar): boolean => takesPaint || own !== undefined;
+
 /** What is read aloud after what is seen. */
 const kVerdictWords: Record<Avatar['verdict'], string> = {
   '': '',
@@ -249,22 +267,22 @@ const kVerdictWords: Record<Avatar['verdict'], string> = {
 };
 
 function fillCard(card: HTMLLIElement, avatar: Avatar, isActive: boolean, isRemovable: boolean): void {
-  const { name, picture, verdict, paintable, takesPaint, cage, doing, files } = avatar;
+  const { name, picture, verdict, paintable, cage, doing, files } = avatar;
+  const isWorn = isPainted(avatar);
   const [choose, remove] = card.querySelectorAll('button') as unknown as [HTMLButtonElement, HTMLButtonElement];
   const image = card.querySelector('img')!;
   if (picture && image.src !== picture) image.src = picture;
   image.hidden = picture === '';
   const share = paintable === undefined ? '' : `${Math.round(100 * paintable)} %`;
-  const badge =
-    doing || (!cage ? 'no cage' : !takesPaint ? 'other cage' : verdict === 'unfit' ? 'does not fit' : share);
+  const badge = doing || (!cage ? 'no cage' : !isWorn ? 'other cage' : verdict === 'unfit' ? 'does not fit' : share);
   const shown = card.querySelector('.verdict') as HTMLElement;
   card.querySelector('.name')!.textContent = name;
   shown.textContent = badge;
-  shown.dataset.verdict = doing || !cage || !takesPaint ? '' : verdict;
+  shown.dataset.verdict = doing || !cage || !isWorn ? '' : verdict;
   choose.ariaPressed = String(isActive);
   choose.ariaDisabled = files.length === 0 ? 'true' : null;
   choose.title = name;
-  const isSaid = doing === '' && takesPaint && verdict !== '';
+  const isSaid = doing === '' && isWorn && verdict !== '';
   card.querySelector('.more')!.textContent = isSaid ? kVerdictWords[verdict] : '';
   remove.ariaLabel = `Remove ${name}`;
   remove.hidden = !isRemovable || !isActive;

@@ -22,6 +22,12 @@ interface Workshop {
   announce(sentence: string): void;
 }
 
+/** How a choice goes on. */
+interface ChoiceProgress {
+  signal: AbortSignal;
+  onProgress(share: number, step: string): void;
+}
+
 /** What the page shows of the cage on the stage. */
 interface CageNotes {
   /** How it was made; empty if it was not made here. */
@@ -104,9 +110,9 @@ export class CageMaker extends Emitter<{
     return own !== undefined && !own.fitting && !this.isOthers;
   }
 
-  /** Whether the current cage is as it was made for the current target: neither moving it nor making it again changes it. */
+  /** Whether the current cage is as it was made, or fitted, for the current target: it is where it belongs. */
   get isFresh(): boolean {
-    return this.isMade && madeOf(this.#session.shown!.cage.files[0]!)!.isNew === true;
+    return madeOf(this.#session.shown!.cage.files[0]!)?.isNew === true && !this.isOthers;
   }
 
   /** Makes a cage for the current target. */
@@ -136,28 +142,31 @@ export class CageMaker extends Emitter<{
     const abort = new AbortController();
     this.#opening?.abort();
     this.#opening = abort;
-    const report = (share: number, step: string): void =>
+    const onProgress = (share: number, step: string): void =>
       this.#session.reportLoading(kStages[step] ?? 'Fitting a cage', share);
-    const options = { signal: abort.signal, onProgress: report };
     try {
-      const engine = await this.#workshop.engine();
-      const model = await cageModel(target.loaded);
-      const { options: chosen, marks } = this.#choicesFor(model, target);
-      const choice = await engine.chooseCage({ ...model, marks }, { ...chosen, ...options });
-      const { cage, template, fit } = choice;
-      noteFound(target, cage.landmarks);
-      const how =
-        fit && template !== 'made'
-          ? { note: kFitted, fitting: { ...fit, template, given: {} } }
-          : { note: noteOfMade(cage), fitting: undefined, isNew: true };
-      const file = new File([engine.cageGlb({ ...cage, origin: originOf(target) })], cageNameFrom(target.name));
-      noteMade(file, { target: target.files[0]!, ...how });
-      return await this.#workshop.loader.load(file);
+      return await this.choose(target, { signal: abort.signal, onProgress });
     } catch (error) {
       throw new Error(`${target.name}: ${reasonOf(error)}`, { cause: error });
     } finally {
       if (this.#opening === abort) this.#opening = undefined;
     }
+  }
+
+  /** The cage of any model, as `chooseCage` chooses it. @param target As its file has it. */
+  async choose(target: Model, progress: ChoiceProgress): Promise<Model> {
+    const engine = await this.#workshop.engine();
+    const model = await cageModel(target.loaded);
+    const { options, marks } = this.#choicesFor(model, target);
+    const { cage, template, fit } = await engine.chooseCage({ ...model, marks }, { ...options, ...progress });
+    noteFound(target, cage.landmarks);
+    const how =
+      fit && template !== 'made'
+        ? { note: kFitted, fitting: { ...fit, template, given: {} } }
+        : { note: noteOfMade(cage), fitting: undefined };
+    const file = new File([engine.cageGlb({ ...cage, origin: originOf(target) })], cageNameFrom(target.name));
+    noteMade(file, { target: target.files[0]!, isNew: true, ...how });
+    return this.#workshop.loader.load(file);
   }
 
   /** Moves, turns and scales the current cage onto the target, and bends it where it is inside. */
@@ -297,7 +306,7 @@ export class CageMaker extends Emitter<{
       found.guessed.length > 0
         ? `Too little was found to fit the template by, so it was placed by the model’s size: mark ${found.guessed.slice(0, kMaxAsked).map(readable).join(', ')}.`
         : kFitted;
-    return { cage, note, fitting: { ...found, template: name, given } };
+    return { cage, note, fitting: { ...found, template: name, given }, isNew: true };
   }
 }
 

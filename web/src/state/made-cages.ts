@@ -22,7 +22,7 @@ interface Made {
   sample?: Sample | undefined;
   /** What was done, for people. */
   note?: string;
-  /** Whether it was made from the model alone: it is where it belongs. */
+  /** Whether it is as it was made, or fitted: it is where it belongs. */
   isNew?: boolean | undefined;
 }
 

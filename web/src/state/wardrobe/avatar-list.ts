@@ -31,6 +31,7 @@ export class AvatarList extends Emitter<{ change: undefined }> {
       verdict: '',
       paintable: undefined,
       takesPaint: false,
+      own: undefined,
       doing,
       kept: undefined,
       standing: undefined,

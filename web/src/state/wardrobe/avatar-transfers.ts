@@ -15,6 +15,8 @@ const kMaxInspected = 60_000; // triangles; the time grows with their number
 export class AvatarTransfers {
   readonly #around: Surroundings;
   readonly #list: AvatarList;
+  /** Cages for which nothing can be drawn. */
+  readonly #undrawable = new WeakSet<Model>();
   readonly #onTransfer: (avatar: Avatar) => void;
 
   /** @param onTransfer Called when an avatar begins to stand beside the stage. */
@@ -34,12 +36,50 @@ export class AvatarTransfers {
       cage && (await projectBy(transferer, { cage, target: model }, session.rules, () => avatar.locks));
     if (!this.#list.has(avatar)) return loader.dispose(model);
     const standing = this.#around.view.stand(model, projection);
-    avatar.takesPaint = cage !== undefined && haveSameUvs(cage, session.shown!.cage);
-    standing.takesPaint = avatar.takesPaint;
     avatar.standing = standing;
+    this.dress(avatar);
     this.update(avatar);
     this.#onTransfer(avatar);
     await this.#inspect(avatar);
+  }
+
+  /** Shows the paint of the stage on an avatar whose cage takes it; on another one the base, once it is drawn for that cage. */
+  dress(avatar: Avatar): void {
+    const { cage, own } = avatar;
+    avatar.takesPaint = cage !== undefined && haveSameUvs(cage, this.#around.session.shown!.cage);
+    if (own && own.cage !== cage) this.#setOwn(avatar, undefined);
+    const drawing = this.#drawingOf(avatar);
+    if (drawing?.name !== avatar.own?.paint.drawn) {
+      if (!drawing) this.#setOwn(avatar, undefined);
+      else this.#list.queue(avatar, () => this.#draw(avatar));
+    }
+    avatar.standing?.setPaint(avatar.takesPaint ? 'stage' : avatar.own?.paint.texture);
+  }
+
+  /** What is to be drawn for an avatar. */
+  #drawingOf({ cage, takesPaint }: Avatar): ReturnType<Surroundings['drawing']> {
+    return cage && !takesPaint && !this.#undrawable.has(cage) ? this.#around.drawing() : undefined;
+  }
+
+  async #draw(avatar: Avatar): Promise<void> {
+    const { cage } = avatar;
+    const drawing = this.#drawingOf(avatar);
+    if (!drawing || drawing.name === avatar.own?.paint.drawn) return;
+    this.#list.update(avatar, { doing: 'Painting' });
+    const paint = await drawing.draw(cage!).catch((error: unknown) => {
+      this.#undrawable.add(cage!);
+      throw error;
+    });
+    if (cage !== avatar.cage) return;
+    this.#setOwn(avatar, { paint, cage: cage! });
+    this.dress(avatar);
+    this.#onTransfer(avatar);
+  }
+
+  #setOwn(avatar: Avatar, own: Avatar['own']): void {
+    avatar.own?.paint.texture.dispose();
+    if (avatar.own) URL.revokeObjectURL(avatar.own.paint.picture);
+    avatar.own = own;
   }
 
   async #inspect(avatar: Avatar): Promise<void> {

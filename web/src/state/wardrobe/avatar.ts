@@ -1,6 +1,8 @@
 import type { Classification } from 'cagecast';
+import type { Texture } from 'three';
 import type { Locks } from '../choices';
 import type { Model } from '../model';
+import type { Paint } from '../paint';
 import type { Sample } from '../sample';
 import type { SplitProjection } from '../transfers';
 import type { KnownVerdict } from '../verdict';
@@ -16,7 +18,7 @@ export const nameOf = (file: string): string => file.replace(/\.\w+$/, '');
 export interface Entry {
   name: string;
   target(): Promise<Model>;
-  /** Absent if the cage of the model on the stage is to be fitted. */
+  /** Absent if it is to get one: the user's own that is on the stage, or the one that is chosen for it. */
   cage?: (() => Promise<Model>) | undefined;
   sample?: Sample | undefined;
   /** What a project has of it until it was read; absent for samples. */
@@ -28,8 +30,8 @@ export interface Figure {
   readonly model: Model;
   /** Absent without a cage. */
   readonly projection: SplitProjection | undefined;
-  /** Whether the paint fits it. */
-  takesPaint: boolean;
+  /** Shows the paint of the stage, one of its own, or none, as in the beginning. */
+  setPaint(paint: 'stage' | Texture | undefined): void;
   setProjection(projection: SplitProjection): void;
   classify(classification: Classification): void;
   /** Takes it away and frees its memory, but not its model's. */
@@ -54,6 +56,8 @@ export interface Avatar {
   paintable: number | undefined;
   /** Whether its cage has the UVs of that of the model on the stage. */
   takesPaint: boolean;
+  /** The base paint, drawn for its own cage, which has other UVs. */
+  own: { paint: Paint; cage: Model } | undefined;
   /** What is being done to it, for people. */
   doing: string;
   /** As projects have it until it was read. */

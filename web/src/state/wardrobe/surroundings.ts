@@ -1,4 +1,5 @@
 import type { Loader, Model } from '../model';
+import type { Paint } from '../paint';
 import type { Session } from '../session';
 import type { SplitProjection, Transferer } from '../transfers';
 import type { Avatar, Figure } from './avatar';
@@ -17,6 +18,10 @@ export interface Surroundings {
   transferer: Transferer;
   /** Fits the cage of one model to another, with the same triangles and UVs. @returns The cage as a file. */
   fit(cage: Model, model: Model, progress: FitProgress): Promise<File>;
+  /** Chooses a cage for a model, as for one that is opened alone. */
+  choose(model: Model, progress: FitProgress): Promise<Model>;
+  /** The base paint, if it is one of those that are drawn for any cage. */
+  drawing(): { name: string; draw(cage: Model): Promise<Paint> } | undefined;
   /** Draws what the wardrobe has. */
   view: WardrobeView;
   errors: {

@@ -1,5 +1,5 @@
+import { madeOf } from '../made-cages';
 import { asCage, asTarget, type Model, ownCage } from '../model';
-import { haveSameUvs } from '../same-uvs';
 import type { Shown } from '../scene';
 import type { Session } from '../session';
 import { paintableShare } from '../verdict';
@@ -18,9 +18,6 @@ export class Wardrobe {
   readonly #transfers: AvatarTransfers;
   /** The avatar that was chosen last, and its model, until something comes on the stage. */
   #chosen: { avatar: Avatar; target: Promise<Model> } | undefined;
-  /** Resolves once it is there, or cannot be. */
-  #arrival: Promise<void> | undefined;
-  #arrived: () => void = () => {};
   #showsAll = false;
   /** Cancels the fits that were asked for. */
   readonly #fits = new Map<Avatar, AbortController>();
@@ -80,16 +77,14 @@ export class Wardrobe {
     const troubles = left.length > 0 ? [fullText(left.map(({ name }) => name))] : [];
     if (left.length > 0) this.#around.errors.show(troubles[0]!);
     this.list.change();
-    let common = instead ? undefined : this.#common;
+    const given = this.#given;
     for (const { entry, avatar } of added)
       this.list.queue(avatar, async () => {
         try {
-          await this.#read(avatar, entry, common);
+          await this.#read(avatar, entry, given);
           if (!instead) return;
           this.remove(instead);
           instead = undefined;
-          await this.#arrival;
-          common = this.#common;
         } catch (error) {
           if (!this.list.has(avatar)) return;
           this.remove(avatar);
@@ -159,8 +154,6 @@ export class Wardrobe {
     if (avatar.files.length === 0 || avatar === this.#coming) return;
     // The one that is there comes anew if it would have to give way to a model that was opened since.
     if (!this.#coming && avatar === this.list.active && this.#session.keepTarget()) return;
-    this.#arrived();
-    this.#arrival = new Promise((done) => (this.#arrived = done));
     const { cage, sample, locks } = avatar;
     const target = this.#load(avatar).then((model) => ({ ...model, ...(sample && { sample }) }));
     this.#chosen = { avatar, target };
@@ -169,6 +162,7 @@ export class Wardrobe {
 
   /** The colours of all have changed. */
   refresh(): void {
+    if (this.#session.shown) for (const avatar of this.list.all) this.#transfers.dress(avatar);
     this.#refresh(this.list.all);
   }
 
@@ -182,10 +176,10 @@ export class Wardrobe {
     for (const avatar of this.list.all) if (!avatar.takesPaint && avatar.files.length > 0) this.#fitLater(avatar, cage);
   }
 
-  /** The cage that avatars without one get; undefined if the one on the stage belongs to another model. */
-  get #common(): Model | undefined {
-    const { cage, target } = this.#session.shown ?? {};
-    return cage?.sample && cage.sample !== target?.sample ? undefined : cage;
+  /** The cage on the stage if it is the user's own. */
+  get #given(): Model | undefined {
+    const { cage } = this.#session.shown ?? {};
+    return !cage || cage.sample || madeOf(cage.files[0]!) ? undefined : cage;
   }
 
   /** Another model or cage is on the stage. */
@@ -193,7 +187,6 @@ export class Wardrobe {
     const coming = this.#coming;
     const came = coming && target.files[0] === coming.files[0] ? coming : undefined;
     this.#chosen = undefined;
-    this.#arrived();
     const left = this.list.active;
     if (came) this.list.active = came;
     this.#enlist();
@@ -210,14 +203,13 @@ export class Wardrobe {
     // A cage that was chosen there stays.
     if (isOther && !came) this.#abortFits(active);
     if (came && left !== came && this.list.has(left)) this.#stand(left);
-    const common = this.#common;
+    const given = this.#given;
     for (const avatar of this.list.all) {
-      avatar.takesPaint = avatar.cage !== undefined && haveSameUvs(avatar.cage, cage);
-      if (avatar.standing) avatar.standing.takesPaint = avatar.takesPaint;
-      if (avatar === active || avatar.takesPaint || !common || avatar.files.length === 0) continue;
+      this.#transfers.dress(avatar);
+      if (avatar === active || avatar.takesPaint || !given || avatar.files.length === 0) continue;
       // A garment that waits for a cage gets it; one fitted to this model's last cage follows it.
       const lacks = !avatar.cage && (!came || avatar.doing === '');
-      if (lacks || (!came && isOther && avatar.follows)) this.#fitLater(avatar, common);
+      if (lacks || (!came && isOther && avatar.follows)) this.#fitLater(avatar, given);
     }
     this.#arrange();
     this.refresh();
@@ -226,7 +218,6 @@ export class Wardrobe {
   /** What was to be on the stage is not there: the one that is stays. */
   #onFailure(): void {
     this.#chosen = undefined;
-    this.#arrived();
     this.#enlist();
     this.#arrange();
   }
@@ -252,8 +243,8 @@ export class Wardrobe {
     return this.#around.loader.load(file!, rest);
   }
 
-  /** Reads a new avatar and its cage. @param common A cage that is fitted to it if it has none. */
-  async #read(avatar: Avatar, { target, cage }: Entry, common: Model | undefined): Promise<void> {
+  /** Reads a new avatar and its cage. @param given A cage that is fitted to it if it has none. Default: one is chosen. */
+  async #read(avatar: Avatar, { target, cage }: Entry, given: Model | undefined): Promise<void> {
     this.list.update(avatar, { doing: 'Reading' });
     const model = asTarget(await target());
     if (!this.list.has(avatar)) return this.#around.loader.dispose(model);
@@ -266,7 +257,7 @@ export class Wardrobe {
       this.#around.loader.dispose(model);
       throw error;
     }
-    if (!avatar.cage && common) await this.#fit(avatar, model, common, this.#signalOf(avatar));
+    if (!avatar.cage) await this.#fit(avatar, model, given, this.#signalOf(avatar));
     await this.#transfers.transfer(avatar, model);
   }
 
@@ -282,7 +273,7 @@ export class Wardrobe {
     this.#fits.delete(avatar);
   }
 
-  #fitLater(avatar: Avatar, cage: Model): void {
+  #fitLater(avatar: Avatar, cage: Model | undefined): void {
     const signal = this.#signalOf(avatar);
     this.list.update(avatar, { doing: 'Waiting' });
     this.list.queue(avatar, async () => {
@@ -295,14 +286,15 @@ export class Wardrobe {
     });
   }
 
-  /** Fits a cage to an avatar. If that is not possible the avatar stays without. */
-  async #fit(avatar: Avatar, model: Model, cage: Model, signal: AbortSignal): Promise<void> {
+  /** Gives an avatar a cage: one that is fitted to it, or that is chosen for it. If that is not possible it stays without. */
+  async #fit(avatar: Avatar, model: Model, cage: Model | undefined, signal: AbortSignal): Promise<void> {
     const onProgress = (share: number): void =>
       this.list.update(avatar, { doing: `Fitting ${Math.round(100 * share)} %` });
+    const { fit, choose, loader } = this.#around;
+    const progress = { signal, onProgress };
     try {
       onProgress(0);
-      const file = await this.#around.fit(cage, model, { signal, onProgress });
-      const fitted = await this.#around.loader.load(file);
+      const fitted = cage ? await loader.load(await fit(cage, model, progress)) : await choose(model, progress);
       if (signal.aborted) return;
       if (avatar === this.list.active && this.#session.isMakingCage) {
         // The one that is being made was asked for since. If it does not come, this is fitted again.
@@ -313,7 +305,7 @@ export class Wardrobe {
         });
         return;
       }
-      Object.assign(avatar, { cage: fitted, follows: true, verdict: '' });
+      Object.assign(avatar, { cage: fitted, follows: cage !== undefined, verdict: '' });
       if (avatar === this.#coming || (avatar === this.list.active && this.#session.keepTarget()))
         this.#session.request({ cage: Promise.resolve(fitted) });
     } catch (error) {

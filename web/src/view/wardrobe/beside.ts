@@ -36,12 +36,14 @@ export class Beside implements Figure, Room {
   readonly overlay: Overlay | undefined;
   readonly wide: number;
   readonly high: number;
-  takesPaint = false;
+  isPainted = false;
+  readonly #paint: Texture;
   #projection: SplitProjection | undefined;
 
   constructor(model: Model, projection: SplitProjection | undefined, paint: Texture) {
     const { scale, middle, wide, high } = measure(model);
     this.model = model;
+    this.#paint = paint;
     this.#projection = projection;
     this.wide = wide;
     this.high = high;
@@ -51,6 +53,11 @@ export class Beside implements Figure, Room {
     this.holder.add(inner);
     this.holder.scale.setScalar(scale);
     this.overlay = projection && new Overlay(model.mesh, projection, paint);
+  }
+
+  setPaint(paint: 'stage' | Texture | undefined): void {
+    this.isPainted = paint !== undefined;
+    if (paint) this.overlay?.setPaint(paint === 'stage' ? this.#paint : paint);
   }
 
   get projection(): SplitProjection | undefined {

@@ -64,7 +64,7 @@ export class SideBySide implements Crowd {
   }
 
   show(look: Look): void {
-    for (const cell of this.#cells) cell?.overlay?.show(cell.takesPaint ? (kShown[look] ?? look) : 'bare');
+    for (const cell of this.#cells) cell?.overlay?.show(cell.isPainted ? (kShown[look] ?? look) : 'bare');
   }
 
   /** Left, right, upper and lower edge, from the model on the stage. */

@@ -72,7 +72,7 @@ export class Thumbnails {
       holder.position.set(0, 0, 0);
       holder.rotation.set(0, 0, 0);
     }
-    overlay?.show(avatar.takesPaint ? 'result' : 'bare');
+    overlay?.show(avatar.takesPaint || avatar.own ? 'result' : 'bare');
     studio.follow(camera);
     renderer.render(studio.scene, camera);
     holder?.removeFromParent();
