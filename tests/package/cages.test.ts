@@ -345,8 +345,12 @@ describe('fitCage', () => {
       assert.ok(Math.hypot(middle[0]! - left!, middle[1]! - up!) < 0.15 * share, `${name}: ${middle}`);
     }
     const avatar = await gltf.cageModel(await new NodeIO().read(file));
-    const guessed = async (hints: object) =>
-      (await fitCage(template, { ...avatar, hints } as CageModel, undefined, here)).guessed;
+    const guessed = async (hints: object) => {
+      const { guessed, used, cage } = await fitCage(template, { ...avatar, hints } as CageModel, undefined, here);
+      const known = Object.keys(used).filter((name) => !guessed.includes(name));
+      assert.deepEqual(Object.keys(cage.landmarks), known, 'a guess is no landmark of the cage');
+      return guessed;
+    };
     assert.equal((await guessed({}))[0], 'eye_centre_left');
     assert.deepEqual(await guessed(avatar.hints!), []);
     const corner = [0.25, -0.5, 0.68] as const;

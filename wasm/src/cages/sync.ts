@@ -108,7 +108,11 @@ export function fitCage(
         report,
       ),
     result: (answer, module, parts) => ({
-      cage: cageOf(module, answer, { ...kept, bare: bareNames(module, model, parts, answer.bare) }),
+      cage: cageOf(
+        module,
+        { ...answer, landmarks: answer.landmarks.filter(({ name }) => !answer.guessed.includes(name)) },
+        { ...kept, bare: bareNames(module, model, parts, answer.bare) },
+      ),
       used: landmarksOf(answer.landmarks),
       confidence: confidenceOf(answer.landmarks),
       missing: answer.missing,
