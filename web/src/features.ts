@@ -43,7 +43,7 @@ interface Begun {
 export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
   const { session, stack, history, edits, opener } = page;
   const { viewer } = stage ?? {};
-  const painter =
+  const painting =
     stage && setUpPainting(session, stage.viewer, stage.tools, { stack, composite: stage.composite, edits });
   if (stage) {
     new Explain(session, stage.viewer, stage.tools);
@@ -67,10 +67,11 @@ export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
       samples: () => opener.samples,
     });
   opener.wardrobe = wardrobe;
+  opener.onPicture = painting?.hold;
   const linked = { session, layers, live, controls: viewer?.controls };
   const exportPanel = new ExportPanel(linked, png);
   for (const event of ['change', 'pictures'] as const) stack.on(event, () => exportPanel.refresh());
-  const restoreWork = beginProjects({ ...page, painter, live, viewer, wardrobe });
+  const restoreWork = beginProjects({ ...page, painter: painting?.painter, live, viewer, wardrobe });
   keepOffline(session);
   offerGuide(session);
   return async () => {

@@ -12,7 +12,7 @@ for (const [files, roles, warning] of [
   ['a.glb b.glb', { unclear: 'a.glb b.glb' }],
   ['cage-a.glb cage-b.glb', { unclear: 'cage-a.glb cage-b.glb' }],
   ['a.glb cage.glb notes.txt c.glb', { target: 'a.glb', cage: 'cage.glb' }, ignored('notes.txt and 1 more were')],
-  ['skin.jpeg other.webp', { texture: 'other.webp' }, ignored('skin.jpeg was')],
+  ['skin.jpeg other.webp', { image: 'other.webp' }, ignored('skin.jpeg was')],
   ['scene.gltf scene.bin skin.png', { target: 'scene.gltf' }], // the image belongs to the model
   ['scene.gltf scene.bin cage.gltf', { target: 'scene.gltf', cage: 'cage.gltf' }],
   ['thing.obj thing.png', { target: 'thing.obj', texture: 'thing.png' }],
@@ -20,7 +20,7 @@ for (const [files, roles, warning] of [
   ['thing.fbx cage.obj', { target: 'thing.fbx', cage: 'cage.obj' }],
   ['thing.blend thing.png', { target: 'thing.blend', texture: 'thing.png' }], // so that it is said what it is
   ['notes.txt', { target: 'notes.txt' }],
-  ['skin.png notes.txt', { texture: 'skin.png' }, ignored('notes.txt was')],
+  ['skin.png notes.txt', { image: 'skin.png' }, ignored('notes.txt was')],
   ['work.cagecast a.glb', { project: 'work.cagecast' }],
 ] as const)
   test(`${files}: ${JSON.stringify(roles)}`, () => {

@@ -1,4 +1,5 @@
-import type { Edits, LayerStack, Sheet } from '#three';
+import type { Edits, Layer, LayerStack, Sheet } from '#three';
+import { ask } from '../platform/ask';
 import { onFace } from '../platform/face';
 import { element, showError } from '../platform/page';
 import type { Locks } from '../state/choices';
@@ -13,7 +14,7 @@ import { kReading, type Session } from '../state/session';
 import type { WardrobeOfPage } from '../state/wardrobe/kept';
 import type { Drawings } from './drawn/drawings';
 import { setUpFiles } from './files';
-import { loadPaint } from './load-paint';
+import { loadPaint, readImage } from './load-paint';
 import { type Choice, offerPaints } from './paint-picker';
 import { fetchFile, paintName } from './samples';
 import { tellApart } from './tell-apart';
@@ -46,6 +47,8 @@ export class Opener implements Samples {
   cageFor: ((target: Model) => Promise<Model>) | undefined;
   /** Opens a saved project. */
   onProject: ((file: File) => void) | undefined;
+  /** Takes an image that is to be a sticker. */
+  onPicture: ((image: ImageBitmap) => void) | undefined;
   /** Called with each requested target, and without one before the shown model is put aside. */
   onReplace: ((target?: Promise<Model>) => void) | undefined;
 
@@ -72,7 +75,8 @@ export class Opener implements Samples {
       this.#warnings = [];
     });
     session.on('cancel', () => this.#endReading('target', 'cage'));
-    stack.on('change', () => session.shown && this.#describe(session.shown));
+    for (const event of ['change', 'select'] as const)
+      stack.on(event, () => session.shown && this.#describe(session.shown));
   }
 
   get samples(): readonly Sample[] {
@@ -168,11 +172,10 @@ export class Opener implements Samples {
   }
 
   /** Opens the user's own files. */
-  #open({ target, cage, texture, project, unclear, warnings, all }: Intake): void {
-    if (project) {
-      this.onProject?.(project);
-      return;
-    }
+  #open({ target, cage, texture, image, project, unclear, warnings, all }: Intake): void {
+    if (project) this.onProject?.(project);
+    else if (image) void this.#openImage(image, warnings);
+    if (project || image) return;
     const requested: Requested = {};
     const load = (slot: 'target' | 'cage', file: File): Promise<Model> => {
       this.#endReading(slot);
@@ -196,6 +199,17 @@ export class Opener implements Samples {
     }
     this.#warnings = warnings;
     this.#request(requested);
+  }
+
+  /** Opens an image that came alone: a square of a power of two is a paint, any other a sticker. */
+  async #openImage(image: File, warnings: string[]): Promise<void> {
+    const open = (): void => this.#open({ texture: image, unclear: [], warnings, all: [image] });
+    const bitmap = await readImage(image).catch(() => undefined); // as a paint, it is said what is wrong
+    const isPaint = !bitmap || (bitmap.width === bitmap.height && (bitmap.width & (bitmap.width - 1)) === 0);
+    if (isPaint || !this.onPicture) return open();
+    this.onPicture(bitmap);
+    const text = `${image.name}: click where it belongs on the model.`;
+    ask({ text, answers: [{ title: 'Use as a whole paint', run: open }] });
   }
 
   /** Nobody waits for these files any more. */
@@ -256,11 +270,22 @@ export class Opener implements Samples {
           : 'The model is yours, but the cage is a sample’s. Add the cage that was made for your model, or make one.';
   }
 
-  /** Sets the base paint, as an undo step. */
+  /** The layer of a whole paint that is selected, or else the uppermost one: it covers those below. */
+  get #top(): Layer | undefined {
+    const { selected, layers, base } = this.#stack;
+    const isWhole = (layer?: Layer): boolean => layer !== undefined && layer.visible && 'picture' in layer.sheet;
+    return isWhole(selected) ? selected : (layers.findLast(isWhole) ?? base);
+  }
+
+  /** Puts a paint in place of that one, as an undo step. */
   async #choose(loaded: Promise<Paint>): Promise<void> {
     const { isMakingCage, shown } = this.#session;
-    const set = (paint: Paint): unknown =>
-      this.#edits.do(`choosing ${titleOf(paint)}`, () => this.#stack.setBase(titleOf(paint), paint));
+    const set = (sheet: Paint): unknown =>
+      this.#edits.do(`choosing ${titleOf(sheet)}`, () => {
+        const [top, name] = [this.#top, titleOf(sheet)];
+        if (!top || top === this.#stack.base) this.#stack.setBase(name, sheet);
+        else this.#stack.change([top], [{ ...top, name, sheet }]);
+      });
     this.#chosen = loaded;
     if (isMakingCage)
       return this.#use(loaded, (paint) => {
@@ -316,10 +341,8 @@ export class Opener implements Samples {
       }),
       { title: checker.name, picture: checker.picture, load: async () => checker },
     ];
-    const base = this.#stack.base?.sheet as Paint | undefined;
-    const chosen = choices.findIndex(({ picture, drawn }) =>
-      drawn ? drawn === base?.drawn : picture === base?.picture,
-    );
+    const top = this.#top?.sheet as Paint | undefined;
+    const chosen = choices.findIndex(({ picture, drawn }) => (drawn ? drawn === top?.drawn : picture === top?.picture));
     offerPaints(choices, chosen, {
       onChoose: (index) => this.#choose(choices[index]!.load()),
       onAdd: (index) =>

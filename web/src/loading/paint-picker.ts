@@ -9,7 +9,7 @@ export interface Choice {
 
 /** Actions on a paint, by its index in the row. */
 interface Uses {
-  /** Use it as the base layer. */
+  /** Use it in place of the chosen one. */
   onChoose(index: number): void;
   /** Add it as a layer on top. */
   onAdd(index: number): void;
@@ -17,7 +17,7 @@ interface Uses {
 
 /**
  * Shows paints as a row of images.
- * @param chosen The index of the base layer.
+ * @param chosen The index of the one that a choice replaces.
  */
 export function offerPaints(choices: readonly Choice[], chosen: number, { onChoose, onAdd }: Uses): void {
   const row = element('paints', HTMLElement);

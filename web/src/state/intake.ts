@@ -3,6 +3,8 @@ export interface Intake {
   target?: File | undefined;
   cage?: File | undefined;
   texture?: File | undefined;
+  /** An image that came alone: a paint or a sticker, by its size. */
+  image?: File | undefined;
   /** A saved project: everything at once. */
   project?: File | undefined;
   /** Two models whose names do not say which is a cage, or whether any is. */
@@ -29,7 +31,7 @@ export function modelsAmong(files: readonly File[]): { cages: File[]; targets: F
 }
 
 /**
- * Assigns files to roles: models by their names, images as paint unless a .gltf, or the .mtl of an .obj, came with them.
+ * Assigns files to roles: models by their names, images with them as paint unless a .gltf, or the .mtl of an .obj, came with them.
  * A model of another format, or any other file if there is nothing else, becomes the target, so that the reader reports what is wrong with it.
  */
 export function sortFiles(all: readonly File[]): Intake {
@@ -47,7 +49,11 @@ export function sortFiles(all: readonly File[]): Intake {
   else if (models.length > 1) intake.unclear = models.slice(0, 2);
   else intake.target = others.find(({ name }) => kForeign.test(name)) ?? (images.length > 0 ? undefined : others[0]);
 
-  const used = [intake.target, intake.cage, intake.texture, ...intake.unclear];
+  if (models.length === 0 && !intake.target) {
+    intake.image = intake.texture;
+    intake.texture = undefined;
+  }
+  const used = [intake.target, intake.cage, intake.texture, intake.image, ...intake.unclear];
   const [left, ...more] = (withImages ? models : all).filter((file) => !used.includes(file));
   if (left)
     intake.warnings.push(

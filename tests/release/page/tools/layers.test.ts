@@ -50,6 +50,12 @@ test('a sample’s paint can be added as a layer, and a link restores all layers
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } });
   await page.getByRole('button', { name: 'Add War paint as a layer' }).click();
   await rows(page).filter({ hasText: 'War paint' }).waitFor();
+  const chosen = page.locator('#paints input:checked');
+  await chosen.and(page.getByLabel('War paint', { exact: true })).waitFor();
+  await page.getByLabel('UV checker', { exact: true }).check({ force: true });
+  await rows(page).filter({ hasText: 'UV checker' }).waitFor();
+  assert.deepEqual(await names(page), ['UV checker', 'Tiger stripes'], 'the one on top is replaced');
+  await page.getByTestId('undo').click();
   const list = page.getByTestId('layer-list');
   await list.getByRole('combobox', { name: 'Blending of War paint' }).selectOption('multiply');
   await list.getByRole('slider', { name: 'Opacity of War paint' }).fill('60');

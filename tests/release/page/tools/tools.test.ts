@@ -1,12 +1,12 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { Page } from 'playwright-core';
-import type { PNG } from 'pngjs';
+import { PNG } from 'pngjs';
 import { faults } from '../../../support/axe';
 import { filled, names, savedTexture } from '../../../support/layers';
 import { ball, islandCage } from '../../../support/models';
 import { type Area, difference, look, modelArea, shareOfHue } from '../../../support/picture';
-import { drop, openSite, ready } from '../../../support/site';
+import { drop, openSite, ready, type Upload } from '../../../support/site';
 
 const kGreen = 140; // the hue of the paint; the ball is blue
 const kGreenPaint = '#00c040';
@@ -139,6 +139,29 @@ test('a sticker is seen before it is placed, and is moved, turned, scaled, mirro
   assert.ok(apart < 0.0005, `as it was placed, but for ${apart}`);
   await page.keyboard.press('Control+z');
   assert.deepEqual(await names(page), []);
+  assert.deepEqual(complaints, []);
+});
+
+test('a picture that is dropped is a sticker until it is used as a whole paint; a square of a power of two is a paint at once', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 640 }, deviceScaleFactor: 0.5 });
+  const area = await openBall(page);
+  const picture = (width: number, height: number): Upload => {
+    const png = new PNG({ width, height });
+    for (let i = 0; i < png.data.length; i += 4) png.data.set([0, 200, 0, 255], i);
+    return { name: 'photo.png', mimeType: 'image/png', buffer: PNG.sync.write(png) };
+  };
+  await drop(page, [picture(60, 40)]);
+  const whole = page.getByRole('button', { name: 'Use as a whole paint' });
+  await whole.waitFor();
+  const place = at(area, 0.42, 0.5);
+  await page.mouse.click(place.x, place.y);
+  await away(page);
+  const { share } = await green(page, area);
+  assert.ok(share > 0.004 && share < 0.2, `${share} is a sticker`);
+  await whole.click();
+  await page.locator('#texture-name', { hasText: 'photo.png' }).waitFor();
+  await drop(page, [{ ...picture(64, 64), name: 'sheet.png' }]);
+  await page.locator('#texture-name', { hasText: 'sheet.png' }).waitFor();
   assert.deepEqual(complaints, []);
 });
 

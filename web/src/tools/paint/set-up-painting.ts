@@ -27,8 +27,15 @@ const kRailTools: Record<Kind, Pick<RailTool, 'title' | 'key' | 'icon'>> = {
   fill: { title: 'Fill', key: 'f', icon: 'M11 4 4 11l7 7 7-7-9.5-9.5M4.5 11h13M20 15c2 3 1.5 5 0 5s-2-2 0-5z' },
 };
 
-/** Adds brush, eraser, stickers and filling to the tool rail, with their options below the layers. @returns What paints. */
-export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, layers: Layers): Painter {
+/** What paints. */
+interface Painting {
+  painter: Painter;
+  /** Lets an image be placed as a sticker. */
+  hold(image: ImageBitmap): void;
+}
+
+/** Adds brush, eraser, stickers and filling to the tool rail, with their options below the layers. */
+export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, layers: Layers): Painting {
   const options = new PaintOptions();
   const painter = new Painter(session, viewer, layers, options);
   const ring = new Ring();
@@ -112,5 +119,9 @@ export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, la
       showError((error as Error).message);
     }
   });
-  return painter;
+  const hold = (picture: ImageBitmap): void => {
+    tools.choose(offers.sticker);
+    sticker.setImage(picture);
+  };
+  return { painter, hold };
 }
