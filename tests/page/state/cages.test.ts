@@ -4,7 +4,8 @@ import type { Cage } from 'cagecast/cages';
 import { Edits, History, LayerStack, maxLayers } from '#three';
 import { CageMaker, type Engine } from '../../../web/src/state/cage-maker';
 import { followPaints } from '../../../web/src/state/follow-paints';
-import { type Fitting, knownLandmarks, madeOf, sampleOf } from '../../../web/src/state/made-cages';
+import { type Fitting, madeOf, sampleOf } from '../../../web/src/state/made-cages';
+import { landmarksOf } from '../../../web/src/state/model';
 import { PutAwayLayers } from '../../../web/src/state/put-away-layers';
 import { remedyFor } from '../../../web/src/state/verdict';
 import { tetrahedron } from '../../support/glb';
@@ -36,7 +37,13 @@ async function workshop() {
       await gate.wait(signal);
       const used = { ...points(state.found), ...given };
       const guessed = Object.keys(used).length < 4 ? Object.keys(points(6)).filter((name) => !(name in used)) : [];
-      return { cage: box(), used, confidence: {}, missing: ['nose_tip', 'ear_lobe_left'], guessed };
+      return {
+        cage: { ...box(), landmarks: used },
+        used,
+        confidence: {},
+        missing: ['nose_tip', 'ear_lobe_left'],
+        guessed,
+      };
     },
   } as unknown as Engine;
   const { session, loader } = page;
@@ -74,7 +81,7 @@ test('a cage is made for the model, fitted to it, moved, and turned; the page kn
   await page.ready();
   assert.deepEqual([page.shown[1], maker.isMade, maker.isFresh], ['a-cage.glb', true, true]);
   assert.match(page.notes.note, /^A cage of 4 triangles was made\. Save it/);
-  const known = () => Object.keys(knownLandmarks(session.shown!.target, session.shown!.cage)!).join('');
+  const known = () => Object.keys(landmarksOf(session.shown!.cage)).join('');
   assert.equal(known(), 'ab', 'the verdict is of a face that was looked for');
   const remedy = (code: string) =>
     remedyFor({ code } as never, { inward: { share: 0, triangles: [] } }, session, maker);

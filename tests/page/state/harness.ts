@@ -121,8 +121,10 @@ export class FakeLoader implements Loader {
     if (file.name.startsWith('broken')) throw new Error(`${file.name}: it is broken`);
     const scene = scenes.get(file);
     if (scene) return modelOf(file, scene, others);
-    const { uvs, ...mesh } = meshes.get(file) ?? made[Number(await file.text())]!;
-    return modelOf(file, new Group().add(meshOf({ ...mesh, uvs })), others);
+    const { uvs, ...arrays } = meshes.get(file) ?? made[Number(await file.text())]!;
+    const mesh = meshOf({ ...arrays, uvs });
+    if ('landmarks' in arrays) mesh.userData['landmarks'] = arrays.landmarks;
+    return modelOf(file, new Group().add(mesh), others);
   }
 
   loadOwn(file: File): Promise<Model> {

@@ -273,7 +273,7 @@ export class Opener implements Samples {
   /** The layer of a whole paint that is selected, or else the uppermost one: it covers those below. */
   get #top(): Layer | undefined {
     const { selected, layers, base } = this.#stack;
-    const isWhole = (layer?: Layer): boolean => layer !== undefined && layer.visible && 'picture' in layer.sheet;
+    const isWhole = (layer?: Layer): boolean => layer?.visible === true && 'picture' in layer.sheet;
     return isWhole(selected) ? selected : (layers.findLast(isWhole) ?? base);
   }
 

@@ -5,7 +5,7 @@ import { make } from '../platform/make';
 import { element } from '../platform/page';
 import type { CageMaker } from '../state/cage-maker';
 import { namesLeftOut, withoutParts } from '../state/left-out';
-import { knownLandmarks } from '../state/made-cages';
+import { landmarksOf } from '../state/model';
 import type { Session } from '../state/session';
 import { Superseded } from '../state/transfers';
 import { type KnownVerdict, paintableShare, type Remedy, regionOf, remedyFor, takeBacks } from '../state/verdict';
@@ -90,7 +90,7 @@ export class FitPanel {
     this.#client ??= new TransferClient();
     try {
       const { target, cage, projection } = shown;
-      const landmarks = knownLandmarks(target, cage);
+      const landmarks = landmarksOf(cage);
       const options = { preset, threshold, weldTolerance, parts, locks, landmarks };
       this.#write(await this.#client.ask('inspect', cage, withoutParts(target, projection), options));
     } catch (error) {

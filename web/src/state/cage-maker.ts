@@ -1,7 +1,7 @@
 import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
 import type { Bone } from 'three';
 import { cageModel, Emitter, likelyTemplate } from '#three';
-import { type Fitting, kMaxAsked, madeOf, noteFound, noteMade, readable, sampleOf } from './made-cages';
+import { type Fitting, kMaxAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
 import { type Box, boxOf, diagonalOfBox } from './surface';
@@ -159,7 +159,6 @@ export class CageMaker extends Emitter<{
     const model = await cageModel(target.loaded);
     const { options, marks } = this.#choicesFor(model, target);
     const { cage, template, fit } = await engine.chooseCage({ ...model, marks }, { ...options, ...progress });
-    noteFound(target, cage.landmarks);
     const how =
       fit && template !== 'made'
         ? { note: kFitted, fitting: { ...fit, template, given: {} } }
@@ -245,7 +244,8 @@ export class CageMaker extends Emitter<{
       const options = { signal: abort.signal, onProgress };
       const { positions, rest = positions, indices, uvs = new Float32Array() } = current.mesh;
       const old = {
-        ...{ holes: {}, kind: 'automatic', ...extrasOf(current), landmarks: {} },
+        ...{ holes: {}, kind: 'automatic', landmarks: {}, ...extrasOf(current) },
+        ...(this.isOthers && { landmarks: {} }),
         ...{ positions: rest.slice(), indices: indices.slice(), uvs: uvs.slice() },
       } as Cage;
       const model = await cageModel(read.loaded);
@@ -272,8 +272,7 @@ export class CageMaker extends Emitter<{
     const { options: chosen, marks } = this.#choicesFor(model, target);
     const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
     const { landmarks } = await engine.findLandmarks(model, { signal: options.signal });
-    noteFound(target, landmarks);
-    return { cage, note: noteOfMade(cage), isNew: true };
+    return { cage: { ...cage, landmarks }, note: noteOfMade(cage), isNew: true };
   }
 
   /** The options of a made cage, and its marks: triangles marked on the model stay bare, whatever is chosen for their part. */

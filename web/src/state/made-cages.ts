@@ -38,19 +38,6 @@ export const sampleOf = ({ sample, files }: Model): Sample | undefined => sample
 /** Notes how a cage was made. */
 export const noteMade = (cage: File, how: Made): unknown => made.set(cage, how);
 
-/** Landmarks that were found on models, by their files. */
-const found = new WeakMap<File, Landmarks>();
-
-/** Notes which landmarks were found on a model. */
-export const noteFound = (target: Model, landmarks: Landmarks): unknown => found.set(target.files[0]!, landmarks);
-
-/** The landmarks of a model: used by the fit of its cage, without guesses, or else found on it. */
-export function knownLandmarks(target: Model, cage: Model): Landmarks | undefined {
-  const { fitting } = madeOf(cage.files[0]!) ?? {};
-  if (!fitting) return found.get(target.files[0]!);
-  return Object.fromEntries(Object.entries(fitting.used).filter(([name]) => !fitting.guessed.includes(name)));
-}
-
 /** A landmark's name for people: "ear_lobe_left" is the left ear lobe. */
 export const readable = (landmark: string): string =>
   landmark

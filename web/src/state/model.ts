@@ -1,4 +1,5 @@
-import type { AnimationClip, Mesh, Object3D } from 'three';
+import type { Landmarks } from 'cagecast/cages';
+import { type AnimationClip, type Mesh, type Object3D, Vector3 } from 'three';
 import type { LoadedGltf, Part } from '#three';
 import type { Sample } from './sample';
 
@@ -70,6 +71,20 @@ export function asCage(model: Model): Model {
 /** The cage that a model has with it: the meshes that are named so. */
 export const ownCage = (model: Model): Model | undefined =>
   model.cageMesh.leftOut.length > 0 && model.mesh.primitives.length > 0 ? asCage(model) : undefined;
+
+/** Landmarks of the model that a cage is for, as the cage's file has them, in the space of its scene. */
+export function landmarksOf({ scene }: Pick<Model, 'scene'>): Landmarks {
+  const found: Record<string, Landmarks[string]> = {};
+  scene.traverse((object) => {
+    const landmarks = Object.entries((object.userData['landmarks'] ?? {}) as Landmarks);
+    if (landmarks.length > 0) object.updateWorldMatrix(true, false);
+    for (const [name, at] of landmarks) {
+      const { x, y, z } = object.localToWorld(new Vector3(...at));
+      found[name] = [x, y, z];
+    }
+  });
+  return found;
+}
 
 /** A model as it is a target. @throws Error that begins with the file's name, if nothing of it is drawn. */
 export function asTarget(cage: Model): Model {

@@ -1,7 +1,6 @@
-import { Vector3 } from 'three';
 import { likelyTemplate } from '#three';
 import { askWorker } from '../../platform/ask-worker';
-import type { Model } from '../../state/model';
+import { landmarksOf, type Model } from '../../state/model';
 import type { Paint } from '../../state/paint';
 import { loadPaint } from '../load-paint';
 import { type DrawnPaint, drawnPaints } from './names';
@@ -61,16 +60,6 @@ export class Drawings {
 async function ask(request: DrawRequest): Promise<Blob[]> {
   const worker = new Worker(new URL('./paint-worker.ts', import.meta.url), { type: 'module' });
   return (await askWorker<Drawn>(worker, request)).files;
-}
-
-function landmarksOf({ scene }: Model): Canvas['landmarks'] {
-  const found: Record<string, number[]> = {};
-  scene.traverse((object) => {
-    const landmarks = Object.entries((object.userData.landmarks ?? {}) as Canvas['landmarks']);
-    if (landmarks.length > 0) object.updateWorldMatrix(true, false);
-    for (const [name, at] of landmarks) found[name] = object.localToWorld(new Vector3().fromArray(at)).toArray();
-  });
-  return found;
 }
 
 /** A cage as it is in its file. */

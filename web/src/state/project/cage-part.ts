@@ -36,23 +36,30 @@ export function cagePart(
       const all = pairs.flatMap(({ target, cage }) => {
         const own = madeOf(cage);
         if (!own) return [];
-        const { fitting, sample } = own;
+        const { fitting, sample, isNew } = own;
         // The model that it was made for may be gone.
         return [
-          { cage: keep(cage), ...(own.target === target && { target: keep(target) }), fitting, sample: sample?.name },
+          {
+            cage: keep(cage),
+            ...(own.target === target && { target: keep(target) }),
+            fitting,
+            sample: sample?.name,
+            isNew,
+          },
         ];
       });
       return all.length > 0 ? all : undefined;
     },
     read(saved, files) {
       const all = listOf(saved, kMaxCages, 'cages').map((one) => {
-        const { cage, target, fitting, sample } = objectOf(one, 'cage');
+        const { cage, target, fitting, sample, isNew } = objectOf(one, 'cage');
         const file = files(cage);
         // The cage itself stands for a model that is gone: it is no target.
         const made = {
           target: target === undefined ? file : files(target),
           fitting: fitting === undefined ? undefined : fittingOf(fitting, templates),
           sample: samples.samples.find(({ name }) => name === sample),
+          isNew: isNew === true,
         };
         return { file, made };
       });

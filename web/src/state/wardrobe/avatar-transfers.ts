@@ -1,8 +1,7 @@
 import { classify } from 'cagecast';
 import { bareGroupsOf, choicesOf } from '../choices';
 import { isUpToDate, moveChoices, projectBy, withoutParts } from '../left-out';
-import { knownLandmarks } from '../made-cages';
-import type { Model } from '../model';
+import { landmarksOf, type Model } from '../model';
 import { haveSameUvs } from '../same-uvs';
 import { paintableShare } from '../verdict';
 import type { Avatar } from './avatar';
@@ -87,7 +86,7 @@ export class AvatarTransfers {
     if (!standing || !cage || standing.model.mesh.indices.length + cage.mesh.indices.length > 3 * kMaxInspected) return;
     const { preset, threshold, weldTolerance } = this.#around.session.rules;
     const choices = choicesOf(locks, bareGroupsOf({ target: standing.model, cage }), undefined);
-    const landmarks = knownLandmarks(standing.model, cage);
+    const landmarks = landmarksOf(cage);
     const options = { preset, threshold, weldTolerance, ...choices, landmarks };
     const target = standing.projection ? withoutParts(standing.model, standing.projection) : standing.model;
     const { verdict } = await this.#around.transferer.ask('inspect', cage, target, options);
