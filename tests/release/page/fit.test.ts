@@ -91,7 +91,7 @@ test('a large model is inspected on request', async () => {
   const { page } = visit;
   const small = tetrahedron();
   // Most of them without area, which cost no time to draw.
-  const indices = Uint16Array.from({ length: 3 * 70_000 }, (_, i) => small.indices[i] ?? 0);
+  const indices = Uint16Array.from({ length: 3 * 130_000 }, (_, i) => small.indices[i] ?? 0);
   await drop(page, [
     glb('target.glb', glbOf({ ...small, indices }, 'thing')),
     glb('cage.glb', glbOf(tetrahedron(2), 'thing')),

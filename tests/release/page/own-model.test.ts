@@ -21,7 +21,7 @@ const visible = (page: Page): Promise<boolean[]> =>
 
 test('a model too large to be inspected by itself gets a cage, and is offered an inspection', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true });
-  await drop(page, [await lumpyBall(180)]);
+  await drop(page, [await lumpyBall(250)]);
   await ready(page);
   assert.equal(await page.locator('#stage-verdict-text span').textContent(), 'The cage is not checked yet');
   assert.equal(await page.locator('#model-verdict').textContent(), 'not checked yet');

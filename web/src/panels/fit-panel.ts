@@ -8,14 +8,21 @@ import { namesLeftOut, withoutParts } from '../state/left-out';
 import { landmarksOf } from '../state/model';
 import type { Session } from '../state/session';
 import { Superseded } from '../state/transfers';
-import { type KnownVerdict, paintableShare, type Remedy, regionOf, remedyFor, takeBacks } from '../state/verdict';
+import {
+  type KnownVerdict,
+  kMaxInspected,
+  paintableShare,
+  type Remedy,
+  regionOf,
+  remedyFor,
+  takeBacks,
+} from '../state/verdict';
 import { forPeople, reasonOf } from '../state/wording';
 import { marksOf } from '../view/segments';
 import type { Stage } from '../view/stage';
 import { StageVerdict } from './stage-verdict';
 
 const kInspectDelay = 800; // milliseconds without a change before the cage is inspected
-const kMax = 60_000; // triangles that are inspected automatically; the time grows with their number
 const kSoon = 'The cage will be inspected in a moment.';
 const kVerdicts: Record<Inspection['verdict'], string> = {
   good: 'The cage fits this model.',
@@ -58,9 +65,9 @@ export class FitPanel {
     const { target, cage } = this.#session.shown!;
     const triangles = (target.mesh.indices.length + cage.mesh.indices.length) / 3;
     this.#forget();
-    if (triangles <= kMax) this.#waiting = setTimeout(() => void this.#inspect(), kInspectDelay);
+    if (triangles <= kMaxInspected) this.#waiting = setTimeout(() => void this.#inspect(), kInspectDelay);
     else this.#show('', [make('p', {}, 'This model is large; inspecting it takes a while.')], this.#next);
-    this.#button.hidden = triangles <= kMax;
+    this.#button.hidden = triangles <= kMaxInspected;
   }
 
   /** Ends the inspection in progress: it is not of what is shown. */

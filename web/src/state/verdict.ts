@@ -8,6 +8,9 @@ import type { Session } from './session';
 /** Whether the cage fits; empty until it was inspected. */
 export type KnownVerdict = Inspection['verdict'] | '';
 
+/** How many triangles of model and cage are inspected without being asked: a second of a worker's time. */
+export const kMaxInspected = 120_000;
+
 /** The share of the visible surface that can be painted, 0..1; with an open cage over a region, the share of the region. */
 export function paintableShare(
   parts: readonly { exposedArea: number; coveredArea: number; culled: boolean }[],

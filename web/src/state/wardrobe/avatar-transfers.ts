@@ -3,12 +3,10 @@ import { bareGroupsOf, choicesOf } from '../choices';
 import { isUpToDate, moveChoices, projectBy, withoutParts } from '../left-out';
 import { landmarksOf, type Model } from '../model';
 import { haveSameUvs } from '../same-uvs';
-import { paintableShare } from '../verdict';
+import { kMaxInspected, paintableShare } from '../verdict';
 import type { Avatar } from './avatar';
 import type { AvatarList } from './avatar-list';
 import type { Surroundings } from './surroundings';
-
-const kMaxInspected = 60_000; // triangles; the time grows with their number
 
 /** Transfers the paint to the avatars that stand beside the stage. */
 export class AvatarTransfers {
