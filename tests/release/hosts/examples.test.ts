@@ -539,6 +539,16 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assertSameModel,
   );
 
+  steady(
+    'exports a model of which a part is left out',
+    async () => {
+      assert.equal(await said({ ignore: 'tongue', keep: 'l-eye' }), 'load');
+      assert.match((await exported()).toString('latin1'), /"images":\[/);
+      assert.equal(await said({ ignore: null, keep: null }), 'load');
+    },
+    assertSameModel,
+  );
+
   test('exports what is shown, even if its paint changes meanwhile', async () => {
     const glb = Buffer.from(
       await inPage(`

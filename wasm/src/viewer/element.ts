@@ -40,10 +40,10 @@ const kStyle = `
 
 /** What is shown. */
 interface Shown {
-  /** Of the model. */
-  file: Fetched;
+  file: Fetched; // of the model
   gltf: GLTF;
   applied: Applied | undefined;
+  parts: ApplyOptions['parts'];
   paint: Texture | undefined;
   /** Of the paint. */
   opacity: number;
@@ -143,7 +143,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
    * @throws Error if nothing is shown yet.
    */
   async exportGlb(): Promise<ArrayBuffer> {
-    const { file, applied, paint, opacity } = this.#get('exportGlb');
+    const { file, applied, parts, paint, opacity } = this.#get('exportGlb');
     // Of the file as it was: its address may lead nowhere by now. The paint may change meanwhile.
     const [{ GLTFExporter }, { scene, animations }, map] = await Promise.all([
       import('three/addons/exporters/GLTFExporter.js'),
@@ -154,7 +154,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       if (applied && map) {
         map.channel = applied.channel;
         const material = new MeshStandardMaterial({ map, transparent: true, opacity });
-        applyTransfer(scene, { saved: deserialize(serialize(applied)), channel: applied.channel, material });
+        applyTransfer(scene, { saved: deserialize(serialize(applied)), parts, channel: applied.channel, material });
       }
       return (await new GLTFExporter().parseAsync(scene, { binary: true, animations })) as ArrayBuffer;
     } finally {
@@ -313,7 +313,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
           onProgress,
         }));
       signal.throwIfAborted();
-      shown = { file, gltf, applied, paint, opacity: options.opacity ?? 1 };
+      shown = { file, gltf, applied, parts: options.parts, paint, opacity: options.opacity ?? 1 };
       if (check && applied) tellVerdict = () => this.#tell('verdict', check(applied, options));
     } catch (error) {
       // Neither what was loaded nor what is still to come is of use now.
