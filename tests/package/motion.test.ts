@@ -5,8 +5,8 @@ import { before, describe, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { init, type Mesh, project, type TransferOptions, type TransferResult, transfer } from 'cagecast';
 import { cageGlb } from 'cagecast/cages';
-import { cagecast as transform } from 'cagecast/gltf';
-import { applyTransfer, extract } from 'cagecast/three';
+import { cageModel as documentModel, cagecast as transform } from 'cagecast/gltf';
+import { applyTransfer, extract, cageModel as sceneModel } from 'cagecast/three';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { cagecast } from '../support/command.js';
 import { GlbMaker } from '../support/glb.js';
@@ -149,6 +149,13 @@ describe('a lid that is folded away at rest', () => {
       assert.deepEqual(await byThree(glb), sides);
       assert.deepEqual(await byCommand(glb), sides);
     });
+
+  test('is painted in the arrays that cageModel gives', async () => {
+    const glb = faceGlb({ blink: 0 });
+    const document = await new NodeIO().readBinary(new Uint8Array(glb));
+    for (const model of [await documentModel(document), await sceneModel(await load(glb))])
+      assert.deepEqual(painted(transfer(cage, model)), all);
+  });
 
   test('is painted by the names of the expressions of a VRM file', async () => {
     assert.deepEqual(await byCommand(faceGlb({ t0: 1, t1: 0 }, { extensions: vrm })), all);

@@ -76,7 +76,8 @@ export async function choose(
   const tried: Tried[] = [];
   const candidates: Omit<Choice, 'tried'>[] = [];
   const { parts } = options;
-  const { joints, marks, hints, vertexJoints, baseColors, ...mesh } = model;
+  // Cages are judged with the face at rest, which takes less time.
+  const { joints, marks, hints, vertexJoints, baseColors, poses, ...mesh } = model;
   const names = (model.names ?? []).map((own) => [own].flat());
   const used = new Set(model.groups ?? [0]); // others have no vertices
   const step = (): Calling => ({

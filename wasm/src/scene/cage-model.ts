@@ -57,11 +57,19 @@ export function readJoints<Node>(
 
 /** A model as `cagecast/cages` needs it, without its colours. @param morphs  Its parts, and what moves them. */
 export const cageModelWith = (
-  { positions, indices, groups }: Mesh & { indices: Uint32Array },
+  { positions, indices, groups, poses }: Mesh & { indices: Uint32Array },
   names: string[][],
   joints: ReturnType<typeof readSkeleton>,
   morphs: readonly MorphedPart[],
-): CageModel => ({ positions, indices, groups, names, ...joints, hints: faceHints(morphs) });
+): CageModel => ({
+  positions,
+  indices,
+  groups,
+  names,
+  ...(poses && { poses }),
+  ...joints,
+  hints: faceHints(morphs),
+});
 
 /**
  * What `cagecast/cages` needs of a glTF: its mesh, the names of its parts, its joints, where its face is, and what its parts look like.
