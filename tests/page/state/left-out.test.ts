@@ -66,6 +66,15 @@ test('a part that hides much is left out with a click, and taken back with anoth
   assert.deepEqual([takeBacks(session), session.locks], [[], {}]);
 });
 
+test('a part that is kept or stays bare is so by its name, in code as on the command line', async () => {
+  const { session, ready } = await visored();
+  session.lock([0], 'keep');
+  session.lock([1], 'exclude');
+  await ready();
+  assert.match(codeFor(session).command, / --keep Head --exclude Visor /);
+  assert.match(codeFor(session).three, / parts: \{ keep: \["Head"\], exclude: \["Visor"\] \} \}/);
+});
+
 test('what cannot be left out, or comes too late, changes nothing; what is left out comes with a project at once', async () => {
   const page = await visored();
   const { session } = page;

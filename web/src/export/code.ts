@@ -21,14 +21,21 @@ export function codeFor({ shown, rules, locks, bare }: Session): Code {
 
 const kMarked = 'What you marked to stay bare is not in it: give masks, too.';
 
-function threeCode({ target, cage, projection }: Shown, rules: Rules, locks: Readonly<Locks>): string {
+function threeCode(shown: Shown, rules: Rules, locks: Readonly<Locks>): string {
+  const { target, cage, projection } = shown;
   const { preset, threshold, weldTolerance, borders } = nonDefault(rules);
+  const nameOf = (group: number) => target.mesh.primitives[group]!.mesh.name;
+  const [keep, exclude] = kLocks.map((lock) => partsLocked(shown, locks, lock, nameOf).whole) as [string[], string[]];
+  const lists = Object.entries({ ignore: projection.leftOut.map(nameOf), keep, exclude }).flatMap(([list, names]) =>
+    names.length > 0 ? [`${list}: [${[...new Set(names)].map((name) => JSON.stringify(name)).join(', ')}]`] : [],
+  );
   const numbers = numbersWithout(projection);
   const segments = Object.entries(locks).flatMap(([segment, lock]) => {
     const number = numbers[Number(segment)];
-    return lock === 'auto' || number === undefined ? [] : [`${number}: '${asLock(lock)}'`];
+    if (lock === 'auto' || number === undefined) return [];
+    const name = nameOf(projection.segmentStats[Number(segment)]!.group);
+    return keep.includes(name) || exclude.includes(name) ? [] : [`${number}: '${asLock(lock)}'`];
   });
-  const leftOut = projection.leftOut.map((group) => JSON.stringify(target.mesh.primitives[group]!.mesh.name));
   const options = [
     'cage',
     'texture',
@@ -36,7 +43,7 @@ function threeCode({ target, cage, projection }: Shown, rules: Rules, locks: Rea
     ...(threshold === undefined ? [] : [`threshold: ${threshold}`]),
     ...(weldTolerance ? [`weldTolerance: ${weldTolerance}`] : []),
     ...(borders ? [`borders: '${borders}'`] : []),
-    ...(leftOut.length > 0 ? [`parts: { ignore: [${leftOut.join(', ')}] }`] : []),
+    ...(lists.length > 0 ? [`parts: { ${lists.join(', ')} }`] : []),
     ...(segments.length > 0 ? [`locks: { ${segments.join(', ')} }`] : []),
   ];
   return `${noteOn(locks, '//')}import { init } from 'cagecast'
@@ -70,7 +77,7 @@ function commandLine(shown: Shown, rules: Rules, locks: Readonly<Locks>): string
   if (borders) words.push(`--borders ${borders}`);
   for (const name of new Set(namesLeftOut(shown))) words.push(`--ignore ${shell(name)}`);
   const partly: string[] = [];
-  for (const lock of ['keep', 'exclude'] as const) {
+  for (const lock of kLocks) {
     const { whole, some } = partsLocked(shown, locks, lock);
     for (const name of whole) words.push(`--${lock} ${shell(name)}`);
     partly.push(...some);
@@ -86,17 +93,19 @@ const noteOn = (locks: Readonly<Locks>, comment: string): string =>
     ? `${comment} Parts that you paint anyway are only kept here: give masks, too.\n`
     : '';
 
+const kLocks = ['keep', 'exclude'] as const;
+
 /** The meshes with this lock on all of their segments that have area, or on some. */
 function partsLocked(
   { target, projection }: Shown,
   locks: Readonly<Locks>,
   lock: Lock,
+  nameOf = (group: number): string => target.mesh.primitives[group]!.name,
 ): { whole: string[]; some: string[] } {
   const [locked, others] = [new Set<string>(), new Set<string>()];
   projection.segmentStats.forEach(({ group, area }, segment) => {
     // What is left out has no area.
-    if (area > 0)
-      (asLock(locks[segment] ?? 'auto') === lock ? locked : others).add(target.mesh.primitives[group]!.name);
+    if (area > 0) (asLock(locks[segment] ?? 'auto') === lock ? locked : others).add(nameOf(group));
   });
   return {
     whole: [...locked].filter((name) => !others.has(name)),
