@@ -74,7 +74,7 @@ test('--config names another file, --config none none; the output says which fil
 test('a list of names to ignore; --ignore replaces it', async () => {
   set({ ignore: ['no such part', 'only'] });
   await fails(1, /^cagecast: heads\/ada\.glb: all parts are left out: "only" \(ignored\);/, transfer);
-  await fails(1, /--ignore nose: no node or material has this name/, `${transfer} --ignore nose`);
+  await fails(1, /--ignore nose: no node, mesh or material has this name/, `${transfer} --ignore nose`);
   set({ ignore: 'only' });
   await fails(1, `${config}: "ignore" is "only", not an array of names`, transfer);
 });

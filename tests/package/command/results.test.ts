@@ -217,7 +217,11 @@ test('--keep and --exclude lock parts by the names of nodes and materials', asyn
     );
   const { options } = await json<Report>(`${named} --keep eye* --exclude head`);
   assert.deepEqual([options.keep, options.exclude], [['eye*'], ['head']]);
-  await fails(1, /named\.glb: --exclude eye\?left: no node or material has this name/, `${named} --exclude eye?left`);
+  await fails(
+    1,
+    /named\.glb: --exclude eye\?left: no node, mesh or material has this name/,
+    `${named} --exclude eye?left`,
+  );
 });
 
 test('--keep and --exclude take a node that holds others for all below it, unless a part has its name', async () => {
@@ -277,12 +281,12 @@ test('what is not drawn is left out, and what --ignore names; hats stay bare', a
   );
   await fails(
     1,
-    /dressed\.glb: --ignore Hat: no node or material has this name; there are: head, Visor/,
+    /dressed\.glb: --ignore Hat: no node, mesh or material has this name; there are: head, Visor/,
     `${line} --ignore Hat`,
   );
   await fails(
     1,
-    /--exclude Outfit: no node or material has this name; .*; left out: "Outfit" \(hidden\)/,
+    /--exclude Outfit: no node, mesh or material has this name; .*; left out: "Outfit" \(hidden\)/,
     `${line} --exclude Outfit`,
   );
   await fails(

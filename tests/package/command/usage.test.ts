@@ -74,6 +74,7 @@ const wrong: [line: string, message: RegExp][] = [
   ],
   ['bake target.glb --cage cage.glb -o out.glb --map gloss=paint.png', /It is not normal=MAP or orm=MAP/],
   ['inspect target.glb --cage cage.glb --html page.html', /unknown option '--html'; it is --report REPORT\.html/],
+  [`${transfer} --set threshold=0.4`, /It has a flag of its own: --threshold 0\.4/],
   [`${transfer} --preset paper`, /unknown option '--preset'.*; it is set by --set preset=VALUE/],
   [`${transfer} --mask colors=NORMAL`, /NORMAL is not COLOR_0, COLOR_1, … or an attribute of an own name/],
   [`${transfer} --limit vertices=2`, /There are the limits bytes, nesting/],
@@ -221,7 +222,7 @@ test('after a name that nothing has, those of parts, materials and nodes that ho
   maker.node({ children: [maker.node({ name: 'Body', children: [inner] }, false)] });
   maker.node({ name: 'camera' });
   write('named.glb', maker.finish());
-  const line = 'named.glb: --keep eyes: no node or material has this name; there are: head, skin, upper, Body';
+  const line = 'named.glb: --keep eyes: no node, mesh or material has this name; there are: head, skin, upper, Body';
   await fails(1, line, 'transfer named.glb --cage cage.glb --keep eyes');
   await fails(
     1,

@@ -119,7 +119,8 @@ function layoutsOf(fn: string, target: BakeTarget, result: BakeResult, options: 
     throw wrongArgument(fn, 'result', `is ${show(result)}; pass what transfer() returned`);
   const { indices, uvs, positions } = target;
   if (!ArrayBuffer.isView(indices)) throw wrongArgument(fn, 'target.indices', `is ${show(indices)}, not a typed array`);
-  if (!ArrayBuffer.isView(uvs) || uvs.length === 0) throw wrongArgument(fn, 'target', 'has no UVs; unwrap it first');
+  if (!ArrayBuffer.isView(uvs) || uvs.length === 0)
+    throw wrongArgument(fn, 'target', 'has no UVs; give those of its own texture as target.uvs');
   const [triangles, vertices] = [indices.length / 3, uvs.length / 2];
   if (!Number.isInteger(triangles))
     throw wrongArgument(fn, 'target.indices', `has ${indices.length} entries, not 3 per triangle`);

@@ -90,7 +90,7 @@ export function addBakeCommand(program: Command, io: Io): void {
     .addOption(
       common.parsed(
         '--map <KIND=MAP>',
-        "normal=MAP, a normal map in the cage's UV space; orm=MAP, occlusion, roughness and metalness in it, as in glTF; may be repeated",
+        "another map in the cage's UV space: normal=MAP, of normals; orm=MAP, of occlusion, roughness and metalness, as in glTF; may be repeated",
         mapOf,
       ),
     )

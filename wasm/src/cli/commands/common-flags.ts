@@ -331,6 +331,7 @@ export function insteadOf(text: string): string {
 
 function optionOf(text: string, before: Settings & CageSettings = {}): Settings & CageSettings {
   const [, name = text, value = ''] = /^(.*?)=(.*)$/s.exec(text) ?? [];
+  if (name === kThreshold.name) throw new InvalidArgumentError(`It has a flag of its own: --threshold ${value}`);
   if (!kSetNames.includes(name)) throw new InvalidArgumentError(`There are ${kSetNames.join(', ')}.`);
   if (name === 'uvBounds') return { ...before, uvBounds: boundsOf(value) };
   if (name === 'referenceCage' && value !== '') return { ...before, referenceCage: value };

@@ -80,7 +80,7 @@ export function addThumbnailCommand(program: Command, io: Io): void {
       common
         .parsed(
           '--view <VIEW>',
-          `${Object.keys(views).join(', ')}; or azimuth and elevation in degrees, as 30,15: from its left, and from above`,
+          `from where: ${Object.keys(views).join(', ')}; or azimuth and elevation in degrees, as 30,15: from its left, and from above`,
           viewOf,
         )
         .default('front'),

@@ -46,7 +46,9 @@ const shapeKey = ({ states, parts }: ExtractedNear): string => {
 /** @throws {CagecastError} `badArgument` if what was saved is of another target. */
 export function checkSaved({ key, prepared }: Saved, target: ExtractedNear): Prepared {
   if (!key.startsWith(`${shapeKey(target)}-`))
-    throw wrong('options.saved is of another target, or of other meshes of it; load it as it was');
+    throw wrong(
+      'options.saved is of another target, or of other meshes of it; load it as it was, and give the same parts',
+    );
   return prepared;
 }
 
