@@ -411,7 +411,7 @@ describe('names', () => {
       assert.equal(await matches('short.glb', pattern), false, pattern);
     const { status, stderr } = await run('transfer long.glb --cage cage.glb --keep abca');
     assert.equal(status, 1);
-    assert.match(stderr, /no node, mesh or material has this name; there are: a{59}…\n$/);
+    assert.match(stderr, /nothing has this name; there are: a{59}…\n$/);
   });
 });
 

@@ -443,7 +443,7 @@ describe('cagecast bake', () => {
     const line = 'bake held.glb --cage cage.glb --texture red.png -o part.png --part';
     for (const part of ['Ne*', 'box']) assert.match(await ok(line, part), /part\.png: 96 × 96, for "box"$/m, part);
     await fails(1, /held\.glb: nothing of it may be painted\n$/, line, 'Away');
-    await fails(1, /--part Nose: no node, mesh or material has this name; there are: box, /, line, 'Nose');
+    await fails(1, /--part Nose: nothing has this name; there are: box, /, line, 'Nose');
   });
 
   test('what follows the end of a PNG is not part of it, as in viewers', async () => {
@@ -594,11 +594,7 @@ describe('cagecast bake', () => {
       [`${whole} --mask colors=POSITION -o no.glb`, 2, /POSITION is not COLOR_0, COLOR_1, … or an attribute of/],
       [`${whole} --mask never=no.glb -o no.glb`, 2, /no\.glb would overwrite .*no\.glb, which/],
       [`${whole} --back -o no.png`, 2, /--back takes no paint/],
-      [
-        `${whole} --part nose -o no.png`,
-        1,
-        /--part nose: no node, mesh or material has this name; there are: box, own/,
-      ],
+      [`${whole} --part nose -o no.png`, 1, /--part nose: nothing has this name; there are: box, own/],
       [`${whole} -o nowhere/out.png`, 1, 'nowhere/out.png: cannot be written (its folder does not exist)'],
       ['bake box.glb --cage cage.glb --back -o nowhere/out.png', 1, /^cagecast: nowhere\/out\.png: cannot be written/],
       ...['0', '1e5', 'NaN'].map((text): [string, number, RegExp] => [

@@ -136,7 +136,7 @@ test('errors are one line that names the file, and write nothing', async () => {
     [fit('bare.glb'), /bare\.glb: has no landmarks in the extras .*; give at least 4 .*--landmarks template=T\.json/],
     [fit('few.glb'), /few\.glb: has 1 landmark in the extras .*; give at least 4 .*--landmarks template=T\.json/],
     [fit('odd.glb'), /odd\.glb: meshes\[0\]\.extras\.landmarks\.chin is not 3 finite numbers/],
-    [fit('human-head', ' --exclude antler'), /target\.glb: --exclude antler: no node or material/],
+    [fit('human-head', ' --exclude antler'), /target\.glb: --exclude antler: nothing has this name/],
     [fit('human-head', ' --landmarks missing.json'), /missing\.json: no such file/],
     [fit('human-head', ' --landmarks no.json'), /no\.json: is not JSON \(/],
     [fit('human-head', ' --landmarks list.json'), /list\.json: is not a JSON object/],

@@ -48,7 +48,7 @@ test('settings come from the nearest file above the target; characters by name w
     'a list of flags replaces others',
   );
   // What a flag names must be there; what the file names need not.
-  await fails(1, /--exclude gone: no node/, `${transfer} --exclude gone`);
+  await fails(1, /--exclude gone: nothing has this name/, `${transfer} --exclude gone`);
   // Names that are numbers have their place, too.
   write(config, '{ "characters": { "*": { "threshold": 0.6 }, "n101": {}, "101" : { "threshold": 0.3 } } }');
   assert.equal((await optionsOf('transfer heads/101.glb --cage cage.glb')).threshold, 0.3);
@@ -74,7 +74,7 @@ test('--config names another file, --config none none; the output says which fil
 test('a list of names to ignore; --ignore replaces it', async () => {
   set({ ignore: ['no such part', 'only'] });
   await fails(1, /^cagecast: heads\/ada\.glb: all parts are left out: "only" \(ignored\);/, transfer);
-  await fails(1, /--ignore nose: no node, mesh or material has this name/, `${transfer} --ignore nose`);
+  await fails(1, /--ignore nose: nothing has this name/, `${transfer} --ignore nose`);
   set({ ignore: 'only' });
   await fails(1, `${config}: "ignore" is "only", not an array of names`, transfer);
 });

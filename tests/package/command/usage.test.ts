@@ -222,7 +222,7 @@ test('after a name that nothing has, those of parts, materials and nodes that ho
   maker.node({ children: [maker.node({ name: 'Body', children: [inner] }, false)] });
   maker.node({ name: 'camera' });
   write('named.glb', maker.finish());
-  const line = 'named.glb: --keep eyes: no node, mesh or material has this name; there are: head, skin, upper, Body';
+  const line = 'named.glb: --keep eyes: nothing has this name; there are: head, skin, upper, Body';
   await fails(1, line, 'transfer named.glb --cage cage.glb --keep eyes');
   await fails(
     1,

@@ -20,9 +20,7 @@ export function noSuchName(flag: string, { file: { json }, extracted }: Named): 
   const names = new Set([...parts.flatMap(({ aliases }) => aliases), ...holding]);
   const shown = [...names].map((name) => cut(name, kMaxCharacters));
   const others = leftOut.length > 0 ? `; left out: ${leftOutText(leftOut)}` : '';
-  return new InputError(
-    `${flag}: no node, mesh or material has this name; there are: ${listed(shown, kMaxNames)}${others}`,
-  );
+  return new InputError(`${flag}: nothing has this name; there are: ${listed(shown, kMaxNames)}${others}`);
 }
 
 /** Whether a pattern has to name a part: not of a configuration file, which speaks of many models, nor one for any text. */

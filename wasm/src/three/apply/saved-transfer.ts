@@ -47,7 +47,7 @@ const shapeKey = ({ states, parts }: ExtractedNear): string => {
 export function checkSaved({ key, prepared }: Saved, target: ExtractedNear): Prepared {
   if (!key.startsWith(`${shapeKey(target)}-`))
     throw wrong(
-      'options.saved is of another target, or of other meshes of it; load it as it was, and give the same parts',
+      'options.saved is of another target, or of other parts of it; load it as it was, and give the same parts',
     );
   return prepared;
 }
