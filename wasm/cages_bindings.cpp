@@ -50,6 +50,7 @@ struct Images {
     std::vector<BaseColor> out(colors["length"].as<std::size_t>());
     for (std::size_t c = 0; c < out.size(); ++c) {
       out[c].factor = colors[c]["factor"].as<Position>();
+      out[c].isKnown = colors[c]["isKnown"].as<bool>();
       const auto image = colors[c]["image"].as<int>();
       if (image < 0) continue;
       const val size = images[image];
@@ -123,6 +124,7 @@ val fitCageCall(const val& from, const val& target, const val& landmarks, const 
   out.set("missing", listed(cage.missing));
   out.set("guessed", listed(cage.guessed));
   out.set("bare", listed(cage.bare));
+  out.set("closed", listed(cage.closed));
   return out;
 }
 

@@ -5,7 +5,7 @@
 import { readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { cageGlb } from 'cagecast/cages';
+import { cageGlb, loadTemplate, type TemplateName } from 'cagecast/cages';
 import { cagecast, cageModel, cageTemplate, toGlb } from 'cagecast/gltf';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
@@ -48,7 +48,13 @@ const io = new NodeIO().registerExtensions(ALL_EXTENSIONS).registerDependencies(
   'meshopt.decoder': MeshoptDecoder,
 });
 
-async function score(file: string, cage: string, { face, parts }: Avatar): Promise<Score> {
+/** @param template  That was fitted, if one was: a hole that was closed is where its vertices are. */
+async function score(
+  file: string,
+  cage: string,
+  template: string | undefined,
+  { face, parts }: Avatar,
+): Promise<Score> {
   const isGltf = /\.(glb|vrm)$/.test(file);
   const document = await (isGltf ? io.read(file) : io.readBinary(await toGlb(readFileSync(file))));
   const fitted = await io.read(cage);
@@ -57,7 +63,8 @@ async function score(file: string, cage: string, { face, parts }: Avatar): Promi
   await document.transform(
     cagecast({ cage: fitted, onResult: (result) => void (zones = Uint8Array.from(result.zones)) }),
   );
-  return scoreOf(cageTemplate(fitted), model, zones, face, parts);
+  const holes = template && (await loadTemplate(template as TemplateName)).holes;
+  return scoreOf({ ...cageTemplate(fitted), ...(holes && { holes }) }, model, zones, face, parts);
 }
 
 /** A paint that shows its UVs: checks of 16 to a side, redder to the right and greener downwards. */
@@ -121,7 +128,7 @@ try {
   await command('transfer', file, '--cage', cage, '--texture', `${to}.paint.png`, '-o', painted, '--quiet');
   rmSync(`${to}.paint.png`);
   await draw(painted, to, avatar);
-  Object.assign(row, await score(file, cage, avatar));
+  Object.assign(row, await score(file, cage, row.template === 'made' ? undefined : (row.template ?? template), avatar));
 } catch (error) {
   row.failed = (error as Error).message.split('\n')[0]!;
 }

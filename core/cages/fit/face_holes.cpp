@@ -122,7 +122,7 @@ std::vector<FaceHole> faceHoles(const TemplateCage& cage, const std::vector<Vec3
     const std::vector<std::uint32_t>& border = cage.loops[static_cast<std::size_t>(loop)];
     const Vec3 place =
         isGiven ? meanOf(there) + face.carried(middleOf(cage.mesh, border) - middle) : middleOf({start, {}}, border);
-    out.push_back({border, place, isGiven});
+    out.push_back({border, place, isGiven, hole == 2});
   }
   return out;
 }

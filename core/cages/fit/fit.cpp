@@ -166,6 +166,7 @@ class Fit {
     if (!isNear({positions, cage.mesh.triangles}, hull, pairs_.to, kMaxBeyond * cage.diagonal))
       return {Code::noFit, Argument::model};
     write(cage, positions, out);
+    closeEmptyHoles(cage, positions, out);
     if (isHead(from_))
       out.bare = partsBesideHead(model_, skin_, skinOf_, belowRim(cage, positions, skin_, 0), pairs_.to);
     return report(progress_, 1, "done") ? Status{} : kAborted;
@@ -321,10 +322,39 @@ class Fit {
     out.kind = from_.kind;
   }
 
+  /// Closes the holes of a face that have nothing behind them.
+  void closeEmptyHoles(const TemplateCage& cage, const std::vector<Vec3>& positions, FittedCage& out) const {
+    const LandmarkPairs own{from_.landmarks, from_.landmarks, std::vector<bool>(from_.landmarks.size())};
+    const Face face = faceOf(own.from, own.to, axesOf(own.from), {0, 1, 0});
+    const std::vector<FaceHole> holes = faceHoles(cage, cage.mesh.positions, own, face);
+    const std::vector<bool> isEmpty = emptyHoles(holes, {model_, whole_, map_}, positions);
+    for (std::size_t i = 0; i < isEmpty.size(); ++i) {
+      if (!isEmpty[i]) continue;
+      const std::vector<std::uint32_t>& loop = holes[i].loop;
+      std::vector<std::uint32_t> corners;  // Of the given cage.
+      std::vector<Flat> uvs;
+      for (const std::uint32_t v : loop) {
+        const auto first = std::find(cage.vertexOf.begin(), cage.vertexOf.end(), v);
+        const auto corner = static_cast<std::uint32_t>(first - cage.vertexOf.begin());
+        const bool isOnSeam = std::find(first + 1, cage.vertexOf.end(), v) != cage.vertexOf.end();
+        if (isOnSeam) break;
+        corners.push_back(corner);
+        uvs.push_back({static_cast<double>(out.uvs[2 * std::size_t{corner}]),
+                       static_cast<double>(out.uvs[2 * std::size_t{corner} + 1])});
+      }
+      if (corners.size() < loop.size()) continue;
+      const std::vector<Triangle3> lid = lidOf(uvs);
+      for (const Triangle3& t : lid)
+        for (const std::uint32_t k : t) out.indices.push_back(corners[k]);
+      if (!lid.empty()) out.closed.insert(out.closed.end(), corners.begin(), corners.end());
+    }
+  }
+
   /// Reads the target in the space of the template.
   void readTarget() {
-    Figure parts = readFigure(model_);
-    TriangleMesh& mesh = parts.mesh;
+    whole_ = readFigure(model_);
+    const Figure& parts = whole_;
+    TriangleMesh& mesh = whole_.mesh;
     for (Vec3& p : mesh.positions) p = map_.inverse(p);
     const std::vector<bool> isExcluded = excludedTriangles(model_, options_.parts);
     std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size()), isCover(mesh.triangles.size());
@@ -362,6 +392,7 @@ class Fit {
   std::vector<Bone> bones_;            ///< None for heads.
   TriangleMesh skin_;                  ///< The target without excluded parts, in the template's space.
   std::vector<std::uint32_t> skinOf_;  ///< Per triangle of it: the model's.
+  Figure whole_;                       ///< All of the target, in the template's space.
   EyedFigure figure_;                  ///< Eyes fill their sockets.
 };
 

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "cagecast/cages.hpp"
+#include "fit/hole_outline.hpp"
 #include "fit/warp.hpp"
 #include "landmarks/landmark_list.hpp"
+#include "landmarks/parts.hpp"
 #include "linear/sparse_system.hpp"
 #include "mesh/bounds.hpp"
 #include "mesh/neighbours.hpp"
@@ -163,6 +165,7 @@ struct FaceHole {
   std::vector<std::uint32_t> loop;
   Vec3 place;            ///< Where its middle belongs, as seen from in front: depth does not count.
   bool isGiven = false;  ///< Whether a person gave a landmark of it.
+  bool isMouth = false;
 };
 
 /// The hole at a spot of the template: the loop whose middle is nearest to it, and nearer than to another spot; -1 if
@@ -176,6 +179,25 @@ std::vector<FaceHole> faceHoles(const TemplateCage& cage, const std::vector<Vec3
 
 /// How a hole has to move to be in its place, as seen from in front.
 Vec3 missOf(const FaceHole& hole, const Face& face, const std::vector<Vec3>& positions);
+
+/// A target whose holes are looked into.
+struct SeenModel {
+  const Model& model;
+  const Figure& figure;       ///< All of it, read from `model`, in the template's space.
+  const Similarity& toModel;  ///< From the template's space.
+};
+
+/// Whether there is nothing behind each hole of a face: no eye, no teeth, no opening, no other colour than around it,
+/// no morph target that moves it. Where colours are not known, there may be something.
+/// @param holes  Of the left eye, the right eye and the mouth; without one of them, none is empty.
+/// @param positions  Of the cage where it is.
+std::vector<bool> emptyHoles(const std::vector<FaceHole>& holes, const SeenModel& seen,
+                             const std::vector<Vec3>& positions);
+
+/// Triangles that close a hole, in the plane of its UVs.
+/// @param uvs  Per corner of its loop, which has the mesh on its left.
+/// @return Places in the loop; empty where the UVs do not say how.
+std::vector<Triangle3> lidOf(const std::vector<Flat>& uvs);
 
 struct TightenOptions {
   double reach = 0.1;   ///< Planes farther away than this share of the diagonal do not count; shrinks to a third.

@@ -51,8 +51,8 @@ std::size_t pixelAt(double coordinate, std::uint32_t count) {
 std::optional<Vec3> baseColorAt(const Model& model, std::uint32_t triangle, const Vec3& point) {
   const std::uint32_t* corner = &model.mesh.indices[3 * std::size_t{triangle}];
   const std::size_t part = model.mesh.groups.empty() ? 0 : model.mesh.groups[corner[0]];
-  const auto& [factor, image] = model.baseColors[part];
-  Vec3 light = Vec3::from(factor.data());
+  const Image& image = model.baseColors[part].image;
+  Vec3 light = Vec3::from(model.baseColors[part].factor.data());
   if (!image.pixels.empty()) {
     std::array<Vec3, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = Vec3::from(&model.mesh.positions[3 * std::size_t{corner[k]}]);

@@ -47,6 +47,7 @@ struct Image {
 struct BaseColor {
   std::array<float, 3> factor{1, 1, 1};  ///< Red, green, blue in linear light, 0..1.
   Image image = {};                      ///< Lies on the part by its UVs, and is repeated beyond 0..1. Empty: white.
+  bool isKnown = true;                   ///< Whether it says all: not where an image could not be read.
 };
 
 /// What a cage is made for. The arrays belong to the caller and are only read.
@@ -144,9 +145,12 @@ struct FittedCage : Cage {
   std::vector<std::string> guessed;
   /// Parts without paint under a template of a head, by group: clothes, and parts below its neck.
   std::vector<std::uint32_t> bare;
+  /// Vertices on the borders of holes that were closed: there is nothing behind them that should stay bare.
+  std::vector<std::uint32_t> closed;
 };
 
-/// Moves a template cage onto another model; triangles, UVs and holes stay.
+/// Moves a template cage onto another model; vertices, UVs and triangles stay. Holes for eyes or a mouth with nothing
+/// behind them are closed by further triangles.
 Status fitCage(const Template& from, const Model& model, const FitOptions& options, const Progress& progress,
                FittedCage& out);
 

@@ -546,6 +546,92 @@ TEST_CASE("a hole of a face is where its given landmark is, whatever the hull sa
   }
 }
 
+TEST_CASE("a hole of a face that has nothing behind it is closed", "[cages][fit]") {
+  const auto isAt = [](double u, double v, double longitude, double latitude, double radius) {
+    return std::hypot(2 * kPi * (u - 0.5) - longitude, -0.9 + 2.4 * v - latitude) < radius;
+  };
+  const auto isMouth = [&](double u, double v, double radius) { return isAt(u, v, 0, -0.4, radius); };
+  Heads heads;
+  heads.cage = OwnedModel{};
+  heads.cage.roll(
+      40, 24, [](double u, double v) { return headPoint(kOwn, 2 * kPi * u + kPi, -0.9 + 2.4 * v, 0.04); },
+      [&](double u, double v) {
+        return !isAt(u, v, 0.5, 0.3, 0.16) && !isAt(u, v, -0.5, 0.3, 0.16) && !isMouth(u, v, 0.2);
+      });
+  heads.cage.groups.clear();
+  heads.model = headMesh(kOwn, 60, 40, 0);
+  heads.given = headLandmarks(kOwn);
+  constexpr std::uint32_t kPixels = 128;
+  std::vector<std::uint8_t> pixels(4 * std::size_t{kPixels} * kPixels, 255);
+  std::vector<BaseColor> colors(1);
+  std::vector<Landmark> hints;
+  const auto openAfter = [&] {
+    Model target = heads.model.model();
+    target.baseColors = colors;
+    target.hints = hints;
+    FittedCage out;
+    const Status status = fitCage(heads.from(), target, heads.options(), {}, out);
+    INFO(heads.says(status));
+    REQUIRE(status.ok());
+    CHECK((out.indices.size() > heads.cage.indices.size()) == !out.closed.empty());
+    return boundaryLoops(weldExactly(out.view())).size();
+  };
+  const std::size_t all = boundaryLoops(weldExactly(heads.cage.view())).size();
+  SECTION("nothing") { CHECK(openAfter() == all - 3); }
+  SECTION("colours that are not known") {
+    colors[0].isKnown = false;
+    CHECK(openAfter() == all);
+    colors.clear();
+    CHECK(openAfter() == all);
+  }
+  SECTION("another colour") {
+    for (std::uint32_t y = 0; y < kPixels; ++y)
+      for (std::uint32_t x = 0; x < kPixels; ++x)
+        if (isMouth((x + 0.5) / kPixels, (y + 0.5) / kPixels, 0.15)) pixels[4 * (y * kPixels + x)] = 0;
+    colors[0].image = {kPixels, kPixels, pixels};
+    CHECK(openAfter() == all - 2);
+  }
+  SECTION("morph targets") {
+    hints = {{"mouth", toPosition(headPoint(kOwn, 0, -0.4, 0))}};
+    CHECK(openAfter() == all - 2);
+  }
+  SECTION("an opening") {
+    heads.model = OwnedModel{};
+    heads.model.roll(
+        60, 40, [](double u, double v) { return headPoint(kOwn, 2 * kPi * u + kPi, -0.9 + 2.4 * v, 0); },
+        [&](double u, double v) { return !isMouth(u, v, 0.15); });
+    CHECK(openAfter() == all - 2);
+  }
+  SECTION("eyeballs behind lids that are closed") {
+    colors.resize(3);
+    heads.model.groups.assign(heads.model.positions.size() / 3, 0);
+    heads.model.parts = {"skin"};
+    for (const double side : {-1.0, 1.0}) {
+      heads.model.add("ball", sphere(headPoint(kOwn, side * 0.5, 0.3, -0.2), 0.12));
+      heads.model.uvs.resize(heads.model.positions.size() / 3 * 2);
+    }
+    CHECK(openAfter() == all - 1);
+  }
+}
+
+TEST_CASE("a lid fills an outline that is not convex, and faces as the mesh around it", "[cages][fit]") {
+  std::vector<Flat> outline{{0, 0}, {4, 0}, {4, 3}, {2, 1}, {0, 3}};  // Counter-clockwise; the mesh is on its right.
+  for (const double side : {1.0, -1.0}) {
+    const std::vector<Triangle3> lid = lidOf(outline);
+    REQUIRE(lid.size() == 3);
+    double area = 0;
+    for (const auto& [a, b, c] : lid) {
+      const Flat &p = outline[a], &q = outline[b], &r = outline[c];
+      const double twice = (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+      CHECK(-side * twice > 0);
+      area += std::abs(twice) / 2;
+    }
+    CHECK(area == Approx(8));
+    for (Flat& p : outline) p.x = -p.x;
+  }
+  CHECK(lidOf({{0, 0}, {2, 2}, {2, 0}, {0, 2}, {1, 3}}).empty());
+}
+
 TEST_CASE("a jaw of which only the chin is known moves with it", "[cages][fit]") {
   const std::vector<Landmark> own{{"chin", {0, -1, 1}}, {"menton", {0, -1.5F, 0.5F}}, {"ear_lobe_left", {1, 0, 0}}};
   std::vector<Landmark> to{{"chin", {0, -2, 1}}, {"ear_lobe_left", {1, 0, 0}}};

@@ -17,6 +17,7 @@ export interface FitAnswer extends CageAnswer {
   missing: string[];
   guessed: string[];
   bare: number[];
+  closed: number[];
 }
 export interface FoundAnswer extends Answer {
   landmarks: CoreLandmark[];
@@ -35,7 +36,7 @@ export interface CoreModel {
   hints: CoreLandmark[];
   vertexJoints: Uint16Array;
   /** With the number of its image; -1 for none. */
-  baseColors: { factor: [number, number, number]; image: number }[];
+  baseColors: { factor: [number, number, number]; image: number; isKnown: boolean }[];
   images: Image[];
 }
 

@@ -58,12 +58,12 @@ function checkBaseColors(fn: string, argument: string, colors: unknown): Pick<Co
   const images = new Map<unknown, number>();
   const baseColors = colors.map((color: unknown, c) => {
     if (!isRecord(color)) throw wrong(fn, argument, `[${c}] is ${show(color)}, not { factor, image }`);
-    const { factor = [1, 1, 1], image } = color as BaseColor;
+    const { factor = [1, 1, 1], image, isKnown = true } = color as BaseColor;
     if (!isPosition(factor)) throw wrong(fn, argument, `[${c}].factor is ${show(factor)}, not 3 numbers within 0..1`);
     if (image !== undefined && !isImage(image))
       throw wrong(fn, argument, `[${c}].image is ${show(image)}, not an image { width, height, data } of bytes`);
     if (image !== undefined && !images.has(image)) images.set(image, images.size);
-    return { factor, image: images.get(image) ?? -1 };
+    return { factor, image: images.get(image) ?? -1, isKnown: isKnown === true };
   });
   return { baseColors, images: [...images.keys()] as Image[] };
 }

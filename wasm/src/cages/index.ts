@@ -112,7 +112,8 @@ export async function makeCage(model: CageModel, options: MakeOptions & CageCall
 }
 
 /**
- * Moves a template cage onto another model, so that one texture fits both. Its triangles, UVs and holes stay.
+ * Moves a template cage onto another model, so that one texture fits both. Its triangles and UVs stay. A hole for an eye
+ * or a mouth is closed by further triangles where nothing is behind it: no opening, no other colour, no piece or morph target of its own.
  *
  * Cost: some seconds.
  * @param template   A cage, and landmarks of the model that it was made for.

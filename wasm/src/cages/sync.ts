@@ -111,7 +111,11 @@ export function fitCage(
       cage: cageOf(
         module,
         { ...answer, landmarks: answer.landmarks.filter(({ name }) => !answer.guessed.includes(name)) },
-        { ...kept, bare: bareNames(module, model, parts, answer.bare) },
+        {
+          regions: kept.regions,
+          holes: withoutClosed(kept.holes, answer.closed),
+          bare: bareNames(module, model, parts, answer.bare),
+        },
       ),
       used: landmarksOf(answer.landmarks),
       confidence: confidenceOf(answer.landmarks),
@@ -306,6 +310,10 @@ function bareNames(
   const bare = [...new Set(those(true))].filter((name) => name !== '' && !others.has(name));
   return bare.length > 0 ? bare : undefined;
 }
+
+/** @param closed  Vertices on borders of holes that were closed. */
+const withoutClosed = (holes: Cage['holes'], closed: readonly number[]): Cage['holes'] =>
+  Object.fromEntries(Object.entries(holes).filter(([, loop]) => !loop.every((v) => closed.includes(v))));
 
 /** @param kept  Of the cage that was moved, if one was: vertices keep their numbers and UVs. */
 function cageOf(module: CagesModule, answer: CageAnswer, kept: Pick<Cage, 'holes' | 'regions' | 'bare'>): Cage {

@@ -38,6 +38,8 @@ export interface BaseColor {
    * along the longest side say enough. Parts may share one. Default: none.
    */
   image?: Image | undefined;
+  /** Whether that says all: `false` where an image could not be read. Default: true. */
+  isKnown?: boolean | undefined;
 }
 
 /**

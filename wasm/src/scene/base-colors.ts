@@ -46,7 +46,8 @@ export async function readBaseColors<Texture>(
     for (const group of groups) {
       const image = uvs && group?.texture ? await imageOf(group.texture) : undefined;
       const factor = group?.factor?.map((x) => Math.min(1, Math.max(0, x))) as [number, number, number] | undefined;
-      baseColors.push(group ? { factor, image: group.isOpaque ? image?.opaque : image?.asIs } : {});
+      const isKnown = !group?.texture || image !== undefined;
+      baseColors.push(group ? { factor, image: group.isOpaque ? image?.opaque : image?.asIs, isKnown } : {});
     }
   }
   return { uvs: all, baseColors };
