@@ -126,6 +126,10 @@ std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& opti
 /// Labels what faces front and what faces back, with a short border between.
 std::vector<std::uint32_t> frontAndBackOf(const TriangleMesh& mesh, const Vec3& front, Ticker& ticker);
 
+/// Whether each triangle is of a face: one connected region, as far as it is turned to the face's front, with a short
+/// border. None is if the mesh does not pass before the eyes.
+std::vector<bool> faceTriangles(const TriangleMesh& mesh, const FaceFrame& face);
+
 /// Labels two connected halves of a connected piece of at least two triangles.
 std::vector<std::uint32_t> halvesOf(const TriangleMesh& mesh);
 
@@ -179,6 +183,9 @@ struct Chart {
     return out;
   }
 };
+
+/// The length of the seams over the middle of a face, in distances of the eyes.
+double seamsOnFace(const TriangleMesh& mesh, const FaceFrame& face, const std::vector<Chart>& charts);
 
 /// Lays a piece flat: from a convex map (Tutte) by SLIM, stopping short of overlap.
 /// @param piece  With a boundary and of genus 0. Its longest boundary loop becomes the rim, others stay holes.

@@ -33,6 +33,8 @@ constexpr double kFrontCost = 12;
 constexpr double kMinNeck = 0.5;
 /// Seams that are cut to let a chart lie flat, at most.
 constexpr int kMaxSeams = 4;
+/// A face gets a chart of its own if seams over it would be longer than this, in distances of the eyes.
+constexpr double kMaxFaceSeam = 0.25;
 
 /// Where the seam of a head may start: the furthest place in this direction.
 struct SeamStart {
@@ -73,9 +75,10 @@ std::uint32_t mostStretched(const Chart& chart) {
 }
 
 /// Flattens a piece; where it is stretched too much, seams from there to the boundary help (Gu, Gortler, Hoppe 2002).
-Chart flattenWithSeams(Piece piece, Ticker& ticker) {
+/// @param mostEnergy  That the chart may have.
+Chart flattenWithSeams(Piece piece, double mostEnergy, Ticker& ticker) {
   Chart chart = flatten(cutToDisk(std::move(piece), {}), ticker);
-  for (int i = 0; i < kMaxSeams && chart.valid && chart.energy > kMaxEnergy; ++i) {
+  for (int i = 0; i < kMaxSeams && chart.valid && chart.energy > mostEnergy; ++i) {
     const std::uint32_t worst = mostStretched(chart);
     const TriangleMesh& mesh = chart.piece.mesh;
     std::vector<std::uint32_t> boundary;
@@ -121,19 +124,34 @@ std::uint32_t furthest(const TriangleMesh& mesh, const Vec3& direction, const Ve
 /// What all steps share. Functions return false if cancelled.
 class Unwrapper {
  public:
-  Unwrapper(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& ticker)
-      : options_(options), ticker_(ticker), whole_(static_cast<double>(mesh.triangles.size())) {}
+  /// @param isFace  Per triangle of the mesh: whether it is in a chart of the face. Empty: there is none.
+  Unwrapper(const TriangleMesh& mesh, const UnwrapOptions& options, std::vector<bool> isFace, Ticker& ticker)
+      : options_(options),
+        isFace_(std::move(isFace)),
+        ticker_(ticker),
+        whole_(static_cast<double>(mesh.triangles.size())) {}
 
   std::vector<Chart>& charts() { return charts_; }
 
-  bool layOut(Piece piece) {
+  /// Lays out a face by itself, and the rest as a head or a prop.
+  bool layOutAs(Kind kind, Piece piece) {
+    std::vector<std::uint32_t> labels(piece.triangleOf.size(), 0);
+    for (std::size_t t = 0; t < labels.size(); ++t) labels[t] = isOfFace(piece, t) ? 1 : 0;
+    for (Piece& face : piecesOf(piece, labels, 1))
+      if (!layOut(std::move(face), kBorneEnergy)) return false;
+    for (Piece& rest : piecesOf(piece, labels, 0))
+      if (!(kind == Kind::head ? layOutHead(std::move(rest)) : layOutProp(rest))) return false;
+    return true;
+  }
+
+  bool layOut(Piece piece, double mostEnergy = kMaxEnergy) {
     std::vector<Piece> waiting;
     waiting.push_back(std::move(piece));
     while (!waiting.empty()) {
-      Chart chart = flattenWithSeams(std::move(waiting.back()), ticker_);
+      Chart chart = flattenWithSeams(std::move(waiting.back()), mostEnergy, ticker_);
       waiting.pop_back();
       if (ticker_.cancelled()) return false;
-      if ((chart.valid && chart.energy < kMaxEnergy) || chart.piece.mesh.triangles.size() < 2) {
+      if ((chart.valid && chart.energy < mostEnergy) || chart.piece.mesh.triangles.size() < 2) {
         accept(std::move(chart));
         continue;
       }
@@ -168,8 +186,8 @@ class Unwrapper {
   }
 
   bool layOutBody(const Piece& body, std::size_t mostLimbs) {
-    const Limbs limbs = limbsOf(body.mesh, mostLimbs);
-    if (limbs.tips.size() < 2) return layOutProp(body);
+    Limbs limbs = limbsOf(body.mesh, mostLimbs);
+    if (limbs.tips.size() < 2) return layOutAs(Kind::prop, body);
     const Vec3 centre = centreOf(body.mesh), side = cross(options_.up, options_.front);
     std::uint32_t head = kNone;
     double highest = 0;
@@ -178,7 +196,10 @@ class Unwrapper {
       const double height = dot(tip, options_.up) - 2 * std::abs(dot(tip, side));
       if (height > highest) highest = height, head = i + 1;
     }
-    for (std::uint32_t label = 0; label <= limbs.tips.size(); ++label) {
+    const auto face = static_cast<std::uint32_t>(limbs.tips.size() + 1);
+    for (std::size_t t = 0; t < limbs.labels.size(); ++t)
+      if (isOfFace(body, t)) limbs.labels[t] = face;
+    for (std::uint32_t label = 0; label <= face; ++label) {
       for (Piece& piece : piecesOf(body, limbs.labels, label)) {
         bool going = true;
         if (label == 0) {
@@ -186,6 +207,8 @@ class Unwrapper {
             going = going && layOut(std::move(half));
         } else if (label == head) {
           going = layOutHead(std::move(piece));
+        } else if (label == face) {
+          going = layOut(std::move(piece), kBorneEnergy);
         } else {
           going = layOutLimb(piece, body.vertexOf[limbs.tips[label - 1]], insideCost(body.mesh, piece.mesh));
         }
@@ -202,6 +225,10 @@ class Unwrapper {
   }
 
  private:
+  [[nodiscard]] bool isOfFace(const Piece& piece, std::size_t t) const {
+    return !isFace_.empty() && isFace_[piece.triangleOf[t]];
+  }
+
   void accept(Chart chart) {
     done_ += static_cast<double>(chart.piece.triangleOf.size());
     ticker_.reach(kFlatShare * done_ / whole_);
@@ -239,6 +266,7 @@ class Unwrapper {
   }
 
   const UnwrapOptions& options_;
+  std::vector<bool> isFace_;
   Ticker& ticker_;
   double whole_, done_ = 0;
   std::vector<Chart> charts_;
@@ -295,17 +323,19 @@ void scaleToArea(Chart& chart) {
 
 /// Cuts and flattens a mesh as what it is.
 /// @param mostLimbs  If not 0, limbs are cut off first.
+/// @param isFace  As `Unwrapper` has it.
 std::vector<Chart> chartsOf(const TriangleMesh& mesh, const UnwrapOptions& options, std::size_t mostLimbs,
-                            Ticker& ticker) {
-  Unwrapper unwrapper(mesh, options, ticker);
+                            Ticker& ticker, const std::vector<bool>& isFace = {}) {
+  Unwrapper unwrapper(mesh, options, isFace, ticker);
   for (Piece& piece : componentsOf(cutOpen(wholeOf(mesh)))) {
-    const bool going = options.kind == Kind::head ? unwrapper.layOutHead(std::move(piece))
-                       : mostLimbs > 0            ? unwrapper.layOutBody(piece, mostLimbs)
-                                                  : unwrapper.layOutProp(piece);
+    const bool going =
+        mostLimbs > 0 ? unwrapper.layOutBody(piece, mostLimbs) : unwrapper.layOutAs(options.kind, std::move(piece));
     if (!going) return {};
   }
   joinCharts(mesh, options, ticker, unwrapper.charts());
-  return std::move(unwrapper.charts());
+  if (ticker.cancelled() || !options.face || !isFace.empty()) return std::move(unwrapper.charts());
+  if (seamsOnFace(mesh, *options.face, unwrapper.charts()) <= kMaxFaceSeam) return std::move(unwrapper.charts());
+  return chartsOf(mesh, options, mostLimbs, ticker, faceTriangles(mesh, *options.face));
 }
 
 }  // namespace

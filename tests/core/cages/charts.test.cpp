@@ -152,9 +152,7 @@ double leastGap(const Layout& layout) {
 }
 
 /// Unwraps, and checks what holds for any mesh.
-LayoutFaults checked(const TriangleMesh& mesh, Kind kind, Layout& layout) {
-  UnwrapOptions options;
-  options.kind = kind;
+LayoutFaults checked(const TriangleMesh& mesh, const UnwrapOptions& options, Layout& layout) {
   REQUIRE(unwrap(mesh, options, {}, layout));
   REQUIRE(layout.mesh.triangles.size() == mesh.triangles.size());
   REQUIRE(layout.uvs.size() == layout.mesh.positions.size());
@@ -170,6 +168,12 @@ LayoutFaults checked(const TriangleMesh& mesh, Kind kind, Layout& layout) {
   CHECK(faults.flips == 0);
   CHECK(faults.outside == 0);
   return faults;
+}
+
+LayoutFaults checked(const TriangleMesh& mesh, Kind kind, Layout& layout) {
+  UnwrapOptions options;
+  options.kind = kind;
+  return checked(mesh, options, layout);
 }
 
 }  // namespace
@@ -222,6 +226,39 @@ TEST_CASE("a head is one chart, upright and not mirrored", "[cages][charts]") {
       if (d.y > 2 * std::abs(d.x)) CHECK(layout.uvs[b][1] < layout.uvs[a][1]);
       if (d.x > 2 * std::abs(d.y)) CHECK(layout.uvs[b][0] > layout.uvs[a][0]);
     }
+}
+
+TEST_CASE("a face that seams would run over is a chart of its own", "[cages][charts]") {
+  // An egg that is cut where its sides are, with a face between two of them.
+  const TriangleMesh mesh = egg(false);
+  UnwrapOptions options;
+  options.kind = Kind::prop;
+  FaceFrame face;
+  face.size = 0.6;
+  face.front = unit({1, 0, 1});
+  face.left = cross(face.up, face.front);
+  const auto chartsOfFace = [&](const Layout& layout) {
+    std::uint32_t count = 0;
+    const std::vector<std::uint32_t> chartOf = connectedPieces(layout.mesh, count);
+    std::set<std::uint32_t> charts;
+    for (std::size_t t = 0; t < chartOf.size(); ++t) {
+      const Vec3 d = face.toLocal(centroid(layout.mesh, layout.mesh.triangles[t]));
+      if (std::abs(d.x) < 0.8 && d.y < 0.3 && d.y > -1.4 && d.z > 0) charts.insert(chartOf[t]);
+    }
+    return charts.size();
+  };
+  Layout layout;
+  checked(mesh, options, layout);
+  CHECK(chartsOfFace(layout) > 1);
+  options.face = face;
+  checked(mesh, options, layout);
+  CHECK(chartsOfFace(layout) == 1);
+  // What has no seam on its face stays as it is.
+  options.kind = Kind::head;
+  options.face = FaceFrame{.size = 0.6};
+  CHECK(checked(egg(true), options, layout).charts == 1);
+  options.face->middle = {0, 100, 0};
+  checked(mesh, options, layout);
 }
 
 TEST_CASE("a body has a chart for each limb", "[cages][charts]") {
