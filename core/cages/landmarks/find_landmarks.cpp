@@ -8,6 +8,7 @@
 #include "mesh/bounds.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/foreground.hpp"
+#include "mesh/part_names.hpp"
 #include "mesh/progress.hpp"
 
 namespace cagecast::cages {
@@ -154,7 +155,10 @@ Status find(const Model& given, const Progress& progress, FoundLandmarks& out) {
   out.rig = rig.name;
   std::optional<Head> head;
   const auto goOnFinding = [&](float share) { return goOn(0.9f * share); };
-  if (!findHead(headOf(figure, model), model, goOnFinding, head, out.areSeveralHeads) || !goOn(0.9f)) return kAborted;
+  // The front of a vehicle looks like a face.
+  const bool mayHaveFace = rig.known() || figure.has(Role::eye) || !isVehicle(model.parts);
+  if (mayHaveFace && !findHead(headOf(figure, model), model, goOnFinding, head, out.areSeveralHeads)) return kAborted;
+  if (!goOn(0.9f)) return kAborted;
   if (head)
     for (const Spot& spot : head->spots)
       if (spot.confidence >= kSure)

@@ -24,6 +24,8 @@ Role roleOf(std::string_view partName) {
   if (contains(name, {"lash", "brow", "hair", "beard", "moustache", "mustache", "glasses", "eyewear", "eyeline",
                       "eye_line", "eyeshadow", "headwear", "helmet", "afro", "bob0", "ponytail"}))
     return Role::cover;
+  for (const std::string_view hat : {"hat", "hats", "beanie"})
+    if (matchesName(partName, hat)) return Role::cover;
   if (contains(name, {"teeth", "tooth", "tongue", "gum"})) return Role::mouth;
   if (contains(name, {"eyelid", "eye_lid", "eyesocket"})) return Role::surface;
   if (matchesName(name, "high-poly") || matchesName(name, "*.high-poly")) return Role::eye;  // MakeHuman's.

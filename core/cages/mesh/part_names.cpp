@@ -87,6 +87,19 @@ std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std
   return out;
 }
 
+/// Whether each part is named as one that only vehicles have.
+std::vector<bool> vehicleParts(const std::vector<std::string>& parts) {
+  static const std::vector<std::string> kVehicles = {"window*", "windscreen*", "windshield*", "wheel*",
+                                                     "tyre*",   "tire*",       "headlight*",  "taillight*",
+                                                     "lamp*",   "grille*",     "dashboard*",  "steering*"};
+  return matchingParts(parts, kVehicles);
+}
+
+bool isVehicle(const std::vector<std::string>& parts) {
+  const std::vector<bool> own = vehicleParts(parts);
+  return std::find(own.begin(), own.end(), true) != own.end();
+}
+
 std::vector<bool> excludedByName(const std::vector<std::string>& parts) {
   static const std::vector<std::string> kFaces = {
       // `eye` is a word of its own: lids are skin.
@@ -95,16 +108,13 @@ std::vector<bool> excludedByName(const std::vector<std::string>& parts) {
       "mustache*", "glass*", "goggles*",
       // MakeHuman's hair and eyes.
       "afro*", "*bob0?", "ponytail*", "high-poly", "*.high-poly"};
-  static const std::vector<std::string> kVehicles = {"window*", "windscreen*", "windshield*", "wheel*",
-                                                     "tyre*",   "tire*",       "headlight*",  "taillight*",
-                                                     "lamp*",   "grille*",     "dashboard*",  "steering*"};
   // A tone of skin may be light, and a chair is a seat.
   static const std::vector<std::string> kOnVehicles = {"rim",   "rims",      "light",   "lights",
                                                        "seat*", "interior*", "lining*", "floor*"};
   std::vector<bool> out = matchingParts(parts, kFaces);
-  const std::vector<bool> ofVehicle = matchingParts(parts, kVehicles), onVehicle = matchingParts(parts, kOnVehicles);
-  const bool isVehicle = std::find(ofVehicle.begin(), ofVehicle.end(), true) != ofVehicle.end();
-  for (std::size_t p = 0; p < parts.size(); ++p) out[p] = out[p] || ofVehicle[p] || (isVehicle && onVehicle[p]);
+  const std::vector<bool> ofVehicle = vehicleParts(parts), onVehicle = matchingParts(parts, kOnVehicles);
+  const bool isOne = isVehicle(parts);
+  for (std::size_t p = 0; p < parts.size(); ++p) out[p] = out[p] || ofVehicle[p] || (isOne && onVehicle[p]);
   return out;
 }
 

@@ -23,6 +23,9 @@ bool matchesName(std::string_view name, std::string_view pattern);
 /// Whether each part's name matches one of the patterns.
 std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std::vector<std::string>& patterns);
 
+/// Whether any part is named as one that only vehicles have, such as a wheel.
+bool isVehicle(const std::vector<std::string>& parts);
+
 /// Whether each triangle of a model belongs to one of some parts.
 /// @param isMatch  Per part. Triangles of groups beyond it, and of models without groups, do not.
 std::vector<bool> trianglesOf(const MeshView& mesh, const std::vector<bool>& isMatch);

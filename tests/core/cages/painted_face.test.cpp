@@ -2,75 +2,17 @@
 
 #include <catch2/catch.hpp>
 
-#include <array>
 #include <cmath>
 #include <functional>
 
 #include "landmarks/landmark_list.hpp"
-#include "shapes.hpp"
+#include "painted_egg.hpp"
 #include "views/base_color.hpp"
 
 using namespace cagecast;
 using namespace cagecast::cages;
 
 namespace {
-
-using Bytes = std::array<std::uint8_t, 3>;
-
-constexpr std::uint32_t kSide = 256;
-constexpr Vec3 kEye{0.27, 0.05, 0}, kMouth{0, -0.45, 0};
-
-/// What is painted on an egg.
-struct Look {
-  Bytes skin{224, 172, 140}, hair{70, 45, 30}, white{240, 240, 240}, iris{60, 90, 140}, lips{180, 90, 90};
-  double eye = 0.13;       ///< Half the width of an eye.
-  double hairline = 0.45;  ///< Its height above the eyes.
-  double beard = -2;       ///< The height that it begins at.
-  bool hasFace = true;
-};
-
-/// The colour at a place of the front, whose corners are -1 and 1.
-Bytes colorAt(const Look& look, double x, double y) {
-  const auto isWithin = [](double across, double up) { return across * across + up * up < 1; };
-  if (look.hasFace) {
-    const double across = std::abs(x) - kEye.x, up = y - kEye.y;
-    if (isWithin(across / (0.4 * look.eye), up / (0.4 * look.eye))) return look.iris;
-    if (isWithin(across / look.eye, up / (0.6 * look.eye))) return look.white;
-    if (std::abs(across) < 1.2 * look.eye && std::abs(up - 0.22) < 0.025) return look.hair;  // A brow.
-    if (isWithin(x / 0.2, (y - kMouth.y) / 0.06)) return look.lips;
-  }
-  return y > kEye.y + look.hairline || std::abs(x) > 0.6 || y < look.beard ? look.hair : look.skin;
-}
-
-/// An egg that faces +z, with a face that is painted on.
-struct PaintedEgg {
-  OwnedModel owned;
-  std::vector<std::uint8_t> pixels;
-
-  explicit PaintedEgg(const Look& look) {
-    owned.add("egg", ellipsoid({0, 0, 0}, {0.7, 1, 0.85}, 40));
-    for (std::size_t i = 0; i < owned.positions.size(); i += 3) {
-      const bool isFront = owned.positions[i + 2] > 0;
-      owned.uvs.push_back(isFront ? 0.5f + 0.5f * owned.positions[i] : 0.001f);
-      owned.uvs.push_back(isFront ? 0.5f - 0.5f * owned.positions[i + 1] : 0.001f);
-    }
-    for (std::uint32_t row = 0; row < kSide; ++row)
-      for (std::uint32_t column = 0; column < kSide; ++column) {
-        const Bytes color = colorAt(look, 2 * (column + 0.5) / kSide - 1, 1 - 2 * (row + 0.5) / kSide);
-        pixels.insert(pixels.end(), {color[0], color[1], color[2], 255});
-      }
-  }
-  [[nodiscard]] std::vector<Landmark> landmarks(const std::function<void(Model&)>& change = {}) const {
-    Model model = owned.model();
-    model.baseColors = {{.image = {kSide, kSide, pixels}}};
-    if (change) change(model);
-    FoundLandmarks out;
-    const Status status = findLandmarks(model, nullptr, out);
-    INFO(describe(status, model));
-    REQUIRE(status.ok());
-    return out.landmarks;
-  }
-};
 
 /// Checks that eyes and mouth are where they are painted.
 /// @param placed  Where a place of the egg is now.
@@ -151,6 +93,32 @@ TEST_CASE("names and hints count more than what is painted", "[cages][landmarks]
   // Its mouth is not known by shape.
   REQUIRE(placeOf(landmarks, "mouth_corner_left"));
   CHECK(placeOf(landmarks, "mouth_corner_left")->x == Approx(0.2).margin(0.05));
+}
+
+TEST_CASE("a face that is painted on a hat is none", "[cages][landmarks][painted]") {
+  PaintedEgg egg({});
+  // The head of a bear, with a face like the one below it.
+  TriangleMesh bear = mapped(sphere({0, 0, 0}, 1, 40), [](const Vec3& p) {
+    return Vec3{0.9 * p.x, 1.3 + 0.7 * p.y, 0.2 + 0.9 * p.z};
+  });
+  const std::size_t first = egg.owned.positions.size();
+  egg.owned.add("Bear_Hat", bear);
+  for (std::size_t i = first; i < egg.owned.positions.size(); i += 3) {
+    const bool isFront = egg.owned.positions[i + 2] > 0.2f;
+    egg.owned.uvs.push_back(isFront ? 0.5f + 0.5f * egg.owned.positions[i] : 0.001f);
+    egg.owned.uvs.push_back(isFront ? 0.5f - 0.5f * (egg.owned.positions[i + 1] - 1.3f) : 0.001f);
+  }
+  checkFace(egg.landmarks([](Model& model) { model.baseColors.push_back(model.baseColors[0]); }), same);
+}
+
+TEST_CASE("what looks like a face on a vehicle is none", "[cages][landmarks][painted]") {
+  PaintedEgg egg({});
+  egg.owned.add("wheels", sphere({0, -1, 0}, 0.2, 8));
+  egg.owned.uvs.resize(2 * egg.owned.positions.size() / 3);
+  const auto withColors = [](Model& model) { model.baseColors.resize(model.parts.size()); };
+  CHECK(placeOf(egg.landmarks(withColors), "eye_centre_left") == std::nullopt);
+  egg.owned.parts.back() = "feet";
+  CHECK(placeOf(egg.landmarks(withColors), "eye_centre_left") != std::nullopt);
 }
 
 TEST_CASE("a base colour is a factor times a pixel, and nothing where that is transparent", "[cages][painted]") {
