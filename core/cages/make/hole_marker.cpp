@@ -228,7 +228,8 @@ bool HoleMarker::markBelow(std::size_t begin, const Progress& progress) {
     for (std::size_t i = 0; i < count; ++i) {
       const bool isBelow = hits[i].distance < kStraightBelow * nearest[i].distance;
       const std::uint32_t t = isBelow ? hits[i].triangle : nearest[i].triangle;
-      below_[first + i] = model_.isMarked[t] && !(isFace[i] && model_.face.isCover[t]);
+      const bool isMarked = model_.isMarked[t] && !(isFace[i] && model_.face.isCover[t]);
+      below_[first + i] = isMarked || model_.eyes.isBefore(hull_.positions[first + i], normals[first + i]);
     }
   }
   return true;

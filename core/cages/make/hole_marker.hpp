@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 #include "mesh/neighbours.hpp"
 #include "mesh/surface.hpp"
 #include "mesh/triangle_mesh.hpp"
+#include "views/face_frame.hpp"
 
 namespace cagecast::cages {
 
@@ -23,12 +25,34 @@ struct FaceSkin {
   [[nodiscard]] std::vector<bool> isBelow(std::span<const Vec3> points) const;
 };
 
-/// A model, and which of its triangles must not be painted.
+struct MarkedMesh;
+
+/// Two eyes that are no parts: what differs in its base colour from the skin around it, seen from the front.
+class ColoredEyes {
+ public:
+  ColoredEyes() = default;
+  /// @param triangleOf  Of the model, for each triangle of the mesh that is the model's.
+  /// @param landmarks  With both centres of the eyes.
+  ColoredEyes(const Model& model, const MarkedMesh& marked, const std::vector<std::uint32_t>& triangleOf,
+              const std::vector<Landmark>& landmarks, const FaceFrame& face);
+
+  /// Whether a point of the hull is before an eye.
+  [[nodiscard]] bool isBefore(const Vec3& p, const Vec3& normal) const;
+
+ private:
+  FaceFrame face_;
+  std::array<Vec3, 2> centres_{};                ///< In the space of the face.
+  std::array<std::vector<bool>, 2> cells_ = {};  ///< Around the centres; empty if there are no such eyes.
+};
+
+/// A model, and what of it must not be painted.
 struct MarkedMesh {
   const TriangleMesh* mesh = nullptr;
   const Surface* surface = nullptr;  ///< Of `mesh`.
   std::vector<bool> isMarked;        ///< Per triangle of `mesh`.
+  std::vector<bool> isKept = {};  ///< Per triangle that is the model's: is painted, whatever is on it. Empty: none is.
   FaceSkin face = {};
+  ColoredEyes eyes = {};
 };
 
 /// Finds where a hull around a model is to have holes.

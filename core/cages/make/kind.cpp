@@ -66,7 +66,7 @@ KindFeatures featuresOf(const Model& model) {
   features.slender = features.height / std::max(features.depth, 1e-9 * features.height);
   features.isCompact = features.slender > 0.6 && features.slender < 2.2 && features.width < 2.2 * features.height &&
                        features.width > 0.3 * features.height;
-  features.isCar = hasParts(model, {"*wheel*", "*tyre*", "*tire*", "window*", "windscreen*", "windshield*"});
+  features.isCar = isVehicle(model.parts);
   features.isLegged = hasLegs(model, box);
   return features;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -22,6 +23,7 @@ namespace cagecast::cages {
 namespace {
 
 /// Ends of the stages, as shares of the time.
+constexpr float kFoundEnd = 0.1f;
 constexpr float kHullEnd = 0.3f;
 constexpr float kHolesEnd = 0.5f;
 constexpr float kSimplifyEnd = 0.6f;
@@ -91,31 +93,36 @@ bool hasMarks(const std::vector<bool>& isMarked) {
   return std::find(isMarked.begin(), isMarked.end(), true) != isMarked.end();
 }
 
-/// Marks the eyes of a head or a figure by their shape: two loose pieces.
-/// @param[in,out] isMarked  Per triangle of the model without those that have no area.
-/// @return false if `progress` cancelled it.
-bool markLooseEyes(const Model& model, const Progress& progress, std::vector<bool>& isMarked) {
-  const Figure figure = readFigure(model);
-  if (figure.componentCount < 3) return true;  // Two eyes, and what they are eyes of.
-  if (!report(progress, 0, "landmarks")) return false;
-  for (const MirrorPlane& plane : findMirrorPlanes(figure.mesh)) {
-    if (!report(progress, 0, "landmarks")) return false;
-    const std::optional<Eyes> eyes = findLooseEyes(figure, plane);
-    if (!eyes || eyes->triangles.size() != isMarked.size()) continue;
-    isMarked = eyes->triangles;
-    break;
-  }
-  return true;
+/// Whether eyes are where a face has its own, seen from the front.
+bool areOf(const FaceFrame& face, const Eyes& eyes) {
+  constexpr double kOff = 0.25;  ///< In distances of the eyes.
+  return std::all_of(eyes.centres.begin(), eyes.centres.end(), [&](const Vec3& centre) {
+    const Vec3 d = face.toLocal(centre);
+    return std::hypot(std::abs(d.x) - 0.5, d.y) < kOff;
+  });
 }
 
-/// Marks eyes where neither names nor marks tell what must not be painted, unless they are kept. What has eyes is a
-/// head, if it may be one.
+/// Marks the eyes of a head or a figure by their shape, two loose pieces, where no part is called an eye. If anything
+/// is marked already, they have to be those of the face.
+/// @param[in,out] isMarked  Per triangle of the model without those that have no area.
 /// @return false if `progress` cancelled it.
-bool lookForEyes(const Model& model, const Progress& progress, const std::vector<bool>& isKept, Kind& kind,
-                 std::vector<bool>& isMarked) {
-  if (!markLooseEyes(model, progress, isMarked)) return false;
-  for (std::size_t t = 0; t < isMarked.size(); ++t) isMarked[t] = isMarked[t] && !isKept[t];
-  if (kind == Kind::prop && hasMarks(isMarked)) kind = Kind::head;
+bool markLooseEyes(const Model& model, const std::optional<FaceFrame>& face, const std::vector<bool>& isKept,
+                   const Progress& progress, std::vector<bool>& isMarked) {
+  const Figure figure = readFigure(model);
+  if (figure.has(Role::eye) || figure.componentCount < 3) return true;  // Two eyes, and what they are eyes of.
+  const auto mark = [&](const MirrorPlane& plane, bool isAnywhere) {
+    const std::optional<Eyes> eyes = findLooseEyes(figure, plane);
+    if (!eyes || eyes->triangles.size() != isMarked.size() || !(isAnywhere || areOf(*face, *eyes))) return false;
+    for (std::size_t t = 0; t < isMarked.size(); ++t) isMarked[t] = isMarked[t] || (eyes->triangles[t] && !isKept[t]);
+    return true;
+  };
+  if (!report(progress, 0, "landmarks")) return false;
+  if (face && mark({face->left, dot(face->left, face->middle)}, false)) return true;
+  if (hasMarks(isMarked)) return true;
+  for (const MirrorPlane& plane : findMirrorPlanes(figure.mesh)) {
+    if (!report(progress, 0, "landmarks")) return false;
+    if (mark(plane, true)) break;
+  }
   return true;
 }
 
@@ -181,9 +188,10 @@ Status shape(const MarkedHull& hull, const MakeSettings& settings, const Progres
   return {};
 }
 
-void store(const Layout& layout, Kind kind, Cage& out) {
+void store(const Layout& layout, Kind kind, std::vector<Landmark> landmarks, Cage& out) {
   out = {};
   out.kind = kind;
+  out.landmarks = std::move(landmarks);
   for (const Vec3& p : layout.mesh.positions) append(out.positions, p);
   for (const Uv& uv : layout.uvs)
     for (const double x : uv) out.uvs.push_back(static_cast<float>(x));
@@ -212,9 +220,14 @@ Status make(const Model& given, const MakeOptions& options, const Progress& prog
   const std::vector<bool> ofKept = trianglesIn(model.mesh, options.parts.keep);
   std::vector<bool> isKept(triangleOf.size());
   for (std::size_t t = 0; t < triangleOf.size(); ++t) isKept[t] = ofKept[triangleOf[t]];
-  const bool mayHaveEyes = settings.kind != Kind::prop || (options.kind == Kind::automatic && isCompactProp(model));
-  if (mayHaveEyes && !hasMarks(isMarked) && !lookForEyes(model, rising, isKept, settings.kind, isMarked))
+  FoundLandmarks found;
+  if (const Status status = findLandmarks(model, part(0, kFoundEnd), found); !status.ok()) return status;
+  const std::optional<FaceFrame> face = faceFrameOf(found.landmarks);
+  const bool mayBeHead = options.kind == Kind::automatic && isCompactProp(model);
+  const bool wasMarked = hasMarks(isMarked);
+  if ((settings.kind != Kind::prop || mayBeHead) && !markLooseEyes(model, face, isKept, rising, isMarked))
     return kAborted;
+  if (mayBeHead && (face || (hasMarks(isMarked) && !wasMarked))) settings.kind = Kind::head;  // As it has eyes.
   lookForWheels(model, settings.kind, mesh, isKept, isMarked);
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
@@ -222,11 +235,15 @@ Status make(const Model& given, const MakeOptions& options, const Progress& prog
   isMarked.resize(mesh.triangles.size(), false);  // `extendNecks` has added triangles; they may be painted.
   TriangleMesh hull;
   const WrapOptions wrapping{settings.hull, options.closing == 0};
-  if (const Status status = wrap(mesh, isMarked, wrapping, part(0, kHullEnd), hull); !status.ok()) return status;
+  if (const Status status = wrap(mesh, isMarked, wrapping, part(kFoundEnd, kHullEnd), hull); !status.ok())
+    return status;
 
   const Surface surface(mesh);
-  FaceSkin face = faceSkinOf(model, mesh, isMarked);
-  const MarkedMesh marked{&mesh, &surface, std::move(isMarked), std::move(face)};
+  MarkedMesh marked{&mesh, &surface, std::move(isMarked), std::move(isKept)};
+  if (face) {
+    marked.eyes = ColoredEyes(model, marked, triangleOf, found.landmarks, *face);
+    marked.face = faceSkinOf(model, marked, triangleOf, *face);
+  }
   HoleMarker marker(marked, kVisibleDepth * offset, hull);
   if (!marker.mark(settings.kind == Kind::body ? 2 : 1, part(kHullEnd, kHolesEnd))) return kAborted;
   TriangleMesh cage;
@@ -237,9 +254,10 @@ Status make(const Model& given, const MakeOptions& options, const Progress& prog
   unwrapOptions.kind = settings.kind;
   unwrapOptions.up = stance.up;
   unwrapOptions.front = stance.front;
+  unwrapOptions.face = face;
   if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return kAborted;
   if (!rising(1, "unwrap")) return kAborted;
-  store(layout, settings.kind, out);
+  store(layout, settings.kind, std::move(found.landmarks), out);
   return {};
 }
 

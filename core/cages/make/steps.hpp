@@ -48,10 +48,13 @@ std::vector<Neck> extendNecks(double by, TriangleMesh& head);
 /// @param[in,out] field  See `HoleMarker::field`.
 void openNecks(const TriangleMesh& hull, const std::vector<Neck>& necks, std::vector<double>& field);
 
-/// The skin of a model's face, if names, morph targets or joints say where its eyes are.
-/// @param mesh  The model's triangles with an area, then others.
-/// @param isMarked  Per triangle of `mesh`: not all of them.
-FaceSkin faceSkinOf(const Model& model, const TriangleMesh& mesh, const std::vector<bool>& isMarked);
+/// The frame of a face by landmarks; nothing without both centres of its eyes.
+std::optional<FaceFrame> faceFrameOf(const std::vector<Landmark>& landmarks);
+
+/// The skin of a model's face.
+/// @param marked  Not all of it is marked. @param triangleOf  As `ColoredEyes` has it.
+FaceSkin faceSkinOf(const Model& model, const MarkedMesh& marked, const std::vector<std::uint32_t>& triangleOf,
+                    const FaceFrame& frame);
 
 /// Whether each triangle is of a wheel, by shape: connected pieces that are equally large round discs, two or more, on
 /// the ground, and what lies within them.

@@ -4,10 +4,11 @@
 #include <cmath>
 
 #include "cagecast/cages.hpp"
+#include "landmarks/landmark_list.hpp"
 #include "make/hole_marker.hpp"
 #include "make/steps.hpp"
 #include "mesh/surface.hpp"
-#include "shapes.hpp"
+#include "painted_egg.hpp"
 
 using namespace cagecast;
 using namespace cagecast::cages;
@@ -478,14 +479,40 @@ TEST_CASE("a thing as compact as a head is one if it has eyes", "[cages][make]")
   const TriangleMesh mesh = meshOf(cage);
   CHECK(boundaryLoops(mesh).size() == 2);
   for (const double x : {-0.35, 0.35}) CHECK(hasHoleAt(mesh, {x, 0.2, 1}, 0.2));
-  // Without eyes, or with names or marks, nothing changes.
   CHECK(made(bust(0).model()).kind == Kind::prop);
   MakeOptions options;
   const std::vector<std::uint32_t> all = allParts(closed);
   options.parts.keep = all;
-  CHECK(made(closed.model(), options).kind == Kind::prop);
+  CHECK(boundaryLoops(meshOf(made(closed.model(), options))).empty());
   options = {.kind = Kind::prop};
   CHECK(boundaryLoops(meshOf(made(closed.model(), options))).empty());
+}
+
+TEST_CASE("eyes that are only painted get holes", "[cages][make]") {
+  const PaintedEgg egg({});
+  const Cage cage = made(egg.model());
+  CHECK(cage.kind == Kind::head);
+  CHECK(findLandmark(cage.landmarks, "eye_centre_left") != nullptr);
+  const TriangleMesh mesh = meshOf(cage);
+  CHECK(boundaryLoops(mesh).size() == 2);
+  for (const double x : {-kEye.x, kEye.x}) CHECK(hasHoleAt(mesh, {x, kEye.y, 0.8}, 0.1));
+  MakeOptions options;
+  const std::vector<std::uint32_t> kept{0};
+  options.parts.keep = kept;
+  CHECK(boundaryLoops(meshOf(made(egg.model(), options))).empty());
+  // Where the colour of the eyes is that of the skin, nothing would be kept bare by holes.
+  const Bytes clay{150, 150, 150};
+  const Look bust{.skin = clay, .hair = clay, .white = clay, .iris = clay, .lips = clay};
+  const PaintedEgg blank(bust);
+  CHECK(boundaryLoops(meshOf(made(blank.model()))).empty());
+}
+
+TEST_CASE("loose eyes below hair get holes", "[cages][make]") {
+  OwnedModel model = head();
+  model.parts = {"mesh", "mesh", "mesh"};
+  model.add("hair", ellipsoid({0, 0.9, -0.3}, {0.6, 0.4, 0.6}));
+  const TriangleMesh mesh = meshOf(made(model.model()));
+  for (const double x : {-0.35, 0.35}) CHECK(hasHoleAt(mesh, {x, 0.2, 1}, 0.25));
 }
 
 TEST_CASE("bones say what is up", "[cages][make]") {

@@ -9,7 +9,7 @@ import type { OnProgress } from '../worker/queue.js';
 import { likelyTemplate } from './likely-template.js';
 import type { TemplateName } from './template-names.js';
 import { loadTemplate } from './templates.js';
-import type { Cage, CageModel, Fit, FitOptions, FoundLandmarks, Landmarks, MakeOptions, Template } from './types.js';
+import type { Cage, CageModel, Fit, FitOptions, Landmarks, MakeOptions, Template } from './types.js';
 
 /** Options of `chooseCage`: for a made cage those of `makeCage`, and templates and landmarks for fits. */
 export interface ChooseOptions extends MakeOptions {
@@ -56,7 +56,6 @@ export interface ChoiceEngine {
     options: FitOptions & Calling,
   ): Fit | Promise<Fit>;
   makeCage(model: CageModel, options: MakeOptions & Calling): Cage | Promise<Cage>;
-  findLandmarks(model: CageModel, options: Calling): FoundLandmarks | Promise<FoundLandmarks>;
   inspect(cage: Mesh, target: Mesh, options: InspectOptions): Inspection | Promise<Inspection>;
 }
 
@@ -97,7 +96,6 @@ export async function choose(
     return verdict === 'good';
   };
 
-  let found: Landmarks | undefined;
   for (const template of templates) {
     try {
       const fit = await engine.fitCage(await loadTemplate(template), model, landmarks, { parts, ...step() });
@@ -108,7 +106,6 @@ export async function choose(
           reason: `too little was found to fit it by; give ${fit.guessed.slice(0, kMaxAsked).join(', ')}`,
         });
       else if (await judge(template, fit.cage, fit)) break;
-      else found ??= fit.used;
     } catch (error) {
       if ((error as CagecastError).code !== 'badModel') throw error;
       tried.push({ template, reason: (error as CagecastError).reason });
@@ -117,8 +114,7 @@ export async function choose(
   if (!candidates.some(({ verdict }) => verdict === 'good')) {
     try {
       const cage = await engine.makeCage(model, { ...options, ...step() });
-      found ??= { ...(await engine.findLandmarks(model, { signal })).landmarks, ...landmarks };
-      await judge('made', { ...cage, landmarks: found });
+      await judge('made', { ...cage, landmarks: { ...cage.landmarks, ...landmarks } });
     } catch (error) {
       if (!(error instanceof CagecastError) || error.code !== 'badModel' || candidates.length === 0) throw error;
       tried.push({ template: 'made', reason: error.reason });

@@ -151,7 +151,6 @@ export async function chooseCage(model: CageModel, options: ChooseOptions & Cage
     fitCage: (template: Template, of: CageModel, landmarks: Landmarks | undefined, one: FitOptions & CageCallOptions) =>
       fitCage(template, of, landmarks, { worker, ...one }),
     makeCage: (of: CageModel, one: MakeOptions & CageCallOptions) => makeCage(of, { worker, ...one }),
-    findLandmarks: (of: CageModel, one: CageCallOptions) => findLandmarks(of, { worker, ...one }),
     inspect,
   };
   return choose(engine, model, given);

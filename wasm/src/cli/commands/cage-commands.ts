@@ -13,7 +13,7 @@ import { kAutoCage } from '../model/sources.js';
 import { integer, type Line, listed } from '../model/text.js';
 import { conclusionOf, inspectionReport } from '../transfer/inspection.js';
 import { reportFiles } from '../transfer/inspection-page.js';
-import { chooseCageFor, fitCageTo, landmarksOf, makeCageFor } from '../transfer/made-cage.js';
+import { chooseCageFor, fitCageTo, makeCageFor } from '../transfer/made-cage.js';
 import { transferOptions } from '../transfer/part-names.js';
 import { readTarget } from '../transfer/read-target.js';
 import { choiceLines, leftOutLines } from '../transfer/report-parts.js';
@@ -145,7 +145,7 @@ async function makeFor(target: string, flags: MakeFlags, io: Io): Promise<Found>
   const { triangles, kind, closing } = flags;
   const model = await readTarget(target, common.readingOf(flags), io, rulesOf(flags));
   const cage = await makeCageFor(model, { parts: partsOf(flags, model), triangles, kind, closing }, io);
-  return finish({ ...cage, landmarks: await landmarksOf(model, io) }, model, flags, io);
+  return finish(cage, model, flags, io);
 }
 
 /** Fits a template cage to a model and inspects it. @throws {InputError} that names the file at fault; then no file is written. */

@@ -1,6 +1,6 @@
 import { CagecastError, init as initCore } from '../../api/index.js';
 import { type Choice, choose } from '../../cages/choose.js';
-import { findLandmarks, fitCage, init, makeCage } from '../../cages/sync.js';
+import { fitCage, init, makeCage } from '../../cages/sync.js';
 import type { Cage, CageModel, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../../cages/types.js';
 import type { ReadModel } from '../../gltf/read-model.js';
 import { inspect } from '../../inspect/index.js';
@@ -16,15 +16,6 @@ export async function makeCageFor(model: ReadModel, options: MakeOptions, io: Io
   return calling('making a cage', { model: model.file.path }, io, (onProgress) =>
     makeCage(read, { ...options, onProgress }),
   );
-}
-
-/** The landmarks that are found on a model: with them, a cage that was made for it is a template. @throws {InputError} */
-export async function landmarksOf(model: ReadModel, io: Io): Promise<Landmarks> {
-  const read = await cageModelWithColors(model);
-  return calling('finding landmarks', { model: model.file.path }, io, (onProgress) => {
-    const { landmarks } = findLandmarks(read, { onProgress });
-    return landmarks;
-  });
 }
 
 /** A model with base colours, as far as their images can be read. */
@@ -53,7 +44,7 @@ export async function chooseCageFor(
   await initCore();
   const read = await cageModelWithColors(model);
   return calling('choosing the cage', { model: model.file.path, ...files }, io, async (onProgress) => {
-    const engine = { fitCage, makeCage, findLandmarks, inspect };
+    const engine = { fitCage, makeCage, inspect };
     const { cage, fit, template, tried } = await choose(engine, read, { landmarks, ...options, onProgress });
     return { cage, fit, choice: { template, tried } };
   });

@@ -3,7 +3,6 @@ import {
   type Cage,
   type CageCallOptions,
   type Fit,
-  findLandmarks,
   fitCage,
   type Landmarks,
   loadTemplate,
@@ -66,7 +65,7 @@ export async function fitTo(
     const fit = fitBack(await fitCage(from, read, given, calling));
     return { cage: fit.cage, fit };
   }
-  const engine = { fitCage, makeCage, findLandmarks, inspect };
+  const engine = { fitCage, makeCage, inspect };
   const { cage, fit, template: chosen, tried } = await choose(engine, read, { landmarks: given, ...calling });
   return { cage: cageBack(cage), fit: fit && fitBack(fit), template: chosen, tried };
 }
