@@ -118,6 +118,23 @@ describe('inspect', () => {
     assert.equal(find(inspect(shell, fused, { landmarks: eyes }), 'eyesPainted').locks, undefined);
   });
 
+  test('a car whose windows no part is called keeps a cage from being good', () => {
+    const [shell, wheel] = [shellTo(-1), ball([0, 0, 0], () => 0.1, 4, 8)];
+    const car = {
+      ...join3d(skin, wheel, wheel, wheel, wheel),
+      names: ['body', 'wheel-1', 'wheel-2', 'wheel-3', 'wheel-4'],
+    };
+    assert.deepEqual(find(inspect(shell, car), 'windowsUnknown').numbers, { wheels: 4 });
+    assert.equal(
+      find(inspect(shell, { ...car, names: ['body', 'wheel', 'wheel', 'wheel', 'glass'] }), 'windowsUnknown'),
+      undefined,
+    );
+    assert.equal(
+      find(inspect(shell, { ...car, names: ['body', 'wheel', 'wheel', 'bell', 'fork'] }), 'windowsUnknown'),
+      undefined,
+    );
+  });
+
   test('a seam down the face keeps a cage from being good, one behind does not', () => {
     const look = (side: number) => codes(inspect(shellTo(side), skin, { landmarks: eyes }));
     assert.deepEqual(look(-1), ['eyesPainted']);

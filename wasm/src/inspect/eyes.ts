@@ -1,3 +1,4 @@
+import type { Mesh } from '../api/index.js';
 import { faceFrameOf, type Spots } from './face.js';
 import type { Finding } from './finding.js';
 import { firstSeen } from './first-seen.js';
@@ -12,6 +13,12 @@ const kPainted = 0.5;
 const kEyeArea = 4;
 /** Landmarks that only figures and heads have. */
 const kOfFigures = ['joint_head', 'nose_tip', 'chin'];
+
+/** Words in names of parts: of wheels, and of what is looked through. */
+const kWheel = /(?<![a-z])(wheel|tyre|tire)/i;
+const kWindow = /window|windscreen|windshield|glass/i;
+/** Bicycles and carts have fewer wheels, and no windows. */
+const kMinWheels = 4;
 
 /**
  * Reports eyes of which nothing tells where they are, and eyes that are painted.
@@ -63,3 +70,21 @@ const kUnknown: Finding = {
     'Fit a template with the landmarks eye_centre_left and eye_centre_right, or give the eyes a part of their own.',
   numbers: {},
 };
+
+/** Reports a car of which no part is called a window: its windows are painted then. */
+export function checkWindows({ groups, names = [] }: Mesh): Finding[] {
+  const used = new Set(groups ?? [0]); // others have no vertices
+  const parts = [...names.entries()].filter(([group]) => used.has(group)).map(([, own]) => [own].flat());
+  const count = (word: RegExp): number => parts.filter((own) => own.some((name) => word.test(name))).length;
+  const wheels = count(kWheel);
+  if (wheels < kMinWheels || count(kWindow) > 0) return [];
+  return [
+    {
+      code: 'windowsUnknown',
+      weight: 0.3,
+      sentence: `Nothing tells where the windows are: ${wheels} parts are called wheels, and none a window`,
+      advice: 'If it has windows, give them a part of their own, or mark their triangles, to keep them bare.',
+      numbers: { wheels },
+    },
+  ];
+}

@@ -56,6 +56,7 @@ export type FindingCode =
   | 'nothingToPaint'
   | 'faceBare'
   | 'eyesUnknown'
+  | 'windowsUnknown'
   | 'eyesPainted'
   | 'faceSeam'
   | 'skinBare'

@@ -4,7 +4,7 @@ import { CagecastError, type Mesh, type TransferOptions, type TransferResult, tr
 import { numbersNamed, type PartOf, type Parts } from '../api/parts.js';
 import { show } from '../core/error.js';
 import { checkBackward } from './backward.js';
-import { checkEyes } from './eyes.js';
+import { checkEyes, checkWindows } from './eyes.js';
 import { checkFace, type Spots } from './face.js';
 import { type Finding, type FindingCode, type Place, type Verdict, verdictOf } from './finding.js';
 import { joined } from './geometry.js';
@@ -119,6 +119,7 @@ function outcomeOf(cage: Mesh, whole: Mesh, given: InspectOptions = {}) {
     ...checkHoles(holes, segments),
     ...checkFace(scene, landmarks),
     ...checkEyes(scene, segments, landmarks),
+    ...checkWindows(target),
     ...checkSeam(scene, segments, landmarks),
     ...checkPatches(scene, segments, landmarks),
     ...checkLimbs(scene, segments, landmarks),
