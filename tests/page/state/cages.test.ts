@@ -26,12 +26,12 @@ async function workshop() {
   const engine = {
     cageGlb,
     loadTemplate: async () => ({ landmarks: points(6) }),
-    findLandmarks: async () => ({ landmarks: points(2) }),
     async chooseCage({ marks }: { marks?: Uint8Array }) {
       state.marks = marks;
       return { cage: box(), template: 'made', fit: undefined };
     },
-    makeCage: async (_: object, { signal }: { signal: AbortSignal }) => gate.wait(signal).then(box),
+    makeCage: async (_: object, { signal }: { signal: AbortSignal }) =>
+      gate.wait(signal).then(() => ({ ...box(), landmarks: points(2) })),
     refineCage: async (cage: Cage) => ({ ...cage, positions: cage.positions.map((x) => (state.moves ? x * 1.1 : x)) }),
     async fitCage(_: object, __: object, given: object, { signal }: { signal: AbortSignal }) {
       await gate.wait(signal);

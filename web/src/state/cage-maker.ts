@@ -10,7 +10,7 @@ import { reasonOf } from './wording';
 /** The engine that makes cages: `cagecast/cages`. It loads when it is asked for. */
 export type Engine = Pick<
   typeof import('cagecast/cages'),
-  'cageGlb' | 'chooseCage' | 'findLandmarks' | 'fitCage' | 'loadTemplate' | 'makeCage' | 'refineCage' | 'templateNames'
+  'cageGlb' | 'chooseCage' | 'fitCage' | 'loadTemplate' | 'makeCage' | 'refineCage' | 'templateNames'
 >;
 
 /** What a cage maker needs of the page. */
@@ -271,8 +271,7 @@ export class CageMaker extends Emitter<{
   async #make({ engine, model, options, target }: Omit<Context, 'old'>): Promise<Result> {
     const { options: chosen, marks } = this.#choicesFor(model, target);
     const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
-    const { landmarks } = await engine.findLandmarks(model, { signal: options.signal });
-    return { cage: { ...cage, landmarks }, note: noteOfMade(cage), isNew: true };
+    return { cage, note: noteOfMade(cage), isNew: true };
   }
 
   /** The options of a made cage, and its marks: triangles marked on the model stay bare, whatever is chosen for their part. */
