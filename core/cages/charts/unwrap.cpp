@@ -134,7 +134,7 @@ class Unwrapper {
   std::vector<Chart>& charts() { return charts_; }
 
   /// Lays out a face by itself, and the rest as a head or a prop.
-  bool layOutAs(Kind kind, Piece piece) {
+  bool layOutAs(Kind kind, const Piece& piece) {
     std::vector<std::uint32_t> labels(piece.triangleOf.size(), 0);
     for (std::size_t t = 0; t < labels.size(); ++t) labels[t] = isOfFace(piece, t) ? 1 : 0;
     for (Piece& face : piecesOf(piece, labels, 1))
@@ -328,8 +328,7 @@ std::vector<Chart> chartsOf(const TriangleMesh& mesh, const UnwrapOptions& optio
                             Ticker& ticker, const std::vector<bool>& isFace = {}) {
   Unwrapper unwrapper(mesh, options, isFace, ticker);
   for (Piece& piece : componentsOf(cutOpen(wholeOf(mesh)))) {
-    const bool going =
-        mostLimbs > 0 ? unwrapper.layOutBody(piece, mostLimbs) : unwrapper.layOutAs(options.kind, std::move(piece));
+    const bool going = mostLimbs > 0 ? unwrapper.layOutBody(piece, mostLimbs) : unwrapper.layOutAs(options.kind, piece);
     if (!going) return {};
   }
   joinCharts(mesh, options, ticker, unwrapper.charts());

@@ -12,8 +12,8 @@ namespace cagecast::cages {
 namespace {
 
 // Lengths in distances of both eyes.
-constexpr double kBefore = 0.5;   ///< From a hole's border outward, what belongs to it: lips bulge out of theirs.
-constexpr double kDeepest = 0.6;  ///< From a hole's border inward to the first thing seen, or it is an opening.
+constexpr double kOutward = 0.5;   ///< From a hole's border outward, what belongs to it: lips bulge out of theirs.
+constexpr double kMaxDepth = 0.6;  ///< From a hole's border inward to the first thing seen, or it is an opening.
 /// A second layer of skin is the lining of a mouth if it lies this far behind the first: nearer are creases, farther is
 /// the back of the head, and what else lies there has nothing to do with the hole.
 constexpr double kLayerFrom = 0.1, kLayerTo = 0.8;
@@ -119,7 +119,7 @@ bool hasOpening(const HoleView& view, double apart, const TriangleMesh& mesh,
   for (const std::vector<std::uint32_t>& opening : openings)
     for (const std::uint32_t v : opening) {
       const double rise = view.rise(mesh.positions[v]);
-      if (rise < kBefore * apart && rise > -kLayerTo * apart && view.has(mesh.positions[v])) return true;
+      if (rise < kOutward * apart && rise > -kLayerTo * apart && view.has(mesh.positions[v])) return true;
     }
   return false;
 }
@@ -136,32 +136,51 @@ std::uint32_t commonestOf(const std::vector<RayHit>& first, const SeenModel& see
   return best;
 }
 
-/// The share of rays that meet something other than skin, nothing near, or skin again behind skin.
-/// @param skin  The component that is skin.
-/// @param withLining  Whether skin behind skin counts, as in a mouth; behind an eye it is the wall of a hollow bust.
-double layeredShare(const std::vector<SurfaceRay>& rays, double apart, const SeenModel& seen, const Surface& surface,
-                    std::uint32_t skin, bool withLining) {
-  const std::vector<RayHit> first = surface.trace(rays);
-  const auto isSkin = [&](const RayHit& hit) {
-    return seen.figure.roles[hit.triangle] == Role::surface && seen.figure.components[hit.triangle] == skin;
-  };
-  const double step = 1e-4 * apart;
-  std::size_t others = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    bool isOther = !(first[i].distance < (kBefore + kDeepest) * apart) || !isSkin(first[i]);
-    double from = first[i].distance + step;
-    for (int layer = 1; layer < kLayers && !isOther; ++layer) {
-      const SurfaceRay ray{rays[i].origin + from * rays[i].direction, rays[i].direction};
-      const RayHit hit = surface.trace(std::span(&ray, 1))[0];
-      const double behind = from + hit.distance - first[i].distance;
-      if (!(behind < kLayerTo * apart)) break;
-      isOther = !isSkin(hit) || (withLining && behind > kLayerFrom * apart);
+/// What rays into a hole may meet.
+class Layers {
+ public:
+  /// @param skin  The component that is skin.
+  /// @param withLining  Whether skin behind skin counts, as in a mouth; behind an eye it is the wall of a hollow bust.
+  Layers(const SeenModel& seen, const Surface& surface, double apart, std::uint32_t skin, bool withLining)
+      : seen_(seen), surface_(surface), apart_(apart), skin_(skin), withLining_(withLining) {}
+
+  /// The share of rays that meet something other than skin, nothing near, or skin again behind skin.
+  [[nodiscard]] double shareOf(const std::vector<SurfaceRay>& rays) const {
+    const std::vector<RayHit> first = surface_.trace(rays);
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const bool isNear = first[i].distance < (kOutward + kMaxDepth) * apart_;
+      if (!isNear || !isSkin(first[i]) || hasMoreBehind(rays[i], first[i].distance)) ++others;
+    }
+    return static_cast<double>(others) / static_cast<double>(std::max<std::size_t>(1, rays.size()));
+  }
+
+ private:
+  [[nodiscard]] bool isSkin(const RayHit& hit) const {
+    return seen_.figure.roles[hit.triangle] == Role::surface && seen_.figure.components[hit.triangle] == skin_;
+  }
+
+  /// Whether something other than skin lies behind the first layer, or a lining.
+  [[nodiscard]] bool hasMoreBehind(const SurfaceRay& ray, double first) const {
+    const double step = 1e-4 * apart_;
+    double from = first + step;
+    for (int layer = 1; layer < kLayers; ++layer) {
+      const SurfaceRay rest{ray.origin + from * ray.direction, ray.direction};
+      const RayHit hit = surface_.trace(std::span(&rest, 1))[0];
+      const double behind = from + hit.distance - first;
+      if (!(behind < kLayerTo * apart_)) return false;
+      if (!isSkin(hit) || (withLining_ && behind > kLayerFrom * apart_)) return true;
       from += hit.distance + step;
     }
-    if (isOther) ++others;
+    return false;
   }
-  return static_cast<double>(others) / static_cast<double>(std::max<std::size_t>(1, rays.size()));
-}
+
+  const SeenModel& seen_;
+  const Surface& surface_;
+  double apart_;
+  std::uint32_t skin_;
+  bool withLining_;
+};
 
 /// The directions of a face, by its holes.
 Axes axesOf(const std::vector<FaceHole>& holes, const TriangleMesh& cage) {
@@ -222,14 +241,12 @@ std::vector<bool> emptyHoles(const std::vector<FaceHole>& holes, const SeenModel
   for (std::size_t i = 0; i < holes.size(); ++i) {
     const HoleView view(holes[i], axes, positions);
     if (isTold(holes[i], seen) || hasOpening(view, apart, mesh, openings)) continue;
-    const auto raysIn = [&](const Ring& ring) { return view.rays(ring, kBefore * apart); };
+    const auto raysIn = [&](const Ring& ring) { return view.rays(ring, kOutward * apart); };
     const std::vector<SurfaceRay> within = raysIn(kWithin), around = raysIn(kAround);
     const std::uint32_t skin = commonestOf(surface.trace(around), seen);
-    const auto shareOf = [&](const std::vector<SurfaceRay>& rays) {
-      return layeredShare(rays, apart, seen, surface, skin, holes[i].isMouth);
-    };
-    const bool hasMore = shareOf(within) > kOtherShare;
-    const bool isWall = hasMore && holes[i].isMouth && shareOf(raysIn(kWall)) > kWallShare;
+    const Layers layers(seen, surface, apart, skin, holes[i].isMouth);
+    const bool hasMore = layers.shareOf(within) > kOtherShare;
+    const bool isWall = hasMore && holes[i].isMouth && layers.shareOf(raysIn(kWall)) > kWallShare;
     if (within.size() < kFewest || (hasMore && !isWall)) continue;
     out[i] = isOneColor(colorsOf(within, surface.trace(within), seen), colorsOf(around, surface.trace(around), seen));
   }

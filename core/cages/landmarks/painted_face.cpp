@@ -80,7 +80,7 @@ Portrait portraitOf(const Figure& figure, const Model& model, const HeadFrame& f
 
 /// The commonest colours of a portrait, each with all that are about like it.
 std::vector<Vec3> commonColors(const Portrait& portrait) {
-  constexpr double kBin = 8, kAlike = 14;
+  constexpr double kBin = 8, kSameColor = 14;
   constexpr double kCommon = 0.04;  ///< Of all places.
   constexpr std::size_t kMax = 4;
   std::vector<Vec3> left;
@@ -99,7 +99,7 @@ std::vector<Vec3> commonColors(const Portrait& portrait) {
     for (int round = 0; round < 3; ++round) {
       alike.clear();
       others.clear();
-      for (const Vec3& color : left) (length(color - middle) < kAlike ? alike : others).push_back(color);
+      for (const Vec3& color : left) (length(color - middle) < kSameColor ? alike : others).push_back(color);
       if (alike.empty()) return out;
       middle = meanOf(alike);
     }

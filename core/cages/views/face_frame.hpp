@@ -20,9 +20,10 @@ struct FaceFrame {
   /// Whether a point may be of the face: about as far to the sides as ears, from the hairline down below the chin.
   /// @param beyond  How much farther in all directions, in distances of the eyes.
   [[nodiscard]] bool reaches(const Vec3& p, double beyond = 0) const {
-    constexpr double kAside = 1.3, kUp = 0.9, kDown = 1.7, kBack = 0.9;
+    constexpr double kEar = 1.3, kHairline = 0.9, kThroat = 1.7, kBack = 0.9;
     const Vec3 d = toLocal(p);
-    return std::abs(d.x) < kAside + beyond && d.y < kUp + beyond && d.y > -kDown - beyond && d.z > -kBack - beyond;
+    return std::abs(d.x) < kEar + beyond && d.y < kHairline + beyond && d.y > -kThroat - beyond &&
+           d.z > -kBack - beyond;
   }
 };
 
