@@ -6,7 +6,7 @@ import type { Locks } from '../state/choices';
 import type { Intake } from '../state/intake';
 import { madeOf, sampleOf } from '../state/made-cages';
 import { asCage, asTarget, type Loader, type Model, ownCage } from '../state/model';
-import { type Paint, titleOf } from '../state/paint';
+import { isOffered, type Paint, titleOf } from '../state/paint';
 import { haveSameUvs } from '../state/same-uvs';
 import { kChecker, type Sample, type Samples } from '../state/sample';
 import type { Requested, Shown } from '../state/scene';
@@ -160,8 +160,8 @@ export class Opener implements Samples {
     const { shown, checker } = this.#session;
     const cage = asCage(await loading);
     const base = this.#stack.base?.sheet as Paint | undefined;
-    const isGiven = base === undefined || base === checker || base.sample || base.drawn;
-    if (shown && (!isGiven || haveSameUvs(shown.cage, cage))) return shown.paint;
+    const isOwn = base !== undefined && !isOffered(base, checker);
+    if (shown && (isOwn || haveSameUvs(shown.cage, cage))) return shown.paint;
     return this.#drawFor(cage, base?.drawn);
   }
 
@@ -270,11 +270,12 @@ export class Opener implements Samples {
           : 'The model is yours, but the cage is a sample’s. Add the cage that was made for your model, or make one.';
   }
 
-  /** The layer of a whole paint that is selected, or else the uppermost one: it covers those below. */
+  /** The layer of an offered paint that is selected, or else the uppermost one: it covers those below. */
   get #top(): Layer | undefined {
     const { selected, layers, base } = this.#stack;
-    const isWhole = (layer?: Layer): boolean => layer?.visible === true && 'picture' in layer.sheet;
-    return isWhole(selected) ? selected : (layers.findLast(isWhole) ?? base);
+    const isMeant = (layer?: Layer): boolean =>
+      layer?.visible === true && isOffered(layer.sheet, this.#session.checker);
+    return isMeant(selected) ? selected : (layers.findLast(isMeant) ?? base);
   }
 
   /** Puts a paint in place of that one, as an undo step. */

@@ -1,6 +1,6 @@
 import type { Edits, LayerStack } from '#three';
 import type { Model } from './model';
-import { type Paint, titleOf } from './paint';
+import { isOffered, type Paint, titleOf } from './paint';
 import { haveSameUvs } from './same-uvs';
 import type { Session } from './session';
 
@@ -20,7 +20,7 @@ export function followPaints(session: Session, stack: LayerStack, edits: Edits):
     if ((base?.drawn || (base?.sample && base.sample !== cage.sample)) && !isSame) setBase(checker);
   });
   session.on('paint', (paint) => {
-    if (paint === checker || paint.sample || paint.drawn) return setBase(paint);
+    if (isOffered(paint, checker)) return setBase(paint);
     edits.do(`adding ${titleOf(paint)}`, () => {
       stack.add(titleOf(paint), paint);
       // The checker was only a placeholder.

@@ -18,6 +18,10 @@ export interface Paint {
   linked?: string;
 }
 
+/** Whether a paint is one of those that the page offers, and not the user's own. */
+export const isOffered = (paint: Partial<Paint> | undefined, checker: Paint): boolean =>
+  paint !== undefined && (paint === checker || paint.sample !== undefined || paint.drawn !== undefined);
+
 /** The title of a paint in lists. */
 export function titleOf({ name, picture, sample }: Paint): string {
   return sample?.paints.find(({ file }) => file === picture)?.title ?? name;
