@@ -87,8 +87,9 @@ export interface Report {
 }
 
 /** The report of `cagecast transfer`. */
-export async function report(target: string, cage: string, flags: Flags = {}): Promise<Report> {
+export async function report(target: string, cage: string, { preset, ...flags }: Flags = {}): Promise<Report> {
   const words = Object.entries(flags).flatMap(([name, value]) => [`--${name}`, String(value)]);
+  if (preset) words.push('--set', `preset=${preset}`);
   const { stdout } = await cagecast('transfer', target, '--cage', cage, ...words, '--json');
   return JSON.parse(stdout);
 }
