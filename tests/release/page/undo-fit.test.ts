@@ -245,7 +245,7 @@ test('undo does not affect the paint of a model opened since', async () => {
   await ready(page);
   await page.locator('#undo[title*="replacing "]').waitFor({ state: 'attached' }); // once the work is stored
   await page.keyboard.press('Control+z');
-  await page.getByTestId('layer-list').getByText('Tiger stripes').waitFor();
+  await page.getByTestId('layer-list').getByText('Tiger stripes').first().waitFor();
   await ready(page);
   assert.deepEqual(await names(page), after);
   assert.match(await undoTitle(), /^Undo$/, 'as after a reload');
