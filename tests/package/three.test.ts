@@ -956,7 +956,10 @@ describe('saved transfers', () => {
     large.fill(255);
     assert.deepEqual(saved, deserialize(bytes));
     const other = meshOf({ ...scene.target, positions: scene.target.positions.map((x) => 0.999 * x) });
-    assert.throws(() => applyTransfer(other, { saved }), /is of another target, or .*as it was, and give the same parts$/);
+    assert.throws(
+      () => applyTransfer(other, { saved }),
+      /is of another target, or .*as it was, and give the same parts$/,
+    );
     const changed = (at: number, to: (byte: number) => number) => bytes.map((byte, i) => (i === at ? to(byte) : byte));
     for (const [wrong, message] of [
       [new Uint8Array(3), /is nothing that serialize wrote \(3 bytes\)/],
