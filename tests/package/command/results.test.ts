@@ -409,6 +409,12 @@ test('--report writes a page that needs nothing else', async () => {
   assert.match(html, /<svg.*<path/s);
 });
 
+test('--report writes as JSON what --json prints', async () => {
+  const printed = await ok('inspect target.glb --cage cage.glb --json --report report.json');
+  const known = ({ timings: _, ...report }: Record<string, unknown>) => report;
+  assert.deepEqual(known(JSON.parse(readFileSync('report.json', 'utf8'))), known(JSON.parse(printed)));
+});
+
 interface Difference {
   over: number;
   changes: { measure: string; before: number; after: number; isOver: boolean }[];

@@ -21,6 +21,7 @@ import { tellApart } from './tell-apart';
 import { watchOverSample } from './watch-over';
 
 const kOwn = 'own';
+const kAskedFor = 15_000; // milliseconds
 
 /** Opens samples and the user's own files, and shows what is open. */
 export class Opener implements Samples {
@@ -29,6 +30,7 @@ export class Opener implements Samples {
   readonly #edits: Edits;
   readonly #select = element('sample-select', HTMLSelectElement);
   readonly #loader: Loader;
+  /** The paints that are drawn for any cage. */
   readonly drawings: Drawings;
   /** Takes several models. */
   wardrobe: Pick<WardrobeOfPage, 'take'> | undefined;
@@ -209,7 +211,8 @@ export class Opener implements Samples {
     if (isPaint || !this.onPicture) return open();
     this.onPicture(bitmap);
     const text = `${image.name}: click where it belongs on the model.`;
-    ask({ text, answers: [{ title: 'Use as a whole paint', run: open }] });
+    // On a phone it lies over the model.
+    ask({ text, answers: [{ title: 'Use as a whole paint', run: open }], lasts: kAskedFor });
   }
 
   /** Nobody waits for these files any more. */

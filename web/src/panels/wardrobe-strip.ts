@@ -120,7 +120,8 @@ export class WardrobeStrip {
 
   #drawing(): ReturnType<Surroundings['drawing']> {
     const { stack, drawings } = this.#page;
-    const drawn = drawings.find((stack.base?.sheet as Partial<Paint> | undefined)?.drawn ?? '');
+    const base = stack.base?.visible ? (stack.base.sheet as Partial<Paint>) : undefined;
+    const drawn = drawings.find(base?.drawn ?? '');
     return drawn && { name: drawn.name, draw: (cage) => drawings.draw(drawn, cage) };
   }
 

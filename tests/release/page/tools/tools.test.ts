@@ -158,6 +158,7 @@ test('a picture that is dropped is a sticker until it is used as a whole paint; 
   await away(page);
   const { share } = await green(page, area);
   assert.ok(share > 0.004 && share < 0.2, `${share} is a sticker`);
+  await drop(page, [picture(60, 40)]);
   await whole.click();
   await page.locator('#texture-name', { hasText: 'photo.png' }).waitFor();
   await drop(page, [{ ...picture(64, 64), name: 'sheet.png' }]);

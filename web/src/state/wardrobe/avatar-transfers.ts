@@ -2,6 +2,7 @@ import { classify } from 'cagecast';
 import { bareGroupsOf, choicesOf } from '../choices';
 import { isUpToDate, moveChoices, projectBy, withoutParts } from '../left-out';
 import { landmarksOf, type Model } from '../model';
+import type { Paint } from '../paint';
 import { haveSameUvs } from '../same-uvs';
 import { kMaxInspected, paintableShare } from '../verdict';
 import type { Avatar } from './avatar';
@@ -67,15 +68,14 @@ export class AvatarTransfers {
       this.#undrawable.add(cage!);
       throw error;
     });
-    if (cage !== avatar.cage) return;
+    if (cage !== avatar.cage || !this.#list.has(avatar)) return dispose(paint);
     this.#setOwn(avatar, { paint, cage: cage! });
     this.dress(avatar);
     this.#onTransfer(avatar);
   }
 
   #setOwn(avatar: Avatar, own: Avatar['own']): void {
-    avatar.own?.paint.texture.dispose();
-    if (avatar.own) URL.revokeObjectURL(avatar.own.paint.picture);
+    if (avatar.own) dispose(avatar.own.paint);
     avatar.own = own;
   }
 
@@ -127,12 +127,18 @@ export class AvatarTransfers {
     this.#around.view.redraw();
   }
 
-  /** Frees what stands beside the stage. */
+  /** Frees what stands beside the stage, and the paint that was drawn for it. */
   clear(avatar: Avatar): void {
     const { standing } = avatar;
+    this.#setOwn(avatar, undefined);
     if (!standing) return;
     avatar.standing = undefined;
     standing.dispose();
     this.#around.loader.dispose(standing.model);
   }
+}
+
+function dispose({ texture, picture }: Paint): void {
+  texture.dispose();
+  URL.revokeObjectURL(picture);
 }

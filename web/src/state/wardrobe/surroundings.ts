@@ -20,7 +20,7 @@ export interface Surroundings {
   fit(cage: Model, model: Model, progress: FitProgress): Promise<File>;
   /** Chooses a cage for a model, as for one that is opened alone. */
   choose(model: Model, progress: FitProgress): Promise<Model>;
-  /** The base paint, if it is one of those that are drawn for any cage. */
+  /** The base paint, if it is shown, and one of those that are drawn for any cage. */
   drawing(): { name: string; draw(cage: Model): Promise<Paint> } | undefined;
   /** Draws what the wardrobe has. */
   view: WardrobeView;
