@@ -316,6 +316,16 @@ describe('a cage out of place', () => {
     assert.equal(codes(look({ positions: moved(([x, y, z]) => [x + 50, y, z]) }))[0], 'cageElsewhere');
   });
 
+  test('a cage may lie inside of what is never painted', () => {
+    const hair = ball([0, 0, 0], () => 1.12, 12, 24);
+    const groups = Uint32Array.from({ length: (target.positions.length + hair.positions.length) / 3 }, (_, v) =>
+      v < target.groups.length ? target.groups[v]! : 3,
+    );
+    const whole = { ...join3d(target, hair), groups, names: [...target.names, 'hair'] };
+    assert.ok(inspect(cage, whole).inside.vertices > 0);
+    assert.equal(inspect(cage, whole, { parts: { exclude: ['hair'] } }).inside.vertices, 0);
+  });
+
   test('a ground that is part of the target is named, and that it makes lengths too coarse', () => {
     const onGround = (half: number): Whole => {
       const first = target.positions.length / 3;

@@ -63,17 +63,32 @@ describe('the cage of a model that came alone', () => {
 });
 
 test('a figure that the template of bodies does not fit gets a cage of its own, not that of a head', async () => {
-  const tried = async (part: string, ...joints: string[]) => {
+  const tried = async (part: string, joints: ReturnType<typeof jointOf>[] = []) => {
     const shape = ball([0, 0, 0], () => 1, 8, 16);
     const groups = new Uint32Array(shape.positions.length / 3);
-    const model = { ...shape, groups, names: ['body', part], joints: joints.map(jointOf) };
+    const model = { ...shape, groups, names: ['body', part], joints };
     return (await chooseCage(model)).tried.map(({ template }) => template);
   };
   assert.deepEqual(await tried('wheel'), ['car', 'human-head', 'made']);
-  assert.deepEqual(await tried('hips', 'upperarm_l', 'lowerleg_l'), ['human-body', 'made']);
+  const names = ['upperarm_l', 'lowerleg_l'];
+  assert.deepEqual(
+    await tried(
+      'hips',
+      names.map((name) => jointOf(name)),
+    ),
+    ['human-body', 'made'],
+  );
+  // A bust on the skeleton of a whole figure.
+  assert.deepEqual(
+    await tried(
+      'bust',
+      names.map((name) => jointOf(name, -1.2)),
+    ),
+    ['human-head', 'made'],
+  );
 });
 
-const jointOf = (name: string) => ({ name, position: [0, 0, 0] as const });
+const jointOf = (name: string, y = 0) => ({ name, position: [0, y, 0] as const });
 
 test('paintGlb asks for the paint of what was chosen, tells the verdict, and refuses one that is worse than demanded', async () => {
   const asked: string[] = [];

@@ -3,6 +3,7 @@
 import { CagecastError } from '../api/index.js';
 import type { Mesh } from '../api/mesh.js';
 import { type Finding, kVerdicts, type Verdict } from '../inspect/finding.js';
+import { boxOf } from '../inspect/geometry.js';
 import type { Inspection, InspectOptions } from '../inspect/index.js';
 import { accessoriesAmong, groupsNamed } from '../parts/drawn.js';
 import type { OnProgress } from '../worker/queue.js';
@@ -125,9 +126,14 @@ export async function choose(
   return { ...candidates[0]!, tried };
 }
 
-/** A figure that the body does not fit, such as a toy, gets a cage of its own: a head's would leave the rest bare. */
+/**
+ * A figure that the body does not fit, such as a toy, gets a cage of its own: a head's would leave the rest bare. A bust may have the
+ * joints of a whole figure: those beside the mesh tell nothing.
+ */
 function likelyTemplates({ positions, joints = [], names = [] }: CageModel): TemplateName[] {
-  const named = likelyTemplate(positions, { joints: joints.map(({ name }) => name), parts: names.flat() });
+  const { min, max } = boxOf(positions);
+  const own = joints.filter(({ position }) => position.every((x, k) => x >= min[k]! && x <= max[k]!));
+  const named = likelyTemplate(positions, { joints: own.map(({ name }) => name), parts: names.flat() });
   return named === 'human-body' ? [named] : [...new Set([named, likelyTemplate(positions)])];
 }
 

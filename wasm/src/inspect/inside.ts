@@ -18,10 +18,16 @@ export interface Inside {
 
 /**
  * Finds the vertices of the cage that lie inside the target: behind the nearest triangle of the target, whose normal must also
- * agree with the cage's. Vertices at borders are left out, because they may lie anywhere.
+ * agree with the cage's. Vertices at borders are left out, because they may lie anywhere; so may those inside of what is never
+ * painted, such as hair.
  */
-export function insideOf({ surface, cage, diagonal }: Scene, reversed: Reverse | undefined): Inside {
+export function insideOf(
+  { surface, cage, diagonal, target, result: { segments, segmentStats } }: Scene,
+  reversed: Reverse | undefined,
+): Inside {
   if (!reversed) return { vertices: 0, area: 0 };
+  const isExcluded = (triangle: number): boolean =>
+    segmentStats[segments[target.indices[3 * triangle]!]!]?.culledBy === 'lock';
   const { positions, indices } = cage;
   const { place, loopOfVertex } = surface;
   const normals = new Float64Array(positions.length);
@@ -39,7 +45,7 @@ export function insideOf({ surface, cage, diagonal }: Scene, reversed: Reverse |
   for (let v = 0; v < place.length; ++v) {
     if (place[v] !== v || areas[v] === 0 || loopOfVertex[v]! >= 0) continue;
     total += areas[v]!;
-    if (reversed.distances[v]! <= kDepth * diagonal) continue;
+    if (reversed.distances[v]! <= kDepth * diagonal || isExcluded(reversed.triangles[v]!)) continue;
     const p = pointAt(positions, v);
     const [a, b, c] = reversed.corners(v);
     const normal = doubleAreaNormal(a, b, c);
