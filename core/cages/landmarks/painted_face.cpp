@@ -357,10 +357,12 @@ void addEyes(const Portrait& portrait, const Pair& pair, PaintedFace& out) {
 
 std::optional<PaintedFace> findPaintedFace(const Figure& figure, const Model& model, const MirrorPlane& plane) {
   constexpr double kClear = 0.4;          ///< Eyes and mouth together.
-  constexpr double kWithoutMouth = 0.45;  ///< What eyes alone count.
+  constexpr double kWithoutMouth = 0.45;  ///< What eyes alone count,
+  constexpr double kOnBones = 0.65;       ///< and where bones say what is a head, and where its front is.
   constexpr double kLikely = 1.1;         ///< Files face +z, unless something else is clearly seen.
   if (model.baseColors.empty()) return std::nullopt;
   const TriangleMesh skin = figure.only(Role::surface);
+  const double withoutMouth = figure.front ? kOnBones : kWithoutMouth;
   std::optional<PaintedFace> best;
   for (const double side : {1.0, -1.0}) {
     const HeadFrame frame = guessHeadFrame(skin, plane, side);
@@ -371,7 +373,7 @@ std::optional<PaintedFace> findPaintedFace(const Figure& figure, const Model& mo
     for (const Pair& pair : features.eyes) {
       double likely = 0;
       const Spotted* mouth = mouthOf(features.others, pair.apart(), pair.y(), likely);
-      const double score = pair.score * (kWithoutMouth + (1 - kWithoutMouth) * likely);
+      const double score = pair.score * (withoutMouth + (1 - withoutMouth) * likely);
       const double preferred = frame.front.z > 0.7 ? kLikely * score : score;
       if (preferred <= (best ? best->score : kClear)) continue;
       best.emplace();

@@ -71,6 +71,22 @@ TEST_CASE("a painted face may look anywhere", "[cages][landmarks][painted]") {
   checkFace(egg.landmarks(), turned);
 }
 
+TEST_CASE("painted eyes without a mouth are found where bones say that there is a head", "[cages][landmarks][painted]") {
+  const Look mouthless{.hair = Look{}.skin, .white = {40, 30, 30}, .iris = {40, 30, 30}, .lips = Look{}.skin};
+  CHECK(placeOf(PaintedEgg(mouthless).landmarks(), "eye_centre_left") == std::nullopt);
+  const PaintedEgg egg(mouthless);
+  const std::vector<std::uint16_t> held(egg.owned.positions.size() / 3, 5);
+  const auto landmarks = egg.landmarks([&](Model& model) {
+    model.joints = {{"Hips", {0, -3, 0}},        {"Spine2", {0, -2, 0}, 0},  {"LeftArm", {1, -1.5f, 0}, 1},
+                    {"RightArm", {-1, -1.5f, 0}, 1}, {"Neck", {0, -1.2f, 0}, 1}, {"Head", {0, -1, 0}, 4}};
+    model.vertexJoints = held;
+  });
+  const auto eye = placeOf(landmarks, "eye_centre_left");
+  REQUIRE(eye);
+  CHECK(eye->x == Approx(kEye.x).margin(0.05));
+  CHECK(eye->y == Approx(kEye.y).margin(0.05));
+}
+
 TEST_CASE("where no face is painted, none is found", "[cages][landmarks][painted]") {
   const auto withoutColors = [](Model& model) { model.baseColors.clear(); };
   const PaintedEgg blank({.hasFace = false});
