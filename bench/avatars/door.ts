@@ -1,6 +1,8 @@
 // One avatar through one door, in a process of its own: makes its cage, paints it, measures, and draws it from four sides.
 //
-//   tsx bench/avatars/door.ts FILE DOOR PLACE AVATAR.json     writes PLACE.png, .cage.glb, .painted.glb, and its row to PLACE.json
+//   tsx bench/avatars/door.ts FILE DOOR PLACE AVATAR.json [marked]
+//
+// Writes PLACE.png, .cage.glb, .painted.glb, and its row to PLACE.json. `marked` gives a fit the marks of the face as landmarks.
 
 import { readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { NodeIO } from '@gltf-transform/core';
@@ -112,7 +114,7 @@ async function draw(painted: string, to: string, { face }: Avatar): Promise<void
   rmSync(`${to}.box.glb`, { force: true });
 }
 
-const [file, door, to, label] = process.argv.slice(2) as [string, string, string, string];
+const [file, door, to, label, marked] = process.argv.slice(2) as [string, string, string, string, string?];
 const avatar = JSON.parse(label) as Avatar;
 const row: Row = {};
 try {
@@ -120,6 +122,18 @@ try {
   const before = process.cpuUsage();
   const [what, template] = door.split(' ') as [string, string?];
   const options = template ? ['--template', template] : [];
+  if (marked && template && avatar.face) {
+    const { eyeL, eyeR, mouth } = avatar.face;
+    writeFileSync(
+      `${to}.marks.json`,
+      JSON.stringify({
+        eye_centre_left: eyeL,
+        eye_centre_right: eyeR,
+        ...(!avatar.face.guessed && { lip_lower: mouth }),
+      }),
+    );
+    options.push('--landmarks', `${to}.marks.json`);
+  }
   const report = JSON.parse(await command(what, file, ...options, '-o', cage, '--json'));
   [row.verdict, row.template] = [report.verdict, report.template];
   const { user, system } = process.cpuUsage(before);

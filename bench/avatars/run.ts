@@ -25,9 +25,9 @@ function faultOf(path: string, { sha256 }: Avatar): string | undefined {
   return found === sha256 ? undefined : `is another file: its SHA-256 is ${found}, not ${sha256}`;
 }
 
-function through(path: string, door: Door, to: string, avatar: Avatar): Row {
+function through(path: string, door: Door, to: string, avatar: Avatar, isMarked = false): Row {
   const script = join(root, 'bench/avatars/door.ts');
-  const args = ['--import', 'tsx', script, path, door, to, JSON.stringify(avatar)];
+  const args = ['--import', 'tsx', script, path, door, to, JSON.stringify(avatar), ...(isMarked ? ['marked'] : [])];
   // By a file, as what the process started may hold a pipe open after its end.
   rmSync(`${to}.json`, { force: true });
   const { signal, status } = spawnSync(process.execPath, args, {
@@ -107,6 +107,7 @@ const { values, positionals } = parseArgs({
     door: { type: 'string' },
     output: { type: 'string' },
     half: { type: 'string', default: 'open' },
+    marked: { type: 'boolean', default: false },
   },
 });
 const here = process.env['INIT_CWD'] ?? process.cwd();
@@ -126,7 +127,7 @@ for (const avatar of all) {
   rows[avatar.file] = {};
   for (const door of kDoors.filter((one) => one.includes(values.door ?? ''))) {
     const to = join(output, `${avatar.file.replace(/\.\w+$/, '')}.${door.split(' ').at(-1)}`);
-    rows[avatar.file]![door] = through(path, door, to, avatar);
+    rows[avatar.file]![door] = through(path, door, to, avatar, values.marked);
     console.error(
       `${avatar.file} ${door}${avatar.half === values.half ? `: ${JSON.stringify(rows[avatar.file]![door])}` : ''}`,
     );

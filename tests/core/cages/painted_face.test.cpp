@@ -71,14 +71,16 @@ TEST_CASE("a painted face may look anywhere", "[cages][landmarks][painted]") {
   checkFace(egg.landmarks(), turned);
 }
 
-TEST_CASE("painted eyes without a mouth are found where bones say that there is a head", "[cages][landmarks][painted]") {
+TEST_CASE("painted eyes without a mouth are found where bones say that there is a head",
+          "[cages][landmarks][painted]") {
   const Look mouthless{.hair = Look{}.skin, .white = {40, 30, 30}, .iris = {40, 30, 30}, .lips = Look{}.skin};
   CHECK(placeOf(PaintedEgg(mouthless).landmarks(), "eye_centre_left") == std::nullopt);
   const PaintedEgg egg(mouthless);
   const std::vector<std::uint16_t> held(egg.owned.positions.size() / 3, 5);
   const auto landmarks = egg.landmarks([&](Model& model) {
-    model.joints = {{"Hips", {0, -3, 0}},        {"Spine2", {0, -2, 0}, 0},  {"LeftArm", {1, -1.5f, 0}, 1},
-                    {"RightArm", {-1, -1.5f, 0}, 1}, {"Neck", {0, -1.2f, 0}, 1}, {"Head", {0, -1, 0}, 4}};
+    model.joints = {{"Hips", {0, -3, 0}},          {"Spine2", {0, -2, 0}, 0},
+                    {"LeftArm", {1, -1.5f, 0}, 1}, {"RightArm", {-1, -1.5f, 0}, 1},
+                    {"Neck", {0, -1.2f, 0}, 1},    {"Head", {0, -1, 0}, 4}};
     model.vertexJoints = held;
   });
   const auto eye = placeOf(landmarks, "eye_centre_left");
