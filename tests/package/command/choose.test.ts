@@ -49,6 +49,21 @@ describe('the cage of a model that came alone', () => {
     assert.equal((await chooseCage(head, { templates: [] })).template, 'made');
   });
 
+  test('is not a template whose holes lie where nothing is, if another cage is no worse', async () => {
+    const { landmarks } = (await chooseCage(head)).cage;
+    const onForehead = ['eye_centre_left', 'eye_centre_right'].map((name) => {
+      const [x, y, z] = landmarks[name]!;
+      return [name, [x, y + 0.15 * (landmarks['forehead']![1] - landmarks['chin']![1]), z] as const] as const;
+    });
+    const { template, tried } = await chooseCage(head, { landmarks: Object.fromEntries(onForehead) });
+    assert.equal(template, 'made');
+    assert.deepEqual(
+      tried.map(({ verdict }) => verdict),
+      ['usable', 'usable'],
+    );
+    assert.match(tried[0]!.reason, /^2 holes of the cage have only "skin" behind them/);
+  });
+
   test('is the same on this thread; progress never falls, and a signal ends it', async () => {
     const shares: number[] = [];
     const here = await chooseCage(head, { worker: false, onProgress: (share) => void shares.push(share) });

@@ -64,8 +64,8 @@ export interface ChoiceEngine {
 const kMaxAsked = 4;
 
 /**
- * Fits templates, one after another, until one is good; if none is, makes a cage, too. The best verdict counts, then the order: what
- * is fitted shares its paint with others.
+ * Fits templates, one after another, until one is good; if none is, makes a cage, too. The best verdict counts, then whether all holes
+ * have something behind them, as others are beside eyes and mouth, then the order: what is fitted shares its paint with others.
  * @throws {CagecastError} as `makeCage`, if there is no cage at all.
  */
 export async function choose(
@@ -121,7 +121,9 @@ export async function choose(
       tried.push({ template: 'made', reason: error.reason });
     }
   }
-  candidates.sort((a, b) => kVerdicts.indexOf(b.verdict) - kVerdicts.indexOf(a.verdict));
+  const rank = ({ verdict, findings }: (typeof candidates)[number]): number =>
+    kVerdicts.indexOf(verdict) - (findings.some(({ code }) => code === 'holeUnexplained') ? 0.5 : 0);
+  candidates.sort((a, b) => rank(b) - rank(a));
   onProgress?.(1, 'inspect');
   return { ...candidates[0]!, tried };
 }
