@@ -47,8 +47,11 @@ export const visibilityExtension = 'KHR_node_visibility';
 /** The extension of glTF for materials that light goes through. */
 export const transmissionExtension = 'KHR_materials_transmission';
 
-/** Names of cages, markers and collision shapes: of Roblox, of Unreal, and usual ones. Programs add numbers to them. */
-const kTechnical = /^(UCX|UBX|USP|UCP)_|_(OuterCage|InnerCage|Att|Collider)([._]?\d+)?$/i;
+/** Names of cages, markers and collision shapes: of Roblox, Unreal, Godot, and usual ones. Programs add numbers to them. */
+const kTechnical =
+  /^(UCX|UBX|USP|UCP|collision|collider|hitbox)(_|$)|(_(OuterCage|InnerCage|Att)|[_-](collision|collider|hitbox|(conv)?colonly))([._]?\d+)?$/i;
+/** What a collision shape adds to the name of the mesh it is for; elsewhere it stands for a colour. */
+const kShapeOf = /[_-](conv)?col([._]?\d+)?$/i;
 
 /** Words that name what a figure wears or carries. */
 const kAccessories =
@@ -161,8 +164,11 @@ function isAccessory(name: string | undefined): boolean {
 
 /** Why each part is not drawn, if it is not. */
 function whyNotDrawn(looks: readonly Look[]): (LeftOut['why'] | undefined)[] {
+  const all = new Set(looks.flatMap(({ names }) => names));
+  const isTechnical = (name = ''): boolean =>
+    kTechnical.test(name) || (kShapeOf.test(name) && all.has(name.replace(kShapeOf, '')));
   const reasons = looks.map(({ names, isHidden, isClear }): LeftOut['why'] | undefined => {
-    if (names.some((name) => name !== undefined && kTechnical.test(name))) return 'name';
+    if (names.some(isTechnical)) return 'name';
     return isHidden ? 'hidden' : isClear ? 'transparent' : undefined;
   });
   const shapes = looks.map((look, p) => (reasons[p] === undefined ? shapeOf(look) : undefined));
