@@ -43,6 +43,67 @@ test('triangles whose corners are not there, or nowhere, are left out, and their
   await assert.rejects(toGlb(Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\nf 7 8 9\n')), /OBJ file without any triangle/);
 });
 
+/** The area of all triangles in the plane z = 0, and their UVs' area. */
+async function areasOf(file: string | Uint8Array): Promise<[triangles: number, area: number, ofUvs: number]> {
+  const [primitive] = (await documentOf(file)).listMeshes()[0]!.listPrimitives();
+  const indices = [...primitive!.getIndices()!.getArray()!];
+  const [places, uvs] = ['POSITION', 'TEXCOORD_0'].map((name) => primitive!.getAttribute(name));
+  const areaIn = (points: typeof places): number =>
+    indices.reduce((sum, _, c) => {
+      if (c % 3 !== 0 || !points) return sum;
+      const [a, b, d] = [0, 1, 2].map((k) => points.getElement(indices[c + k]!, [])) as [number[], number[], number[]];
+      return sum + ((b[0]! - a[0]!) * (d[1]! - a[1]!) - (b[1]! - a[1]!) * (d[0]! - a[0]!)) / 2;
+    }, 0);
+  return [indices.length / 3, areaIn(places), areaIn(uvs)];
+}
+
+test('faces of a PLY may have any number of corners, be concave, and have UVs at their corners', async () => {
+  // An arrow: a fan from its first corner would cover what is outside.
+  const arrow = ['2 1 0', '0 2 0', '0 3 0', '-1 1.5 0', '0 0 0', '0 1 0'];
+  const uvs = ['1 0', '.5 1', '0 1', '0 .5', '0 0', '.5 0'];
+  const text = (faces: string[], more = '') =>
+    plyOf(kPlace, [...arrow, '5 0 0', '6 0 0', '5 1 0'], faces).replace('end_header', `${more}end_header`);
+  const outline = arrow.map((place) => place.split(' ').map(Number) as [number, number]);
+  const areaOf = (points: readonly [number, number][]): number =>
+    points.reduce((sum, [x, y], i) => {
+      const [nextX, nextY] = points[(i + 1) % points.length]!;
+      return sum + (x * nextY - y * nextX) / 2;
+    }, 0);
+  const [triangles, area] = await areasOf(text(['6 0 1 2 3 4 5', '3 6 7 8']));
+  assert.deepEqual([triangles, area.toFixed(6)], [5, (areaOf(outline) + 0.5).toFixed(6)]);
+  const withUvs = text(
+    [`6 0 1 2 3 4 5 12 ${uvs.join(' ')}`, '3 6 7 8 6 0 0 1 0 0 1'],
+    'property list uchar float texcoord\n',
+  );
+  // UVs of glTF are upside down.
+  const ofUvs = areaOf(uvs.map((uv) => uv.split(' ').map(Number) as [number, number]));
+  assert.deepEqual(
+    (await areasOf(withUvs)).map((x) => x.toFixed(5)),
+    [5, areaOf(outline) + 0.5, -ofUvs - 0.5].map((x) => x.toFixed(5)),
+  );
+  const binary = (isLittle: boolean): Uint8Array => {
+    const header = text(['x'], 'property uchar red\nproperty uchar green\nproperty uchar blue\n')
+      .replace('ascii', isLittle ? 'binary_little_endian' : 'binary_big_endian')
+      .replace(/end_header[\s\S]*/, 'end_header\n');
+    const view = new DataView(new ArrayBuffer(9 * 12 + 1 + 6 * 4 + 3));
+    const places = [...outline, [5, 0], [6, 0], [5, 1]] as const;
+    places.forEach(([x, y], v) => {
+      view.setFloat32(12 * v, x, isLittle);
+      view.setFloat32(12 * v + 4, y, isLittle);
+    });
+    view.setUint8(108, 6);
+    for (let k = 0; k < 6; ++k) view.setInt32(109 + 4 * k, k, isLittle);
+    view.setUint8(133, 255);
+    return Buffer.concat([Buffer.from(header), new Uint8Array(view.buffer)]);
+  };
+  for (const isLittle of [true, false]) {
+    const [count, size] = await areasOf(binary(isLittle));
+    assert.deepEqual([count, size.toFixed(6)], [4, areaOf(outline).toFixed(6)]);
+    const [primitive] = (await documentOf(binary(isLittle))).listMeshes()[0]!.listPrimitives();
+    assert.deepEqual(primitive!.getAttribute('COLOR_0')!.getElement(0, []).slice(0, 3), [1, 0, 0]);
+  }
+});
+
 test('normals, UVs and colours that are no numbers get their defaults, others are brought into range', async () => {
   const properties = `${kPlace}\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nproperty float red\nproperty float green\nproperty float blue`;
   const odd = ['nan', '1e300', '-5', '0', '1e-44'];

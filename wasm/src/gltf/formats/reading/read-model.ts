@@ -3,7 +3,6 @@ import { Group, Mesh, MeshStandardMaterial } from 'three';
 import { FBXLoader } from 'three/addons/loaders/FBXLoader.js';
 import { MTLLoader } from 'three/addons/loaders/MTLLoader.js';
 import { OBJLoader } from 'three/addons/loaders/OBJLoader.js';
-import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
 import { STLLoader } from 'three/addons/loaders/STLLoader.js';
 import { USDLoader } from 'three/addons/loaders/USDLoader.js';
 import { exceeds } from '../../checks/read-limits.js';
@@ -12,6 +11,7 @@ import { checkLibraries, checkMaterials, librariesOf } from '../checks/obj.js';
 import { type FormatLimits, mostBytes } from '../limits.js';
 import { guardLoaders } from './guards.js';
 import { kNotFound, withFiles } from './images.js';
+import { readPly } from './ply.js';
 import { sceneGlb } from './scene-glb.js';
 
 /** What the readers of the formats call. */
@@ -70,8 +70,8 @@ const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Obj
     );
   },
   async ply(bytes) {
-    const geometry = new PLYLoader().parse(bufferOf(bytes));
-    return geometry.index ? meshOf(geometry) : new Group(); // of points
+    const geometry = readPly(bytes);
+    return geometry ? meshOf(geometry) : new Group(); // of points
   },
   // Its normals are those of the triangles, which glTF has without them.
   stl: async (bytes) => meshOf(new STLLoader().parse(bufferOf(bytes)).deleteAttribute('normal')),

@@ -1,0 +1,161 @@
+import {
+  type BufferGeometry,
+  Color,
+  Float32BufferAttribute,
+  ShapeUtils,
+  SRGBColorSpace,
+  Vector2,
+  Vector3,
+} from 'three';
+import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
+
+/** A number of an element, or a list of them with its count before it. */
+interface Property {
+  name: string;
+  type: string;
+  countType: string | undefined;
+}
+
+interface Element {
+  name: string;
+  count: number;
+  properties: Property[];
+}
+
+/** How a binary file is read, by the types of its numbers. */
+const kReaders: Record<string, [size: number, read: (view: DataView, at: number, isLittle: boolean) => number]> = {
+  char: [1, (view, at) => view.getInt8(at)],
+  uchar: [1, (view, at) => view.getUint8(at)],
+  short: [2, (view, at, isLittle) => view.getInt16(at, isLittle)],
+  ushort: [2, (view, at, isLittle) => view.getUint16(at, isLittle)],
+  int: [4, (view, at, isLittle) => view.getInt32(at, isLittle)],
+  uint: [4, (view, at, isLittle) => view.getUint32(at, isLittle)],
+  float: [4, (view, at, isLittle) => view.getFloat32(at, isLittle)],
+  double: [8, (view, at, isLittle) => view.getFloat64(at, isLittle)],
+};
+const kOtherNames: Record<string, string> = {
+  int8: 'char',
+  uint8: 'uchar',
+  int16: 'short',
+  uint16: 'ushort',
+  int32: 'int',
+  uint32: 'uint',
+  float32: 'float',
+  float64: 'double',
+};
+
+/** The faces of a PLY as triangles. */
+interface Triangles {
+  indices: number[];
+  /** 2 for each corner; empty if not every face has them. */
+  uvs: number[];
+  /** 3 for each corner, in linear light; empty if the faces have none. */
+  colors: number[];
+}
+
+/**
+ * Reads a PLY. Vertices are read by three's loader, faces here: the loader loses those of more than four corners.
+ * @returns nothing if it has no faces.
+ */
+export function readPly(bytes: Uint8Array): BufferGeometry | undefined {
+  const header = /^[\s\S]*?end_header[^\n]*\n/.exec(new TextDecoder('latin1').decode(bytes))?.[0] ?? '';
+  const withoutFaces = Uint8Array.from(bytes);
+  const at = header.search(/element\s+face\s/);
+  if (at >= 0) withoutFaces[header.indexOf('face', at)] = 'F'.charCodeAt(0); // No name that the loader knows.
+  const geometry = new PLYLoader().parse(withoutFaces.buffer);
+  const position = geometry.getAttribute('position');
+  const placeOf = (vertex: number): Vector3 =>
+    vertex < position.count ? new Vector3().fromBufferAttribute(position, vertex) : new Vector3();
+  const { indices, uvs, colors } = trianglesOf(header, bytes, placeOf);
+  if (indices.length === 0) return undefined;
+  geometry.setIndex(indices);
+  if (uvs.length === 0 && colors.length === 0) return geometry;
+  const byCorner = geometry.toNonIndexed();
+  if (uvs.length > 0) byCorner.setAttribute('uv', new Float32BufferAttribute(uvs, 2));
+  if (colors.length > 0) byCorner.setAttribute('color', new Float32BufferAttribute(colors, 3));
+  return byCorner;
+}
+
+function trianglesOf(header: string, bytes: Uint8Array, placeOf: (vertex: number) => Vector3): Triangles {
+  const out: Triangles = { indices: [], uvs: [], colors: [] };
+  const next = numbersOf(header, bytes);
+  let [haveUvs, haveColors] = [true, true];
+  for (const { name, count, properties } of elementsOf(header))
+    for (let i = 0; i < count; ++i) {
+      const values = new Map<string, number[]>();
+      for (const { name: property, type, countType } of properties) {
+        const numbers: number[] = [];
+        const length = countType === undefined ? 1 : next(countType);
+        for (let k = 0; k < length; ++k) {
+          const value = next(type);
+          if (value === undefined) return out; // The file ends early.
+          numbers.push(value);
+        }
+        values.set(property, numbers);
+      }
+      if (name !== 'face') continue;
+      const corners = values.get('vertex_indices') ?? values.get('vertex_index') ?? [];
+      const uvs = values.get('texcoord');
+      const [red, green, blue] = ['red', 'green', 'blue'].map((channel) => values.get(channel)?.[0]);
+      const types = properties.find((property) => property.name === 'red')?.type ?? '';
+      haveUvs &&= uvs?.length === 2 * corners.length;
+      haveColors &&= red !== undefined && green !== undefined && blue !== undefined;
+      const scale = /float|double/.test(types)
+        ? 1
+        : 1 / (2 ** (8 * (kReaders[kOtherNames[types] ?? types]?.[0] ?? 1)) - 1);
+      for (const corner of triangulated(corners.map(placeOf))) {
+        out.indices.push(corners[corner]!);
+        if (haveUvs) out.uvs.push(uvs![2 * corner]!, uvs![2 * corner + 1]!);
+        if (haveColors)
+          out.colors.push(...new Color().setRGB(red! * scale, green! * scale, blue! * scale, SRGBColorSpace));
+      }
+    }
+  return { indices: out.indices, uvs: haveUvs ? out.uvs : [], colors: haveColors ? out.colors : [] };
+}
+
+/** The triangles of a polygon, 3 of its corners for each: also of one that is not convex. */
+function triangulated(places: readonly Vector3[]): number[] {
+  const fan = Array.from({ length: Math.max(0, places.length - 2) }, (_, k) => [0, k + 1, k + 2]).flat();
+  if (places.length < 5) return fan;
+  const normal = new Vector3();
+  for (let k = 2; k < places.length; ++k)
+    normal.add(places[k - 1]!.clone().sub(places[0]!).cross(places[k]!.clone().sub(places[0]!)));
+  const right = new Vector3(1, 0, 0).cross(normal);
+  if (right.lengthSq() < 0.1 * normal.lengthSq()) right.set(0, 1, 0).cross(normal);
+  const up = normal.clone().cross(right);
+  const flat = places.map((place) => new Vector2(place.dot(right) / right.length(), place.dot(up) / up.length()));
+  const found = ShapeUtils.triangulateShape(flat, []);
+  return found.length === places.length - 2 ? found.flat() : fan;
+}
+
+function elementsOf(header: string): Element[] {
+  const out: Element[] = [];
+  for (const line of header.split(/[\r\n]+/)) {
+    const [word, ...words] = line.trim().split(/\s+/);
+    if (word === 'element')
+      out.push({ name: words[0] ?? '', count: Number.parseInt(words[1] ?? '', 10) || 0, properties: [] });
+    if (word !== 'property') continue;
+    const [countType, type = '', name = ''] = words[0] === 'list' ? words.slice(1) : [undefined, ...words];
+    out.at(-1)?.properties.push({ name, type, countType });
+  }
+  return out;
+}
+
+/** Reads the numbers after a header one by one: nothing at the end of the file. */
+function numbersOf(header: string, bytes: Uint8Array): (type: string) => number | undefined {
+  if (/format\s+ascii/.test(header)) {
+    const words = new TextDecoder('latin1').decode(bytes.subarray(header.length)).matchAll(/\S+/g);
+    return () => {
+      const { done, value } = words.next();
+      return done ? undefined : Number.parseFloat(value[0]);
+    };
+  }
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const isLittle = /format\s+binary_little/.test(header);
+  let at = header.length;
+  return (type) => {
+    const [size, read] = kReaders[kOtherNames[type] ?? type] ?? kReaders['uchar']!;
+    at += size;
+    return at > view.byteLength ? undefined : read(view, at - size, isLittle);
+  };
+}
