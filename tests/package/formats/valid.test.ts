@@ -43,7 +43,7 @@ test('triangles whose corners are not there, or nowhere, are left out, and their
   await assert.rejects(toGlb(Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\nf 7 8 9\n')), /OBJ file without any triangle/);
 });
 
-/** The area of all triangles in the plane z = 0, and their UVs' area. */
+/** The sum of the areas of all triangles in the plane z = 0, and of their UVs: more than the polygon's where they overlap. */
 async function areasOf(file: string | Uint8Array): Promise<[triangles: number, area: number, ofUvs: number]> {
   const [primitive] = (await documentOf(file)).listMeshes()[0]!.listPrimitives();
   const indices = [...primitive!.getIndices()!.getArray()!];
@@ -52,12 +52,12 @@ async function areasOf(file: string | Uint8Array): Promise<[triangles: number, a
     indices.reduce((sum, _, c) => {
       if (c % 3 !== 0 || !points) return sum;
       const [a, b, d] = [0, 1, 2].map((k) => points.getElement(indices[c + k]!, [])) as [number[], number[], number[]];
-      return sum + ((b[0]! - a[0]!) * (d[1]! - a[1]!) - (b[1]! - a[1]!) * (d[0]! - a[0]!)) / 2;
+      return sum + Math.abs((b[0]! - a[0]!) * (d[1]! - a[1]!) - (b[1]! - a[1]!) * (d[0]! - a[0]!)) / 2;
     }, 0);
   return [indices.length / 3, areaIn(places), areaIn(uvs)];
 }
 
-test('faces of a PLY may have any number of corners, be concave, and have UVs at their corners', async () => {
+test('faces of PLY and OBJ may have any number of corners, be concave, and have UVs at their corners', async () => {
   // An arrow: a fan from its first corner would cover what is outside.
   const arrow = ['2 1 0', '0 2 0', '0 3 0', '-1 1.5 0', '0 0 0', '0 1 0'];
   const uvs = ['1 0', '.5 1', '0 1', '0 .5', '0 0', '.5 0'];
@@ -75,12 +75,23 @@ test('faces of a PLY may have any number of corners, be concave, and have UVs at
     [`6 0 1 2 3 4 5 12 ${uvs.join(' ')}`, '3 6 7 8 6 0 0 1 0 0 1'],
     'property list uchar float texcoord\n',
   );
-  // UVs of glTF are upside down.
   const ofUvs = areaOf(uvs.map((uv) => uv.split(' ').map(Number) as [number, number]));
   assert.deepEqual(
     (await areasOf(withUvs)).map((x) => x.toFixed(5)),
-    [5, areaOf(outline) + 0.5, -ofUvs - 0.5].map((x) => x.toFixed(5)),
+    [5, areaOf(outline) + 0.5, ofUvs + 0.5].map((x) => x.toFixed(5)),
   );
+  const lines = (first: number) => [
+    ...arrow.map((place) => `v ${place}`),
+    ...uvs.map((uv) => `vt ${uv}`),
+    `f ${uvs.map((_, k) => `${k + first}/${k + first}`).join(' ')}`,
+  ];
+  // By places from the end, too, with a line that goes on below, and a quad that is not convex.
+  for (const obj of [lines(1), lines(-6), ['v 9 9 9', ...lines(-6)]])
+    assert.deepEqual(
+      (await areasOf(`${obj.join('\n').replace(/ (\S+)$/, ' \\\n $1')}\n`)).map((x) => x.toFixed(5)),
+      [4, areaOf(outline), ofUvs].map((x) => x.toFixed(5)),
+    );
+  assert.equal((await areasOf('v 1 0 0\nv 0 3 0\nv -1 0 0\nv 0 1 0\nf 1 2 3 4\n'))[1].toFixed(5), '2.00000');
   const binary = (isLittle: boolean): Uint8Array => {
     const header = text(['x'], 'property uchar red\nproperty uchar green\nproperty uchar blue\n')
       .replace('ascii', isLittle ? 'binary_little_endian' : 'binary_big_endian')

@@ -1,13 +1,6 @@
-import {
-  type BufferGeometry,
-  Color,
-  Float32BufferAttribute,
-  ShapeUtils,
-  SRGBColorSpace,
-  Vector2,
-  Vector3,
-} from 'three';
+import { type BufferGeometry, Color, Float32BufferAttribute, SRGBColorSpace, Vector3 } from 'three';
 import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
+import { triangulated } from './polygon.js';
 
 /** A number of an element, or a list of them with its count before it. */
 interface Property {
@@ -111,21 +104,6 @@ function trianglesOf(header: string, bytes: Uint8Array, placeOf: (vertex: number
       }
     }
   return { indices: out.indices, uvs: haveUvs ? out.uvs : [], colors: haveColors ? out.colors : [] };
-}
-
-/** The triangles of a polygon, 3 of its corners for each: also of one that is not convex. */
-function triangulated(places: readonly Vector3[]): number[] {
-  const fan = Array.from({ length: Math.max(0, places.length - 2) }, (_, k) => [0, k + 1, k + 2]).flat();
-  if (places.length < 5) return fan;
-  const normal = new Vector3();
-  for (let k = 2; k < places.length; ++k)
-    normal.add(places[k - 1]!.clone().sub(places[0]!).cross(places[k]!.clone().sub(places[0]!)));
-  const right = new Vector3(1, 0, 0).cross(normal);
-  if (right.lengthSq() < 0.1 * normal.lengthSq()) right.set(0, 1, 0).cross(normal);
-  const up = normal.clone().cross(right);
-  const flat = places.map((place) => new Vector2(place.dot(right) / right.length(), place.dot(up) / up.length()));
-  const found = ShapeUtils.triangulateShape(flat, []);
-  return found.length === places.length - 2 ? found.flat() : fan;
 }
 
 function elementsOf(header: string): Element[] {

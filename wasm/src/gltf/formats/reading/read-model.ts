@@ -11,6 +11,7 @@ import { checkLibraries, checkMaterials, librariesOf } from '../checks/obj.js';
 import { type FormatLimits, mostBytes } from '../limits.js';
 import { guardLoaders } from './guards.js';
 import { kNotFound, withFiles } from './images.js';
+import { withConvexFaces } from './obj.js';
 import { readPly } from './ply.js';
 import { sceneGlb } from './scene-glb.js';
 
@@ -64,7 +65,7 @@ const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Obj
       async () => {
         const creator = new MTLLoader().parse(materials, '');
         creator.preload();
-        return new OBJLoader().setMaterials(creator).parse(text);
+        return new OBJLoader().setMaterials(creator).parse(withConvexFaces(text));
       },
       onMissing,
     );
