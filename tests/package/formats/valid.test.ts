@@ -126,6 +126,26 @@ test('normals, UVs and colours that are no numbers get their defaults, others ar
   assert.deepEqual(primitive!.getAttribute('NORMAL')!.getElement(0, []), [0, 0, 1]);
 });
 
+test('an OBJ may name several libraries in a line, with blanks and quotes; if all is clear, nothing is', async () => {
+  const beside = {
+    'my skin.mtl': 'newmtl skin\nKd 1 0 0\nd 0\n',
+    'b.mtl': 'newmtl hair\nKd 0 1 0\nTr 1\n',
+  };
+  const faces = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl skin\nf 1 2 3\nusemtl hair\nf 1 3 2\n';
+  const alphas = async (text: string, others: Record<string, string> = {}) =>
+    (await documentOf(text, { ...beside, ...others })).listMaterials().map((one) => [one.getName(), one.getAlpha()]);
+  for (const line of ['mtllib my skin.mtl b.mtl', 'mtllib "my skin.mtl" "b.mtl"', 'mtllib my skin.mtl\nmtllib ./b.mtl'])
+    assert.deepEqual((await alphas(`${line}\n${faces}`)).sort(), [
+      ['hair', 1],
+      ['skin', 1],
+    ]);
+  const half = { 'b.mtl': 'newmtl hair\nKd 0 1 0\n' };
+  assert.deepEqual((await alphas(`mtllib my skin.mtl b.mtl\n${faces}`, half)).sort(), [
+    ['hair', 1],
+    ['skin', 0],
+  ]);
+});
+
 test('factors of materials', async () => {
   const obj = (name: string) => `mtllib a.mtl\nusemtl ${name}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n`;
   for (const value of ['nan', '-3', '7', 'inf', '', '1e999']) {

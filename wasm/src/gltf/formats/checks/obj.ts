@@ -18,10 +18,12 @@ export function checkObj(bytes: Uint8Array, limits: FormatLimits): void {
   if (groups > limits.parts) throw exceeds(`has ${groups.toLocaleString('en')} groups`, 'parts', limits);
 }
 
-/** The libraries of materials that an OBJ names, each once. */
+/** The libraries of materials that an OBJ names, each once: several in a line, with blanks in their names, or in quotes. */
 export function librariesOf(text: string): string[] {
-  const names = Array.from(text.matchAll(kLibrary), ([, name]) => plainPath(name!));
-  return [...new Set(names)].filter((name) => name !== '');
+  const names = Array.from(text.matchAll(kLibrary), ([, line]) =>
+    line!.split(/(?<=\.mtl"?)\s/i).map((name) => plainPath(name.replaceAll('"', ''))),
+  );
+  return [...new Set(names.flat())].filter((name) => name !== '');
 }
 
 /** A path with slashes, without detours, in which one file would have many names. */

@@ -1,4 +1,4 @@
-import type { BufferGeometry, Object3D } from 'three';
+import type { BufferGeometry, Material, Object3D } from 'three';
 import { Group, Mesh, MeshStandardMaterial } from 'three';
 import { FBXLoader } from 'three/addons/loaders/FBXLoader.js';
 import { MTLLoader } from 'three/addons/loaders/MTLLoader.js';
@@ -65,6 +65,7 @@ const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Obj
       async () => {
         const creator = new MTLLoader().parse(materials, '');
         creator.preload();
+        showAll(Object.values(creator.materials));
         return new OBJLoader().setMaterials(creator).parse(withConvexFaces(text));
       },
       onMissing,
@@ -83,6 +84,12 @@ const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Obj
       onMissing,
     ),
 };
+
+/** Some programs write an opacity of 0 for all that is opaque. */
+function showAll(materials: readonly Material[]): void {
+  if (materials.every(({ opacity }) => opacity === 0))
+    for (const material of materials) Object.assign(material, { opacity: 1, transparent: false });
+}
 
 function meshOf(geometry: BufferGeometry): Object3D {
   const material = new MeshStandardMaterial({ roughness: 0.9, vertexColors: geometry.hasAttribute('color') });
