@@ -1,12 +1,13 @@
 // What toGlb writes is valid, however odd the numbers in the file are.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { NodeIO } from '@gltf-transform/core';
+import { getBounds, NodeIO } from '@gltf-transform/core';
 import { toGlb } from 'cagecast/gltf';
 import { pngOf } from '../../support/files/costly.js';
 import { usdaOf } from '../../support/files/costly-formats.js';
 import { validate } from '../../support/gltf.js';
-import { fbxNode } from '../../support/models.js';
+import { fbxNode, fbxOf } from '../../support/models.js';
+import { head } from '../scenes.js';
 
 const io = new NodeIO();
 
@@ -124,6 +125,32 @@ test('normals, UVs and colours that are no numbers get their defaults, others ar
   for (const semantic of ['NORMAL', 'TEXCOORD_0', 'COLOR_0'])
     assert.ok([...primitive!.getAttribute(semantic)!.getArray()!].every(Number.isFinite), semantic);
   assert.deepEqual(primitive!.getAttribute('NORMAL')!.getElement(0, []), [0, 0, 1]);
+});
+
+test('an FBX that says its unit becomes metres', async () => {
+  const { cage } = head(1, 8);
+  const heightOf = async (text: string) => {
+    const [scene] = (await documentOf(text)).listScenes();
+    const { min, max } = getBounds(scene!);
+    return max[1] - min[1];
+  };
+  const without = fbxOf(cage as Parameters<typeof fbxOf>[0]);
+  const height = await heightOf(without);
+  const unit = (centimetres: string) =>
+    heightOf(
+      without.replace(
+        /^Objects/m,
+        `${fbxNode('GlobalSettings: ', fbxNode('Properties70: ', `P: "UnitScaleFactor", "double", "Number", "",${centimetres}`))}\nObjects`,
+      ),
+    );
+  for (const [centimetres, metres] of [
+    ['1', 0.01],
+    ['100', 1],
+    ['2.54', 0.0254],
+    ['0', 1],
+    ['-1', 1],
+  ] as const)
+    assert.equal(((await unit(centimetres)) / height).toFixed(6), metres.toFixed(6), centimetres);
 });
 
 test('an OBJ may name several libraries in a line, with blanks and quotes; if all is clear, nothing is', async () => {

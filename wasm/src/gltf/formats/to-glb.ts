@@ -33,8 +33,8 @@ export interface Companions {
  *
  * Kept: triangles, normals, UVs, vertex colours, skins, morph targets, names, the places of nodes, colours and images of materials, whose
  * PNG, JPEG and WebP bytes stay as they are. Lost: animations, cameras, lights, lines and points, images of other types, and what glTF's own
- * materials do not have. Units and axes stay as the loader gives them; where a format has no up axis, y is up. Vertices that are alike
- * become one.
+ * materials do not have. What an FBX or USD says of its units becomes metres; other units stay, and y is up. Vertices that are alike become
+ * one.
  *
  * The GLB is valid: triangles with corners that are not there, or not at finite places, are left out; what else is not a finite number
  * gets its default, and factors are brought within 0 … 1.

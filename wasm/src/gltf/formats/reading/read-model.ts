@@ -49,8 +49,12 @@ const textOf = (bytes: Uint8Array): string => new TextDecoder().decode(bytes);
 
 /** What reads each format. */
 const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Object3D>> = {
-  fbx: async (bytes, { read, onMissing }) =>
-    withFiles(read, async () => new FBXLoader().parse(bufferOf(bytes), ''), onMissing),
+  async fbx(bytes, { read, onMissing }) {
+    const scene = await withFiles(read, async () => new FBXLoader().parse(bufferOf(bytes), ''), onMissing);
+    const centimetres = Number(scene.userData['unitScaleFactor']);
+    if (centimetres > 0 && Number.isFinite(centimetres)) scene.scale.multiplyScalar(centimetres / 100);
+    return scene;
+  },
   async obj(bytes, { read, onMissing, limits }) {
     const text = textOf(bytes);
     const names = librariesOf(text);
