@@ -316,14 +316,18 @@ describe('a cage out of place', () => {
     assert.equal(codes(look({ positions: moved(([x, y, z]) => [x + 50, y, z]) }))[0], 'cageElsewhere');
   });
 
-  test('a cage may lie inside of what is never painted', () => {
-    const hair = ball([0, 0, 0], () => 1.12, 12, 24);
-    const groups = Uint32Array.from({ length: (target.positions.length + hair.positions.length) / 3 }, (_, v) =>
+  test('a cage may lie inside of what is never painted, however much that is', () => {
+    const hood = within(
+      ball([0, 0, 0], () => 1.2, 12, 24),
+      (_x, _y, z) => z < 0.9,
+    );
+    const groups = Uint32Array.from({ length: (target.positions.length + hood.positions.length) / 3 }, (_, v) =>
       v < target.groups.length ? target.groups[v]! : 3,
     );
-    const whole = { ...join3d(target, hair), groups, names: [...target.names, 'hair'] };
-    assert.ok(inspect(cage, whole).inside.vertices > 0);
-    assert.equal(inspect(cage, whole, { parts: { exclude: ['hair'] } }).inside.vertices, 0);
+    const whole = { ...join3d(target, hood), groups, names: [...target.names, 'hood'] };
+    const [all, bare] = [{}, { parts: { exclude: ['hood'] } }].map((options) => inspect(cage, whole, options));
+    assert.ok(all!.inside.area > 0.5 && all!.placement.outside.exposedArea > 0.5);
+    assert.deepEqual([bare!.inside.vertices, bare!.placement.outside.exposedArea], [0, 0]);
   });
 
   test('a ground that is part of the target is named, and that it makes lengths too coarse', () => {

@@ -52,7 +52,11 @@ async function areasOf(file: string | Uint8Array): Promise<[triangles: number, a
   const areaIn = (points: typeof places): number =>
     indices.reduce((sum, _, c) => {
       if (c % 3 !== 0 || !points) return sum;
-      const [a, b, d] = [0, 1, 2].map((k) => points.getElement(indices[c + k]!, [])) as [number[], number[], number[]];
+      const [a, b, d] = [0, 1, 2].map((k) => points.getElement(indices[c + k]!, [] as number[])) as [
+        number[],
+        number[],
+        number[],
+      ];
       return sum + Math.abs((b[0]! - a[0]!) * (d[1]! - a[1]!) - (b[1]! - a[1]!) * (d[0]! - a[0]!)) / 2;
     }, 0);
   return [indices.length / 3, areaIn(places), areaIn(uvs)];

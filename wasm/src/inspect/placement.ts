@@ -43,11 +43,17 @@ export interface Placement {
 /** Measures how the target lies relative to the cage. */
 export function placementOf(scene: Scene): Placement {
   const { areas, diagonal, sides, result, isInRegion } = scene;
-  // Hair and glasses lie outside the cage of a head: what is culled is no part of what the cage is for, if anything is painted.
+  // Hair and glasses lie outside the cage of a head: what is excluded is no part of what the cage is for, nor is what is culled, if
+  // enough of the rest is painted.
   const areaOf = (isOf: (segment: SegmentStats) => boolean) =>
     result.segmentStats.reduce((sum, segment) => sum + (isOf(segment) ? segment.exposedArea : 0), 0);
-  const isPainted = areaOf(({ culled }) => !culled) > kMuchPainted * areaOf(() => true);
-  const isAside = (segment: number) => isPainted && result.segmentStats[segment]!.culled;
+  const isExcluded = ({ culledBy }: SegmentStats) => culledBy === 'lock';
+  const rest = areaOf((segment) => !isExcluded(segment));
+  const isPainted = areaOf(({ culled }) => !culled) > kMuchPainted * rest;
+  const isAside = (segment: number) => {
+    const stats = result.segmentStats[segment]!;
+    return (rest > 0 && isExcluded(stats)) || (isPainted && stats.culled);
+  };
   let [vertices, area, total, exposed, beneath, exposedOutside] = [0, 0, 0, 0, 0, 0];
   const judged: number[] = [];
   const region: number[] = [];

@@ -78,7 +78,7 @@ function trianglesOf(header: string, bytes: Uint8Array, placeOf: (vertex: number
       const values = new Map<string, number[]>();
       for (const { name: property, type, countType } of properties) {
         const numbers: number[] = [];
-        const length = countType === undefined ? 1 : next(countType);
+        const length = countType === undefined ? 1 : (next(countType) ?? 0);
         for (let k = 0; k < length; ++k) {
           const value = next(type);
           if (value === undefined) return out; // The file ends early.
