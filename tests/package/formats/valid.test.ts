@@ -205,6 +205,32 @@ test('a mesh without UVs has no texture, beside one that has both', async () => 
   );
 });
 
+test('triangles that go to and fro between two materials are two primitives, each with its own vertices', async () => {
+  const columns = Array.from({ length: 20 }, (_, x) => x);
+  const obj = [
+    'mtllib a.mtl',
+    ...columns.map((x) => `v ${x} 0 0\nv ${x} 1 0\nv ${x + 0.5} 0 0`),
+    ...columns.map((x) => `usemtl ${x % 2 ? 'odd' : 'even'}\nf ${3 * x + 1} ${3 * x + 3} ${3 * x + 2}`),
+  ].join('\n');
+  const root = await documentOf(obj, { 'a.mtl': 'newmtl even\nKd 1 0 0\nnewmtl odd\nKd 0 1 0\n' });
+  const places = root
+    .listMeshes()
+    .flatMap((mesh) => mesh.listPrimitives())
+    .map((primitive) => {
+      const position = primitive.getAttribute('POSITION')!;
+      const firsts = Array.from(primitive.getIndices()!.getArray() as Uint32Array).filter((_, corner) => corner % 3 === 0);
+      return {
+        material: primitive.getMaterial()!.getName(),
+        vertices: position.getCount(),
+        columns: firsts.map((vertex) => position.getElement(vertex, [])[0]),
+      };
+    });
+  assert.deepEqual(places, [
+    { material: 'even', vertices: 30, columns: columns.filter((x) => x % 2 === 0) },
+    { material: 'odd', vertices: 30, columns: columns.filter((x) => x % 2 === 1) },
+  ]);
+});
+
 test('images that are cut off, or without a header, are missing', async () => {
   const obj = Buffer.from('mtllib a.mtl\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n');
   const whole = pngOf(4, 4);

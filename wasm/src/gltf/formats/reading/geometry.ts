@@ -9,7 +9,7 @@ interface Column {
 }
 
 /** A geometry as glTF has it. */
-interface Attributes {
+export interface Attributes {
   attributes: Record<string, Column>;
   /** The movement of each vertex, for each morph target. */
   targets: Float32Array[];
@@ -82,7 +82,7 @@ export function attributesOf(geometry: BufferGeometry, { indices, kept }: Corner
     return deltas;
   });
   if (geometry.index && !kept) return { attributes, targets, indices };
-  return gathered({ attributes, targets, indices }, kept, !geometry.index);
+  return gathererOf({ attributes, targets })(indices, kept, !geometry.index);
 }
 
 /** Gives what a vertex has of a joint more than once to the first of these. */
@@ -144,41 +144,38 @@ function flip(uvs: Float32Array): void {
 }
 
 /**
- * The vertices of kept triangles, in their order. Corners of other triangles are at the first one.
- * @param isMerged  Whether vertices that are alike become one, too.
+ * Returns what gathers the vertices of triangles, in their order; it can be called for each of many lists of triangles.
+ * Corners of triangles that are not kept are at the first vertex.
  */
-function gathered(
-  { attributes, targets, indices }: Attributes,
-  kept: Uint8Array | undefined,
-  isMerged: boolean,
-): Attributes {
+export function gathererOf({ attributes, targets }: Pick<Attributes, 'attributes' | 'targets'>) {
   const columns = [...Object.values(attributes), ...targets.map((values): Column => ({ values, size: 3 }))];
-  const known = isMerged ? new AlikeRows(columns, indices.length) : undefined;
   /** One more than the place of each vertex; 0 if it has none yet. */
   const places = new Uint32Array(columns[0]!.values.length / columns[0]!.size);
-  const sources = new Uint32Array(indices.length);
-  let count = 0;
-  const out = new Uint32Array(indices.length);
-  for (let c = 0; c < indices.length; ++c) {
-    if (kept && kept[(c - (c % 3)) / 3] === 0) continue;
-    const vertex = known ? known.firstLike(indices[c]!) : indices[c]!;
-    if (places[vertex] === 0) {
-      sources[count] = vertex;
-      places[vertex] = ++count;
+  /** @param isMerged  Whether vertices that are alike become one, too. */
+  return (indices: Uint32Array, kept?: Uint8Array, isMerged = false): Attributes => {
+    const known = isMerged ? new AlikeRows(columns, indices.length) : undefined;
+    const sources: number[] = [];
+    const out = new Uint32Array(indices.length);
+    for (let c = 0; c < indices.length; ++c) {
+      if (kept && kept[(c - (c % 3)) / 3] === 0) continue;
+      const vertex = known ? known.firstLike(indices[c]!) : indices[c]!;
+      if (places[vertex] === 0) places[vertex] = sources.push(vertex);
+      out[c] = places[vertex]! - 1;
     }
-    out[c] = places[vertex]! - 1;
-  }
-  const gather = <V extends Float32Array | Uint16Array>(values: V, size: number): V => {
-    const out = new (values.constructor as new (length: number) => V)(size * count);
-    for (let v = 0; v < count; ++v) for (let k = 0; k < size; ++k) out[size * v + k] = values[size * sources[v]! + k]!;
-    return out;
-  };
-  return {
-    attributes: Object.fromEntries(
-      Object.entries(attributes).map(([name, { values, size }]) => [name, { values: gather(values, size), size }]),
-    ),
-    targets: targets.map((values) => gather(values, 3)),
-    indices: out,
+    for (const vertex of sources) places[vertex] = 0;
+    const gather = <V extends Float32Array | Uint16Array>(values: V, size: number): V => {
+      const out = new (values.constructor as new (length: number) => V)(size * sources.length);
+      for (let v = 0; v < sources.length; ++v)
+        for (let k = 0; k < size; ++k) out[size * v + k] = values[size * sources[v]! + k]!;
+      return out;
+    };
+    return {
+      attributes: Object.fromEntries(
+        Object.entries(attributes).map(([name, { values, size }]) => [name, { values: gather(values, size), size }]),
+      ),
+      targets: targets.map((values) => gather(values, 3)),
+      indices: out,
+    };
   };
 }
 

@@ -3,7 +3,7 @@ import { type Material, Matrix4, type Mesh, type Object3D, type SkinnedMesh } fr
 import { packGlb, paddedLength } from '../../../parts/glb.js';
 import { checkImages } from '../../checks/check-images.js';
 import type { ReadLimits } from '../../checks/read-limits.js';
-import { attributesOf, boundsOf, cornersOf } from './geometry.js';
+import { attributesOf, boundsOf, cornersOf, gathererOf } from './geometry.js';
 import { MaterialWriter, named } from './materials.js';
 
 /**
@@ -68,46 +68,36 @@ class SceneWriter {
   }
 
   #addMesh(mesh: Mesh): number | undefined {
-    const { name, geometry, material, morphTargetDictionary, morphTargetInfluences } = mesh;
+    const { name, geometry, morphTargetDictionary, morphTargetInfluences } = mesh;
     const corners = cornersOf(geometry);
     if (corners === undefined || !(corners.kept?.includes(1) ?? corners.indices.length > 0)) return undefined;
     const joints = (mesh as Partial<SkinnedMesh>).skeleton?.bones.length ?? 0;
-    const { attributes, targets, indices } = attributesOf(geometry, corners, joints);
-    const own = Object.fromEntries(
-      Object.entries(attributes).map(([semantic, { values, size }]) => [
-        semantic,
-        this.#addAccessor(values, size, semantic === 'POSITION'),
-      ]),
-    );
-    const deltas = targets.map((target) => ({ POSITION: this.#addAccessor(target, 3, true) }));
-    const materials = [material].flat();
-    const { kept } = corners;
-    const groups =
-      Array.isArray(material) && geometry.groups.length > 0
-        ? geometry.groups
-        : [{ start: 0, count: Infinity, materialIndex: 0 }];
-    const primitives = groups.flatMap(({ start, count, materialIndex = 0 }): GLTF.IMeshPrimitive[] => {
-      const end = Math.min(indices.length, start + count);
-      const all = indices.subarray(start, Math.max(start, end - ((end - start) % 3)));
-      const some = kept ? all.filter((_, i) => kept[Math.floor((start + i) / 3)] === 1) : all;
-      if (some.length < 3) return [];
-      return [
-        {
-          attributes: own,
-          indices: this.#addAccessor(some, 1),
-          ...this.#materialOf(materials[materialIndex], 'TEXCOORD_0' in own),
-          ...(deltas.length > 0 && { targets: deltas }),
-        },
-      ];
+    const whole = attributesOf(geometry, corners, joints);
+    const lists = trianglesByMaterial(mesh, whole.indices, corners.kept);
+    if (lists.size === 0) return undefined;
+    const gather = gathererOf(whole);
+    const primitives = [...lists].map(([look, triangles]): GLTF.IMeshPrimitive => {
+      const { attributes, targets, indices } = triangles.length < whole.indices.length ? gather(triangles) : whole;
+      const deltas = targets.map((target) => ({ POSITION: this.#addAccessor(target, 3, true) }));
+      return {
+        attributes: Object.fromEntries(
+          Object.entries(attributes).map(([semantic, { values, size }]) => [
+            semantic,
+            this.#addAccessor(values, size, semantic === 'POSITION'),
+          ]),
+        ),
+        indices: this.#addAccessor(indices, 1),
+        ...this.#materialOf(look, 'TEXCOORD_0' in attributes),
+        ...(deltas.length > 0 && { targets: deltas }),
+      };
     });
-    if (primitives.length === 0) return undefined;
     const names = Object.keys(morphTargetDictionary ?? {});
-    const weights = deltas.map((_, t) => morphTargetInfluences?.[t] ?? 0);
+    const weights = whole.targets.map((_, t) => morphTargetInfluences?.[t] ?? 0);
     const written: GLTF.IMesh = {
       ...named(geometry.name || name),
       primitives,
-      ...(deltas.length > 0 && { weights: weights.map((weight) => (Number.isFinite(weight) ? weight : 0)) }),
-      ...(deltas.length === names.length && names.length > 0 && { extras: { targetNames: names } }),
+      ...(weights.length > 0 && { weights: weights.map((weight) => (Number.isFinite(weight) ? weight : 0)) }),
+      ...(weights.length === names.length && names.length > 0 && { extras: { targetNames: names } }),
     };
     return (this.#json.meshes ??= []).push(written) - 1;
   }
@@ -160,6 +150,42 @@ class SceneWriter {
     this.#check(this.#length);
     return (this.#json.bufferViews ??= []).push(view) - 1;
   }
+}
+
+/**
+ * The corners of all triangles of each material. Files often go to and fro between few materials.
+ * @param kept  Whether each triangle counts.
+ */
+function trianglesByMaterial(
+  { geometry, material }: Mesh,
+  indices: Uint32Array,
+  kept: Uint8Array | undefined,
+): Map<Material | undefined, Uint32Array> {
+  const groups =
+    Array.isArray(material) && geometry.groups.length > 0
+      ? geometry.groups
+      : [{ start: 0, count: Infinity, materialIndex: 0 }];
+  const materials = [material].flat();
+  const lists = new Map<Material | undefined, Uint32Array[]>();
+  for (const { start, count, materialIndex = 0 } of groups) {
+    const end = Math.min(indices.length, start + count);
+    const all = indices.subarray(start, Math.max(start, end - ((end - start) % 3)));
+    const some = kept ? all.filter((_, i) => kept[Math.floor((start + i) / 3)] === 1) : all;
+    if (some.length < 3) continue;
+    const look = materials[materialIndex];
+    if (!lists.get(look)?.push(some)) lists.set(look, [some]);
+  }
+  return new Map([...lists].map(([look, parts]) => [look, joined(parts)]));
+}
+
+function joined(parts: readonly Uint32Array[]): Uint32Array {
+  const all = new Uint32Array(parts.reduce((sum, { length }) => sum + length, 0));
+  let at = 0;
+  for (const part of parts) {
+    all.set(part, at);
+    at += part.length;
+  }
+  return all;
 }
 
 /** The numbers of a matrix as glTF has those of joints: none that is not finite, and its last row is 0, 0, 0, 1. */
