@@ -5,7 +5,7 @@ import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, symlinkSync }
 import { test } from 'node:test';
 import { PNG } from 'pngjs';
 import { fails, ok, run } from '../../support/command.js';
-import { glbOf, packGlb, unpackGlb } from '../../support/gltf.js';
+import { GlbMaker, glbOf, packGlb, unpackGlb } from '../../support/gltf.js';
 import { random } from '../scenes.js';
 import { inRepository, jsonOf, png, workplace, write, writeChanged } from './workplace.js';
 
@@ -229,4 +229,36 @@ test('a picture that is no PNG is decoded by the sharp of the project, as what n
   symlinkSync(inRepository('node_modules/sharp'), 'node_modules/sharp', 'junction');
   assert.deepEqual(relay(), [0, '']);
   assert.deepEqual([...PNG.sync.read(readFileSync('relayed.png')).data.subarray(0, 4)], [200, 200, 200, 200]);
+});
+
+test('a far larger picture without transparency is read in the small size that is looked at, others as they are', () => {
+  const maker = new GlbMaker();
+  const sizes = [
+    { width: 2400, height: 1200, colorType: 2 },
+    { width: 2400, height: 1200, colorType: 6 },
+    { width: 2000, height: 1000, colorType: 2 },
+  ] as const;
+  const picture = ({ width, height, colorType }: (typeof sizes)[number]) =>
+    PNG.sync.write(new PNG({ width, height, fill: true }), { colorType });
+  maker.json.images = sizes.map((size) => ({ bufferView: maker.view(picture(size)), mimeType: 'image/png' }));
+  maker.json.textures = sizes.map((_, source) => ({ source }));
+  maker.json.materials = sizes.map((_, index) => ({ pbrMetallicRoughness: { baseColorTexture: { index } } }));
+  const uvs = new Float32Array(2 * vertices);
+  for (const [material] of sizes.entries()) maker.node({ mesh: maker.mesh({ ...target, uvs }, { material }) });
+  write('textured.glb', maker.finish());
+  cpSync(inRepository('dist'), 'told/dist', { recursive: true });
+  mkdirSync('told/node_modules');
+  write(
+    'told/node_modules/sharp.js',
+    `const sharp = require(${JSON.stringify(inRepository('node_modules/sharp'))});
+    module.exports = (...args) => {
+      const image = sharp(...args);
+      const { resize } = image;
+      image.resize = (...size) => { console.error('read at', size[0], size[1]); return resize.apply(image, size); };
+      return image;
+    };`,
+  );
+  const args = 'told/dist/cli.js make textured.glb -o made.glb'.split(' ');
+  const { stderr } = spawnSync(process.execPath, args);
+  assert.deepEqual(stderr.toString().match(/read at .*/g), ['read at 512 256']);
 });

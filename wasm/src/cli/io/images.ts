@@ -2,6 +2,7 @@ import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
+import { smallSize } from '../../bake/small-image.js';
 import { imageIsWhole, imageSize, imageType, pngLength } from '../../gltf/image-file.js';
 import { firstLine, InputError, naming } from '../../scene/input-error.js';
 import type { ReadOptions } from '../model/reading.js';
@@ -21,7 +22,19 @@ export const readImage = (path: string, reading: ReadOptions, folder?: string): 
  * Decodes a PNG; other types by sharp, if it is installed.
  * @throws {InputError}
  */
-export async function decodeImage(bytes: Uint8Array): Promise<Image> {
+export const decodeImage = (bytes: Uint8Array): Promise<Image> => decode(bytes, Infinity);
+
+/**
+ * Decodes an image to look for a face in it. A far larger one than `smallSize` gets that size, unless it has transparency or sharp is missing.
+ * @throws {InputError}
+ */
+export const decodeSmall = (bytes: Uint8Array): Promise<Image> => decode(bytes, kFarLarger);
+
+/** From how many times the small size on an image is far larger. Of others, all pixels take hardly longer. */
+const kFarLarger = 4;
+
+/** @param most  How many times as long as the small size a side may be for the image to be read as it is. */
+async function decode(bytes: Uint8Array, most: number): Promise<Image> {
   const type = imageType(bytes);
   if (type === undefined) throw new InputError('is not a PNG, JPEG or WebP image');
   if (type === 'image/ktx2') throw new InputError('is a KTX2 image, which cannot be baked; convert it to PNG');
@@ -30,14 +43,20 @@ export async function decodeImage(bytes: Uint8Array): Promise<Image> {
   const { width, height } = imageSize(bytes) ?? { width: 0, height: 0 };
   if (width === 0 || height === 0 || width > mostTexels || height > mostTexels)
     throw new InputError(`has ${width} × ${height} pixels; both must be from 1 to ${mostTexels}`);
-  if (type === 'image/png') return decodePng(bytes, width, height);
-  const sharp = loadSharp();
+  const [columns, rows] = smallSize({ width, height });
+  const isFarLarger = Math.max(width / columns, height / rows) > most;
+  const sharp = type === 'image/png' && !isFarLarger ? undefined : loadSharp();
+  if (!sharp && type === 'image/png') return decodePng(bytes, width, height);
   if (!sharp)
     throw new InputError(
       `is a ${type === 'image/jpeg' ? 'JPEG' : 'WebP'} image; to read those, npm install sharp beside cagecast`,
     );
   try {
-    const { data, info } = await sharp(bytes).ensureAlpha().raw().toBuffer({ resolveWithObject: true });
+    const image = sharp(bytes);
+    // Of transparent pixels, sharp drops the colours.
+    if (isFarLarger && !(await image.metadata()).hasAlpha)
+      image.resize(columns, rows, { fit: 'fill', kernel: 'linear' });
+    const { data, info } = await image.ensureAlpha().raw().toBuffer({ resolveWithObject: true });
     return { width: info.width, height: info.height, data };
   } catch (error) {
     throw new InputError(`cannot be decoded (${firstLine(error)})`);
@@ -95,6 +114,8 @@ type Sharp = (
 ) => {
   jpeg(options: { quality: number }): { toBuffer(): Promise<Uint8Array> };
   webp(options: { quality: number }): { toBuffer(): Promise<Uint8Array> };
+  metadata(): Promise<{ hasAlpha: boolean }>;
+  resize(width: number, height: number, options: { fit: 'fill'; kernel: 'linear' }): void;
   ensureAlpha(): {
     raw(): {
       toBuffer(options: object): Promise<{ data: Uint8Array; info: { width: number; height: number } }>;

@@ -6,21 +6,23 @@ import type { ReadModel } from '../../gltf/read-model.js';
 import { inspect } from '../../inspect/index.js';
 import { cageModelOf } from '../../scene/cage-model.js';
 import { InputError } from '../../scene/input-error.js';
-import { decodeImage } from '../io/images.js';
+import { decodeSmall } from '../io/images.js';
 import type { Io } from '../io/io.js';
 
 /** Makes a cage for a model. @throws {InputError} that names the file. */
 export async function makeCageFor(model: ReadModel, options: MakeOptions, io: Io): Promise<Cage> {
   await init();
-  const read = await cageModelWithColors(model);
+  const read = await cageModelWithColors(model, io);
   return calling('making a cage', { model: model.file.path }, io, (onProgress) =>
     makeCage(read, { ...options, onProgress }),
   );
 }
 
 /** A model with base colours, as far as their images can be read. */
-const cageModelWithColors = ({ file, extracted }: ReadModel): Promise<CageModel> =>
-  cageModelOf(file, extracted, decodeImage);
+function cageModelWithColors({ file, extracted }: ReadModel, io: Io): Promise<CageModel> {
+  io.step('looking at the colours');
+  return cageModelOf(file, extracted, decodeSmall);
+}
 
 /** A template, landmarks of the model (none if there is no file of them), and the files that they come from. */
 interface FitSources {
@@ -42,7 +44,7 @@ export async function chooseCageFor(
   io: Io,
 ): Promise<{ cage: Cage; fit: Fit | undefined; choice: Chosen }> {
   await initCore();
-  const read = await cageModelWithColors(model);
+  const read = await cageModelWithColors(model, io);
   return calling('choosing the cage', { model: model.file.path, ...files }, io, async (onProgress) => {
     const engine = { fitCage, makeCage, inspect };
     const { cage, fit, template, tried } = await choose(engine, read, { landmarks, ...options, onProgress });
@@ -57,7 +59,7 @@ export async function fitCageTo(
   io: Io,
 ): Promise<Fit> {
   await init();
-  const read = await cageModelWithColors(model);
+  const read = await cageModelWithColors(model, io);
   return calling('fitting the cage', { model: model.file.path, ...files }, io, (onProgress) =>
     fitCage(template, read, landmarks, { ...options, onProgress }),
   );
