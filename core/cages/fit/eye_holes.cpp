@@ -102,9 +102,9 @@ Vec3 axisOf(const TriangleMesh& mesh, const std::vector<bool>& isEye, const Surf
     normals.push_back(normal);
   }
   Vec3 sum{0, 0, 0};
-  const std::vector<RayHit> hits = surface.trace(rays);
+  const std::vector<double> free = surface.distances(rays);
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (std::isinf(hits[i].distance)) sum = sum + normals[i];
+    if (std::isinf(free[i])) sum = sum + normals[i];
   return unit(sum);
 }
 
@@ -251,9 +251,9 @@ Vec3 inFrontOf(const Surface& skin, const EyeOpening& opening, const Flat& p, co
   const Vec3 at = opening.place(p);
   const double far = 8 * *std::max_element(opening.contour.begin(), opening.contour.end());
   const SurfaceRay ray{at + far * opening.axis, -1.0 * opening.axis};
-  const RayHit hit = skin.trace(std::span(&ray, 1))[0];
-  if (std::isinf(hit.distance)) return at + dot(from - at, opening.axis) * opening.axis;
-  return at + (far - hit.distance + offset) * opening.axis;
+  const double distance = skin.distance(ray);
+  if (std::isinf(distance)) return at + dot(from - at, opening.axis) * opening.axis;
+  return at + (far - distance + offset) * opening.axis;
 }
 
 /// Where the corners of a hole are and should be.

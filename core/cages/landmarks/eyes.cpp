@@ -87,7 +87,7 @@ std::array<double, 2> seen(const Surface& surface, const TriangleMesh& part, con
     std::vector<SurfaceRay> rays;
     for (const Vec3& p : spreadPoints(part, 60)) rays.push_back({p + clear * toward, toward});
     double free = 0;
-    for (const RayHit& hit : surface.trace(rays)) free += std::isinf(hit.distance) ? 1 : 0;
+    for (const double distance : surface.distances(rays)) free += std::isinf(distance) ? 1 : 0;
     out[static_cast<std::size_t>(side)] = free / static_cast<double>(rays.size());
   }
   return out;
@@ -281,7 +281,7 @@ std::optional<Eyes> findJointedEyes(const Figure& figure, const std::vector<Land
   const Surface surface(figure.mesh);
   for (Vec3& centre : eyes.centres) {
     const SurfaceRay ray{centre + diagonal * eyes.front, -1 * eyes.front};
-    const double skin = diagonal - surface.trace({&ray, 1})[0].distance;
+    const double skin = diagonal - surface.distance(ray);
     if (std::isfinite(skin)) centre = centre + (skin - eyes.radius) * eyes.front;
   }
   return eyes;

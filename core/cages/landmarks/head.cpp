@@ -64,8 +64,8 @@ std::vector<bool> insideMouth(const Figure& figure, const Eyes& eyes) {
     for (const Vec3& p : spreadPoints(parts[c], kPartSamples))
       for (const Vec3& direction : {eyes.left, -1 * eyes.left, up, -1 * eyes.front})
         rays.push_back({p + clear * direction, direction});
-    const std::vector<RayHit> hits = surface.trace(rays);
-    out[c] = std::none_of(hits.begin(), hits.end(), [](const RayHit& hit) { return std::isinf(hit.distance); });
+    const std::vector<double> free = surface.distances(rays);
+    out[c] = std::none_of(free.begin(), free.end(), [](double distance) { return std::isinf(distance); });
   }
   return out;
 }
@@ -90,7 +90,7 @@ void addHintedEyeCorners(Head& head) {
     if (hint == nullptr) continue;
     Vec3 place = hint->position;
     const SurfaceRay ray{{place.x, place.y, 0.6}, {0, 0, -1}};
-    const double skin = ray.origin.z - head.surface.trace({&ray, 1})[0].distance;
+    const double skin = ray.origin.z - head.surface.distance(ray);
     const bool isSkin = std::abs(skin - place.z) < 2 * head.eyes.radius;
     place.z = isSkin ? skin : place.z - kBehind * head.eyes.radius;
     head.add(name, place, hint->confidence);

@@ -156,6 +156,21 @@ std::vector<bool> FaceSkin::isBelow(std::span<const Vec3> points) const {
   return out;
 }
 
+std::vector<bool> FaceSkin::isCoveredBy(std::span<const std::uint32_t> triangles, std::span<const Vec3> points) const {
+  std::vector<bool> out(points.size());
+  if (!others) return out;
+  std::vector<std::size_t> covered;
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!isCover[triangles[i]]) continue;
+    covered.push_back(i);
+    places.push_back(points[i]);
+  }
+  const std::vector<bool> isFace = isBelow(places);
+  for (std::size_t i = 0; i < covered.size(); ++i) out[covered[i]] = isFace[i];
+  return out;
+}
+
 void HoleMarker::closeGaps(const Neighbours& neighbours, std::vector<bool>& marks) const {
   // Widens all of them, and takes the margin away again.
   std::vector<bool> closed = marks;
@@ -203,11 +218,15 @@ bool HoleMarker::findSamples(const Progress& progress) {
     }
     const std::vector<RayHit> hits = model_.surface->trace(rays);
     std::vector<Vec3> places(candidates.size());
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = candidates[i].position;
-    const std::vector<bool> isFace = model_.face.isBelow(places);
+    std::vector<std::uint32_t> seen(candidates.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      places[i] = candidates[i].position;
+      seen[i] = hits[i].triangle;
+    }
+    const std::vector<bool> isOverFace = model_.face.isCoveredBy(seen, places);
     for (std::size_t i = 0; i < hits.size(); ++i) {
-      const bool isSeen = std::isfinite(hits[i].distance) && model_.isMarked[hits[i].triangle];
-      if (isSeen && !(isFace[i] && model_.face.isCover[hits[i].triangle])) samples_.push_back(candidates[i]);
+      const bool isSeen = std::isfinite(hits[i].distance) && model_.isMarked[seen[i]];
+      if (isSeen && !isOverFace[i]) samples_.push_back(candidates[i]);
     }
   }
   return true;
@@ -224,11 +243,14 @@ bool HoleMarker::markBelow(std::size_t begin, const Progress& progress) {
     for (std::size_t i = 0; i < count; ++i) rays[i] = {hull_.positions[first + i], -1 * normals[first + i]};
     const std::vector<RayHit> hits = model_.surface->trace(rays);
     const std::vector<SurfacePoint> nearest = model_.surface->closest({hull_.positions.data() + first, count});
-    const std::vector<bool> isFace = model_.face.isBelow({hull_.positions.data() + first, count});
+    std::vector<std::uint32_t> below(count);
     for (std::size_t i = 0; i < count; ++i) {
-      const bool isBelow = hits[i].distance < kStraightBelow * nearest[i].distance;
-      const std::uint32_t t = isBelow ? hits[i].triangle : nearest[i].triangle;
-      const bool isMarked = model_.isMarked[t] && !(isFace[i] && model_.face.isCover[t]);
+      const bool isStraight = hits[i].distance < kStraightBelow * nearest[i].distance;
+      below[i] = isStraight ? hits[i].triangle : nearest[i].triangle;
+    }
+    const std::vector<bool> isOverFace = model_.face.isCoveredBy(below, {hull_.positions.data() + first, count});
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool isMarked = model_.isMarked[below[i]] && !isOverFace[i];
       below_[first + i] = isMarked || model_.eyes.isBefore(hull_.positions[first + i], normals[first + i]);
     }
   }
@@ -255,8 +277,9 @@ std::vector<std::uint32_t> HoleMarker::verticesAbove() const {
 }
 
 void HoleMarker::markSamples() {
+  above_ = verticesAbove();
   sampled_.assign(hull_.positions.size(), false);
-  for (const std::uint32_t v : verticesAbove()) sampled_[v] = true;
+  for (const std::uint32_t v : above_) sampled_[v] = true;
 }
 
 std::vector<bool> HoleMarker::marks() const {
@@ -307,21 +330,21 @@ bool HoleMarker::widen(const TriangleMesh& cage, const Progress& progress, doubl
       const Vec3 normal = areaNormal(cage, cage.triangles[closest[i].triangle]);
       rays[i] = {positions[i], 1 / length(normal) * normal};
     }
-    const std::vector<RayHit> onCage = surface.trace(rays), onModel = model_.surface->trace(rays, kRayStart * diagonal);
+    const std::vector<double> onCage = surface.distances(rays);
+    const std::vector<double> onModel = model_.surface->distances(rays, kRayStart * diagonal);
     for (std::size_t i = 0; i < count; ++i) {
-      if (onModel[i].distance < onCage[i].distance + kOcclusionReach * diagonal) continue;
+      if (onModel[i] < onCage[i] + kOcclusionReach * diagonal) continue;
       const std::uint32_t piece = samples_[first + i].piece;
-      isCovered[first + i] = std::isfinite(onCage[i].distance);
+      isCovered[first + i] = std::isfinite(onCage[i]);
       all[piece] += 1;
       covered[piece] += isCovered[first + i] ? 1 : 0;
     }
   }
   std::vector<bool> isTooCovered(hull_.positions.size());
-  const std::vector<std::uint32_t> vertices = verticesAbove();
   std::size_t count = 0;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (!isCovered[i] || !(covered[samples_[i].piece] > kMaxCovered * all[samples_[i].piece])) continue;
-    isTooCovered[vertices[i]] = true;
+    isTooCovered[above_[i]] = true;
     ++count;
   }
   coveredShare = samples_.empty() ? 0 : static_cast<double>(count) / static_cast<double>(samples_.size());

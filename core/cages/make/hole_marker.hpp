@@ -23,6 +23,9 @@ struct FaceSkin {
 
   /// Whether what is nearest to each point, but for covers, is the face's skin.
   [[nodiscard]] std::vector<bool> isBelow(std::span<const Vec3> points) const;
+  /// The same, but only for points whose triangle is a cover.
+  [[nodiscard]] std::vector<bool> isCoveredBy(std::span<const std::uint32_t> triangles,
+                                              std::span<const Vec3> points) const;
 };
 
 struct MarkedMesh;
@@ -93,7 +96,7 @@ class HoleMarker {
   bool findSamples(const Progress& progress);
   /// Sets `below_` for the vertices from one on.
   bool markBelow(std::size_t begin, const Progress& progress);
-  /// Sets `sampled_`.
+  /// Sets `above_` and `sampled_`.
   void markSamples();
   /// Marks what lies between marks that are close together, but no face.
   void closeGaps(const Neighbours& neighbours, std::vector<bool>& marks) const;
@@ -107,9 +110,10 @@ class HoleMarker {
   std::vector<std::uint32_t> parents_;  ///< The triangle of the hull as it was, for each; rising.
   std::vector<Sample> samples_;
   std::uint32_t pieces_ = 0;
-  std::vector<bool> below_;    ///< Per vertex: what is below or nearest is marked, or `widen` has marked it.
-  std::vector<bool> sampled_;  ///< Per vertex: a sample is nearest to it.
-  int widened_ = 0;            ///< How far around, in edges, `widen` marked last.
+  std::vector<bool> below_;           ///< Per vertex: what is below or nearest is marked, or `widen` has marked it.
+  std::vector<std::uint32_t> above_;  ///< The vertex that is nearest to each sample.
+  std::vector<bool> sampled_;         ///< Per vertex: a sample is nearest to it.
+  int widened_ = 0;                   ///< How far around, in edges, `widen` marked last.
 };
 
 }  // namespace cagecast::cages

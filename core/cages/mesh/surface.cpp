@@ -167,45 +167,53 @@ std::vector<SurfacePoint> Surface::closest(std::span<const Vec3> points) const {
 
 SurfacePoint Surface::closest(const Vec3& point) const { return closest(std::span(&point, 1))[0]; }
 
-std::vector<RayHit> Surface::trace(std::span<const SurfaceRay> rays, double from) const {
+std::vector<double> Surface::distances(std::span<const SurfaceRay> rays, double from) const {
   Trees& trees = *trees_;
-  std::vector<RayHit> out(rays.size(), {std::numeric_limits<double>::infinity(), 0});
+  std::vector<double> out(rays.size(), std::numeric_limits<double>::infinity());
   if (trees.cage.count == 0) return out;
+  const Arena::Scope scope(trees.arena);
+  const auto scale = static_cast<double>(trees.units.scale);
+  RaySearch search(trees.tree.rays, from * scale, trees.arena);
+  checkMemory(trees.arena);
+  const std::size_t most = std::min<std::size_t>(RaySearch::kMaxRays, rays.size());
+  std::vector<Ray> chunk(most);
+  std::vector<RayDirection> directions(most);
+  const auto hit = std::make_unique<bool[]>(most);
+  for (std::size_t first = 0; first < rays.size(); first += most) {
+    const auto count = static_cast<std::uint32_t>(std::min(most, rays.size() - first));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Vec3 origin = trees.scaled(rays[first + i].origin);
+      const double exact[3] = {origin.x, origin.y, origin.z};
+      float position[3];
+      float rest[3];
+      for (int k = 0; k < 3; ++k) {
+        position[k] = static_cast<float>(exact[k]);
+        rest[k] = static_cast<float>(exact[k] - static_cast<double>(position[k]));
+      }
+      directions[i] = RayDirection::along(rays[first + i].direction);
+      chunk[i].startAt(position, rest);
+      chunk[i].direction = &directions[i];
+      chunk[i].end = std::numeric_limits<double>::infinity();
+    }
+    search.search(chunk.data(), count, hit.get(), RaySearch::Find::nearest);
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (hit[i]) out[first + i] = chunk[i].end / scale;
+  }
+  return out;
+}
+
+double Surface::distance(const SurfaceRay& ray) const { return distances(std::span(&ray, 1))[0]; }
+
+std::vector<RayHit> Surface::trace(std::span<const SurfaceRay> rays, double from) const {
+  const std::vector<double> far = distances(rays, from);
+  std::vector<RayHit> out(rays.size(), {std::numeric_limits<double>::infinity(), 0});
   std::vector<Vec3> hitPoints;
   std::vector<std::size_t> hitRays;
-  {
-    const Arena::Scope scope(trees.arena);
-    const auto scale = static_cast<double>(trees.units.scale);
-    RaySearch search(trees.tree.rays, from * scale, trees.arena);
-    checkMemory(trees.arena);
-    const std::size_t most = std::min<std::size_t>(RaySearch::kMaxRays, rays.size());
-    std::vector<Ray> chunk(most);
-    std::vector<RayDirection> directions(most);
-    const auto hit = std::make_unique<bool[]>(most);
-    for (std::size_t first = 0; first < rays.size(); first += most) {
-      const auto count = static_cast<std::uint32_t>(std::min(most, rays.size() - first));
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const Vec3 origin = trees.scaled(rays[first + i].origin);
-        const double exact[3] = {origin.x, origin.y, origin.z};
-        float position[3];
-        float rest[3];
-        for (int k = 0; k < 3; ++k) {
-          position[k] = static_cast<float>(exact[k]);
-          rest[k] = static_cast<float>(exact[k] - static_cast<double>(position[k]));
-        }
-        directions[i] = RayDirection::along(rays[first + i].direction);
-        chunk[i].startAt(position, rest);
-        chunk[i].direction = &directions[i];
-        chunk[i].end = std::numeric_limits<double>::infinity();
-      }
-      search.search(chunk.data(), count, hit.get(), RaySearch::Find::nearest);
-      for (std::uint32_t i = 0; i < count; ++i) {
-        if (!hit[i]) continue;
-        out[first + i].distance = chunk[i].end / scale;
-        hitRays.push_back(first + i);
-        hitPoints.push_back(rays[first + i].origin + out[first + i].distance * rays[first + i].direction);
-      }
-    }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (std::isinf(far[i])) continue;
+    out[i].distance = far[i];
+    hitRays.push_back(i);
+    hitPoints.push_back(rays[i].origin + far[i] * rays[i].direction);
   }
   // The ray search tells how far; the triangle is the one that the hit lies on.
   const std::vector<SurfacePoint> on = closest(hitPoints);
