@@ -64,7 +64,8 @@ export function checkSegments(
   { locks = {}, parts: { keep = [], exclude = [] } = {} }: Pick<ClassifyOptions, 'locks' | 'parts'>,
 ): Finding[] {
   const numbered = segments
-    .map((segment, s) => ({ ...segment, s, ratios: scene.result.segmentStats[s]!.ratios }))
+    .filter(hasArea)
+    .map((segment) => ({ ...segment, s: segment.segment, ratios: scene.result.segmentStats[segment.segment]!.ratios }))
     .sort((a, b) => b.exposedArea - a.exposedArea);
   const exposed = numbered.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
   if (exposed === 0) return [];
