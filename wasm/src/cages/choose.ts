@@ -86,6 +86,7 @@ export async function choose(
   });
 
   const judge = async (template: Tried['template'], cage: Cage, fit?: Fit): Promise<boolean> => {
+    onProgress?.((tried.length + 1) / (templates.length + 1), 'inspect');
     const bare = [...accessoriesAmong(names), ...groupsNamed(cage.bare ?? [], names)].filter((p) => used.has(p));
     const { verdict, findings } = await engine.inspect(cage, mesh, {
       landmarks: cage.landmarks,

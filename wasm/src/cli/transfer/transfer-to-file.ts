@@ -30,6 +30,7 @@ export async function transferToFile(
   const form: Form = compress === 'keep' ? (compressionOf(first.run) ?? 'keep') : compress;
   const report = makeReport(command, first);
   if (inspects || command.template !== undefined) {
+    io.step('inspecting');
     const { verdict, findings } = inspectionReport(command, first.run, first.textures);
     Object.assign(report, { verdict, findings });
   }
