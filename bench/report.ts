@@ -1,5 +1,6 @@
 import { exponent } from './statistics.js';
 import { table } from './table.js';
+import { type Waits, waitsTable } from './waits.js';
 import type { FirstUse } from './web/page.js';
 
 /** Everything that the benchmark found out. Parts that were not run are missing. */
@@ -34,6 +35,8 @@ export interface Results {
   };
   /** Per transfer, by preset and processor. */
   instructions?: Record<string, number>;
+  /** By model. */
+  waits?: Record<string, Waits>;
   /** Bytes, gzipped. */
   sizes?: Record<string, number>;
 }
@@ -94,7 +97,7 @@ export function goalsOf({ native, web, instructions, sizes }: Results): Goal[] {
 
 /** All tables, in Markdown. */
 export function speedReport(results: Results): string {
-  const { date, machine, native = {}, web, instructions = {}, sizes = {} } = results;
+  const { date, machine, native = {}, web, instructions = {}, sizes = {}, waits } = results;
   const goals = goalsOf(results).map(({ what, text, isReached }) => [what, text, isReached ? 'yes' : 'no']);
   const nativeRows = Object.entries(native).map(
     ([scene, { triangles, cageTriangles, times: took, ratios, peakBytes }]) => [
@@ -150,6 +153,13 @@ export function speedReport(results: Results): string {
     table(['scene', 'Cagecast', 'three-mesh-bvh', 'ratio'], webRows),
     'First use of the package, by wall time: the sample in a browser that never loaded it and has come to rest, preset `default`.',
     table(['4.8k', 'first use', '= import', '+ init', '+ transfer'], phoneRows),
+    ...(waits
+      ? [
+          '## What people wait for',
+          'Milliseconds of processor time of a command, from the start of its process to the written file, all its threads together; and where it goes. `transfer` has a cage; glTF-Transform only reads the file and writes it.',
+          waitsTable(waits),
+        ]
+      : []),
     '## Instructions and sizes',
     table(
       ['a transfer of the sample', 'instructions'],

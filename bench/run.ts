@@ -1,7 +1,8 @@
 // Measures everything, and writes bench/results.
 //
 //   npm run bench [-- options]
-//     --only native,web,count,size   only these parts; what else is known stays in the results
+//     --only native,web,count,size,waits   only these parts; what else is known stays in the results
+//     --avatars FOLDER               waits: with open avatars, of those that bench/avatars names, beside the samples
 //     --quick                        few runs, up to 50k triangles: to see whether it works, not how fast it is
 //     --record                       make the instruction counts and sizes of now the budget, and stop
 //     --check                        hold instruction counts and sizes against the budget, and stop
@@ -10,16 +11,18 @@
 
 import { readFileSync } from 'node:fs';
 import { writeFile } from 'node:fs/promises';
+import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { checkInstructions, checkSizes, countInstructions, measureSizes, recordBudget } from './budget.js';
 import { buildNative, kMachine, kStages, measureNative, ratioOf, resultsFolder, timeOf, writeJson } from './native.js';
 import { goalsOf, type Results, speedReport } from './report.js';
 import { type BenchScene, givenScenes, kScenes, makeScenes, sampleScene } from './scenes.js';
 import { median } from './statistics.js';
+import { measureWaits } from './waits.js';
 import type { FirstUse } from './web/page.js';
 import { WebBench } from './web.js';
 
-const kParts = ['native', 'web', 'count', 'size'];
+const kParts = ['native', 'web', 'count', 'size', 'waits'];
 const kPresets = ['paper', 'default'] as const;
 const kProcessors = ['x86_64', 'aarch64'] as const;
 
@@ -31,6 +34,7 @@ async function main(): Promise<void> {
   const { values } = parseArgs({
     options: {
       only: { type: 'string' },
+      avatars: { type: 'string' },
       quick: { type: 'boolean', default: false },
       record: { type: 'boolean' },
       check: { type: 'boolean' },
@@ -41,7 +45,8 @@ async function main(): Promise<void> {
   if (unknown !== undefined) throw new Error(`--only ${unknown}: there are ${kParts.join(', ')}`);
   if (values.record) return void console.log(JSON.stringify(await recordBudget(), null, 2));
   if (values.check) return check();
-  await measure(only, values.quick);
+  const avatars = values.avatars && resolve(process.env['INIT_CWD'] ?? '.', values.avatars);
+  await measure(only, values.quick, avatars);
 }
 
 /** Holds instruction counts and sizes against the budget. */
@@ -55,12 +60,9 @@ async function check(): Promise<void> {
   if (found.length > 0) process.exitCode = 1;
 }
 
-async function measure(only: readonly string[], quick: boolean): Promise<void> {
-  say('building');
-  await buildNative();
-  const chosen = kScenes.filter(({ triangles }) => !quick || triangles <= 50_000);
-  await makeScenes(chosen, say);
-  const all = [...chosen, ...(await givenScenes())];
+async function measure(only: readonly string[], quick: boolean, avatars: string | undefined): Promise<void> {
+  const needsScenes = only.some((part) => part !== 'waits' && part !== 'size');
+  const all = needsScenes ? await scenesFor(quick) : [];
   const results: Results = { ...earlier(), date: new Date().toISOString().slice(0, 10), machine: kMachine };
   if (only.includes('size')) results.sizes = await measureSizes();
   if (only.includes('native')) results.native = await measureNatively(all, quick);
@@ -71,10 +73,20 @@ async function measure(only: readonly string[], quick: boolean): Promise<void> {
       for (const processor of kProcessors)
         results.instructions[`${preset}, ${processor}`] = (await countInstructions(processor, preset)).perRun;
   }
+  if (only.includes('waits')) results.waits = measureWaits(avatars, quick ? 1 : 3, say);
   await writeJson('speed', results);
   await writeFile(`${resultsFolder}/README.md`, speedReport(results));
   for (const { what, text, isReached } of goalsOf(results))
     console.log(`${isReached ? 'yes' : 'NO '}  ${what}: ${text}`);
+}
+
+/** Builds what measures, and makes the scenes. */
+async function scenesFor(quick: boolean): Promise<BenchScene[]> {
+  say('building');
+  await buildNative();
+  const chosen = kScenes.filter(({ triangles }) => !quick || triangles <= 50_000);
+  await makeScenes(chosen, say);
+  return [...chosen, ...(await givenScenes())];
 }
 
 /** What was measured before. */
