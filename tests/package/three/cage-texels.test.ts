@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { BoxGeometry, type BufferGeometry, SphereGeometry, Vector3 } from 'three';
+import { BoxGeometry, type BufferAttribute, type BufferGeometry, PlaneGeometry, SphereGeometry, Vector3 } from 'three';
 import { disjoint, type Rect } from '../../../wasm/src/three/gpu/rect';
 import { type CageMesh, CageTexels, kFacing, type SurfacePoint } from '../../../wasm/src/three/painting/cage-texels';
 import { Stroke } from '../../../wasm/src/three/painting/stroke';
@@ -140,4 +140,38 @@ test('a stroke around an edge of the cage stays on the cage', () => {
   capsules.slice(1).forEach(({ from }, index) => assert.equal(from, capsules[index]!.to, 'one after the other'));
   stroke.to(front);
   assert.equal(stroke.to(right, 0.01).length, 1, 'too far for one step: the brush was lifted');
+});
+
+/** A chest, wide 2, with arms that hang 0.1 beside it, and meet it at the shoulders, where y is 1. All face +z. */
+function chestWithArms(): BufferGeometry {
+  const sheet = new PlaneGeometry(4, 2, 40, 20);
+  const { position, uv } = sheet.attributes as { position: BufferAttribute; uv: BufferAttribute };
+  for (let v = 0; v < uv.count; v++) uv.setXY(v, 0.1 + 0.8 * uv.getX(v), 0.1 + 0.8 * uv.getY(v));
+  const middleOf = (corners: number[], get: (v: number) => number): number =>
+    corners.reduce((sum, v) => sum + get(v), 0) / 3;
+  const kept: number[] = [];
+  for (let at = 0; at < sheet.index!.count; at += 3) {
+    const corners = [0, 1, 2].map((i) => sheet.index!.getX(at + i));
+    const x = Math.abs(middleOf(corners, (v) => position.getX(v)));
+    const isGap = x > 1 && x < 1.1 && middleOf(corners, (v) => position.getY(v)) < 0.8;
+    if (!isGap) kept.push(...corners);
+  }
+  return sheet.setIndex(kept);
+}
+
+test('a sticker gets from a chest to the arms beside it only where the shoulders are in it, too', () => {
+  const texels = new CageTexels(cageOf(chestWithArms()), kSize);
+  const at = (x: number, y: number): SurfacePoint => texels.at(0.5 + (0.8 * x) / 4, 0.5 + (0.8 * y) / 2)!;
+  const isReached = (flags: Uint8Array, x: number, y: number): boolean => {
+    const [column, row] = [0.5 + (0.8 * x) / 4, 0.5 + (0.8 * y) / 2].map((share) => Math.floor(share * kSize));
+    return flags[texels.owners[row! * kSize + column!]!] === 255;
+  };
+  const axes = { right: new Vector3(1, 0, 0), up: new Vector3(0, 1, 0) };
+  const low = texels.reached(at(0, -0.3), { ...axes, width: 3, height: 0.8 });
+  assert.ok(isReached(low, 0, -0.3) && isReached(low, 0.95, -0.6) && isReached(low, -0.95, 0));
+  for (const x of [-1.3, 1.3]) assert.ok(!isReached(low, x, -0.3), `an arm at ${x}`);
+  const high = texels.reached(at(0, 0.3), { ...axes, width: 3, height: 1.2 });
+  for (const x of [-1.3, 1.3]) assert.ok(isReached(high, x, 0.3), `a sleeve at ${x}`);
+  const { point, normal } = at(0, -0.3);
+  assert.deepEqual(texels.reached({ point, normal }, { ...axes, width: 3, height: 0.8 }), low, 'without its UV');
 });

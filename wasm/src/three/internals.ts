@@ -49,3 +49,4 @@ export {
 export type { StickerImage, StickerPicture, StickerText } from './painting/sticker.js';
 export { type StickerFrame, StickerPainter } from './painting/sticker-painter.js';
 export { type PlacedSticker, StickersSheet } from './painting/stickers-sheet.js';
+export type { StickerPart } from './painting/stroke-layer.js';

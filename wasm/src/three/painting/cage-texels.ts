@@ -1,5 +1,6 @@
 import { Box3, Line3, Triangle, Vector2, Vector3 } from 'three';
 import type { Rect } from '../gpu/rect.js';
+import { connected, neighboursOf, type StickerBox } from './connected.js';
 
 /** The arrays of a cage that painting needs. @internal */
 export interface CageMesh {
@@ -62,6 +63,7 @@ interface Patch {
  */
 export class CageTexels {
   readonly #patches: Patch[];
+  #neighbours: ReturnType<typeof neighboursOf> | undefined;
   /** Per texel the patch that lies there, or in whose gutter it lies; -1 for none. Rows from v = 0. */
   readonly owners: Int32Array;
   /** x of the cage's plane of symmetry. */
@@ -92,11 +94,9 @@ export class CageTexels {
   /** The point of the cage at a UV, which is repeated outside 0..1; undefined between charts. */
   at(u: number, v: number): SurfacePoint | undefined {
     const [insideU, insideV] = [u - Math.floor(u), v - Math.floor(v)];
-    const column = Math.min(this.size - 1, Math.floor(insideU * this.size));
-    const row = Math.min(this.size - 1, Math.floor(insideV * this.size));
-    const patch = this.#patches[this.owners[row * this.size + column]!];
-    if (!patch) return undefined;
     const uv = new Vector2(insideU, insideV);
+    const patch = this.#patches[this.#ownerAt(uv)];
+    if (!patch) return undefined;
     return { point: pointOf(patch, insideU, insideV), normal: patch.normal.clone(), uv };
   }
 
@@ -198,6 +198,25 @@ export class CageTexels {
     return this.#patches.flatMap(({ points, normal }, index) =>
       Math.min(normal.dot(from.normal), normal.dot(to.normal)) >= kFacing && points.every(isNear) ? index : [],
     );
+  }
+
+  /** 255 for each patch that a sticker gets to from where it is placed, 0 for the others. */
+  reached({ point, normal, uv }: SurfacePoint, box: Omit<StickerBox, 'center'>): Uint8Array {
+    this.#neighbours ??= neighboursOf(this.#patches);
+    const from = this.#ownerAt(uv ?? this.nearest(point, normal)?.uv);
+    const flags = new Uint8Array(this.#patches.length).fill(from < 0 ? 255 : 0);
+    if (from < 0) return flags;
+    const found = connected(this.#patches, this.#neighbours, from, { center: point, ...box });
+    for (const index of found) flags[index] = 255;
+    return flags;
+  }
+
+  /** The patch at a UV; -1 for none. */
+  #ownerAt(uv: Vector2 | undefined): number {
+    if (!uv) return -1;
+    const texelOf = (share: number): number =>
+      Math.min(this.size - 1, Math.floor((share - Math.floor(share)) * this.size));
+    return this.owners[texelOf(uv.y) * this.size + texelOf(uv.x)]!;
   }
 
   /** Assigns the texels whose centres lie in a patch. */

@@ -1,4 +1,4 @@
-import type { Vector3, WebGLRenderer } from 'three';
+import type { Vector2, Vector3, WebGLRenderer } from 'three';
 import { check, wrong } from '../errors.js';
 import { type Rect, toShares } from '../gpu/rect.js';
 import type { Composite } from '../layers/composite.js';
@@ -10,7 +10,7 @@ import type { LayerStack } from '../layers/stack.js';
 import { type CageMesh, CageTexels, type Capsule, type SurfacePoint } from './cage-texels.js';
 import type { StickerSheet, StickerStyle } from './sticker.js';
 import { StickersSheet } from './stickers-sheet.js';
-import { StrokeLayer, type StrokeStyle } from './stroke-layer.js';
+import { type StickerPart, StrokeLayer, type StrokeStyle } from './stroke-layer.js';
 
 /** The layers that are painted on, their composite, and the undo steps, as `Layers` has them. @internal */
 export interface PaintedLayers {
@@ -199,6 +199,11 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
   /** Tells that a painting was changed. */
   emitPainted(sheet: PaintedSheet): void {
     this.emit('painted', sheet);
+  }
+
+  /** What a sticker at a UV keeps to; undefined for the whole cage. */
+  partAt(_uv: Vector2): StickerPart | undefined {
+    return undefined;
   }
 
   /** What strokes on the current cage are drawn with. Cost: as `cageTexels`. */

@@ -220,7 +220,12 @@ export class StickerPainter {
     // The one used last is the last of the map.
     this.#pictures.set(picture, drawn);
     const style = { size: size * surface.cageTexels.diagonal, angle, mirrored };
-    return { center, sticker: drawn.at(this.#layers.renderer, center, up, style), opacity };
+    return {
+      center,
+      sticker: drawn.at(this.#layers.renderer, center, up, style),
+      opacity,
+      part: this.#painter.partAt(at),
+    };
   }
 
   #touch({ size }: StickersSheet, rects: readonly Rect[]): void {

@@ -9,6 +9,7 @@ import {
   NearestFilter,
   OneFactor,
   OneMinusSrcAlphaFactor,
+  RedFormat,
   RedIntegerFormat,
   RGBAFormat,
   type ShaderMaterialParameters,
@@ -66,6 +67,13 @@ export interface LaidSticker {
   sticker: Sticker;
   /** 0..1 */
   opacity: number;
+  /** Only there it is seen. */
+  part?: StickerPart | undefined;
+}
+
+/** The part of a model that a sticker keeps to: UVs of triangles, 6 numbers for each. The same object for the same part. @internal */
+export interface StickerPart {
+  readonly uvs: ArrayLike<number>;
 }
 
 const kWithin = 0.999; // a safety margin, as the GPU computes in single precision
@@ -95,6 +103,10 @@ export class StrokeLayer {
   #rest: WebGLRenderTarget | undefined;
   readonly #clear = new Pass(kClearShader, {});
   readonly #textures: readonly Texture[];
+  /** The patches that a sticker gets to. */
+  readonly #reached: DataTexture;
+  /** The texels of a part. */
+  #mask: { part: StickerPart; target: WebGLRenderTarget } | undefined;
   #style: StrokeStyle = { color: '#000000', opacity: 1, hardness: 1, erases: false };
   #sheet: PaintedSheet | undefined;
   /** The parts of the target that are not empty, in texels. */
@@ -112,17 +124,17 @@ export class StrokeLayer {
     const table = new Float32Array(4 * kTableWidth * rows);
     table.set(numbers);
     const patches = new DataTexture(table, kTableWidth, rows, RGBAFormat, FloatType);
-    this.#textures = [owners, patches];
+    this.#reached = new DataTexture(new Uint8Array(kTableWidth * rows), kTableWidth, rows, RedFormat);
+    this.#textures = [owners, patches, this.#reached];
     for (const texture of this.#textures) {
       texture.minFilter = texture.magFilter = NearestFilter;
-      texture.unpackAlignment = 4;
       texture.needsUpdate = true;
     }
     this.#brush = new Pass(brushShader(size), brushUniforms(owners, patches), blending(MaxEquation, OneFactor));
     this.#fill = new FillPass(size, owners, patches);
     this.#sticker = new Pass(
       stickerShader(size),
-      stickerUniforms(owners, patches),
+      stickerUniforms(owners, patches, this.#reached),
       blending(AddEquation, OneMinusSrcAlphaFactor),
     );
   }
@@ -177,7 +189,7 @@ export class StrokeLayer {
   /** Draws a sticker in place of the stroke so far. @returns The parts that changed, in shares. */
   stick(renderer: WebGLRenderer, center: SurfacePoint, sticker: Sticker): Rect[] {
     const before = this.clear(renderer);
-    this.#place({ center, sticker, opacity: 1 });
+    this.#place(renderer, { center, sticker, opacity: 1 });
     return [...before, ...this.#draw(renderer, this.#sticker, this.reach(center, sticker))];
   }
 
@@ -196,12 +208,12 @@ export class StrokeLayer {
   ): void {
     this.#clear.run(renderer, target, rects);
     for (const one of stickers) {
-      this.#place(one);
+      this.#place(renderer, one);
       this.#sticker.run(renderer, target, rects);
     }
   }
 
-  #place({ center, sticker, opacity }: LaidSticker): void {
+  #place(renderer: WebGLRenderer, { center, sticker, opacity, part }: LaidSticker): void {
     const { uniforms } = this.#sticker;
     const { texture, width, height, right, up, mirrored = false } = sticker;
     uniforms.picture.value = texture;
@@ -213,6 +225,21 @@ export class StrokeLayer {
     uniforms.pitch.value = this.cageTexels.pitch;
     uniforms.texel.value = (this.cageTexels.pitch * (texture.image as { width: number }).width) / width;
     uniforms.opacity.value = opacity;
+    (this.#reached.image.data as Uint8Array).set(this.cageTexels.reached(center, sticker));
+    this.#reached.needsUpdate = true;
+    uniforms.keeps.value = part !== undefined;
+    uniforms.mask.value = part ? this.#maskOf(renderer, part) : null;
+  }
+
+  #maskOf(renderer: WebGLRenderer, part: StickerPart): Texture {
+    const { size } = this.cageTexels;
+    const target = this.#mask?.target ?? makePaintTarget(size);
+    if (this.#mask?.part !== part) {
+      this.#clear.run(renderer, target, [{ left: 0, top: 0, right: size, bottom: size }]);
+      this.#fill.run(renderer, target, part.uvs, '#ffffff');
+    }
+    this.#mask = { part, target };
+    return target.texture;
   }
 
   /** Clears the stroke so far. @returns The parts that had paint, in shares. */
@@ -255,6 +282,7 @@ export class StrokeLayer {
   dispose(): void {
     this.#target.dispose();
     this.#rest?.dispose();
+    this.#mask?.target.dispose();
     for (const texture of this.#textures) texture.dispose();
     for (const pass of [this.#fill, this.#brush, this.#sticker, this.#lay, this.#erase, this.#copy, this.#clear])
       pass.dispose();

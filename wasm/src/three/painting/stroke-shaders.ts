@@ -64,12 +64,15 @@ void main() {
 }
 `;
 
-// `pitch` is the length of a texel in space, `texel` the same in texels of the picture. What faces away or lies far behind is left out: it
-// is another surface that happens to be underneath. Each texel takes `kSamples` samples a side, as one of a smaller level would blur thin
+// `pitch` is the length of a texel in space, `texel` the same in texels of the picture. What faces away, lies far behind or is not reached
+// is left out: it is another surface that happens to be underneath or beside it. Each texel takes `kSamples` samples a side, as one of a smaller level would blur thin
 // lines, and be jagged in the narrow direction of a long text.
 export const stickerShader = (size: number): string => /* glsl */ `
 ${surfacePointShader(size)}
 uniform sampler2D picture;
+uniform sampler2D reached;
+uniform sampler2D mask;
+uniform bool keeps;
 uniform vec3 center;
 uniform vec3 outward;
 uniform vec3 right;
@@ -84,6 +87,9 @@ out vec4 color;
 void main() {
   vec3 point, normal;
   if (!surfacePoint(point, normal)) discard;
+  int owner = texelFetch(owners, ivec2(gl_FragCoord.xy), 0).r;
+  if (texelFetch(reached, ivec2(owner & ${kTableWidth - 1}, owner >> ${Math.log2(kTableWidth)}), 0).r == 0.0) discard;
+  if (keeps && texelFetch(mask, ivec2(gl_FragCoord.xy), 0).a == 0.0) discard;
   vec3 from = point - center;
   vec2 at = vec2(dot(from, right), -dot(from, up)) / extent + 0.5;
   vec2 reach = pitch / extent;
@@ -160,8 +166,11 @@ export function brushUniforms(owners: Texture, patches: Texture) {
   };
 }
 
-export function stickerUniforms(owners: Texture, patches: Texture) {
+export function stickerUniforms(owners: Texture, patches: Texture, reached: Texture) {
   return {
+    reached: { value: reached } as IUniform<Texture>,
+    mask: { value: null as Texture | null },
+    keeps: { value: false },
     owners: { value: owners } as IUniform<Texture>,
     patches: { value: patches } as IUniform<Texture>,
     picture: { value: null as Texture | null },

@@ -1,3 +1,5 @@
+import type { Classification } from 'cagecast';
+import type { Vector2 } from 'three';
 import {
   type Aim,
   type CageMesh,
@@ -8,15 +10,16 @@ import {
   type PaintingSize,
   type PointerView,
   readStraight,
+  type StickerPart,
   StickersSheet,
 } from '#three';
 import { showError } from '../../platform/page';
 import type { ExtractedMesh } from '../../state/model';
-import type { Shown } from '../../state/scene';
 import type { Session } from '../../state/session';
 import type { Spot } from '../../view/pick';
 import type { Viewer } from '../../view/viewer';
 import type { PaintOptions } from './paint-options';
+import { PartUvs, uvOf } from './part-uvs';
 
 const kPicture = 96; // pixels per side of a layer's thumbnail
 const kPictureDelay = 300; // milliseconds
@@ -31,6 +34,7 @@ export class Painter extends LayerPainter implements PointerView {
   readonly #options: PaintOptions;
   readonly #stack: Layers['stack'];
   #picturing: ReturnType<typeof setTimeout> | undefined;
+  #parts: { of: Classification; uvs: PartUvs } | undefined;
   readonly #unpictured = new Set<PaintedSheet>();
   /** Called before texels are saved: it removes what is only a preview. */
   settle: () => void = () => {};
@@ -94,24 +98,26 @@ export class Painter extends LayerPainter implements PointerView {
     };
   }
 
-  /** UVs of the painted triangles of the part that a spot lies on, 6 numbers for each. */
-  uvsOfPart(spot: Spot): number[] {
-    const { shown, classification } = this.#session;
-    if (!shown || !classification) return [];
-    const { segments } = shown.projection;
-    const { indices } = shown.target.mesh;
-    const part = segments[indices[3 * spot.triangle]!];
-    const found: number[] = [];
-    classification.cosmeticTriangles.forEach((isPainted, triangle) => {
-      if (!isPainted || segments[indices[3 * triangle]!] !== part) return;
-      for (const weights of kCorners) found.push(...uvOf({ triangle, weights }, shown));
-    });
-    return found;
-  }
-
   /** A length in the cage's space. @param share Of the diagonal of the cage. */
   lengthOf(share: number): number {
     return share * (this.cageTexels?.diagonal ?? 0);
+  }
+
+  /** UVs of the painted triangles of the piece that a spot lies on, 6 numbers for each. */
+  uvsOfPart({ triangle }: Spot): number[] {
+    return this.#partUvs?.ofPiece(triangle) ?? [];
+  }
+
+  override partAt(uv: Vector2): StickerPart | undefined {
+    return this.#partUvs?.at(uv);
+  }
+
+  get #partUvs(): PartUvs | undefined {
+    const { shown, classification } = this.#session;
+    if (!shown || !classification) return undefined;
+    if (this.#parts?.of !== classification)
+      this.#parts = { of: classification, uvs: new PartUvs(shown, classification) };
+    return this.#parts.uvs;
   }
 
   /** Begins something. @returns False, after telling why, if it cannot begin. */
@@ -146,12 +152,6 @@ export class Painter extends LayerPainter implements PointerView {
   }
 }
 
-const kCorners: readonly Spot['weights'][] = [
-  [1, 0, 0],
-  [0, 1, 0],
-  [0, 0, 1],
-];
-
 const cagesAtRest = new WeakMap<ExtractedMesh, CageMesh>();
 
 /** A cage as it is painted: at rest, however it is moved with the model. The same object for the same cage; undefined without UVs. */
@@ -162,21 +162,6 @@ function atRest(mesh: ExtractedMesh): CageMesh | undefined {
   const cage = cagesAtRest.get(mesh) ?? { positions, indices, uvs };
   cagesAtRest.set(mesh, cage);
   return cage;
-}
-
-/** The UVs of a spot. */
-function uvOf(
-  { triangle, weights }: Pick<Spot, 'triangle' | 'weights'>,
-  { target: { mesh }, projection: { uvs, cornerUvs } }: Shown,
-): [number, number] {
-  let [u, v] = [0, 0];
-  weights.forEach((weight, index) => {
-    const corner = 3 * triangle + index;
-    const [of, at] = cornerUvs.length > 0 ? [cornerUvs, corner] : [uvs, mesh.indices[corner]!];
-    u += weight * of[2 * at]!;
-    v += weight * of[2 * at + 1]!;
-  });
-  return [u, v];
 }
 
 function addressOf(image: ImageData): string {
