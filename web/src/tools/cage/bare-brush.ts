@@ -3,15 +3,12 @@ import type { Command, History } from '#three';
 import { announce, element } from '../../platform/page';
 import type { Model } from '../../state/model';
 import type { Session } from '../../state/session';
-import { closestPointOnTriangle, diagonalOf, type Surface } from '../../state/surface';
+import { closestPointOnTriangle, type Surface } from '../../state/surface';
 import type { Spot } from '../../view/pick';
 import type { RailTool, Tools } from '../../view/tool-rail';
 import type { Viewer } from '../../view/viewer';
-import { Ring } from '../paint/ring';
+import { brushPixels, Ring } from '../paint/ring';
 
-// The radius of the brush, as a share of the model's diagonal.
-const kMin = 0.004;
-const kMax = 0.1;
 const kMaxBetween = 8; // spots that are filled in between two positions of the pointer
 
 type Position = Pick<PointerEvent, 'clientX' | 'clientY'>;
@@ -27,7 +24,6 @@ export class BareBrush {
   readonly #ring = new Ring();
   readonly #offer: RailTool;
   #target: Model | undefined;
-  #diagonal = 1;
   #isChosen = false;
   /** The marks while the brush is down, and where it was last. */
   #stroke: { marks: Uint8Array; last: Position } | undefined;
@@ -70,15 +66,15 @@ export class BareBrush {
     element('bare', HTMLElement).hidden = false;
   }
 
-  get #radius(): number {
-    return this.#diagonal * kMin * (kMax / kMin) ** (this.#size.valueAsNumber / 100);
+  /** The diameter of the brush in pixels of the screen. */
+  get #pixels(): number {
+    return brushPixels(this.#size.valueAsNumber);
   }
 
   #onTransfer(target: Model): void {
     if (target === this.#target) return;
     this.#stroke = undefined;
     this.#target = target;
-    this.#diagonal = diagonalOf(target.mesh) || 1;
     this.#history.forget((command) => command instanceof BareStep);
     // Samples have cages of their own, and no options for others.
     if (target.sample) this.#tools.offer(this.#offer, false);
@@ -102,7 +98,7 @@ export class BareBrush {
     const count = countOf(marks);
     element('bare-count', HTMLElement).textContent = count;
     element('bare-clear', HTMLButtonElement).disabled = count === '';
-    const size = `${((200 * this.#radius) / this.#diagonal).toPrecision(2)} % of the model`;
+    const size = `${Math.round(this.#pixels)} px`;
     element('bare-size-value', HTMLOutputElement).value = size;
     this.#size.setAttribute('aria-valuetext', size);
   }
@@ -124,7 +120,7 @@ export class BareBrush {
     const [dx, dy] = [event.clientX - clientX, event.clientY - clientY];
     this.#stroke.last = { clientX: event.clientX, clientY: event.clientY };
     if (spot) {
-      const apart = Math.hypot(dx, dy) / Math.max(1, this.#radius * this.#viewer.screen.pixelsAt(spot.seen));
+      const apart = (2 * Math.hypot(dx, dy)) / this.#pixels;
       const between = Math.min(kMaxBetween, Math.floor(apart));
       for (let i = 1; i <= between; i++) {
         const share = i / (between + 1);
@@ -152,7 +148,7 @@ export class BareBrush {
   #follow(spot: Spot | undefined, { clientX, clientY, pointerType }: PointerEvent): void {
     // A finger covers the ring.
     if (!spot || pointerType === 'touch') this.#ring.hide();
-    else this.#ring.show(clientX, clientY, 2 * this.#radius * this.#viewer.screen.pixelsAt(spot.seen));
+    else this.#ring.show(clientX, clientY, this.#pixels);
   }
 
   #markCenter(): void {
@@ -162,7 +158,8 @@ export class BareBrush {
   }
 
   /** Marks what faces the viewer as the spot does, and reaches into the brush; or erases its marks. */
-  #mark({ triangle, point }: Spot): void {
+  #mark({ triangle, point, seen }: Spot): void {
+    const radius = this.#pixels / 2 / this.#viewer.screen.pixelsAt(seen);
     const { marks } = this.#stroke!;
     const { mesh } = this.#target!;
     const mark = this.#erases.checked ? 0 : 1;
@@ -171,7 +168,7 @@ export class BareBrush {
       return this.#viewer.screen.faces(closest, normal);
     };
     const side = faces(triangle);
-    for (const near of trianglesNear(mesh, point, this.#radius)) if (faces(near) === side) marks[near] = mark;
+    for (const near of trianglesNear(mesh, point, radius)) if (faces(near) === side) marks[near] = mark;
     marks[triangle] = mark;
   }
 

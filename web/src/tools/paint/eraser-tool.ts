@@ -94,10 +94,11 @@ export class EraserTool implements PaintTool {
 
   /** The layer with paint that the brush touches between two spots, or at the second if the first is none of the surface. */
   #layerOnWay(start: Spot | undefined, end: Spot | undefined): Layer | undefined {
-    const to = this.painter.aimOf(end)?.surface;
+    const aim = this.painter.aimOf(end);
+    const to = aim?.surface;
     if (!to) return undefined;
     const from = this.painter.aimOf(start)?.surface ?? to;
-    const radius = this.painter.lengthOf(this.options.size) / 2;
+    const radius = this.options.size / 2 / aim!.scale;
     const { selected, layers } = this.stack;
     const touches = ({ sheet, visible }: Layer): boolean => {
       if (!visible || !(sheet instanceof PaintedSheet)) return false;

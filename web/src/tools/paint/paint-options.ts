@@ -1,12 +1,11 @@
 import { Emitter, type PaintingSize, paintingSizes } from '#three';
 import { element } from '../../platform/page';
+import { brushPixels } from './ring';
 
 /** The painting tools; each shows its own options. */
 export type Kind = 'brush' | 'eraser' | 'sticker' | 'fill';
 
-// The range of the size slider, as shares of the diagonal of the cage.
-/** A brush with a diameter below this share of the diagonal of the cage is a few texels wide on a painting of the lesser size. */
-const kThin = 0.012;
+// The range of the slider for stickers, in shares of the diagonal of the cage.
 const kMinSize = 0.004;
 const kMaxSize = 0.4;
 const kSizeStep = 4; // of the slider, for a key
@@ -40,8 +39,9 @@ export class PaintOptions extends Emitter<{
   readonly #turn = element('sticker-turn', HTMLInputElement);
   readonly #outline = element('sticker-outline', HTMLInputElement);
   readonly #flip = element('sticker-flip', HTMLInputElement);
+  /** Texture size of the painting, in texels per side. */
+  texels: PaintingSize = paintingSizes[0];
   #kind: Kind | undefined;
-  #texels: PaintingSize = paintingSizes[0];
   /** The size of what is not chosen: a legible sticker is far larger than a brush. */
   #otherSize = '85';
   /** Whether fields change that the user did not touch. */
@@ -73,10 +73,10 @@ export class PaintOptions extends Emitter<{
     return this.#color.value;
   }
 
-  /** The brush's diameter, or the longer side of a sticker, as a share of the diagonal of the cage. */
+  /** The brush's diameter in pixels of the screen; the longer side of a sticker as a share of the diagonal of the cage. */
   get size(): number {
-    // The slider is logarithmic.
-    return kMinSize * (kMaxSize / kMinSize) ** (Number(this.#size.value) / 100);
+    const place = this.#size.valueAsNumber;
+    return this.#kind === 'sticker' ? kMinSize * (kMaxSize / kMinSize) ** (place / 100) : brushPixels(place);
   }
 
   /** 0..1 */
@@ -91,15 +91,6 @@ export class PaintOptions extends Emitter<{
 
   get mirror(): boolean {
     return this.#mirror.checked;
-  }
-
-  /** Texture size of the painting, in texels per side: for a thin brush, the greater one. */
-  get texels(): PaintingSize {
-    return this.#kind === 'brush' && this.size < kThin ? paintingSizes[1] : this.#texels;
-  }
-
-  set texels(texels: PaintingSize) {
-    this.#texels = texels;
   }
 
   get text(): string {
@@ -160,20 +151,20 @@ export class PaintOptions extends Emitter<{
     this.#slot.hidden = kind === undefined;
     for (const part of this.#slot.querySelectorAll<HTMLElement>('[data-for]'))
       part.hidden = !part.dataset.for!.split(' ').includes(kind ?? '');
-    if ((kind === 'sticker') !== (this.#kind === 'sticker')) {
-      [this.#size.value, this.#otherSize] = [this.#otherSize, this.#size.value];
-      this.#writing = true;
-      this.#size.dispatchEvent(new Event('input', { bubbles: true }));
-      this.#writing = false;
-    }
+    const before = this.#kind;
     this.#kind = kind;
+    if ((kind === 'sticker') === (before === 'sticker')) return;
+    [this.#size.value, this.#otherSize] = [this.#otherSize, this.#size.value];
+    this.#writing = true;
+    this.#size.dispatchEvent(new Event('input', { bubbles: true }));
+    this.#writing = false;
   }
 
   #label(): void {
     const say = (input: HTMLInputElement, text: string): void => {
       input.ariaValueText = input.closest('label')!.querySelector('output')!.value = text;
     };
-    say(this.#size, `${(100 * this.size).toFixed(1)} %`);
+    say(this.#size, this.#kind === 'sticker' ? `${(100 * this.size).toFixed(1)} %` : `${Math.round(this.size)} px`);
     say(this.#hardness, `${this.#hardness.value} %`);
     say(this.#opacity, `${this.#opacity.value} %`);
     say(this.#turn, `${this.#turn.value}°`);

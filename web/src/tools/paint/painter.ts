@@ -98,11 +98,6 @@ export class Painter extends LayerPainter implements PointerView {
     };
   }
 
-  /** A length in the cage's space. @param share Of the diagonal of the cage. */
-  lengthOf(share: number): number {
-    return share * (this.cageTexels?.diagonal ?? 0);
-  }
-
   /** UVs of the painted triangles of the piece that a spot lies on, 6 numbers for each. */
   uvsOfPart({ triangle }: Spot): number[] {
     return this.#partUvs?.ofPiece(triangle) ?? [];
