@@ -7,9 +7,10 @@ import { Keeper, type Offer } from '../../../web/src/state/project/keeper';
 import { layersPart } from '../../../web/src/state/project/layers-part';
 import { type Contribution, filesIn, Project } from '../../../web/src/state/project/project';
 import { scenePart } from '../../../web/src/state/project/scene-part';
-import { settingsParts } from '../../../web/src/state/project/settings-parts';
+import { settingsParts, viewPart } from '../../../web/src/state/project/settings-parts';
 import type { Flags, Shelf, Work, WorkStore } from '../../../web/src/state/project/shelf';
 import { PutAwayLayers } from '../../../web/src/state/put-away-layers';
+import type { Angle } from '../../../web/src/state/view-state';
 import { begin, Gate, paintOf, quiet, until } from './harness';
 
 /** What the tabs of a browser share. */
@@ -41,6 +42,32 @@ class FakeBrowser {
   }
 }
 
+class FakeCamera {
+  angle: Angle | undefined;
+  readonly #followers: (() => void)[] = [];
+
+  onMove(follow: () => void): void {
+    this.#followers.push(follow);
+  }
+
+  lookFrom(angle: Angle): void {
+    this.angle = angle;
+    for (const follow of this.#followers) follow();
+  }
+
+  home(): void {
+    this.angle = undefined;
+  }
+}
+
+/** Others beside the model: the camera shows all of them. */
+const crowdPart = (camera: FakeCamera): Contribution => ({
+  name: 'crowd',
+  isWork: false,
+  save: () => true,
+  read: () => ({ ready: () => camera.home() }),
+});
+
 /** A tab, with a page that keeps its work. @param memory What it had before it was reloaded. */
 async function tab(browser: FakeBrowser, memory: Partial<Flags> = {}, fragment = '') {
   const page = await begin();
@@ -58,11 +85,15 @@ async function tab(browser: FakeBrowser, memory: Partial<Flags> = {}, fragment =
     unpack: never,
   };
   const live = { shape: { deform: 'bend', amount: 0, cage: true, morphs: new Map() } as never, move() {} };
+  const camera = new FakeCamera();
+  session.on('transfer', () => camera.home());
   const parts: Contribution[] = [
     layersPart({ session, stack, edits, away, samples, painter: undefined, images }),
-    ...settingsParts(session, live, undefined),
+    ...settingsParts(session, live),
     barePart(session),
     cagePart({ session, samples, templates: ['human-head'] }, undefined),
+    crowdPart(camera),
+    viewPart(session, camera),
   ];
   for (const part of parts) project.add(part);
   const self = {};
@@ -105,6 +136,7 @@ async function tab(browser: FakeBrowser, memory: Partial<Flags> = {}, fragment =
       return page.state;
     },
     keeper,
+    camera,
     project,
     history,
     stack,
@@ -464,4 +496,18 @@ test('a project that somebody has damaged or changed by hand is refused in one s
   assert.deepEqual(page.session.rules, { preset: 'default', threshold: 0.5, weldTolerance: 0, borders: 'triangle' });
   assert.deepEqual(page.session.locks, { 0: 'auto' });
   assert.ok(work.length > 0);
+});
+
+test('who looks at a place finds it again after a reload, also beside others', async () => {
+  const first = await tab(new FakeBrowser());
+  await first.keeper.restore();
+  await first.work('bust');
+  const angle: Angle = { turn: 12, tilt: 84, near: 4.5, at: [0.1, 0.8, 0] };
+  first.camera.lookFrom(angle);
+  const isKept = (): boolean => JSON.stringify(first.browser.works[0]!.parts).includes('4.5');
+  for (let wait = 0; !isKept() && wait < 100; wait++) await new Promise((done) => setTimeout(done, 50));
+  assert.ok(isKept(), 'without anything else that is done');
+  const second = await reloaded(first);
+  await second.keeper.restore();
+  assert.deepEqual(second.camera.angle, angle);
 });

@@ -17,7 +17,7 @@ import { Keeper } from '../state/project/keeper';
 import { type LayersOfPage, layersPart } from '../state/project/layers-part';
 import { Project } from '../state/project/project';
 import { scenePart } from '../state/project/scene-part';
-import { settingsParts } from '../state/project/settings-parts';
+import { settingsParts, viewPart } from '../state/project/settings-parts';
 import { wardrobePart } from '../state/project/wardrobe-part';
 import type { WardrobeOfPage } from '../state/wardrobe/kept';
 import type { Live } from '../tools/live/live-panel';
@@ -64,11 +64,12 @@ export function setUpProjects(page: ProjectOfPage): Projects {
   const templates = [...element('template-select', HTMLSelectElement).options].map(({ value }) => value);
   const parts = [
     layersPart({ ...page, samples, images }),
-    ...settingsParts(session, live, viewer?.controls),
+    ...settingsParts(session, live),
     brushPart,
     barePart(session),
     cagePart({ session, samples, templates }, wardrobe),
     ...(wardrobe ? [wardrobePart(wardrobe)] : []),
+    viewPart(session, viewer?.controls),
   ];
   for (const part of parts) project.add(part);
   const shelf = shelfOf((fragment) => readLink(fragment) !== undefined);

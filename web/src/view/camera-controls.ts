@@ -40,6 +40,7 @@ export class CameraControls {
   #swayed: number | undefined;
   /** When it went on last. */
   #swayedAt = 0;
+  readonly #followers: (() => void)[] = [];
   /** When the controls were updated last. */
   #updated = 0;
 
@@ -56,7 +57,10 @@ export class CameraControls {
     this.#controls.minDistance = 0.8;
     this.#controls.maxDistance = kFar;
     this.#controls.maxPolarAngle = MathUtils.degToRad(150);
-    this.#controls.addEventListener('change', redraw);
+    this.#controls.addEventListener('change', () => {
+      redraw();
+      if (this.#moved) for (const follow of this.#followers) follow();
+    });
     this.#controls.addEventListener('start', () => this.#markMoved());
     canvas.addEventListener('keydown', (event) => this.#onKey(event));
     this.home();
@@ -118,6 +122,11 @@ export class CameraControls {
       near: this.#fullDistance / radius,
       ...(!target.equals(kMiddle) && { at: target.toArray() }),
     };
+  }
+
+  /** Calls back whenever that changes. */
+  onMove(follow: () => void): void {
+    this.#followers.push(follow);
   }
 
   /** Sets the camera angle, within the limits of the controls. */

@@ -36,6 +36,8 @@ export interface Contribution {
   readonly isWork: boolean;
   /** Whether people did something here that the undo history does not have, such as opening files. */
   isTouched?(): boolean;
+  /** Calls back when its state has changed, if nothing else tells. */
+  follow?(touch: () => void): void;
   /** Its state, as JSON; undefined for nothing. Called often: files that take long to make are made by `pack` if they are needed. */
   save(keep: Keep): unknown;
   /**
@@ -76,6 +78,7 @@ export class Project {
 
   add(contribution: Contribution): void {
     this.#contributions.push(contribution);
+    contribution.follow?.(() => this.touch());
   }
 
   /** Says that the state may have changed. */

@@ -16,6 +16,8 @@ interface Shaped {
 interface Camera {
   readonly angle: Angle | undefined;
   lookFrom(angle: Angle): void;
+  /** Calls back when the user has moved it. */
+  onMove(follow: () => void): void;
 }
 
 /** A place in the model. */
@@ -24,8 +26,8 @@ function placeOf(saved: unknown): NonNullable<Angle['at']> {
   return [x ?? 0, y ?? 0, z ?? 0];
 }
 
-/** Rules, overrides of parts, the shape and the view. @param controls Undefined without WebGL. */
-export function settingsParts(session: Session, live: Shaped, controls: Camera | undefined): Contribution[] {
+/** Rules, overrides of parts and the shape. */
+export function settingsParts(session: Session, live: Shaped): Contribution[] {
   return [
     {
       name: 'rules',
@@ -75,35 +77,45 @@ export function settingsParts(session: Session, live: Shaped, controls: Camera |
         return shape.amount === 0 && weights.length === 0 ? {} : { shown: () => live.move(shape) };
       },
     },
-    {
-      name: 'view',
-      isWork: false,
-      save: () => ({ ...session.view, angle: controls?.angle }),
-      read(saved) {
-        const { mode, split, step, paint, cage, seeThrough, light, background, angle } = objectOf(saved, 'view');
-        const { turn, tilt, near, at } = (angle ?? {}) as Record<string, unknown>;
-        return {
-          shown() {
-            session.setView({
-              mode: oneOf(mode, kModes),
-              split: numberOf(split, 0, 1, 0.5),
-              step: numberOf(step, 0, kLastStep, 0),
-              paint: paint !== false,
-              cage: cage === true,
-              seeThrough: seeThrough === true,
-              light: oneOf(light, kLightNames),
-              background: /^#[0-9a-f]{6}$/i.test(textOf(background, '')) ? (background as string) : '',
-            });
-            if (angle)
-              controls?.lookFrom({
-                turn: numberOf(turn, -360, 360, 0),
-                tilt: numberOf(tilt, 0, 180, 90),
-                near: numberOf(near, 0.01, 100, 1),
-                at: at === undefined ? undefined : placeOf(at),
-              });
-          },
-        };
-      },
-    },
   ];
+}
+
+/** The view; last of all, as others make the camera show what they bring. @param controls Undefined without WebGL. */
+export function viewPart(session: Session, controls: Camera | undefined): Contribution {
+  return {
+    name: 'view',
+    isWork: false,
+    follow: (touch) => controls?.onMove(touch),
+    save: () => ({ ...session.view, angle: controls?.angle }),
+    read(saved) {
+      const { mode, split, step, paint, cage, seeThrough, light, background, angle } = objectOf(saved, 'view');
+      const { turn, tilt, near, at } = (angle ?? {}) as Record<string, unknown>;
+      const look = (): void => {
+        if (angle)
+          controls?.lookFrom({
+            turn: numberOf(turn, -360, 360, 0),
+            tilt: numberOf(tilt, 0, 180, 90),
+            near: numberOf(near, 0.01, 100, 1),
+            at: at === undefined ? undefined : placeOf(at),
+          });
+      };
+      return {
+        // Others beside the model have come last, and are shown from where all are seen.
+        ready: look,
+        shown() {
+          session.setView({
+            mode: oneOf(mode, kModes),
+            split: numberOf(split, 0, 1, 0.5),
+            step: numberOf(step, 0, kLastStep, 0),
+            paint: paint !== false,
+            cage: cage === true,
+            seeThrough: seeThrough === true,
+            light: oneOf(light, kLightNames),
+            background: /^#[0-9a-f]{6}$/i.test(textOf(background, '')) ? (background as string) : '',
+          });
+          look();
+        },
+      };
+    },
+  };
 }
