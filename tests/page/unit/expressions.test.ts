@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { titleOfExpression, titleOfMorph } from '../../../web/src/tools/live/expression-names';
-import { expressionsOf } from '../../../web/src/tools/live/expressions';
+import { expressionsOf, shownBy } from '../../../web/src/tools/live/expressions';
 
 test('names of ARKit, VRoid and VRM in words; others stay as they are', () => {
   const names = ['browOuterUpRight', 'mouthSmileLeft', 'mouthLeft', 'jawOpen', 'cheekPuff', 'eyeLookInLeft'];
@@ -134,4 +134,14 @@ test('an expression moves all meshes; a blink and speech end at rest', () => {
   }
   const said = new Set(found[1]!.sequence!.flatMap(([, weights]) => [...weights.keys()]));
   assert.deepEqual([...said].sort(), ['head.A', 'head.U', 'teeth.A']);
+});
+
+test('weights that were set otherwise, as after a reload, show the expression that has them', () => {
+  const weights = new Map([['mouthSmile', 1]]);
+  const smile = { title: 'Smile', weights };
+  const blink = { title: 'Blink', weights: new Map([['eyes', 1]]), sequence: [[0.1, new Map([['eyes', 1]])] as const] };
+  assert.equal(shownBy([blink, smile], new Map([...weights, ['male', 0.3]])), smile);
+  assert.equal(shownBy([smile], new Map([['mouthSmile', 0.5]])), undefined);
+  assert.equal(shownBy([blink], new Map([['eyes', 1]])), undefined, 'a blink does not stay');
+  assert.equal(shownBy([{ title: 'None', weights: new Map() }], weights), undefined);
 });

@@ -1,6 +1,6 @@
 import { make } from '../../platform/make';
 import { element } from '../../platform/page';
-import type { Expression } from './expressions';
+import { type Expression, shownBy } from './expressions';
 import type { Weights } from './morph-names';
 
 const kEase = 200; // milliseconds
@@ -14,6 +14,7 @@ export class ExpressionButtons {
   /** Where the current move started. */
   #from: Weights = new Map();
   #shown: Weights = new Map();
+  #expressions: readonly Expression[] = [];
   #held: Expression | undefined;
   #playing: Expression | undefined;
   #since = 0;
@@ -27,6 +28,7 @@ export class ExpressionButtons {
   /** Offers those of another model. @param stored  The weights in its file. */
   offer(expressions: readonly Expression[], stored: Weights): void {
     this.release();
+    this.#expressions = expressions;
     const shapes = expressions.flatMap(({ weights, sequence = [] }) => [
       weights,
       ...sequence.map(([, shape]) => shape),
@@ -48,11 +50,12 @@ export class ExpressionButtons {
     );
   }
 
-  /** Ends all expressions: the morphs are moved otherwise. */
-  release(): void {
+  /** Ends all expressions: the morphs are moved otherwise. @param weights If they show one, that is held. */
+  release(weights?: Weights): void {
     cancelAnimationFrame(this.#frame);
-    this.#held = this.#playing = undefined;
-    this.#shown = this.#rest;
+    this.#playing = undefined;
+    this.#held = weights && shownBy(this.#expressions, weights);
+    this.#shown = new Map([...this.#rest, ...(this.#held?.weights ?? [])]);
     this.#mark();
   }
 

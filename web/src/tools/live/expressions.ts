@@ -98,6 +98,13 @@ function vrmExpressions({ parser }: Loaded, { primitives }: ExtractedMesh): Expr
   });
 }
 
+/** The expression that weights show, which may have been set otherwise; not one that is over after a while. */
+export const shownBy = (expressions: readonly Expression[], weights: Weights): Expression | undefined =>
+  expressions.find(
+    ({ sequence, weights: own }) =>
+      !sequence && own.size > 0 && [...own].every(([name, weight]) => weights.get(name) === weight),
+  );
+
 const isRecord = (value: unknown): value is Record<string, unknown> => typeof value === 'object' && value !== null;
 const list = (value: unknown): unknown[] => (Array.isArray(value) ? value : []);
 const toBind = (value: unknown, most: number): Bind[] =>

@@ -68,8 +68,8 @@ export class Morphs {
 
   /** Sets the named weights, clamped to the range of their sliders. */
   move(weights: Weights): void {
-    this.#buttons.release();
     this.#set(weights);
+    this.#buttons.release(this.moved);
   }
 
   #set(weights: Weights): void {
