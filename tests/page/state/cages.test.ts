@@ -123,6 +123,7 @@ test('a cage that faces the other way is turned, once', async () => {
   const { cage } = session.shown!;
   const find = () => session.reportInspection({ verdict: 'unfit', findings: [{ code: 'cageBackward' }] } as never);
   find();
+  assert.ok(session.isMakingCage, 'at once, so that nothing is said of it before');
   await ready();
   const turned = session.shown!.cage.mesh.positions;
   assert.deepEqual(

@@ -6,9 +6,10 @@ import path from 'node:path';
 import { test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { PNG } from 'pngjs';
+import { asset } from '../../support/cages';
 import { glbOf, tetrahedron } from '../../support/glb';
 import { texturedBox } from '../../support/models';
-import { drop, glb, inRepository, openSite, ready, settled, shownCounts, shownError } from '../../support/site';
+import { drop, glb, inRepository, kPlay, openSite, ready, settled, shownCounts, shownError } from '../../support/site';
 
 const site = await openSite();
 // One page for all of it: it must come through everything.
@@ -156,4 +157,29 @@ test('warnings about files stay while borders are cut', async () => {
   await page.locator('#borders-note', { hasText: 'Adds' }).waitFor();
   await ready(page);
   assert.match(await shownError(page), / was ignored: /);
+});
+
+test('while a model loads nothing is said of the one before; of a refused file the message tells, and the chip is of what is there', async () => {
+  const { page } = await site.visit({}, kPlay);
+  await page.locator('#model-verdict[data-verdict=good]').waitFor();
+  await drop(page, [glb('broken.glb', Buffer.from('glTF'))]);
+  assert.equal(await settled(page), 'error');
+  assert.match(await shownError(page), /broken\.glb/);
+  assert.ok(await page.locator('#model-verdict').isVisible());
+  assert.ok(await page.getByTestId('status').isHidden());
+  const said = page.evaluate(
+    () =>
+      new Promise<string[]>((done) => {
+        const root = document.documentElement;
+        new MutationObserver(() => {
+          if (!root.hasAttribute('data-leaving')) return;
+          const all = ['stage-verdict', 'model-verdict', 'ask', 'alert'];
+          done(all.filter((id) => document.getElementById(id)!.checkVisibility()));
+        }).observe(root, { attributeFilter: ['data-leaving'] });
+      }),
+  );
+  await drop(page, [glb('bust.glb', asset('human', 'target.glb')), glb('bust-cage.glb', asset('human', 'cage.glb'))]);
+  assert.deepEqual(await said, []);
+  await ready(page);
+  assert.ok(await page.locator('#stage-verdict').isVisible());
 });

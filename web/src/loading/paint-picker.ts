@@ -1,5 +1,6 @@
 import { make } from '../platform/make';
 import { element } from '../platform/page';
+import { pictureOf } from './samples';
 
 /** A paint to choose: its title and the URL of its image. */
 export interface Choice {
@@ -34,7 +35,7 @@ export function offerPaints(choices: readonly Choice[], chosen: number, { onChoo
 
 function choiceOf({ title, picture }: Choice): HTMLElement {
   const input = make('input', { type: 'radio', name: 'paint' });
-  const frame = make('span', { className: 'picture' }, make('img', { src: picture, alt: '' }));
+  const frame = make('span', { className: 'picture' }, make('img', { src: pictureOf(picture), alt: '' }));
   const label = make('label', {}, input, frame, make('span', { className: 'title' }, title));
   const ariaLabel = `Add ${title} as a layer`;
   const add = make('button', { type: 'button', name: 'add-paint', title: 'Add as a layer', ariaLabel }, '+');

@@ -36,6 +36,11 @@ export function fetchAhead({ target, cage, paints }: Sample): void {
 const ask = (address: string, options: RequestInit = {}): Promise<Response | undefined> =>
   fetch(address, options).catch(() => undefined);
 
+const pictures = new Map<string, string>();
+
+/** Where an image shows a file of a sample: that need not be fetched again if it has come. */
+export const pictureOf = (address: string): string => pictures.get(address) ?? address;
+
 /** What was asked for and has not come. */
 const awaited = new Set<string>();
 
@@ -51,5 +56,6 @@ export async function fetchFile(address: string): Promise<File> {
   const body = response?.ok ? await response.blob().catch(() => undefined) : undefined;
   if (!body) throw new Error(`${name}: the file could not be loaded`);
   awaited.delete(address);
+  if (body.type.startsWith('image/') && !pictures.has(address)) pictures.set(address, URL.createObjectURL(body));
   return new File([body], name.split('/').at(-1)!);
 }

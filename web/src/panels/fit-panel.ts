@@ -45,6 +45,8 @@ export class FitPanel {
   readonly #stageVerdict: StageVerdict;
   #client: TransferClient | undefined;
   #waiting: ReturnType<typeof setTimeout> | undefined;
+  /** What is not said while the page mends it by itself. */
+  #unsaid: Inspection | undefined;
 
   constructor(session: Session, stage: Stage | undefined, maker: CageMaker) {
     this.#session = session;
@@ -57,6 +59,9 @@ export class FitPanel {
       this.#show('', [make('p', {}, kSoon)]);
     });
     session.on('zones', () => this.#onChange());
+    session.on('progress', ({ state }) => {
+      if (state !== 'working' && this.#unsaid) this.#write(this.#unsaid);
+    });
     this.#button.addEventListener('click', () => void this.#inspect());
   }
 
@@ -73,6 +78,7 @@ export class FitPanel {
   /** Ends the inspection in progress: it is not of what is shown. */
   #forget(): void {
     clearTimeout(this.#waiting);
+    this.#unsaid = undefined;
     this.#client?.cancel();
   }
 
@@ -99,7 +105,10 @@ export class FitPanel {
       const { target, cage, projection } = shown;
       const landmarks = landmarksOf(cage);
       const options = { preset, threshold, weldTolerance, parts, locks, landmarks };
-      this.#write(await this.#client.ask('inspect', cage, withoutParts(target, projection), options));
+      const inspection = await this.#client.ask('inspect', cage, withoutParts(target, projection), options);
+      this.#session.reportInspection(inspection);
+      if (this.#session.isMakingCage) this.#unsaid = inspection;
+      else this.#write(inspection);
     } catch (error) {
       if (error instanceof Superseded) return;
       this.#show('', [make('p', {}, `The cage could not be inspected: ${reasonOf(error)}`)], this.#next);
@@ -107,6 +116,7 @@ export class FitPanel {
   }
 
   #write(inspection: Inspection): void {
+    this.#unsaid = undefined;
     const { verdict, findings, segments } = inspection;
     const list = make('ul', {}, ...findings.map((finding) => this.#item(finding, inspection)));
     const share = `${Math.round(100 * paintableShare(segments))} % of`;
@@ -131,7 +141,6 @@ export class FitPanel {
     // What is good needs no remedy on the stage; the findings offer theirs.
     const remedy = verdict === 'good' ? undefined : (remedies[0] ?? making[0]);
     this.#show(verdict, content, remedy, findings.length);
-    this.#session.reportInspection(inspection);
   }
 
   #show(verdict: KnownVerdict, content: HTMLElement[], remedy?: Remedy, findings = 0): void {

@@ -1,4 +1,5 @@
 import { type Blend, blendModes, type Edits, type Layer, type LayerStack, maxLayers, type Style } from '#three';
+import { pictureOf } from '../loading/samples';
 import { announce, element } from '../platform/page';
 
 // One transparent pixel.
@@ -200,7 +201,7 @@ function showLayer(item: HTMLElement, controls: Controls, layer: Layer, selected
   const { grip, choose, remove, visible, opacity, tint, blend } = controls;
   const { name } = layer;
   item.classList.toggle('selected', selected);
-  item.querySelector('img')!.src = layer.sheet.picture ?? kNoPicture;
+  item.querySelector('img')!.src = layer.sheet.picture ? pictureOf(layer.sheet.picture) : kNoPicture;
   item.querySelector('.name')!.textContent = choose.title = name;
   choose.translate = !name.includes('.'); // the names of files are their owner's
   choose.setAttribute('aria-pressed', String(selected));

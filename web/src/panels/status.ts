@@ -1,3 +1,4 @@
+import { dismiss } from '../platform/ask';
 import { clearError, element, showError, showNotice } from '../platform/page';
 import type { Model } from '../state/model';
 import { kReading, type Progress, type Session } from '../state/session';
@@ -29,7 +30,9 @@ export function showStatus(session: Session, blind: boolean): void {
   session.on('progress', (progress) => {
     bar.show(progress);
     // Words about the shown model are not about the awaited one.
+    const isFirst = session.isLeaving && !document.documentElement.hasAttribute('data-leaving');
     document.documentElement.toggleAttribute('data-leaving', session.isLeaving);
+    if (isFirst) dismiss();
     switch (progress.state) {
       case 'working':
         // Keep messages about the files while later stages run.

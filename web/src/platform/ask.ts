@@ -61,6 +61,12 @@ function button(className: string, title: string, run: () => void): HTMLButtonEl
   return made;
 }
 
+/** Takes a message away that nobody has to answer: it was about what gives way to something else. */
+export function dismiss(): void {
+  waiting = undefined;
+  if (shown && !shown.isDialog) close();
+}
+
 function close(): void {
   hide();
   const next = waiting;

@@ -34,7 +34,10 @@ export class Wardrobe {
     if (session.shown) this.#show(session.shown);
     session.on('transfer', (shown) => this.#show(shown));
     session.on('zones', () => this.#onZones());
-    session.on('inspected', ({ verdict }) => this.list.update(this.list.active, { verdict }));
+    session.on('inspected', ({ verdict }) => {
+      // Not while the page mends it by itself.
+      if (!session.isMakingCage) this.list.update(this.list.active, { verdict });
+    });
     session.on('rules', () => this.#onRules());
     session.on('progress', ({ state }) => {
       // With one still chosen, loading it was cancelled.
