@@ -3,17 +3,15 @@ import { element } from '../platform/page';
 import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
 import { type KnownVerdict, paintableShare, type Remedy, regionOf } from '../state/verdict';
+import { verdictWords } from '../state/verdict-words';
 import { bareParts } from '../view/part-names';
 import { goTo } from './section-nav';
-
-const kMaxNames = 4;
 
 /** Shows the verdict on the cage on the stage and on the model's card: in Play what stays bare, in Inspect how much is painted. */
 export class StageVerdict {
   readonly #session: Session;
   readonly #box = element('stage-verdict', HTMLElement);
   readonly #text = element('stage-verdict-text', HTMLButtonElement);
-  readonly #hint = element('tap-hint', HTMLElement);
   readonly #button = element('stage-remedy', HTMLButtonElement);
   readonly #card = element('model-verdict', HTMLElement);
   #verdict: KnownVerdict = '';
@@ -46,8 +44,7 @@ export class StageVerdict {
     const words = (face() === 'play' ? this.#inWords : this.#inNumbers).bind(this);
     const { stage, card } = words(shown, classification.segmentStats);
     this.#box.hidden = this.#card.hidden = false;
-    this.#text.firstChild!.textContent = stage;
-    this.#hint.hidden = verdict === 'unfit' || verdict === '';
+    this.#text.textContent = stage;
     this.#card.textContent = card;
     this.#box.dataset.verdict = this.#card.dataset.verdict = verdict;
     const leaves = !this.#remedy && document.activeElement === this.#button;
@@ -57,26 +54,12 @@ export class StageVerdict {
   }
 
   #inWords(shown: Shown, stats: Stats): Words {
-    const region = regionOf(shown, stats);
-    const ready = region ? `${capital(region)} is ready` : 'Ready';
-    const things = `${this.#findings} ${this.#findings === 1 ? 'thing' : 'things'} to look at`;
-    const bare = bareParts(shown, stats);
-    const more = bare.length > kMaxNames ? [`${bare.length - kMaxNames + 1} more`] : [];
-    const names = [...bare.slice(0, kMaxNames - more.length), ...more];
-    const stays = names.length > 0 ? ` Bare: ${names.join(', ')}.` : '';
-    const card = {
-      '': 'painted',
-      good: ready.toLowerCase(),
-      usable: `${ready.toLowerCase()}, ${things}`,
-      unfit: 'needs another cage',
-    }[this.#verdict];
-    const stage = {
-      '': isForeign(shown) ? 'The cage is another model’s' : 'Painted',
-      good: `${ready}.${stays}`,
-      usable: `${ready}, ${things}.${stays}`,
-      unfit: 'Needs another cage',
-    }[this.#verdict];
-    return { stage, card };
+    return verdictWords(this.#verdict, {
+      region: regionOf(shown, stats),
+      bare: bareParts(shown, stats),
+      findings: this.#findings,
+      isForeign: isForeign(shown),
+    });
   }
 
   #inNumbers(shown: Shown, stats: Stats): Words {

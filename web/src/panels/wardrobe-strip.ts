@@ -56,7 +56,7 @@ const kStrip = `
   </div>`;
 
 const kCard = `
-  <button type="button" class="avatar"><img alt="" /><span class="name"></span><span class="unseen">, </span><span class="verdict"></span><span class="unseen more"></span></button>
+  <button type="button" class="avatar"><img alt="" /><span class="name"></span><span class="unseen">, </span><span class="verdict"></span></button>
   <button type="button" class="icon remove"><svg viewBox="0 0 24 24" aria-hidden="true" focusable="false"><path d="M6 6l12 12M18 6 6 18"/></svg></button>`;
 
 /** The avatars of the wardrobe, in a strip below the stage. */
@@ -259,23 +259,22 @@ export class WardrobeStrip {
 
 const isPainted = ({ takesPaint, own }: Avatar): boolean => takesPaint || own !== undefined;
 
-/** What is read aloud after what is seen. */
+/** What is said of an avatar that is painted. */
 const kVerdictWords: Record<Avatar['verdict'], string> = {
-  '': '',
-  good: ' paintable, good',
-  usable: ' paintable, with reservations',
-  unfit: '',
+  '': 'painted',
+  good: 'painted',
+  usable: 'looks off?',
+  unfit: 'does not look right',
 };
 
 function fillCard(card: HTMLLIElement, avatar: Avatar, isActive: boolean, isRemovable: boolean): void {
-  const { name, picture, verdict, paintable, cage, doing, files } = avatar;
+  const { name, picture, verdict, cage, doing, files } = avatar;
   const isWorn = isPainted(avatar);
   const [choose, remove] = card.querySelectorAll('button') as unknown as [HTMLButtonElement, HTMLButtonElement];
   const image = card.querySelector('img')!;
   if (picture && image.src !== picture) image.src = picture;
   image.hidden = picture === '';
-  const share = paintable === undefined ? '' : `${Math.round(100 * paintable)} %`;
-  const badge = doing || (!cage ? 'no cage' : !isWorn ? 'other cage' : verdict === 'unfit' ? 'does not fit' : share);
+  const badge = doing || (!cage ? 'no cage' : !isWorn ? 'other cage' : kVerdictWords[verdict]);
   const shown = card.querySelector('.verdict') as HTMLElement;
   card.querySelector('.name')!.textContent = name;
   shown.textContent = badge;
@@ -283,8 +282,6 @@ function fillCard(card: HTMLLIElement, avatar: Avatar, isActive: boolean, isRemo
   choose.ariaPressed = String(isActive);
   choose.ariaDisabled = files.length === 0 ? 'true' : null;
   choose.title = name;
-  const isSaid = doing === '' && isWorn && verdict !== '';
-  card.querySelector('.more')!.textContent = isSaid ? kVerdictWords[verdict] : '';
   remove.ariaLabel = `Remove ${name}`;
   remove.hidden = !isRemovable || !isActive;
 }

@@ -29,7 +29,6 @@ export class AvatarList extends Emitter<{ change: undefined }> {
       locks: {},
       picture: '',
       verdict: '',
-      paintable: undefined,
       takesPaint: false,
       own: undefined,
       doing,

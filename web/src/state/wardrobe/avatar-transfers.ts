@@ -4,7 +4,7 @@ import { isUpToDate, moveChoices, projectBy, withoutParts } from '../left-out';
 import { landmarksOf, type Model } from '../model';
 import type { Paint } from '../paint';
 import { haveSameUvs } from '../same-uvs';
-import { kMaxInspected, paintableShare } from '../verdict';
+import { kMaxInspected } from '../verdict';
 import type { Avatar } from './avatar';
 import type { AvatarList } from './avatar-list';
 import type { Surroundings } from './surroundings';
@@ -123,7 +123,6 @@ export class AvatarTransfers {
     const choices = choicesOf(locks, bare, standing.projection, this.#around.session.bareOf(files));
     const classification = classify(standing.projection, { threshold, ...choices });
     standing.classify(classification);
-    avatar.paintable = paintableShare(classification.segmentStats);
     this.#around.view.redraw();
   }
 

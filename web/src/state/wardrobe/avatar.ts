@@ -52,8 +52,6 @@ export interface Avatar {
   /** URL of a picture; empty until it was drawn. */
   picture: string;
   verdict: KnownVerdict;
-  /** Of the visible surface, 0..1: what can be painted. */
-  paintable: number | undefined;
   /** Whether its cage has the UVs of that of the model on the stage. */
   takesPaint: boolean;
   /** The base paint, drawn for its own cage, which has other UVs. */

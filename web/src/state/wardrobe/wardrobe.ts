@@ -2,7 +2,6 @@ import { madeOf } from '../made-cages';
 import { asCage, asTarget, type Model, ownCage } from '../model';
 import type { Shown } from '../scene';
 import type { Session } from '../session';
-import { paintableShare } from '../verdict';
 import { reasonOf } from '../wording';
 import { type Avatar, type Entry, kMaxAvatars, nameOf } from './avatar';
 import { AvatarList } from './avatar-list';
@@ -321,7 +320,6 @@ export class Wardrobe {
     const { classification, locks } = this.#session;
     if (!classification) return;
     this.list.active.locks = { ...locks };
-    this.list.update(this.list.active, { paintable: paintableShare(classification.segmentStats) });
     this.#refresh([this.list.active]);
   }
 
