@@ -10,6 +10,7 @@ import { watchOver } from './loading/watch-over';
 import { setUpCagePanel } from './panels/cage-panel';
 import { FitPanel } from './panels/fit-panel';
 import { LayerList } from './panels/layer-list';
+import { setUpPaintStrip } from './panels/paint-strip';
 import { PartMenu } from './panels/part-menu';
 import { PartsTable } from './panels/parts-table';
 import { setUpPicture } from './panels/picture-panel';
@@ -110,11 +111,13 @@ new FitPanel(session, viewer?.stage, maker);
 setUpRules(session);
 new ThresholdMarks(session);
 setUpViewControls(session);
-setUpSectionNav(session);
+setUpSectionNav(session, (open) => viewer?.lookAtFace(open));
+setUpPaintStrip();
 setUpStageButtons(viewer?.controls, history);
 element('stage-share', HTMLButtonElement).addEventListener('click', () => goTo(element('share', HTMLElement)));
 // Whoever brings a model wants to see it painted, not compared.
 session.on('transfer', ({ target }) => {
+  document.documentElement.toggleAttribute('data-own', !target.sample); // who has one needs no motto
   if (!target.sample && face() === 'play' && session.view.mode === 'compare') session.setView({ mode: 'result' });
 });
 const opener = new Opener(session, stack, edits, loader, new Drawings());

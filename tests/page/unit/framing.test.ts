@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Bone, Group } from 'three';
-import { frontOf } from '../../../web/src/view/framing';
+import { Bone, Group, MathUtils } from 'three';
+import { coveredBy, fittingDistance, frontOf, kFieldOfView, kHome } from '../../../web/src/view/framing';
 
 const names = [
   ['LeftArm', 'RightArm'],
@@ -37,5 +37,40 @@ test('a model is seen from where its bones say that its front is', () => {
   assert.equal(
     frontOf({ loaded: { scene: new Group(), parser: { json: { extensions: { VRM: {} } } } } } as never),
     Math.PI,
+  );
+});
+
+const phone = { width: 390, height: 695, top: 96, bottom: 64, side: 12, fill: 0.9 };
+
+/** The share of the view's height that a model fills at its distance. */
+const filled = (points: number[], half: number): number =>
+  half / (fittingDistance(phone, points, kHome, false) * Math.tan(MathUtils.degToRad(kFieldOfView / 2)));
+
+test('a figure fills the height that is free on a phone, and can be turned there; a compact model gets room to be turned', () => {
+  const figure = [0, 0.95, 0, 0, -0.95, 0, 0.48, 0.2, 0, -0.48, 0.2, 0, 0, 0, 0.15];
+  const free = (phone.height - phone.top - phone.bottom) / phone.height;
+  const share = filled(figure, 0.95);
+  assert.ok(share > 0.85 * free && share < free, `${share} of ${free}`);
+  const ball = [0, 0.6, 0, 0, -0.6, 0, 0.6, 0, 0, -0.6, 0, 0, 0, 0, 0.6];
+  assert.ok(filled(ball, 0.6) < 0.6 * free);
+});
+
+test('strips of controls cover the edges of the view that they are at; columns stand beside the model', () => {
+  const view = { left: 0, right: 390, top: 0, bottom: 695 };
+  const [head, dock] = [
+    { left: 8, right: 382, top: 0, bottom: 92 },
+    { left: 4, right: 232, top: 635, bottom: 687 },
+  ];
+  const column = { left: 10, right: 66, top: 250, bottom: 480 };
+  assert.deepEqual(coveredBy(view, [head, dock, column]), { top: 96, bottom: 64 });
+  assert.deepEqual(coveredBy(view, [column]), { top: 0, bottom: 0 });
+  const moved = (by: number) =>
+    [view, head, dock].map((box) => ({ ...box, top: box.top + by, bottom: box.bottom + by }));
+  const [movedView, ...controls] = moved(300);
+  assert.deepEqual(coveredBy(movedView!, controls), { top: 96, bottom: 64 }, 'wherever the view is');
+  const high = { ...head, bottom: 690 };
+  assert.ok(
+    coveredBy({ ...view, right: 900 }, [{ ...high, right: 900 }]).top <= 0.4 * 695,
+    'the model has room, whatever is said',
   );
 });

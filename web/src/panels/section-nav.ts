@@ -5,8 +5,18 @@ import type { Session } from '../state/session';
 
 const kNear = 60; // pixels: a section that starts this close below the bar counts as current
 
-/** Fills the navigation bar with the panel's visible sections, and marks the current one. On a phone it opens the sheet in Play. */
-export function setUpSectionNav(session: Session): void {
+/**
+ * Fills the navigation bar with the panel's visible sections, and marks the current one. On a phone it opens the sheet in Play.
+ * @param onSheet Called when that opens or closes.
+ */
+export function setUpSectionNav(session: Session, onSheet: (open: boolean) => void): void {
+  let wasOpen = false;
+  const tell = (): void => {
+    const open = isSheet() && isSheetOpen();
+    if (open !== wasOpen) onSheet((wasOpen = open));
+  };
+  new MutationObserver(tell).observe(document.documentElement, { attributeFilter: ['data-sheet', 'data-face'] });
+  addEventListener('resize', tell);
   const bar = element('section-nav', HTMLElement);
   sheet.addEventListener('click', () => openSheet(!isSheetOpen()));
   // The options of a tool are there once it is chosen; on a phone the stage has most of them.

@@ -34,6 +34,7 @@ export class CameraControls {
   #free: FreePart = { width: 1, height: 1, top: 0, bottom: 0, side: 0, fill: 1 };
   /** The distance at which the whole model is visible, for the current size. */
   #far = 1;
+  #closeUp: (() => readonly Vector3[] | undefined) | undefined;
   /** Whether the user moved the camera. */
   #moved = false;
   /** Seconds of idle rotation so far; undefined if it is off. */
@@ -71,11 +72,20 @@ export class CameraControls {
     return this.#free;
   }
 
-  /** Resets the camera to show the whole model. */
+  /** Resets the camera to show the whole model, or what is looked at closely. */
   home(): void {
     this.#moved = false;
     this.#far = this.#fullDistance;
-    this.#look({ phi: kHome.phi, theta: this.#stage.front + kHome.theta, radius: this.#far }, kMiddle);
+    const theta = this.#stage.front + kHome.theta;
+    const region = this.#closeUp?.();
+    if (region) this.#lookAtRegion(region, theta);
+    else this.#look({ phi: kHome.phi, theta, radius: this.#far }, kMiddle);
+  }
+
+  /** Looks at a region of any model closely, until the user moves the camera. @param region Of the stage, if there is one; undefined ends it. */
+  closeUp(region: (() => readonly Vector3[] | undefined) | undefined): void {
+    this.#closeUp = region;
+    if (!this.#moved) this.home();
   }
 
   /** Shows the whole model from a side, or as large as it fits from where the camera is. */
@@ -93,9 +103,13 @@ export class CameraControls {
    */
   lookAt(points: readonly Vector3[], front: number): void {
     this.#markMoved();
+    this.#lookAtRegion(points, front);
+  }
+
+  #lookAtRegion(points: readonly Vector3[], theta: number): void {
     const { center, radius } = new Box3().setFromPoints([...points]).getBoundingSphere(new Sphere());
     const distance = Math.max(kRegionMargin * radius * this.#fullDistance, this.#controls.minDistance);
-    this.#look({ phi: kLevel, theta: front, radius: Math.min(distance, this.#far) }, center);
+    this.#look({ phi: kLevel, theta, radius: Math.min(distance, this.#far) }, center);
   }
 
   /** Makes the side that is seen the model's front. */
@@ -155,7 +169,7 @@ export class CameraControls {
 
   /** The view has another size, in pixels. */
   resize(width: number, height: number, free: FreePart): void {
-    const before = this.camera.aspect;
+    const before = this.#free;
     this.camera.aspect = width / height;
     this.#free = free;
     // Centre the model in the free part.
@@ -166,7 +180,7 @@ export class CameraControls {
     if (this.#moved) {
       const { radius, phi, theta } = this.#orbit;
       this.#look({ radius: (radius * this.#far) / far, phi, theta });
-    } else if (before !== this.camera.aspect) this.home();
+    } else if (JSON.stringify(before) !== JSON.stringify(free)) this.home();
   }
 
   /** Switches the idle rotation, which ends when the user moves the camera. */

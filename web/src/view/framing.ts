@@ -8,6 +8,7 @@ export const kFieldOfView = 28;
 export const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14));
 
 const kMargin = 1.03;
+const kSlim = 1.3; // of half the height by the radius: a figure needs less room to be turned than a compact model
 const kMaxPoints = 50_000; // more are sampled evenly
 
 /** Other models beside the one on the stage. The viewer moves all of them together. */
@@ -34,15 +35,43 @@ export interface FreePart {
   fill: number;
 }
 
-/** Reads from the stylesheet what controls cover. */
-export function freePartOf(canvas: HTMLElement): FreePart {
+/** Where something is on the page, in pixels. */
+type Place = Pick<DOMRect, 'left' | 'right' | 'top' | 'bottom'>;
+
+const kGap = 4; // pixels between a model and controls
+const kMost = 0.4; // of the height that either edge may be covered
+
+/** How much of a view's upper and lower edge strips of controls cover; columns of them stand beside the model. */
+export function coveredBy(view: Place, controls: readonly Place[]): Pick<FreePart, 'top' | 'bottom'> {
+  const height = view.bottom - view.top;
+  const covered = { top: 0, bottom: 0 };
+  for (const { left, right, top, bottom } of controls) {
+    if (right - left < bottom - top) continue;
+    const edge = top + bottom < view.top + view.bottom ? 'top' : 'bottom';
+    const reach = edge === 'top' ? bottom - view.top : view.bottom - top;
+    covered[edge] = Math.max(covered[edge], Math.min(reach + kGap, kMost * height));
+  }
+  return covered;
+}
+
+/**
+ * Measures what controls cover, and tells it to the stylesheet, which knows it before any script runs only for the usual size of texts.
+ * @param controls Strips and columns of controls on the view.
+ */
+export function freePartOf(canvas: HTMLElement, controls: readonly HTMLElement[]): FreePart {
+  const seen = controls.filter((one) => one.checkVisibility());
+  const { top, bottom } = coveredBy(
+    canvas.getBoundingClientRect(),
+    seen.map((one) => one.getBoundingClientRect()),
+  );
+  for (const [name, value] of Object.entries({ top, bottom }))
+    canvas.parentElement!.style.setProperty(`--stage-${name}`, `${value}px`);
   const style = getComputedStyle(canvas);
   const value = (name: string, missing: number): number => parseFloat(style.getPropertyValue(name)) || missing;
   return {
     width: canvas.clientWidth,
     height: canvas.clientHeight,
-    top: value('--stage-top', 0),
-    bottom: value('--stage-bottom', 0),
+    ...{ top, bottom },
     side: value('--stage-side', 0),
     fill: value('--stage-fill', 1),
   };
@@ -119,11 +148,16 @@ export function fittingDistance(part: FreePart, points: ArrayLike<number>, angle
   const up = toCamera.clone().cross(right);
   const point = new Vector3();
   const step = 3 * Math.ceil(points.length / 3 / kMaxPoints);
-  let needed = 0;
+  let [needed, turning, tall, wide] = [0, 0, 0, 0];
   for (let i = 0; i < points.length; i += step) {
     point.fromArray(points, i);
     const size = Math.max(Math.abs(point.dot(right)) / across, Math.abs(point.dot(up)) / along);
     needed = Math.max(needed, size + point.dot(toCamera));
+    // From any side.
+    const radius = Math.hypot(point.x, point.z);
+    turning = Math.max(turning, radius / across + radius, Math.abs(point.y) / along + radius);
+    [tall, wide] = [Math.max(tall, Math.abs(point.y)), Math.max(wide, radius)];
   }
-  return exact && needed > 0 ? kMargin * needed : Math.max(loose, kMargin * needed);
+  if (exact && needed > 0) return kMargin * needed;
+  return Math.max(tall > kSlim * wide ? Math.min(loose, turning) : loose, kMargin * needed);
 }

@@ -30,6 +30,7 @@ export class Stage {
   #model: Model | undefined;
   #overlay: Overlay | undefined;
   #cage: CageLines | undefined;
+  #cageModel: Model | undefined;
   #paint: Texture | undefined;
   #crowd: Crowd | undefined;
   #mixer: AnimationMixer | undefined;
@@ -51,6 +52,11 @@ export class Stage {
   /** The target. */
   get model(): Model | undefined {
     return this.#model;
+  }
+
+  /** The target's cage. */
+  get cage(): Model | undefined {
+    return this.#cageModel;
   }
 
   /** Where the model looks: radians around it. */
@@ -142,6 +148,7 @@ export class Stage {
   /** Shows another cage, in the space of the target. */
   setCage(model: Model): void {
     this.#cage?.dispose();
+    this.#cageModel = model;
     this.#cage = new CageLines(model.mesh);
     this.object.add(this.#cage.object);
     this.#redraw();

@@ -1,9 +1,10 @@
-import { NeutralToneMapping, PCFShadowMap, Vector2, WebGLRenderer } from 'three';
+import { NeutralToneMapping, PCFShadowMap, Vector2, type Vector3, WebGLRenderer } from 'three';
 import { clearError, showError } from '../platform/page';
 import type { Model } from '../state/model';
 import type { SplitProjection } from '../state/transfers';
 import { kFirstView, type View } from '../state/view-state';
 import { CameraControls } from './camera-controls';
+import { faceOf } from './face-of';
 import { type Crowd, freePartOf } from './framing';
 import { type Look, sidesOf } from './overlay/looks';
 import { Pointing } from './pointing';
@@ -23,6 +24,8 @@ export class Viewer {
   readonly pointing: Pointing;
   readonly controls: CameraControls;
   readonly #canvas: HTMLCanvasElement;
+  /** Controls that models keep clear of. */
+  readonly #strips: readonly HTMLElement[];
   #view = kFirstView;
   readonly #preparations: (() => void)[] = [];
   #frame = 0;
@@ -32,6 +35,7 @@ export class Viewer {
   /** @throws Error where the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
+    this.#strips = [...canvas.parentElement!.querySelectorAll<HTMLElement>('.stage-head, .rail, .toolbar')];
     this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true });
     // Checking for errors waits for each shader to compile: seconds, on a slow machine.
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
@@ -63,7 +67,8 @@ export class Viewer {
       this.redraw();
     });
     // Fires at once with the current size.
-    new ResizeObserver(() => this.#resize()).observe(canvas.parentElement!);
+    const observer = new ResizeObserver(() => this.#resize());
+    for (const box of [canvas.parentElement!, ...this.#strips]) observer.observe(box);
     this.#watchRatio();
   }
 
@@ -80,6 +85,15 @@ export class Viewer {
     const isOther = crowd !== this.stage.crowd;
     this.stage.setCrowd(crowd);
     this.controls.followCrowd(isOther);
+  }
+
+  /** Looks at the face of the model on the stage, if it has one, until the user moves the camera. */
+  lookAtFace(on: boolean): void {
+    const face = (): Vector3[] | undefined => {
+      const { model, cage, object } = this.stage;
+      return model && faceOf(model, cage)?.map((point) => object.localToWorld(point));
+    };
+    this.controls.closeUp(on ? face : undefined);
   }
 
   setView(view: View): void {
@@ -195,13 +209,16 @@ export class Viewer {
     if (width === 0 || height === 0 || this.#isLent) return;
     const ratio = Math.min(devicePixelRatio, 2);
     const before = this.renderer.getSize(new Vector2());
+    const free = freePartOf(this.#canvas, this.#strips);
     if (before.x === width && before.y === height && this.renderer.getPixelRatio() === ratio) {
-      this.redraw(); // buffers of the same size would be made anew
+      // Buffers of the same size would be made anew.
+      this.controls.resize(width, height, free);
+      this.redraw();
       return;
     }
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
-    this.controls.resize(width, height, freePartOf(this.#canvas));
+    this.controls.resize(width, height, free);
     // Resizing cleared the canvas: draw now to avoid flicker.
     this.draw();
   }
