@@ -5,8 +5,8 @@ import type { Page } from 'playwright-core';
 import { faults } from '../../support/axe';
 import { head, middleOf } from '../../support/cages';
 import { difference, look, modelArea, watch } from '../../support/picture';
-import { saved } from '../../support/saved';
-import { drop, kPlay, openSite, ready } from '../../support/site';
+import { saved, validModel } from '../../support/saved';
+import { drop, glb, kPlay, openSite, ready } from '../../support/site';
 
 const site = await openSite();
 
@@ -180,5 +180,25 @@ test('on a phone the stage fills the screen, and the panel is a sheet: closed, o
   await page.locator('#sample-select').focus();
   assert.deepEqual(await heights(), [less, more], 'the keyboard gets there');
   await ready(page);
+  assert.deepEqual(complaints, []);
+});
+
+test('a model that was saved goes on with its cage and its paint when it is dropped again; other programs see only the model', async () => {
+  const { page, complaints } = await site.visit(kDesk, kPlay);
+  await drop(page, [head()]);
+  await ready(page);
+  await page.locator('#stage-verdict:not([data-verdict=""])').waitFor();
+  await page.locator('.paints label', { hasText: 'Harlequin' }).click();
+  await ready(page);
+  const area = await modelArea(page);
+  const before = await look(page, area);
+  const { name, bytes } = await saved(page, 'export-glb');
+  assert.equal((await validModel(bytes)).getRoot().listScenes().length, 1);
+
+  await drop(page, [glb(name, bytes)]);
+  await ready(page);
+  assert.equal(await page.locator('#target-name').textContent(), name);
+  assert.equal(await page.locator('#texture-name').textContent(), 'paint.png');
+  assert.ok(difference(before, await look(page, area)) < 0.02, 'it looks the same');
   assert.deepEqual(complaints, []);
 });

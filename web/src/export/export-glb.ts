@@ -1,5 +1,7 @@
 import type { Mesh } from 'cagecast';
+import { readGltfHead } from '../loading/gltf-file';
 import { askWorker } from '../platform/ask-worker';
+import { type Embedded, embed } from '../platform/embedded';
 import type { Rules } from '../state/choices';
 import { choicesWithout } from '../state/left-out';
 import type { ExtractedMesh, Model } from '../state/model';
@@ -19,7 +21,7 @@ interface Exported {
 
 /**
  * Writes the target as a GLB with the new UV set, its zones and the paint, as `cagecast transfer` does: undeformed, with the
- * current options and locks. Runs in a temporary worker.
+ * current options and locks. The file has cage and paint with it, so that the page goes on with them. Runs in a temporary worker.
  * @param texture A PNG in the cage's UVs.
  * @param into    Paint as an overlay, or in the model's own textures where it has some.
  * @param signal  Ends it.
@@ -47,7 +49,16 @@ export async function exportGlb(
     const advice = into === 'texture' ? '. Save it with the paint as an overlay, or by “cagecast bake”' : '';
     throw new Error(`${target.name}: ${cause.message}${advice}`, { cause });
   });
-  return { glb: new Blob([glb], { type: 'model/gltf-binary' }), ...(baked && { baked }) };
+  const paint = { name: 'paint.png', type: 'image/png', bytes: new Uint8Array(await texture.arrayBuffer()) };
+  const whole = embed(glb, { paint, ...(request.cage && (await carriedCage(cage.files))) });
+  return { glb: new Blob([whole], { type: 'model/gltf-binary' }), ...(baked && { baked }) };
+}
+
+/** The cage to put into the file; nothing if it is not one GLB. */
+async function carriedCage([file, ...others]: readonly File[]): Promise<{ cage?: Embedded }> {
+  if (!file || others.length > 0) return {};
+  const bytes = new Uint8Array(await read(file));
+  return readGltfHead(bytes.buffer).binary ? { cage: { name: file.name, type: 'model/gltf-binary', bytes } } : {};
 }
 
 async function read(file: File): Promise<ArrayBuffer> {

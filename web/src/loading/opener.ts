@@ -2,6 +2,7 @@ import type { Edits, Layer, LayerStack, Sheet } from '#three';
 import { ask } from '../platform/ask';
 import { onFace } from '../platform/face';
 import { element, showError } from '../platform/page';
+import { carriedBy } from '../state/carried';
 import type { Locks } from '../state/choices';
 import type { Intake } from '../state/intake';
 import { madeOf, sampleOf } from '../state/made-cages';
@@ -162,6 +163,11 @@ export class Opener implements Samples {
     const { shown, checker } = this.#session;
     const cage = asCage(await loading);
     const base = this.#stack.base?.sheet as Paint | undefined;
+    const { paint } = carriedBy(cage.files[0]!);
+    if (paint && shown?.cage.files[0] !== cage.files[0]) {
+      const own = await loadPaint(paint).catch(() => undefined);
+      if (own) return own;
+    }
     const isOwn = base !== undefined && !isOffered(base, checker);
     if (shown && (isOwn || haveSameUvs(shown.cage, cage))) return shown.paint;
     return this.#drawFor(cage, base?.drawn);

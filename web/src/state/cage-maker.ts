@@ -1,6 +1,7 @@
 import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
 import type { Bone } from 'three';
 import { cageModel, Emitter, likelyTemplate } from '#three';
+import { carriedBy } from './carried';
 import { type Fitting, kMaxAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
@@ -153,8 +154,13 @@ export class CageMaker extends Emitter<{
     }
   }
 
-  /** The cage of any model, as `chooseCage` chooses it. @param target As its file has it. */
+  /** The cage of any model: the one that it has with it, else as `chooseCage` chooses it. @param target As its file has it. */
   async choose(target: Model, progress: ChoiceProgress): Promise<Model> {
+    const { cage: own } = carriedBy(target.files[0]!);
+    if (own) {
+      noteMade(own, { target: target.files[0]!, isNew: true, note: kOwn, fitting: undefined });
+      return this.#workshop.loader.load(own);
+    }
     const engine = await this.#workshop.engine();
     const model = await cageModel(target.loaded);
     const { options, marks } = this.#choicesFor(model, target);
@@ -308,6 +314,7 @@ export class CageMaker extends Emitter<{
   }
 }
 
+const kOwn = 'The model came with this cage, and its paint.';
 /** What is said of a fit. */
 const kFitted = 'The template was fitted: a paint for it fits every model that it was fitted to.';
 
