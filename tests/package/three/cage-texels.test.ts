@@ -174,4 +174,8 @@ test('a sticker gets from a chest to the arms beside it only where the shoulders
   for (const x of [-1.3, 1.3]) assert.ok(isReached(high, x, 0.3), `a sleeve at ${x}`);
   const { point, normal } = at(0, -0.3);
   assert.deepEqual(texels.reached({ point, normal }, { ...axes, width: 3, height: 0.8 }), low, 'without its UV');
+  const room = texels.room(at(0, -0.3), { ...axes, width: 4, height: 0.4 });
+  assert.ok(room > 0.49 && room < 0.56, `a chest of 2 is half of 4, not ${room}`);
+  assert.equal(texels.room(at(0, -0.3), { ...axes, width: 1, height: 0.4 }), 1, 'it has room');
+  assert.ok(texels.room(at(0.8, -0.3), { ...axes, width: 1, height: 0.4 }) > 0.6, 'beside its middle, too');
 });

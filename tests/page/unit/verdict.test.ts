@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { init, transfer } from 'cagecast';
-import { paintableShare, regionOf } from '../../../web/src/state/verdict';
+import { paintableShare, regionOf, verdictWords } from '../../../web/src/state/verdict';
 import { head, within } from '../../package/scenes';
 
 test('an open cage covers a region: its share is that of the region, and names tell which it is', async () => {
@@ -26,4 +26,28 @@ test('an open cage covers a region: its share is that of the region, and names t
   const mostly = segmentStats.map((stats) => ({ ...stats, beyondArea: stats.area / 4 }));
   assert.equal(named(['Wolf3D_Head', 'eye', 'tongue'], 'cage.glb', mostly), 'the head');
   assert.equal(named(['Head', 'eye', 'tongue'], 'head.glb', transfer(whole, target).segmentStats), undefined);
+});
+
+const seen = { region: undefined, bare: ['eyes', 'teeth', 'hair'], findings: 0, isForeign: false };
+
+test('a verdict is one line of plain words, without numbers but those of spots', () => {
+  assert.equal(verdictWords('good', seen).stage, 'Painted · eyes, teeth, hair bare');
+  assert.equal(verdictWords('', seen).stage, verdictWords('good', seen).stage, 'before it is known, too');
+  assert.equal(verdictWords('good', { ...seen, bare: [] }).stage, 'Painted');
+  assert.equal(
+    verdictWords('good', { ...seen, region: 'the head', bare: ['eyes'] }).stage,
+    'Painted: the head · eyes bare',
+  );
+  assert.equal(
+    verdictWords('good', { ...seen, bare: ['a', 'b', 'c', 'd', 'e'] }).stage,
+    'Painted · a, b, c, 2 more bare',
+  );
+  assert.equal(verdictWords('usable', { ...seen, findings: 2 }).stage, 'Looks off? 2 spots');
+  assert.equal(verdictWords('usable', { ...seen, findings: 1 }).card, 'looks off? 1 spot');
+  for (const verdict of ['', 'good', 'usable', 'unfit'] as const)
+    for (const isForeign of [true, false]) {
+      const words = verdictWords(verdict, { ...seen, isForeign });
+      for (const text of Object.values(words))
+        assert.ok(text && !/%|cage|\n|undefined/.test(text) && text.length < 40, text);
+    }
 });

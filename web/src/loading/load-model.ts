@@ -2,7 +2,7 @@ import { Group, type Light, LoadingManager, Mesh, type Object3D, type WebGLRende
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { embeddedIn } from '../platform/embedded';
 import { disposeAfterFrame } from '../platform/programs';
-import { noteCarried } from '../state/carried';
+import { noteCarried } from '../state/made-cages';
 import type { Loader, Model } from '../state/model';
 import { reasonOf } from '../state/wording';
 import { bringNear } from './bring-near';

@@ -1,3 +1,4 @@
+import { face, onFace } from '../platform/face';
 import { make } from '../platform/make';
 import { element } from '../platform/page';
 import { pictureOf } from './samples';
@@ -40,4 +41,18 @@ function choiceOf({ title, picture }: Choice): HTMLElement {
   const ariaLabel = `Add ${title} as a layer`;
   const add = make('button', { type: 'button', name: 'add-paint', title: 'Add as a layer', ariaLabel }, '+');
   return make('div', {}, label, add);
+}
+
+/** In Play on a phone the paints are a strip that is always there; elsewhere they are in their section of the panel. */
+export function setUpPaintStrip(): void {
+  const paints = element('paints', HTMLElement).closest('fieldset')!;
+  const [section, next] = [paints.parentElement!, paints.nextSibling];
+  const phone = matchMedia('(width < 40em) and (height >= 480px)');
+  const place = (): void => {
+    const isStrip = phone.matches && face() === 'play';
+    if (isStrip) element('paint-strip', HTMLElement).append(paints);
+    else if (paints.parentElement !== section) section.insertBefore(paints, next);
+  };
+  phone.addEventListener('change', place);
+  onFace(place);
 }

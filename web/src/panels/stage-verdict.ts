@@ -2,8 +2,7 @@ import { face, onFace } from '../platform/face';
 import { element } from '../platform/page';
 import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
-import { type KnownVerdict, paintableShare, type Remedy, regionOf } from '../state/verdict';
-import { verdictWords } from '../state/verdict-words';
+import { type KnownVerdict, paintableShare, type Remedy, regionOf, verdictWords } from '../state/verdict';
 import { bareParts } from '../view/part-names';
 import { goTo } from './section-nav';
 

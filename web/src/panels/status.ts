@@ -32,7 +32,7 @@ export function showStatus(session: Session, blind: boolean): void {
     // Words about the shown model are not about the awaited one.
     const isFirst = session.isLeaving && !document.documentElement.hasAttribute('data-leaving');
     document.documentElement.toggleAttribute('data-leaving', session.isLeaving);
-    if (isFirst) dismiss();
+    if (isFirst && session.shown) dismiss();
     switch (progress.state) {
       case 'working':
         // Keep messages about the files while later stages run.

@@ -1,8 +1,7 @@
 import type { Cage, CageModel, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
 import type { Bone } from 'three';
 import { cageModel, Emitter, likelyTemplate } from '#three';
-import { carriedBy } from './carried';
-import { type Fitting, kMaxAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
+import { carriedBy, type Fitting, kMaxAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
 import type { Session } from './session';
 import { type Box, boxOf, diagonalOfBox } from './surface';

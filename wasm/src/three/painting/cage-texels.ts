@@ -1,6 +1,6 @@
 import { Box3, Line3, Triangle, Vector2, Vector3 } from 'three';
 import type { Rect } from '../gpu/rect.js';
-import { connected, neighboursOf, type StickerBox } from './connected.js';
+import { connected, neighboursOf, roomIn, type StickerBox } from './connected.js';
 
 /** The arrays of a cage that painting needs. @internal */
 export interface CageMesh {
@@ -201,14 +201,24 @@ export class CageTexels {
   }
 
   /** 255 for each patch that a sticker gets to from where it is placed, 0 for the others. */
-  reached({ point, normal, uv }: SurfacePoint, box: Omit<StickerBox, 'center'>): Uint8Array {
+  reached(place: SurfacePoint, box: Omit<StickerBox, 'center'>): Uint8Array {
+    const found = this.#connected(place, box);
+    const flags = new Uint8Array(this.#patches.length).fill(found ? 0 : 255);
+    for (const index of found ?? []) flags[index] = 255;
+    return flags;
+  }
+
+  /** How much of the width of a sticker, or of its height if that is less, what it gets to takes: 0..1. */
+  room(place: SurfacePoint, box: Omit<StickerBox, 'center'>): number {
+    const found = this.#connected(place, box);
+    return found ? roomIn(this.#patches, found, { center: place.point, ...box }) : 1;
+  }
+
+  /** Undefined between charts. */
+  #connected({ point, normal, uv }: SurfacePoint, box: Omit<StickerBox, 'center'>): Set<number> | undefined {
     this.#neighbours ??= neighboursOf(this.#patches);
     const from = this.#ownerAt(uv ?? this.nearest(point, normal)?.uv);
-    const flags = new Uint8Array(this.#patches.length).fill(from < 0 ? 255 : 0);
-    if (from < 0) return flags;
-    const found = connected(this.#patches, this.#neighbours, from, { center: point, ...box });
-    for (const index of found) flags[index] = 255;
-    return flags;
+    return from < 0 ? undefined : connected(this.#patches, this.#neighbours, from, { center: point, ...box });
   }
 
   /** The patch at a UV; -1 for none. */

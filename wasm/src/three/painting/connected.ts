@@ -82,3 +82,28 @@ export function connected(
   }
   return found;
 }
+
+const kSeen = 0.5; // the least cosine between a sticker and what shows it well
+
+/** The share of a box that triangles take along its width, or along its height if that is less: 0..1. */
+export function roomIn(
+  facets: readonly Facet[],
+  found: Iterable<number>,
+  { center, right, up, width, height }: StickerBox,
+): number {
+  const outward = new Vector3().crossVectors(right, up);
+  const from = new Vector3();
+  const [low, high] = [new Float64Array(2), new Float64Array(2)];
+  for (const index of found) {
+    const { points, normal } = facets[index]!;
+    if (normal.dot(outward) < kSeen) continue;
+    for (const point of points) {
+      from.subVectors(point, center);
+      [from.dot(right) / width, from.dot(up) / height].forEach((at, axis) => {
+        low[axis] = Math.max(-0.5, Math.min(low[axis]!, at));
+        high[axis] = Math.min(0.5, Math.max(high[axis]!, at));
+      });
+    }
+  }
+  return Math.min(high[0]! - low[0]!, high[1]! - low[1]!);
+}

@@ -16,6 +16,8 @@ export interface StickerFrame {
   up: Vector3;
 }
 
+const kMargin = 0.9; // of what a sticker is on, that it takes at first
+const kLeast = 0.1; // of its size, that is left of it
 const kMaxPictures = 24; // that are kept on the GPU while nothing shows them
 
 /** Places stickers on a layer of their own, and changes them. @internal */
@@ -51,6 +53,14 @@ export class StickerPainter {
   /** A new sticker. */
   make(sticker: Omit<PlacedSticker, 'id'>): PlacedSticker {
     return { ...sticker, id: ++this.#lastId };
+  }
+
+  /** A sticker that is no larger than what it is on. */
+  fit(sticker: PlacedSticker): PlacedSticker {
+    const surface = this.#painter.surfaceOf(this.size);
+    const laid = this.#laid(sticker, surface);
+    const share = laid ? surface!.cageTexels.room(laid.center, laid.sticker) : 1;
+    return share < 1 ? { ...sticker, size: sticker.size * Math.max(kLeast, kMargin * share) } : sticker;
   }
 
   /** The uppermost sticker at a point of the cage. */

@@ -195,7 +195,8 @@ export class StickerTool implements PaintTool {
 
   #make(picture: StickerPicture, { uv }: SurfacePoint): PlacedSticker {
     const { size, angle, opacity, mirrored } = this.#options;
-    return this.#stickers.make({ picture, at: uv!, up: this.#viewer.screen.up, size, angle, opacity, mirrored });
+    const { up } = this.#viewer.screen;
+    return this.#stickers.fit(this.#stickers.make({ picture, at: uv!, up, size, angle, opacity, mirrored }));
   }
 
   #nextPicture(): StickerPicture | undefined {
