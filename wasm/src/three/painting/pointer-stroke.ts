@@ -55,7 +55,7 @@ export class PointerStroke {
   #at = { x: 0, y: 0 };
 
   constructor(
-    private readonly painter: LayerPainter,
+    private readonly painter: Pick<LayerPainter, 'begin' | 'extend' | 'end' | 'cancel' | 'cageTexels'>,
     private readonly view: PointerView,
   ) {}
 

@@ -1,12 +1,24 @@
-import { type Aim, type PointerPosition, PointerStroke, paintingSizes } from '#three';
+import {
+  type Aim,
+  type LayerPainter,
+  type PointerPosition,
+  PointerStroke,
+  type PointerView,
+  paintingSizes,
+} from '#three';
 import type { Spot } from '../../view/pick';
 import type { Tool } from '../../view/pointing';
 import type { PaintOptions } from './paint-options';
-import type { Painter } from './painter';
 import type { Ring } from './ring';
 
 /** A brush with a diameter below this share of the diagonal of the cage is a few texels wide on a painting of the lesser size. */
 const kThin = 0.012;
+
+/** What it paints on. */
+interface Canvas extends PointerView, Pick<LayerPainter, 'begin' | 'extend' | 'end' | 'cancel' | 'cageTexels'> {
+  aimOf(spot: Spot | undefined): Aim | undefined;
+  telling(begin: () => boolean): boolean;
+}
 
 /**
  * Paints or erases along the pointer. The brush has one size on the screen, so that strokes are finer the nearer the model is; a stroke keeps
@@ -18,15 +30,12 @@ export class BrushTool implements Tool {
   #length: number | undefined;
 
   constructor(
-    private readonly painter: Pick<
-      Painter,
-      'aimOf' | 'aimAt' | 'telling' | 'begin' | 'extend' | 'end' | 'cancel' | 'cageTexels' | 'triangles'
-    >,
+    private readonly painter: Canvas,
     private readonly options: Pick<PaintOptions, 'color' | 'opacity' | 'hardness' | 'mirror' | 'size' | 'texels'>,
     private readonly ring: Pick<Ring, 'follow'>,
     private readonly erases: boolean,
   ) {
-    this.#stroke = new PointerStroke(painter as Painter, painter);
+    this.#stroke = new PointerStroke(painter, painter);
   }
 
   down(spot: Spot | undefined, position: PointerPosition): boolean {
