@@ -9,9 +9,11 @@ import { Strokes } from './export/strokes';
 import type { Opener } from './loading/opener';
 import { beginProjects } from './panels/begin-projects';
 import { offerGuide } from './panels/offer-guide';
+import { PartsTable } from './panels/parts-table';
 import { setUpSaving } from './panels/save-texture';
 import { setUpWardrobe } from './panels/set-up-wardrobe';
 import { recordControls } from './panels/steps';
+import { ThresholdMarks } from './panels/threshold-marks';
 import { keepOffline } from './platform/offline';
 import type { CageMaker } from './state/cage-maker';
 import type { Loader } from './state/model';
@@ -49,6 +51,8 @@ export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
     new Explain(session, stage.viewer, stage.tools);
     new FilmStrip(session, stage.viewer);
   }
+  new PartsTable(session, viewer?.stage);
+  new ThresholdMarks(session);
   const live = new Live(session, viewer);
   recordControls(session, live, history);
   const saved = stage && setUpSaving(stage.viewer, stage.composite);

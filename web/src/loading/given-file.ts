@@ -3,6 +3,8 @@ import { checkGltf, checkImage, fileKind } from 'cagecast/gltf';
 import { reasonOf } from '../state/wording';
 import { companionOf } from './file-paths';
 
+export { embeddedIn } from '../platform/embedded';
+
 export { damageOf } from './image-damage';
 
 /** Refuses a file that the loader, which trusts it, would take all memory for. @throws Error without the file's name. */

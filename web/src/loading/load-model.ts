@@ -1,6 +1,5 @@
 import { Group, type Light, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { embeddedIn } from '../platform/embedded';
 import { disposeAfterFrame } from '../platform/programs';
 import { noteCarried } from '../state/made-cages';
 import type { Loader, Model } from '../state/model';
@@ -34,8 +33,8 @@ export async function loadModel(
       ? await judge.readAsGltf(given, companions, signal)
       : { file: given, bytes: await given.arrayBuffer() };
     const head = readGltfHead(bytes);
-    if (!isOwn && head.binary) {
-      const [cage, paint] = ['cage', 'paint'].map((key) => embeddedIn(bytes, head.json, key));
+    if (judge && head.binary) {
+      const [cage, paint] = ['cage', 'paint'].map((key) => judge.embeddedIn(bytes, head.json, key));
       if (cage ?? paint) noteCarried(file, { cage, paint });
     }
     const used = [...new Set(head.uris.map((uri) => findCompanion(uri, companions, file)))];

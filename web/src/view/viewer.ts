@@ -4,7 +4,6 @@ import type { Model } from '../state/model';
 import type { SplitProjection } from '../state/transfers';
 import { kFirstView, type View } from '../state/view-state';
 import { CameraControls } from './camera-controls';
-import { faceOf } from './face-of';
 import { type Crowd, freePartOf } from './framing';
 import { type Look, sidesOf } from './overlay/looks';
 import { Pointing } from './pointing';
@@ -31,6 +30,7 @@ export class Viewer {
   #frame = 0;
   #stale = true;
   #isLent = false;
+  #looksAtFace = false;
 
   /** @throws Error where the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement) {
@@ -88,12 +88,16 @@ export class Viewer {
   }
 
   /** Looks at the face of the model on the stage, if it has one, until the user moves the camera. */
-  lookAtFace(on: boolean): void {
+  async lookAtFace(on: boolean): Promise<void> {
+    this.#looksAtFace = on;
+    if (!on) return this.controls.closeUp(undefined);
+    const { faceOf } = await import('./face-of');
+    if (!this.#looksAtFace) return;
     const face = (): Vector3[] | undefined => {
       const { model, cage, object } = this.stage;
       return model && faceOf(model, cage)?.map((point) => object.localToWorld(point));
     };
-    this.controls.closeUp(on ? face : undefined);
+    this.controls.closeUp(face);
   }
 
   setView(view: View): void {
