@@ -2,7 +2,7 @@
 
 import { CagecastError } from '../api/index.js';
 import type { Mesh } from '../api/mesh.js';
-import { type Finding, kVerdicts, type Verdict } from '../inspect/finding.js';
+import { type Finding, isDoubtful, kVerdicts, type Verdict } from '../inspect/finding.js';
 import { boxOf } from '../inspect/geometry.js';
 import type { Inspection, InspectOptions } from '../inspect/index.js';
 import { accessoriesAmong, groupsNamed } from '../parts/drawn.js';
@@ -64,8 +64,8 @@ export interface ChoiceEngine {
 const kMaxAsked = 4;
 
 /**
- * Fits templates, one after another, until one is good; if none is, makes a cage, too. The best verdict counts, then whether all holes
- * have something behind them, as others are beside eyes and mouth, then the order: what is fitted shares its paint with others.
+ * Fits templates, one after another, until one is good; if none is, makes a cage, too. The best verdict counts, then whether it is in
+ * doubt, then the order: what is fitted shares its paint with others.
  * @throws {CagecastError} as `makeCage`, if there is no cage at all.
  */
 export async function choose(
@@ -123,7 +123,7 @@ export async function choose(
     }
   }
   const rank = ({ verdict, findings }: (typeof candidates)[number]): number =>
-    kVerdicts.indexOf(verdict) - (findings.some(({ code }) => code === 'holeUnexplained') ? 0.5 : 0);
+    kVerdicts.indexOf(verdict) - (isDoubtful(findings) ? 0.5 : 0);
   candidates.sort((a, b) => rank(b) - rank(a));
   onProgress?.(1, 'inspect');
   return { ...candidates[0]!, tried };

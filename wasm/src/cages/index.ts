@@ -134,7 +134,8 @@ export async function fitCage(
 
 /**
  * Chooses the cage of a model that came alone. Fits the templates that it likely needs, one after another, until one is good; if none
- * is, makes a cage, too. The best verdict of `inspect` counts, then the order: models with the same template can wear the same paint.
+ * is, makes a cage, too. The best verdict of `inspect` counts, then whether it is in doubt (nearly unfit, or with a hole over nothing), then
+ * the order: models with the same template can wear the same paint.
  *
  * Cost: of one `fitCage`, if that is good; else also of `makeCage`. `inspect` runs in the worker of `cagecast/worker`.
  * @throws {CagecastError} as `makeCage`, if there is no cage at all.

@@ -87,6 +87,10 @@ export function verdictOf(findings: readonly Finding[]): Verdict {
   return heaviest >= kUnfitFrom ? 'unfit' : heaviest >= kUsableFrom ? 'usable' : 'good';
 }
 
+/** Whether a usable cage is so only just, or has a hole beside an eye or the mouth: another one is worth a try. */
+export const isDoubtful = (findings: readonly Pick<Finding, 'code' | 'weight'>[]): boolean =>
+  findings.some(({ code, weight }) => code === 'holeUnexplained' || weight > kUnfitFrom / 2);
+
 /** "12.3 %"; "0.25 %", "0.04 %" below one. */
 export function percent(share: number): string {
   const value = 100 * share;
