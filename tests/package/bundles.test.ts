@@ -53,7 +53,7 @@ const kPages: [what: string, most: number, script: string][] = [
   ['layers', 17_500, "import { createLayers } from 'cagecast/three'; console.log(createLayers);"],
   ['<cagecast-viewer>', 162_000, "import 'cagecast/viewer';"],
   ['useCagecast', 73_500, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
-  ['inspect', 32_500, "import { inspect } from 'cagecast'; console.log(inspect);"],
+  ['inspect', 33_000, "import { inspect } from 'cagecast'; console.log(inspect);"],
   ['bakeTexture', 6500, "import { bakeTexture } from 'cagecast/engines'; console.log(bakeTexture);"],
   ['cagecast of cagecast/gltf', 130_000, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
   ['paintGlb', 188_000, "import { paintGlb } from 'cagecast/gltf'; console.log(paintGlb);"],
