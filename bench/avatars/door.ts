@@ -124,14 +124,12 @@ try {
   const options = template ? ['--template', template] : [];
   if (marked && template && avatar.face) {
     const { eyeL, eyeR, mouth } = avatar.face;
-    writeFileSync(
-      `${to}.marks.json`,
-      JSON.stringify({
-        eye_centre_left: eyeL,
-        eye_centre_right: eyeR,
-        ...(!avatar.face.guessed && { lip_lower: mouth }),
-      }),
-    );
+    const landmarks = {
+      eye_centre_left: eyeL,
+      eye_centre_right: eyeR,
+      ...(!avatar.face.guessed && { lip_lower: mouth }),
+    };
+    writeFileSync(`${to}.marks.json`, JSON.stringify(landmarks));
     options.push('--landmarks', `${to}.marks.json`);
   }
   const report = JSON.parse(await command(what, file, ...options, '-o', cage, '--json'));

@@ -43,8 +43,8 @@ export interface Placement {
 /** Measures how the target lies relative to the cage. */
 export function placementOf(scene: Scene): Placement {
   const { areas, diagonal, sides, result, isInRegion } = scene;
-  // Hair and glasses lie outside the cage of a head: what is excluded is no part of what the cage is for, nor is what is culled, if
-  // enough of the rest is painted.
+  // Hair and glasses lie outside the cage of a head: a cage is not judged by excluded parts, nor, if enough of the rest is painted, by
+  // culled ones.
   const areaOf = (isOf: (segment: SegmentStats) => boolean) =>
     result.segmentStats.reduce((sum, segment) => sum + (isOf(segment) ? segment.exposedArea : 0), 0);
   const isExcluded = ({ culledBy }: SegmentStats) => culledBy === 'lock';

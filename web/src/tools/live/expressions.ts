@@ -98,7 +98,7 @@ function vrmExpressions({ parser }: Loaded, { primitives }: ExtractedMesh): Expr
   });
 }
 
-/** The expression that weights show, which may have been set otherwise; not one that is over after a while. */
+/** The expression of these weights, however they were set; not a passing one. */
 export const shownBy = (expressions: readonly Expression[], weights: Weights): Expression | undefined =>
   expressions.find(
     ({ sequence, weights: own }) =>

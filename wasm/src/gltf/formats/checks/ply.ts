@@ -1,7 +1,7 @@
 import { InputError } from '../../../scene/input-error.js';
 
 /** Bytes that a number takes in a binary file. */
-const sizes: Record<string, number> = {
+export const sizes: Record<string, number> = {
   char: 1,
   int8: 1,
   uchar: 1,

@@ -1,5 +1,6 @@
 import { type BufferGeometry, Color, Float32BufferAttribute, SRGBColorSpace, Vector3 } from 'three';
 import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
+import { sizes } from '../checks/ply.js';
 import { triangulated } from './polygon.js';
 
 /** A number of an element, or a list of them with its count before it. */
@@ -16,26 +17,24 @@ interface Element {
 }
 
 /** How a binary file is read, by the types of its numbers. */
-const kReaders: Record<string, [size: number, read: (view: DataView, at: number, isLittle: boolean) => number]> = {
-  char: [1, (view, at) => view.getInt8(at)],
-  uchar: [1, (view, at) => view.getUint8(at)],
-  short: [2, (view, at, isLittle) => view.getInt16(at, isLittle)],
-  ushort: [2, (view, at, isLittle) => view.getUint16(at, isLittle)],
-  int: [4, (view, at, isLittle) => view.getInt32(at, isLittle)],
-  uint: [4, (view, at, isLittle) => view.getUint32(at, isLittle)],
-  float: [4, (view, at, isLittle) => view.getFloat32(at, isLittle)],
-  double: [8, (view, at, isLittle) => view.getFloat64(at, isLittle)],
-};
-const kOtherNames: Record<string, string> = {
-  int8: 'char',
-  uint8: 'uchar',
-  int16: 'short',
-  uint16: 'ushort',
-  int32: 'int',
-  uint32: 'uint',
-  float32: 'float',
-  float64: 'double',
-};
+const kReaders = {
+  char: 'getInt8',
+  int8: 'getInt8',
+  uchar: 'getUint8',
+  uint8: 'getUint8',
+  short: 'getInt16',
+  int16: 'getInt16',
+  ushort: 'getUint16',
+  uint16: 'getUint16',
+  int: 'getInt32',
+  int32: 'getInt32',
+  uint: 'getUint32',
+  uint32: 'getUint32',
+  float: 'getFloat32',
+  float32: 'getFloat32',
+  double: 'getFloat64',
+  float64: 'getFloat64',
+} as const;
 
 /** The faces of a PLY as triangles. */
 interface Triangles {
@@ -90,12 +89,10 @@ function trianglesOf(header: string, bytes: Uint8Array, placeOf: (vertex: number
       const corners = values.get('vertex_indices') ?? values.get('vertex_index') ?? [];
       const uvs = values.get('texcoord');
       const [red, green, blue] = ['red', 'green', 'blue'].map((channel) => values.get(channel)?.[0]);
-      const types = properties.find((property) => property.name === 'red')?.type ?? '';
+      const type = properties.find((property) => property.name === 'red')?.type ?? '';
       haveUvs &&= uvs?.length === 2 * corners.length;
       haveColors &&= red !== undefined && green !== undefined && blue !== undefined;
-      const scale = /float|double/.test(types)
-        ? 1
-        : 1 / (2 ** (8 * (kReaders[kOtherNames[types] ?? types]?.[0] ?? 1)) - 1);
+      const scale = /float|double/.test(type) ? 1 : 1 / (2 ** (8 * (sizes[type] ?? 1)) - 1);
       for (const corner of triangulated(corners.map(placeOf))) {
         out.indices.push(corners[corner]!);
         if (haveUvs) out.uvs.push(uvs![2 * corner]!, uvs![2 * corner + 1]!);
@@ -132,8 +129,10 @@ function numbersOf(header: string, bytes: Uint8Array): (type: string) => number 
   const isLittle = /format\s+binary_little/.test(header);
   let at = header.length;
   return (type) => {
-    const [size, read] = kReaders[kOtherNames[type] ?? type] ?? kReaders['uchar']!;
+    const size = sizes[type] ?? 1;
     at += size;
-    return at > view.byteLength ? undefined : read(view, at - size, isLittle);
+    return at > view.byteLength
+      ? undefined
+      : view[kReaders[type as keyof typeof kReaders] ?? 'getUint8'](at - size, isLittle);
   };
 }
