@@ -71,6 +71,26 @@ export function columns(picture: PNG, from: number, to: number): PNG {
   return part;
 }
 
+/** The part of an area that has strong colours in its picture: a model, if the background is grey. */
+export function coloredPart(area: Area, { data, width, height }: PNG): Area {
+  const [columns, rows] = [new Set<number>(), new Set<number>()];
+  for (let i = 0; i < width * height; i++) {
+    const channels = data.subarray(4 * i, 4 * i + 3);
+    if (Math.max(...channels) - Math.min(...channels) < 60) continue;
+    columns.add(i % width);
+    rows.add(Math.floor(i / width));
+  }
+  const [left, right] = [Math.min(...columns), Math.max(...columns)].map((x) => (x * area.width) / width) as [
+    number,
+    number,
+  ];
+  const [top, bottom] = [Math.min(...rows), Math.max(...rows)].map((y) => (y * area.height) / height) as [
+    number,
+    number,
+  ];
+  return { x: area.x + left, y: area.y + top, width: right - left, height: bottom - top };
+}
+
 /** The share of pixels whose hue is within 12° of `hue` and which are clearly coloured. */
 export function shareOfHue({ data, width, height }: PNG, hue: number): number {
   let found = 0;

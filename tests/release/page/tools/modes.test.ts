@@ -3,7 +3,7 @@ import { test } from 'node:test';
 import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
 import { ball, islandCage } from '../../../support/models';
-import { difference, look, modelArea, shareOfHue } from '../../../support/picture';
+import { coloredPart, difference, look, modelArea, shareOfHue } from '../../../support/picture';
 import { drop, openSite, ready, type Upload } from '../../../support/site';
 
 const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
@@ -27,6 +27,12 @@ function hues(picture: PNG): number[] {
   return Array.from({ length: 36 }, (_, step) => 10 * step).filter((hue) => shareOfHue(picture, hue) > 0.0003);
 }
 
+/** Where the ball is, in a mode that gives it strong colours. */
+async function ballArea(page: Page) {
+  const area = await modelArea(page);
+  return coloredPart(area, await look(page, area));
+}
+
 /** The colour in the middle of a picture. */
 function middle({ data, width, height }: PNG): number[] {
   const at = 4 * (Math.floor(height / 2) * width + Math.floor(width / 2));
@@ -46,8 +52,8 @@ test('parts have distinct colours', async () => {
 
 test('the distance to the cage has a scale in shares of the model’s diagonal', async () => {
   const page = await open(await ball(), await islandCage(1));
-  const area = await modelArea(page);
   await choose(page, 'distance');
+  const area = await ballArea(page);
   // From 0.1 in front of a side to 0.48 under a corner, of a diagonal of 3.1.
   assert.deepEqual(await ticks(page), ['0', '5', '10', '15', '≥ 20']);
   const [r, g, b] = middle(await look(page, area)) as [number, number, number];
@@ -62,7 +68,8 @@ test('the distance to the cage has a scale in shares of the model’s diagonal',
 
 test('stretch is shown on painted triangles, and reveals one that spans half of the texture', async () => {
   const page = await open(await ball(), await islandCage(1));
-  const area = await modelArea(page);
+  await choose(page, 'distance');
+  const area = await ballArea(page);
   await choose(page, 'stretch');
   assert.deepEqual(await ticks(page), ['≤ ¼×', '½×', '1×', '2×', '≥ 4×']);
   const [red, blue] = [15, 211];
