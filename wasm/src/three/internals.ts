@@ -2,7 +2,6 @@
 export { likelyTemplate } from '../cages/likely-template.js';
 export type { Borders } from '../parts/cut-part.js';
 export type { LeftOut } from '../parts/drawn.js';
-export { packGlb, paddedLength } from '../parts/glb.js';
 export type { Apart } from '../parts/own-cages.js';
 export type { Prepared, PreparedPart } from '../parts/prepare.js';
 export type { PartRange } from '../parts/split-part.js';

@@ -1,5 +1,3 @@
-import { packGlb, paddedLength } from '#three';
-
 /** A file within a GLB: bytes that only its own kind of program looks for. */
 export interface Embedded {
   name: string;
@@ -16,13 +14,9 @@ interface Json {
 const kHead = 12; // bytes of a GLB
 const kChunkHead = 8;
 const kKey = 'cagecast'; // in the extras of a file
+const [kJson, kBin] = [0x4e4f534a, 0x004e4942];
 
-/** Bytes up to a multiple of four. */
-function padded(bytes: Uint8Array): Uint8Array {
-  const out = new Uint8Array(paddedLength(bytes.length));
-  out.set(bytes);
-  return out;
-}
+const padded = (length: number): number => Math.ceil(length / 4) * 4;
 
 /** The JSON and the binary chunk of a sound GLB. */
 function chunksOf(glb: Uint8Array<ArrayBuffer>): { json: Json; bin: Uint8Array<ArrayBuffer> } {
@@ -48,7 +42,7 @@ export function embed(
   const { json, bin } = chunksOf(glb);
   const views = (json.bufferViews ??= []);
   const added: Uint8Array[] = [];
-  let end = paddedLength(bin.length);
+  let end = padded(bin.length);
   const entries = Object.entries(files).map(([key, { name, type, bytes }]) => {
     let view = views.findIndex(
       ({ byteOffset = 0, byteLength }) => byteLength === bytes.length && isAt(bin, byteOffset, bytes),
@@ -56,13 +50,31 @@ export function embed(
     if (view < 0) {
       view = views.push({ buffer: 0, byteOffset: end, byteLength: bytes.length }) - 1;
       added.push(bytes);
-      end += paddedLength(bytes.length);
+      end += padded(bytes.length);
     }
     return [key, { name, type, bufferView: view }];
   });
   json.extras = { ...json.extras, [kKey]: Object.fromEntries(entries) };
   json.buffers = [{ ...json.buffers?.[0], byteLength: end }];
-  return packGlb(json, [bin, ...added].map(padded));
+  const text = new TextEncoder().encode(JSON.stringify(json));
+  const size = kHead + kChunkHead + padded(text.length) + kChunkHead + end;
+  const made = new Uint8Array(size);
+  const view = new DataView(made.buffer);
+  const put = (at: number, ...numbers: number[]): void =>
+    numbers.forEach((n, i) => view.setUint32(at + 4 * i, n, true));
+  put(0, 0x46546c67, 2, size, padded(text.length), kJson);
+  made.fill(0x20, kHead + kChunkHead, kHead + kChunkHead + padded(text.length)); // the JSON ends with spaces
+  made.set(text, kHead + kChunkHead);
+  let at = kHead + kChunkHead + padded(text.length);
+  put(at, end, kBin);
+  at += kChunkHead;
+  made.set(bin, at);
+  at += padded(bin.length);
+  for (const bytes of added) {
+    made.set(bytes, at);
+    at += padded(bytes.length);
+  }
+  return made;
 }
 
 /** How the bytes of files begin, by their types. */
