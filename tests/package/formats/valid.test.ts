@@ -218,7 +218,9 @@ test('triangles that go to and fro between two materials are two primitives, eac
     .flatMap((mesh) => mesh.listPrimitives())
     .map((primitive) => {
       const position = primitive.getAttribute('POSITION')!;
-      const firsts = Array.from(primitive.getIndices()!.getArray() as Uint32Array).filter((_, corner) => corner % 3 === 0);
+      const firsts = Array.from(primitive.getIndices()!.getArray() as Uint32Array).filter(
+        (_, corner) => corner % 3 === 0,
+      );
       return {
         material: primitive.getMaterial()!.getName(),
         vertices: position.getCount(),
