@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { type Finding, init, inspect, type Mesh, type TransferOptions, transfer } from 'cagecast';
+import { isDoubtful } from '../../wasm/src/inspect/finding.js';
 import { ball, head, join3d, readPlain, smallHole, within } from './scenes.js';
 
 before(init);
@@ -120,4 +121,15 @@ describe('the findings about a result', () => {
     assert.match(found[0]!.sentence, /^5 segments of "target" are painted, but only just/);
     assert.equal(found[0]!.places!.length, 5);
   });
+});
+
+test('a cage that is nearly unfit, or has a hole over nothing, is in doubt', () => {
+  assert.ok(!isDoubtful([]) && !isDoubtful([{ code: 'eyesUnknown', weight: 0.3 }]));
+  assert.ok(
+    isDoubtful([
+      { code: 'eyesUnknown', weight: 0.3 },
+      { code: 'targetPokesOut', weight: 0.66 },
+    ]),
+  );
+  assert.ok(isDoubtful([{ code: 'holeUnexplained', weight: 0.3 }]));
 });

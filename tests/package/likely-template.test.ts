@@ -1,7 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { likelyTemplate } from '../../wasm/src/cages/likely-template.js';
-import { isDoubtful } from '../../wasm/src/inspect/finding.js';
 
 const box = (size: readonly number[]) => Float32Array.from([3, 3, 3, ...size.map((extent) => 3 + extent)]);
 
@@ -27,15 +26,4 @@ test('names tell more than the shape: a figure has joints of arms and legs, a ca
   assert.equal(likely([], ['body', 'wheel_front_left']), 'car');
   assert.equal(likely([], ['Tire_FL']), 'car');
   assert.equal(likely([], ['tree', 'centre', 'tired_face']), 'human-head');
-});
-
-test('a cage that is nearly unfit, or has a hole over nothing, is in doubt', () => {
-  assert.ok(!isDoubtful([]) && !isDoubtful([{ code: 'eyesUnknown', weight: 0.3 }]));
-  assert.ok(
-    isDoubtful([
-      { code: 'eyesUnknown', weight: 0.3 },
-      { code: 'targetPokesOut', weight: 0.66 },
-    ]),
-  );
-  assert.ok(isDoubtful([{ code: 'holeUnexplained', weight: 0.3 }]));
 });

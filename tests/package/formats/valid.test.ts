@@ -85,6 +85,7 @@ test('faces of PLY and OBJ may have any number of corners, be concave, and have 
     (await areasOf(withUvs)).map((x) => x.toFixed(5)),
     [5, areaOf(outline) + 0.5, ofUvs + 0.5].map((x) => x.toFixed(5)),
   );
+  await assert.rejects(documentOf(text(['3 0 1 2', '7 0 1 2 3'])), /ends within face 2 of 2/);
   const lines = (first: number) => [
     ...arrow.map((place) => `v ${place}`),
     ...uvs.map((uv) => `vt ${uv}`),
@@ -97,7 +98,7 @@ test('faces of PLY and OBJ may have any number of corners, be concave, and have 
       [4, areaOf(outline), ofUvs].map((x) => x.toFixed(5)),
     );
   assert.equal((await areasOf('v 1 0 0\nv 0 3 0\nv -1 0 0\nv 0 1 0\nf 1 2 3 4\n'))[1].toFixed(5), '2.00000');
-  const binary = (isLittle: boolean): Uint8Array => {
+  const binary = (isLittle: boolean, lineEnd: string): Uint8Array => {
     const header = text(['x'], 'property uchar red\nproperty uchar green\nproperty uchar blue\n')
       .replace('ascii', isLittle ? 'binary_little_endian' : 'binary_big_endian')
       .replace(/end_header[\s\S]*/, 'end_header\n');
@@ -110,12 +111,16 @@ test('faces of PLY and OBJ may have any number of corners, be concave, and have 
     view.setUint8(108, 6);
     for (let k = 0; k < 6; ++k) view.setInt32(109 + 4 * k, k, isLittle);
     view.setUint8(133, 255);
-    return Buffer.concat([Buffer.from(header), new Uint8Array(view.buffer)]);
+    return Buffer.concat([Buffer.from(header.replaceAll('\n', lineEnd)), new Uint8Array(view.buffer)]);
   };
-  for (const isLittle of [true, false]) {
-    const [count, size] = await areasOf(binary(isLittle));
+  for (const [isLittle, lineEnd] of [
+    [true, '\n'],
+    [false, '\r\n'],
+  ] as const) {
+    const file = binary(isLittle, lineEnd);
+    const [count, size] = await areasOf(file);
     assert.deepEqual([count, size.toFixed(6)], [4, areaOf(outline).toFixed(6)]);
-    const [primitive] = (await documentOf(binary(isLittle))).listMeshes()[0]!.listPrimitives();
+    const [primitive] = (await documentOf(file)).listMeshes()[0]!.listPrimitives();
     assert.deepEqual(primitive!.getAttribute('COLOR_0')!.getElement(0, []).slice(0, 3), [1, 0, 0]);
   }
 });

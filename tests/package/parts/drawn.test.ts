@@ -6,9 +6,9 @@ const box = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1];
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 test('collision shapes are left out by their names, colours are not', () => {
-  const left = (...names: string[]): string[] => {
-    const look = (name: string) => ({
-      names: [name],
+  const left = (...parts: (string | string[])[]): string[] => {
+    const look = (names: string[]) => ({
+      names,
       isHidden: false,
       isClear: false,
       sides: 'both' as const,
@@ -16,13 +16,9 @@ test('collision shapes are left out by their names, colours are not', () => {
       indices: undefined,
       matrix: identity,
     });
-    const parts = names.map((name) => ({ name }));
-    return chooseParts(
-      parts,
-      ({ name }) => look(name),
-      {},
-      (text) => new Error(text),
-    ).leftOut.map(({ name }) => name);
+    const named = parts.map((names) => ({ name: [names].flat()[0]!, names: [names].flat() }));
+    const fail = (text: string) => new Error(text);
+    return chooseParts(named, ({ names }) => look(names), {}, fail).leftOut.map(({ name }) => name);
   };
   const shapes = [
     'UCX_Body_00',
@@ -32,8 +28,11 @@ test('collision shapes are left out by their names, colours are not', () => {
     'collision_torso',
     'Arm_Hitbox.001',
     'hitbox',
+    'Collision.001',
     'Body_col',
   ];
   assert.deepEqual(left('Body', ...shapes), shapes);
   assert.deepEqual(left('Body', 'Skin_col', 'Collisionless', 'Protocol', 'Collar'), []);
+  // Materials of a model, and of another part, that have its colours.
+  assert.deepEqual(left(['Body', 'Body_col'], ['Body_col', 'Body'], ['Hair', 'Body_col']), []);
 });

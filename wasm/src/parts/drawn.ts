@@ -49,8 +49,8 @@ export const transmissionExtension = 'KHR_materials_transmission';
 
 /** Names of cages, markers and collision shapes: of Roblox, Unreal, Godot, and usual ones. Programs add numbers to them. */
 const kTechnical =
-  /^(UCX|UBX|USP|UCP|collision|collider|hitbox)(_|$)|(_(OuterCage|InnerCage|Att)|[_-](collision|collider|hitbox|(conv)?colonly))([._]?\d+)?$/i;
-/** What a collision shape adds to the name of the mesh it is for; elsewhere it stands for a colour. */
+  /^(UCX|UBX|USP|UCP|collision|collider|hitbox)(_|[._]?\d*$)|(_(OuterCage|InnerCage|Att)|[_-](collision|collider|hitbox|(conv)?colonly))([._]?\d+)?$/i;
+/** What the node of a collision shape adds to the name of its model; in names of materials it stands for a colour. */
 const kShapeOf = /[_-](conv)?col([._]?\d+)?$/i;
 
 /** Words that name what a figure wears or carries. */
@@ -165,10 +165,14 @@ function isAccessory(name: string | undefined): boolean {
 /** Why each part is not drawn, if it is not. */
 function whyNotDrawn(looks: readonly Look[]): (LeftOut['why'] | undefined)[] {
   const all = new Set(looks.flatMap(({ names }) => names));
-  const isTechnical = (name = ''): boolean =>
-    kTechnical.test(name) || (kShapeOf.test(name) && all.has(name.replace(kShapeOf, '')));
+  const isTechnical = (names: Look['names']): boolean => {
+    const [node = ''] = names;
+    const model = node.replace(kShapeOf, '');
+    const isShape = model !== node && all.has(model) && !names.includes(model);
+    return isShape || names.some((name) => name !== undefined && kTechnical.test(name));
+  };
   const reasons = looks.map(({ names, isHidden, isClear }): LeftOut['why'] | undefined => {
-    if (names.some(isTechnical)) return 'name';
+    if (isTechnical(names)) return 'name';
     return isHidden ? 'hidden' : isClear ? 'transparent' : undefined;
   });
   const shapes = looks.map((look, p) => (reasons[p] === undefined ? shapeOf(look) : undefined));

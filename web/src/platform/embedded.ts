@@ -32,8 +32,8 @@ const isAt = (bin: Uint8Array, offset: number, bytes: Uint8Array): boolean =>
   bytes.every((byte, i) => bin[offset + i] === byte);
 
 /**
- * Puts files into a GLB, by their keys. Its scene is what it was: no program shows them. Those whose bytes it has already, such as its
- * textures, take no room.
+ * Puts files into a GLB, by their keys. No program shows them, as its scene stays the same. Bytes of its own, such as a texture's, are
+ * not stored again.
  */
 export function embed(
   glb: Uint8Array<ArrayBuffer>,

@@ -30,10 +30,10 @@ export const decodeImage = (bytes: Uint8Array): Promise<Image> => decode(bytes, 
  */
 export const decodeSmall = (bytes: Uint8Array): Promise<Image> => decode(bytes, kFarLarger);
 
-/** From how many times the small size on an image is far larger. Of others, all pixels take hardly longer. */
+/** An image of so many times the small size is far larger. Smaller ones take hardly longer at full size. */
 const kFarLarger = 4;
 
-/** @param most  How many times as long as the small size a side may be for the image to be read as it is. */
+/** @param most  Up to so many times the small size, an image is read at full size. */
 async function decode(bytes: Uint8Array, most: number): Promise<Image> {
   const type = imageType(bytes);
   if (type === undefined) throw new InputError('is not a PNG, JPEG or WebP image');

@@ -1,6 +1,6 @@
 import { InputError } from '../../../scene/input-error.js';
 
-/** Bytes that a number takes in a binary file. */
+/** Bytes that a number takes in a binary file, by its type. */
 export const sizes: Record<string, number> = {
   char: 1,
   int8: 1,
@@ -49,8 +49,8 @@ export function checkPly(bytes: Uint8Array): void {
   close();
 }
 
-/** Where the header ends; all of a file without an end of it. */
-function endOfHeader(bytes: Uint8Array): number {
+/** Where the last word of the header ends; all of a file without it. */
+export function endOfHeader(bytes: Uint8Array): number {
   const kWord = [...'end_header'].map((letter) => letter.charCodeAt(0));
   for (let at = bytes.indexOf(kWord[0]!); at >= 0; at = bytes.indexOf(kWord[0]!, at + 1))
     if (kWord.every((code, i) => bytes[at + i] === code)) return at + kWord.length;

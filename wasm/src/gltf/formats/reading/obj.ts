@@ -4,8 +4,12 @@ import { triangulated } from './polygon.js';
 /** Vertices and faces; a backslash at the end of a line continues it. */
 const kLine = /^[ \t]*([vf])[ \t]+((?:[^\\\n]|\\\r?\n|\\)*)/gm;
 
+/** A face of more than three corners. */
+const kPolygon = /^[ \t]*f(?:[ \t]+\S+){4}/m;
+
 /** An OBJ whose faces that are not convex are triangles: three's loader makes fans of all. */
 export function withConvexFaces(text: string): string {
+  if (!kPolygon.test(text)) return text;
   const places: Vector3[] = [];
   return text.replace(kLine, (line, kind: string, values: string) => {
     const words = values.replaceAll('\\', ' ').trim().split(/\s+/);

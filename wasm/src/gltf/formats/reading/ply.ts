@@ -1,6 +1,7 @@
 import { type BufferGeometry, Color, Float32BufferAttribute, SRGBColorSpace, Vector3 } from 'three';
 import { PLYLoader } from 'three/addons/loaders/PLYLoader.js';
-import { sizes } from '../checks/ply.js';
+import { InputError } from '../../../scene/input-error.js';
+import { endOfHeader, sizes } from '../checks/ply.js';
 import { triangulated } from './polygon.js';
 
 /** A number of an element, or a list of them with its count before it. */
@@ -50,7 +51,7 @@ interface Triangles {
  * @returns nothing if it has no faces.
  */
 export function readPly(bytes: Uint8Array): BufferGeometry | undefined {
-  const header = /^[\s\S]*?end_header[^\n]*\n/.exec(new TextDecoder('latin1').decode(bytes))?.[0] ?? '';
+  const header = headerOf(bytes);
   const withoutFaces = Uint8Array.from(bytes);
   const at = header.search(/element\s+face\s/);
   if (at >= 0) withoutFaces[header.indexOf('face', at)] = 'F'.charCodeAt(0); // No name that the loader knows.
@@ -68,6 +69,16 @@ export function readPly(bytes: Uint8Array): BufferGeometry | undefined {
   return byCorner;
 }
 
+/** The header, a character for each byte, with the end of its last line. */
+function headerOf(bytes: Uint8Array): string {
+  const end = endOfHeader(bytes);
+  const latin1 = new TextDecoder('latin1');
+  return (
+    latin1.decode(bytes.subarray(0, end)) +
+    (/^[ \t]*(\r\n|\n|\r)?/.exec(latin1.decode(bytes.subarray(end, end + 8)))?.[0] ?? '')
+  );
+}
+
 function trianglesOf(header: string, bytes: Uint8Array, placeOf: (vertex: number) => Vector3): Triangles {
   const out: Triangles = { indices: [], uvs: [], colors: [] };
   const next = numbersOf(header, bytes);
@@ -80,7 +91,7 @@ function trianglesOf(header: string, bytes: Uint8Array, placeOf: (vertex: number
         const length = countType === undefined ? 1 : (next(countType) ?? 0);
         for (let k = 0; k < length; ++k) {
           const value = next(type);
-          if (value === undefined) return out; // The file ends early.
+          if (value === undefined) throw new InputError(`ends within ${name} ${i + 1} of ${count}`);
           numbers.push(value);
         }
         values.set(property, numbers);

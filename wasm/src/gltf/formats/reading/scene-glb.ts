@@ -1,6 +1,6 @@
 import type { GLTF, vec4 } from '@gltf-transform/core';
 import { type Material, Matrix4, type Mesh, type Object3D, type SkinnedMesh } from 'three';
-import { packGlb, paddedLength } from '../../../parts/glb.js';
+import { joinBytes, packGlb, paddedLength } from '../../../parts/glb.js';
 import { checkImages } from '../../checks/check-images.js';
 import type { ReadLimits } from '../../checks/read-limits.js';
 import { attributesOf, boundsOf, cornersOf, gathererOf } from './geometry.js';
@@ -175,17 +175,8 @@ function trianglesByMaterial(
     const look = materials[materialIndex];
     if (!lists.get(look)?.push(some)) lists.set(look, [some]);
   }
-  return new Map([...lists].map(([look, parts]) => [look, joined(parts)]));
-}
-
-function joined(parts: readonly Uint32Array[]): Uint32Array {
-  const all = new Uint32Array(parts.reduce((sum, { length }) => sum + length, 0));
-  let at = 0;
-  for (const part of parts) {
-    all.set(part, at);
-    at += part.length;
-  }
-  return all;
+  const bytesOf = (corners: Uint32Array) => new Uint8Array(corners.buffer, corners.byteOffset, corners.byteLength);
+  return new Map([...lists].map(([look, some]) => [look, new Uint32Array(joinBytes(some.map(bytesOf)).buffer)]));
 }
 
 /** The numbers of a matrix as glTF has those of joints: none that is not finite, and its last row is 0, 0, 0, 1. */
