@@ -1,6 +1,7 @@
 // Files of other formats that strangers may send: each is refused with one clear line, or read, at a cost in proportion to its size.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
+import { availableParallelism } from 'node:os';
 import { describe, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { CagecastError } from 'cagecast';
@@ -102,6 +103,19 @@ describe('the thread of a file', () => {
       );
       assert.equal(ended(), calls.length);
     });
+  });
+
+  test('has its seconds for itself, however many others run', { skip: process.platform !== 'linux' }, async () => {
+    const seconds = 0.4;
+    const count = 4 * availableParallelism();
+    const began = process.cpuUsage();
+    const calls = Array.from({ length: count }, () => toGlb(endless, { limits: { seconds } }));
+    const all = Promise.allSettled(calls);
+    await assert.rejects(Promise.race(calls), /takes more than 0\.4 seconds/);
+    const { user, system } = process.cpuUsage(began);
+    await all;
+    // Were the time of all threads counted, the first would end when each processor has worked for so long.
+    assert.ok((user + system) / 1e6 > (count * seconds) / 2, `${user + system} µs for ${count}`);
   });
 
   test('ends at once with a signal, while its loader runs or it waits for a file', async () => {

@@ -6,6 +6,7 @@ export const nodeModule = <Name extends keyof Modules>(name: Name): Modules[Name
   globalThis.process?.getBuiltinModule?.(name);
 
 interface Modules {
+  'node:fs': typeof import('node:fs');
   'node:fs/promises': typeof import('node:fs/promises');
   'node:worker_threads': typeof import('node:worker_threads');
 }

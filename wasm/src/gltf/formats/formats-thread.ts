@@ -1,5 +1,6 @@
 // What runs in a worker: it reads one file, and is ended.
 
+import { nodeModule } from '../../core/node.js';
 import { firstLine } from '../../scene/input-error.js';
 import { listen } from '../../worker/thread-of.js';
 import type { Answer, Question } from './protocol.js';
@@ -7,6 +8,15 @@ import { countArrays } from './reading/count-arrays.js';
 
 /** Characters of a message at most: some hold a line of the file. */
 const kMaxText = 300;
+
+/** The file that holds the processor time of this thread, on Linux. */
+function threadTimes(): string | undefined {
+  try {
+    return `/proc/${nodeModule('node:fs')?.readlinkSync('/proc/thread-self')}/schedstat`;
+  } catch {
+    return undefined; // another system, or a page
+  }
+}
 
 const waiting = new Map<number, (found: Uint8Array | undefined) => void>();
 
@@ -29,7 +39,7 @@ listen<Question, Answer>(async (question, post) => {
   try {
     // Loaded only now, so that the loaders know no other constructors of arrays.
     const { readModel } = await import('./reading/read-model.js');
-    post({ begun: true });
+    post({ begun: true, times: threadTimes() });
     const onMissing = (name: string, reason: string) => post({ missing: [name, reason] });
     const glb = await readModel(format, bytes, { read, onMissing, limits });
     check();

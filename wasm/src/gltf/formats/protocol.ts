@@ -6,9 +6,9 @@ export type Question =
   | { bytes: Uint8Array; format: Format; limits: FormatLimits }
   | { ask: number; found: Uint8Array | undefined };
 
-/** Its messages: it begins, needs a file, goes without one; and at the end the GLB, if there is one, or an error. */
+/** Its messages: it begins (`times` is Linux's file of its times), needs a file, goes without one; and at the end the GLB, if there is one, or an error. */
 export type Answer =
-  | { begun: true }
+  | { begun: true; times: string | undefined }
   | { ask: number; name: string }
   | { missing: [name: string, reason: string] }
   | { glb: Uint8Array<ArrayBuffer> | undefined }

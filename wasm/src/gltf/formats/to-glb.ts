@@ -1,5 +1,6 @@
 import { CagecastError } from '../../api/index.js';
 import { isRecord, show } from '../../core/error.js';
+import { nodeModule } from '../../core/node.js';
 import { firstLine, InputError } from '../../scene/input-error.js';
 import { exceeds } from '../checks/read-limits.js';
 import { type Format, fileKind } from '../kinds.js';
@@ -108,7 +109,7 @@ function readInWorker(
     const files = new FilesBeside(read, limits);
     const told = new Set<string>();
     const onAnswer = async (answer: Answer) => {
-      if ('begun' in answer) clock.run();
+      if ('begun' in answer) clock.run(answer.times);
       else if ('missing' in answer) {
         const [name, reason] = answer.missing;
         if (told.has(name)) return;
@@ -156,8 +157,8 @@ const unsupported = (reason: string, cause?: unknown): CagecastError =>
 const kTick = 50;
 
 /**
- * Tells when something has run for some seconds, breaks not counted: of CPU, as far as the host tells that of all its threads; so other
- * programs do not count.
+ * Tells when a thread has run for some seconds, breaks not counted: of its CPU on Linux, else of that of all threads in Node. So
+ * other programs do not count.
  */
 class Clock {
   readonly #onEnd: () => void;
@@ -165,14 +166,19 @@ class Clock {
   #last = { time: 0, cpu: 0 };
   #timer: ReturnType<typeof setInterval> | undefined;
   #breaks = 0;
+  #times: string | undefined;
 
   constructor(seconds: number, onEnd: () => void) {
     this.#left = 1000 * seconds;
     this.#onEnd = onEnd;
   }
 
-  /** Goes on, once each break has ended. */
-  run(): void {
+  /**
+   * Begins, or goes on once each break has ended.
+   * @param times Linux's file of the thread's times.
+   */
+  run(times = this.#times): void {
+    this.#times = times;
     if (this.#breaks > 0) --this.#breaks;
     if (this.#breaks > 0) return;
     this.#last = this.#now;
@@ -193,6 +199,13 @@ class Clock {
 
   get #now(): { time: number; cpu: number } {
     const time = performance.now();
+    try {
+      // Its first number is in nanoseconds.
+      if (this.#times)
+        return { time, cpu: Number.parseInt(nodeModule('node:fs')!.readFileSync(this.#times, 'utf8'), 10) / 1e6 };
+    } catch {
+      // The thread has ended.
+    }
     const used = globalThis.process?.cpuUsage?.();
     return { time, cpu: used ? (used.user + used.system) / 1000 : time };
   }
