@@ -1,6 +1,7 @@
 import { exponent } from './statistics.js';
 import { table } from './table.js';
-import { type Waits, waitsTable } from './waits.js';
+import { type PageWait, pageTable } from './waits/page.js';
+import { type Growth, growthTable, type Waits, waitsTable } from './waits.js';
 import type { FirstUse } from './web/page.js';
 
 /** Everything that the benchmark found out. Parts that were not run are missing. */
@@ -37,6 +38,9 @@ export interface Results {
   instructions?: Record<string, number>;
   /** By model. */
   waits?: Record<string, Waits>;
+  growth?: Growth[];
+  /** By model. */
+  page?: Record<string, PageWait>;
   /** Bytes, gzipped. */
   sizes?: Record<string, number>;
 }
@@ -95,9 +99,50 @@ export function goalsOf({ native, web, instructions, sizes }: Results): Goal[] {
   return goals;
 }
 
+/** What the poster says, and what was measured of the same model. */
+function besidePoster({ native, web, instructions = {} }: Results): string[][] {
+  const sample = native?.['4.8k'];
+  const million = (preset: string): string => {
+    const count = instructions[`${preset}, aarch64`];
+    return count === undefined ? '' : `${(count / 1e6).toFixed(1)} M`;
+  };
+  return [
+    ['the poster, on the tablet', '70', '', '20'],
+    ['its naive transfer, on the tablet', 'less than 50', '', ''],
+    ...(['paper', 'default'] as const).map((preset) => [
+      `\`${preset}\`, native, here`,
+      ms(sample?.times[preset]),
+      million(preset),
+      preset === 'paper' && sample ? (sample.peakBytes / 1e6).toFixed(1) : '',
+    ]),
+    ['`paper`, Chromium, here', ms(web?.races['4.8k']?.cagecast), '', ''],
+    ['Embree’s searches, native, here', ms(sample?.times['embree']), '', ''],
+    ['three-mesh-bvh’s searches, Chromium, here', ms(web?.races['4.8k']?.peer), '', ''],
+  ];
+}
+
+function waitsReport({ waits, growth, page }: Results): string[] {
+  if (!waits) return [];
+  const parts = [
+    '## What people wait for',
+    'Milliseconds of processor time of a command, from the start of its process to the written file, all its threads together; and where it goes. `transfer` has a cage; glTF-Transform only reads the file and writes it.',
+    waitsTable(waits),
+  ];
+  if (page) {
+    parts.push(
+      'From a drop on the page until the model stands there painted: processor time of the page’s process, its workers and what the browser compiles together; Chromium draws by software.',
+      pageTable(page),
+    );
+  }
+  if (!growth) return parts;
+  const about =
+    'How that grows for the sample `human`, in seconds, and the most memory of the process (Node alone: 45 MB).';
+  return [...parts, about, growthTable(growth)];
+}
+
 /** All tables, in Markdown. */
 export function speedReport(results: Results): string {
-  const { date, machine, native = {}, web, instructions = {}, sizes = {}, waits } = results;
+  const { date, machine, native = {}, web, instructions = {}, sizes = {} } = results;
   const goals = goalsOf(results).map(({ what, text, isReached }) => [what, text, isReached ? 'yes' : 'no']);
   const nativeRows = Object.entries(native).map(
     ([scene, { triangles, cageTriangles, times: took, ratios, peakBytes }]) => [
@@ -129,6 +174,9 @@ export function speedReport(results: Results): string {
     `# Speed, measured on ${date}`,
     `${machine.processor}, ${machine.cores} cores; Node ${machine.node}${web ? `, Chromium ${web.chromium}` : ''}. Written by \`npm run bench\`; all numbers: [speed.json](speed.json). [What is compared, and how](../README.md). How good the result is: [quality](quality.md).`,
     table(['', 'measured', ''], goals),
+    '## Beside the poster',
+    'The lizard of 4,782 triangles. [The poster](https://doi.org/10.1145/3799825.3818741) measured on a tablet (Samsung S6 Lite); no such device was at hand here, so instructions stand beside the times.',
+    table(['4.8k', 'ms', 'instructions, 64-bit ARM', 'MB'], besidePoster(results)),
     '## Native',
     'Milliseconds of CPU time on one thread, medians. Cagecast: from raw arrays to zones. Embree and nanoflann: the searches alone. A ratio is `paper` ÷ the peer, the median over turns.',
     table(
@@ -153,13 +201,7 @@ export function speedReport(results: Results): string {
     table(['scene', 'Cagecast', 'three-mesh-bvh', 'ratio'], webRows),
     'First use of the package, by wall time: the sample in a browser that never loaded it and has come to rest, preset `default`.',
     table(['4.8k', 'first use', '= import', '+ init', '+ transfer'], phoneRows),
-    ...(waits
-      ? [
-          '## What people wait for',
-          'Milliseconds of processor time of a command, from the start of its process to the written file, all its threads together; and where it goes. `transfer` has a cage; glTF-Transform only reads the file and writes it.',
-          waitsTable(waits),
-        ]
-      : []),
+    ...waitsReport(results),
     '## Instructions and sizes',
     table(
       ['a transfer of the sample', 'instructions'],

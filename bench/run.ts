@@ -18,7 +18,8 @@ import { buildNative, kMachine, kStages, measureNative, ratioOf, resultsFolder, 
 import { goalsOf, type Results, speedReport } from './report.js';
 import { type BenchScene, givenScenes, kScenes, makeScenes, sampleScene } from './scenes.js';
 import { median } from './statistics.js';
-import { measureWaits } from './waits.js';
+import { measurePage } from './waits/page.js';
+import { measureGrowth, measureWaits, modelsOf } from './waits.js';
 import type { FirstUse } from './web/page.js';
 import { WebBench } from './web.js';
 
@@ -73,7 +74,11 @@ async function measure(only: readonly string[], quick: boolean, avatars: string 
       for (const processor of kProcessors)
         results.instructions[`${preset}, ${processor}`] = (await countInstructions(processor, preset)).perRun;
   }
-  if (only.includes('waits')) results.waits = measureWaits(avatars, quick ? 1 : 3, say);
+  if (only.includes('waits')) {
+    results.waits = measureWaits(avatars, quick ? 1 : 3, say);
+    results.page = await measurePage(modelsOf(avatars), say);
+    results.growth = await measureGrowth(quick ? 1 : 3, say);
+  }
   await writeJson('speed', results);
   await writeFile(`${resultsFolder}/README.md`, speedReport(results));
   for (const { what, text, isReached } of goalsOf(results))

@@ -30,7 +30,7 @@ export type Outcome = { zones: Uint8Array; seconds: number[]; memory?: number } 
 
 const at = (name: string): string => fileURLToPath(new URL(name, import.meta.url));
 /** The names of the methods that are included. */
-export const kIncluded: readonly string[] = ['naive', 'paper', 'default'];
+export const kIncluded: readonly string[] = ['naive', 'decals', 'by-hand', 'paper', 'default'];
 
 let python: string | undefined;
 /** The Python that has NumPy: of the environment variable PYTHON, or the first that does. @throws {Misuse} */

@@ -31,14 +31,20 @@ export const triangleAt = ({ positions, indices }: Shape, t: number): Triangle =
   return new Triangle(a, b, c);
 };
 
+/** For three.js; normals of vertices from their triangles, as it computes them. */
+export function withNormals({ positions, indices }: Shape): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(Float32Array.from(positions), 3));
+  geometry.setIndex(new BufferAttribute(Uint32Array.from(indices), 1));
+  geometry.computeVertexNormals();
+  return geometry;
+}
+
 /** Searches for closest points and rays. */
 export class Search {
   private readonly tree: MeshBVH;
   constructor(readonly shape: Shape) {
-    const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(Float32Array.from(shape.positions), 3));
-    geometry.setIndex(new BufferAttribute(Uint32Array.from(shape.indices), 1));
-    this.tree = new MeshBVH(geometry, { indirect: true });
+    this.tree = new MeshBVH(withNormals(shape), { indirect: true });
   }
 
   closest(point: Vector3): SurfacePoint {

@@ -1,4 +1,5 @@
-// Runs a command in this process and prints as JSON where its processor time went, in milliseconds from the start of the process on.
+// Runs a command in this process and prints as JSON where its processor time went, in milliseconds from the start of the process on,
+// and the most memory that it had, in bytes.
 //
 //   node bench/waits/run.mjs COMMAND ARGUMENTS …     by the steps that the command shows as its progress
 //   node bench/waits/run.mjs rewrite FILE OUTPUT     for comparison: glTF-Transform reads a file and writes it
@@ -7,8 +8,9 @@ const [door, ...args] = process.argv.slice(2);
 const steps = {};
 let [step, before] = ['start', 0];
 
-/** Books what was spent since the last call. */
+/** Books what was spent since the last step began. */
 function begin(next) {
+  if (next === step) return;
   const { user, system } = process.cpuUsage();
   const now = (user + system) / 1000;
   steps[step] = (steps[step] ?? 0) + now - before;
@@ -45,4 +47,4 @@ if (door === 'rewrite') {
   if (exit !== 0 && exit !== 3) throw new Error(said.trim());
 }
 begin('end');
-console.log(JSON.stringify(steps));
+console.log(JSON.stringify({ steps, memory: 1024 * process.resourceUsage().maxRSS }));

@@ -1,5 +1,6 @@
 // Builds the npm package into dist/: the core as WebAssembly, the TypeScript around it, its types, the CLI.
 //   node wasm/tools/build.mjs                        all of it; does nothing if nothing changed
+//   node wasm/tools/build.mjs --names                with the names of functions, for profiles
 //   node wasm/tools/build.mjs --preset wasm-scalar   only index.js, in build/wasm-scalar/package, which tests compare with
 
 import { spawnSync } from 'node:child_process';
@@ -25,8 +26,10 @@ import { noticesOf, partsOf } from './notices.mjs';
 const root = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
 const at = (...parts) => join(root, ...parts);
 
-const { values } = parseArgs({ options: { preset: { type: 'string', default: 'wasm' } } });
-const { preset } = values;
+const { values } = parseArgs({
+  options: { preset: { type: 'string', default: 'wasm' }, names: { type: 'boolean', default: false } },
+});
+const { preset, names } = values;
 if (preset !== 'wasm' && preset !== 'wasm-scalar')
   fail(`--preset ${preset} is unknown; there are wasm and wasm-scalar`);
 
@@ -58,7 +61,7 @@ const common = {
   bundle: true,
   format: 'esm',
   target: 'es2022',
-  minify: true,
+  minify: !names,
   lineLimit: 500, // so that Node shows little of the file above an uncaught error
   charset: 'utf8', // the text that is the WebAssembly module in two bytes a character at most, not in escapes of four
   legalComments: 'none', // THIRD-PARTY-NOTICES.txt has them
@@ -74,7 +77,7 @@ const eager = { banner: { js: '//# allFunctionsCalledOnLoad' } };
 
 const hash = hashOf(
   ['core', 'wasm', kTemplates, 'package.json', 'package-lock.json', 'CMakeLists.txt', 'CMakePresets.json'],
-  preset,
+  `${preset} ${names}`,
 );
 if (existsSync(stamp) && readFileSync(stamp, 'utf8') === hash && existsSync(join(out, 'index.js'))) {
   linkCommand();
@@ -100,7 +103,7 @@ function buildWasm() {
     // Debian's Emscripten finds its copy of acorn only so.
     NODE_PATH: [process.env.NODE_PATH, '/usr/share/nodejs'].filter(Boolean).join(delimiter),
   };
-  run('cmake', ['--preset', preset], env);
+  run('cmake', ['--preset', preset, `-DCAGECAST_NAMES=${names}`], env);
   run('cmake', ['--build', '--preset', preset], env);
 }
 

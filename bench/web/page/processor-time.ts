@@ -38,7 +38,7 @@ export async function mainThreadWork(page: Page, action: () => Promise<unknown>,
     longest: Math.max(...tasks),
     total: tasks.reduce((sum, task) => sum + task, 0),
   }));
-  const busiest = work.toSorted((a, b) => b.total - a.total)[0];
+  const busiest = work.sort((a, b) => b.total - a.total)[0];
   if (!busiest) throw new Error('the trace has no tasks of a main thread');
   return busiest;
 }

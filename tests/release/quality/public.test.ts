@@ -72,7 +72,7 @@ test('methods in JavaScript, in Python and of a program find zones', async () =>
   }
   assert.throws(
     () => methodOf('nobody.py', '/'),
-    /no method, file or program "nobody.py"; included are naive, paper, default/,
+    /no method, file or program "nobody.py"; included are naive, decals, by-hand, paper, default/,
   );
 });
 
@@ -164,7 +164,7 @@ test('a run makes a table and a page with pictures; what cannot be measured is t
     at('models'),
     kLizard,
     '--method',
-    `naive,default,${mine},${bad}`,
+    `naive,decals,by-hand,default,${mine},${bad}`,
     '--runs',
     '1',
     '--output',
@@ -181,16 +181,18 @@ test('a run makes a table and a page with pictures; what cannot be measured is t
   assert.match(stderr, /lizard: bad<b> failed: zones has the shape \(0\); 4141 values/);
   const { models, summary } = JSON.parse(readFileSync(at('out', 'results.json'), 'utf8'));
   assert.deepEqual(Object.keys(models), ['lizard']);
-  const { naive, default: ours, mine: example1 } = models.lizard.methods;
+  const { naive, decals, default: ours, mine: example1, 'by-hand': byHand } = models.lizard.methods;
   assert.deepEqual([naive.suppressed, naive.kept, ours.suppressed], [0, 1, 1]);
+  assert.ok(decals.suppressed < 0.01 && decals.kept > 0.99, 'a decal goes through all that is in its box');
+  assert.ok(byHand.suppressed > 0.8 && byHand.kept > 0.9 && byHand.suppressed < ours.suppressed);
   assert.ok(example1.suppressed > 0.5 && example1.kept > 0.5, 'the example of the page does something');
-  assert.deepEqual(Object.keys(summary).slice(0, 2), ['default', 'mine']);
+  assert.deepEqual(Object.keys(summary).slice(0, 2), ['default', 'by-hand']);
   assert.match(
     readFileSync(at('out', 'results.md'), 'utf8'),
     /\| default +\| +100 % \| +100 % \|[\s\S]*- bad<b> failed: /,
   );
   const page = readFileSync(at('out', 'results.html'), 'utf8');
-  assert.equal(page.match(/<img src="data:image\/png;base64,/g)!.length, 4, 'truth and three methods');
+  assert.equal(page.match(/<img src="data:image\/png;base64,/g)!.length, 6, 'truth and five methods');
   assert.match(page, /forbidden paint[\s\S]*bad&#60;b&#62; failed/);
   assert.doesNotMatch(page, /<script|https?:/);
   for (const [args, expected] of [
