@@ -1,7 +1,15 @@
 // Layers of paint in one texture. Runs in the browser.
 import { applyTransfer } from 'cagecast/three';
-import { DataTexture, MeshBasicMaterial, SRGBColorSpace, WebGLRenderer } from 'three';
-import { type Blend, createLayers, createPainter, LayerPainter, type Painter, type SavedLayers } from '#three';
+import { DataTexture, MeshBasicMaterial, SRGBColorSpace, Texture, WebGLRenderer } from 'three';
+import {
+  type Blend,
+  createLayers,
+  createPainter,
+  LayerPainter,
+  type Layers,
+  type Painter,
+  type SavedLayers,
+} from '#three';
 import {
   cage,
   clear,
@@ -23,6 +31,11 @@ import {
 } from './scenes';
 
 const texelOf = ({ data }: ImageData): number[] => [...data.subarray(0, 4)];
+/** How large the image of a data URL is. */
+async function sizeOf(url: string): Promise<string> {
+  const { width, height } = await createImageBitmap(await (await fetch(url)).blob());
+  return `${width} × ${height}`;
+}
 const plain = () => modelOf(new MeshBasicMaterial({ color: 0xbbbbbb }));
 const decode = (byte: number): number =>
   byte <= 0.04045 * 255 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4;
@@ -219,6 +232,56 @@ export const layerScenes: Scenes = {
       one.dispose();
       one.layers.dispose();
     }
+  },
+
+  async 'saved images have the size that they had, and each is there once'() {
+    const of = async (add: (layers: Layers) => void) => {
+      const layers = createLayers({ renderer });
+      add(layers);
+      const look = [...layers.toImageData(8).data];
+      const saved: SavedLayers = JSON.parse(JSON.stringify(await layers.save()));
+      const sizes = await Promise.all((saved.images ?? []).map(sizeOf));
+      layers.dispose();
+      const again = createLayers({ renderer });
+      await again.load(saved);
+      near([...again.toImageData(8).data], look, 2);
+      again.dispose();
+      return { saved, sizes, places: saved.layers.map(({ image }) => image) };
+    };
+    const dot = () => new DataTexture(new Uint8Array([200, 40, 80, 128]), 1, 1);
+    const dots = await of((layers) => {
+      const [one, other] = [dot(), dot()].map((texture) =>
+        Object.assign(texture, { colorSpace: SRGBColorSpace, needsUpdate: true }),
+      );
+      for (const texture of [one!, other!, one!]) layers.add(texture);
+    });
+    equal([dots.places, dots.sizes], [[0, 0, 0], ['1 × 1']]);
+    ok(JSON.stringify(dots.saved).length < 1000, `${JSON.stringify(dots.saved).length} characters`);
+
+    // Neither square, nor the right way up, nor as the GPU has it; a relief beside it.
+    const wide = halves(0xdd3311, 0x1133dd);
+    const relief = Object.assign(new DataTexture(new Uint8Array([128, 128, 255, 255, 128, 128, 255, 255]), 2, 1), {
+      needsUpdate: true,
+    });
+    const canvas = new OffscreenCanvas(3, 5);
+    Object.assign(canvas.getContext('2d')!, { fillStyle: '#11aa44' }).fillRect(0, 0, 3, 2);
+    const drawn = Object.assign(new Texture(canvas), { colorSpace: SRGBColorSpace, needsUpdate: true });
+    const mixed = await of((layers) => {
+      layers.add(wide, { normal: relief });
+      layers.add(drawn);
+    });
+    equal(
+      [mixed.places, mixed.sizes],
+      [
+        [0, 2],
+        ['4 × 1', '2 × 1', '3 × 5'],
+      ],
+    );
+    equal(mixed.saved.layers[0]!.normal, 1);
+
+    const large = new DataTexture(new Uint8Array(4 * 4096 * 16).fill(255), 4096, 16);
+    Object.assign(large, { colorSpace: SRGBColorSpace, needsUpdate: true });
+    equal((await of((layers) => layers.add(large))).sizes, ['2048 × 8']);
   },
 
   'a layer lies as its texture does by itself, upside down or not'() {

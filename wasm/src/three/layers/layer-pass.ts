@@ -10,12 +10,12 @@ import {
 import { checkColorSpace } from '../color-space.js';
 import { Pass } from '../gpu/pass.js';
 import type { Rect } from '../gpu/rect.js';
+import { Stored } from '../gpu/straight.js';
 import { fragmentShader } from './composite-shader.js';
 import { type Kind, maxAtOnce } from './kinds.js';
 import { type Blend, blendModes, type Layer, type Sheet } from './layer.js';
 import { RegionMasks, type Regions } from './regions.js';
 
-const kVideo = 2; // how its colours are stored, in the shader
 const kMax = Math.max(...Object.values(maxAtOnce));
 
 /** A stroke in progress: shown over one sheet, or erased from it, until it is committed. */
@@ -92,7 +92,7 @@ export class LayerPass {
       masked: layers.map(({ region }) => region !== null),
       stroke: layers.findIndex(({ sheet }) => sheet === this.#strokeSheet),
       hasBelow: below !== undefined,
-      hasVideo: this.#uniforms.stored.value.includes(kVideo),
+      hasVideo: this.#uniforms.stored.value.includes(Stored.video),
     };
     const key = JSON.stringify(recipe);
     let pass = this.#passes.get(key);
@@ -123,8 +123,7 @@ export class LayerPass {
       tints.value[index]!.set(r, g, b, opacity);
       values.value[index]!.set(...this.#valuesOf(kind, layer));
       blends.value[index] = blendModes.indexOf(blend as Blend);
-      const { isVideoTexture, colorSpace } = sheet.texture as Texture & { isVideoTexture?: true };
-      stored.value[index] = sheet.premultiplied ? 1 : isVideoTexture && colorSpace === SRGBColorSpace ? kVideo : 0;
+      stored.value[index] = storedIn(sheet);
     });
     one.stroke.value = this.#stroke?.texture ?? null;
     one.strokeOpacity.value = this.#stroke?.opacity ?? 0;
@@ -143,10 +142,21 @@ export class LayerPass {
   }
 }
 
+/** How a sheet has its colours, as the shaders know it. */
+export function storedIn({ texture, premultiplied }: Sheet): number {
+  const { isVideoTexture, colorSpace } = texture as Texture & { isVideoTexture?: true };
+  if (premultiplied) return Stored.premultiplied;
+  return isVideoTexture && colorSpace === SRGBColorSpace ? Stored.video : Stored.straight;
+}
+
 /** The sides of a texture, in texels. */
 export function sidesOf({ image }: Texture): [width: number, height: number] {
-  const { width = 0, height = 0 } = (image ?? {}) as { width?: number; height?: number };
-  return [width, height];
+  // Elements of the page have two sizes, of which the one that they are shown in is not meant.
+  const { naturalWidth, naturalHeight, videoWidth, videoHeight, width, height } = (image ?? {}) as Record<
+    string,
+    number
+  >;
+  return [naturalWidth ?? videoWidth ?? width ?? 0, naturalHeight ?? videoHeight ?? height ?? 0];
 }
 
 export const isSquare = (texture: Texture, side: number): boolean => sidesOf(texture).every((found) => found === side);

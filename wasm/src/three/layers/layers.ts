@@ -237,7 +237,8 @@ export class Layers extends Emitter<{
   /**
    * All layers as plain data, for `JSON.stringify`: their order, styles, images and normal maps, and the base tint; paintings can be painted on again. On any model with
    * a cage of the same layout they look the same. A stroke in progress is left out.
-   * Cost: draws and reads each layer, at 1024 or 2048 texels a side, and waits for the GPU; then some hundred milliseconds for PNG files.
+   * Each image is there once, of its own size, at most 2048 texels along a side.
+   * Cost: draws and reads each image, and waits for the GPU; for paintings then some hundred milliseconds for PNG files.
    */
   save(): Promise<SavedLayers> {
     return saveLayers(this.renderer, this.list, this.baseTint);

@@ -4,11 +4,11 @@ import { show } from '../../core/error.js';
 import { toPng } from '../canvas.js';
 import { checkColor, notA, wrong } from '../errors.js';
 import { kWhole, toTexels } from '../gpu/rect.js';
-import { readStraight } from '../gpu/straight.js';
+import { readStraight, Stored } from '../gpu/straight.js';
 import { kWhite } from './base-tint.js';
 import { Composite, maxCompositeSize } from './composite.js';
 import { type Layer, plainStyle, readStyle, type Sheet, type Style } from './layer.js';
-import { sidesOf } from './layer-pass.js';
+import { sidesOf, storedIn } from './layer-pass.js';
 import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';
 import { checkRegion, type Regions } from './regions.js';
 import { decoded, readImage, type SavedImage } from './saved-images.js';
@@ -23,12 +23,12 @@ type SavedChannels = Partial<Pick<Style, (typeof kChannels)[number]>>;
 /** A layer as plain data. */
 export interface SavedLayer extends Omit<Style, (typeof kChannels)[number] | 'normal'>, SavedChannels {
   name: string;
-  /** The data URL of an image file, in the cage's UV space. */
-  image: string;
+  /** Its image in the cage's UV space, the first row at v = 0, as glTF has it: a place in `images`, or the data URL of an image file. */
+  image: number | string;
   /** Texels per side of a painting, which can be painted on again. Default: it is no painting. */
   painting?: PaintingSize | undefined;
-  /** The data URL of an image file with its normal map, the first row at v = 0, as glTF has it. Default: it has none. */
-  normal?: string | undefined;
+  /** Its normal map, in the same way. Default: it has none. */
+  normal?: number | string | undefined;
 }
 
 /** Layers as plain data, for `JSON.stringify`. */
@@ -37,6 +37,8 @@ export interface SavedLayers {
   version: typeof kVersion;
   /** From the lowest to the uppermost. */
   layers: SavedLayer[];
+  /** The data URLs of image files, each once, of the size that it has as a layer, or of 2048 pixels along the longer side. Default: none. */
+  images?: string[] | undefined;
   /** As `Layers.baseTint`. Default: white. */
   baseTint?: string | undefined;
 }
@@ -47,25 +49,40 @@ export async function saveLayers(
   layers: readonly Layer[],
   baseTint: string,
 ): Promise<SavedLayers> {
-  const saved = layers.map(({ name, sheet, opacity, tint, blend, visible, region, normal, ...rest }) => {
-    const painting = sheet instanceof PaintedSheet ? sheet.size : undefined;
-    return {
+  const read = new Map<Texture, Promise<string>>();
+  /** Reads a texture, once. */
+  const urlOf = (texture: Texture, pixels: () => ImageData): Promise<string> => {
+    const url = read.get(texture) ?? toPng(pixels());
+    read.set(texture, url);
+    return url;
+  };
+  // All of them at once: what is drawn meanwhile is not in it.
+  const reading = layers.map(({ sheet, normal }) => ({
+    image: urlOf(sheet.texture, () => readStraight(renderer, sheet.texture, savedSize(sheet.texture), storedIn(sheet))),
+    normal: normal ? urlOf(normal, () => readRelief(renderer, normal)) : undefined,
+  }));
+  const images: string[] = [];
+  const placeOf = (url: string): number => (images.includes(url) ? images.indexOf(url) : images.push(url) - 1);
+  const saved: SavedLayer[] = [];
+  for (const [i, { name, sheet, opacity, tint, blend, visible, region, normal: _, ...rest }] of layers.entries()) {
+    const normal = await reading[i]!.normal;
+    saved.push({
       ...{ name, opacity, tint, blend, visible, region },
-      ...(painting && { painting }),
+      ...(sheet instanceof PaintedSheet && { painting: sheet.size }),
       ...channelsIn(rest),
-      relief: normal && readRelief(renderer, normal),
-      pixels: drawn(renderer, sheet, painting, (composite) =>
-        readStraight(renderer, composite.texture, composite.size),
-      ),
-    };
-  });
-  const named = async ({ pixels, relief, ...layer }: (typeof saved)[number]) => ({
-    ...layer,
-    ...(relief && { normal: await toPng(relief) }),
-    image: await toPng(pixels),
-  });
-  const all = await Promise.all(saved.map(named));
-  return { version: kVersion, layers: all, ...(baseTint !== kWhite && { baseTint }) };
+      image: placeOf(await reading[i]!.image),
+      ...(normal !== undefined && { normal: placeOf(normal) }),
+    });
+  }
+  return { version: kVersion, layers: saved, images, ...(baseTint !== kWhite && { baseTint }) };
+}
+
+/** As many texels as a texture has, or as many as can be loaded, in its proportions. */
+function savedSize(texture: Texture): readonly [width: number, height: number] {
+  const sides = sidesOf(texture);
+  const share = Math.min(1, maxCompositeSize / Math.max(...sides));
+  const [width, height] = sides.map((side) => Math.max(1, Math.round(share * side)));
+  return [width!, height!];
 }
 
 /** Those channels of a layer that are not as by default. */
@@ -76,8 +93,7 @@ function channelsIn(layer: Required<SavedChannels>): SavedChannels {
 
 /** A normal map as an image, as glTF has it. */
 function readRelief(renderer: WebGLRenderer, normal: Texture): ImageData {
-  const size = Math.min(maxCompositeSize, Math.max(...sidesOf(normal)));
-  const image = readStraight(renderer, normal, size, true);
+  const image = readStraight(renderer, normal, savedSize(normal), Stored.data);
   // With its last row at v = 0, green means down.
   if (normal.flipY) for (let at = 1; at < image.data.length; at += 4) image.data[at] = 255 - image.data[at]!;
   return image;
@@ -101,7 +117,7 @@ export async function loadLayers(
   saved: SavedLayers,
   regions: Regions | undefined,
 ): Promise<{ layers: LoadedLayer[]; baseTint: string }> {
-  const { version, layers, baseTint = kWhite } = Object(saved) as Partial<SavedLayers>;
+  const { version, layers, images, baseTint = kWhite } = Object(saved) as Partial<SavedLayers>;
   if (!Array.isArray(layers)) throw notA('what save returned', 'saved', saved);
   if (version !== kVersion) throw wrong(`saved.version is ${show(version)}, not ${kVersion}`);
   if (layers.length > maxLayers) throw wrong(`saved.layers are ${layers.length}, more than ${maxLayers}`);
@@ -111,8 +127,8 @@ export async function loadLayers(
   const checked = layers.map(({ name, painting, image, normal }, i): CheckedLayer => {
     return {
       ...{ name, painting, style: styles[i]! },
-      image: readImage(image, `${placeOf(i)}.image`, painting),
-      normal: normal === undefined ? undefined : readImage(normal, `${placeOf(i)}.normal`),
+      image: readImage(urlIn(images, image), `${placeOf(i)}.image`, painting),
+      normal: normal === undefined ? undefined : readImage(urlIn(images, normal), `${placeOf(i)}.normal`),
     };
   });
   const loaded: LoadedLayer[] = [];
@@ -128,6 +144,10 @@ export async function loadLayers(
   }
   return { layers: loaded, baseTint };
 }
+
+/** The image that a layer names by its place in a list; or what else it says. */
+const urlIn = (images: unknown, image: unknown): unknown =>
+  typeof image === 'number' ? ((images as unknown[] | undefined)?.[image] ?? image) : image;
 
 const kMaxName = 1000; // characters
 
