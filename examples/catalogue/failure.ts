@@ -4,7 +4,6 @@ import { inspect } from 'node:util';
 /** Why a job failed, in the words of the dead-letter list and the metrics. */
 export const reasons = {
   broken: 'an input or a setting cannot be used, or it is not a job of the catalogue',
-  unfit: 'the cage does not fit',
   limit: 'more bytes, memory or time than allowed',
   missing: 'an input is not there, or is another than when it was submitted',
   lost: 'it was done, but its output is gone or was changed since: submit it again',

@@ -30,11 +30,22 @@ export interface ReportOptions {
   forget?: boolean | undefined;
 }
 
-/** Writes the results and the report about them. @returns how many jobs are done, and have failed */
+/** How many jobs are done, and of how many of them the cage fits or does not; and how many have failed. */
+export interface Counts {
+  done: number;
+  fit: number;
+  unfit: number;
+  failed: number;
+}
+
+export const described = ({ done, fit, unfit, failed }: Counts): string =>
+  `${done} done${fit + unfit > 0 ? ` (${fit} fit, ${unfit} unfit)` : ''}, ${failed} failed`;
+
+/** Writes the results and the report about them. */
 export async function report(
   catalogue: Catalogue,
   { worst = 12, before, forget }: ReportOptions = {},
-): Promise<{ done: number; failed: number }> {
+): Promise<Counts> {
   const began = Date.now();
   const earlier = new Map<string, string>();
   if (before !== undefined)
@@ -42,17 +53,17 @@ export async function report(
   const [counts, failures] = [new Map<string, number>(), new Map<string, number>()];
   const [changes, dead]: [string[][], string[][]] = [[], []];
   let [worstOnes, cpuMs]: [Result[], number] = [[], 0];
-  const counted = { done: 0, failed: 0 };
+  const counted: Counts = { done: 0, fit: 0, unfit: 0, failed: 0 };
   await collectResults(catalogue, (result) => {
     const outcome = outcomeOf(result);
     ++counted[result.status];
+    if (result.status === 'done' && result.verdict) ++counted[result.verdict === 'unfit' ? 'unfit' : 'fit'];
     cpuMs += result.cpuMs ?? 0;
     if (result.verdict) counts.set(result.verdict, (counts.get(result.verdict) ?? 0) + 1);
     if (result.reason) failures.set(result.reason, (failures.get(result.reason) ?? 0) + 1);
     const was = earlier.get(nameOf(result)) ?? (before === undefined ? outcome : 'new');
     if (was !== outcome && changes.length < mostListed) changes.push([nameOf(result), was, outcome]);
-    if (result.reason && result.reason !== 'unfit' && dead.length < mostListed)
-      dead.push([nameOf(result), result.error!]);
+    if (result.reason && dead.length < mostListed) dead.push([nameOf(result), result.error!]);
     if (!result.severity) return;
     worstOnes.push(result);
     if (worstOnes.length < 2 * worst + 100) return;
@@ -68,7 +79,7 @@ export async function report(
   await write(
     'report.html',
     page([
-      `<p>${counted.done + counted.failed} jobs: ${counted.done} done, ${counted.failed} failed; ${(cpuMs / 1000).toFixed(1)} s of processor time. Each of them is a line in <a href="results.jsonl">results.jsonl</a>.</p>`,
+      `<p>${counted.done + counted.failed} jobs: ${described(counted)}; ${(cpuMs / 1000).toFixed(1)} s of processor time. Each of them is a line in <a href="results.jsonl">results.jsonl</a>.</p>`,
       section(
         'Verdicts',
         table(
@@ -103,19 +114,17 @@ const worstFirst = (results: Result[]) =>
 const nameOf = ({ kind, inputs, settings }: Result): string =>
   [kind, ...Object.values(inputs), ...(Object.keys(settings).length > 0 ? [JSON.stringify(settings)] : [])].join(' ');
 
-const outcomeOf = ({ reason, verdict = 'done' }: Result): string =>
-  reason && reason !== 'unfit' ? `failed: ${reason}` : verdict;
+const outcomeOf = ({ reason, verdict = 'done' }: Result): string => (reason ? `failed: ${reason}` : verdict);
 
 /** A finding with the pictures that `cagecast inspect --report` draws; its page is beside the report. */
 async function figure(result: Result, job: CatalogueJob | undefined): Promise<string> {
-  const { key, inputs, verdict, findings = [], error } = result;
+  const { key, inputs, verdict, findings = [], why = findings.join(', ') } = result;
   const title = text(`${verdict}: ${inputs['target']} in ${inputs['cage']}`);
-  const why = text(error?.replace(/^unfit: /, '') ?? findings.join(', '));
   const drawn = job && (await inspection(job).catch(() => undefined));
-  if (!drawn) return `<article><h3>${title}</h3><p>${why}</p></article>`;
+  if (!drawn) return `<article><h3>${title}</h3><p>${text(why)}</p></article>`;
   await write(`worst/${key}.html`, drawn);
   const pictures = drawn.match(/<img [^>]*src="data:image\/png;base64,[^"]*"[^>]*>/g) ?? [];
-  return `<article><h3><a href="worst/${key}.html">${title}</a></h3><p>${why}</p>${pictures.slice(0, 4).join('')}</article>`;
+  return `<article><h3><a href="worst/${key}.html">${title}</a></h3><p>${text(why)}</p>${pictures.slice(0, 4).join('')}</article>`;
 }
 
 /** The page of `cagecast inspect --report` for a job. */
@@ -144,7 +153,7 @@ if (import.meta.filename === process.argv[1])
     const worst = Number(values.worst ?? 12);
     if (!(worst >= 0)) throw new Failure('broken', `--worst is "${values.worst}", not a number ≥ 0`);
     const before = values.before && fromCaller(values.before);
-    const { done, failed } = await report(catalogue, { forget: values.forget, before, worst });
-    console.log(`wrote report.html and results.jsonl: ${done} done, ${failed} failed`);
+    const counts = await report(catalogue, { forget: values.forget, before, worst });
+    console.log(`wrote report.html and results.jsonl: ${described(counts)}`);
     return 0;
   });

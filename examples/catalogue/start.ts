@@ -20,7 +20,7 @@ process.env.CATALOGUE_PORT ??= String(await freePort());
 const { openCatalogue } = await import('./jobs.ts');
 const { describe, onTerminal, submit, untilDone } = await import('./submit.ts');
 const { serveStatus } = await import('./status.ts');
-const { report } = await import('./report.ts');
+const { described, report } = await import('./report.ts');
 
 const catalogue = openCatalogue();
 const { address, close } = await serveStatus(catalogue);
@@ -36,10 +36,8 @@ const summary = await submit(here('samples.jsonl'), catalogue);
 console.log(describe(summary));
 for (const error of summary.errors) console.log(`  ${error}`);
 await untilDone(catalogue, onTerminal);
-const { done, failed } = await report(catalogue);
-console.log(
-  `\n${done} done, ${failed} failed\nreport   ${address}/files/report.html\nresults  ${address}/files/results.jsonl`,
-);
+const counts = await report(catalogue);
+console.log(`\n${described(counts)}\nreport   ${address}/files/report.html\nresults  ${address}/files/results.jsonl`);
 if (!values.once) {
   console.log('Ctrl-C ends all of it.');
   await Promise.race([once(process, 'SIGINT'), once(process, 'SIGTERM')]);

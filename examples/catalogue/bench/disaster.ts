@@ -123,7 +123,7 @@ export async function disaster(stage: Stage, night: Night): Promise<Figures> {
 }
 
 const told = (who: string, text: string): Figures => {
-  const [done = -1, failed = -1] = numbersIn(text, /(\d+) done, (\d+) failed$/m);
+  const [done = -1, failed = -1] = numbersIn(text, /(\d+) done(?: \(.*\))?, (\d+) failed$/m);
   return { [`${who}Done`]: done, [`${who}Failed`]: failed };
 };
 

@@ -24,6 +24,8 @@ export interface Answer {
 
 export interface Facts {
   verdict?: string;
+  /** Why the verdict is not better, in a sentence. */
+  why?: string;
   /** Codes of findings, the most severe first. */
   findings?: string[];
   /** How bad it is, 0 to 1: the report shows the worst. */

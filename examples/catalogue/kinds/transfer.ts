@@ -4,9 +4,9 @@ import { fit } from './inspect.ts';
 import type { Kind } from './kind.ts';
 import { inputFailure, models, readModel } from './model.ts';
 
-/** Paints a target, or gives it the UVs of a cage if there is no texture. A cage that does not fit paints nothing. */
+/** Paints a target, or gives it the UVs of a cage if there is no texture. For a cage that does not fit it writes nothing. */
 export const transferKind: Kind = {
-  version: 1,
+  version: 2,
   inputs: { target: 'required', cage: 'required', texture: 'optional' },
   ending: '.glb',
   async run(inputs, settings) {
@@ -20,7 +20,7 @@ export const transferKind: Kind = {
         cagecast({ ...settings, cage: source, texture: inputs['texture'], onResult: (one) => (result = one) }),
       );
       const facts = fit(source, target, options, result);
-      return { facts, output: await (await models()).writeBinary(document) };
+      return facts.verdict === 'unfit' ? { facts } : { facts, output: await (await models()).writeBinary(document) };
     } catch (error) {
       throw error instanceof CagecastError ? inputFailure(error) : error;
     }

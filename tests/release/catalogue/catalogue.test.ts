@@ -100,7 +100,6 @@ describe('the catalogue', () => {
       'hang 1.glb limit',
       'hog 1.glb limit',
       'inspect 1.glb broken',
-      'inspect 1.glb unfit',
       'inspect broken.glb broken',
       'kill 1.glb crash',
       'slow ../secret.glb refused',
@@ -114,7 +113,12 @@ describe('the catalogue', () => {
     ]);
     assert.match(dead.find(({ key }) => key.startsWith('kill'))!.error!, /a worker died on it 3 times/);
     assert.equal(lines.length, 57);
-    assert.equal(lines.filter(({ status }) => status === 'done').length, 42);
+    assert.equal(lines.filter(({ status }) => status === 'done').length, 43);
+    const unfit = lines.filter(({ verdict }) => verdict === 'unfit');
+    assert.deepEqual(
+      unfit.map(({ kind, status, why, output }) => [kind, status, /pokes out/.test(String(why)), output]),
+      [['inspect', 'done', true, undefined]],
+    );
     assert.equal(recipe.asked.filter((one) => one === 'GET /busy.glb').length, 2);
     assert.equal(lines.find(({ output }) => output?.startsWith(recipe.origin))!.output, `${recipe.origin}/out.glb`);
     writeFileSync(join(folder, 'out.glb'), objects.get('/out.glb')!);
@@ -128,7 +132,7 @@ describe('the catalogue', () => {
       const get = async (address: string) => (await fetch(address)).text();
       const state = JSON.parse(await get(page('queue.json')));
       const counts = await recipe.catalogue.queue.getJobCounts();
-      assert.deepEqual([state.counts, state.failed.length, state.done.length], [counts, 15, 42]);
+      assert.deepEqual([state.counts, state.failed.length, state.done.length], [counts, 14, 43]);
       for (const jobs of [await get(page('queue')), JSON.stringify(state)]) {
         assert.match(jobs, /good\.glb/);
         assert.match(jobs, /a worker died on it 3 times/);
@@ -139,10 +143,11 @@ describe('the catalogue', () => {
       let text = '';
       for (const end = Date.now() + 60_000; !/jobs_done_total.*1$/m.test(text) && Date.now() < end; )
         text = await metrics();
-      assert.match(text, /^catalogue_jobs\{state="failed"\} 15$/m);
+      assert.match(text, /^catalogue_jobs\{state="failed"\} 14$/m);
       assert.match(text, /^catalogue_jobs_done_total\{verdict="none"\} 1$/m);
       assert.match(text, /^catalogue_job_duration_seconds_count 1$/m);
       const report = await get(page('files/report.html'));
+      assert.match(report, /57 jobs: 43 done \(21 fit, 1 unfit\), 14 failed/);
       assert.match(report, /unfit: 1\.glb in small-cage\.glb/);
       assert.equal(report.match(/<img /g)!.length, 4);
     } finally {
@@ -153,7 +158,7 @@ describe('the catalogue', () => {
   test('forgets jobs in Redis, but not that they were done', async () => {
     await results();
     await recipe.parts.report(recipe.catalogue, { worst: 0, forget: true });
-    assert.deepEqual(await recipe.catalogue.queue.getJobCounts('completed', 'failed'), { completed: 0, failed: 15 });
+    assert.deepEqual(await recipe.catalogue.queue.getJobCounts('completed', 'failed'), { completed: 0, failed: 14 });
     assert.deepEqual(await submit(...manifest), ['0 new jobs, 40 known']);
     assert.equal((await results()).length, 58);
   });
@@ -193,7 +198,7 @@ describe('the catalogue', () => {
     ]);
     assert.deepEqual(await run('dead.ts', '--reason', 'brokn', '--retry'), [
       2,
-      'broken: --reason is "brokn"; there are: broken, unfit, limit, missing, lost, refused, network, crash, unexpected',
+      'broken: --reason is "brokn"; there are: broken, limit, missing, lost, refused, network, crash, unexpected',
     ]);
     assert.equal((await run('dead.ts', '--reason', 'broken')).length, 4);
   });
