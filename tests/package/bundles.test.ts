@@ -51,12 +51,12 @@ const kPages: [what: string, most: number, script: string][] = [
     console.log(enableLayers, createLayers);`,
   ],
   ['layers', 17_500, "import { createLayers } from 'cagecast/three'; console.log(createLayers);"],
-  ['<cagecast-viewer>', 162_000, "import 'cagecast/viewer';"],
+  ['<cagecast-viewer>', 67_000, "import 'cagecast/viewer';"],
   ['useCagecast', 73_500, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
   ['inspect', 33_000, "import { inspect } from 'cagecast'; console.log(inspect);"],
   ['bakeTexture', 6500, "import { bakeTexture } from 'cagecast/engines'; console.log(bakeTexture);"],
   ['cagecast of cagecast/gltf', 130_000, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
-  ['paintGlb', 188_000, "import { paintGlb } from 'cagecast/gltf'; console.log(paintGlb);"],
+  ['paintGlb', 70_000, "import { paintGlb } from 'cagecast/gltf'; console.log(paintGlb);"],
   ['makeCage', 3250, "import { makeCage } from 'cagecast/cages'; console.log(makeCage);"],
 ];
 

@@ -84,7 +84,8 @@ async function written(glb: Uint8Array, cageFile: Uint8Array, borders: 'triangle
   const around = files.extract(await files.readGltf('cage.glb', files.defaultReading, cageFile)).mesh;
   const result = transfer(around, extracted.mesh);
   const cut = borders === 'cut' ? cutBorders(around, extracted.mesh, result) : undefined;
-  const { data } = await files.writeTransfer(file, extracted, result, { paints: [files.paintOf(texture)], cut });
+  const prepared = extracted.parts.map((part) => files.preparePiece(part, result, cut));
+  const { data } = await files.writeTransfer(file, extracted, prepared, { paints: [files.paintOf(texture)] });
   return { data, result, cut, mesh: extracted.mesh };
 }
 

@@ -8,10 +8,18 @@ import { temporaryFolder } from './temporary.js';
 export type FileLayer = Pick<typeof import('../../wasm/src/cli/io/read-gltf.js'), 'readGltf'> &
   Pick<typeof import('../../wasm/src/scene/extract.js'), 'extract'> &
   Pick<typeof import('../../wasm/src/gltf/write-transfer.js'), 'writeTransfer'> &
+  Pick<typeof import('../../wasm/src/gltf/primitive-group.js'), 'preparePiece'> &
   Pick<typeof import('../../wasm/src/gltf/overlay.js'), 'paintOf'> &
   Pick<typeof import('../../wasm/src/cli/model/reading.js'), 'defaultReading'>;
 
-const kModules = ['cli/io/read-gltf', 'scene/extract', 'gltf/write-transfer', 'gltf/overlay', 'cli/model/reading'];
+const kModules = [
+  'cli/io/read-gltf',
+  'scene/extract',
+  'gltf/write-transfer',
+  'gltf/primitive-group',
+  'gltf/overlay',
+  'cli/model/reading',
+];
 
 /** Bundles the file layer, whose decoders are files that only a bundler reads. It uses the package's own index. */
 export async function loadFileLayer(): Promise<FileLayer> {

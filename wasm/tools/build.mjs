@@ -40,8 +40,14 @@ const stamp = at('build', preset, 'package.stamp');
 /** Template cages, which the package ships. */
 const kTemplates = 'examples/samples/templates';
 
+/** Types of files that are imported as hosts that compile nothing do it. */
+const kTypesOfWasm =
+  '/** The compiled module, for `init({ module })`. */\ndeclare const module: object;\nexport default module;\n';
+const kTypesOfTemplate = '/** The bytes of the file. */\ndeclare const bytes: ArrayBuffer;\nexport default bytes;\n';
+
 /** Modules of wasm/src, and the files that are made of them. One that imports another has it as a file beside it. */
 const kModules = {
+  'core/error': 'error',
   'inspect/index': 'inspect',
   'bake/index': 'bake',
   'engines/index': 'engines',
@@ -51,8 +57,10 @@ const kModules = {
   'react/index': 'react',
   'viewer/index': 'viewer',
   'gltf/index': 'gltf',
+  'gltf/documents': 'gltf-documents',
   'gltf/files': 'gltf-files',
   'worker/index': 'worker',
+  'worker/here': 'worker-here',
   'cages/index': 'cages',
 };
 
@@ -142,15 +150,20 @@ async function buildPackage() {
       for (const [path, { bytesInOutput }] of Object.entries(inputs)) if (bytesInOutput > 0) bundled.add(path);
     if (existsSync(`${outfile}.map`)) tidyMap(`${outfile}.map`);
   };
-  await bundle('index.ts', 'index.js', 'neutral', { ...eager, plugins: [wasmModules('wasm-inline.ts')] });
+  await bundle('index.ts', 'index.js', 'neutral', {
+    ...eager,
+    plugins: [wasmModules('wasm-inline.ts', shipped ? { shared: { 'core/error.js': './error.js' } } : {})],
+  });
   if (shipped) {
     await bundleEntries(bundle);
     await bundleCommand(bundle);
     for (const name of ['cagecast.wasm', 'cagecast-cages.wasm']) {
       cpSync(at('build', preset, 'wasm', name), join(fresh, name));
       chmodSync(join(fresh, name), 0o644);
+      writeFileSync(join(fresh, `${name}.d.ts`), kTypesOfWasm);
     }
     cpSync(at(kTemplates), join(fresh, 'templates'), { recursive: true });
+    writeFileSync(join(fresh, 'template.d.ts'), kTypesOfTemplate);
     const tsc = at('node_modules/@typescript/native/bin/tsc');
     run(process.execPath, [tsc, '-p', at('wasm/tsconfig.types.json'), '--outDir', fresh]);
     for (const name of readdirSync(fresh, { recursive: true }))
@@ -217,9 +230,10 @@ async function bundleCommand(bundle) {
 /**
  * Resolves the names that stand for what the C++ build makes.
  * @param wasm   How the package comes by its WebAssembly.
- * @param index  The file that importers of the package's index share; without, it is bundled.
+ * @param index   The file that importers of the package's index share; without, it is bundled.
+ * @param shared  Modules that are files of their own. Default: all of `kModules` beside an index, else none.
  */
-function wasmModules(wasm, { index } = {}) {
+function wasmModules(wasm, { index, shared = index && filesBeside(index) } = {}) {
   const files = {
     '#glue': at('build', preset, 'wasm/cagecast.js'),
     '#cages-glue': at('build', preset, 'wasm/cagecast-cages.js'),
@@ -230,18 +244,14 @@ function wasmModules(wasm, { index } = {}) {
     name: 'wasm-modules',
     setup(build) {
       build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
-      if (index) {
-        // A module imports the others as files of their own.
-        const files = {
-          ...Object.fromEntries(Object.entries(kModules).map(([module, name]) => [`${module}.js`, `./${name}.js`])),
-          'cages/sync.js': './cages-sync.js',
-          'api/index.js': index,
-          'index.js': index,
-        };
-        build.onResolve({ filter: /^\.{1,2}\/.*\b(files|index|internals|sync)\.js$/ }, ({ path, resolveDir }) => {
-          const file = files[relative(at('wasm/src'), join(resolveDir, path)).replaceAll('\\', '/')];
-          return file ? { path: file, external: true } : undefined;
-        });
+      if (shared) {
+        build.onResolve(
+          { filter: /^\.{1,2}\/.*\b(documents|error|files|here|index|internals|sync)\.js$/ },
+          ({ path, resolveDir }) => {
+            const file = shared[relative(at('wasm/src'), join(resolveDir, path)).replaceAll('\\', '/')];
+            return file ? { path: file, external: true, sideEffects: false } : undefined;
+          },
+        );
       }
       // Emscripten's script calls a function as it is loaded, which bundlers could not leave out. Here it waits for the first call.
       build.onLoad({ filter: /cagecast(-cages)?\.js$/ }, ({ path }) => ({
@@ -258,21 +268,36 @@ function wasmModules(wasm, { index } = {}) {
   };
 }
 
+/** The files of modules, as those beside an index import them. */
+function filesBeside(index) {
+  return {
+    ...Object.fromEntries(Object.entries(kModules).map(([module, name]) => [`${module}.js`, `./${name}.js`])),
+    'cages/sync.js': './cages-sync.js',
+    'api/index.js': index,
+    'index.js': index,
+  };
+}
+
 /**
  * Makes types fit for TypeScript before 5.7, to which `Float32Array<ArrayBuffer>` is an error; its replacement is the same type since then.
- * And for projects without glTF-Transform, which only functions on documents need.
+ * And for projects without glTF-Transform, which only functions on documents need, or without React.
  */
 function widenTypes(path) {
   const text = readFileSync(path, 'utf8')
     .replace(/\b(\w+Array)<ArrayBuffer>/g, "ReturnType<$1Constructor['from']>")
-    .replace(/^import .*'@gltf-transform\/core';$/gm, '// @ts-ignore It is an optional peer.\n$&');
+    .replace(
+      /^import .*'@gltf-transform\/core';$|^import type \* as React from 'react';$|^declare module 'react' \{$/gm,
+      '// @ts-ignore It is an optional peer.\n$&',
+    );
   writeFileSync(path, text);
 }
 
 /** Makes a source map fit to be packed: without the text of the WebAssembly module, with paths from dist/ on. */
 function tidyMap(path) {
   const map = JSON.parse(readFileSync(path, 'utf8'));
-  map.sourcesContent = map.sourcesContent.map((text, i) => (map.sources[i].endsWith('.wasm') ? null : text));
+  // A source without text is one that Vite looks for, and warns of.
+  const textOf = (text, i) => (map.sources[i].endsWith('.wasm') ? '(the WebAssembly module)' : text);
+  map.sourcesContent = map.sourcesContent.map(textOf);
   map.sources = map.sources.map((source) => source.replace(/^(\.\.\/)+/, '../'));
   writeFileSync(path, JSON.stringify(map));
 }

@@ -7,7 +7,9 @@ import { cageGlb, terminate as endCages, loadTemplate } from 'cagecast/cages';
 import type { Image } from 'cagecast/engines';
 import { type PaintOptions, paintGlb } from 'cagecast/gltf';
 import { terminate as endWorker } from 'cagecast/worker';
+import draco3d from 'draco3dgltf';
 import { build } from 'esbuild';
+import { MeshoptDecoder } from 'meshoptimizer';
 import { ok } from '../../support/command.js';
 import { GlbMaker, glbOf, unpackGlb, validate } from '../../support/gltf.js';
 import { ball } from '../scenes.js';
@@ -146,6 +148,32 @@ test('a face that is only painted is found by the images that the caller decodes
   assert.ok(!(await guessed({ decode: paintedFace })).includes('eye_centre_left'));
   const none = () => Promise.reject(new Error('KTX2'));
   assert.ok((await guessed({ decode: none })).includes('eye_centre_left'));
+});
+
+test('decoders that are given are used, and what they decode is written without compression', async () => {
+  let calls = 0;
+  const meshopt = {
+    supported: true,
+    ready: Promise.resolve(),
+    decodeGltfBuffer: (...args: Parameters<typeof MeshoptDecoder.decodeGltfBuffer>) => {
+      ++calls;
+      MeshoptDecoder.decodeGltfBuffer(...args);
+    },
+  };
+  const draco = await draco3d.createDecoderModule();
+  await MeshoptDecoder.ready;
+  const own = { cage: read('cage.glb'), texture };
+  const plain = await paintGlb(glbOf(target), own);
+  for (const form of ['meshopt', 'draco'] as const) {
+    write('plain.glb', glbOf(target));
+    await ok(`transfer plain.glb --cage cage.glb --compress ${form} -o compressed.glb`);
+    const { bytes, triangles } = await paintGlb(read('compressed.glb'), { ...own, decoders: { meshopt, draco } });
+    assert.deepEqual(unpackGlb(bytes).json.extensionsRequired ?? [], []);
+    assert.deepEqual(await validate(bytes), []);
+    assert.ok(Math.abs(triangles.painted - plain.triangles.painted) <= 2, form);
+  }
+  assert.ok(calls > 0);
+  await assert.rejects(paintGlb(read('compressed.glb'), own), /compressed by Draco, whose decoder has to be given/);
 });
 
 test('what cannot be used is named, with what helps', async () => {

@@ -76,7 +76,7 @@ describe('the packed package', () => {
     const promised = (value: unknown): string[] =>
       typeof value === 'string' ? [value] : Object.values(value as object).flatMap(promised);
     for (const file of [...promised(exports), ...Object.values(bin)])
-      assert.ok(existsSync(join(installed, file)), file);
+      assert.ok(existsSync(join(installed, file.replace('*', 'human-head.glb'))), file);
     const top = readdirSync(installed).filter(
       (name) => !/^(dist|package\.json|README\.md|LICENSE|CHANGELOG\.md)$/.test(name),
     );
@@ -161,6 +161,49 @@ describe('the packed package', () => {
       run(process.execPath, ['--preserve-symlinks', '--preserve-symlinks-main', 'program.js'], folder).trim(),
       'true true true 0 POSITION,TEXCOORD_0,_NCZ',
     );
+  });
+
+  test('has types for the events and the tag of its element, and for its WebAssembly and templates', () => {
+    const program = `import { type Check, CagecastViewer } from 'cagecast/viewer';
+      import module from 'cagecast/cagecast.wasm';
+      import cagesModule from 'cagecast/cagecast-cages.wasm';
+      import head from 'cagecast/templates/human-head.glb';
+      import { init } from 'cagecast';
+      import * as cages from 'cagecast/cages';
+      export const ready = Promise.all([init({ module }), cages.init({ module: cagesModule })]);
+      export const bytes: Uint8Array = new Uint8Array(head);
+      const viewer = document.querySelector('cagecast-viewer')!;
+      viewer.addEventListener('verdict', ({ detail }) => { const check: Check = detail; console.log(check.verdict); });
+      viewer.addEventListener('error', (event) => { const { message }: Error = event.detail; console.log(message); });
+      viewer.addEventListener('progress', ({ detail: { share, stage } }) => console.log(share.toFixed(), stage.length));
+      viewer.addEventListener('keydown', ({ key }) => console.log(key));
+      // @ts-expect-error no such finding
+      viewer.addEventListener('verdict', ({ detail }) => detail.verdit);
+      document.body.append(viewer, new CagecastViewer());
+      export const element: HTMLElement = viewer;
+    `;
+    const tag = `import type {} from 'cagecast/viewer';
+      import type * as React from 'react';
+      export const tag: React.JSX.IntrinsicElements['cagecast-viewer'] = {
+        target: 'head.glb', 'camera-orbit': '0deg 90deg 100%', className: 'head', onverdict: ({ detail }) => console.log(detail.verdict),
+      };
+      // @ts-expect-error no such attribute
+      export const wrong: React.JSX.IntrinsicElements['cagecast-viewer'] = { targt: 'head.glb' };`;
+    const types = {
+      module: 'esnext',
+      moduleResolution: 'bundler',
+      skipLibCheck: true,
+      lib: ['es2022', 'dom', 'dom.iterable'],
+    };
+    for (const [name, text, packages] of [
+      ['element', program, []],
+      ['tag', tag, ['react', '@types/react', 'csstype']],
+    ] as const) {
+      const folder = join(user, name);
+      linkPackages(folder, ['three', '@types/three', ...packages]);
+      linkPackages(folder, ['cagecast'], join(user, 'node_modules'));
+      checkTypes(tsc, folder, text, types);
+    }
   });
 
   test('runs in Node, by all of its entries, and in a worker thread', () => {

@@ -1,5 +1,5 @@
-import { CagecastError, type Mesh, type TransferResult } from '../api/index.js';
-import { show } from '../core/error.js';
+import type { Mesh, TransferResult } from '../api/index.js';
+import { CagecastError, show } from '../core/error.js';
 import { type Image, wrongArgument } from './image.js';
 import { type Baked, checkFill, type FillOptions, fill, type Layout, paintedOnly } from './layout.js';
 

@@ -1,5 +1,4 @@
-import { CagecastError } from '../api/index.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 
 /** An image: 4 bytes per pixel (red, green, blue, alpha), not premultiplied, upper row first, as in glTF's UV space. */
 export interface Image {

@@ -6,4 +6,3 @@ export { areaOf, type Baked, type FillOptions, fill, type Layout, layOver } from
 export { type MaskImages, maskTriangles, maskVertices } from './mask-triangles.js';
 export type { Kind, Wrap } from './raster.js';
 export { type RegionMaskOptions, regionMask } from './region-mask.js';
-export { type RelayOptions, relayPaint } from './relay.js';

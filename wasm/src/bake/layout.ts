@@ -1,5 +1,4 @@
-import { CagecastError } from '../api/index.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 import { dot } from '../inspect/geometry.js';
 import { fillGutter } from './gutter.js';
 import { checkImage, checkNames, checkSize, colorByte, type Image, linearOf, wrongArgument } from './image.js';

@@ -1,4 +1,4 @@
-import { CagecastError } from '../api/index.js';
+import { CagecastError } from '../core/error.js';
 import { fillGutter, type Wrapping } from './gutter.js';
 import { type Image, linearOf, shareOf } from './image.js';
 

@@ -1,4 +1,5 @@
-import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../api/index.js';
+import { type Mesh, type TransferOptions, type TransferResult, transfer } from '../api/index.js';
+import { CagecastError } from '../core/error.js';
 import { boxOf } from '../inspect/geometry.js';
 import { cornersOf, nearestFirst } from './bake.js';
 import { checkImage, checkNames, type Image } from './image.js';

@@ -1,5 +1,4 @@
-import { CagecastError } from '../api/index.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 import { boxOf, type Vector } from '../inspect/geometry.js';
 import { packGlb } from '../parts/glb.js';
 import type { Cage, Template } from './types.js';

@@ -1,7 +1,7 @@
 // Chooses the cage of a model that came alone.
 
-import { CagecastError } from '../api/index.js';
 import type { Mesh } from '../api/mesh.js';
+import { CagecastError } from '../core/error.js';
 import { type Finding, isDoubtful, kVerdicts, type Verdict } from '../inspect/finding.js';
 import { boxOf } from '../inspect/geometry.js';
 import type { Inspection, InspectOptions } from '../inspect/index.js';

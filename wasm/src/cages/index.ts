@@ -8,12 +8,12 @@
  * @module cagecast/cages
  */
 
-import { CagecastError, type InitOptions, type Mesh, type PartNames } from '../api/index.js';
+import type { InitOptions, Mesh, PartNames } from '../api/index.js';
 import { faultOfNames } from '../api/option-names.js';
-import { isRecord, show } from '../core/error.js';
-import { nodeModule } from '../core/node.js';
+import { CagecastError, isRecord, show } from '../core/error.js';
 import { inspect } from '../worker/index.js';
 import { type CallOptions, faultOfCall, type OnProgress, type WorkerOptions, WorkerQueue } from '../worker/queue.js';
+import { hasWorkers } from '../worker/thread-of.js';
 import { type Choice, type ChooseOptions, choose } from './choose.js';
 import { spawn } from './spawn-cages.js';
 import type {
@@ -63,7 +63,7 @@ const queue = new WorkerQueue(spawn, Math.max(2, Math.min(kMaxWorkers, cores)));
 let told: boolean | undefined;
 
 /** Whether calls run in a worker, if they do not say so themselves. */
-const usual = (): boolean => told ?? (typeof Worker === 'function' || nodeModule('node:worker_threads') !== undefined);
+const usual = (): boolean => told ?? hasWorkers();
 
 /** Calls a function, in a worker or here. @param args  Its other arguments. */
 function call<T>(fn: keyof typeof import('./sync.js'), args: unknown[], options: CageCallOptions): Promise<T> {

@@ -1,5 +1,4 @@
-import { CagecastError } from '../api/index.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 import { readObj } from '../parts/obj.js';
 import { readTemplate } from '../parts/template-extras.js';
 import type { Template } from './types.js';

@@ -1,5 +1,4 @@
-import { CagecastError } from '../api/index.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 import { readFile } from '../core/read-file.js';
 import { readTemplate as withExtras } from '../parts/template-extras.js';
 import { type TemplateName, templateNames } from './template-names.js';
@@ -33,14 +32,15 @@ export async function loadTemplate(name: TemplateName): Promise<Cage> {
       'loadTemplate',
       `name is ${show(name)}, not one of ${templateNames.map((known) => `"${known}"`).join(', ')}`,
     );
-  const url = files[name]();
+  let url: URL | undefined;
   try {
+    url = files[name]();
     return readTemplate(await readFile(url));
   } catch (cause) {
     throw new CagecastError(
       'unsupported',
       'loadTemplate',
-      `the file of "${name}", ${url.href}, cannot be loaded (${String(cause)})`,
+      `the file of "${name}"${url ? `, ${url.href},` : ''} cannot be loaded (${String(cause)}); its bytes can be given instead`,
       { cause },
     );
   }

@@ -18,12 +18,11 @@ export {
   maskTriangles,
   maskVertices,
   type RegionMaskOptions,
-  type RelayOptions,
   regionMask,
-  relayPaint,
   resize,
   type Wrap,
 } from '../bake/index.js';
+export { type RelayOptions, relayPaint } from '../bake/relay.js';
 export {
   type AttributeArray,
   applySplit,

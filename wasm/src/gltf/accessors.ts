@@ -1,6 +1,9 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { AccessorData, ArrayData } from '../scene/accessor.js';
-import { type MeshoptView, meshoptView } from './checks/check-geometry.js';
+import { InputError } from '../scene/input-error.js';
+import { dracoOf, type MeshoptView, meshoptView } from './checks/check-geometry.js';
+import type { Decoders } from './decoders.js';
+import { decodeStreams } from './draco.js';
 import { meshoptDecoder } from './meshopt.js';
 
 /** The component type of an array. */
@@ -24,17 +27,22 @@ const arrays: Record<number, new (length: number) => ArrayData> = {
 const sizes = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16 } as const;
 
 /**
- * Decodes the accessors of a glTF whose references are checked: sparse, interleaved, or compressed by meshopt; not those in streams of Draco.
- * @param buffers  The bytes of each buffer, if it has any.
+ * Decodes the accessors of a glTF whose references are checked: sparse, interleaved, or compressed by meshopt or Draco.
+ * @param buffers   The bytes of each buffer, if it has any.
+ * @param decoders  Default: meshopt's own, and none of Draco.
+ * @throws {InputError} for what Draco compresses, without its decoder.
  */
 export async function decodeAccessors(
-  { accessors = [], bufferViews = [] }: GLTF.IGLTF,
+  { accessors = [], bufferViews = [], meshes = [] }: GLTF.IGLTF,
   buffers: readonly (Uint8Array | undefined)[],
+  { meshopt = meshoptDecoder, draco = refuseDraco }: Decoders = {},
 ): Promise<AccessorData[]> {
-  const views = await decodeViews(bufferViews, buffers);
-  return accessors.map((accessor) => {
+  const views = await decodeViews(bufferViews, buffers, meshopt);
+  const isDraco = meshes.some(({ primitives }) => primitives.some(dracoOf));
+  const streams = isDraco ? decodeStreams(await draco(), { accessors, meshes }, (view) => views[view]!) : undefined;
+  return accessors.map((accessor, a) => {
     const size = sizes[accessor.type];
-    const values = new arrays[accessor.componentType]!(size * accessor.count);
+    const values = streams?.get(a) ?? new arrays[accessor.componentType]!(size * accessor.count);
     const { bufferView, byteOffset = 0, sparse } = accessor;
     if (bufferView !== undefined)
       copyElements(views[bufferView]!, { byteOffset, byteStride: bufferViews[bufferView]!.byteStride }, values, size);
@@ -47,12 +55,18 @@ export async function decodeAccessors(
     }
     return {
       getArray: () => values,
-      getCount: () => accessor.count,
+      getCount: () => values.length / size,
       getElementSize: () => size,
       getType: () => accessor.type,
       getNormalized: () => accessor.normalized ?? false,
     };
   });
+}
+
+async function refuseDraco(): Promise<never> {
+  throw new InputError(
+    'its geometry is compressed by Draco, whose decoder has to be given; the command has it, and glTF-Transform can write it without',
+  );
 }
 
 /** Copies elements out of the bytes of a view. */
@@ -75,11 +89,12 @@ function copyElements(
 async function decodeViews(
   views: readonly GLTF.IBufferView[],
   buffers: readonly (Uint8Array | undefined)[],
+  meshopt: NonNullable<Decoders['meshopt']>,
 ): Promise<Uint8Array[]> {
   const bytesOf = ({ buffer, byteOffset = 0, byteLength }: Pick<MeshoptView, 'buffer' | 'byteOffset' | 'byteLength'>) =>
     buffers[buffer]?.subarray(byteOffset, byteOffset + byteLength) ?? new Uint8Array(0);
   if (!views.some(meshoptView)) return views.map(bytesOf);
-  const decoder = await meshoptDecoder();
+  const decoder = await meshopt();
   return views.map((view) => {
     const compressed = meshoptView(view);
     if (!compressed) return bytesOf(view);

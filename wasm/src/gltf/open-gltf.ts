@@ -1,15 +1,16 @@
 import type { GLTF } from '@gltf-transform/core';
-import { CagecastError } from '../api/index.js';
+import { CagecastError } from '../core/error.js';
 import type { AccessorData } from '../scene/accessor.js';
 import { firstLine, InputError } from '../scene/input-error.js';
 import type { ImageBytes, SceneSource } from '../scene/source.js';
 import { decodeAccessors } from './accessors.js';
-import { checkGeometry, dracoOf } from './checks/check-geometry.js';
+import { checkGeometry } from './checks/check-geometry.js';
 import { checkRest } from './checks/check-rest.js';
 import { withDracoCounts } from './checks/draco-header.js';
 import { checkLimits } from './checks/limits.js';
 import { checkBytes, defaultLimits, exceeds, type ReadLimits } from './checks/read-limits.js';
 import { isDataUri, readDataUri } from './data-uri.js';
+import type { Decoders } from './decoders.js';
 import { imageType } from './image-file.js';
 import { parseGltf } from './parse.js';
 
@@ -34,8 +35,8 @@ export interface Opening {
   limits?: ReadLimits;
   /** Reads a file beside it. @throws {InputError} that begins with `name`. Default: there are none. */
   readBeside?(name: string, uri: string): Promise<Uint8Array>;
-  /** Decodes the accessors of a file that Draco compresses. Default: such a file is refused. */
-  decodeDraco?(json: GLTF.IGLTF, buffers: readonly (Uint8Array | undefined)[]): Promise<AccessorData[]>;
+  /** Default: meshopt's; what Draco compresses is refused. */
+  decoders?: Decoders | undefined;
 }
 
 /**
@@ -47,7 +48,7 @@ export interface Opening {
 export async function openGltf(
   path: string,
   content: Uint8Array,
-  { limits = defaultLimits, readBeside = refuseBeside, decodeDraco = refuseDraco }: Opening = {},
+  { limits = defaultLimits, readBeside = refuseBeside, decoders }: Opening = {},
 ): Promise<GltfFile> {
   try {
     checkBytes(content.byteLength, limits);
@@ -60,8 +61,7 @@ export async function openGltf(
     checkRest(json);
     const all = sizes.reduce<number>((sum, size) => sum + (size ?? 0), content.byteLength - (binary?.byteLength ?? 0));
     checkLimits(withDracoCounts(json, buffers), all, limits);
-    const isDraco = json.meshes?.some(({ primitives }) => primitives.some(dracoOf)) ?? false;
-    const accessors = await (isDraco ? decodeDraco : decodeAccessors)(json, buffers);
+    const accessors = await decodeAccessors(json, buffers, decoders);
     const imageOf = (texture: number) => readImage({ json, buffers, readUri }, texture);
     return { path, json, buffers, accessors, readUri, imageOf };
   } catch (error) {
@@ -73,12 +73,6 @@ export async function openGltf(
 
 async function refuseBeside(name: string, uri: string): Promise<never> {
   throw new InputError(`${name} is in ${uri.slice(0, 60)}, another file; give a GLB, which holds everything itself`);
-}
-
-async function refuseDraco(): Promise<never> {
-  throw new InputError(
-    'its geometry is compressed by Draco, which is not read here; the command reads it, and glTF-Transform can write it without',
-  );
 }
 
 async function readBuffers(

@@ -1,8 +1,7 @@
-import { CagecastError } from '../api/index.js';
 import { numbersNamed } from '../api/parts.js';
 import { cageGlb } from '../cages/cage-glb.js';
 import type { Cage, Landmarks } from '../cages/types.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 import { turnedBack } from '../inspect/backward.js';
 import { moveApart } from '../parts/own-cages.js';
 import { extrasIn, partsWithout, templateOf } from '../scene/cage-model.js';

@@ -1,6 +1,4 @@
 import type { GLTF } from '@gltf-transform/core';
-import type { CutTarget } from '../api/cut-borders.js';
-import type { TransferResult } from '../api/result.js';
 import { applySplit, ruleOf, splitSkin } from '../parts/blend.js';
 import type { PreparedPart } from '../parts/prepare.js';
 import type { Extracted, Part } from '../scene/extract.js';
@@ -27,7 +25,7 @@ import {
   uvsMark,
   zoneAttribute,
 } from './overlay.js';
-import { preparePiece, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
+import { type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
 
 /** What was added to a primitive. */
 export interface Added {
@@ -47,8 +45,6 @@ export interface Added {
 interface Writing {
   /** Textures, each on its own triangles. Default: none */
   paints?: readonly Paint[];
-  /** What `cutBorders` made from the result. */
-  cut?: CutTarget | undefined;
   /** The form of the geometry. Default: that of the file */
   form?: Form;
   /** Compresses by Draco what is marked for it. Needed if the file, or the form, is of Draco */
@@ -64,7 +60,7 @@ interface Writing {
 }
 
 /**
- * Writes the target with the result of a transfer: every primitive gets a new UV set and `_NCZ` and, with a texture, an overlay
+ * Writes the target with what the result of a transfer made of its parts: every primitive gets a new UV set and `_NCZ` and, with a texture, an overlay
  * primitive of its cosmetic triangles. All other contents of the file stay unchanged, including compression. If triangles at the
  * same vertex have different UVs, copies of the vertex with all its attributes are added after the existing vertices. New vertices
  * of a cut target are added in the same way, as blends of their sources. An earlier transfer is replaced. What is replaced is dropped
@@ -76,8 +72,8 @@ interface Writing {
 export async function writeTransfer(
   file: GltfFile,
   { parts }: Extracted,
-  result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
-  { paints = [], cut, form = 'keep', packDraco, isFurther = false, stem, ...rest }: Writing = {},
+  prepared: readonly PreparedPart[],
+  { paints = [], form = 'keep', packDraco, isFurther = false, stem, ...rest }: Writing = {},
 ): Promise<{ data: Uint8Array; beside: NamedFile[]; added: Added[]; replaced: number }> {
   const writer = await GlbWriter.from(file, form);
   const { json } = writer;
@@ -89,7 +85,7 @@ export async function writeTransfer(
   const overlays = paints.map((paint) => new OverlayWriter(writer, paint));
 
   const members = parts.map((part, p): Member => {
-    const member = preparePiece(part, result, cut);
+    const member = prepared[p]!;
     const cutTriangles = member.cosmeticTriangles.length - part.triangleCount;
     const added = { uvSet: '', overlayTriangles: 0, fillsCutOuts: false, splitVertices: 0, cutTriangles };
     return { ...member, primitives: meshes[p]!.primitives, primitive: primitives[p]!, part, added };
@@ -97,6 +93,8 @@ export async function writeTransfer(
   if (form === 'draco') markForDraco(primitives);
   const { zones = zoneAttribute, hasAttributes = true } = rest;
   for (const group of groupsOf(members)) addToGroup(writer, file, group, { overlays, form, zones, hasAttributes });
+  if ((json.meshes ?? []).some((mesh) => mesh.primitives.some(dracoOf))) writer.requireExtension(dracoExtension);
+  else writer.unlistExtension(dracoExtension);
   await packDraco?.(writer, file);
   const added = members.map((member) => member.added);
   if (stem === undefined) return { data: writer.finish(), beside: [], added, replaced };

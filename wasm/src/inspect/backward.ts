@@ -1,4 +1,5 @@
-import { CagecastError, type Mesh, type TransferResult } from '../api/index.js';
+import type { Mesh, TransferResult } from '../api/index.js';
+import { CagecastError } from '../core/error.js';
 import type { Finding } from './finding.js';
 import { boxOf, dot, doubleAreaNormal, joined, minus, pointAt, vertexAreas } from './geometry.js';
 import { reverse } from './reverse.js';

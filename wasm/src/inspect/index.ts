@@ -1,8 +1,8 @@
 // Checks whether a cage fits a target: verdict, reasons and advice.
 
-import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../api/index.js';
+import { type Mesh, type TransferOptions, type TransferResult, transfer } from '../api/index.js';
 import { numbersNamed, type PartOf, type Parts } from '../api/parts.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 import { checkBackward } from './backward.js';
 import { checkEyes, checkWindows } from './eyes.js';
 import { checkFace, type Spots } from './face.js';

@@ -1,4 +1,5 @@
-import { CagecastError, project, type TransferOptions } from '../api/index.js';
+import { project, type TransferOptions } from '../api/index.js';
+import { CagecastError } from '../core/error.js';
 import { counted, type Finding } from './finding.js';
 import type { Scene } from './scene.js';
 import { hasArea } from './segments.js';

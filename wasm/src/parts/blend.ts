@@ -1,6 +1,5 @@
-import { CagecastError } from '../api/index.js';
 import { count } from '../api/mesh.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 
 /** The vertices that cutting added to a part, in order, after the existing ones. */
 export interface Blends {

@@ -1,6 +1,5 @@
 import type { CutTarget } from '../api/cut-borders.js';
-import { CagecastError } from '../api/index.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 import type { Blends } from './blend.js';
 import { gather, type PartGeometry, type PartRange, turnOver } from './split-part.js';
 

@@ -1,6 +1,6 @@
-import { CagecastError, type Mesh } from '../api/index.js';
+import type { Mesh } from '../api/index.js';
 import { count } from '../api/mesh.js';
-import { isRecord, show } from '../core/error.js';
+import { CagecastError, isRecord, show } from '../core/error.js';
 import { determinant, isIdentity } from './affine.js';
 import { movePoints } from './points.js';
 import { type PartRange, turnOver } from './split-part.js';

@@ -1,4 +1,4 @@
-import { CagecastError } from '../api/index.js';
+import { CagecastError } from '../core/error.js';
 
 /** The first bytes of packed data: "CGCT", and the version of the format. */
 const kMagic = 0x54434743;

@@ -1,5 +1,4 @@
 import {
-  CagecastError,
   type Classification,
   type CutTarget,
   cutBorders,
@@ -9,7 +8,7 @@ import {
   transfer,
 } from '../api/index.js';
 import { faultOfNames, optionNames } from '../api/option-names.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 import { plainArray, showArray } from '../core/typed-arrays.js';
 import { heaviestOf } from './blend.js';
 import { type Borders, cutPart, isCut, type PartCut } from './cut-part.js';

@@ -1,5 +1,4 @@
-import { CagecastError } from '../api/index.js';
-import { show } from '../core/error.js';
+import { CagecastError, show } from '../core/error.js';
 
 /** The error of an argument of this entry. @param what  With its article. */
 export const wrong = (name: string, value: unknown, what: string): CagecastError =>

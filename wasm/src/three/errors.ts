@@ -1,7 +1,6 @@
-import { CagecastError, type Code, type ErrorDetails } from '../api/index.js';
 import { faultOfNames } from '../api/option-names.js';
 import { faultOfParts } from '../api/parts.js';
-import { show } from '../core/error.js';
+import { CagecastError, type Code, type ErrorDetails, show } from '../core/error.js';
 
 /** The error of an argument: `badArgument` of `cagecast/three`, unless it says otherwise. */
 export const wrong = (

@@ -1,23 +1,20 @@
 import { MeshStandardMaterial, type Texture } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { CagecastError, init, type Preset } from '../api/index.js';
+import type { Preset } from '../api/index.js';
 import { kPartLists } from '../api/option-names.js';
-import type { Inspection } from '../inspect/index.js';
+import { CagecastError } from '../core/error.js';
 import {
   type Applied,
   type ApplyOptions,
   applyTransfer,
   applyTransferAsync,
-  cageTemplate,
   deserialize,
-  extract,
   serialize,
 } from '../three/index.js';
+import { inspectorOf } from './check.js';
+import type { ViewerElement, ViewerEvents } from './events.js';
 import { copyOf, disposeModel, type Fetched, fetchFile, loadPaint, readModel } from './load.js';
 import { defaultOrbit, type Orbit, Stage } from './stage.js';
-
-/** The `detail` of the event `verdict`. */
-export type Check = Pick<Inspection, 'verdict' | 'findings'>;
 
 /** Attributes of which a change means another transfer. */
 const kOfTransfer = ['target', 'cage', 'preset', 'threshold', 'borders', 'motion', 'feather', ...kPartLists];
@@ -58,7 +55,7 @@ interface Shown {
  * - `ignore`, `keep`, `exclude`: as those of its option `parts`: patterns, with commas between them.
  * - `camera-orbit`: degrees from the front and from above, and the distance as a share of that which shows all: `20deg 80deg 100%`.
  * - `alt`: what assistive technology says. `poster`: the address of a picture to show until the model is there.
- * - `check`: inspects the cage too, which takes up to 15 times as long as a transfer, on the page's thread.
+ * - `check`: inspects the cage too, which takes up to 15 times as long as a transfer, in the same worker.
  *
  * Events: `progress` (`detail: { share, stage }`), `load`, `verdict` (`detail`: `Check`), `error` (`detail`: the `Error`, which the
  * element shows too). Arrow keys turn the model, + and - zoom, Home goes back. When it is removed from the page, it frees all it has.
@@ -69,7 +66,7 @@ interface Shown {
  * In a page with a Content-Security-Policy: `script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self' blob:;
  * img-src 'self' blob:`.
  */
-export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknown as typeof HTMLElement)) {
+export class CagecastViewer extends ((globalThis.HTMLElement ?? Object) as unknown as new () => ViewerElement) {
   static readonly observedAttributes = [...kOfTransfer, 'paint', 'opacity', 'camera-orbit', 'alt', 'poster', 'check'];
 
   /** Loads models. For files that are compressed, give it the decoders: `viewer.loader.setDRACOLoader(…)`. */
@@ -280,7 +277,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     this.#error.textContent = (error as Error).message;
     this.#error.hidden = false;
     this.#hasBadAppearance = false;
-    this.#tell('error', error);
+    this.#tell('error', error as Error);
   }
 
   async #loadAll(signal: AbortSignal): Promise<void> {
@@ -295,13 +292,12 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     const around = cage ? load('cage', cage) : undefined;
     const texture = paint ? loadPaint(paint, signal) : undefined;
     let shown: Shown;
-    let tellVerdict: (() => void) | undefined;
+    let tellVerdict: (() => Promise<void>) | undefined;
     try {
       const [{ file, gltf }, outer, paint] = await Promise.all([model, around, texture]);
       signal.throwIfAborted();
       const options = this.#options();
-      const check =
-        outer && this.hasAttribute('check') ? await this.#inspector(gltf, outer.gltf, options.parts) : undefined;
+      const check = outer && this.hasAttribute('check') ? inspectorOf(gltf, outer.gltf, options.parts) : undefined;
       const onProgress = (share: number, stage: string) => this.#tell('progress', { share: 0.3 + 0.7 * share, stage });
       const applied =
         outer &&
@@ -314,7 +310,8 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
         }));
       signal.throwIfAborted();
       shown = { file, gltf, applied, parts: options.parts, paint, opacity: options.opacity ?? 1 };
-      if (check && applied) tellVerdict = () => this.#tell('verdict', check(applied, options));
+      if (check && applied)
+        tellVerdict = async () => this.#tell('verdict', await check(applied, { ...options, signal }));
     } catch (error) {
       // Neither what was loaded nor what is still to come is of use now.
       free(model);
@@ -330,18 +327,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     this.#isOutdated = false;
     this.#poster.hidden = true;
     this.#stage!.show(shown.gltf.scene, isSame ? undefined : this.#orbit);
-    tellVerdict?.();
-  }
-
-  /** Reads the arrays before vertices are split. */
-  async #inspector(gltf: GLTF, around: GLTF, parts: ApplyOptions['parts']) {
-    const [{ inspect }] = await Promise.all([import('../inspect/index.js'), init()]);
-    const { mesh, kept: keep, excluded: exclude } = extract(gltf.scene, 'target', parts);
-    const [{ mesh: cage }, { landmarks }] = [extract(around.scene, 'cage'), cageTemplate(around)];
-    return ({ result }: Applied, { feather, opacity, borders, ...options }: ApplyOptions): Check => {
-      const { verdict, findings } = inspect(cage, mesh, { ...options, parts: { keep, exclude }, result, landmarks });
-      return { verdict, findings };
-    };
+    await tellVerdict?.();
   }
 
   async #loadPaint(signal: AbortSignal): Promise<void> {
@@ -385,7 +371,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     return Object.fromEntries(Object.entries(all).filter(([, value]) => value !== undefined));
   }
 
-  #tell(type: string, detail: unknown): void {
+  #tell<Type extends keyof ViewerEvents>(type: Type, detail: ViewerEvents[Type]['detail']): void {
     this.dispatchEvent(new CustomEvent(type, { detail }));
   }
 

@@ -10,7 +10,10 @@
  */
 import { CagecastViewer } from './element.js';
 
-export { CagecastViewer, type Check } from './element.js';
+export type { Check } from './check.js';
+export { CagecastViewer } from './element.js';
+export type { ViewerEvents } from './events.js';
+export type { ViewerAttributes } from './jsx.js';
 
 declare global {
   interface HTMLElementTagNameMap {

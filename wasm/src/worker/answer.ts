@@ -1,4 +1,4 @@
-import { CagecastError } from '../api/index.js';
+import { CagecastError } from '../core/error.js';
 import type { Reply, Request } from './protocol.js';
 
 /** Carries out a call. @returns the reply, and the buffers in it that are to be moved, not copied. */

@@ -5,25 +5,25 @@
  * `init({ workers })`, after which each call takes the first worker that is idle, or waits for one.
  * @module cagecast/worker
  */
-import {
-  CagecastError,
-  type Classification,
-  type ClassifyOptions,
-  type CutTarget,
-  type Mesh,
-  type Projection,
-  type ProjectOptions,
-  type SplitVertices,
-  type TransferOptions,
-  type TransferResult,
+import type {
+  Classification,
+  ClassifyOptions,
+  CutTarget,
+  Mesh,
+  Projection,
+  ProjectOptions,
+  SplitVertices,
+  TransferOptions,
+  TransferResult,
 } from '../api/index.js';
+import { CagecastError } from '../core/error.js';
 import type { Inspection, InspectOptions } from '../inspect/index.js';
 import type { Prepared, PrepareOptions } from '../parts/prepare.js';
 import { type CallOptions, type WorkerOptions, WorkerQueue } from './queue.js';
 import { spawn } from './spawn.js';
 
+export { Visibility, Zone } from '../generated/enums.js';
 export type * from '../index.js';
-export { Visibility, Zone } from '../index.js';
 export type { CallOptions, WorkerOptions };
 export { CagecastError };
 

@@ -1,6 +1,5 @@
-import { CagecastError } from '../api/index.js';
 import { faultOfNames } from '../api/option-names.js';
-import { isRecord, show } from '../core/error.js';
+import { CagecastError, isRecord, show } from '../core/error.js';
 import type { Reply, Request, Spawn, Thread } from './protocol.js';
 
 /** Options of every call. */

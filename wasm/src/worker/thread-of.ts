@@ -4,6 +4,15 @@ import type { Reply, Request, Thread } from './protocol.js';
 
 type OnFailure = (message: string) => void;
 
+/**
+ * Whether this host starts workers from files beside a script: browsers, Node, Deno and Bun do. Edge functions do not, although some have
+ * the names of Node, nor does a script without an address.
+ */
+export const hasWorkers = (): boolean =>
+  import.meta.url !== undefined &&
+  globalThis.navigator?.userAgent !== 'Cloudflare-Workers' &&
+  (typeof Worker === 'function' || nodeModule('node:worker_threads') !== undefined);
+
 /** A worker of a browser, Deno or Bun as a thread. @param url  Of a file in the folder where the script should be. */
 export function threadOf<Message = Request, Answer = Reply>(
   start: () => Worker,

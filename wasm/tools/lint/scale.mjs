@@ -38,8 +38,8 @@ function valuesOf(root, path, seen = new Set()) {
 /** The entries of the package that are modules, and the source of each. */
 function entriesOf(root) {
   const { exports } = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
-  return Object.entries(exports).flatMap(([name, { types } = {}]) =>
-    types ? [{ name, source: types.replace(/^\.\/dist\/(.*)\.d\.ts$/, 'wasm/src/$1.ts') }] : [],
+  return Object.entries(exports).flatMap(([name, { types, default: file = '' }]) =>
+    file.endsWith('.js') ? [{ name, source: types.replace(/^\.\/dist\/(.*)\.d\.ts$/, 'wasm/src/$1.ts') }] : [],
   );
 }
 

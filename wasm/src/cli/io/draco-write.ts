@@ -16,8 +16,6 @@ const silent = new Logger(Logger.Verbosity.SILENT);
  */
 export async function packDraco(writer: GlbWriter, file: GltfFile): Promise<void> {
   const all = (writer.json.meshes ?? []).flatMap((mesh) => mesh.primitives);
-  if (all.some(dracoOf)) writer.requireExtension(dracoExtension);
-  else writer.unlistExtension(dracoExtension);
   const primitives = all.filter(
     (primitive) => dracoOf(primitive) && Object.values(primitive.attributes).some((a) => writer.stored(a)),
   );

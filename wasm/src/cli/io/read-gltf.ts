@@ -4,7 +4,7 @@ import { type GltfFile, openGltf } from '../../gltf/open-gltf.js';
 import { naming } from '../../scene/input-error.js';
 import { defaultReading, type ReadOptions } from '../model/reading.js';
 import { convert } from './convert.js';
-import { decodeDraco } from './draco-read.js';
+import { createDracoDecoder } from './draco.js';
 import { readBytes, readUri } from './files.js';
 
 /**
@@ -26,7 +26,7 @@ export async function readGltf(
   const file = await openGltf(path, glb, {
     limits: reading.limits,
     readBeside: (name, uri) => readUri(name, uri, dirname(path), reading),
-    decodeDraco,
+    decoders: { draco: createDracoDecoder },
   });
   return missing.length > 0 ? { ...file, missing } : file;
 }

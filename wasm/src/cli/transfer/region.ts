@@ -3,6 +3,7 @@ import type { CutTarget, TransferResult } from '../../api/index.js';
 import { dracoOf, meshoptView } from '../../gltf/checks/check-geometry.js';
 import type { Form } from '../../gltf/glb-writer.js';
 import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/overlay.js';
+import { preparePiece } from '../../gltf/primitive-group.js';
 import { writeTransfer } from '../../gltf/write-transfer.js';
 import { naming } from '../../scene/input-error.js';
 import { packDraco } from '../io/draco-write.js';
@@ -79,10 +80,16 @@ export async function transferRegion(
   const form = before?.form ?? command.compress;
   const isText = isLast && output !== undefined && /\.gltf$/i.test(output);
   const { file, extracted } = run.target;
+  const prepared = extracted.parts.map((part) =>
+    preparePiece(
+      part,
+      cut ? run.result : { ...run.result, cosmeticTriangles: own },
+      cut && { ...cut, cosmeticTriangles: own },
+    ),
+  );
   const written = await naming(target, () =>
-    writeTransfer(file, extracted, cut ? run.result : { ...run.result, cosmeticTriangles: own }, {
+    writeTransfer(file, extracted, prepared, {
       paints,
-      cut: cut && { ...cut, cosmeticTriangles: own },
       // Draco changes the order of triangles, which says what is painted already.
       form: isLast ? form : compressionOf(run) === undefined ? 'keep' : 'none',
       packDraco,

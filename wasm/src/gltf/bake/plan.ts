@@ -1,6 +1,7 @@
-import { CagecastError, type CutTarget, type TransferResult } from '../../api/index.js';
+import type { CutTarget, TransferResult } from '../../api/index.js';
 import { areaOf, type Baked, fill, type Image, type Kind, type Layout, layOver, resize } from '../../bake/index.js';
 import { kMaxLayers } from '../../bake/pattern.js';
+import { CagecastError } from '../../core/error.js';
 import { applySplit } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
 import type { Part } from '../../scene/extract.js';

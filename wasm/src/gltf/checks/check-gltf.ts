@@ -1,6 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { CagecastError } from '../../api/index.js';
-import { type ErrorDetails, show } from '../../core/error.js';
+import { CagecastError, type ErrorDetails, show } from '../../core/error.js';
 import { InputError } from '../../scene/input-error.js';
 import { isDataUri, readDataUri } from '../data-uri.js';
 import { imageSize } from '../image-file.js';

@@ -1,6 +1,6 @@
 import type { Document, Node } from '@gltf-transform/core';
-import { CagecastError } from '../../api/index.js';
 import type { Cage, CageModel, Template } from '../../cages/types.js';
+import { CagecastError } from '../../core/error.js';
 import type { VrmExtensions } from '../../parts/joints.js';
 import { cageModelOf, templateOf } from '../../scene/cage-model.js';
 import { extract } from '../../scene/extract.js';

@@ -1,6 +1,5 @@
 import type { Document } from '@gltf-transform/core';
 import {
-  CagecastError,
   type CutTarget,
   cutBorders,
   init,
@@ -10,7 +9,7 @@ import {
   transfer,
 } from '../../api/index.js';
 import { faultOfParts, type Parts } from '../../api/parts.js';
-import { show } from '../../core/error.js';
+import { CagecastError, show } from '../../core/error.js';
 import { moved, type Origin } from '../../parts/origin.js';
 import { hasCages, moveApart } from '../../parts/own-cages.js';
 import { extrasIn, partsWithout } from '../../scene/cage-model.js';

@@ -1,5 +1,4 @@
-import { CagecastError } from '../../api/index.js';
-import { isRecord, show } from '../../core/error.js';
+import { CagecastError, isRecord, show } from '../../core/error.js';
 import { nodeModule } from '../../core/node.js';
 import { firstLine, InputError } from '../../scene/input-error.js';
 import { exceeds } from '../checks/read-limits.js';

@@ -1,25 +1,22 @@
-import {
-  CagecastError,
-  type Code,
-  init,
-  type Mesh,
-  type TransferOptions,
-  type TransferResult,
-} from '../../api/index.js';
+import type { Mesh, TransferOptions, TransferResult } from '../../api/index.js';
 import { faultOfNames, optionNames } from '../../api/option-names.js';
 import { faultOfParts, type Parts } from '../../api/parts.js';
 import { cageGlb } from '../../cages/cage-glb.js';
 import type { CageCallOptions, Choice, Fit, Landmarks, TemplateName, Tried } from '../../cages/index.js';
 import type { Cage, Template } from '../../cages/types.js';
-import { show } from '../../core/error.js';
-import { isBackward } from '../../inspect/backward.js';
+import { CagecastError, type Code, show } from '../../core/error.js';
 import { noteOf } from '../../inspect/bare.js';
 import { type Finding, isWorse, kVerdicts, type Verdict } from '../../inspect/finding.js';
 import { type Borders, isCut } from '../../parts/cut-part.js';
-import { extract } from '../../scene/extract.js';
+import type { PartRange } from '../../parts/split-part.js';
+import { extract, type Part } from '../../scene/extract.js';
 import { InputError } from '../../scene/input-error.js';
 import type { ImageCodec } from '../../scene/materials.js';
-import { cutBorders, inspect, transfer } from '../../worker/index.js';
+import { isMirrored } from '../../scene/matrix.js';
+import { type Engine, engine } from '../../worker/engine.js';
+import { dracoOf, meshoptView } from '../checks/check-geometry.js';
+import type { MeshoptDecoder } from '../decoders.js';
+import { meshoptDecoder, started } from '../meshopt.js';
 import { openGltf } from '../open-gltf.js';
 import { type Paint, paintOf } from '../overlay.js';
 import { bareParts, errorInFile, landmarksIn, movedApart, type ReadModel, turned, withUvs } from '../read-model.js';
@@ -51,6 +48,11 @@ export interface PaintOptions
    * browser's own; other hosts have none, and look at no colours.
    */
   decode?: ImageCodec['decode'] | undefined;
+  /**
+   * Decoders of compressed geometry: `MeshoptDecoder` of `meshoptimizer`, and what `createDecoderModule` of `draco3dgltf` makes. What they
+   * decode is written without compression. Default: meshopt's own, which compiles WebAssembly, and none of Draco.
+   */
+  decoders?: { meshopt?: MeshoptDecoder | undefined; draco?: object | undefined } | undefined;
   /** Where the paint ends: at existing triangle edges (`triangle`, the default), or exactly at holes and seams, where triangles are cut (`cut`). */
   borders?: Borders | undefined;
   /**
@@ -63,7 +65,19 @@ export interface PaintOptions
 }
 
 const kOptions = [
-  ...['texture', 'cage', 'template', 'atLeast', 'landmarks', 'decode', 'borders', 'attributes', 'signal', 'onProgress'],
+  ...[
+    'texture',
+    'cage',
+    'template',
+    'atLeast',
+    'landmarks',
+    'decode',
+    'decoders',
+    'borders',
+    'attributes',
+    'signal',
+    'onProgress',
+  ],
   ...optionNames('transfer').filter((name) => !['locks', 'masks', 'reuse'].includes(name)),
 ];
 
@@ -93,7 +107,7 @@ export interface PaintedGlb {
  * Paints a model: the bytes of a GLB or VRM in, those of the painted file out.
  *
  * What `cagecast transfer` does: each primitive gets an overlay of its triangles that may be painted. All else stays byte for byte, with every extension, those of VRM 0 and 1 too; an earlier transfer is replaced. The file must hold its buffers and
- * images itself. What meshopt compresses stays so; Draco is refused.
+ * images itself. What meshopt compresses stays so; Draco is refused, unless its decoder is given.
  *
  * Fit and transfer run in workers where there are any. Nothing is loaded over the network but for a template by its name, and for a fit
  * `cagecast-cages.wasm`, unless `init` of `cagecast/cages` was given it.
@@ -116,6 +130,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     atLeast = 'unfit',
     landmarks,
     decode,
+    decoders,
     borders,
     attributes = false,
     parts: patterns,
@@ -133,16 +148,20 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
   }
   if (decode !== undefined && typeof decode !== 'function')
     throw wrong('options.decode', decode, 'a function', 'badOption');
-  const cuts = isCut('paintGlb', borders);
+  if (decoders !== undefined && (typeof decoders !== 'object' || decoders === null))
+    throw wrong('options.decoders', decoders, 'an object', 'badOption');
+  isCut('paintGlb', borders);
   try {
     const paintFor = typeof texture === 'function' && template === 'auto' ? texture : undefined;
     const given = paintFor ? undefined : readPaint(texture);
-    await init();
     signal?.throwIfAborted();
     onProgress(0, 'reading');
-    const target = await readModel('bytes', bytes, { parts: patterns });
-    const fitted = template && (await fitTo(target, template, { inspect, landmarks, decode, signal, onProgress }));
-    const around = await readCage(fitted?.cage ?? cage!, target);
+    const computing = await engine();
+    const target = await readModel('bytes', bytes, { parts: patterns, decoders });
+    const fitted =
+      template &&
+      (await fitTo(target, template, { inspect: computing.inspect, landmarks, decode, signal, onProgress }));
+    const around = await readCage(fitted?.cage ?? cage!, target, decoders);
     const paint = given ?? readPaint(await paintFor!(fitted!.template!, fitted!.cage));
     signal?.throwIfAborted();
     onProgress(0.9, 'transferring');
@@ -150,23 +169,24 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     const { kept, excluded } = target.extracted;
     const named = { keep: kept, exclude: [...bare, ...excluded] };
     const pair = movedApart(target, around);
-    const { source, result } = await transferred(pair, target, { ...rules, parts: named, signal });
+    const compute = { ...rules, parts: named, signal };
+    const judged = await judge(computing, pair, target, { ...compute, landmarks: landmarksIn(around) });
+    const { source, result, verdict, findings } = judged;
     const arrays = [source.extracted.mesh, pair.target.extracted.mesh] as const;
-    const { verdict, findings } = await inspect(...arrays, {
-      ...rules,
-      ...{ parts: named, result, signal, landmarks: landmarksIn(around) },
-    });
     if (isWorse(verdict, atLeast))
       throw new CagecastError(
         'badModel',
         'paintGlb',
         `the cage is ${verdict}, not ${atLeast}: ${findings[0]!.sentence}`,
       );
-    const cut = cuts ? await cutBorders(...arrays, result, { ...rules, parts: named, signal }) : undefined;
+    const prepared = await computing.prepareParts(...arrays, {
+      ...compute,
+      ...{ result, ranges: target.extracted.parts.map(rangeOf), borders, separatePaint: false },
+    });
     onProgress(0.95, 'writing');
-    const { data } = await writeTransfer(target.file, target.extracted, result, {
+    const { data } = await writeTransfer(target.file, target.extracted, prepared.parts, {
       paints: [paint],
-      cut,
+      form: isDecodedBy(decoders, target) ? 'none' : 'keep',
       hasAttributes: attributes,
     });
     signal?.throwIfAborted();
@@ -192,15 +212,24 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
   }
 }
 
-/** A transfer, and the cage as it was for it: turned, if it faced the other way. */
-async function transferred(
+/** Where a part is in the arrays of its target. */
+const rangeOf = ({ firstVertex, vertexCount, firstTriangle, triangleCount, matrix }: Part): PartRange => ({
+  ...{ firstVertex, vertexCount, firstTriangle, triangleCount },
+  mirrored: isMirrored(matrix),
+});
+
+/** A transfer, whether its cage fits, and the cage as it was for it: turned, if it faced the other way. */
+async function judge(
+  { transfer, inspect }: Engine,
   { target, wholeCage: cage }: ReturnType<typeof movedApart>,
   whole: ReadModel,
-  options: Parameters<typeof transfer>[2],
-): Promise<{ source: ReadModel; result: TransferResult }> {
+  { landmarks, ...options }: Omit<NonNullable<Parameters<Engine['inspect']>[2]>, 'result'>,
+): Promise<{ source: ReadModel; result: TransferResult } & Awaited<ReturnType<Engine['inspect']>>> {
   const call = async (source: ReadModel) => {
+    const arrays = [source.extracted.mesh, target.extracted.mesh] as const;
     try {
-      return { source, result: await transfer(source.extracted.mesh, target.extracted.mesh, options) };
+      const result = await transfer(...arrays, options);
+      return { source, result, ...(await inspect(...arrays, { ...options, result, landmarks })) };
     } catch (error) {
       const isOfMesh = ['cage', 'target'].includes((error as CagecastError).argument ?? '');
       throw isOfMesh ? errorInFile(error, { target: whole, cage }) : error;
@@ -208,24 +237,43 @@ async function transferred(
   };
   const first = await call(cage);
   const isApart = target !== whole;
-  if (isApart || !isBackward(cage.extracted.mesh, target.extracted.mesh, first.result)) return first;
-  return call(turned(cage));
+  return isApart || !first.findings.some(({ code }) => code === 'cageBackward') ? first : call(turned(cage));
 }
 
 /** Reads a target, or a cage around one. @throws {InputError} that names the argument. */
 async function readModel(
   name: string,
   bytes: Uint8Array,
-  { beside, parts }: { beside?: ReadModel; parts?: Parts | undefined } = {},
+  { beside, parts, decoders }: { beside?: ReadModel; parts?: Parts | undefined } & Pick<PaintOptions, 'decoders'> = {},
 ): Promise<ReadModel> {
-  const file = await openGltf(name, bytes);
+  const { meshopt, draco } = decoders ?? {};
+  const file = await openGltf(name, bytes, {
+    decoders: {
+      meshopt: () => (meshopt ? started(meshopt) : meshoptDecoder().catch(adviseDecoder)),
+      ...(draco && { draco: async () => draco }),
+    },
+  });
   const extracted = extract(file, beside?.extracted.origin ?? 'own', beside ? 'cage' : parts);
   if (extracted.mesh.indices.length > 0) return { file, extracted };
   throw new InputError('has no triangles in its scene; at least one is needed').in(name);
 }
 
-async function readCage(cage: Uint8Array | Mesh, target: ReadModel): Promise<ReadModel> {
-  if (cage instanceof Uint8Array) return withUvs(await readModel('cage', cage, { beside: target }));
+function adviseDecoder(cause: CagecastError): never {
+  const reason = `${cause.reason}; another decoder can be given: options.decoders.meshopt`;
+  throw new CagecastError(cause.code, 'paintGlb', reason, { cause });
+}
+
+/** Whether geometry of a file was decoded by what was given: there may be no encoder then. */
+const isDecodedBy = (decoders: PaintOptions['decoders'], { file: { json } }: ReadModel): boolean =>
+  (decoders?.meshopt !== undefined && (json.bufferViews ?? []).some(meshoptView)) ||
+  (json.meshes ?? []).some(({ primitives }) => primitives.some(dracoOf));
+
+async function readCage(
+  cage: Uint8Array | Mesh,
+  target: ReadModel,
+  decoders: PaintOptions['decoders'],
+): Promise<ReadModel> {
+  if (cage instanceof Uint8Array) return withUvs(await readModel('cage', cage, { beside: target, decoders }));
   if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'the bytes of a GLB, or a mesh');
   if (cage.uvs === undefined)
     throw wrong('cage.uvs', cage.uvs, "a Float32Array: the texture is drawn in the cage's UVs");

@@ -1,5 +1,6 @@
-import { CagecastError, type Mesh } from '../../api/index.js';
+import type { Mesh } from '../../api/index.js';
 import { partsNamed } from '../../api/parts.js';
+import { CagecastError } from '../../core/error.js';
 import { type Drawn, extract, extractDrawn, namedParts, type WhichCount } from '../../scene/extract.js';
 import { InputError, naming } from '../../scene/input-error.js';
 import { hostDecode } from '../host-decode.js';

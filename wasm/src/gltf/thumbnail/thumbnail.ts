@@ -1,6 +1,5 @@
-import { CagecastError, type Code } from '../../api/index.js';
 import { faultOfNames } from '../../api/option-names.js';
-import { show } from '../../core/error.js';
+import { CagecastError, type Code, show } from '../../core/error.js';
 import { InputError } from '../../scene/input-error.js';
 import { openGltf } from '../open-gltf.js';
 import { drawFile } from './draw-file.js';

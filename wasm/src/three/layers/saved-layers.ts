@@ -1,6 +1,5 @@
 import { SRGBColorSpace, Texture, type WebGLRenderer } from 'three';
-import { CagecastError } from '../../api/index.js';
-import { show } from '../../core/error.js';
+import { CagecastError, show } from '../../core/error.js';
 import { toPng } from '../canvas.js';
 import { checkColor, notA, wrong } from '../errors.js';
 import { kWhole, toTexels } from '../gpu/rect.js';
