@@ -108,9 +108,10 @@ export default defineConfig({
           groups: [
             // What the page and its workers begin with; the cage module, which imports it, loads when a cage is asked for.
             { name: 'cagecast', test: /dist\/slim\.js$|vite\/preload-helper\.js$/ },
+            // Modules of the first view that features share. No worker may import them, nor may they import app.ts, as it waits for features.
             {
               name: 'shared',
-              test: /web\/src\/(platform\/page|state\/(surface|same-uvs)|tools\/(paint\/ring|cage\/(landmark-dots|arrow-keys))|view\/ray)\.ts$/,
+              test: /web\/src\/(export\/link\.|loading\/(extract-mesh|file-paths|load-paint|samples|transfer-client)|panels\/part-menu|platform\/(ask|download|face|graphics|make|page|programs|shelf|store)\.|state\/(?!project|wardrobe|control-steps|verdict\/spots|wording)|tools\/(paint\/ring|cage\/(landmark-dots|arrow-keys))|view\/(colors|framing|overlay|pick|ray|segments))/,
             },
           ],
         },
