@@ -7,7 +7,7 @@ import { followPaints } from '../../../web/src/state/follow-paints';
 import { type Fitting, madeOf, sampleOf } from '../../../web/src/state/made-cages';
 import { landmarksOf } from '../../../web/src/state/model';
 import { PutAwayLayers } from '../../../web/src/state/put-away-layers';
-import { remedyFor } from '../../../web/src/state/verdict';
+import { remedyFor } from '../../../web/src/state/verdict/verdict';
 import { tetrahedron } from '../../support/glb';
 import { begin, cageGlb, Gate, paintOf, quiet, until } from './harness';
 

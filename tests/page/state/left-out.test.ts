@@ -5,7 +5,7 @@ import { codeFor } from '../../../web/src/export/code';
 import { choicesOf, kFirstRules, type Locks } from '../../../web/src/state/choices';
 import { choicesWithout, projectBy } from '../../../web/src/state/left-out';
 import type { Model } from '../../../web/src/state/model';
-import { remedyFor, takeBacks } from '../../../web/src/state/verdict';
+import { remedyFor, takeBacks } from '../../../web/src/state/verdict/verdict';
 import { ball, head, join3d } from '../../package/scenes';
 import { tetrahedron } from '../../support/glb';
 import { begin, copyOf, FakeTransferer, quiet, refusal, sceneOf } from './harness';

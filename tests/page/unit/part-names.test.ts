@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { SegmentStats } from 'cagecast';
 import type { Shown } from '../../../web/src/state/scene';
-import { bareParts, plainNameOf } from '../../../web/src/view/part-names';
+import { bareParts, plainNameOf } from '../../../web/src/state/verdict/part-names';
 
 const part = (name: string, material = ''): Shown['target']['mesh']['primitives'][number] =>
   ({ name, mesh: { material: { name: material } } }) as never;

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { init, transfer } from 'cagecast';
-import { paintableShare, regionOf, verdictWords } from '../../../web/src/state/verdict';
+import { paintableShare, regionOf, verdictWords } from '../../../web/src/state/verdict/verdict';
 import { head, within } from '../../package/scenes';
 
 test('an open cage covers a region: its share is that of the region, and names tell which it is', async () => {

@@ -62,12 +62,44 @@ test('Inspect has everything, is remembered, and comes by itself with what belon
   await page.getByTestId('face').click();
   assert.deepEqual([await face(page), await mode(page)], ['play', 'result'], 'Play has no view of zones');
   assert.equal(await page.evaluate(() => localStorage.getItem('cagecast-face')), 'play');
-  await page.locator('#stage-verdict-text').click();
-  assert.equal(await face(page), 'inspect', 'the verdict leads to its reasons');
 
   const { page: linked } = await site.visit(kDesk, kPlay, '#sample=human&view=zones');
   assert.deepEqual([await face(linked), await mode(linked)], ['inspect', 'zones']);
 });
+
+for (const { name, size } of [
+  { name: 'desktop', size: kDesk },
+  { name: 'phone', size: kPhone },
+])
+  test(`${name}: the verdict opens a short list in place; a line turns the model to its place and marks it, and what helps is beside it`, async () => {
+    const { page, complaints } = await site.visit(size, kPlay, '#sample=lizard&view=result');
+    const verdict = page.locator('#stage-verdict[data-verdict=good], #stage-verdict[data-verdict=usable]');
+    await verdict.waitFor();
+    const area = await modelArea(page);
+    const before = await look(page, area);
+    await page.locator('#stage-verdict-text').click();
+    const list = page.getByTestId('spots');
+    await list.waitFor();
+    assert.equal(await face(page), 'play');
+    assert.ok(!/cage|%/i.test((await list.textContent())!));
+    const { width, y, height } = (await list.boundingBox())!;
+    const screen = page.viewportSize()!;
+    assert.ok(width <= screen.width && y >= 0 && y + height <= screen.height && height < 0.6 * screen.height);
+    assert.deepEqual(await faults(page), []);
+    const eyes = list.getByRole('listitem').filter({ hasText: 'eyes' });
+    await eyes.getByRole('button', { name: /^eyes/ }).click();
+    await page.keyboard.press('Escape');
+    await list.waitFor({ state: 'hidden' });
+    const turned = await look(page, area);
+    assert.ok(difference(before, turned) > 0.05, 'the eyes are looked at');
+    await page.locator('#stage-verdict-text').press('Enter');
+    await eyes.getByRole('button', { name: /^eyes/ }).focus();
+    assert.ok(difference(turned, await look(page, area)) > 0.001, 'and marked');
+    await eyes.getByRole('button', { name: 'Paint anyway' }).click();
+    await list.waitFor({ state: 'hidden' });
+    assert.ok(difference(turned, await look(page, area)) > 0.001, 'and painted');
+    assert.deepEqual(complaints, []);
+  });
 
 test('the side that is seen becomes the front', async () => {
   const { page } = await site.visit(kDesk, kPlay, '#sample=lizard&view=result');

@@ -4,7 +4,7 @@ import { element } from '../platform/page';
 import type { Choice } from '../state/choices';
 import type { Shown } from '../state/scene';
 import type { Session } from '../state/session';
-import { plainNameOf } from '../view/part-names';
+import { plainNameOf } from '../state/verdict/part-names';
 import type { Spot } from '../view/pick';
 import { marksOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';

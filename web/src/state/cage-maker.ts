@@ -65,6 +65,8 @@ export class CageMaker extends Emitter<{
   readonly #turned = new WeakSet<Model>();
   /** The user's choices for made cages: options, and parts to leave bare. */
   choices: ((model: CageModel) => { options: MakeOptions; marks?: Uint8Array }) | undefined;
+  /** Lets the user mark on the model what stays bare. */
+  markBare: (() => void) | undefined;
   /** What the last fit that was asked for here came to. */
   latest: Fitting | undefined;
   #opening: AbortController | undefined;

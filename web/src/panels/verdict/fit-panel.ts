@@ -1,13 +1,13 @@
 import type { Finding, Inspection, Lock } from 'cagecast';
 import { verdictOf } from '#inspect';
-import { TransferClient } from '../loading/transfer-client';
-import { make } from '../platform/make';
-import { element } from '../platform/page';
-import type { CageMaker } from '../state/cage-maker';
-import { namesLeftOut, withoutParts } from '../state/left-out';
-import { landmarksOf } from '../state/model';
-import type { Session } from '../state/session';
-import { Superseded } from '../state/transfers';
+import { TransferClient } from '../../loading/transfer-client';
+import { make } from '../../platform/make';
+import { element } from '../../platform/page';
+import type { CageMaker } from '../../state/cage-maker';
+import { namesLeftOut, withoutParts } from '../../state/left-out';
+import { landmarksOf } from '../../state/model';
+import type { Session } from '../../state/session';
+import { Superseded } from '../../state/transfers';
 import {
   type KnownVerdict,
   kMaxInspected,
@@ -16,10 +16,10 @@ import {
   regionOf,
   remedyFor,
   takeBacks,
-} from '../state/verdict';
-import { forPeople, reasonOf } from '../state/wording';
-import { marksOf } from '../view/segments';
-import type { Stage } from '../view/stage';
+} from '../../state/verdict/verdict';
+import { forPeople, reasonOf } from '../../state/wording';
+import { marksOf } from '../../view/segments';
+import type { Viewer } from '../../view/viewer';
 import { StageVerdict } from './stage-verdict';
 
 const kInspectDelay = 800; // milliseconds without a change before the cage is inspected
@@ -36,7 +36,7 @@ const kVerdicts: Record<Inspection['verdict'], string> = {
  */
 export class FitPanel {
   readonly #session: Session;
-  readonly #stage: Stage | undefined;
+  readonly #viewer: Viewer | undefined;
   readonly #verdict = element('fit-verdict', HTMLElement);
   readonly #findings = element('fit-findings', HTMLElement);
   readonly #leftOut = element('fit-left-out', HTMLElement);
@@ -48,11 +48,11 @@ export class FitPanel {
   /** What is not said while the page mends it by itself. */
   #unsaid: Inspection | undefined;
 
-  constructor(session: Session, stage: Stage | undefined, maker: CageMaker) {
+  constructor(session: Session, viewer: Viewer | undefined, maker: CageMaker) {
     this.#session = session;
     this.#maker = maker;
-    this.#stageVerdict = new StageVerdict(session);
-    this.#stage = stage;
+    this.#stageVerdict = new StageVerdict(session, viewer, maker, () => void this.#inspect());
+    this.#viewer = viewer;
     session.on('transfer', () => {
       this.#forget();
       this.#offerBack();
@@ -140,13 +140,13 @@ export class FitPanel {
     content.push(...making.map(buttonFor));
     // What is good needs no remedy on the stage; the findings offer theirs.
     const remedy = verdict === 'good' ? undefined : (remedies[0] ?? making[0]);
-    this.#show(verdict, content, remedy, findings.length);
+    this.#show(verdict, content, remedy, inspection);
   }
 
-  #show(verdict: KnownVerdict, content: HTMLElement[], remedy?: Remedy, findings = 0): void {
+  #show(verdict: KnownVerdict, content: HTMLElement[], remedy?: Remedy, inspection?: Inspection): void {
     this.#verdict.textContent = this.#verdict.dataset.verdict = verdict;
     this.#findings.replaceChildren(...content);
-    this.#stageVerdict.show(verdict, findings, remedy);
+    this.#stageVerdict.show(verdict, remedy, inspection);
   }
 
   /** Offers to take back what is left out; a click that has left something out gets to undo it. */
@@ -189,7 +189,7 @@ export class FitPanel {
 
   #highlight(segments: readonly number[]): void {
     const { shown } = this.#session;
-    this.#stage?.highlight('parts', shown && marksOf(shown, segments));
+    this.#viewer?.stage.highlight('parts', shown && marksOf(shown, segments));
   }
 }
 

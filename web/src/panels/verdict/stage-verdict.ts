@@ -1,12 +1,26 @@
-import { face, onFace } from '../platform/face';
-import { element } from '../platform/page';
-import type { Shown } from '../state/scene';
-import type { Session } from '../state/session';
-import { type KnownVerdict, paintableShare, type Remedy, regionOf, verdictWords } from '../state/verdict';
-import { bareParts } from '../view/part-names';
-import { goTo } from './section-nav';
+import type { Inspection } from 'cagecast';
+import { face, onFace } from '../../platform/face';
+import { element } from '../../platform/page';
+import type { CageMaker } from '../../state/cage-maker';
+import type { Shown } from '../../state/scene';
+import type { Session } from '../../state/session';
+import { bareParts } from '../../state/verdict/part-names';
+import {
+  type KnownVerdict,
+  paintableShare,
+  type Remedy,
+  regionOf,
+  topicOf,
+  verdictWords,
+  worthSaying,
+} from '../../state/verdict/verdict';
+import type { Viewer } from '../../view/viewer';
+import { goTo } from '../section-nav';
 
-/** Shows the verdict on the cage on the stage and on the model's card: in Play what stays bare, in Inspect how much is painted. */
+/**
+ * Shows the verdict on the cage on the stage and on the model's card: in Play what stays bare, with a list of spots behind it; in
+ * Inspect how much is painted, with a remedy.
+ */
 export class StageVerdict {
   readonly #session: Session;
   readonly #box = element('stage-verdict', HTMLElement);
@@ -14,24 +28,29 @@ export class StageVerdict {
   readonly #button = element('stage-remedy', HTMLButtonElement);
   readonly #card = element('model-verdict', HTMLElement);
   #verdict: KnownVerdict = '';
-  #findings = 0;
+  #inspection: Inspection | undefined;
   #remedy: Remedy | undefined;
 
-  constructor(session: Session) {
+  /** @param inspect Inspects the cage. */
+  constructor(session: Session, viewer: Viewer | undefined, maker: CageMaker, inspect: () => void) {
     this.#session = session;
-    this.#text.addEventListener('click', () => goTo(element('fit', HTMLElement)));
+    this.#text.addEventListener('click', async () => {
+      if (face() === 'inspect') return goTo(element('fit', HTMLElement));
+      const { showSpots } = await import('./spot-list');
+      showSpots(this.#text, { session, maker, inspection: this.#inspection, inspect }, viewer);
+    });
     this.#button.addEventListener('click', () => this.#remedy?.run());
     session.on('zones', () => this.#write());
     onFace(() => this.#write());
   }
 
   /**
-   * @param findings How many there are.
-   * @param remedy   The first that can be done; without a verdict, only if the cage is not being inspected.
+   * @param remedy     The first that can be done; without a verdict, only if the cage is not being inspected.
+   * @param inspection What the verdict is about, if there is one.
    */
-  show(verdict: KnownVerdict, findings: number, remedy?: Remedy): void {
+  show(verdict: KnownVerdict, remedy?: Remedy, inspection?: Inspection): void {
     this.#verdict = verdict;
-    this.#findings = findings;
+    this.#inspection = inspection;
     this.#remedy = remedy;
     this.#write();
   }
@@ -46,8 +65,9 @@ export class StageVerdict {
     this.#text.textContent = stage;
     this.#card.textContent = card;
     this.#box.dataset.verdict = this.#card.dataset.verdict = verdict;
-    const leaves = !this.#remedy && document.activeElement === this.#button;
-    this.#button.hidden = !this.#remedy;
+    const isHidden = !this.#remedy || face() === 'play';
+    const leaves = isHidden && document.activeElement === this.#button;
+    this.#button.hidden = isHidden;
     if (leaves) this.#text.focus();
     this.#button.textContent = this.#remedy?.title ?? '';
   }
@@ -56,7 +76,7 @@ export class StageVerdict {
     return verdictWords(this.#verdict, {
       region: regionOf(shown, stats),
       bare: bareParts(shown, stats),
-      findings: this.#findings,
+      findings: new Set(worthSaying(this.#inspection?.findings ?? []).map(topicOf)).size,
       isForeign: isForeign(shown),
     });
   }

@@ -1,5 +1,5 @@
 import type { SegmentStats } from 'cagecast';
-import type { Shown } from '../state/scene';
+import type { Shown } from '../scene';
 
 /** What parts of avatars, animals and cars are, by words in the names of their meshes and materials. */
 const kKinds: readonly (readonly [name: string, words: RegExp])[] = [
@@ -15,7 +15,7 @@ const kKinds: readonly (readonly [name: string, words: RegExp])[] = [
   ['hat', /\bhat\b|headwear|helmet|\bcap\b/],
   ['shoes', /shoe|boot|footwear|sneaker/],
   ['clothes', /outfit|cloth|shirt|pants|trouser|jeans|\btops?\b|\bbottoms?\b|dress|skirt|jacket|onepiece|uniform/],
-  ['windows', /window|windshield|windscreen|\bglass\b/],
+  ['windows', /windows?|windshield|windscreen|\bglass\b/],
   ['wheels', /wheel|\btyres?\b|\btires?\b|\brims?\b/],
   ['seats', /seat|interior|dashboard|steering/],
   ['lights', /lights?\b|lamps?\b/],

@@ -1,9 +1,10 @@
 import type { Finding, Inspection, SegmentStats } from 'cagecast';
-import type { CageMaker } from './cage-maker';
-import { leavingOut } from './left-out';
-import { madeOf } from './made-cages';
-import type { Scene } from './scene';
-import type { Session } from './session';
+import { verdictOf } from '#inspect';
+import type { CageMaker } from '../cage-maker';
+import { leavingOut } from '../left-out';
+import { madeOf } from '../made-cages';
+import type { Scene } from '../scene';
+import type { Session } from '../session';
 
 /** Whether the cage fits; empty until it was inspected. */
 export type KnownVerdict = Inspection['verdict'] | '';
@@ -106,6 +107,18 @@ export function takeBacks(session: Session): Remedy[] {
     };
   });
 }
+
+/** Findings of some weight: the others are remarks. */
+export const worthSaying = (findings: readonly Finding[]): Finding[] =>
+  findings.filter((finding) => verdictOf([finding]) !== 'good');
+
+/** Play has one line for all findings of a badly placed cage, one for all of a bad surface, and one for each other finding. */
+export const topicOf = (finding: Finding): string | Finding =>
+  /^(cage(?!Back)|target|normals)/.test(finding.code)
+    ? 'place'
+    : /^(uvs|degenerate|doubled|nonManifold|cracks)/.test(finding.code)
+      ? 'surface'
+      : finding;
 
 /** What there is to say of a painted model. */
 interface Seen {

@@ -4,7 +4,7 @@ import { isUpToDate, moveChoices, projectBy, withoutParts } from '../left-out';
 import { landmarksOf, type Model } from '../model';
 import type { Paint } from '../paint';
 import { haveSameUvs } from '../same-uvs';
-import { kMaxInspected } from '../verdict';
+import { kMaxInspected } from '../verdict/verdict';
 import type { Avatar } from './avatar';
 import type { AvatarList } from './avatar-list';
 import type { Surroundings } from './surroundings';

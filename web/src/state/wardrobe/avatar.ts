@@ -5,7 +5,7 @@ import type { Model } from '../model';
 import type { Paint } from '../paint';
 import type { Sample } from '../sample';
 import type { SplitProjection } from '../transfers';
-import type { KnownVerdict } from '../verdict';
+import type { KnownVerdict } from '../verdict/verdict';
 import type { KeptAvatar } from './kept';
 
 /** The greatest number of avatars. */

@@ -1,4 +1,5 @@
 import type { History } from '#three';
+import { ask } from '../../platform/ask';
 import { element } from '../../platform/page';
 import type { CageMaker } from '../../state/cage-maker';
 import type { Session } from '../../state/session';
@@ -6,6 +7,8 @@ import type { Tools } from '../../view/tool-rail';
 import type { Viewer } from '../../view/viewer';
 import type { CageAdjuster } from './cage-adjuster';
 import type { LandmarkEditor } from './landmark-editor';
+
+const kHintLasts = 8000; // milliseconds
 
 /** Offers tools for a cage that was made here. They load when there is one. */
 export function setUpCageTools(
@@ -16,21 +19,24 @@ export function setUpCageTools(
   history: History,
 ): void {
   const details = element('make-options', HTMLDetailsElement);
-  let hasOptions = false;
-  const offerOptions = async (): Promise<void> => {
-    if (hasOptions) return;
-    hasOptions = true;
-    try {
-      const { MakeOptionsPanel } = await import('./make-options');
-      new MakeOptionsPanel(session, viewer, maker, tools, history);
-    } catch (error) {
-      hasOptions = false;
-      session.fail(error);
-    }
-  };
+  let options: Promise<unknown> | undefined;
+  const offerOptions = (): Promise<unknown> =>
+    (options ??= import('./make-options').then(
+      ({ MakeOptionsPanel }) => new MakeOptionsPanel(session, viewer, maker, tools, history),
+      (error) => {
+        options = undefined;
+        session.fail(error);
+      },
+    ));
   details.addEventListener('toggle', () => details.open && void offerOptions());
   // Marks of an earlier visit are of use with their tool.
   session.on('zones', () => session.bare && void offerOptions());
+  maker.markBare = async () => {
+    if (!(await offerOptions())) return;
+    const brush = element('bare-brush', HTMLButtonElement);
+    if (brush.ariaPressed !== 'true') brush.click();
+    ask({ text: 'Brush over what is to stay bare.', answers: [], lasts: kHintLasts });
+  };
 
   let adjuster: Promise<CageAdjuster> | undefined;
   element('adjust-cage', HTMLButtonElement).addEventListener('click', async () => {
