@@ -11,12 +11,11 @@ import { watchOver } from './loading/watch-over';
 import { setUpCagePanel } from './panels/cage-panel';
 import { LayerList } from './panels/layer-list';
 import { PartMenu } from './panels/part-menu';
-import { setUpPicture } from './panels/picture-panel';
 import { fadePoster, removeOtherPoster } from './panels/poster';
 import { offerPutAway } from './panels/put-away-layers';
 import { showResults } from './panels/results';
 import { setUpRules } from './panels/rules';
-import { goTo, setUpSectionNav } from './panels/section-nav';
+import { setUpSectionNav } from './panels/section-nav';
 import { showStatus } from './panels/status';
 import { FitPanel } from './panels/verdict/fit-panel';
 import { face, setUpFaces } from './platform/face';
@@ -64,7 +63,6 @@ function setUpStage(viewer: Viewer): { viewer: Viewer; tools: Tools; composite: 
   const tools = new Tools(viewer, element('stage', HTMLElement));
   new PartMenu(session, viewer);
   setUpCageTools(session, viewer, tools, maker, history);
-  setUpPicture(session, viewer);
   return { viewer, tools, composite };
 }
 
@@ -110,7 +108,6 @@ setUpViewControls(session);
 setUpSectionNav(session, (open) => void viewer?.lookAtFace(open));
 setUpPaintStrip();
 setUpStageButtons(viewer?.controls, history);
-element('stage-share', HTMLButtonElement).addEventListener('click', () => goTo(element('share', HTMLElement)));
 // Whoever brings a model wants to see it painted, not compared.
 session.on('transfer', ({ target }) => {
   document.documentElement.toggleAttribute('data-own', !target.sample); // who has one needs no motto

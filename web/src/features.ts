@@ -5,6 +5,7 @@ import { FilmStrip } from './explain/film-strip';
 import { ExportPanel } from './export/export-panel';
 import { exportedPaint } from './export/linked-layers';
 import { followLinks } from './export/links';
+import { ShareSheet } from './export/share-sheet';
 import { Strokes } from './export/strokes';
 import type { Opener } from './loading/opener';
 import { beginProjects } from './panels/begin-projects';
@@ -15,12 +16,14 @@ import { setUpWardrobe } from './panels/set-up-wardrobe';
 import { recordControls } from './panels/steps';
 import { ThresholdMarks } from './panels/threshold-marks';
 import { keepOffline } from './platform/offline';
+import { flags } from './platform/shelf';
 import type { CageMaker } from './state/cage-maker';
 import type { Loader } from './state/model';
 import type { PutAwayLayers } from './state/put-away-layers';
 import type { Session } from './state/session';
 import { Live } from './tools/live/live-panel';
 import { setUpPainting } from './tools/paint/set-up-painting';
+import { rollOnFirst } from './view/overlay/roll-on';
 import type { Tools } from './view/tool-rail';
 import type { Viewer } from './view/viewer';
 
@@ -50,6 +53,9 @@ export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
   if (stage) {
     new Explain(session, stage.viewer, stage.tools);
     new FilmStrip(session, stage.viewer);
+    // Work that is brought back was seen before.
+    if (!flags.get('work')) rollOnFirst(session, stage.viewer, stage.composite.texture);
+    new ShareSheet(session, stage.viewer, { stack, paint: stage.composite.texture });
   }
   new PartsTable(session, viewer?.stage);
   new ThresholdMarks(session);

@@ -1,4 +1,3 @@
-import { readLink } from '../export/link';
 import { flags } from '../platform/shelf';
 import type { Session } from '../state/session';
 import type { Viewer } from '../view/viewer';
@@ -10,9 +9,10 @@ const find = (): HTMLImageElement | null => document.querySelector('#poster');
 /** Removes the poster image, a static picture of the first sample, if a link or the work that is kept opens something else. */
 export function removeOtherPoster(): void {
   const poster = find();
-  const linked = readLink(location.hash);
+  const linked = new URLSearchParams(location.hash.slice(1));
   const works = flags.get('work') && flags.get('start') !== 'over';
-  if (linked ? linked.sample !== poster?.dataset.sample : works) poster?.remove();
+  const sample = linked.get('sample');
+  if (sample ? sample !== poster?.dataset.sample : works) poster?.remove();
 }
 
 /** Fades the poster image once the 3D view is drawn. Without WebGL it stays as long as the first sample is open. */

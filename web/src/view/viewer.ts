@@ -4,7 +4,7 @@ import type { Model } from '../state/model';
 import type { SplitProjection } from '../state/transfers';
 import { kFirstView, type View } from '../state/view-state';
 import { CameraControls } from './camera-controls';
-import { type Crowd, freePartOf } from './framing';
+import { type Crowd, type FreePart, freePartOf } from './framing';
 import { type Look, sidesOf } from './overlay/looks';
 import { Pointing } from './pointing';
 import { ScreenSpace } from './screen-space';
@@ -12,6 +12,16 @@ import { Stage } from './stage';
 import { Studio } from './studio';
 
 const kPictureSize = 0.9; // of the view's shorter side
+
+/** How frames are drawn to be saved, whatever the size of the page. */
+interface Pose {
+  /** Its size is that of the frames, in units of `ratio` pixels. */
+  free: FreePart;
+  ratio: number;
+  view: View;
+  /** Called after each frame. */
+  onDrawn(): void;
+}
 
 /** Draws what is on the stage whenever something has changed. */
 export class Viewer {
@@ -30,6 +40,7 @@ export class Viewer {
   #frame = 0;
   #stale = true;
   #isLent = false;
+  #pose: Pose | undefined;
   #looksAtFace = false;
 
   /** @throws Error where the browser has no WebGL 2. */
@@ -132,11 +143,11 @@ export class Viewer {
     const { camera } = controls;
     if (!stage.model || this.#isLent) return; // an empty scene is not worth drawing
     this.prepare();
-    const { left, right, at, cage } = sidesOf(this.#view);
+    const { left, right, at, cage } = sidesOf(this.#pose?.view ?? this.#view);
     stage.arrange(camera, controls.shift, cage);
     studio.follow(camera, stage.crowd?.object.position);
     const draw = (look: Look, from: number, to: number): void => {
-      const { clientWidth: width, clientHeight: height } = this.#canvas;
+      const { x: width, y: height } = renderer.getSize(new Vector2());
       renderer.setScissor(from * width, 0, (to - from) * width, height);
       stage.show(look);
       renderer.render(studio.scene, camera);
@@ -146,6 +157,17 @@ export class Viewer {
     renderer.setScissorTest(true);
     if (at > 0) draw(left, 0, at);
     if (at < 1) draw(right, at, 1);
+    this.#pose?.onDrawn();
+  }
+
+  /** Draws now, and from now on, as a pose says. @returns Ends it. */
+  hold(pose: Pose): () => void {
+    const set = (pose?: Pose): void => {
+      this.#pose = pose;
+      this.#resize();
+    };
+    set(pose);
+    return set;
   }
 
   /** Draws what would be seen in another view onto a canvas, cut to its shape. */
@@ -209,12 +231,14 @@ export class Viewer {
   }
 
   #resize(): void {
-    const { clientWidth: width, clientHeight: height } = this.#canvas.parentElement!;
-    if (width === 0 || height === 0 || this.#isLent) return;
-    const ratio = Math.min(devicePixelRatio, 2);
+    const { clientWidth, clientHeight } = this.#canvas.parentElement!;
+    if (clientWidth === 0 || clientHeight === 0 || this.#isLent) return;
+    const pose = this.#pose;
+    const ratio = pose?.ratio ?? Math.min(devicePixelRatio, 2);
     const before = this.renderer.getSize(new Vector2());
-    const free = freePartOf(this.#canvas, this.#strips);
-    if (before.x === width && before.y === height && this.renderer.getPixelRatio() === ratio) {
+    const free = pose?.free ?? freePartOf(this.#canvas, this.#strips);
+    const { width, height } = free;
+    if (!pose && before.x === width && before.y === height && this.renderer.getPixelRatio() === ratio) {
       // Buffers of the same size would be made anew.
       this.controls.resize(width, height, free);
       this.redraw();
