@@ -1,8 +1,8 @@
 // Writes the core as two files, for programs that are built without CMake:
 //
-//   node core/amalgamate.mjs FOLDER [nanoflann.hpp]     FOLDER/cagecast.hpp and FOLDER/cagecast.cpp
+//   node core/amalgamate.mjs FOLDER [nanoflann.hpp]     FOLDER/cagecast.hpp and FOLDER/cagecast.cpp, and cagecast_c.h for C
 
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
@@ -33,7 +33,15 @@ function expanded(text) {
   return text
     .replace(/^#pragma once\n+/m, '')
     .replace(/^#include "(.+)".*\n/gm, (_, path) => inlined(path))
-    .replace(/^#include <nanoflann\.hpp>\n/m, () => expanded(readFileSync(nanoflann, 'utf8')));
+    .replace(/^#include <nanoflann\.hpp>\n/m, () => withoutWarnings(expanded(readFileSync(nanoflann, 'utf8'))));
+}
+
+/** Code of others, which a compiler need not warn of. Clang takes pragmas of GCC. */
+function withoutWarnings(text) {
+  const ignored = ['-Wconversion', '-Wsign-conversion', '-Wshadow'].map(
+    (flag) => `#pragma GCC diagnostic ignored "${flag}"\n`,
+  );
+  return `#pragma GCC diagnostic push\n${ignored.join('')}${text}#pragma GCC diagnostic pop\n`;
 }
 
 const version = /project\(cagecast VERSION (\S+)/.exec(read('../CMakeLists.txt'))[1];
@@ -43,6 +51,7 @@ const title = `// Cagecast ${version}, in two files: cagecast.hpp and cagecast.c
 
 mkdirSync(folder, { recursive: true });
 writeFileSync(join(folder, 'cagecast.hpp'), `${title}#pragma once\n\n${kHeaders.map(inlined).join('')}`);
+copyFileSync(join(core, 'include/cagecast/cagecast_c.h'), join(folder, 'cagecast_c.h'));
 writeFileSync(
   join(folder, 'cagecast.cpp'),
   `${title}#include "cagecast.hpp"

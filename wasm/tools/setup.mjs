@@ -54,6 +54,7 @@ const kNeeds = {
   clang: { what: 'Clang 14 or newer (clang++)', there: command('clang++') },
   'libclang-rt-dev': { what: "Clang's sanitizers and libFuzzer", there: linksFuzzTarget },
   lld: { what: 'LLD (ld.lld)', there: command('ld.lld') },
+  'mono-mcs': { what: 'Mono (mcs, mono)', there: command('mcs') },
   'python3-numpy': {
     what: 'Python 3 with NumPy (or the path of one in the environment variable PYTHON)',
     there: () =>
@@ -87,7 +88,7 @@ const kPurposes = {
   tidy: [...kTests, 'clang-tidy'],
   docs: [...kPage, 'doxygen'],
   budgets: [...kTests, 'valgrind'], // which counts instructions
-  hosts: [...kTests, kHosts],
+  hosts: [...kTests, 'python3-numpy', 'mono-mcs', kHosts],
   quality: [...kTests, 'python3-numpy'],
   catalogue: [...kPage, 'redis-server', kCatalogue],
   fuzz: [...kTests, ...kClang],

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "cagecast/cagecast_c.h"
 #include "cagecast/split.hpp"
 #include "cuts.hpp"
 #include "hash.hpp"
@@ -113,6 +114,31 @@ TEST_CASE("wherever memory runs out when segments are judged or vertices split, 
           if (status.ok()) hash.add(split.indices);
           return status;
         }) > 2);
+}
+
+TEST_CASE("wherever memory runs out in a call from C, its error says so, and the next call is right", "[memory]") {
+  const scenes::Scene scene = scenes::patchwork(1);
+  const auto mesh = [](const scenes::Mesh& of) {
+    return CagecastMesh{of.positions.data(),
+                        of.indices.data(),
+                        of.uvs.data(),
+                        of.groups.data(),
+                        nullptr,
+                        static_cast<std::uint32_t>(of.vertexCount()),
+                        static_cast<std::uint32_t>(of.triangleCount()),
+                        0};
+  };
+  const CagecastMesh cage = mesh(scene.cage), target = mesh(scene.target);
+  CagecastTransfer out{};
+  const std::size_t count = failEverywhere([&](Workspace&, Hash& hash) {
+    cagecastFreeTransfer(&out);
+    if (cagecastTransfer(&cage, &target, nullptr, &out) != 0)
+      return Status{std::string(out.error.code) == "outOfMemory" ? Code::outOfMemory : Code::aborted};
+    hash.addBytes(out.uvs, 2 * sizeof(float) * out.vertexCount);
+    return Status{};
+  });
+  cagecastFreeTransfer(&out);
+  CHECK(count > 3);
 }
 
 TEST_CASE("what memory held before changes no result", "[memory]") {

@@ -119,7 +119,8 @@ describe('the core', () => {
     test(`gives the same bits as two files, by ${compiler}`, { skip: call(compiler, '--version').status !== 0 }, () => {
       const folder = at(compiler);
       run(process.execPath, 'core/amalgamate.mjs', folder);
-      const flags = ['-std=c++20', '-O2', '-ffp-contract=off', '-Wall', '-Wextra', '-Werror'];
+      const warnings = ['-Wall', '-Wextra', '-Wshadow', '-Wconversion', '-Werror'];
+      const flags = ['-std=c++20', '-O2', '-ffp-contract=off', ...warnings];
       const files = (...names: string[]) => names.map((name) => `${folder}/${name}`);
       run(compiler, ...flags, '-c', ...files('cagecast.cpp'), '-o', ...files('cagecast.o'));
 
@@ -133,4 +134,33 @@ describe('the core', () => {
       const golden = ['hash', 'hash-default', 'hash-borders'].map((name) => `tests/core/golden/${name}.txt`);
       assert.equal(run(`${folder}/lane`).trim(), golden.map((file) => readFileSync(file, 'utf8').trim()).join(' '));
     });
+});
+
+describe('other languages, by the C interface', () => {
+  const has = (program: string, ...args: string[]) => call(program, ...args).status === 0;
+  const python = [process.env.PYTHON ?? 'python3', '/usr/bin/python3'].find((path) => has(path, '-c', 'import numpy'));
+
+  /** What the commands of an example's README print in an empty folder, of which they get the sources and the programs from here. */
+  function follow(example: string): string {
+    mkdirSync(at(example));
+    const commands = /```sh\n(.*?)```/s
+      .exec(readFileSync(`examples/${example}/README.md`, 'utf8'))![1]!
+      .replace(/^git clone .*$/m, `ln -s ${process.cwd()} cagecast`)
+      .replace(/^sudo apt .*$/m, '')
+      .replaceAll('python3', python ?? 'python3');
+    const { status, stdout, stderr } = spawnSync('sh', ['-e', '-c', commands], { cwd: at(example), encoding: 'utf8' });
+    assert.equal(status, 0, stdout + stderr);
+    return stdout;
+  }
+
+  test('Python, with its standard library and with NumPy', { skip: python === undefined && 'needs NumPy' }, () => {
+    assert.equal(follow('python'), '2618 of 4782 triangles may be painted\n');
+    assert.equal(run(python!, 'tests/core/c/program.py', at('python/libcagecast.so')), '');
+  });
+
+  test('C#, as Unity calls it', { skip: !has('mcs', '--version') && 'needs Mono (mono-mcs)' }, () => {
+    const lines = follow('unity').split('\n');
+    assert.equal(lines[0], 'corner 0: u = 0.25, v = 0.25; triangles: 1 1');
+    assert.equal(lines[1], 'options.threshold = 2 is not within 0..1');
+  });
 });

@@ -4,9 +4,9 @@ import { dirname, join, normalize } from 'node:path';
 import { isCpp, isScript } from './files.mjs';
 
 // Folders lowest first: a file may include or import its own folder and those before it. Files beside the folders have their
-// places by name: transfer.cpp of the core is the last.
-const kCoreOrder = ['base', 'simd', 'geometry', 'input', 'search', 'cage', 'steps', 'seams', 'clip', 'transfer'];
-const kCagesOrder = ['linear', 'mesh', 'hull', 'views', 'landmarks', 'charts', 'make', 'fit', 'refine'];
+// places by name, as transfer.cpp of the core has.
+const kCoreOrder = ['base', 'simd', 'geometry', 'input', 'search', 'cage', 'steps', 'seams', 'clip', 'transfer', 'c'];
+const kCagesOrder = ['linear', 'mesh', 'hull', 'views', 'landmarks', 'charts', 'make', 'fit', 'refine', 'c'];
 const kPackageOrder = [
   'generated',
   'core',

@@ -16,5 +16,5 @@ export function listFiles(root) {
   return [...new Set(text.split('\0'))].filter((path) => path && existsSync(join(root, path))).sort();
 }
 
-export const isCpp = (path) => /\.(cpp|hpp|def)$/.test(path);
+export const isCpp = (path) => /\.(cpp|hpp|def|c|h)$/.test(path);
 export const isScript = (path) => /\.(ts|mjs|js)$/.test(path);
