@@ -54,6 +54,7 @@ inline Transform transformOf(const double* matrix) {
 
 /// A primitive in its place in the scene.
 struct Instance {
+  const tinygltf::Mesh& mesh;
   const tinygltf::Primitive& primitive;
   std::string where, name;  ///< In the file, and for people.
   Transform world;

@@ -150,12 +150,9 @@ std::vector<double> shownPositions(const tinygltf::Model& model, const Instance&
   return positions;
 }
 
-void append(const tinygltf::Model& model, const Instance& instance, Model& out, bool& haveUvs) {
-  const auto& [primitive, where, name, world, node, skin, weights] = instance;
-  const UvLayout layout = uvLayoutOf(model, primitive);
-  const int texcoord = attributeOf(primitive, layout.set);
-  const std::vector<double> local = shownPositions(model, instance);
-  const std::size_t vertexCount = local.size() / 3;
+/// The triangles of a primitive.
+std::vector<std::uint32_t> trianglesIn(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                       const std::string& where, std::size_t vertexCount) {
   std::vector<std::uint32_t> corners;
   if (primitive.indices >= 0) {
     checkIndexType(element(model.accessors, primitive.indices, "accessors", where).componentType, where + ".indices");
@@ -169,7 +166,43 @@ void append(const tinygltf::Model& model, const Instance& instance, Model& out, 
   } else {
     for (std::uint32_t i = 0; i < vertexCount; ++i) corners.push_back(i);
   }
-  std::vector<std::uint32_t> triangles = trianglesOf(corners, primitive.mode);
+  return trianglesOf(corners, primitive.mode);
+}
+
+/// Whether `extras` have a mark.
+bool isMarked(const tinygltf::Value& extras, const char* name) {
+  if (!extras.IsObject() || !extras.Has(name)) return false;
+  const tinygltf::Value& mark = extras.Get(name);
+  return mark.IsBool() && mark.Get<bool>();
+}
+
+/// Whether the `extras` of a primitive or its material say that a transfer added it, to show its paint.
+bool isOverlay(const tinygltf::Value& extras) { return isMarked(extras, "cagecastOverlay"); }
+
+/// The primitive that an overlay is drawn in place of triangles of, which lacks these; null if there is none, or tools
+/// have changed the mesh.
+const tinygltf::Primitive* baseOf(const tinygltf::Primitive& overlay, const tinygltf::Mesh& mesh) {
+  if (!isOverlay(overlay.extras) || !overlay.extras.Has("cagecastInPlaceOf")) return nullptr;
+  const tinygltf::Value& number = overlay.extras.Get("cagecastInPlaceOf");
+  if (!number.IsInt() || number.Get<int>() < 0) return nullptr;
+  const auto at = static_cast<std::size_t>(number.Get<int>());
+  if (at >= mesh.primitives.size()) return nullptr;
+  const bool isShared = attributeOf(mesh.primitives[at], "POSITION") == attributeOf(overlay, "POSITION");
+  return isShared ? &mesh.primitives[at] : nullptr;
+}
+
+void append(const tinygltf::Model& model, const Instance& instance, Model& out, bool& haveUvs) {
+  const auto& [mesh, primitive, where, name, world, node, skin, weights] = instance;
+  const UvLayout layout = uvLayoutOf(model, primitive);
+  const int texcoord = attributeOf(primitive, layout.set);
+  const std::vector<double> local = shownPositions(model, instance);
+  const std::size_t vertexCount = local.size() / 3;
+  std::vector<std::uint32_t> triangles = trianglesIn(model, primitive, where, vertexCount);
+  for (const tinygltf::Primitive& other : mesh.primitives) {
+    if (baseOf(other, mesh) != &primitive) continue;
+    const std::vector<std::uint32_t> more = trianglesIn(model, other, where, vertexCount);
+    triangles.insert(triangles.end(), more.begin(), more.end());
+  }
   if (world.determinant() < 0)
     for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) std::swap(triangles[i + 1], triangles[i + 2]);
 
@@ -241,13 +274,6 @@ void eachNode(const tinygltf::Model& model, const std::vector<int>& roots, const
   }
 }
 
-/// Whether the `extras` of a primitive or its material say that a transfer added it, to show its paint.
-bool isOverlay(const tinygltf::Value& extras) {
-  if (!extras.IsObject() || !extras.Has("cagecastOverlay")) return false;
-  const tinygltf::Value& mark = extras.Get("cagecastOverlay");
-  return mark.IsBool() && mark.Get<bool>();
-}
-
 /// The accessor of an attribute of a node's instances; −1 if it does not have it.
 int instanceAttribute(const tinygltf::Node& node, const char* name) {
   const auto extension = node.extensions.find(kInstancing);
@@ -290,16 +316,19 @@ std::vector<Instance> instancesIn(const tinygltf::Model& model) {
         fail("meshes[", node.mesh, "].primitives[", p, "].mode = ", primitive.mode, " is not within 0..6");
       if (primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES) continue;  // Points and lines.
       if (attributeOf(primitive, "POSITION") < 0) continue;  // glTF allows it, and asks to draw nothing.
-      if (isOverlay(primitive.extras)) continue;
       std::string name = !node.name.empty() ? node.name : !mesh.name.empty() ? mesh.name : nodeName;
+      tinygltf::Value marks;
       if (primitive.material >= 0) {
         const tinygltf::Material& material = element(model.materials, primitive.material, "materials", nodeName);
-        if (isOverlay(material.extras)) continue;
+        marks = material.extras;
         if (!material.name.empty()) name += "/" + material.name;
       }
+      // One in place of triangles that cannot be given back is a part of the model.
+      const bool isPart = isMarked(marks, "cagecastInPlace") && baseOf(primitive, mesh) == nullptr;
+      if ((isOverlay(primitive.extras) || isOverlay(marks)) && !isPart) continue;
       const std::string where = "meshes[" + std::to_string(node.mesh) + "].primitives[" + std::to_string(p) + "]";
       instances.push_back(
-          {primitive, where, name, world, number, node.skin, node.weights.empty() ? mesh.weights : node.weights});
+          {mesh, primitive, where, name, world, number, node.skin, node.weights.empty() ? mesh.weights : node.weights});
     }
   });
   return instances;

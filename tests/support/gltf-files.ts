@@ -392,6 +392,24 @@ const cases: Record<string, Omit<GltfFile, 'name'>> = {
     expected: plain,
   },
 
+  'an-overlay-in-place-of-triangles': {
+    bytes: file((maker, primitive) => {
+      const all = maker.json.meshes[0]!.primitives;
+      maker.json.materials = [{ extras: { cagecastOverlay: true, cagecastInPlace: true } }];
+      const extras = { cagecastOverlay: true, cagecastInPlaceOf: 0 };
+      all.push({ ...primitive, indices: maker.accessor(solid.indices.subarray(3), 'SCALAR'), extras, material: 0 });
+      primitive.indices = maker.accessor(solid.indices.subarray(0, 3), 'SCALAR');
+    }),
+    expected: plain,
+  },
+  'an-overlay-in-place-of-triangles-that-are-lost': {
+    bytes: file((maker, primitive) => {
+      maker.json.materials = [{ extras: { cagecastOverlay: true, cagecastInPlace: true } }];
+      Object.assign(primitive, { material: 0, extras: { cagecastOverlay: true, cagecastInPlaceOf: 5 } });
+    }),
+    expected: plain,
+  },
+
   // What is not drawn
   'parts-that-are-not-drawn': {
     bytes: file((maker, primitive) => {

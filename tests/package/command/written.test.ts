@@ -5,6 +5,7 @@ import { test } from 'node:test';
 import type { GLTF } from '@gltf-transform/core';
 import { transfer } from 'cagecast';
 import { cagecast as cagecastTransform } from 'cagecast/gltf';
+import { PNG } from 'pngjs';
 import { fails, json, ok } from '../../support/command.js';
 import {
   assertNear,
@@ -164,6 +165,74 @@ test('an overlay is lit by the maps of its base, which lie as they did: normals,
     [0.5, 1, 0.7],
   );
   assert.equal(material.getMetallicRoughnessTextureInfo()!.getTexCoord(), 2);
+});
+
+test('what the paint hides is drawn in place of the surface; what it shows through, over it', async () => {
+  // Opaque but for its right half.
+  const image = new PNG({ width: 16, height: 16 });
+  image.data.forEach((_, i) => (image.data[i] = i % 4 === 3 && (i >> 2) % 16 >= 8 ? 100 : 255));
+  write('half.png', PNG.sync.write(image));
+  const { parts, triangles } = await json<Report>('transfer target.glb --cage cage.glb --texture half.png -o half.glb');
+  assert.equal(parts[0]!.overlayTriangles, triangles.cosmetic);
+  assert.deepEqual(
+    (await validate('half.glb')).filter((line) => !line.includes('UNUSED_OBJECT')),
+    [],
+  );
+  const { meshes, materials, accessors } = jsonOf('half.glb');
+  const [base, first, second] = meshes![0]!.primitives;
+  const counts = [base, first, second].map((one) => accessors![one!.indices!]!.count / 3);
+  assert.deepEqual(
+    [first, second].map((one) => materials![one!.material!]!.alphaMode),
+    [undefined, 'BLEND'],
+  );
+  assert.equal(counts[0]! + counts[1]!, target.indices.length / 3);
+  assert.equal(counts[1]! + counts[2]!, triangles.cosmetic);
+  assert.ok(counts[1]! > 0 && counts[2]! > 0, String(counts));
+
+  // Whoever reads it again has the whole model, and another paint takes the place of this one.
+  const again = await json<Report>('transfer half.glb --cage cage.glb --texture half.png -o again.glb');
+  assert.deepEqual(again.triangles, triangles);
+  const repainted = jsonOf('again.glb');
+  assert.deepEqual(
+    repainted.meshes![0]!.primitives.map(({ indices }) => repainted.accessors![indices!]!.count / 3),
+    counts,
+  );
+  await ok('transfer half.glb --cage cage.glb -o bare.glb');
+  const bare = jsonOf('bare.glb');
+  assert.deepEqual(
+    bare.meshes![0]!.primitives.map(({ indices }) => bare.accessors![indices!]!.count),
+    [target.indices.length],
+  );
+  const document = await io.read('half.glb');
+  await document.transform(cagecastTransform({ cage }));
+  const [only, ...others] = primitivesOf(document);
+  assert.deepEqual([only!.getIndices()!.getCount(), others.length], [target.indices.length, 0]);
+});
+
+test('paint is as metallic as its base, and does not hide its glow', async () => {
+  writeChanged('metal.glb', readFileSync('target.glb'), (own) => {
+    own.materials = [
+      {
+        emissiveFactor: [0.5, 0.25, 0],
+        extensions: { KHR_materials_emissive_strength: { emissiveStrength: 3 } },
+        pbrMetallicRoughness: { metallicFactor: 0.75, roughnessFactor: 0.25 },
+      },
+    ];
+    own.extensionsUsed = ['KHR_materials_emissive_strength'];
+    own.meshes![0]!.primitives[0]!.material = 0;
+  });
+  await ok('transfer metal.glb --cage cage.glb --texture paint.png -o metal-out.glb');
+  const { materials } = jsonOf('metal-out.glb');
+  const transformed = await io.read('metal.glb');
+  await transformed.transform(cagecastTransform({ cage, texture: paint }));
+  const material = primitivesOf(transformed).find(isOverlay)!.getMaterial()!;
+  assert.deepEqual([material.getMetallicFactor(), material.getEmissiveFactor()], [0.75, [0.5, 0.25, 0]]);
+  assert.ok(material.getExtension('KHR_materials_emissive_strength'));
+  const { emissiveFactor, extensions, pbrMetallicRoughness } = materials![1]!;
+  assert.deepEqual(
+    [emissiveFactor, extensions, pbrMetallicRoughness!.metallicFactor],
+    [[0.5, 0.25, 0], { KHR_materials_emissive_strength: { emissiveStrength: 3 } }, 0.75],
+  );
 });
 
 /** A target with a bit of everything. */

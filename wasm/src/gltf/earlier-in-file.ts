@@ -1,6 +1,7 @@
 import type { GLTF } from '@gltf-transform/core';
-import { isOverlay } from '../scene/overlay-mark.js';
+import { isOverlay, overlaysInPlaceOf } from '../scene/overlay-mark.js';
 import { extensionsByType, type GlbWriter } from './glb-writer.js';
+import type { GltfFile } from './open-gltf.js';
 import { dropProperties } from './output/vrm-materials.js';
 import { isOfTransfer } from './overlay.js';
 
@@ -11,15 +12,28 @@ export function removeAttributes({ json }: GlbWriter, primitives: readonly GLTF.
       if (isOfTransfer(semantic, json.accessors![accessor]!.extras)) delete attributes[semantic];
 }
 
+/** Gives primitives the triangles back that overlays have in their place. */
+function giveBack(writer: GlbWriter, { accessors }: GltfFile, mesh: GLTF.IMesh): void {
+  for (const primitive of mesh.primitives) {
+    const overlays = overlaysInPlaceOf(primitive, mesh);
+    if (overlays.length === 0) continue;
+    const all = [primitive, ...overlays].flatMap(({ indices }) => [...accessors[indices!]!.getArray()!]);
+    const { count } = writer.json.accessors![primitive.attributes['POSITION']!]!;
+    primitive.indices = writer.addIndices(Uint32Array.from(all), count);
+  }
+}
+
 /**
  * Removes the overlays of earlier transfers from meshes, with the materials and images that only they used. Of those, only the last
  * ones of their lists go, as extensions may know the others by their numbers.
  * @returns how many overlays.
  */
-export function removeOverlays(writer: GlbWriter, meshes: Iterable<GLTF.IMesh>): number {
+export function removeOverlays(writer: GlbWriter, file: GltfFile, meshes: Iterable<GLTF.IMesh>): number {
   const { json } = writer;
-  const removed = [...new Set(meshes)].flatMap(({ primitives }) => {
-    const overlays = primitives.filter((primitive) => isOverlay(primitive, json));
+  const removed = [...new Set(meshes)].flatMap((mesh) => {
+    const { primitives } = mesh;
+    giveBack(writer, file, mesh);
+    const overlays = primitives.filter((primitive) => isOverlay(primitive, mesh, json));
     if (overlays.length > 0) primitives.splice(0, Infinity, ...primitives.filter((one) => !overlays.includes(one)));
     return overlays;
   });

@@ -13,6 +13,9 @@ export const uvsMark = { cagecastUvs: true } as const;
 export const isOfTransfer = (semantic: string, extras: object | undefined): boolean =>
   /^_NCZ(_\d+)?$/.test(semantic) || (extras as Partial<typeof uvsMark> | undefined)?.cagecastUvs === true;
 
+/** Whether a paint hides all of a triangle. @param uvs  2 per vertex. */
+export type Hides = (uvs: ArrayLike<number>, a: number, b: number, c: number) => boolean;
+
 /** The texture to show: an image file's bytes, in the cage's UVs. */
 export interface Paint {
   name: string;
@@ -20,6 +23,11 @@ export interface Paint {
   bytes: Uint8Array;
   /** By default, all triangles show it. */
   area?: PaintArea | undefined;
+  /**
+   * Whether it hides all of a triangle, whose place the overlay then takes: it is drawn as the surface itself, before what is transparent.
+   * Default: all of the overlay is blended
+   */
+  hides?: Hides | undefined;
 }
 
 /**
@@ -78,13 +86,6 @@ export function isShown(area: PaintArea | undefined, uvs: Float32Array, a: numbe
   return tileAt((u[0]! + u[1]! + u[2]!) / 3, (v[0]! + v[1]! + v[2]!) / 3) === area.tile;
 }
 
-/** The corners of those triangles that show a texture. @param uvs  2 per vertex. */
-export const cornersIn = (area: PaintArea | undefined, corners: Uint32Array, uvs: Float32Array): Uint32Array =>
-  corners.filter((_, i) => {
-    const first = i - (i % 3);
-    return isShown(area, uvs, corners[first]!, corners[first + 1]!, corners[first + 2]!);
-  });
-
 /** The corners of those triangles that may be painted; `cosmetic` is 1 per triangle. */
 export function cosmeticCorners(indices: Uint32Array, cosmetic: Uint8Array): Uint32Array {
   return indices.filter((_, corner) => cosmetic[Math.floor(corner / 3)] === 1);
@@ -106,17 +107,24 @@ export const isMorphed = (semantic: string, hasNormals: boolean): boolean =>
 
 /** What an overlay's material has of the material below. */
 export interface Finish {
+  mode: 'OPAQUE' | 'BLEND';
+  /** Whether it is in the place of the surface. */
+  inPlace: boolean;
   roughness: number;
+  metalness: number;
   doubleSided: boolean;
   /** Its opacity, if it is transparent. */
   alpha: number;
   unlit: boolean;
 }
 
-/** The maps that light a material, and by which UV sets of its base they lie on an overlay: its own sets from `TEXCOORD_1` on. */
+/** The maps that light a material, its own light, and by which UV sets of its base they lie on an overlay: its own sets from `TEXCOORD_1` on. */
 export interface BaseMaps {
-  maps: Pick<GLTF.IMaterial, 'normalTexture' | 'occlusionTexture'>;
-  metallic: Pick<GLTF.IMaterialPbrMetallicRoughness, 'metallicRoughnessTexture' | 'metallicFactor'>;
+  maps: Pick<
+    GLTF.IMaterial,
+    'normalTexture' | 'occlusionTexture' | 'emissiveTexture' | 'emissiveFactor' | 'extensions'
+  >;
+  rough: Pick<GLTF.IMaterialPbrMetallicRoughness, 'metallicRoughnessTexture'>;
   sets: string[];
 }
 
@@ -132,14 +140,34 @@ export function baseMaps(material: GLTF.IMaterial | undefined, has: (semantic: s
     delete (own.extensions?.['KHR_texture_transform'] as { texCoord?: number } | undefined)?.texCoord;
     return own;
   };
-  const { metallicRoughnessTexture: rough, metallicFactor = 1 } = material?.pbrMetallicRoughness ?? {};
   const [normalTexture, occlusionTexture] = [on(material?.normalTexture), on(material?.occlusionTexture)];
-  const metallicRoughnessTexture = on(rough);
+  const metallicRoughnessTexture = on(material?.pbrMetallicRoughness?.metallicRoughnessTexture);
   return {
-    maps: { ...(normalTexture && { normalTexture }), ...(occlusionTexture && { occlusionTexture }) },
-    metallic: metallicRoughnessTexture ? { metallicRoughnessTexture, metallicFactor } : { metallicFactor: 0 },
+    maps: {
+      ...(normalTexture && { normalTexture }),
+      ...(occlusionTexture && { occlusionTexture }),
+      ...glowOf(material, on),
+    },
+    rough: metallicRoughnessTexture ? { metallicRoughnessTexture } : {},
     sets,
   };
 }
 
+/** The light that a material has of its own, which paint does not hide. */
+function glowOf(
+  { emissiveFactor, emissiveTexture, extensions }: GLTF.IMaterial = {},
+  on: (info: GLTF.ITextureInfo | undefined) => GLTF.ITextureInfo | undefined,
+): Pick<BaseMaps['maps'], 'emissiveFactor' | 'emissiveTexture' | 'extensions'> {
+  if (!emissiveFactor?.some((one) => one > 0) || extensions?.[unlitExtension] !== undefined) return {};
+  const texture = on(emissiveTexture);
+  if (emissiveTexture && !texture) return {};
+  const strength = extensions?.[emissiveExtension];
+  return {
+    emissiveFactor,
+    ...(texture && { emissiveTexture: texture }),
+    ...(strength !== undefined && { extensions: { [emissiveExtension]: strength } }),
+  };
+}
+
 export const unlitExtension = 'KHR_materials_unlit';
+export const emissiveExtension = 'KHR_materials_emissive_strength';

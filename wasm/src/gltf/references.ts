@@ -61,9 +61,8 @@ export const hasUnknownReferences = ({ extensionsUsed = [] }: GLTF.IGLTF): boole
 export function addedByTransfer(json: GLTF.IGLTF): GLTF.IGLTF {
   const { meshes = [], accessors = [], images = [] } = json;
   const isAdded = ([semantic, accessor]: [string, number]) => isOfTransfer(semantic, accessors[accessor]!.extras);
-  const primitives = meshes
-    .flatMap((mesh) => mesh.primitives)
-    .map((primitive): GLTF.IMeshPrimitive => {
+  const primitives = meshes.flatMap((mesh) =>
+    mesh.primitives.map((primitive): GLTF.IMeshPrimitive => {
       const { attributes, indices, extensions } = primitive;
       const isDraco = dracoOf(primitive) !== undefined;
       const isInStream = (accessor: number) => {
@@ -72,10 +71,11 @@ export function addedByTransfer(json: GLTF.IGLTF): GLTF.IGLTF {
       };
       return {
         attributes: Object.fromEntries(Object.entries(attributes).filter((one) => isAdded(one) || isInStream(one[1]))),
-        ...(indices !== undefined && (isOverlay(primitive, json) || isInStream(indices)) && { indices }),
+        ...(indices !== undefined && (isOverlay(primitive, mesh, json) || isInStream(indices)) && { indices }),
         ...(extensions && { extensions }),
       };
-    });
+    }),
+  );
   const added = { asset: { version: '2.0' }, meshes: [{ primitives }], images };
   return { ...added, accessors: [...numbersOf(eachAccessor, added)].map((accessor) => accessors[accessor]!) };
 }

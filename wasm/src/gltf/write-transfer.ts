@@ -2,7 +2,7 @@ import type { GLTF } from '@gltf-transform/core';
 import { applySplit, ruleOf, splitSkin } from '../parts/blend.js';
 import type { PreparedPart } from '../parts/prepare.js';
 import type { Extracted, Part } from '../scene/extract.js';
-import { overlayMark } from '../scene/overlay-mark.js';
+import { type InPlace, overlayMark } from '../scene/overlay-mark.js';
 import { dracoOf } from './checks/check-geometry.js';
 import { removeAttributes, removeOverlays } from './earlier-in-file.js';
 import { type Form, GlbWriter } from './glb-writer.js';
@@ -10,17 +10,17 @@ import type { GltfFile } from './open-gltf.js';
 import { dracoExtension, markForDraco, unmarkDraco } from './output/draco-marks.js';
 import type { NamedFile } from './output/pack-gltf.js';
 import { separateMeshes } from './output/separate-meshes.js';
-import { addMaterial } from './output/vrm-materials.js';
+import { addMaterial, isOutlined } from './output/vrm-materials.js';
 import {
   type BaseMaps,
   baseMaps,
-  cornersIn,
-  cosmeticCorners,
   type Finish,
   freeUvSet,
   isMorphed,
   isOverlaid,
+  isShown,
   type Paint,
+  type PaintArea,
   unlitExtension,
   uvsMark,
   zoneAttribute,
@@ -80,7 +80,7 @@ export async function writeTransfer(
   const meshOfNode = separateMeshes(json, parts);
   const meshes = parts.map(({ node }) => json.meshes![meshOfNode.get(node)!]!);
   const primitives = parts.map(({ primitive }, p) => meshes[p]!.primitives[primitive]!);
-  const replaced = isFurther ? 0 : removeOverlays(writer, meshes);
+  const replaced = isFurther ? 0 : removeOverlays(writer, file, meshes);
   if (!isFurther) removeAttributes(writer, primitives);
   const overlays = paints.map((paint) => new OverlayWriter(writer, paint));
 
@@ -157,20 +157,36 @@ function addToGroup(
   members.forEach((member, m) => {
     const { primitive, primitives, cosmeticTriangles, added } = member;
     if (hasAttributes) Object.assign(primitive.attributes, attributes);
-    const all = cosmeticCorners(shared.indices[m]!, cosmeticTriangles);
+    const isReplaceable = mayReplace(writer.json, primitive);
+    const isTaken = new Uint8Array(cosmeticTriangles.length);
+    let left = isTaken.length;
+    const base = primitives.indexOf(primitive);
     for (const overlay of overlays) {
-      const corners = cornersIn(overlay.paint.area, all, shared.uvs);
-      if (corners.length === 0) continue;
-      primitives.push(overlay.primitive(primitive, corners, attributes[uvSet]!));
-      added.overlayTriangles += corners.length / 3;
+      const { area, hides } = overlay.paint;
+      const triangles = trianglesOf(shared.indices[m]!, cosmeticTriangles, area, shared.uvs);
+      if (triangles.length === 0) continue;
+      const hidden = triangles.filter(([, corners]) => isReplaceable && hides?.(shared.uvs, ...corners));
+      // A primitive has at least one triangle.
+      if (hidden.length === left) hidden.pop();
+      left -= hidden.length;
+      for (const [t] of hidden) isTaken[t] = 1;
+      const rest = triangles.filter(([t]) => !isTaken[t]);
+      for (const [some, inPlaceOf] of [[hidden, base], [rest]] as const)
+        if (some.length > 0)
+          primitives.push(overlay.primitive(primitive, cornersOf(some), attributes[uvSet]!, inPlaceOf));
+      added.overlayTriangles += triangles.length;
       added.fillsCutOuts = cutsOut(writer.json.materials?.[primitive.material ?? -1]);
     }
     added.uvSet = uvSet;
     added.splitVertices = copies;
     copies = 0; // counted once
     // Draco's streams are of indexed triangles.
-    if (!isNew && (primitive.indices !== undefined || !dracoOf(primitive))) return;
-    primitive.indices = writer.addIndices(shared.indices[m]!, shared.sources.length);
+    const isWhole = left === isTaken.length;
+    if (!isNew && isWhole && (primitive.indices !== undefined || !dracoOf(primitive))) return;
+    primitive.indices = writer.addIndices(
+      shared.indices[m]!.filter((_, i) => !isTaken[Math.floor(i / 3)]),
+      shared.sources.length,
+    );
     delete primitive.mode; // strips and fans have become lists
   });
 }
@@ -178,6 +194,35 @@ function addToGroup(
 /** Whether the alpha of its texture may leave parts of a material out, which core glTF cannot say of an overlay. */
 const cutsOut = ({ alphaMode, pbrMetallicRoughness }: GLTF.IMaterial = {}): boolean =>
   alphaMode === 'MASK' || (alphaMode === 'BLEND' && pbrMetallicRoughness?.baseColorTexture !== undefined);
+
+/**
+ * Whether overlays can be drawn in place of triangles of a primitive. Not where its texture may be transparent, where its outline is drawn
+ * by its triangles, and where these are in a stream of Draco.
+ */
+function mayReplace(json: GLTF.IGLTF, primitive: GLTF.IMeshPrimitive): boolean {
+  const material = json.materials?.[primitive.material ?? -1];
+  return dracoOf(primitive) === undefined && !cutsOut(material) && !isOutlined(json, primitive.material);
+}
+
+/** A triangle: its number, and its corners. */
+type Triangle = [number: number, corners: [number, number, number]];
+
+/** The triangles that may be painted, and show a texture. */
+function trianglesOf(
+  indices: Uint32Array,
+  cosmetic: Uint8Array,
+  area: PaintArea | undefined,
+  uvs: Float32Array,
+): Triangle[] {
+  const out: Triangle[] = [];
+  cosmetic.forEach((isCosmetic, t) => {
+    const corners: Triangle[1] = [indices[3 * t]!, indices[3 * t + 1]!, indices[3 * t + 2]!];
+    if (isCosmetic && isShown(area, uvs, ...corners)) out.push([t, corners]);
+  });
+  return out;
+}
+
+const cornersOf = (triangles: readonly Triangle[]) => Uint32Array.from(triangles.flatMap(([, corners]) => corners));
 
 /** Adds new vertices, blends and copies, to all attributes and morph targets that primitives share. */
 function rewriteAttributes(
@@ -253,8 +298,12 @@ class OverlayWriter {
     this.paint = paint;
   }
 
-  /** A primitive of some triangles of `base`, with the same vertices, skin and morph targets. @param uvs  Its UVs' accessor. */
-  primitive(base: GLTF.IMeshPrimitive, corners: Uint32Array, uvs: number): GLTF.IMeshPrimitive {
+  /**
+   * A primitive of some triangles of `base`, with the same vertices, skin and morph targets.
+   * @param uvs        Its UVs' accessor.
+   * @param inPlaceOf  The number of `base`, if this does not have them any more.
+   */
+  primitive(base: GLTF.IMeshPrimitive, corners: Uint32Array, uvs: number, inPlaceOf?: number): GLTF.IMeshPrimitive {
     const attributes: Record<string, number> = { TEXCOORD_0: uvs };
     for (const [semantic, accessor] of Object.entries(base.attributes))
       if (isOverlaid(semantic)) attributes[semantic] = accessor;
@@ -266,12 +315,12 @@ class OverlayWriter {
     return {
       attributes,
       indices: this.#writer.addIndices(corners, count),
-      material: this.#material(base, lit),
+      material: this.#material(base, lit, inPlaceOf !== undefined),
       ...(base.targets && {
         targets: base.targets.map((deltas) => this.#morph(deltas, 'NORMAL' in attributes, count)),
       }),
       ...(dracoOf(base) && { extensions: { [dracoExtension]: dracoOf(base) } }),
-      extras: overlayMark,
+      extras: { ...overlayMark, ...(inPlaceOf !== undefined && ({ cagecastInPlaceOf: inPlaceOf } satisfies InPlace)) },
     };
   }
 
@@ -290,18 +339,22 @@ class OverlayWriter {
   }
 
   /** A material that shows the texture, lit as the base's material is. */
-  #material(base: GLTF.IMeshPrimitive, { maps, metallic }: BaseMaps): number {
+  #material(base: GLTF.IMeshPrimitive, { maps, rough }: BaseMaps, inPlace: boolean): number {
     const { json } = this.#writer;
     const source = this.#materialOf(base);
-    const { roughnessFactor = 1, baseColorFactor } = source?.pbrMetallicRoughness ?? {};
+    const { roughnessFactor = 1, metallicFactor = 1, baseColorFactor } = source?.pbrMetallicRoughness ?? {};
+    const isClear = source?.alphaMode === 'BLEND';
     const finish: Finish = {
+      mode: inPlace && !isClear ? 'OPAQUE' : 'BLEND',
+      inPlace,
       roughness: roughnessFactor,
+      metalness: metallicFactor,
       doubleSided: source?.doubleSided ?? false,
-      alpha: source?.alphaMode === 'BLEND' ? (baseColorFactor?.[3] ?? 1) : 1,
+      alpha: isClear ? (baseColorFactor?.[3] ?? 1) : 1,
       unlit: source?.extensions?.[unlitExtension] !== undefined,
     };
-    const key = JSON.stringify([finish, maps, metallic]);
-    const made = () => ({ ...this.#made(finish, metallic), ...maps });
+    const key = JSON.stringify([finish, maps, rough]);
+    const made = () => ({ ...this.#made(finish, rough), ...maps });
     const number = this.#materials.get(key) ?? addMaterial(json, made());
     this.#materials.set(key, number);
     return number;
@@ -309,17 +362,21 @@ class OverlayWriter {
 
   #materialOf = ({ material = -1 }: GLTF.IMeshPrimitive) => this.#writer.json.materials?.[material];
 
-  #made({ roughness, doubleSided, alpha, unlit }: Finish, metallic: BaseMaps['metallic']): GLTF.IMaterial {
+  #made(
+    { mode, inPlace, roughness, metalness, doubleSided, alpha, unlit }: Finish,
+    rough: BaseMaps['rough'],
+  ): GLTF.IMaterial {
     return {
       name: 'Cagecast overlay',
-      extras: overlayMark,
-      alphaMode: 'BLEND',
+      extras: { ...overlayMark, ...(inPlace && { cagecastInPlace: true }) },
+      ...(mode !== 'OPAQUE' && { alphaMode: mode }),
       doubleSided,
       pbrMetallicRoughness: {
         baseColorTexture: { index: this.#shown() },
         ...(alpha < 1 && { baseColorFactor: [1, 1, 1, alpha] }),
         roughnessFactor: roughness,
-        ...metallic,
+        metallicFactor: metalness,
+        ...rough,
       },
       // The base has it, so the file names it already.
       ...(unlit && { extensions: { [unlitExtension]: {} } }),

@@ -21,7 +21,7 @@ import { placeMeshes, type Skin } from '../parts/skin.js';
 import { type AccessorData, decodeFloats } from './accessor.js';
 import { InputError, naming } from './input-error.js';
 import { firstInstance, instancing } from './instancing.js';
-import { isOverlay } from './overlay-mark.js';
+import { isOverlay, overlaysInPlaceOf } from './overlay-mark.js';
 import {
   decodePositions,
   decodeTriangles,
@@ -116,7 +116,7 @@ export interface Drawn extends Pick<Extracted, 'origin'> {
 export function extractDrawn(source: SceneSource, whichCount?: Exclude<WhichCount, 'cage'>): Drawn {
   return naming(source.path, () => {
     const all = listParts(source, true);
-    const isOver = (part: Part) => isOverlay(primitiveOf(source, part), source.json);
+    const isOver = (part: Part) => isOverlay(primitiveOf(source, part), source.json.meshes![part.mesh]!, source.json);
     const [overlays, own] = [all.filter(isOver), all.filter((part) => !isOver(part))];
     const fail = (text: string) => new InputError(text);
     const chosen = new Set(
@@ -216,7 +216,7 @@ function listParts(source: SceneSource, withOverlays = false): Part[] {
     const place = isUnnumbered ? `"${nodeDef.name || meshDef.name}"` : `nodes[${node}]`;
     if (instances !== undefined) matrix = multiply(matrix, instanceOf(source, place, instances.attributes));
     meshDef.primitives.forEach((primitive, p) => {
-      if ((!withOverlays && isOverlay(primitive, json)) || !hasTriangles(primitive.mode ?? 4)) return;
+      if ((!withOverlays && isOverlay(primitive, meshDef, json)) || !hasTriangles(primitive.mode ?? 4)) return;
       const ref = { mesh: nodeDef.mesh!, primitive: p };
       const accessor = accessorOf(source, ref, 'POSITION');
       if (accessor === undefined) return;
@@ -231,7 +231,7 @@ function listParts(source: SceneSource, withOverlays = false): Part[] {
         primitives: meshDef.primitives.length,
         matrix,
         positions,
-        indices: readTriangles(source, ref, positions.length / 3),
+        indices: readTriangles(source, ref, positions.length / 3, withOverlays),
       });
       parts.push({ ...piece, node, ...ref });
     });
@@ -305,8 +305,19 @@ function requireWhole({ json: { accessors = [], meshes } }: SceneSource, ref: Pr
   }
 }
 
-/** The triangles of a primitive, strips and fans expanded. */
-function readTriangles(source: SceneSource, ref: PrimitiveRef, vertexCount: number): Uint32Array {
+/** The triangles of a primitive, strips and fans expanded, and those that overlays have in their place. */
+function readTriangles(source: SceneSource, ref: PrimitiveRef, vertexCount: number, isBare: boolean): Uint32Array {
+  const own = readOwnTriangles(source, ref, vertexCount);
+  const mesh = source.json.meshes![ref.mesh]!;
+  const overlays = isBare ? [] : overlaysInPlaceOf(primitiveOf(source, ref), mesh);
+  if (overlays.length === 0) return own;
+  const all = overlays.map((overlay) =>
+    readOwnTriangles(source, { mesh: ref.mesh, primitive: mesh.primitives.indexOf(overlay) }, vertexCount),
+  );
+  return Uint32Array.from([own, ...all].flatMap((some) => [...some]));
+}
+
+function readOwnTriangles(source: SceneSource, ref: PrimitiveRef, vertexCount: number): Uint32Array {
   const { indices, mode = 4 } = primitiveOf(source, ref);
   const array = source.accessors[indices ?? -1]?.getArray() ?? null;
   if (indices !== undefined && array === null) throw new InputError(`${primitivePath(ref)}.indices has no data`);

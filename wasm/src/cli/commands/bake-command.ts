@@ -179,6 +179,7 @@ async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefin
   const writer = await GlbWriter.from(file, 'keep');
   const overlays = removeOverlays(
     writer,
+    file,
     extracted.parts.map(({ mesh }) => writer.json.meshes![mesh]!),
   );
   const codec = { decode: decodeImage, encode: encodeLike };

@@ -39,7 +39,8 @@ is ./auto. Parts that a cage was made without stay bare, unless --keep names the
 VRM 0, is turned by half if it then fits clearly better; the summary says so.
 OUT: what an earlier transfer added is replaced. Where triangles need different UVs, copies of vertices are added after the others
 (not with --set seams=vertex); --borders cut adds some, too; Draco changes their order. --region adds UVs and zones of its own
-(_NCZ_1, …). An overlay fills what a material cuts out by its alpha (MASK), as between hairs; cagecast bake does not.
+(_NCZ_1, …). An overlay fills what a material cuts out by its alpha (MASK), as between hairs; cagecast bake does not. Triangles
+that the texture hides are drawn by the overlay alone: it is opaque there, so that hair before it stays before it.
 uvBounds and referenceCage are about --cage alone. Within the bounds, the UVs in OUT are 0..1. A triangle across them is painted
 whole; zones do not depend on them.
 <UDIM> stands for the tiles of the cage's UVs: 1001, 1002 to its right, 1011 above. A triangle shows the tile of its UVs' centre.

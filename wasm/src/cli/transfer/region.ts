@@ -3,10 +3,12 @@ import type { CutTarget, TransferResult } from '../../api/index.js';
 import { dracoOf, meshoptView } from '../../gltf/checks/check-geometry.js';
 import type { Form } from '../../gltf/glb-writer.js';
 import { isShown, type Paint, type PaintArea, zoneAttribute } from '../../gltf/overlay.js';
+import { opacityOf } from '../../gltf/paint/opacity.js';
 import { preparePiece } from '../../gltf/primitive-group.js';
 import { writeTransfer } from '../../gltf/write-transfer.js';
 import { naming } from '../../scene/input-error.js';
 import { packDraco } from '../io/draco-write.js';
+import { decodeImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import { isByTemplate, type TransferCommand, texturePath } from '../model/sources.js';
 import { boundsOfTile, isTiled, type UvBounds } from '../model/uv-bounds.js';
@@ -63,6 +65,8 @@ export async function transferRegion(
   const paint = known ?? (path && !isTiled(path) ? await readPaint(path, reading.limits) : undefined);
   const areas: PaintArea[] = uvBounds ? ['bounded'] : tiles.map(({ tile }) => ({ tile }));
   const paints: Paint[] = (paint ? [paint] : tiles).map((one, i) => ({ ...one, area: areas[i] }));
+  // Triangles that are moved to an overlay change the order by which those that are painted are known.
+  if (output !== undefined && isLast) for (const one of paints) one.hides = await opacityOf(one, decodeImage);
   const cutMesh = output !== undefined && command.borders === 'cut' ? cutTarget(run, io) : undefined;
   const shown = shownTriangles(areas, run.result, run.target.extracted.mesh.indices);
   const cut = cutMesh && { ...cutMesh, shown: shownTriangles(areas, cutMesh, cutMesh.indices) };

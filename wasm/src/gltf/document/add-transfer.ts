@@ -19,6 +19,7 @@ import type { Piece } from '../../scene/pieces.js';
 import { uvLayoutOf } from '../../scene/uv-layout.js';
 import {
   cosmeticCorners,
+  emissiveExtension,
   type Finish,
   freeUvSet,
   isMorphed,
@@ -253,7 +254,10 @@ class OverlayWriter {
     const base = primitive.getMaterial();
     const unlit = base?.getExtension<ExtensionProperty>(unlitExtension) ?? null;
     const finish: Finish = {
+      mode: 'BLEND',
+      inPlace: false,
       roughness: base?.getRoughnessFactor() ?? 1,
+      metalness: base?.getMetallicFactor() ?? 1,
       doubleSided: base?.getDoubleSided() ?? false,
       alpha: base?.getAlphaMode() === 'BLEND' ? base.getAlpha() : 1,
       unlit: unlit !== null,
@@ -270,7 +274,7 @@ class OverlayWriter {
       .setAlphaMode('BLEND')
       .setAlpha(finish.alpha)
       .setDoubleSided(finish.doubleSided)
-      .setMetallicFactor(0)
+      .setMetallicFactor(finish.metalness)
       .setRoughnessFactor(finish.roughness)
       .setBaseColorTexture(this.#shown());
     if (unlit) material.setExtension(unlitExtension, unlit);
@@ -327,11 +331,31 @@ function mapsOn(primitive: Primitive, overlay: Primitive): ((material: Material)
     ...on(
       base?.getMetallicRoughnessTexture(),
       base?.getMetallicRoughnessTextureInfo(),
-      (material, texture) =>
-        material
-          .setMetallicRoughnessTexture(texture)
-          .setMetallicFactor(base!.getMetallicFactor())
-          .getMetallicRoughnessTextureInfo()!,
+      (material, texture) => material.setMetallicRoughnessTexture(texture).getMetallicRoughnessTextureInfo()!,
     ),
+    ...glowOn(base, on),
+  ];
+}
+
+/** What gives a material the light that a base has of its own, which paint does not hide. */
+function glowOn(
+  base: Material | null,
+  on: (
+    texture: Texture | null | undefined,
+    info: TextureInfo | null | undefined,
+    set: (material: Material, texture: Texture) => TextureInfo,
+  ) => ((material: Material) => void)[],
+): ((material: Material) => void)[] {
+  if (!base?.getEmissiveFactor().some((one) => one > 0)) return [];
+  const texture = on(
+    base.getEmissiveTexture(),
+    base.getEmissiveTextureInfo(),
+    (material, texture) => material.setEmissiveTexture(texture).getEmissiveTextureInfo()!,
+  );
+  if (base.getEmissiveTexture() && texture.length === 0) return [];
+  const strength = base.getExtension<ExtensionProperty>(emissiveExtension);
+  return [
+    ...texture,
+    (material) => void material.setEmissiveFactor(base.getEmissiveFactor()).setExtension(emissiveExtension, strength),
   ];
 }

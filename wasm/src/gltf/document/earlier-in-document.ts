@@ -1,5 +1,5 @@
 import type { Document, Node, Primitive, Property } from '@gltf-transform/core';
-import { isMarked } from '../../scene/overlay-mark.js';
+import { type InPlace, isMarked } from '../../scene/overlay-mark.js';
 import { isOfTransfer } from '../overlay.js';
 
 /** Disposes an unused property, and then the properties that only it used. */
@@ -26,10 +26,23 @@ export function removeAttributes(document: Document, primitives: readonly Primit
 export function removeOverlays(document: Document, nodes: Iterable<Node>): void {
   for (const node of nodes) {
     const mesh = node.getMesh()!;
-    for (const primitive of mesh.listPrimitives()) {
-      if (!isMarked(primitive.getExtras(), primitive.getMaterial()?.getExtras())) continue;
+    const primitives = mesh.listPrimitives();
+    for (const primitive of primitives) {
+      const ofMaterial = primitive.getMaterial()?.getExtras();
+      if (!isMarked(primitive.getExtras(), ofMaterial)) continue;
+      const base = primitives[(primitive.getExtras() as InPlace).cagecastInPlaceOf ?? -1];
+      if (base && base.getAttribute('POSITION') === primitive.getAttribute('POSITION')) giveBack(base, primitive);
+      else if (ofMaterial?.['cagecastInPlace']) continue; // a part of the model now
       mesh.removePrimitive(primitive);
       disposeUnused(document, primitive);
     }
   }
+}
+
+/** Gives a primitive the triangles back that an overlay has in their place. */
+function giveBack(base: Primitive, overlay: Primitive): void {
+  const [own, more] = [base.getIndices()!, overlay.getIndices()!];
+  const all = Uint32Array.from([...own.getArray()!, ...more.getArray()!]);
+  const isShort = base.getAttribute('POSITION')!.getCount() < 65536;
+  base.setIndices(own.clone().setArray(isShort ? Uint16Array.from(all) : all));
 }

@@ -11,7 +11,7 @@ export function addMaterial(json: GLTF.IGLTF, material: GLTF.IMaterial): number 
   propertiesIn(json)?.push({
     name: material.name,
     shader: 'VRM_USE_GLTFSHADER',
-    renderQueue: 3000, // as of what is transparent
+    renderQueue: material.alphaMode === 'BLEND' ? 3000 : 2000, // as of what is transparent, or not
     floatProperties: {},
     vectorProperties: {},
     textureProperties: {},
@@ -19,6 +19,13 @@ export function addMaterial(json: GLTF.IGLTF, material: GLTF.IMaterial): number 
     tagMap: {},
   });
   return (json.materials ??= []).push(material) - 1;
+}
+
+/** Whether a material draws an outline, by the triangles of what has it: MToon of VRM 0 and VRM 1. */
+export function isOutlined(json: GLTF.IGLTF, material = -1): boolean {
+  const toon = json.materials?.[material]?.extensions?.['VRMC_materials_mtoon'] as { outlineWidthMode?: string };
+  const old = propertiesIn(json)?.[material] as { floatProperties?: { _OutlineWidthMode?: number } } | undefined;
+  return (toon?.outlineWidthMode ?? 'none') !== 'none' || (old?.floatProperties?._OutlineWidthMode ?? 0) !== 0;
 }
 
 /** Drops what VRM 0 says of the last materials, which were dropped. */

@@ -16,12 +16,14 @@ import { isMirrored } from '../../scene/matrix.js';
 import { type Engine, engine } from '../../worker/engine.js';
 import { dracoOf, meshoptView } from '../checks/check-geometry.js';
 import type { MeshoptDecoder } from '../decoders.js';
+import { hostDecode } from '../host-decode.js';
 import { meshoptDecoder, started } from '../meshopt.js';
 import { openGltf } from '../open-gltf.js';
 import { type Paint, paintOf } from '../overlay.js';
 import { bareParts, errorInFile, landmarksIn, movedApart, type ReadModel, turned, withUvs } from '../read-model.js';
 import { writeTransfer } from '../write-transfer.js';
 import { fitTo } from './fit.js';
+import { opacityOf } from './opacity.js';
 
 /** Options of `paintGlb`: those of `transfer`, and what to paint. Of `cage` and `template`, one is needed. */
 export interface PaintOptions
@@ -185,7 +187,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     });
     onProgress(0.95, 'writing');
     const { data } = await writeTransfer(target.file, target.extracted, prepared.parts, {
-      paints: [paint],
+      paints: [{ ...paint, hides: await opacityOf(paint, decode ?? hostDecode()) }],
       form: isDecodedBy(decoders, target) ? 'none' : 'keep',
       hasAttributes: attributes,
     });

@@ -17,6 +17,7 @@ import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/ori
 import { morphed, movePoints } from '../../parts/points.js';
 import { type MorphedPart, posesOf } from '../../parts/poses.js';
 import { bareNames } from '../../parts/template-extras.js';
+import type { InPlace } from '../../scene/overlay-mark.js';
 import { endOf } from '../../scene/pieces.js';
 import { wrong } from '../errors.js';
 import { type Attribute, targetDeltas, valuesOf } from './attributes.js';
@@ -222,7 +223,7 @@ function listParts(
   object.traverse((child) => {
     // Its bones may be elsewhere in the scene.
     for (const bone of (child as SkinnedMesh).skeleton?.bones ?? []) bone.updateWorldMatrix(true, false);
-    if (!isMesh(child) || [child, child.geometry, child.material].flat().some(isMarked)) return;
+    if (!isMesh(child) || ([child, child.geometry, child.material].flat().some(isMarked) && !isLost(child))) return;
     if (isAid(child, object)) return;
     if (!isInstanced(child) || child.count > 0) meshes.push(child);
   });
@@ -289,6 +290,22 @@ function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
  * overlays from a file, from their `extras` (gltf/overlay.ts). Lists of materials may have gaps.
  */
 export const isMarked = (one?: Pick<Object3D, 'userData'>): boolean => one?.userData['cagecastOverlay'];
+
+/**
+ * Lays an overlay of a loaded file that is drawn in place of triangles over them, and gives them back to its base: what is seen stays the
+ * same, and the model is whole. @returns whether the base is lost, so that the overlay is a part of the model.
+ */
+function isLost({ geometry: { userData, index, attributes }, material, parent }: ThreeMesh): boolean {
+  const one = [material].flat()[0]!;
+  const base = parent?.children[(userData as InPlace).cagecastInPlaceOf ?? -1] as ThreeMesh | undefined;
+  const position = attributes['position'];
+  if (base?.geometry?.attributes['position'] !== position) return one.userData['cagecastInPlace'] === true;
+  base!.geometry.setIndex([...base!.geometry.index!.array, ...index!.array]);
+  delete (userData as InPlace).cagecastInPlaceOf;
+  delete one.userData['cagecastInPlace'];
+  Object.assign(one, { transparent: true, depthWrite: false, needsUpdate: true });
+  return false;
+}
 
 const wrongPart = (argument: string, name: string, text: string, at?: number): CagecastError =>
   wrong(`${argument}: ${show(name)} ${text}`, undefined, undefined, { argument, at });
