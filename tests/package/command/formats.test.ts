@@ -113,6 +113,79 @@ test('an OBJ has the materials of its MTL, with the bytes of the images beside i
   assert.deepEqual(missing, [['lost.mtl', 'it was not found']]);
 });
 
+test('an MTL is read as programs write it', async () => {
+  const obj = `mtllib said.mtl\n${['a', 'b', 'c', 'd'].map((name) => `o ${name}\nusemtl ${name}\nf 1/1 2/2 3/3\n`).join('')}`;
+  const vertices = 'v +0.0 0 0\nv +1.0 0 0\nv 0 +1e0 0\nvt 0 0\nvt 1 0\nvt 0 1\n';
+  const mtl = `newmtl a
+\tmap_Kd\t-blendu on -clamp off -mm 0 1 -s 1 1 "my  skin.png"
+newmtl b
+Tr 1.0
+d 1.0
+newmtl c
+map_Kd -s 2 2 skin.png
+newmtl d
+d 0.5
+map_Kd -o 0.5 0 0 -texres 512 -type sphere skin.png
+`;
+  const asked: string[] = [];
+  const files: Record<string, Uint8Array> = { 'said.mtl': Buffer.from(mtl), 'skin.png': png(9), 'my skin.png': png(9) };
+  const glb = await toGlb(Buffer.from(vertices + obj), {
+    read: async (name) => {
+      asked.push(name);
+      return files[name];
+    },
+  });
+  assert.deepEqual([...new Set(asked)].sort(), ['my skin.png', 'said.mtl', 'skin.png']);
+  const { json } = unpackGlb(glb);
+  const of = (name: string) => json.materials!.find((one) => one.name === name)!;
+  assert.ok(of('a').pbrMetallicRoughness!.baseColorTexture && of('c').pbrMetallicRoughness!.baseColorTexture);
+  assert.deepEqual([of('b').alphaMode, of('d').alphaMode], [undefined, 'BLEND']);
+  assert.deepEqual(json.accessors!.find(({ max }) => max)!.max, [1, 1, 0]);
+});
+
+/** A USD of one triangle. @param lines  More of its mesh. */
+const usd = (...lines: string[]) => `#usda 1.0
+def Mesh "head"
+{
+  int[] faceVertexCounts = [3]
+  int[] faceVertexIndices = [0, 1, 2]
+  point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+${lines.map((line) => `  ${line}\n`).join('')}}
+`;
+const vectors = (points: readonly (readonly number[])[]) =>
+  `[${points.map((point) => `(${point.join(', ')})`).join(', ')}]`;
+
+test('a USD whose triangles are clockwise is turned, and its UVs are the set st', async () => {
+  const [own, light] = [
+    vectors([
+      [0, 0],
+      [1, 0],
+      [0, 1],
+    ]),
+    vectors([
+      [0.5, 0.5],
+      [0.6, 0.5],
+      [0.5, 0.6],
+    ]),
+  ];
+  const set = (name: string, values: string) => `texCoord2f[] primvars:${name} = ${values} (\n    interpolation = "vertex"\n  )`;
+  const read = async (...lines: string[]) => {
+    const [primitive] = primitivesOf(await io.readBinary(await toGlb(Buffer.from(usd(...lines)))));
+    const [positions, uvs] = ['POSITION', 'TEXCOORD_0'].map((one) => primitive!.getAttribute(one)!);
+    return [...primitive!.getIndices()!.getArray()!].map((v) =>
+      [...positions!.getElement(v, []).slice(0, 2), ...uvs!.getElement(v, [])].map((x: number) => +x.toFixed(3)),
+    );
+  };
+  const right = await read(set('st1', light), set('st', own));
+  assert.deepEqual(right, [
+    [0, 0, 0, 1],
+    [1, 0, 1, 1],
+    [0, 1, 0, 0],
+  ]);
+  const left = await read('uniform token orientation = "leftHanded"', set('st1', light), set('st', own));
+  assert.deepEqual(left, [right[0], right[2], right[1]]);
+});
+
 test('skins and morph targets of an FBX are kept, by their names', async () => {
   const list = (name: string, values: readonly number[]) =>
     fbxNode(`${name}: *${values.length}`, `a: ${values.join(',')}`);

@@ -59,7 +59,7 @@ const kinds: readonly Known[] = [
 function beginsAsObj(start: string): boolean {
   for (const line of start.replace(/^\xef\xbb\xbf/, '').split('\n')) {
     const text = line.trim();
-    if (text !== '' && !/^(#|(mtllib|o|g|s|usemtl)( |$))/.test(text)) return /^v\s+-?[\d.]/.test(text);
+    if (text !== '' && !/^(#|(mtllib|o|g|s|usemtl)( |$))/.test(text)) return /^v\s+[+-]?[\d.]/.test(text);
   }
   return false;
 }

@@ -1,12 +1,18 @@
-import { ShapeUtils } from 'three';
+import { type BufferGeometry, ShapeUtils } from 'three';
 import { USDComposer } from 'three/addons/loaders/usd/USDComposer.js';
 import { InputError } from '../../../scene/input-error.js';
 import { exceeds } from '../../checks/read-limits.js';
 import type { FormatLimits } from '../limits.js';
 
+/** What USD says of a mesh, by name. */
+type Fields = Record<string, unknown>;
+
 /** What its declarations leave out of the composer of USD. */
 interface Composer {
   compose(data: object, ...rest: unknown[]): object;
+  _buildGeometry(path: string, fields: Fields, ...rest: unknown[]): BufferGeometry;
+  _buildGeometryWithSubsets(fields: Fields, ...rest: unknown[]): BufferGeometry;
+  _findUVPrimvar(fields: Fields): object;
   _triangulateIndicesWithPattern(
     indices: ArrayLike<number> | undefined,
     counts: ArrayLike<number>,
@@ -52,4 +58,32 @@ export function guardLoaders(limits: FormatLimits): void {
       throw new InputError(`faceVertexCounts are ${corners} together, but there are ${given} faceVertexIndices`);
     return triangulate.call(this, indices, counts, ...rest);
   };
+}
+
+/** Mends what three's loader leaves out of USD: triangles that are clockwise, and which of several sets of UVs is the first. */
+export function mendUsd(): void {
+  const prototype = USDComposer.prototype as unknown as Composer;
+  const { _buildGeometry: build, _buildGeometryWithSubsets: buildSubsets, _findUVPrimvar: findUvs } = prototype;
+  prototype._buildGeometry = function (path, fields, ...rest) {
+    return turned(build.call(this, path, fields, ...rest), fields);
+  };
+  prototype._buildGeometryWithSubsets = function (fields, ...rest) {
+    return turned(buildSubsets.call(this, fields, ...rest), fields);
+  };
+  prototype._findUVPrimvar = function (fields) {
+    const name = ['primvars:st', 'primvars:UVMap', 'primvars:st0'].find((one) => fields[one] !== undefined);
+    return name ? { uvs: fields[name], uvIndices: fields[`${name}:indices`] } : findUvs.call(this, fields);
+  };
+}
+
+/** A geometry whose triangles are counter-clockwise; without an index, as the composer makes it. */
+function turned(geometry: BufferGeometry, { orientation }: Fields): BufferGeometry {
+  if (orientation !== 'leftHanded') return geometry;
+  for (const { array, itemSize } of Object.values(geometry.attributes) as { array: Float32Array; itemSize: number }[])
+    for (let t = 0; t + 3 * itemSize <= array.length; t += 3 * itemSize) {
+      const second = array.slice(t + itemSize, t + 2 * itemSize);
+      array.copyWithin(t + itemSize, t + 2 * itemSize, t + 3 * itemSize);
+      array.set(second, t + 2 * itemSize);
+    }
+  return geometry;
 }

@@ -9,8 +9,9 @@ import { exceeds } from '../../checks/read-limits.js';
 import type { Format } from '../../kinds.js';
 import { checkLibraries, checkMaterials, librariesOf } from '../checks/obj.js';
 import { type FormatLimits, mostBytes } from '../limits.js';
-import { guardLoaders } from './guards.js';
+import { guardLoaders, mendUsd } from './guards.js';
 import { kNotFound, withFiles } from './images.js';
+import { plainMaterials } from './mtl.js';
 import { withConvexFaces } from './obj.js';
 import { readPly } from './ply.js';
 import { sceneGlb } from './scene-glb.js';
@@ -29,6 +30,7 @@ export async function readModel(
   { read, onMissing, limits }: Beside,
 ): Promise<Uint8Array<ArrayBuffer> | undefined> {
   guardLoaders(limits);
+  mendUsd();
   let readBytes = bytes.length;
   const counted: Beside['read'] = async (name) => {
     const found = await read(name);
@@ -67,7 +69,7 @@ const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Obj
     return withFiles(
       read,
       async () => {
-        const creator = new MTLLoader().parse(materials, '');
+        const creator = new MTLLoader().parse(plainMaterials(materials), '');
         creator.preload();
         showAll(Object.values(creator.materials));
         return new OBJLoader().setMaterials(creator).parse(withConvexFaces(text));
