@@ -168,7 +168,8 @@ test('a USD whose triangles are clockwise is turned, and its UVs are the set st'
       [0.5, 0.6],
     ]),
   ];
-  const set = (name: string, values: string) => `texCoord2f[] primvars:${name} = ${values} (\n    interpolation = "vertex"\n  )`;
+  const set = (name: string, values: string) =>
+    `texCoord2f[] primvars:${name} = ${values} (\n    interpolation = "vertex"\n  )`;
   const read = async (...lines: string[]) => {
     const [primitive] = primitivesOf(await io.readBinary(await toGlb(Buffer.from(usd(...lines)))));
     const [positions, uvs] = ['POSITION', 'TEXCOORD_0'].map((one) => primitive!.getAttribute(one)!);
@@ -184,6 +185,21 @@ test('a USD whose triangles are clockwise is turned, and its UVs are the set st'
   ]);
   const left = await read('uniform token orientation = "leftHanded"', set('st1', light), set('st', own));
   assert.deepEqual(left, [right[0], right[2], right[1]]);
+});
+
+test('what a USD does not draw is left out by name', async () => {
+  const lines = (name: string, ...more: string[]) =>
+    usd(...more)
+      .replace(/^#usda.*\n/, '')
+      .replace('head', name);
+  const hidden = ['visibility = "invisible"', 'purpose = "guide"', 'purpose = "proxy"'];
+  const others = hidden.map((line, i) =>
+    lines(`off${i}`, line.replace(/^(visibility)/, 'token $1').replace(/^(purpose)/, 'uniform token $1')),
+  );
+  const above = `def Xform "stand"\n{\n  uniform token purpose = "proxy"\n${lines('below')}}\n`;
+  write('hidden.usda', `#usda 1.0\n${lines('head')}${others.join('')}${above}`);
+  const out = await ok('transfer hidden.usda --cage cage.glb -o hidden.glb');
+  assert.match(out, /left out[^\n]*off0[^]*off1[^]*off2[^]*below/);
 });
 
 test('skins and morph targets of an FBX are kept, by their names', async () => {

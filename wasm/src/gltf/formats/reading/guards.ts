@@ -1,4 +1,4 @@
-import { type BufferGeometry, ShapeUtils } from 'three';
+import { type BufferGeometry, type Object3D, ShapeUtils } from 'three';
 import { USDComposer } from 'three/addons/loaders/usd/USDComposer.js';
 import { InputError } from '../../../scene/input-error.js';
 import { exceeds } from '../../checks/read-limits.js';
@@ -13,6 +13,7 @@ interface Composer {
   _buildGeometry(path: string, fields: Fields, ...rest: unknown[]): BufferGeometry;
   _buildGeometryWithSubsets(fields: Fields, ...rest: unknown[]): BufferGeometry;
   _findUVPrimvar(fields: Fields): object;
+  applyTransform(object: Object3D, fields: Fields, attributes?: Fields): void;
   _triangulateIndicesWithPattern(
     indices: ArrayLike<number> | undefined,
     counts: ArrayLike<number>,
@@ -60,9 +61,15 @@ export function guardLoaders(limits: FormatLimits): void {
   };
 }
 
-/** Mends what three's loader leaves out of USD: triangles that are clockwise, and which of several sets of UVs is the first. */
+/** Mends what three's loader leaves out of USD: clockwise triangles, what is not drawn, and which of several sets of UVs is the first. */
 export function mendUsd(): void {
   const prototype = USDComposer.prototype as unknown as Composer;
+  const { applyTransform } = prototype;
+  prototype.applyTransform = function (object, fields, attributes = {}) {
+    const { visibility, purpose } = attributes;
+    if (visibility === 'invisible' || purpose === 'guide' || purpose === 'proxy') object.visible = false;
+    applyTransform.call(this, object, fields, attributes);
+  };
   const { _buildGeometry: build, _buildGeometryWithSubsets: buildSubsets, _findUVPrimvar: findUvs } = prototype;
   prototype._buildGeometry = function (path, fields, ...rest) {
     return turned(build.call(this, path, fields, ...rest), fields);

@@ -1,5 +1,6 @@
 import type { GLTF, vec4 } from '@gltf-transform/core';
 import { type Material, Matrix4, type Mesh, type Object3D, type SkinnedMesh } from 'three';
+import { visibilityExtension } from '../../../parts/drawn.js';
 import { joinBytes, packGlb, paddedLength } from '../../../parts/glb.js';
 import { checkImages } from '../../checks/check-images.js';
 import type { ReadLimits } from '../../checks/read-limits.js';
@@ -55,7 +56,10 @@ class SceneWriter {
       ...(rotation[3] !== 1 && areFinite(rotation) && { rotation }),
       ...(!(scale.x === 1 && scale.y === 1 && scale.z === 1) &&
         areFinite(scale.toArray()) && { scale: scale.toArray() }),
+      ...(!object.visible && { extensions: { [visibilityExtension]: { visible: false } } }),
     };
+    if (!object.visible)
+      this.#json.extensionsUsed = [...new Set([...(this.#json.extensionsUsed ?? []), visibilityExtension])];
     const number = (this.#json.nodes ??= []).push(node) - 1;
     this.#nodes.set(object, number);
     if ((object as Mesh).isMesh) {
