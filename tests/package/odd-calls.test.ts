@@ -3,7 +3,9 @@ import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { runInNewContext } from 'node:vm';
 import { type CagecastError, classify, cutBorders, init, type Mesh, project, splitVertices, transfer } from 'cagecast';
-import { tetrahedron } from '../support/gltf.js';
+import { checkGltf, checkImage, paintGlb, thumbnail, toGlb } from 'cagecast/gltf';
+import { glbOf, tetrahedron } from '../support/gltf.js';
+import { png } from './command/workplace.js';
 
 const cage = tetrahedron(1);
 const target: Mesh = tetrahedron(0.9);
@@ -53,6 +55,18 @@ describe('typed arrays', () => {
     const shared = new Float32Array(new SharedArrayBuffer(48)) as unknown as Float32Array<ArrayBuffer>;
     shared.set(target.positions);
     assert.deepEqual(zonesOf({ ...target, positions: shared }), [0, 0, 0, 0]);
+  });
+
+  test('of another realm are bytes of a file and of a texture', async () => {
+    const foreign = (bytes: Uint8Array) => runInNewContext('Uint8Array.from(values)', { values: [...bytes] });
+    const [file, around, paint] = [glbOf(target), glbOf(cage), png(200)].map(foreign);
+    assert.ok(!(file instanceof Uint8Array));
+    checkGltf(file);
+    assert.equal(checkImage(paint)!.width, 4);
+    assert.equal((await paintGlb(file, { cage: around, texture: paint })).triangles.painted, 4);
+    assert.equal((await thumbnail(file, { size: 16 })).width, 16);
+    const obj = foreign(Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'));
+    assert.ok((await toGlb(obj)).length > 100);
   });
 });
 

@@ -39,7 +39,7 @@ With --resume, a skipped job adds no line to --results, unless the last line abo
 Exit codes: 1 a job failed, 3 none failed, but --at-least found a cage that does not fit as demanded.
 
 Examples:
-  cagecast batch 'in/**/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
+  cagecast batch "in/**/*.glb" --cage cage.glb --texture paint.png -o "out/{name}.glb"
   cagecast batch --manifest jobs.jsonl --results results.jsonl --resume --at-least usable`;
 
 /** Adds the command that runs many transfers. */

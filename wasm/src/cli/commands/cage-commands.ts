@@ -100,7 +100,7 @@ export function addCageCommands(program: Command, io: Io): void {
       'after',
       `${kExitCode}
 
-Example: cagecast make head.glb --exclude visor --keep 'hair*' --triangles 800 -o cage.glb`,
+Example: cagecast make head.glb --exclude visor --keep "hair*" --triangles 800 -o cage.glb`,
     )
     .action((target: string, flags: MakeFlags) =>
       perform(io, flags, { inputs: [target], outputs: [flags.output, flags.report] }, () => makeFor(target, flags, io)),

@@ -50,7 +50,7 @@ If one of several models cannot be used, the others are drawn, and the exit code
 
 Examples:
   cagecast thumbnail painted.vrm --view face --size 512 -o painted.png
-  cagecast thumbnail 'painted/*.glb' --background '#ffffff' -o 'pictures/{name}.webp'`;
+  cagecast thumbnail "painted/*.glb" --background "#ffffff" -o "pictures/{name}.webp"`;
 
 /** Adds the command that draws pictures of models. */
 export function addThumbnailCommand(program: Command, io: Io): void {

@@ -49,9 +49,9 @@ A file may be - for the standard input or output; if OUT is, the summary goes to
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
-  cagecast transfer body.glb --cage cage.glb --keep skin --exclude '*eye*' -o painted.glb
+  cagecast transfer body.glb --cage cage.glb --keep skin --exclude "*eye*" -o painted.glb
   cagecast transfer body.glb --cage face.glb --texture face.png --region arms.glb=arms.png -o painted.gltf
-  cagecast transfer body.glb --cage tiled.glb --texture 'skin.<UDIM>.png' -o painted.glb`;
+  cagecast transfer body.glb --cage tiled.glb --texture "skin.<UDIM>.png" -o painted.glb`;
 
 /** Adds the command that transfers to a file. */
 export function addTransferCommand(program: Command, io: Io): void {

@@ -1,6 +1,6 @@
-import { constants } from 'node:fs';
+import { constants, existsSync } from 'node:fs';
 import { type FileHandle, open, readdir, realpath, stat } from 'node:fs/promises';
-import { basename, dirname, isAbsolute, relative, resolve } from 'node:path';
+import { basename, dirname, isAbsolute, join, relative, resolve } from 'node:path';
 import { checkBytes, defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 import { decodedUri } from '../../gltf/data-uri.js';
 import { firstLine, InputError } from '../../scene/input-error.js';
@@ -43,6 +43,15 @@ export async function readUri(name: string, uri: string, folder: string, options
   }
 }
 
+/** A path whose file is named in this Unicode form or in another: a program may write names in one, and a disk keep them in another. */
+async function asNamed(path: string): Promise<string> {
+  const [folder, name] = [dirname(path), basename(path)];
+  if (/^[\x20-\x7e]*$/.test(name) || existsSync(path)) return path;
+  const names = await readdir(folder).catch((): string[] => []);
+  const found = names.find((one) => one.normalize('NFC') === name.normalize('NFC'));
+  return found === undefined ? path : join(folder, found);
+}
+
 /** The end of a message: which file has the name that is missing but for capitals, if one has. */
 async function nearlyNamed(path: string): Promise<string> {
   const names = await readdir(dirname(path)).catch((): string[] => []);
@@ -62,9 +71,10 @@ export function readBeside(path: string, folder: string, { limits, allowOutside 
         throw new InputError('is outside the folder of the file that refers to it; --allow-outside permits it');
     };
     refuseOutside(path, resolve(folder)); // before anything tells whether the file exists
-    refuseOutside(await realpath(path), await realpath(folder));
+    const own = await asNamed(path);
+    refuseOutside(await realpath(own), await realpath(folder));
     // Without O_NONBLOCK, opening a pipe waits for somebody to write to it.
-    const file = await open(path, constants.O_RDONLY | (constants.O_NONBLOCK ?? 0));
+    const file = await open(own, constants.O_RDONLY | (constants.O_NONBLOCK ?? 0));
     try {
       const found = await file.stat();
       if (!found.isFile() && !found.isDirectory()) throw new InputError('is a device or a pipe, not a file');

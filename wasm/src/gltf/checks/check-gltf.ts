@@ -1,5 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import { CagecastError, type ErrorDetails, show } from '../../core/error.js';
+import { plainArray } from '../../core/typed-arrays.js';
 import { InputError } from '../../scene/input-error.js';
 import { isDataUri, readDataUri } from '../data-uri.js';
 import { imageSize } from '../image-file.js';
@@ -28,14 +29,14 @@ export interface CheckOptions {
  * @throws {CagecastError} `badArgument` that names the element, the value and the limit.
  */
 export function checkGltf(bytes: Uint8Array, { limits = {}, otherBytes = 0, ...others }: CheckOptions = {}): void {
-  requireBytes('checkGltf', bytes);
+  const own = bytesOf('checkGltf', bytes);
   for (const name in others) throw wrong('checkGltf', `${name} is not an option`);
   const all = limitsOf('checkGltf', limits);
   if (!isCount(otherBytes)) throw wrong('checkGltf', `otherBytes = ${show(otherBytes)} is not a number ≥ 0`);
   try {
-    const fileBytes = bytes.byteLength + otherBytes;
+    const fileBytes = own.byteLength + otherBytes;
     checkBytes(fileBytes, all);
-    const { json, binary } = parseGltf(bytes, all);
+    const { json, binary } = parseGltf(own, all);
     const sizes = (json.buffers ?? []).map(({ uri, byteLength }, b) =>
       uri === undefined ? (b === 0 ? binary?.byteLength : undefined) : byteLength,
     );
@@ -63,10 +64,10 @@ export function checkImage(
   bytes: Uint8Array,
   { limits = {} }: Pick<CheckOptions, 'limits'> = {},
 ): { width: number; height: number } | undefined {
-  requireBytes('checkImage', bytes);
+  const own = bytesOf('checkImage', bytes);
   try {
-    checkImages([['it', bytes]], bytes.byteLength, limitsOf('checkImage', limits));
-    return imageSize(bytes);
+    checkImages([['it', own]], own.byteLength, limitsOf('checkImage', limits));
+    return imageSize(own);
   } catch (error) {
     throw error instanceof InputError ? wrong('checkImage', error.message, { cause: error }) : error;
   }
@@ -77,9 +78,10 @@ type Caller = 'checkGltf' | 'checkImage';
 const wrong = (where: Caller, text: string, details?: ErrorDetails) =>
   new CagecastError('badArgument', where, text, details);
 
-function requireBytes(where: Caller, bytes: unknown): void {
-  if (!(bytes instanceof Uint8Array))
-    throw wrong(where, `bytes is ${show(bytes)}, not a Uint8Array`, { argument: 'bytes' });
+function bytesOf(where: Caller, bytes: unknown): Uint8Array {
+  const own = plainArray(bytes, 'Uint8Array');
+  if (!own) throw wrong(where, `bytes is ${show(bytes)}, not a Uint8Array`, { argument: 'bytes' });
+  return own;
 }
 
 const isCount = (value: unknown): value is number => typeof value === 'number' && value >= 0;

@@ -10,6 +10,7 @@ import {
 } from '../../api/index.js';
 import { faultOfParts, type Parts } from '../../api/parts.js';
 import { CagecastError, show } from '../../core/error.js';
+import { plainArray } from '../../core/typed-arrays.js';
 import { moved, type Origin } from '../../parts/origin.js';
 import { hasCages, moveApart } from '../../parts/own-cages.js';
 import { extrasIn, partsWithout } from '../../scene/cage-model.js';
@@ -53,14 +54,14 @@ export async function transferDocument(
   const { cage, texture, parts, maskImages, maskColors, ...options } = given;
   if (cage !== undefined && (typeof cage !== 'object' || cage === null))
     throw wrong(caller, 'cage', cage, 'a document or a mesh');
-  if (texture !== undefined && !(texture instanceof Uint8Array))
-    throw wrong(caller, 'texture', texture, 'a Uint8Array');
+  const image = texture && plainArray(texture, 'Uint8Array');
+  if (texture !== undefined && !image) throw wrong(caller, 'texture', texture, 'a Uint8Array');
   const fault = faultOfParts(caller, parts);
   if (fault !== undefined) throw new CagecastError('badOption', caller, fault);
   if (Object.keys(maskImages ?? {}).some((name) => name !== 'never' && name !== 'always'))
     throw wrong(caller, 'maskImages', maskImages, '{ never, always }');
   await init();
-  const paint = texture && within(caller, 'texture', () => paintOf(texture));
+  const paint = image && within(caller, 'texture', () => paintOf(image));
   const target = read(caller, 'target', document, () => extractDocument(document, 'own', parts));
   const { origin } = target;
   const around = isDocument(cage ?? document)

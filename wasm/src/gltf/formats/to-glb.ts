@@ -1,5 +1,6 @@
 import { CagecastError, isRecord, show } from '../../core/error.js';
 import { nodeModule } from '../../core/node.js';
+import { plainArray } from '../../core/typed-arrays.js';
 import { firstLine, InputError } from '../../scene/input-error.js';
 import { exceeds } from '../checks/read-limits.js';
 import { type Format, fileKind } from '../kinds.js';
@@ -53,17 +54,18 @@ export interface Companions {
 export async function toGlb(bytes: Uint8Array, companions: Companions = {}): Promise<Uint8Array> {
   const wrong = (text: string, cause?: unknown) =>
     new CagecastError('badArgument', 'toGlb', text, { argument: 'bytes', cause });
-  if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`);
-  const limits = checkedLimits(bytes.length, companions.limits);
+  const own = plainArray(bytes, 'Uint8Array');
+  if (!own) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`);
+  const limits = checkedLimits(own.length, companions.limits);
   companions.signal?.throwIfAborted();
-  const kind = fileKind(bytes);
+  const kind = fileKind(own);
   if (kind?.format === undefined)
     throw wrong(kind ? `is ${kind.name}; ${kind.advice}` : 'is neither FBX, OBJ, PLY, STL nor USDZ');
   let glb: Uint8Array | undefined;
   try {
-    if (bytes.length > limits.bytes) throw exceeds(`it has ${bytes.length} bytes`, 'bytes', limits);
-    await checks[kind.format](bytes, limits);
-    glb = await readInWorker(bytes, kind.format, limits, companions);
+    if (own.length > limits.bytes) throw exceeds(`it has ${own.length} bytes`, 'bytes', limits);
+    await checks[kind.format](own, limits);
+    glb = await readInWorker(own, kind.format, limits, companions);
   } catch (error) {
     if (!(error instanceof InputError)) throw error;
     throw wrong(`is ${kind.name}, but cannot be read (${error.message})`, error);

@@ -10,6 +10,7 @@ import {
   type TemplateName,
 } from '../../cages/index.js';
 import type { Template } from '../../cages/types.js';
+import { plainArray } from '../../core/typed-arrays.js';
 import type { Vector } from '../../inspect/geometry.js';
 import { landmarksMoved, moved } from '../../parts/origin.js';
 import { cageModelOf, templateOf } from '../../scene/cage-model.js';
@@ -72,8 +73,9 @@ export async function fitTo(
 
 async function readTemplate(template: TemplateName | Uint8Array | Template): Promise<Template> {
   if (typeof template === 'string') return loadTemplate(template);
-  if (!(template instanceof Uint8Array)) return template;
-  const file = await openGltf('template', template);
+  const bytes = plainArray(template, 'Uint8Array');
+  if (!bytes) return template as Template;
+  const file = await openGltf('template', bytes);
   const { extracted } = withUvs({ file, extracted: extract(file, undefined, 'cage') });
   return templateOf(file, extracted);
 }

@@ -5,6 +5,7 @@ import { cageGlb } from '../../cages/cage-glb.js';
 import type { CageCallOptions, Choice, Fit, Landmarks, TemplateName, Tried } from '../../cages/index.js';
 import type { Cage, Template } from '../../cages/types.js';
 import { CagecastError, type Code, show } from '../../core/error.js';
+import { plainArray } from '../../core/typed-arrays.js';
 import { noteOf } from '../../inspect/bare.js';
 import { type Finding, isWorse, kVerdicts, type Verdict } from '../../inspect/finding.js';
 import { type Borders, isCut } from '../../parts/cut-part.js';
@@ -140,7 +141,8 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     onProgress = () => {},
     ...rules
   } = options;
-  if (!(bytes instanceof Uint8Array)) throw wrong('bytes', bytes, 'a Uint8Array');
+  const file = plainArray(bytes, 'Uint8Array');
+  if (!file) throw wrong('bytes', bytes, 'a Uint8Array');
   if (typeof attributes !== 'boolean') throw wrong('options.attributes', attributes, 'true or false', 'badOption');
   if (!kVerdicts.includes(atLeast))
     throw wrong('options.atLeast', atLeast, `one of ${kVerdicts.join(', ')}`, 'badOption');
@@ -159,7 +161,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     signal?.throwIfAborted();
     onProgress(0, 'reading');
     const computing = await engine();
-    const target = await readModel('bytes', bytes, { parts: patterns, decoders });
+    const target = await readModel('bytes', file, { parts: patterns, decoders });
     const fitted =
       template &&
       (await fitTo(target, template, { inspect: computing.inspect, landmarks, decode, signal, onProgress }));
@@ -275,17 +277,20 @@ async function readCage(
   target: ReadModel,
   decoders: PaintOptions['decoders'],
 ): Promise<ReadModel> {
-  if (cage instanceof Uint8Array) return withUvs(await readModel('cage', cage, { beside: target, decoders }));
-  if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'the bytes of a GLB, or a mesh');
+  const file = plainArray(cage, 'Uint8Array');
+  if (file) return withUvs(await readModel('cage', file, { beside: target, decoders }));
+  if (typeof cage !== 'object' || cage === null || cage instanceof Uint8Array)
+    throw wrong('cage', cage, 'the bytes of a GLB, or a mesh');
   if (cage.uvs === undefined)
     throw wrong('cage.uvs', cage.uvs, "a Float32Array: the texture is drawn in the cage's UVs");
   return readModel('cage', cageGlb({ ...cage, uvs: cage.uvs }), { beside: target });
 }
 
 function readPaint(texture: unknown): Paint {
-  if (!(texture instanceof Uint8Array)) throw wrong('texture', texture, 'a Uint8Array');
+  const image = plainArray(texture, 'Uint8Array');
+  if (!image) throw wrong('texture', texture, 'a Uint8Array');
   try {
-    return paintOf(texture, 'paint', ['image/png', 'image/jpeg', 'image/webp', 'image/ktx2']);
+    return paintOf(image, 'paint', ['image/png', 'image/jpeg', 'image/webp', 'image/ktx2']);
   } catch (error) {
     throw error instanceof InputError ? error.in('texture') : error;
   }

@@ -1,5 +1,6 @@
 import { faultOfNames } from '../../api/option-names.js';
 import { CagecastError, type Code, show } from '../../core/error.js';
+import { plainArray } from '../../core/typed-arrays.js';
 import { InputError } from '../../scene/input-error.js';
 import { openGltf } from '../open-gltf.js';
 import { drawFile } from './draw-file.js';
@@ -30,10 +31,11 @@ const kOptions = ['size', 'view', 'frame', 'cage', 'background', 'decode'];
  * await sharp(data, { raw: { width, height, channels: 4 } }).webp().toFile('painted.webp');
  */
 export async function thumbnail(bytes: Uint8Array, options: ThumbnailOptions = {}): Promise<Thumbnail> {
-  if (!(bytes instanceof Uint8Array)) throw wrong('bytes', bytes, 'a Uint8Array');
+  const file = plainArray(bytes, 'Uint8Array');
+  if (!file) throw wrong('bytes', bytes, 'a Uint8Array');
   checkOptions(options);
   try {
-    return await drawFile(await openGltf('bytes', bytes), options);
+    return await drawFile(await openGltf('bytes', file), options);
   } catch (error) {
     if (!(error instanceof InputError)) throw error;
     throw new CagecastError('badArgument', 'thumbnail', error.message, {

@@ -1,4 +1,5 @@
 import type { Mesh, TransferOptions } from '../../api/index.js';
+import { plainArray } from '../../core/typed-arrays.js';
 import { hash, pack, unpack } from '../../parts/pack.js';
 import type { Prepared } from '../../parts/prepare.js';
 import { notA, wrong } from '../errors.js';
@@ -24,8 +25,9 @@ export function serialize(applied: Applied): Uint8Array<ArrayBuffer> {
  * @throws {CagecastError} `badArgument` if the bytes are something else, damaged or of another version.
  */
 export function deserialize(bytes: Uint8Array): Saved {
-  if (!(bytes instanceof Uint8Array)) throw notA('a Uint8Array', 'bytes', bytes, 'deserialize');
-  return unpack(bytes) as Saved;
+  const own = plainArray(bytes, 'Uint8Array');
+  if (!own) throw notA('a Uint8Array', 'bytes', bytes, 'deserialize');
+  return unpack(own) as Saved;
 }
 
 /** Remembers what was applied, for `serialize`. */
