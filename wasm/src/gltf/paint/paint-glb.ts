@@ -141,8 +141,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     onProgress = () => {},
     ...rules
   } = options;
-  const file = plainArray(bytes, 'Uint8Array');
-  if (!file) throw wrong('bytes', bytes, 'a Uint8Array');
+  const file = bytesOf('bytes', bytes);
   if (typeof attributes !== 'boolean') throw wrong('options.attributes', attributes, 'true or false', 'badOption');
   if (!kVerdicts.includes(atLeast))
     throw wrong('options.atLeast', atLeast, `one of ${kVerdicts.join(', ')}`, 'badOption');
@@ -287,13 +286,19 @@ async function readCage(
 }
 
 function readPaint(texture: unknown): Paint {
-  const image = plainArray(texture, 'Uint8Array');
-  if (!image) throw wrong('texture', texture, 'a Uint8Array');
+  const image = bytesOf('texture', texture);
   try {
     return paintOf(image, 'paint', ['image/png', 'image/jpeg', 'image/webp', 'image/ktx2']);
   } catch (error) {
     throw error instanceof InputError ? error.in('texture') : error;
   }
+}
+
+/** Bytes of any realm. @throws {CagecastError} */
+function bytesOf(name: string, value: unknown): Uint8Array {
+  const bytes = plainArray(value, 'Uint8Array');
+  if (!bytes) throw wrong(name, value, 'a Uint8Array');
+  return bytes;
 }
 
 const wrong = (name: string, value: unknown, type: string, code: Code = 'badArgument') =>
