@@ -1,5 +1,5 @@
 import type { Classification } from 'cagecast';
-import { Box3, Group, type Texture, Vector3 } from 'three';
+import { Box3, Group, MathUtils, type Texture, Vector3 } from 'three';
 import type { Model } from '../../state/model';
 import type { SplitProjection } from '../../state/transfers';
 import type { Figure } from '../../state/wardrobe/avatar';
@@ -28,31 +28,45 @@ export function measure({ scene }: Pick<Model, 'scene'>): Room & { scale: number
   };
 }
 
+const kMostScaled = 1.4; // a figure with its arms out is that much lower than one without, at the same diagonal
+
 /** A model that stands beside the one on the stage. */
 export class Beside implements Figure, Room {
   readonly holder = new Group();
   readonly model: Model;
   /** Absent without a cage. */
   readonly overlay: Overlay | undefined;
-  readonly wide: number;
-  readonly high: number;
+  readonly #size: ReturnType<typeof measure>;
+  #by = 1;
   isPainted = false;
   readonly #paint: Texture;
   #projection: SplitProjection | undefined;
 
   constructor(model: Model, projection: SplitProjection | undefined, paint: Texture) {
-    const { scale, middle, wide, high } = measure(model);
+    this.#size = measure(model);
     this.model = model;
     this.#paint = paint;
     this.#projection = projection;
-    this.wide = wide;
-    this.high = high;
     const inner = new Group();
-    inner.position.copy(middle).negate();
+    inner.position.copy(this.#size.middle).negate();
     inner.add(model.scene);
     this.holder.add(inner);
-    this.holder.scale.setScalar(scale);
+    this.match();
     this.overlay = projection && new Overlay(model.mesh, projection, paint);
+  }
+
+  get wide(): number {
+    return this.#by * this.#size.wide;
+  }
+
+  get high(): number {
+    return this.#by * this.#size.high;
+  }
+
+  /** Scales it to stand as high as another model, unless their shapes differ much. @param high  Of that; its own size by default. */
+  match(high = this.#size.high): void {
+    this.#by = MathUtils.clamp(high / this.#size.high, 1 / kMostScaled, kMostScaled);
+    this.holder.scale.setScalar(this.#by * this.#size.scale);
   }
 
   setPaint(paint: 'stage' | Texture | undefined): void {

@@ -66,6 +66,7 @@ export class Thumbnails {
     camera.lookAt(0, 0, 0);
     stage.object.visible = !standing;
     const { holder, overlay } = standing ?? { overlay: stage };
+    standing?.match();
     const parent = holder?.parent;
     if (holder) {
       studio.scene.add(holder);

@@ -42,8 +42,13 @@ export class WardrobeStage implements WardrobeView {
       return;
     }
     const { target } = this.#session.shown!;
-    for (const figure of figures) if (figure) figure.holder.rotation.y = frontOf(target) - frontOf(figure.model);
-    this.#crowd.set(figures, measure(target));
+    const room = measure(target);
+    for (const figure of figures) {
+      if (!figure) continue;
+      figure.holder.rotation.y = frontOf(target) - frontOf(figure.model);
+      figure.match(room.high);
+    }
+    this.#crowd.set(figures, room);
     this.#viewer.setCrowd(this.#crowd);
   }
 
