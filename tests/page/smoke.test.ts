@@ -241,11 +241,11 @@ describe('without a picture', () => {
 
   test('the cage is inspected, and findings offer what can be done', async () => {
     await choose('sample-select', 'human-misaligned');
-    await page.locator('#model-verdict[data-verdict=unfit]').waitFor();
+    await page.locator('#stage-verdict[data-verdict=unfit]').waitFor();
     assert.ok((await page.locator('#fit-findings li').count()) > 0);
     await page.getByRole('button', { name: 'Do it: move the cage' }).first().click();
     await page.locator('#cage-note', { hasText: 'was moved into place' }).waitFor();
-    await page.locator('#model-verdict:not([data-verdict=unfit]):not([data-verdict=""])').waitFor();
+    await page.locator('#stage-verdict:not([data-verdict=unfit]):not([data-verdict=""])').waitFor();
   });
 
   test('a project that was saved brings everything back, and so does a reload', async () => {

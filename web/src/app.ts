@@ -4,7 +4,7 @@ import { Drawings } from './loading/drawn/drawings';
 import { loaderFor } from './loading/load-model';
 import { makeChecker } from './loading/load-paint';
 import { Opener } from './loading/opener';
-import { setUpPaintStrip } from './loading/paint-picker';
+import { setUpShelf } from './loading/paint-picker';
 import { fetchAhead, loadSamples } from './loading/samples';
 import { TransferClient } from './loading/transfer-client';
 import { watchOver } from './loading/watch-over';
@@ -105,9 +105,9 @@ showResults(session);
 new FitPanel(session, viewer, maker);
 setUpRules(session);
 setUpViewControls(session);
+setUpShelf(); // before what lists the sections
 setUpSectionNav(session, (open) => void viewer?.lookAtFace(open));
-setUpPaintStrip();
-setUpStageButtons(viewer?.controls, history);
+setUpStageButtons(viewer, history);
 // Whoever brings a model wants to see it painted, not compared.
 session.on('transfer', ({ target }) => {
   document.documentElement.toggleAttribute('data-own', !target.sample); // who has one needs no motto

@@ -47,7 +47,7 @@ test('each finding is a line of plain words, in all languages; those of one kind
       assert.ok(!/cage|%|\.$|undefined/i.test(words) && words.length < 50, words);
       for (const language of kLanguages) assert.ok(dictionaryOf(language).translate(words), `${language}: ${words}`);
     }
-  assert.match(verdictWords('usable', { region: undefined, bare: [], findings: 2, isForeign: false }).stage, /2 spots/);
+  assert.match(verdictWords('usable', { region: undefined, bare: [], findings: 2, isForeign: false }), /2 spots/);
 });
 
 test('a line lights the places of its findings, and offers the one thing that helps', async () => {

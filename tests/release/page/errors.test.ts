@@ -161,19 +161,18 @@ test('warnings about files stay while borders are cut', async () => {
 
 test('while a model loads nothing is said of the one before; of a refused file the message tells, and the chip is of what is there', async () => {
   const { page } = await site.visit({}, kPlay);
-  await page.locator('#model-verdict[data-verdict=good]').waitFor();
+  await page.locator('#stage-verdict[data-verdict=good]').waitFor();
   await drop(page, [glb('broken.glb', Buffer.from('glTF'))]);
   assert.equal(await settled(page), 'error');
   assert.match(await shownError(page), /broken\.glb/);
-  assert.ok(await page.locator('#model-verdict').isVisible());
-  assert.ok(await page.getByTestId('status').isHidden());
+  assert.ok(await page.locator('#stage-verdict').isVisible());
   const said = page.evaluate(
     () =>
       new Promise<string[]>((done) => {
         const root = document.documentElement;
         new MutationObserver(() => {
           if (!root.hasAttribute('data-leaving')) return;
-          const all = ['stage-verdict', 'model-verdict', 'ask', 'alert'];
+          const all = ['stage-verdict', 'ask', 'alert'];
           done(all.filter((id) => document.getElementById(id)!.checkVisibility()));
         }).observe(root, { attributeFilter: ['data-leaving'] });
       }),

@@ -101,16 +101,71 @@ for (const { name, size } of [
     assert.deepEqual(complaints, []);
   });
 
+test('on a desktop all is at hand: tools in a dock below the model, paints by kind beside it, and a menu behind its name', async () => {
+  const { page, complaints } = await site.visit(kDesk, kPlay, '#sample=human&view=result');
+  const boxOf = async (selector: string) => (await page.locator(selector).boundingBox())!;
+  const [stage, dock] = [await boxOf('#stage'), await boxOf('.dock')];
+  assert.equal(dock.height, 64);
+  assert.ok(Math.abs(dock.x + dock.width / 2 - stage.width / 2) < 1, 'the dock is in the middle');
+  const { top, bottom } = await page.evaluate(() => {
+    const { style } = document.getElementById('stage')!;
+    return { top: style.getPropertyValue('--stage-top'), bottom: style.getPropertyValue('--stage-bottom') };
+  });
+  assert.ok(parseFloat(bottom) >= stage.height - dock.y, `feet are above the dock: ${bottom}`);
+  const head = await boxOf('#stage-verdict');
+  assert.ok(parseFloat(top) >= head.y + head.height, `heads are below the verdict: ${top}`);
+
+  const area = await modelArea(page);
+  const body = await look(page, area);
+  await page.locator('#angles').getByRole('button', { name: 'Face' }).click();
+  assert.ok(difference(body, await look(page, area)) > 0.02, 'the face is near');
+  const compare = page.getByRole('switch', { name: 'Compare' });
+  await compare.check({ force: true });
+  assert.equal(await mode(page), 'compare');
+  await compare.uncheck({ force: true });
+  assert.equal(await mode(page), 'result');
+
+  const tiles = page.locator('.paints label').filter({ visible: true });
+  await tiles.filter({ hasText: 'Scales' }).waitFor();
+  const all = await tiles.count();
+  assert.ok(await page.getByRole('radio', { name: 'Face' }).isHidden(), 'none needs what this cage lacks');
+  await page.getByRole('radio', { name: 'Clothes' }).check({ force: true });
+  assert.deepEqual(await tiles.locator('.title').allTextContents(), [
+    'Tricolour',
+    'Club colours',
+    'Camouflage',
+    'Carbon',
+    'Harlequin',
+  ]);
+  await page.getByRole('radio', { name: 'All' }).check({ force: true });
+  assert.equal(await tiles.count(), all);
+
+  const menu = page.getByTestId('menu');
+  assert.match((await menu.textContent())!, /Human/);
+  assert.ok(await page.locator('#model').isHidden());
+  await menu.press('Enter');
+  assert.deepEqual(await faults(page), []);
+  assert.ok(!/cage/i.test(await page.locator('#model').innerText()), 'Play knows no cages');
+  await page.locator('#more > summary').click();
+  await page.getByTestId('language').selectOption('de');
+  await page.locator('html[lang=de]').waitFor();
+  await page.keyboard.press('Escape');
+  assert.ok(await page.locator('#model').isHidden());
+  assert.deepEqual(complaints, []);
+});
+
 test('the side that is seen becomes the front', async () => {
   const { page } = await site.visit(kDesk, kPlay, '#sample=lizard&view=result');
   const area = await modelArea(page);
-  await page.locator('#angles').getByRole('button', { name: 'Left' }).click();
+  await page.locator('#view').press('2');
   const left = await look(page, area);
+  await page.getByTestId('menu').click();
   await page.locator('#more > summary').click();
   await page.getByTestId('set-front').click();
+  await page.keyboard.press('Escape');
   await page.locator('#angles').getByRole('button', { name: 'Back' }).click();
   assert.ok(difference(left, await look(page, area)) > 0.02);
-  await page.locator('#angles').getByRole('button', { name: 'Front' }).click();
+  await page.locator('#angles').getByRole('button', { name: 'Body' }).click();
   assert.ok(difference(left, await look(page, area)) < 0.01);
 });
 

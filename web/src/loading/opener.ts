@@ -255,6 +255,9 @@ export class Opener implements Samples {
     const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`;
     const { leftOut } = target.mesh;
     const others = leftOut.length > 0 ? ` Left out: ${leftOut.join(', ')}.` : '';
+    const menu = element('menu-name', HTMLElement);
+    menu.translate = target.sample !== undefined;
+    menu.textContent = target.sample?.title ?? target.name;
     element('sizes', HTMLElement).textContent = `Model ${size(target)}, cage ${size(cage)}.${others}`;
     this.#describeOrigin({ target, cage });
     void this.#offerPaints({ cage });
@@ -346,7 +349,9 @@ export class Opener implements Samples {
       })),
       ...drawn.flatMap((paint, i) => {
         const [title, picture] = [paint.title, pictures[i]];
-        return picture ? [{ title, picture, drawn: paint.name, load: () => this.drawings.draw(paint, cage) }] : [];
+        return picture
+          ? [{ title, picture, kind: paint.kind, drawn: paint.name, load: () => this.drawings.draw(paint, cage) }]
+          : [];
       }),
       { title: checker.name, picture: checker.picture, load: async () => checker },
     ];

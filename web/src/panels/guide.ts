@@ -87,6 +87,7 @@ export class Guide {
     for (const marked of document.querySelectorAll('.guided')) marked.classList.remove('guided');
     for (const found of about ? document.querySelectorAll(about) : []) {
       found.classList.add('guided');
+      found.closest<HTMLElement>('[popover]')?.showPopover();
       found.scrollIntoView({ block: 'nearest' });
     }
   }

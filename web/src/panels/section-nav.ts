@@ -47,12 +47,12 @@ export function setUpSectionNav(session: Session, onSheet: (open: boolean) => vo
   };
   // On a phone the page scrolls, on a desktop the panel.
   addEventListener('scroll', follow, { capture: true, passive: true });
-  addEventListener('resize', follow);
   // What a model, or the face, does not show has no link.
   const offer = (): void => {
     for (const [section, link] of links) link.hidden = !section.checkVisibility();
     follow();
   };
+  addEventListener('resize', offer);
   onFace(offer);
   session.on('zones', offer);
 }

@@ -1,12 +1,17 @@
 import type { History } from '#three';
 import { element } from '../platform/page';
-import type { CameraControls, Side } from './camera-controls';
+import type { Side } from './camera-controls';
+import type { Viewer } from './viewer';
 
 /** Connects the buttons on the stage: the camera, and colour, size, undo and redo beside the rail while one paints. */
-export function setUpStageButtons(controls: CameraControls | undefined, history: History): void {
+export function setUpStageButtons(viewer: Viewer | undefined, history: History): void {
   for (const button of element('angles', HTMLElement).querySelectorAll('button'))
-    button.addEventListener('click', () => controls?.lookFromSide(button.dataset.side as Side));
-  element('set-front', HTMLButtonElement).addEventListener('click', () => controls?.takeFront());
+    button.addEventListener('click', () => {
+      const side = button.dataset.side as Side | 'face';
+      if (side === 'face') void viewer?.showFace();
+      else viewer?.controls.lookFromSide(side);
+    });
+  element('set-front', HTMLButtonElement).addEventListener('click', () => viewer?.controls.takeFront());
 
   // The panel has the same controls; these pass on what is done to them.
   for (const name of ['color', 'size']) {

@@ -12,8 +12,10 @@ export function setUpViewControls(session: Session): void {
     name,
     input: element(`show-${name}`, HTMLInputElement),
   }));
+  const compare = element('compare', HTMLInputElement);
   const divider = setUpDivider((split) => session.setView({ split }));
   for (const input of modes) input.addEventListener('change', () => session.setView({ mode: input.value as Mode }));
+  compare.addEventListener('change', () => session.setView({ mode: compare.checked ? 'compare' : 'result' }));
   for (const { name, input } of switches)
     input.addEventListener('change', () => session.setView({ [name]: input.checked }));
 
@@ -33,6 +35,7 @@ export function setUpViewControls(session: Session): void {
           left: input.offsetParent instanceof HTMLElement ? input.offsetParent.offsetLeft - strip.clientWidth / 3 : 0,
         });
     }
+    compare.checked = view.mode === 'compare';
     for (const { name, input } of switches) input.checked = view[name];
     switches[0]!.input.disabled = !showsPaint(view.mode);
     switches[2]!.input.parentElement!.hidden = view.mode !== 'zones';

@@ -46,7 +46,7 @@ export class Viewer {
   /** @throws Error where the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
-    this.#strips = [...canvas.parentElement!.querySelectorAll<HTMLElement>('.stage-head, .rail, .toolbar')];
+    this.#strips = [...canvas.parentElement!.querySelectorAll<HTMLElement>('.stage-head, .dock, .rail, .toolbar')];
     this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true });
     // Checking for errors waits for each shader to compile: seconds, on a slow machine.
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
@@ -102,13 +102,24 @@ export class Viewer {
   async lookAtFace(on: boolean): Promise<void> {
     this.#looksAtFace = on;
     if (!on) return this.controls.closeUp(undefined);
+    const face = await this.#face();
+    if (this.#looksAtFace) this.controls.closeUp(face);
+  }
+
+  /** Shows the face of the model on the stage, or all of it. */
+  async showFace(): Promise<void> {
+    const points = (await this.#face())();
+    if (points) this.controls.lookAt(points, this.stage.front);
+    else this.controls.lookFromSide('front');
+  }
+
+  /** Corners around the face, in the studio. */
+  async #face(): Promise<() => Vector3[] | undefined> {
     const { faceOf } = await import('./face-of');
-    if (!this.#looksAtFace) return;
-    const face = (): Vector3[] | undefined => {
+    return () => {
       const { model, cage, object } = this.stage;
       return model && faceOf(model, cage)?.map((point) => object.localToWorld(point));
     };
-    this.controls.closeUp(face);
   }
 
   setView(view: View): void {

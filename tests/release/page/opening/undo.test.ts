@@ -83,6 +83,7 @@ test('a sample over own work can be taken back by the message and by the key, wi
 test('the message goes after a while, or with the next step; own files over own, and over a sample that was changed, say it, too', async () => {
   const { page } = await site.visit({ viewport: { width: 900, height: 700 } }, kPlay);
   const box = page.getByTestId('ask');
+  await page.getByTestId('menu').click();
   await page.getByTestId('sample-select').selectOption('human');
   await ready(page);
   assert.ok(await box.isHidden(), 'nobody misses what was only looked at');

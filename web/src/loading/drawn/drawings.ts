@@ -18,7 +18,7 @@ export class Drawings {
   /** Those that suit a cage. */
   listFor(cage: Model): readonly DrawnPaint[] {
     const isFace = 'eye_centre_left' in landmarksOf(cage);
-    return drawnPaints.filter(({ ofFaces }) => isFace || !ofFaces);
+    return drawnPaints.filter(({ kind }) => isFace || kind !== 'face');
   }
 
   /** What a cage that has no paint yet is painted with. */

@@ -1,24 +1,26 @@
+/** Where a paint belongs; one for the face needs its landmarks. */
+export type PaintKind = 'face' | 'body' | 'clothes';
+
 /** A paint that is drawn for a cage: its name in links and projects, and its title for people. */
 export interface DrawnPaint {
   name: string;
   title: string;
-  /** Whether it needs the landmarks of a face. */
-  ofFaces?: true;
+  kind: PaintKind;
 }
 
 /** The paints, in the order in which they are offered. */
 export const drawnPaints: readonly DrawnPaint[] = [
-  { name: 'tiger', title: 'Tiger' },
-  { name: 'skull', title: 'Skull', ofFaces: true },
-  { name: 'soft-make-up', title: 'Soft make-up', ofFaces: true },
-  { name: 'stage-make-up', title: 'Stage make-up', ofFaces: true },
-  { name: 'freckles', title: 'Freckles', ofFaces: true },
-  { name: 'tricolour', title: 'Tricolour' },
-  { name: 'club-colours', title: 'Club colours' },
-  { name: 'camouflage', title: 'Camouflage' },
-  { name: 'carbon', title: 'Carbon' },
-  { name: 'circuit', title: 'Circuit' },
-  { name: 'flowers', title: 'Flowers' },
-  { name: 'harlequin', title: 'Harlequin' },
-  { name: 'scales', title: 'Scales' },
+  { name: 'tiger', title: 'Tiger', kind: 'body' },
+  { name: 'skull', title: 'Skull', kind: 'face' },
+  { name: 'soft-make-up', title: 'Soft make-up', kind: 'face' },
+  { name: 'stage-make-up', title: 'Stage make-up', kind: 'face' },
+  { name: 'freckles', title: 'Freckles', kind: 'face' },
+  { name: 'tricolour', title: 'Tricolour', kind: 'clothes' },
+  { name: 'club-colours', title: 'Club colours', kind: 'clothes' },
+  { name: 'camouflage', title: 'Camouflage', kind: 'clothes' },
+  { name: 'carbon', title: 'Carbon', kind: 'clothes' },
+  { name: 'circuit', title: 'Circuit', kind: 'body' },
+  { name: 'flowers', title: 'Flowers', kind: 'body' },
+  { name: 'harlequin', title: 'Harlequin', kind: 'clothes' },
+  { name: 'scales', title: 'Scales', kind: 'body' },
 ];

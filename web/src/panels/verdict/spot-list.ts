@@ -1,7 +1,6 @@
 import { make } from '../../platform/make';
 import type { Session } from '../../state/session';
 import { type Spot, spotsOf, whereAre } from '../../state/verdict/spots';
-import { faceOf } from '../../view/face-of';
 import { marksOf } from '../../view/segments';
 import type { Viewer } from '../../view/viewer';
 
@@ -46,11 +45,11 @@ function itemOf({ text, segments, isOfFace, remedy }: Spot, session: Session, vi
   const show = (): void => {
     light();
     if (!viewer || !shown) return;
-    const { object, front, model, cage } = viewer.stage;
+    if (isOfFace) return void viewer.showFace();
+    const { object, front } = viewer.stage;
     const where = whereAre(shown, segments);
-    const points = isOfFace ? ((model && faceOf(model, cage)) ?? where?.box) : where?.box;
-    const inStudio = points?.map((point) => object.localToWorld(point));
-    if (inStudio) viewer.controls.lookAt(inStudio, (isOfFace ? undefined : where?.front) ?? front);
+    const box = where?.box.map((point) => object.localToWorld(point));
+    if (box) viewer.controls.lookAt(box, where!.front ?? front);
   };
   line.addEventListener('click', show);
   for (const begin of ['pointerenter', 'focus']) line.addEventListener(begin, light);

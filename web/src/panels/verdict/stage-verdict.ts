@@ -18,7 +18,7 @@ import type { Viewer } from '../../view/viewer';
 import { goTo } from '../section-nav';
 
 /**
- * Shows the verdict on the cage on the stage and on the model's card: in Play what stays bare, with a list of spots behind it; in
+ * Shows the verdict on the cage on the stage: in Play what stays bare, with a list of spots behind it; in
  * Inspect how much is painted, with a remedy.
  */
 export class StageVerdict {
@@ -26,7 +26,6 @@ export class StageVerdict {
   readonly #box = element('stage-verdict', HTMLElement);
   readonly #text = element('stage-verdict-text', HTMLButtonElement);
   readonly #button = element('stage-remedy', HTMLButtonElement);
-  readonly #card = element('model-verdict', HTMLElement);
   #verdict: KnownVerdict = '';
   #inspection: Inspection | undefined;
   #remedy: Remedy | undefined;
@@ -60,11 +59,9 @@ export class StageVerdict {
     const { shown, classification } = this.#session;
     if (!shown || !classification) return;
     const words = (face() === 'play' ? this.#inWords : this.#inNumbers).bind(this);
-    const { stage, card } = words(shown, classification.segmentStats);
-    this.#box.hidden = this.#card.hidden = false;
-    this.#text.textContent = stage;
-    this.#card.textContent = card;
-    this.#box.dataset.verdict = this.#card.dataset.verdict = verdict;
+    this.#box.hidden = false;
+    this.#text.textContent = words(shown, classification.segmentStats);
+    this.#box.dataset.verdict = verdict;
     const isHidden = !this.#remedy || face() === 'play';
     const leaves = isHidden && document.activeElement === this.#button;
     this.#button.hidden = isHidden;
@@ -72,7 +69,7 @@ export class StageVerdict {
     this.#button.textContent = this.#remedy?.title ?? '';
   }
 
-  #inWords(shown: Shown, stats: Stats): Words {
+  #inWords(shown: Shown, stats: Stats): string {
     return verdictWords(this.#verdict, {
       region: regionOf(shown, stats),
       bare: bareParts(shown, stats),
@@ -81,27 +78,21 @@ export class StageVerdict {
     });
   }
 
-  #inNumbers(shown: Shown, stats: Stats): Words {
+  #inNumbers(shown: Shown, stats: Stats): string {
     const region = regionOf(shown, stats);
     const painted = `${Math.round(100 * paintableShare(stats))} % paintable`;
     const of = region && capital(region);
     const share = of ? `${of}: ${painted}` : painted;
     const unknown = this.#remedy ? 'The cage is not checked yet' : 'Checking the cage…';
-    const stage = {
+    return {
       '': isForeign(shown) ? 'The cage is another model’s' : unknown,
       good: of ? `${of} of the model: ${painted}` : painted,
       usable: `${share}, with reservations`,
       unfit: 'The cage does not fit',
     }[this.#verdict];
-    const unchecked = this.#remedy ? 'not checked yet' : 'checking…';
-    return { stage, card: { '': unchecked, good: share, usable: share, unfit: 'does not fit' }[this.#verdict] };
   }
 }
 
-interface Words {
-  stage: string;
-  card: string;
-}
 type Stats = Parameters<typeof bareParts>[1] & Parameters<typeof regionOf>[1];
 
 const isForeign = ({ target, cage }: Shown): boolean => cage.sample !== undefined && cage.sample !== target.sample;

@@ -134,18 +134,12 @@ interface Seen {
 
 const kMaxNames = 4; // of bare parts
 
-/** A verdict in plain words: a line for the stage, and the short of it for cards. */
-export function verdictWords(
-  verdict: KnownVerdict,
-  { region, bare, findings, isForeign }: Seen,
-): Record<'stage' | 'card', string> {
-  if (verdict === 'unfit') return { stage: 'Does not look right', card: 'does not look right' };
-  if (verdict === '' && isForeign) return { stage: 'Painted for another model', card: 'of another model' };
-  if (verdict === 'usable') {
-    const spots = `${findings} ${findings === 1 ? 'spot' : 'spots'}`;
-    return { stage: `Looks off? ${spots}`, card: `looks off? ${spots}` };
-  }
+/** A verdict in plain words: one line. */
+export function verdictWords(verdict: KnownVerdict, { region, bare, findings, isForeign }: Seen): string {
+  if (verdict === 'unfit') return 'Does not look right';
+  if (verdict === '' && isForeign) return 'Painted for another model';
+  if (verdict === 'usable') return `Looks off? ${findings} ${findings === 1 ? 'spot' : 'spots'}`;
   const more = bare.length > kMaxNames ? [`${bare.length - kMaxNames + 1} more`] : [];
   const names = [...bare.slice(0, kMaxNames - more.length), ...more].join(', ');
-  return { stage: `Painted${region ? `: ${region}` : ''}${names && ` · ${names} bare`}`, card: 'painted' };
+  return `Painted${region ? `: ${region}` : ''}${names && ` · ${names} bare`}`;
 }
