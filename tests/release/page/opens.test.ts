@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { head } from '../../support/cages';
 import { difference, frames, look, modelArea, watch } from '../../support/picture';
-import { openSite, ready } from '../../support/site';
+import { drop, openSite, ready } from '../../support/site';
 
 const kFrames = 30; // in which whatever moves does
 
@@ -101,12 +102,28 @@ test('the content security policy forbids other hosts, inline scripts and eval',
   assert.match(policy!, /script-src 'self' 'wasm-unsafe-eval';/);
 });
 
-test('the model turns by itself until it is touched, but not with reduced motion', async () => {
+test('the model turns by itself until it is touched, but not while a file is read, nor with reduced motion', async () => {
   const moving = await site.visit({ reducedMotion: 'no-preference', viewport: { width: 800, height: 700 } });
   await moving.page.locator('#poster').waitFor({ state: 'detached' });
   const area = await modelArea(moving.page);
   const first = await look(moving.page, area);
   await watch(moving.page, area, (picture) => difference(first, picture) > 0.01);
+
+  let letGo = (): void => {};
+  const gate = new Promise<void>((done) => (letGo = done));
+  await moving.page.route(/cagecast-cages.*\.wasm/, async (route) => {
+    await gate;
+    await route.continue();
+  });
+  await drop(moving.page, [head()]);
+  await moving.page.locator('#progress').waitFor();
+  const waiting = await look(moving.page, area);
+  await frames(moving.page, kFrames);
+  assert.ok(difference(waiting, await look(moving.page, area)) < 0.002, 'it leaves the processor to what is read');
+  letGo();
+  await ready(moving.page);
+  const other = await look(moving.page, area);
+  await watch(moving.page, area, (picture) => difference(other, picture) > 0.01);
   await moving.page.locator('#view').focus();
   await moving.page.keyboard.press('ArrowUp');
   const touched = await look(moving.page, area);

@@ -41,6 +41,7 @@ export class CameraControls {
   #swayed: number | undefined;
   /** When it went on last. */
   #swayedAt = 0;
+  #held = false;
   readonly #followers: (() => void)[] = [];
   /** When the controls were updated last. */
   #updated = 0;
@@ -190,6 +191,13 @@ export class CameraControls {
     this.#redraw();
   }
 
+  /** Holds the idle rotation, or lets it go on: it would take the processor from other work where there is no graphics card. */
+  hold(on: boolean): void {
+    this.#held = on;
+    this.#swayedAt = 0;
+    this.#redraw();
+  }
+
   /** Turns the model round and round, but for while the user turns it. @param seconds Of a turn; undefined ends it. */
   turntable(seconds: number | undefined): void {
     this.sway(false);
@@ -206,7 +214,7 @@ export class CameraControls {
 
   /** Moves the camera on to a time, in milliseconds. */
   update(now: number): void {
-    if (this.#swayed !== undefined && this.#stage.model) {
+    if (this.#swayed !== undefined && !this.#held && this.#stage.model) {
       // Starts with the first frame.
       if (this.#swayedAt > 0) this.#swayed += Math.min(kLongestFrame, Math.max(0, now - this.#swayedAt) / 1000);
       this.#swayedAt = now;

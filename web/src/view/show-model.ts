@@ -21,6 +21,7 @@ export function showModel(session: Session, viewer: Viewer): void {
   session.on('view', (view) => viewer.setView(view));
 
   const reduced = matchMedia('(prefers-reduced-motion: reduce)');
+  session.on('progress', ({ state }) => viewer.controls.hold(state === 'working'));
   viewer.controls.sway(!reduced.matches);
   reduced.addEventListener('change', () => reduced.matches && viewer.controls.sway(false));
 }
