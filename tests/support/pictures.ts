@@ -30,7 +30,7 @@ async function first(site: Site): Promise<void> {
     const { page } = await site.visit({ viewport, deviceScaleFactor }, kPlay);
     await page.addStyleTag({
       content:
-        '* { background: none !important; box-shadow: none !important } .panel, header, #stage > :not(canvas) { opacity: 0 }',
+        '* { background: none !important; box-shadow: none !important } .panel, header, #stage > :not(canvas), .dock > * { opacity: 0 }',
     });
     await rest(page);
     const clip = (await page.locator('#view').boundingBox())!;
@@ -80,11 +80,13 @@ async function busts(): Promise<Upload[]> {
 
 /** Shows one paint on busts of other shapes. */
 async function fillWardrobe(page: Page): Promise<void> {
+  await page.getByTestId('menu').click();
   await choose(page, 'Human bust');
+  await page.keyboard.press('Escape');
   await drop(page, await busts());
   await page.getByRole('button', { name: 'Fit this cage to all' }).click();
   await page.waitForFunction(() => !/no cage|Fitting|Waiting/.test(document.querySelector('.avatars')!.textContent!));
-  await page.locator('#view-mode input[value=result]').check({ force: true });
+  await page.getByTestId('compare').setChecked(false, { force: true });
 }
 
 /** The whole page on two screens: a figure in Play, and a wardrobe. */
@@ -113,7 +115,7 @@ async function share(site: Site): Promise<void> {
   const shots: string[] = [];
   const { page } = await site.visit({ viewport: { width: 900, height: 560 }, deviceScaleFactor: 2 });
   await page.addStyleTag({
-    content: '* { background: none !important } .panel, header, #stage > :not(canvas) { opacity: 0 }',
+    content: '* { background: none !important } .panel, header, #stage > :not(canvas), .dock > * { opacity: 0 }',
   });
   await page.locator('#view-mode input[value=result]').check({ force: true });
   for (const model of kModels) {
@@ -203,7 +205,7 @@ async function choose(page: Page, model: string): Promise<void> {
 
 async function hideControls(page: Page): Promise<void> {
   await page.addStyleTag({
-    content: '.panel, .toolbar, .rail, .legend, .stage-head, .angles, .clips, .quick, header { opacity: 0 }',
+    content: '.panel, .toolbar, .rail, .legend, .stage-head, .angles, .clips, .quick, .dock, header { opacity: 0 }',
   });
 }
 

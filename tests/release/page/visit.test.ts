@@ -48,7 +48,7 @@ async function verdict(page: Page): Promise<string> {
 
 /** The part of the picture where the model is, in pixels: what another view mode changes. */
 async function seenModel(page: Page): Promise<{ left: number; right: number; top: number; bottom: number }> {
-  const style = await page.addStyleTag({ content: '#stage > :not(#view) { opacity: 0 }' });
+  const style = await page.addStyleTag({ content: '#stage > :not(#view), .dock > * { opacity: 0 }' });
   const area = (await page.locator('#stage').boundingBox())!;
   const pictures = [];
   for (const mode of ['segments', 'distance']) {

@@ -12,7 +12,7 @@ const kOrange = 24;
 
 /** The picture alone, without what lies on it. */
 async function picture(page: Page): Promise<PNG> {
-  await page.addStyleTag({ content: '#stage > :not(#view, #poster) { opacity: 0 }' });
+  await page.addStyleTag({ content: '#stage > :not(#view, #poster), .dock > * { opacity: 0 }' });
   return PNG.sync.read(await page.screenshot({ clip: await modelArea(page) }));
 }
 
