@@ -78,7 +78,7 @@ export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
     });
   opener.wardrobe = wardrobe;
   opener.onPicture = painting?.hold;
-  const linked = { session, layers, live, controls: viewer?.controls };
+  const linked = { session, layers, live, maker: page.maker, controls: viewer?.controls };
   const exportPanel = new ExportPanel(linked, png);
   for (const event of ['change', 'pictures'] as const) stack.on(event, () => exportPanel.refresh());
   const restoreWork = beginProjects({ ...page, painter: painting?.painter, live, viewer, wardrobe });

@@ -4,7 +4,7 @@ import type { Session } from '../state/session';
 import { type Code, codeFor } from './code';
 import { endingOf } from './ending';
 import type { Baked, PaintInto } from './export-messages';
-import { type Linked, linkOf } from './links';
+import { type Link, type Linked, linkOf } from './links';
 import { zonesJson } from './zones';
 
 /** The panel “Share”: the model, the zones, code and a link. */
@@ -15,6 +15,7 @@ export class ExportPanel {
   readonly #link = element('share-link', HTMLAnchorElement);
   readonly #code = element('code', HTMLElement);
   #due = false;
+  #requests = 0;
 
   /** @param png Encodes the composite of the layers, in the cage's UVs. */
   constructor(linked: Linked, png: () => Promise<Blob>) {
@@ -27,11 +28,15 @@ export class ExportPanel {
     element('export-zones', HTMLButtonElement).addEventListener('click', () => {
       download(new Blob([zonesJson(session)], { type: 'application/json' }), `${this.#stem}-zones.json`);
     });
-    this.#link.addEventListener('click', () => this.#copyLink());
+    this.#link.addEventListener('click', (event) => {
+      if (event.ctrlKey || event.metaKey || event.shiftKey) return; // it is opened elsewhere
+      event.preventDefault();
+      void this.#copyLink();
+    });
     this.#link.addEventListener('keydown', (event) => {
       if (event.key !== ' ') return;
       event.preventDefault(); // of scrolling: links do not take it for a click, as buttons do
-      this.#copyLink();
+      void this.#copyLink();
     });
     // Update the link before it is used: the camera may have moved.
     for (const event of ['pointerdown', 'focus'] as const) this.#link.addEventListener(event, () => this.#refresh());
@@ -40,6 +45,7 @@ export class ExportPanel {
     );
     for (const input of section.querySelectorAll<HTMLInputElement>('[name=code]'))
       input.addEventListener('change', () => this.#refresh());
+    section.addEventListener('toggle', () => this.#refresh());
     for (const event of ['zones', 'view', 'paint'] as const) session.on(event, () => this.refresh());
     session.on('transfer', () => this.#offerTextures());
     session.on('leave', () => (element('copy-note', HTMLElement).textContent = ''));
@@ -69,17 +75,19 @@ export class ExportPanel {
         ? 'The model and the code use the undeformed shape of the file, the zones the deformed one that you see.'
         : '',
     );
-    const link = linkOf(this.#linked);
-    if (link) this.#link.href = link;
+    if (this.#link.checkVisibility()) void this.#refreshLink();
+  }
+
+  /** Writes the link: strokes are packed for it. */
+  async #refreshLink(): Promise<void> {
+    const request = ++this.#requests;
+    const link = await linkOf(this.#linked);
+    if (request !== this.#requests) return;
+    if (link) this.#link.href = link.hash;
     else this.#link.removeAttribute('href');
     this.#link.ariaDisabled = link ? null : 'true';
-    const { omitted } = this.#linked.layers;
-    this.#link.querySelector('small')!.textContent = omitted.length > 0 ? 'without your layers' : 'to this view';
-    element('link-hint', HTMLElement).textContent = !link
-      ? 'Links work for samples only, because your own files stay on this device. A project file has them.'
-      : omitted.length > 0
-        ? `The link leaves out ${listOf(omitted)}: a link has no images of your own, and few strokes. A project file has them.`
-        : 'The link opens this sample with its paints, your strokes and stickers, the view and the camera.';
+    this.#link.querySelector('small')!.textContent = kindOf(link);
+    element('link-hint', HTMLElement).textContent = hintOf(link);
   }
 
   get #stem(): string {
@@ -131,8 +139,8 @@ export class ExportPanel {
     }
   }
 
-  #copyLink(): void {
-    this.#refresh();
+  async #copyLink(): Promise<void> {
+    await this.#refreshLink();
     if (!this.#link.hasAttribute('href')) return;
     const url = this.#link.href;
     // Where it cannot be shared, or that was refused, it is copied.
@@ -153,6 +161,19 @@ export class ExportPanel {
     }
     setTimeout(() => (note.textContent = ''), 4000);
   }
+}
+
+/** What a link is to. */
+const kindOf = (link: Link | undefined): string =>
+  link && link.omitted.length > 0 ? 'without your layers' : link?.isLook ? 'to the look' : 'to this view';
+
+function hintOf(link: Link | undefined): string {
+  if (!link) return 'This look fits this model alone, so no link can carry it. Save the model, or a project.';
+  if (link.omitted.length > 0)
+    return `The link leaves out ${listOf(link.omitted)}: a link has no images of your own, and few strokes. The model and a project file have them.`;
+  return link.isLook
+    ? 'The link has the look, not your model: it is shown on a sample, and whoever opens it can wear it. Your file stays on this device.'
+    : 'The link opens this sample with its paints, your strokes and stickers, the view and the camera.';
 }
 
 const kMaxNames = 3;

@@ -1,8 +1,9 @@
+import type { TemplateName } from 'cagecast/cages';
 import { maxLayers } from '#three';
 import { type Choice, kMaxWeld, type Locks, type Rules } from '../state/choices';
 import { type ChosenShape, kDeforms } from '../state/deform';
 import type { Angle } from '../state/view-state';
-import { kLastStep, kLightNames, kModes, type Mode, type View } from '../state/view-state';
+import { kLastStep, kLightNames, kModes, type LightName, type Mode, type View } from '../state/view-state';
 
 /** A link may name as many morphs, with weights up to so much, as projects. */
 const [kMaxMorphs, kMaxWeight] = [10_000, 1e6];
@@ -34,16 +35,44 @@ export interface LinkState {
   angle?: Angle | undefined;
 }
 
+/** A look without its model: all that have the same template can wear it. */
+export interface Look {
+  template: TemplateName;
+  layers: LinkedLayer[];
+  light: LightName;
+  /** #rrggbb; empty for none. */
+  background: string;
+}
+
+/** The samples that looks are shown on. */
+export const kStandIns: Record<TemplateName, string> = {
+  'human-head': 'human',
+  'human-body': 'avatar',
+  'animal-head': 'lizard',
+  car: 'car',
+  'face-mask': 'human',
+};
+
+/** Encodes a look as a URL fragment, as `writeLink`. */
+export function writeLook({ template, layers, light, background }: Look): string {
+  const words = new URLSearchParams({ look: template });
+  writeLayers(words, layers);
+  writeLight(words, light, background);
+  return textOf(words);
+}
+
+/** Decodes a fragment, as `readLink`. @returns Undefined if it has no look for a template of the page. */
+export function readLook(fragment: string): Look | undefined {
+  const words = new URLSearchParams(fragment.replace(/^#/, ''));
+  const template = words.get('look') as TemplateName;
+  if (!Object.hasOwn(kStandIns, template)) return undefined;
+  return { template, layers: readLayers(words) ?? [], ...readLight(words) };
+}
+
 /** Encodes a state as a URL fragment, without `#`. The format is public: people save links. */
 export function writeLink({ sample, layers, rules, locks, view, shape, angle }: LinkState): string {
   const words = new URLSearchParams({ sample });
-  for (const { paint, opacity, tint, blend, visible } of layers ?? []) {
-    words.append(
-      'layer',
-      [paint, Number(opacity.toFixed(3)), tint.replace('#', ''), blend, ...(visible ? [] : ['hidden'])].join(','),
-    );
-  }
-  if (layers?.length === 0) words.set('layer', 'none');
+  if (layers) writeLayers(words, layers);
   words.set('rules', rules.preset);
   words.set('threshold', String(rules.threshold));
   if (rules.borders !== 'triangle') words.set('borders', rules.borders);
@@ -58,8 +87,7 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
   if (!view.paint) words.set('paint', 'off');
   if (view.cage) words.set('cage', 'on');
   if (view.seeThrough) words.set('through', 'on');
-  if (view.light !== 'studio') words.set('light', view.light);
-  if (view.background) words.set('background', view.background.replace('#', ''));
+  writeLight(words, view.light, view.background);
   if (shape && shape.amount !== 0)
     words.set('deform', [shape.deform, Number(shape.amount.toFixed(3)), ...(shape.cage ? [] : ['alone'])].join(','));
   for (const [name, weight] of shape?.morphs ?? []) words.append('morph', `${Number(weight.toFixed(3))},${name}`);
@@ -68,7 +96,25 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
     const numbers = [angle.turn.toFixed(3), angle.tilt.toFixed(3), angle.near.toFixed(4), ...at].map(Number);
     words.set('angle', numbers.join(','));
   }
-  return words.toString().replaceAll('%2F', '/').replaceAll('%2C', ',');
+  return textOf(words);
+}
+
+const textOf = (words: URLSearchParams): string =>
+  words.toString().replaceAll('%2F', '/').replaceAll('%2C', ',').replaceAll('%3A', ':');
+
+function writeLayers(words: URLSearchParams, layers: readonly LinkedLayer[]): void {
+  for (const { paint, opacity, tint, blend, visible } of layers) {
+    words.append(
+      'layer',
+      [paint, Number(opacity.toFixed(3)), tint.replace('#', ''), blend, ...(visible ? [] : ['hidden'])].join(','),
+    );
+  }
+  if (layers.length === 0) words.set('layer', 'none');
+}
+
+function writeLight(words: URLSearchParams, light: LightName, background: string): void {
+  if (light !== 'studio') words.set('light', light);
+  if (background) words.set('background', background.replace('#', ''));
 }
 
 /**
@@ -80,10 +126,9 @@ export function readLink(fragment: string): LinkState | undefined {
   const sample = words.get('sample');
   if (!sample) return undefined;
   const mode = words.get('view') as Mode;
-  const layers = words.getAll('layer').slice(0, maxLayers);
   return {
     sample,
-    layers: layers.length > 0 ? layers.filter((text) => text !== 'none').map(readLayer) : undefined,
+    layers: readLayers(words),
     rules: {
       preset: words.get('rules') === 'paper' ? 'paper' : 'default',
       threshold: share(words.get('threshold'), 0.5),
@@ -98,13 +143,23 @@ export function readLink(fragment: string): LinkState | undefined {
       paint: words.get('paint') !== 'off',
       cage: words.get('cage') === 'on',
       seeThrough: words.get('through') === 'on',
-      light: kLightNames.find((name) => name === words.get('light')) ?? 'studio',
-      background: readColor(words.get('background') ?? '') ?? '',
+      ...readLight(words),
     },
     shape: readShape(words),
     angle: readAngle(words.get('angle')),
   };
 }
+
+/** Undefined if the link says nothing of layers. */
+function readLayers(words: URLSearchParams): LinkedLayer[] | undefined {
+  const layers = words.getAll('layer').slice(0, maxLayers);
+  return layers.length > 0 ? layers.filter((text) => text !== 'none').map(readLayer) : undefined;
+}
+
+const readLight = (words: URLSearchParams): Pick<View, 'light' | 'background'> => ({
+  light: kLightNames.find((name) => name === words.get('light')) ?? 'studio',
+  background: readColor(words.get('background') ?? '') ?? '',
+});
 
 function readLayer(text: string): LinkedLayer {
   const [paint = '', opacity = null, tint = '', blend = 'normal', hidden] = text.split(',');

@@ -1,12 +1,13 @@
 import { type Blend, blendModes, type Edits, type Layer, type LayerStack, type Style } from '#three';
 import type { Opener } from '../loading/opener';
 import { paintName } from '../loading/samples';
+import { ask } from '../platform/ask';
 import { pngOf } from '../platform/png';
 import { type Paint, titleOf } from '../state/paint';
 import { kChecker } from '../state/sample';
 import type { Session } from '../state/session';
 import type { LinkedLayer } from './link';
-import type { LinkedLayers } from './links';
+import { kDamagedLink, type LinkedLayers } from './links';
 import { Strokes } from './strokes';
 
 /**
@@ -21,26 +22,26 @@ export function exportedPaint(
   { opener, strokes }: { opener: Opener; strokes: Strokes },
   png = () => latestPng(stack),
 ): { png(): Promise<Blob>; layers: LinkedLayers } {
-  /** The name of a layer's paint in links; undefined for the user's own. */
+  /** The name of a layer's paint in links, or its strokes; undefined for the user's own. */
   const nameOf = ({ sheet }: Layer): string | undefined => {
     if (sheet === session.checker) return kChecker;
     const name = (sheet as Paint).drawn ?? paintName(sheet.picture ?? '');
     return opener.has(name) ? name : (sheet as Paint).linked;
   };
-  const textOf = (layer: Layer): string | undefined => nameOf(layer) ?? strokes.write(layer);
   let requests = 0;
   return {
     png,
     layers: {
-      get layers() {
-        return stack.layers.flatMap((layer) => {
-          const paint = textOf(layer);
-          const { opacity, tint, blend, visible } = layer;
-          return paint ? [{ paint, opacity, tint, blend, visible }] : [];
-        });
-      },
-      get omitted() {
-        return stack.layers.flatMap((layer) => (textOf(layer) ? [] : layer.name));
+      async write() {
+        const { layers } = stack;
+        const texts = await strokes.write(layers);
+        const known = layers.map((layer) => ({ layer, paint: nameOf(layer) ?? texts.get(layer) }));
+        return {
+          layers: known.flatMap(({ layer: { opacity, tint, blend, visible }, paint }) =>
+            paint ? [{ paint, opacity, tint, blend, visible }] : [],
+          ),
+          omitted: known.flatMap(({ layer, paint }) => (paint ? [] : layer.name)),
+        };
       },
       restore(layers) {
         const before = session.shown?.target;
@@ -55,9 +56,10 @@ export function exportedPaint(
           // The lowest is the paint the sample opened with, unless that layer was removed.
           const isBase = stack.base !== undefined && nameOf(stack.base) === known[0]?.paint;
           const rest = isBase ? known.slice(1) : known;
-          let paints: (Paint | undefined)[];
+          const paints: (Paint | undefined)[] = [];
           try {
-            paints = await readPaints(rest, layers, opener);
+            for (const { paint } of rest)
+              paints.push(await (Strokes.has(paint) ? Strokes.read(paint) : opener.paint(paint)));
           } catch (error) {
             return session.fail(error);
           }
@@ -72,41 +74,13 @@ export function exportedPaint(
             const paint = paints[i];
             if (paint && !stack.full) stack.add(titleOf(paint), paint, styleOf(layer));
           });
+          if (known.length < layers.length || paints.includes(undefined)) ask(kDamagedLink);
           // Earlier undo steps do not apply any more.
           edits.forget();
         });
       },
     },
   };
-}
-
-/**
- * The paints of layers in a link, read one after the other; those that are damaged are left out.
- * @param all  All layers of the link. @throws Error that names the layer, if its strokes have a size that this page does not write: nothing is decoded then.
- */
-async function readPaints(
-  layers: readonly LinkedLayer[],
-  all: readonly LinkedLayer[],
-  opener: Opener,
-): Promise<(Paint | undefined)[]> {
-  const strokes = new Map<LinkedLayer, File | undefined>();
-  for (const layer of layers)
-    if (Strokes.has(layer.paint))
-      strokes.set(
-        layer,
-        await Strokes.check(layer.paint).catch((error: Error) => {
-          throw new Error(
-            `The layers of the link are left out. Of number ${all.indexOf(layer) + 1}, ${error.message}.`,
-          );
-        }),
-      );
-  const paints: (Paint | undefined)[] = [];
-  for (const layer of layers) {
-    const file = strokes.get(layer);
-    if (!strokes.has(layer)) paints.push(await opener.paint(layer.paint));
-    else paints.push(file && (await Strokes.read(layer.paint, file).catch(() => undefined)));
-  }
-  return paints;
 }
 
 function styleOf({ opacity, tint, blend, visible }: LinkedLayer): Partial<Style> {

@@ -23,6 +23,16 @@ import { watchOverSample } from './watch-over';
 const kOwn = 'own';
 const kAskedFor = 15_000; // milliseconds
 
+/** In which way a sample is opened. */
+interface HowOpened {
+  /** The paint that it begins with, by `paintName`; the first of its own by default. */
+  paint?: string | undefined;
+  /** Locks of its segments. */
+  locks?: Locks;
+  /** Gives it another cage, for which its own paints are not. */
+  cageFor?: (target: Model) => Promise<Model>;
+}
+
 /** Opens samples and the user's own files, and shows what is open. */
 export class Opener implements Samples {
   readonly #session: Session;
@@ -99,10 +109,9 @@ export class Opener implements Samples {
 
   /**
    * Opens a sample by name; does nothing if there is none.
-   * @param paint One of its paints, by `paintName`; the first by default.
-   * @param locks Locks of its segments.
+   * @param how In which way; as the sample is, by default.
    */
-  openSample(name: string, paint?: string, locks: Locks = {}): void {
+  openSample(name: string, how: HowOpened = {}): void {
     const sample = this.#samples.find((candidate) => candidate.name === name);
     if (!sample) return;
     this.#select.value = name;
@@ -112,16 +121,18 @@ export class Opener implements Samples {
       ...(await this.#loader.loadOwn(await fetchFile(address))),
       sample,
     });
-    const [target, cage] = [model(sample.target), model(sample.cage)];
-    const requested = { target, cage, paint: this.#firstPaint(sample, paint, cage) };
-    this.#request(requested, locks, true);
-    watchOverSample(this.#session, sample.title, requested, () => this.openSample(name, paint, locks));
+    const target = model(sample.target);
+    // The cage of a sample without paints of its own is a template already.
+    const cage = how.cageFor && sample.paints.length > 0 ? target.then(how.cageFor) : model(sample.cage);
+    const requested = { target, cage, paint: this.#firstPaint(sample, how, cage) };
+    this.#request(requested, how.locks, true);
+    watchOverSample(this.#session, sample.title, requested, () => this.openSample(name, how));
   }
 
   /** The paint a sample opens with: the named one, else its first, else one that is drawn for its cage. */
-  async #firstPaint(sample: Sample, name: string | undefined, loading: Promise<Model>): Promise<Paint> {
-    const { paints } = sample;
+  async #firstPaint(sample: Sample, { paint: name, cageFor }: HowOpened, loading: Promise<Model>): Promise<Paint> {
     if (name === kChecker) return this.#session.checker;
+    const paints = cageFor || this.drawings.find(name ?? '') ? [] : sample.paints;
     const own = paints.find(({ file }) => paintName(file) === name) ?? paints[0];
     if (own) return this.#fetchPaint(sample, own);
     return this.#drawFor(asCage(await loading), name);

@@ -12,7 +12,7 @@ export function removeOtherPoster(): void {
   const linked = new URLSearchParams(location.hash.slice(1));
   const works = flags.get('work') && flags.get('start') !== 'over';
   const sample = linked.get('sample');
-  if (sample ? sample !== poster?.dataset.sample : works) poster?.remove();
+  if (sample ? sample !== poster?.dataset.sample : works || linked.has('look')) poster?.remove();
 }
 
 /** Fades the poster image once the 3D view is drawn. Without WebGL it stays as long as the first sample is open. */

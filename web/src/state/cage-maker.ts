@@ -3,6 +3,7 @@ import type { Bone } from 'three';
 import { cageModel, Emitter, likelyTemplate } from '#three';
 import { carriedBy, type Fitting, kMaxAsked, madeOf, noteMade, readable, sampleOf } from './made-cages';
 import { type Loader, type Model, originOf } from './model';
+import { haveSameUvs } from './same-uvs';
 import type { Session } from './session';
 import { type Box, boxOf, diagonalOfBox } from './surface';
 import { reasonOf } from './wording';
@@ -136,18 +137,30 @@ export class CageMaker extends Emitter<{
     return this.fit(likelyTemplate(target.mesh.positions, namesIn(target)));
   }
 
+  /** The template that the current cage is a fit of; undefined for others. */
+  async template(): Promise<TemplateName | undefined> {
+    const { cage } = this.#session.shown!;
+    const own = madeOf(cage.files[0]!);
+    if (!own || own.fitting || this.isOthers) return this.isOthers ? undefined : own?.fitting?.template;
+    // One that came with its model.
+    const { loadTemplate, templateNames } = await this.#workshop.engine();
+    const templates = await Promise.all(templateNames.map(async (name) => ({ name, mesh: await loadTemplate(name) })));
+    return templates.find((one) => haveSameUvs(one, cage))?.name;
+  }
+
   /**
    * The cage of a model that is opened alone, as `chooseCage` chooses it. Another call, or the end of the request, ends it.
+   * @param template Fits this one instead.
    * @throws Error that names the model.
    */
-  async cageFor(target: Model): Promise<Model> {
+  async cageFor(target: Model, template?: TemplateName): Promise<Model> {
     const abort = new AbortController();
     this.#opening?.abort();
     this.#opening = abort;
     const onProgress = (share: number, step: string): void =>
       this.#session.reportLoading(kStages[step] ?? 'Fitting a cage', share);
     try {
-      return await this.choose(target, { signal: abort.signal, onProgress });
+      return await this.choose(target, { signal: abort.signal, onProgress }, template);
     } catch (error) {
       throw new Error(`${target.name}: ${reasonOf(error)}`, { cause: error });
     } finally {
@@ -155,8 +168,12 @@ export class CageMaker extends Emitter<{
     }
   }
 
-  /** The cage of any model: the one that it has with it, else as `chooseCage` chooses it. @param target As its file has it. */
-  async choose(target: Model, progress: ChoiceProgress): Promise<Model> {
+  /**
+   * The cage of any model: the one that it has with it, else as `chooseCage` chooses it.
+   * @param target    As its file has it.
+   * @param template  As of `cageFor`.
+   */
+  async choose(target: Model, progress: ChoiceProgress, template?: TemplateName): Promise<Model> {
     const { cage: own } = carriedBy(target.files[0]!);
     if (own) {
       noteMade(own, { target: target.files[0]!, isNew: true, note: kOwn, fitting: undefined });
@@ -165,10 +182,12 @@ export class CageMaker extends Emitter<{
     const engine = await this.#workshop.engine();
     const model = await cageModel(target.loaded);
     const { options, marks } = this.#choicesFor(model, target);
-    const { cage, template, fit } = await engine.chooseCage({ ...model, marks }, { ...options, ...progress });
+    const { cage, fit, ...chosen } = template
+      ? await fitOf(engine, model, template, progress)
+      : await engine.chooseCage({ ...model, marks }, { ...options, ...progress });
     const how =
-      fit && template !== 'made'
-        ? { note: kFitted, fitting: { ...fit, template, given: {} } }
+      fit && chosen.template !== 'made'
+        ? { note: kFitted, fitting: { ...fit, template: chosen.template, given: {} } }
         : { note: noteOfMade(cage), fitting: undefined };
     const file = new File([engine.cageGlb({ ...cage, origin: originOf(target) })], cageNameFrom(target.name));
     noteMade(file, { target: target.files[0]!, isNew: true, ...how });
@@ -313,6 +332,12 @@ export class CageMaker extends Emitter<{
         : kFitted;
     return { cage, note, fitting: { ...found, template: name, given }, isNew: true };
   }
+}
+
+/** A fit as `chooseCage` returns one. */
+async function fitOf(engine: Engine, model: CageModel, template: TemplateName, progress: ChoiceProgress) {
+  const fit = await engine.fitCage(await engine.loadTemplate(template), model, {}, progress);
+  return { cage: fit.cage, fit, template };
 }
 
 const kOwn = 'The model came with this cage, and its paint.';
