@@ -1,5 +1,4 @@
 import type { Check } from './check.js';
-import type { CagecastViewer } from './element.js';
 
 /** The events of `<cagecast-viewer>`. */
 export interface ViewerEvents {
@@ -17,7 +16,7 @@ export interface ViewerEvents {
 export interface Listening<Options> {
   <Type extends keyof ViewerEvents>(
     type: Type,
-    listener: (this: CagecastViewer, event: ViewerEvents[Type]) => unknown,
+    listener: (this: ViewerElement, event: ViewerEvents[Type]) => unknown,
     options?: boolean | Options,
   ): void;
   <Type extends keyof HTMLElementEventMap>(
