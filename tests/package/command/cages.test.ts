@@ -130,6 +130,10 @@ test('errors are one line that names the file, and write nothing', async () => {
   const fit = (path: string, flags = '') => `fit ${human} --template ${path} -o never.glb${flags}`;
   for (const [line, message] of [
     ['make missing.glb -o never.glb', /missing\.glb: no such file/],
+    [
+      `transfer ${human} --cage human-head`,
+      /human-head: no such file; to fit the template of this name, give --template human-head/,
+    ],
     ['make no.json -o never.glb', /no\.json: is neither a GLB or glTF file nor one of FBX|no\.json: is /],
     ['fit missing.glb --template human-head -o never.glb', /missing\.glb: no such file/],
     [fit('human'), /human: no such file, and no template of the package: there are human-head, /],

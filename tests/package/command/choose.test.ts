@@ -144,7 +144,10 @@ test('transfer, inspect, bake, fit and batch take templates, and a texture for e
     await ok('inspect lump.glb --template auto'),
     /^a cage was made for this model\n {2}human-head: too little was found/m,
   );
-  await ok('bake human.glb --template human-head --texture {template}.png -o paint.png');
+  assert.match(
+    await ok('bake human.glb --template human-head --texture {template}.png -o paint.png'),
+    /^the template human-head was fitted\nthe cage is good\nwrote paint\.png/m,
+  );
   const { stdout } = await run('batch human.glb lump.glb --template auto --texture {template}.png -o {name}-out.glb');
   const lines = stdout
     .trim()

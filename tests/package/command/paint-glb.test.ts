@@ -191,6 +191,12 @@ test('what cannot be used is named, with what helps', async () => {
       /^paintGlb: cage and template are both given; one of them is needed/,
       'cage',
     ],
+    [
+      model,
+      { ...own, cage: 'human-head' },
+      /^paintGlb: cage is .*; the template of this name is fitted by opt/,
+      'cage',
+    ],
     [model, { cage: own.cage }, /^paintGlb: texture is undefined, not a Uint8Array/, 'texture'],
     [model, { ...own, texture: model }, /^paintGlb: texture: is not a PNG, JPEG, WebP or KTX2 image/, 'texture'],
     [model, { ...own, cage: texture }, /^paintGlb: cage: /, 'cage'],

@@ -20,7 +20,8 @@ import { resolveSettings } from '../model/settings.js';
 import { isByTemplate, type Sources, texturePath } from '../model/sources.js';
 import { configLine, quoted, takenAway } from '../model/text.js';
 import { allFilesReadBy } from '../transfer/files-read.js';
-import { missingLine } from '../transfer/report-parts.js';
+import { inspectionReport } from '../transfer/inspection.js';
+import { cageReport, choiceLines, missingLine } from '../transfer/report-parts.js';
 import { cutTarget, type Run, runTransfer } from '../transfer/run-transfer.js';
 import { listNames, paintForModel, paintOfModel } from './bake-picture.js';
 import * as common from './common-flags.js';
@@ -161,12 +162,21 @@ async function bakeCommand(command: BakeCommand, io: Io): Promise<Found> {
   const isPicture = command.output.toLowerCase().endsWith('.png');
   const maps = { color, normal: normals, orm: rough };
   const baked = isPicture ? bakePicture(command, run, cut, color) : bakeFile(command, run, cut, maps);
-  const { data, ...found } = await baked.catch((error) => {
+  const { data, lines, report } = await baked.catch((error) => {
     throw withName(error instanceof CagecastError ? new InputError(error.reason, { cause: error }) : error, target);
   });
   refuseOverwriting([...allFilesReadBy(command, run), paint, normal, orm], [command.output]);
+  const fitted = command.template === undefined ? undefined : fittedOf(command, run, io);
   writeFiles([{ path: command.output, data }], io);
-  return found;
+  return { lines: [...(fitted?.lines ?? []), ...lines], report: { ...report, ...fitted?.report } };
+}
+
+/** What is said of the cage that a template came to. */
+function fittedOf(command: BakeCommand, run: Run, io: Io): Found {
+  io.step('inspecting');
+  const cage = cageReport(command.cage, run.cage, run);
+  const { verdict, findings } = inspectionReport(command, run, []);
+  return { lines: [...choiceLines(cage), `the cage is ${verdict}`], report: { cage, verdict, findings } };
 }
 
 /** A file that is to be written, and what is said of it. */

@@ -1,3 +1,5 @@
+import { statSync } from 'node:fs';
+import { isTemplateName } from '../../cages/template-names.js';
 import { errorInFile, type ReadModel } from '../../gltf/read-model.js';
 import { hasCages } from '../../parts/own-cages.js';
 import { extract, type WhichCount } from '../../scene/extract.js';
@@ -22,6 +24,8 @@ export async function readModel(
   { bytes, whichCount = 'cage' }: ModelOptions = {},
 ): Promise<ReadModel> {
   io.step(`reading ${path}`);
+  if (whichCount === 'cage' && isTemplateName(path) && !statSync(path, { throwIfNoEntry: false })?.isFile())
+    throw new InputError(`no such file; to fit the template of this name, give --template ${path}`).in(path);
   const file = await readGltf(path, reading, bytes);
   const extracted = extract(file, 'own', whichCount, '; name what counts by --keep');
   if (extracted.mesh.indices.length > 0) return { file, extracted };

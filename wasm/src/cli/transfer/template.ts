@@ -1,6 +1,6 @@
 import { statSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { type TemplateName, templateNames } from '../../cages/template-names.js';
+import { isTemplateName, templateNames } from '../../cages/template-names.js';
 import type { Landmarks, Template } from '../../cages/types.js';
 import { withUvs } from '../../gltf/read-model.js';
 import { counted } from '../../inspect/finding.js';
@@ -19,9 +19,6 @@ import { readModel } from './models.js';
 /** Whether a template is none that has to be read from a file of the user's. */
 export const isKnownTemplate = (text: unknown): boolean =>
   typeof text === 'string' && (text === kAutoCage || isTemplateName(text));
-
-/** Whether a text is the name of a template that comes with the package. */
-const isTemplateName = (text: string): text is TemplateName => (templateNames as readonly string[]).includes(text);
 
 /** How many landmarks `fitCage` needs of a template. */
 const kMinLandmarks = 4;

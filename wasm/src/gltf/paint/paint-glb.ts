@@ -3,6 +3,7 @@ import { faultOfNames, optionNames } from '../../api/option-names.js';
 import { faultOfParts, type Parts } from '../../api/parts.js';
 import { cageGlb } from '../../cages/cage-glb.js';
 import type { CageCallOptions, Choice, Fit, Landmarks, TemplateName, Tried } from '../../cages/index.js';
+import { isTemplateName } from '../../cages/template-names.js';
 import type { Cage, Template } from '../../cages/types.js';
 import { CagecastError, type Code, show } from '../../core/error.js';
 import { plainArray } from '../../core/typed-arrays.js';
@@ -278,8 +279,10 @@ async function readCage(
 ): Promise<ReadModel> {
   const file = plainArray(cage, 'Uint8Array');
   if (file) return withUvs(await readModel('cage', file, { beside: target, decoders }));
-  if (typeof cage !== 'object' || cage === null || cage instanceof Uint8Array)
-    throw wrong('cage', cage, 'the bytes of a GLB, or a mesh');
+  if (typeof cage !== 'object' || cage === null || cage instanceof Uint8Array) {
+    const advice = isTemplateName(cage) ? '; the template of this name is fitted by options.template' : '';
+    throw wrong('cage', cage, `the bytes of a GLB, or a mesh${advice}`);
+  }
   if (cage.uvs === undefined)
     throw wrong('cage.uvs', cage.uvs, "a Float32Array: the texture is drawn in the cage's UVs");
   return readModel('cage', cageGlb({ ...cage, uvs: cage.uvs }), { beside: target });
