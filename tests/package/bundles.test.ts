@@ -45,7 +45,7 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'layers, for WebGPURenderer',
-    18_000,
+    18_100,
     `import { enableLayers } from 'cagecast/three/webgpu';
     import { createLayers } from 'cagecast/three';
     console.log(enableLayers, createLayers);`,

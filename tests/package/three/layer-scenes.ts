@@ -324,6 +324,29 @@ export const layerScenes: Scenes = {
     layers.dispose();
   },
 
+  'an image of the colours alone is told of once for what it lacks'() {
+    const heard: string[] = [];
+    const { warn } = console;
+    console.warn = (text: string) => void heard.push(text);
+    const layers = createLayers({ renderer, size: 256 });
+    const layer = layers.add(flat(0xdd3311));
+    const read = () => {
+      for (let i = 0; i < 2; ++i) layers.toImageData(16);
+    };
+    read();
+    layers.set(layer, { roughness: 0.1, emissive: 1 });
+    read();
+    layers.set(layer, { roughness: null, visible: false });
+    layers.setBaseTint('#ff8800');
+    read();
+    console.warn = warn;
+    layers.dispose();
+    equal(
+      heard.map((text) => /toImageData has the colours only/.test(text)),
+      [true],
+    );
+  },
+
   'a layer that is added with all that another one has stays a layer of its own'() {
     const layers = createLayers({ renderer, size: 256 });
     const first = layers.add(flat(0xff0000), { name: 'red' });

@@ -7,8 +7,8 @@ import { launchChromium } from '../../support/chromium.js';
 import { serve } from '../../support/serve.js';
 import { temporaryFolder } from '../../support/temporary.js';
 
-/** Warnings that say nothing: the renderer frees what a lost context had, too. */
-const kHarmless = /404|GPU stall|object does not belong to this context/;
+/** Warnings that say nothing here: the renderer frees what a lost context had, too. */
+const kHarmless = /toImageData has the colours only|404|GPU stall|object does not belong to this context/;
 
 /**
  * Makes a test of each scene of a page, which has them as `names` and `run(name)`.

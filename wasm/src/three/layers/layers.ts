@@ -2,7 +2,7 @@ import type { Texture, WebGLRenderer } from 'three';
 import type { LoadedCage } from '../apply/models.js';
 import { check, notA, wrong } from '../errors.js';
 import { readStraight } from '../gpu/straight.js';
-import { BaseTint } from './base-tint.js';
+import { BaseTint, kWhite } from './base-tint.js';
 import { Composite, maxCompositeSize } from './composite.js';
 import { CopiedTexture } from './copied-texture.js';
 import { Edits } from './edits.js';
@@ -31,6 +31,8 @@ export interface LayersOptions {
 }
 
 const kSizes = [256, 512, 1024, maxCompositeSize] as const;
+
+const kColorsOnly = 'cagecast/three: toImageData has the colours only, not gloss, metal, glow, relief, base tint';
 
 /** How a change is made. */
 export interface ChangeOptions {
@@ -70,6 +72,8 @@ export class Layers extends Emitter<{
   readonly #channels: ShownChannels;
   readonly #baseTint = new BaseTint(this.history, () => this.announce());
   #isDisposed = false;
+  /** Whether the console was told that an image has the colours only. */
+  #isTold = false;
   readonly #regions: Regions | undefined;
   /** Paintings that were loaded, as far as they may be shown again. */
   readonly #loaded: WeakRef<PaintedSheet>[] = [];
@@ -223,7 +227,8 @@ export class Layers extends Emitter<{
   }
 
   /**
-   * Reads the texture, as image files have it: sRGB, colours not multiplied by alpha. Waits for the GPU.
+   * Reads the texture, as image files have it: sRGB, colours not multiplied by alpha. Waits for the GPU. Roughness, metalness, glow,
+   * relief and the base tint are not in it, of which the console warns once.
    * @param size  Texels per side, 1 to 2048. Default: those of the texture.
    * @throws {CagecastError} `badArgument` for another size.
    */
@@ -231,6 +236,9 @@ export class Layers extends Emitter<{
     if (!(Number.isInteger(size) && size > 0 && size <= maxCompositeSize))
       throw notA(`an integer from 1 to ${maxCompositeSize}`, 'size', size);
     this.update();
+    const hasMore = this.composite.channels.size > 0 || this.baseTint !== kWhite;
+    if (hasMore && !this.#isTold) console.warn(kColorsOnly);
+    this.#isTold ||= hasMore;
     return readStraight(this.renderer, this.composite.texture, size);
   }
 
