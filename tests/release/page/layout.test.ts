@@ -260,7 +260,7 @@ test('in Play, nothing that can be pressed on the stage is covered or cut off, w
   assert.deepEqual(await stageFaults(page), []);
   await page.getByRole('radio', { name: 'Brush' }).check({ force: true });
   assert.deepEqual(await stageFaults(page), [], 'while one paints');
-  await page.locator('#section-nav a').first().click();
+  await page.locator('#section-nav a').filter({ visible: true }).first().click();
   assert.deepEqual(await stageFaults(page), [], 'with the sheet');
 });
 
