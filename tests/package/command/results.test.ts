@@ -158,6 +158,8 @@ test('a line says why next to nothing may be painted, and what helps', async () 
     maker.json.materials = [{ doubleSided: true }];
     maker.node({ name: 'shell', mesh: maker.mesh({ ...shell, indices: inward }, { material: 0 }) });
   });
+  write('large.glb', glbOf({ ...cage, positions: cage.positions.map((x) => 100 * x) }));
+  write('small.glb', glbOf({ ...cage, positions: cage.positions.map((x) => x / 1000) }));
   write('within.glb', glbOf({ ...ball([0, 0, 0], () => 0.5, 60, 80) }));
   writeMade('half.glb', (maker) => {
     const front = within(cage, (x) => x > 0.9);
@@ -180,6 +182,14 @@ test('a line says why next to nothing may be painted, and what helps', async () 
     [
       'transfer target.glb --cage half.glb --set preset=paper',
       /^nothing .* covers only [\d.]+ % of .* "only"; try --keep "only" or a /m,
+    ],
+    [
+      'transfer target.glb --cage large.glb',
+      /^(nothing may be painted: |)the cage is \d\d+ times as large as the target, as in another unit; give both in the same unit$/m,
+    ],
+    [
+      'transfer target.glb --cage small.glb',
+      /^nothing may be painted: the target is \d{3,} times as large as the cage, as in another unit; give both in the same unit$/m,
     ],
     [
       'transfer cage.glb --cage within.glb',

@@ -13,7 +13,12 @@ const kUncoveredReach = 0.03;
 /** How many hidden vertices are asked for what hides them. */
 const kMaxAsked = 48;
 
+/** Factors between units: centimetres or millimetres, and metres. How far a cage may be off them, as it may be that of a part. */
+const kUnits = [100, 1000];
+const kMaxOff = 2;
+
 type Cause =
+  | 'units'
   | 'exchanged'
   | 'elsewhere'
   | 'uncovered'
@@ -25,7 +30,7 @@ type Cause =
   | 'lock'
   | 'mask';
 
-/** Why next to nothing may be painted. */
+/** Why next to nothing may be painted, or all as by chance. */
 export interface Bare {
   /** The painted share of what the cage covers. */
   share: number;
@@ -37,10 +42,12 @@ export interface Bare {
   hider: string;
   /** How much of its exposed area the cage covers. */
   coverage: number;
+  /** How many times as large as the target the cage is. */
+  times: number;
 }
 
 /**
- * Finds out why nothing, or less than 5 % of what the cage covers, may be painted; `undefined` if more may. Cost: linear in the
+ * Finds out why nothing, or less than 5 % of what the cage covers, may be painted, or whether the cage is in another unit; `undefined` otherwise. Cost: linear in the
  * triangles; where that is hidden, some 50 times as much.
  * @param cage  As it was given. Default: it is not known, and so not whether it was exchanged with the target.
  */
@@ -63,7 +70,12 @@ export function bareOf(
   }
   const beneath = painted + hidden + culled;
   const share = beneath > 0 ? painted / beneath : 0;
-  if (share >= kEnough) return undefined;
+  const times = cage ? boxOf(cage.positions).diagonal / diagonal : 1;
+  const isOfUnits = kUnits.some(
+    (unit) =>
+      Math.abs(Math.log(times / unit)) < Math.log(kMaxOff) || Math.abs(Math.log(times * unit)) < Math.log(kMaxOff),
+  );
+  if (share >= kEnough && !isOfUnits) return undefined;
   const isElsewhere = beneath + uncovered <= kMinBeneath * total;
   const most = Math.max(hidden, uncovered, culled);
   const zone = isElsewhere || most === uncovered ? 2 : most === hidden ? 1 : 3;
@@ -81,8 +93,10 @@ export function bareOf(
   const hider = zone === 1 ? hiderOf(target, concerned.filter(ofPart), partOf) : undefined;
   return {
     share,
-    cause:
-      share === 0 && cage && areExchanged(cage, target)
+    times,
+    cause: isOfUnits
+      ? 'units'
+      : share === 0 && cage && areExchanged(cage, target)
         ? 'exchanged'
         : isElsewhere
           ? 'elsewhere'
@@ -160,8 +174,11 @@ function hitAt(from: Vector, way: Vector, a: Vector, b: Vector, c: Vector): numb
   return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : Infinity;
 }
 
+const rounded = (times: number) => Number(times.toPrecision(2));
+
 /** What to do about each cause, by the names of options. */
 const kAdvice: Record<Cause, string> = {
+  units: 'give both in the same unit',
   exchanged: 'exchange them',
   elsewhere: 'put both in the same place and unit',
   uncovered: 'fit the cage around it',
@@ -176,9 +193,10 @@ const kAdvice: Record<Cause, string> = {
 };
 
 /** Says in one line why next to nothing may be painted, and what helps. @param advice  What to do, if not by names of options. */
-export function bareText({ share, cause, part, hider, coverage }: Bare, advice = kAdvice[cause]): string {
+export function bareText({ share, cause, part, hider, coverage, times }: Bare, advice = kAdvice[cause]): string {
   const whole = `"${part}"`;
   const why: Record<Cause, string> = {
+    units: `${times > 1 ? `the cage is ${rounded(times)}` : `the target is ${rounded(1 / times)}`} times as large as the ${times > 1 ? 'target' : 'cage'}, as in another unit`,
     exchanged: 'target and cage seem to be exchanged',
     elsewhere: 'the cage lies over next to none of the target',
     uncovered: `most of ${whole} lies outside the cage, or under a hole of it`,
@@ -190,6 +208,7 @@ export function bareText({ share, cause, part, hider, coverage }: Bare, advice =
     lock: `${whole} is excluded by choice`,
     mask: `masks exclude ${whole}`,
   };
+  if (share >= kEnough) return `${why[cause]}; ${advice}`;
   const what = share === 0 ? 'nothing' : `only ${percent(share)} of what the cage covers`;
   return `${what} may be painted: ${why[cause]}; ${advice}`;
 }

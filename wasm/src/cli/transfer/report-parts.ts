@@ -64,6 +64,7 @@ export function bareNote({ target: { extracted }, wholeCage, result }: Run): str
   if (!bare) return undefined;
   const keep = `--keep ${quoted(bare.part)}`;
   const advice: Record<Bare['cause'], string> = {
+    units: 'give both in the same unit',
     exchanged: 'exchange them',
     elsewhere: 'put both in the same place and unit; cagecast inspect says more',
     uncovered: 'fit the cage around it; cagecast inspect says more',
