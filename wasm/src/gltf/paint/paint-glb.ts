@@ -48,8 +48,9 @@ export interface PaintOptions
   /** Spots of the model for the fit, in the space of its scene; they override those that are found. Default: none. */
   landmarks?: Landmarks | undefined;
   /**
-   * Decodes an image of the model for the fit, to find a face that is only painted. Rejected images are left out. Default: the
-   * browser's own; other hosts have none, and look at no colours.
+   * Decodes an image of the model for the fit, to find a face that is only painted; and a texture with alpha, to find where it is
+   * opaque: there the overlay is drawn as the surface itself, so that transparent hair before it stays before it. Rejected images are left
+   * out. Default: the browser's own; other hosts have none, look at no colours, and blend all of a texture with alpha.
    */
   decode?: ImageCodec['decode'] | undefined;
   /**
