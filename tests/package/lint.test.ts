@@ -161,7 +161,12 @@ test('generated files are fresh', () => {
 test('the project weighs no more than its budget says', () => {
   const flag = (name: string) => `| \`--${name}\` | It is a flag. |\n`;
   const tree = {
-    'package.json': '{ "exports": { ".": { "types": "./dist/index.d.ts" }, "./part.wasm": "./dist/part.wasm" } }',
+    'package.json': JSON.stringify({
+      exports: {
+        '.': { types: './dist/index.d.ts', default: './dist/index.js' },
+        './part.wasm': { types: './dist/part.wasm.d.ts', default: './dist/part.wasm' },
+      },
+    }),
     'wasm/src/index.ts': "// A comment.\n\nexport const a = 1;\nexport { b, type C } from './b.js';\n",
     'docs/cli.md': `## cagecast batch\n\n${flag('own')}\nAlso: [what is shared](#what-is-shared).\n\n## What is shared\n\n${flag('other')}`,
   };
