@@ -80,13 +80,12 @@ async function busts(): Promise<Upload[]> {
 
 /** Shows one paint on busts of other shapes. */
 async function fillWardrobe(page: Page): Promise<void> {
-  await page.getByTestId('menu').click();
-  await choose(page, 'Human bust');
-  await page.keyboard.press('Escape');
   await drop(page, await busts());
-  await page.getByRole('button', { name: 'Fit this cage to all' }).click();
-  await page.waitForFunction(() => !/no cage|Fitting|Waiting/.test(document.querySelector('.avatars')!.textContent!));
-  await page.getByTestId('compare').setChecked(false, { force: true });
+  await page.waitForFunction(() => {
+    const cards = [...document.querySelectorAll('.avatars .avatar')];
+    return cards.length === 4 && cards.every((card) => card.querySelector<HTMLElement>('.verdict')!.dataset.verdict);
+  });
+  await settled(page);
 }
 
 /** The whole page on two screens: a figure in Play, and a wardrobe. */
