@@ -162,10 +162,7 @@ test('the project weighs no more than its budget says', () => {
   const flag = (name: string) => `| \`--${name}\` | It is a flag. |\n`;
   const tree = {
     'package.json': JSON.stringify({
-      exports: {
-        '.': { types: './dist/index.d.ts', default: './dist/index.js' },
-        './part.wasm': { types: './dist/part.wasm.d.ts', default: './dist/part.wasm' },
-      },
+      exports: { '.': { types: './dist/index.d.ts', default: './dist/index.js' }, './x': { default: './dist/x.wasm' } },
     }),
     'wasm/src/index.ts': "// A comment.\n\nexport const a = 1;\nexport { b, type C } from './b.js';\n",
     'docs/cli.md': `## cagecast batch\n\n${flag('own')}\nAlso: [what is shared](#what-is-shared).\n\n## What is shared\n\n${flag('other')}`,

@@ -81,10 +81,8 @@ async function busts(): Promise<Upload[]> {
 /** Shows one paint on busts of other shapes. */
 async function fillWardrobe(page: Page): Promise<void> {
   await drop(page, await busts());
-  await page.waitForFunction(() => {
-    const cards = [...document.querySelectorAll('.avatars .avatar')];
-    return cards.length === 4 && cards.every((card) => card.querySelector<HTMLElement>('.verdict')!.dataset.verdict);
-  });
+  const worn = '.avatar:has(.verdict[data-verdict=good], .verdict[data-verdict=usable])';
+  await page.locator(worn).nth(3).waitFor();
   await settled(page);
 }
 
