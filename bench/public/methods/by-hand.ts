@@ -6,7 +6,7 @@ import type { MethodModule } from '../run-method.js';
 
 /** How far the cage may be, as a share of its diagonal. */
 const kReach = 0.05;
-/** Where a ray starts, likewise, so that it does not meet the triangles that it starts from. */
+/** The start of a ray, likewise: off the triangles around it. */
 const kLift = 1e-4;
 
 export const zones: MethodModule['zones'] = ({ cage, target }) => {

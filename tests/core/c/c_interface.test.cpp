@@ -1,4 +1,4 @@
-// What C gets is what C++ gets, to the bit; where memory runs out, it gets an error.
+// C gets the same as C++, to the bit; out of memory, an error.
 
 #include <cstring>
 

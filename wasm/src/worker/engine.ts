@@ -7,6 +7,6 @@ export interface Engine {
   prepareParts: typeof prepareParts;
 }
 
-/** What computes: the worker of `cagecast/worker`; where there are none, this thread, for which `cagecast` is loaded. */
+/** The computing thread: the worker of `cagecast/worker`; in hosts without workers this one, with `cagecast` loaded for it. */
 export const engine = async (): Promise<Engine> =>
   hasWorkers() ? { transfer, inspect, prepareParts } : import('./here.js');

@@ -65,7 +65,7 @@ export async function transferRegion(
   const paint = known ?? (path && !isTiled(path) ? await readPaint(path, reading.limits) : undefined);
   const areas: PaintArea[] = uvBounds ? ['bounded'] : tiles.map(({ tile }) => ({ tile }));
   const paints: Paint[] = (paint ? [paint] : tiles).map((one, i) => ({ ...one, area: areas[i] }));
-  // Triangles that are moved to an overlay change the order by which those that are painted are known.
+  // Triangles in an overlay change the order of all, by which painted ones are known.
   if (output !== undefined && isLast) for (const one of paints) one.hides = await opacityOf(one, decodeImage);
   const cutMesh = output !== undefined && command.borders === 'cut' ? cutTarget(run, io) : undefined;
   const shown = shownTriangles(areas, run.result, run.target.extracted.mesh.indices);

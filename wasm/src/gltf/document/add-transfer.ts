@@ -337,7 +337,7 @@ function mapsOn(primitive: Primitive, overlay: Primitive): ((material: Material)
   ];
 }
 
-/** What gives a material the light that a base has of its own, which paint does not hide. */
+/** Gives a material the base's own light: paint does not hide it. */
 function glowOn(
   base: Material | null,
   on: (

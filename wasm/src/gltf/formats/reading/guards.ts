@@ -61,7 +61,7 @@ export function guardLoaders(limits: FormatLimits): void {
   };
 }
 
-/** Mends what three's loader leaves out of USD: clockwise triangles, what is not drawn, and which of several sets of UVs is the first. */
+/** Mends what three's loader leaves out of USD: clockwise triangles, hidden prims, and the first of several sets of UVs. */
 export function mendUsd(): void {
   const prototype = USDComposer.prototype as unknown as Composer;
   const { applyTransform } = prototype;
