@@ -118,6 +118,11 @@ describe('extract', () => {
       part(({ material }) => void (material.visible = false)),
       part(({ material }) => void Object.assign(material, { transparent: true, opacity: 0 })),
       part(({ material }) => void Object.assign(material, { alphaTest: 0.5, opacity: 0.4 })),
+      part(({ geometry, material }) => {
+        const clear = new Uint8Array(4 * geometry.attributes['position']!.count);
+        geometry.setAttribute('color', new BufferAttribute(clear, 4, true));
+        Object.assign(material, { transparent: true, vertexColors: true });
+      }),
       part((mesh) => void Object.assign(mesh.scale.setScalar(1.01) && mesh.material, { side: BackSide })),
       part((mesh) => void (mesh.name = 'Head_OuterCage')),
       part(() => {}, new ArrowHelper()),
@@ -130,12 +135,12 @@ describe('extract', () => {
     const counts = reasons.map((reason) => [reason, leftOut.filter(({ why }) => why === reason).length]);
     assert.deepEqual(counts, [
       ['hidden', 3],
-      ['transparent', 2],
+      ['transparent', 3],
       ['outline', 1],
       ['name', 1],
     ]);
     const all = applyTransfer(root, { cage: cage(), parts: { keep: ['*'] } });
-    assert.equal(all.parts.length, 8);
+    assert.equal(all.parts.length, 9);
     const { parts, leftOut: others } = applyTransfer(root, {
       cage: cage(),
       parts: { ignore: [0], keep: ['head_outercage'] },

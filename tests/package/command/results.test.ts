@@ -260,6 +260,32 @@ function dressed(maker: GlbMaker): void {
   maker.json.extensionsUsed = ['KHR_node_visibility'];
 }
 
+test('what the colours of its vertices leave nothing of is left out, where its material blends', async () => {
+  const left = async (alphaMode: string, alpha: number) => {
+    writeMade('veiled.glb', (maker) => {
+      const veil = ball([0, 0, 0], () => 1.12, 12, 24);
+      const number = maker.mesh(veil, { material: 0 });
+      const colors = Uint8Array.from({ length: (veil.positions.length / 3) * 4 }, (_, i) =>
+        i % 4 === 3 ? alpha : 255,
+      );
+      maker.json.meshes[number]!.primitives[0]!.attributes['COLOR_0'] = maker.accessor(colors, 'VEC4', {
+        normalized: true,
+      });
+      maker.json.materials = [{ alphaMode: alphaMode as 'BLEND' }];
+      maker.node({ name: 'head', mesh: meshOf(maker, 0) });
+      maker.node({ name: 'Veil', mesh: number });
+    });
+    const { target } = await json<Report>('transfer veiled.glb --cage cage.glb');
+    return target.leftOut.map(({ name, why }) => `${name}: ${why}`);
+  };
+  assert.deepEqual(await left('BLEND', 0), ['Veil: transparent']);
+  for (const [mode, alpha] of [
+    ['BLEND', 1],
+    ['OPAQUE', 0],
+  ] as const)
+    assert.deepEqual(await left(mode, alpha), []);
+});
+
 test('what is not drawn is left out, and what --ignore names; hats stay bare', async () => {
   writeMade('dressed.glb', dressed);
   const line = 'transfer dressed.glb --cage cage.glb';

@@ -14,7 +14,7 @@ export interface Look {
   above?: readonly (string | undefined)[];
   /** Whether it, or something above it, is switched off. */
   isHidden: boolean;
-  /** Whether the alpha of its material leaves nothing of it. */
+  /** Whether the alpha of its material, or of its vertices, leaves nothing of it. */
   isClear: boolean;
   /** The sides of its triangles that are drawn. */
   sides: 'front' | 'back' | 'both';
@@ -156,6 +156,10 @@ export const nameOfGlass = (mode = 'OPAQUE', alpha = 1, transmission = 0): strin
 /** Whether the alpha of a material leaves nothing of a part, by the modes of glTF. */
 export const isClear = (mode = 'OPAQUE', alpha = 1, cutoff = 0.5): boolean =>
   mode === 'BLEND' ? alpha <= 0 : mode === 'MASK' && alpha < cutoff;
+
+/** The largest alpha of the colours of vertices, 4 numbers each; 1 without them. */
+export const largestAlpha = (colors: ArrayLike<number> | undefined): number =>
+  colors ? Array.from(colors).reduce((most, x, i) => (i % 4 === 3 ? Math.max(most, x) : most), 0) : 1;
 
 function isAccessory(name: string | undefined): boolean {
   const words = name?.replace(/([a-z])([A-Z])/g, '$1 $2').match(/[a-z]+/gi) ?? [];

@@ -11,6 +11,7 @@ import {
   isClear,
   type LeftOut,
   type Look,
+  largestAlpha,
   visibilityExtension,
 } from '../parts/drawn.js';
 import type { VrmExtensions } from '../parts/joints.js';
@@ -138,7 +139,7 @@ export function namedParts({ json }: Pick<SceneSource, 'json'>, parts: readonly 
 }
 
 /** Returns what tells whether a part is drawn. */
-function looksOf({ json }: SceneSource): (part: Part) => Look {
+function looksOf({ json, accessors }: SceneSource): (part: Part) => Look {
   const { meshes = [], nodes = [], materials = [] } = json;
   const hidden = new Set<number>();
   const isOff = ({ extensions }: GLTF.INode) =>
@@ -150,8 +151,12 @@ function looksOf({ json }: SceneSource): (part: Part) => Look {
   }
   const namesAbove = aboveIn(json);
   return ({ node, mesh, primitive, aliases, matrix, localPositions, localIndices }) => {
-    const material = materials[meshes[mesh]!.primitives[primitive]!.material ?? -1];
-    const alpha = material?.pbrMetallicRoughness?.baseColorFactor?.[3];
+    const { material: number = -1, attributes } = meshes[mesh]!.primitives[primitive]!;
+    const material = materials[number];
+    const colors = accessors[attributes['COLOR_0'] ?? -1];
+    const alpha =
+      (material?.pbrMetallicRoughness?.baseColorFactor?.[3] ?? 1) *
+      largestAlpha(colors?.getElementSize() === 4 ? decodeFloats(colors) : undefined);
     return {
       names: aliases,
       above: namesAbove(node),

@@ -12,7 +12,15 @@ import type { CagecastError, Mesh } from '../../api/index.js';
 import type { Parts } from '../../api/parts.js';
 import { show } from '../../core/error.js';
 import type { Vector } from '../../inspect/geometry.js';
-import { chooseParts, groupsNamed, isClear, type LeftOut, type Look, visibilityExtension } from '../../parts/drawn.js';
+import {
+  chooseParts,
+  groupsNamed,
+  isClear,
+  type LeftOut,
+  type Look,
+  largestAlpha,
+  visibilityExtension,
+} from '../../parts/drawn.js';
 import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/origin.js';
 import { morphed, movePoints } from '../../parts/points.js';
 import { type MorphedPart, posesOf } from '../../parts/poses.js';
@@ -265,6 +273,8 @@ const isAid = (mesh: ThreeMesh, root: Object3D): boolean =>
 function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
   const { geometry } = mesh;
   const position = geometry.getAttribute('position') as Attribute | undefined;
+  const colors = geometry.getAttribute('color') as Attribute | undefined;
+  const alpha = largestAlpha(colors?.itemSize === 4 ? valuesOf(colors) : undefined);
   const materials = materialsOf(mesh);
   const all = (fits: (material: Material) => boolean) => materials.length > 0 && materials.every(fits);
   const isOff = ({ visible, userData: { gltfExtensions } }: Object3D) =>
@@ -275,8 +285,12 @@ function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
       .slice(1)
       .map(({ name }) => name),
     isHidden: below(root, mesh).some(isOff) || all(({ visible }) => !visible),
-    isClear: all(({ transparent, alphaTest, opacity }) =>
-      isClear(transparent ? 'BLEND' : alphaTest > 0 ? 'MASK' : 'OPAQUE', opacity, alphaTest),
+    isClear: all(({ transparent, alphaTest, opacity, vertexColors }) =>
+      isClear(
+        transparent ? 'BLEND' : alphaTest > 0 ? 'MASK' : 'OPAQUE',
+        opacity * (vertexColors ? alpha : 1),
+        alphaTest,
+      ),
     ),
     sides: all(({ side }) => side === FrontSide) ? 'front' : all(({ side }) => side === BackSide) ? 'back' : 'both',
     positions: position ? valuesOf(position) : [],
