@@ -8,7 +8,8 @@ import { paintGlb, type ThumbnailOptions, thumbnail } from 'cagecast/gltf';
 import { terminate } from 'cagecast/worker';
 import { PNG } from 'pngjs';
 import { fails, json, ok, run } from '../../support/command.js';
-import { GlbMaker, glbOf } from '../../support/gltf.js';
+import { GlbMaker, glbOf, unpackGlb } from '../../support/gltf.js';
+import { ball } from '../scenes.js';
 import { inRepository, png, workplace, write, writeChanged } from './workplace.js';
 
 const { target } = workplace('thumbnail');
@@ -311,6 +312,29 @@ test('what is painted is seen, and nothing else changes', async () => {
   const all = [...Array(256 * 256).keys()];
   assert.ok(triangles.painted > 0 && all.filter((i) => differs(i, 0)).length > 1000);
   assert.ok(!all.some((i) => differs(i, 3)));
+});
+
+test('an overlay is drawn where all that it leaves of its part faces inward', async () => {
+  const [skin, lining, core] = [1, 0.9, 0.5].map((radius) => ball([0, 0, 0], () => radius, 12, 24));
+  const count = skin!.positions.length / 3;
+  const head = {
+    positions: Float32Array.of(...skin!.positions, ...lining!.positions),
+    indices: Uint32Array.of(...skin!.indices, ...[...lining!.indices].reverse().map((v) => v + count)),
+  };
+  const maker = new GlbMaker();
+  maker.json.materials = [{ ...plain(red) }, { ...plain(green) }];
+  maker.node({ name: 'head', mesh: maker.mesh(head as never, { material: 0 }) });
+  maker.node({ name: 'core', mesh: maker.mesh(core as never, { material: 1 }) });
+  const blue = PNG.sync.write(Object.assign(new PNG({ width: 1, height: 1 }), { data: Buffer.of(0, 0, 255, 255) }));
+  const { bytes } = await paintGlb(maker.finish(), {
+    cage: readGlb('cage.glb'),
+    texture: blue,
+    decode: async (bytes) => decode(bytes),
+  });
+  const { meshes } = unpackGlb(bytes).json;
+  assert.ok(meshes![0]!.primitives.some(({ extras }) => extras?.['cagecastInPlaceOf'] === 0));
+  const [r, g, b] = pixel((await draw(bytes, { size: kSize })).data);
+  assert.ok(b! > 0 && r === 0 && g === 0, `${r} ${g} ${b}`);
 });
 
 const readGlb = (name: string) => new Uint8Array(readFileSync(name));

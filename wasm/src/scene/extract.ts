@@ -120,10 +120,11 @@ export function extractDrawn(source: SceneSource, whichCount?: Exclude<WhichCoun
     const isOver = (part: Part) => isOverlay(primitiveOf(source, part), source.json.meshes![part.mesh]!, source.json);
     const [overlays, own] = [all.filter(isOver), all.filter((part) => !isOver(part))];
     const fail = (text: string) => new InputError(text);
-    const chosen = new Set(
-      chooseParts(own, looksOf(source), typeof whichCount === 'function' ? whichCount(own, source) : whichCount, fail)
-        .parts,
-    );
+    // What an overlay leaves of a part may look like the inside of a shell: the choice is among whole parts.
+    const whole = overlays.length > 0 ? listParts(source) : own;
+    const which = typeof whichCount === 'function' ? whichCount(whole, source) : whichCount;
+    const counting = chooseParts(whole, looksOf(source), which, fail).parts;
+    const chosen = new Set(counting.map((part) => own[whole.indexOf(part)]!));
     const nodes = new Set([...chosen].map(({ node }) => node));
     const shown = new Set(overlays.filter(({ node }) => nodes.has(node)));
     const parts = all.filter((part) => chosen.has(part) || shown.has(part));
