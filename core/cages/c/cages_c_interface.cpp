@@ -57,6 +57,7 @@ Progress progressOf(const CagecastCageOptions& options) {
 
 std::vector<const char*> namesOf(const std::vector<std::string>& names) {
   std::vector<const char*> out;
+  out.reserve(names.size());
   for (const std::string& name : names) out.push_back(name.c_str());
   return out;
 }

@@ -20,7 +20,7 @@ test('a link restores sample, paint, rules, locks, view and camera, in this visi
   const { page } = await site.visit();
   await page.getByTestId('sample-select').selectOption({ index: 1 });
   await settled(page);
-  await page.locator('.paints label').nth(1).click();
+  await page.locator('#paints label').nth(1).click();
   await settled(page);
   await page.getByTestId('preset').selectOption('paper');
   await settled(page);

@@ -34,6 +34,9 @@ test('layers are reordered with the keys, which keep the focus, and by dragging'
   assert.deepEqual(await names(page), ['below.png', 'above.png'], 'the lowest stays the lowest');
   await assertTop(red);
 
+  await rows(page)
+    .first()
+    .evaluate((row) => row.scrollIntoView({ block: 'center' }));
   const grip = (await control('button', 'Reorder above.png').boundingBox())!;
   const top = (await rows(page).first().boundingBox())!;
   await page.mouse.move(grip.x + grip.width / 2, grip.y + grip.height / 2);
