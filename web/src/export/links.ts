@@ -92,7 +92,8 @@ export function followLinks(linked: Linked, opener: Opener): boolean {
     return true;
   };
   addEventListener('hashchange', async () => {
-    if (!(await isShown(linked))) restore();
+    // A look that cannot be written, such as while it changes, is another one.
+    if (!(await isShown(linked).catch(() => false))) restore();
   });
   return linked.session.begun || restore();
 }
