@@ -135,8 +135,7 @@ function waitsReport({ waits, growth, page }: Results): string[] {
     );
   }
   if (!growth) return parts;
-  const about =
-    'How that grows for the sample `human`, in seconds, and the most memory of the process (Node alone: 45 MB).';
+  const about = 'How that grows for the sample `human`, in seconds, and the most memory of the process.';
   return [...parts, about, growthTable(growth)];
 }
 

@@ -187,8 +187,9 @@ const tinygltf::Primitive* baseOf(const tinygltf::Primitive& overlay, const tiny
   if (!number.IsInt() || number.Get<int>() < 0) return nullptr;
   const auto at = static_cast<std::size_t>(number.Get<int>());
   if (at >= mesh.primitives.size()) return nullptr;
-  const bool isShared = attributeOf(mesh.primitives[at], "POSITION") == attributeOf(overlay, "POSITION");
-  return isShared ? &mesh.primitives[at] : nullptr;
+  const tinygltf::Primitive& base = mesh.primitives[at];
+  const bool isShared = attributeOf(base, "POSITION") == attributeOf(overlay, "POSITION");
+  return isShared && !isOverlay(base.extras) ? &base : nullptr;
 }
 
 void append(const tinygltf::Model& model, const Instance& instance, Model& out, bool& haveUvs) {

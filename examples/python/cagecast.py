@@ -90,6 +90,8 @@ def transfer(cage, target, **options):
     masks = options.pop("vertexMasks", None)
     given.vertexMasks, masks = _pointer(masks, np.int8, (len(target["positions"]),))
     for name, value in options.items():
+        if not hasattr(given, name):
+            raise TypeError(f"there is no option {name}")
         setattr(given, name, value)
     out = Transfer()
     try:

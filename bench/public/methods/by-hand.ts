@@ -1,5 +1,5 @@
-// What a programmer writes with three-mesh-bvh: a vertex is painted if the cage is near, faces the same way, and nothing of the
-// target lies between.
+// What a programmer writes with three-mesh-bvh: a vertex is painted if the cage is near and faces the same way, and a ray outwards
+// meets nothing of the target.
 import { Box3, Vector3 } from 'three';
 import { Search, triangleAt, vertexAt, withNormals } from '../../quality/shape.js';
 import type { MethodModule } from '../run-method.js';

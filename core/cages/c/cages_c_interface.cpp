@@ -7,7 +7,8 @@
 namespace cagecast::cages::c {
 namespace {
 
-using cagecast::c::choiceOf, cagecast::c::dataOf, cagecast::c::fill, cagecast::c::listOf, cagecast::c::viewOf;
+using cagecast::c::choiceOf, cagecast::c::dataOf, cagecast::c::fill, cagecast::c::listOf, cagecast::c::orEmpty,
+    cagecast::c::viewOf;
 
 static_assert(static_cast<int>(Kind::prop) == 3);
 
@@ -99,11 +100,11 @@ void show(const CageMemory& memory, CagecastCage& out) {
 extern "C" {
 
 std::int32_t cagecastMakeCage(const CagecastModel* model, const CagecastCageOptions* options, CagecastCage* out) {
-  const CagecastCageOptions given = options == nullptr ? CagecastCageOptions{} : *options;
+  const CagecastCageOptions given = orEmpty(options);
   return fill<CageMemory>(
       out,
       [&](CageMemory& memory, std::string& sentence) {
-        const Model of = modelOf(*model);
+        const Model of = modelOf(orEmpty(model));
         const MakeOptions made{
             choiceOf<Kind>(given.kind), partsOf(given), given.triangles, given.closing, given.offset, given.voxels};
         FittedCage cage;
@@ -119,14 +120,14 @@ std::int32_t cagecastMakeCage(const CagecastModel* model, const CagecastCageOpti
 
 std::int32_t cagecastFitCage(const CagecastCage* from, const CagecastModel* model, const CagecastCageOptions* options,
                              CagecastCage* out) {
-  const CagecastCageOptions given = options == nullptr ? CagecastCageOptions{} : *options;
-  const CagecastCage source = *from;  // Which may be `out`.
+  const CagecastCageOptions given = orEmpty(options);
+  const CagecastCage source = orEmpty(from);  // Which may be `out`.
   return fill<CageMemory>(
       out,
       [&](CageMemory& memory, std::string& sentence) {
         const Template cage{viewOf(&source.mesh), landmarksOf(source.landmarks, source.landmarkCount),
                             choiceOf<Kind>(source.kind)};
-        const Model of = modelOf(*model);
+        const Model of = modelOf(orEmpty(model));
         const FitOptions fit{partsOf(given), landmarksOf(given.landmarks, given.landmarkCount)};
         FittedCage fitted;
         const Status status = fitCage(cage, of, fit, progressOf(given), fitted);

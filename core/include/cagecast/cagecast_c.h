@@ -6,6 +6,8 @@
 /// A result (`CagecastTransfer` and the like) is zeroed by the caller before its first use. It owns the arrays that it
 /// points to, until it is filled again, which uses its memory again, or freed by its function.
 ///
+/// NULL for a mesh, a model, a template or a transfer is an error, NULL for options means the defaults.
+///
 /// What returns `int32_t` returns 0, or 1 after an error: then the result has an `error` and no arrays. The headers for
 /// C++ say more of each function and field.
 #ifndef CAGECAST_C_H
@@ -96,7 +98,7 @@ typedef struct CagecastSplit {
   void* memory;  ///< The library's own.
 } CagecastSplit;
 
-/// A target that is cut along the borders of its cage; new vertices follow those that it has. See `CutTarget`.
+/// A target, cut along the borders of its cage, with its new vertices last. See `CutTarget`.
 typedef struct CagecastCut {
   const uint32_t* sources;  ///< 3 per new vertex: the vertices that it blends.
   const float* weights;     ///< 3 per new vertex: how much of each.

@@ -165,7 +165,7 @@ std::int32_t cagecastCut(const CagecastMesh* cage, const CagecastMesh* target, c
       out,
       [&](CutMemory& memory, std::string& sentence) {
         DecidedTarget decided{.mesh = to, .zones = {}, .segments = {}, .culledBy = {}};
-        if (transfer->zones != nullptr) {
+        if (transfer != nullptr && transfer->zones != nullptr) {
           const TransferResult& result = static_cast<TransferMemory*>(transfer->memory)->result;
           decided.zones = result.zones.zones;
           decided.segments = result.projection.segments;

@@ -23,6 +23,12 @@ inline std::span<const std::uint32_t> listOf(const CagecastList& list) noexcept 
   return listOf(list.items, list.count);
 }
 
+/// What a pointer points to; for NULL, nothing, which is checked as input like all else.
+template <typename T>
+T orEmpty(const T* value) noexcept {
+  return value == nullptr ? T{} : *value;
+}
+
 inline MeshView viewOf(const CagecastMesh* mesh) noexcept {
   if (mesh == nullptr) return {};
   const std::size_t vertices = mesh->vertexCount, triangles = mesh->triangleCount;

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "cagecast/cagecast_c.h"
+#include "c/c_mesh.hpp"
 #include "cagecast/clip.hpp"
 #include "cagecast/split.hpp"
 #include "checks.hpp"
@@ -10,17 +10,6 @@
 using namespace cagecast;
 
 namespace {
-
-CagecastMesh cMesh(const scenes::Mesh& mesh) {
-  return {mesh.positions.data(),
-          mesh.indices.data(),
-          mesh.uvs.data(),
-          mesh.groups.data(),
-          nullptr,
-          static_cast<std::uint32_t>(mesh.vertexCount()),
-          static_cast<std::uint32_t>(mesh.triangleCount()),
-          0};
-}
 
 template <typename C, typename T>
 bool equal(const C* given, const Array<T>& expected) {
@@ -89,6 +78,8 @@ TEST_CASE("C gets what C++ gets", "[c]") {
   given.seams = 1;
   CHECK(cagecastTransfer(nullptr, &target, &given, &out) == 1);
   CHECK(std::string(out.error.message).find("cage has no") == 0);
+  CHECK(cagecastCut(&cage, &target, &given, nullptr, &pieces) == 1);
+  CHECK(std::string(pieces.error.code) == "resultMismatch");
   cagecastFreeTransfer(&out);
   cagecastFreeCut(&pieces);
   CHECK(out.memory == nullptr);

@@ -106,6 +106,9 @@ int main(void) {
   options.landmarks = NULL;
   model.mesh.triangleCount = 0;
   CHECK(cagecastMakeCage(&model, &options, &fitted) == 1 && strcmp(fitted.error.argument, "model") == 0);
+  CHECK(cagecastMakeCage(NULL, NULL, &fitted) == 1 && strcmp(fitted.error.argument, "model") == 0);
+  CHECK(cagecastFitCage(NULL, &model, NULL, &fitted) == 1 && fitted.error.message[0] != 0);
+  CHECK(cagecastFitCage(&cage, NULL, NULL, &fitted) == 1 && strcmp(fitted.error.argument, "model") == 0);
   cagecastFreeCage(&fitted);
   cagecastFreeCage(&cage);
   return failures != 0;

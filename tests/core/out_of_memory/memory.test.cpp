@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "cagecast/cagecast_c.h"
+#include "c/c_mesh.hpp"
 #include "cagecast/split.hpp"
 #include "cuts.hpp"
 #include "hash.hpp"
@@ -118,17 +118,7 @@ TEST_CASE("wherever memory runs out when segments are judged or vertices split, 
 
 TEST_CASE("wherever memory runs out in a call from C, its error says so, and the next call is right", "[memory]") {
   const scenes::Scene scene = scenes::patchwork(1);
-  const auto mesh = [](const scenes::Mesh& of) {
-    return CagecastMesh{of.positions.data(),
-                        of.indices.data(),
-                        of.uvs.data(),
-                        of.groups.data(),
-                        nullptr,
-                        static_cast<std::uint32_t>(of.vertexCount()),
-                        static_cast<std::uint32_t>(of.triangleCount()),
-                        0};
-  };
-  const CagecastMesh cage = mesh(scene.cage), target = mesh(scene.target);
+  const CagecastMesh cage = cMesh(scene.cage), target = cMesh(scene.target);
   CagecastTransfer out{};
   const std::size_t count = failEverywhere([&](Workspace&, Hash& hash) {
     cagecastFreeTransfer(&out);
