@@ -29,7 +29,7 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'applyTransferAsync',
-    31_100,
+    31_200,
     "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
@@ -52,7 +52,7 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   ['layers', 17_500, "import { createLayers } from 'cagecast/three'; console.log(createLayers);"],
   ['<cagecast-viewer>', 67_000, "import 'cagecast/viewer';"],
-  ['useCagecast', 74_000, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
+  ['useCagecast', 74_100, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
   ['inspect', 33_000, "import { inspect } from 'cagecast'; console.log(inspect);"],
   ['bakeTexture', 6500, "import { bakeTexture } from 'cagecast/engines'; console.log(bakeTexture);"],
   ['cagecast of cagecast/gltf', 131_000, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],

@@ -92,6 +92,25 @@ test('an overlay is lit as its base is, and as transparent; where it fills what 
   assert.match(await ok(line), /\nthe overlay fills what the material cuts out of “only”; cagecast bake paints/);
 });
 
+test('an overlay is no metal where the material of its base knows none', async () => {
+  const metalness = async (material: GLTF.IMaterial) => {
+    writeChanged('other.glb', glbOf(target), (json) => {
+      json.materials = [material];
+      json.meshes![0]!.primitives[0]!.material = 0;
+      json.extensionsUsed = Object.keys(material.extensions ?? {});
+    });
+    await ok('transfer other.glb --cage cage.glb --texture paint.png -o other-out.glb');
+    return primitivesOf(await io.read('other-out.glb'))
+      .find(isOverlay)!
+      .getMaterial()!
+      .getMetallicFactor();
+  };
+  const glossy = { KHR_materials_pbrSpecularGlossiness: { glossinessFactor: 0.5 } };
+  assert.equal(await metalness({ extensions: glossy }), 0);
+  assert.equal(await metalness({ extensions: { VRMC_materials_mtoon: { specVersion: '1.0' } } }), 0);
+  assert.equal(await metalness({ pbrMetallicRoughness: { metallicFactor: 0.75 } }), 0.75);
+});
+
 test('in a VRM 0, the overlay has an entry among the properties of materials, which goes with it', async () => {
   writeChanged('zero.vrm', glbOf(target), (json) => {
     json.materials = [{ name: 'skin' }];

@@ -60,8 +60,8 @@ export interface CagecastOptions extends Omit<TransferOptions, 'parts'>, MaskSou
  * glTF-Transform itself drops extensions that it does not know, such as those of VRM, when it reads a file: avatars are for `paintGlb`.
  *
  * Functions that change vertices, such as `simplify`, `weld` and `join`, belong before this one: simplified afterwards, an overlay
- * no longer lies on its surface, and UVs that were written anew stay beside those of a later transfer. `prune` takes UVs that no
- * texture uses: after a transfer without a texture, give it `keepAttributes: true`.
+ * no longer lies on its surface, and new UVs stay beside those of a later transfer. `prune` takes UVs without a texture: after a
+ * transfer without one, give it `keepAttributes: true`.
  * @throws {CagecastError} with the reason and the place, if target, cage, texture or options cannot be used.
  *
  * @example

@@ -3,6 +3,9 @@ import type { DataType, DecoderModule, Mesh } from 'draco3dgltf';
 import type { ArrayData } from '../scene/accessor.js';
 import { dracoOf } from './checks/check-geometry.js';
 
+/** Numbers of an element of an accessor. */
+const kSizes: Record<GLTF.AccessorType, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16 };
+
 /**
  * Decodes all streams of Draco of a glTF whose references are checked.
  * @param bytesOf  Of a buffer view.
@@ -36,7 +39,12 @@ export function decodeStreams(
         if (accessor === undefined || values.has(accessor)) continue;
         const attribute = decoder.GetAttributeByUniqueId(mesh, id);
         const [kind, type] = typeOf(module, accessors[accessor]!.componentType);
-        const count = mesh.num_points() * attribute.num_components();
+        const size = kSizes[accessors[accessor]!.type];
+        // Without such an attribute the pointer is null.
+        const isThere = (module as unknown as { getPointer(of: object): number }).getPointer(attribute) !== 0;
+        if (!isThere || attribute.num_components() !== size)
+          throw new Error(`Draco: a stream has no ${semantic} of ${size} numbers`);
+        const count = mesh.num_points() * size;
         values.set(
           accessor,
           read(module, kind, count, (bytes, at) =>
@@ -78,7 +86,7 @@ function read(
   const bytes = length * kind.BYTES_PER_ELEMENT;
   const at = module._malloc(bytes);
   try {
-    fill(bytes, at);
+    if ((at === 0 && bytes > 0) || fill(bytes, at) === false) throw new Error('Draco: a stream cannot be read');
     return new kind(module.HEAPF32.buffer as ArrayBuffer, at, length).slice();
   } finally {
     module._free(at);

@@ -169,5 +169,13 @@ function glowOf(
   };
 }
 
+/** The metalness of a base, for its overlay; none where the material is of another model, which has no such factor. */
+export const metalnessOf = (factor: number | undefined, extensions: readonly string[]): number =>
+  extensions.some((name) => /^(KHR_materials_pbrSpecularGlossiness|VRMC_materials_mtoon)$/.test(name))
+    ? 0
+    : (factor ?? 1);
+
+/** The extension of glTF for materials without light and shade. */
 export const unlitExtension = 'KHR_materials_unlit';
+/** The extension of glTF for materials that glow more than the screen's white. */
 export const emissiveExtension = 'KHR_materials_emissive_strength';

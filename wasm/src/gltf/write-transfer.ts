@@ -19,8 +19,8 @@ import {
   isMorphed,
   isOverlaid,
   isShown,
+  metalnessOf,
   type Paint,
-  type PaintArea,
   unlitExtension,
   uvsMark,
   zoneAttribute,
@@ -60,8 +60,8 @@ interface Writing {
 }
 
 /**
- * Writes the target with what the result of a transfer made of its parts: every primitive gets a new UV set and `_NCZ` and, with a texture, an overlay
- * primitive of its cosmetic triangles. All other contents of the file stay unchanged, including compression. If triangles at the
+ * Writes the target with what a transfer made of its parts: every primitive gets a new UV set and `_NCZ` and, with a texture, an
+ * overlay primitive of its cosmetic triangles. All other contents of the file stay unchanged, including compression. If triangles at the
  * same vertex have different UVs, copies of the vertex with all its attributes are added after the existing vertices. New vertices
  * of a cut target are added in the same way, as blends of their sources. An earlier transfer is replaced. What is replaced is dropped
  * from the file, and its replacement has the same form: sparse, quantised, or compressed by meshopt or Draco. If several nodes share
@@ -158,22 +158,28 @@ function addToGroup(
     const { primitive, primitives, cosmeticTriangles, added } = member;
     if (hasAttributes) Object.assign(primitive.attributes, attributes);
     const isReplaceable = mayReplace(writer.json, primitive);
+    const indices = shared.indices[m]!;
+    const cornersAt = (t: number) => [indices[3 * t]!, indices[3 * t + 1]!, indices[3 * t + 2]!] as const;
     const isTaken = new Uint8Array(cosmeticTriangles.length);
     let left = isTaken.length;
     const base = primitives.indexOf(primitive);
     for (const overlay of overlays) {
       const { area, hides } = overlay.paint;
-      const triangles = trianglesOf(shared.indices[m]!, cosmeticTriangles, area, shared.uvs);
+      const triangles = Uint32Array.from(cosmeticTriangles.keys()).filter(
+        (t) => cosmeticTriangles[t] && isShown(area, shared.uvs, ...cornersAt(t)),
+      );
       if (triangles.length === 0) continue;
-      const hidden = triangles.filter(([, corners]) => isReplaceable && hides?.(shared.uvs, ...corners));
-      // A primitive has at least one triangle.
-      if (hidden.length === left) hidden.pop();
-      left -= hidden.length;
-      for (const [t] of hidden) isTaken[t] = 1;
-      const rest = triangles.filter(([t]) => !isTaken[t]);
+      const hidden = triangles.filter((t) => {
+        // A primitive has at least one triangle.
+        if (left === 1 || isTaken[t] || !isReplaceable || !hides?.(shared.uvs, ...cornersAt(t))) return false;
+        isTaken[t] = 1;
+        --left;
+        return true;
+      });
+      const rest = triangles.filter((t) => !isTaken[t]);
       for (const [some, inPlaceOf] of [[hidden, base], [rest]] as const)
         if (some.length > 0)
-          primitives.push(overlay.primitive(primitive, cornersOf(some), attributes[uvSet]!, inPlaceOf));
+          primitives.push(overlay.primitive(primitive, cornersOf(indices, some), attributes[uvSet]!, inPlaceOf));
       added.overlayTriangles += triangles.length;
       added.fillsCutOuts = cutsOut(writer.json.materials?.[primitive.material ?? -1]);
     }
@@ -200,29 +206,19 @@ const cutsOut = ({ alphaMode, pbrMetallicRoughness }: GLTF.IMaterial = {}): bool
  * by its triangles, and where these are in a stream of Draco.
  */
 function mayReplace(json: GLTF.IGLTF, primitive: GLTF.IMeshPrimitive): boolean {
-  const material = json.materials?.[primitive.material ?? -1];
-  return dracoOf(primitive) === undefined && !cutsOut(material) && !isOutlined(json, primitive.material);
+  const { mappings = [] } = (primitive.extensions?.['KHR_materials_variants'] ?? {}) as {
+    mappings?: { material: number }[];
+  };
+  const all = [primitive.material, ...mappings.map(({ material }) => material)];
+  return (
+    dracoOf(primitive) === undefined &&
+    !all.some((one) => cutsOut(json.materials?.[one ?? -1]) || isOutlined(json, one))
+  );
 }
 
-/** A triangle: its number, and its corners. */
-type Triangle = [number: number, corners: [number, number, number]];
-
-/** The triangles that may be painted, and show a texture. */
-function trianglesOf(
-  indices: Uint32Array,
-  cosmetic: Uint8Array,
-  area: PaintArea | undefined,
-  uvs: Float32Array,
-): Triangle[] {
-  const out: Triangle[] = [];
-  cosmetic.forEach((isCosmetic, t) => {
-    const corners: Triangle[1] = [indices[3 * t]!, indices[3 * t + 1]!, indices[3 * t + 2]!];
-    if (isCosmetic && isShown(area, uvs, ...corners)) out.push([t, corners]);
-  });
-  return out;
-}
-
-const cornersOf = (triangles: readonly Triangle[]) => Uint32Array.from(triangles.flatMap(([, corners]) => corners));
+/** The corners of triangles. @param indices  Of all triangles. */
+const cornersOf = (indices: Uint32Array, triangles: Uint32Array): Uint32Array =>
+  new Uint32Array(3 * triangles.length).map((_, i) => indices[3 * triangles[Math.floor(i / 3)]! + (i % 3)]!);
 
 /** Adds new vertices, blends and copies, to all attributes and morph targets that primitives share. */
 function rewriteAttributes(
@@ -342,13 +338,13 @@ class OverlayWriter {
   #material(base: GLTF.IMeshPrimitive, { maps, rough }: BaseMaps, inPlace: boolean): number {
     const { json } = this.#writer;
     const source = this.#materialOf(base);
-    const { roughnessFactor = 1, metallicFactor = 1, baseColorFactor } = source?.pbrMetallicRoughness ?? {};
+    const { roughnessFactor = 1, metallicFactor, baseColorFactor } = source?.pbrMetallicRoughness ?? {};
     const isClear = source?.alphaMode === 'BLEND';
     const finish: Finish = {
       mode: inPlace && !isClear ? 'OPAQUE' : 'BLEND',
       inPlace,
       roughness: roughnessFactor,
-      metalness: metallicFactor,
+      metalness: metalnessOf(metallicFactor, Object.keys(source?.extensions ?? {})),
       doubleSided: source?.doubleSided ?? false,
       alpha: isClear ? (baseColorFactor?.[3] ?? 1) : 1,
       unlit: source?.extensions?.[unlitExtension] !== undefined,

@@ -47,8 +47,8 @@ export interface Bare {
 }
 
 /**
- * Finds out why nothing, or less than 5 % of what the cage covers, may be painted, or whether the cage is in another unit; `undefined` otherwise. Cost: linear in the
- * triangles; where that is hidden, some 50 times as much.
+ * Finds out why nothing, or less than 5 % of what the cage covers, may be painted, or whether the cage is in another unit;
+ * `undefined` otherwise. Cost: linear in the triangles; where that is hidden, some 50 times as much.
  * @param cage  As it was given. Default: it is not known, and so not whether it was exchanged with the target.
  */
 export function bareOf(
@@ -71,10 +71,9 @@ export function bareOf(
   const beneath = painted + hidden + culled;
   const share = beneath > 0 ? painted / beneath : 0;
   const times = cage ? boxOf(cage.positions).diagonal / diagonal : 1;
-  const isOfUnits = kUnits.some(
-    (unit) =>
-      Math.abs(Math.log(times / unit)) < Math.log(kMaxOff) || Math.abs(Math.log(times * unit)) < Math.log(kMaxOff),
-  );
+  const isNear = (of: number) => Math.abs(Math.log(times / of)) < Math.log(kMaxOff);
+  // A large cage paints all that is in it. A small one that does may be meant for a detail.
+  const isOfUnits = kUnits.some((unit) => isNear(unit) || (share < kEnough && isNear(1 / unit)));
   if (share >= kEnough && !isOfUnits) return undefined;
   const isElsewhere = beneath + uncovered <= kMinBeneath * total;
   const most = Math.max(hidden, uncovered, culled);

@@ -158,8 +158,12 @@ export const isClear = (mode = 'OPAQUE', alpha = 1, cutoff = 0.5): boolean =>
   mode === 'BLEND' ? alpha <= 0 : mode === 'MASK' && alpha < cutoff;
 
 /** The largest alpha of the colours of vertices, 4 numbers each; 1 without them. */
-export const largestAlpha = (colors: ArrayLike<number> | undefined): number =>
-  colors ? Array.from(colors).reduce((most, x, i) => (i % 4 === 3 ? Math.max(most, x) : most), 0) : 1;
+export function largestAlpha(colors: ArrayLike<number> | undefined): number {
+  if (!colors) return 1;
+  let most = 0;
+  for (let i = 3; i < colors.length && most < 1; i += 4) most = Math.max(most, colors[i]!);
+  return most;
+}
 
 function isAccessory(name: string | undefined): boolean {
   const words = name?.replace(/([a-z])([A-Z])/g, '$1 $2').match(/[a-z]+/gi) ?? [];

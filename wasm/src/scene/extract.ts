@@ -157,7 +157,9 @@ function looksOf({ json, accessors }: SceneSource): (part: Part) => Look {
     const colors = accessors[attributes['COLOR_0'] ?? -1];
     const alpha =
       (material?.pbrMetallicRoughness?.baseColorFactor?.[3] ?? 1) *
-      largestAlpha(colors?.getElementSize() === 4 ? decodeFloats(colors) : undefined);
+      largestAlpha(
+        material?.alphaMode !== undefined && colors?.getElementSize() === 4 ? decodeFloats(colors) : undefined,
+      );
     return {
       names: aliases,
       above: namesAbove(node),

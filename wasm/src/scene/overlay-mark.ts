@@ -21,7 +21,7 @@ export const isMarked = (...extras: readonly (object | undefined)[]): boolean =>
 /** The primitive whose triangles an overlay has; undefined where it has none, or tools have changed the mesh. */
 export function baseOf({ extras, attributes }: GLTF.IMeshPrimitive, mesh: GLTF.IMesh): GLTF.IMeshPrimitive | undefined {
   const base = mesh.primitives[(extras as InPlace | undefined)?.cagecastInPlaceOf ?? -1];
-  return base?.attributes['POSITION'] === attributes['POSITION'] ? base : undefined;
+  return base && !isMarked(base.extras) && base.attributes['POSITION'] === attributes['POSITION'] ? base : undefined;
 }
 
 /** Whether a primitive of a file is an overlay. One in place of triangles that cannot be given back is a part of the model. */

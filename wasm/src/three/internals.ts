@@ -9,6 +9,7 @@ export type { Applied, ApplyOptions, Saved } from './apply/apply-options.js';
 export { applyTransfer, applyTransferAsync, moveApart, prepareTransfer } from './apply/apply-transfer.js';
 export { zoneAttribute } from './apply/attributes.js';
 export { cutGeometry } from './apply/cut-geometry.js';
+export { giveBackTriangles } from './apply/earlier-overlays.js';
 export { bareGroups, type Extracted, extract, type Part } from './apply/extract-scene.js';
 export { cageGeometry, cageModel, cageTemplate } from './apply/loaded-cages.js';
 export type { Loaded, LoadedCage, LoadedGltf } from './apply/models.js';

@@ -55,7 +55,7 @@ interface Shown {
  * - `ignore`, `keep`, `exclude`: as those of its option `parts`: patterns, with commas between them.
  * - `camera-orbit`: degrees from the front and from above, and the distance as a share of that which shows all: `20deg 80deg 100%`.
  * - `alt`: what assistive technology says. `poster`: the address of a picture to show until the model is there.
- * - `check`: inspects the cage too, which takes up to 15 times as long as a transfer, in the same worker.
+ * - `check`: inspects the cage too, in a worker, which takes up to 15 times as long as a transfer; `verdict` comes after `load`.
  *
  * Events: `progress` (`detail: { share, stage }`), `load`, `verdict` (`detail`: `Check`), `error` (`detail`: the `Error`, which the
  * element shows too). Arrow keys turn the model, + and - zoom, Home goes back. When it is removed from the page, it frees all it has.
@@ -311,7 +311,10 @@ export class CagecastViewer extends ((globalThis.HTMLElement ?? Object) as unkno
       signal.throwIfAborted();
       shown = { file, gltf, applied, parts: options.parts, paint, opacity: options.opacity ?? 1 };
       if (check && applied)
-        tellVerdict = async () => this.#tell('verdict', await check(applied, { ...options, signal }));
+        tellVerdict = async () => {
+          const verdict = await check(applied, options);
+          if (this.#shown === shown) this.#tell('verdict', verdict);
+        };
     } catch (error) {
       // Neither what was loaded nor what is still to come is of use now.
       free(model);
@@ -327,7 +330,8 @@ export class CagecastViewer extends ((globalThis.HTMLElement ?? Object) as unkno
     this.#isOutdated = false;
     this.#poster.hidden = true;
     this.#stage!.show(shown.gltf.scene, isSame ? undefined : this.#orbit);
-    await tellVerdict?.();
+    // The model is there, whatever comes of this.
+    tellVerdict?.().catch((error: Error) => this.#shown === shown && this.#tell('error', error));
   }
 
   async #loadPaint(signal: AbortSignal): Promise<void> {

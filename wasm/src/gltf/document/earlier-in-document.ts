@@ -31,7 +31,8 @@ export function removeOverlays(document: Document, nodes: Iterable<Node>): void 
       const ofMaterial = primitive.getMaterial()?.getExtras();
       if (!isMarked(primitive.getExtras(), ofMaterial)) continue;
       const base = primitives[(primitive.getExtras() as InPlace).cagecastInPlaceOf ?? -1];
-      if (base && base.getAttribute('POSITION') === primitive.getAttribute('POSITION')) giveBack(base, primitive);
+      const isBase = base && !isMarked(base.getExtras());
+      if (isBase && base.getAttribute('POSITION') === primitive.getAttribute('POSITION')) giveBack(base, primitive);
       else if (ofMaterial?.['cagecastInPlace']) continue; // a part of the model now
       mesh.removePrimitive(primitive);
       disposeUnused(document, primitive);

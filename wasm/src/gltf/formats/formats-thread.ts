@@ -11,10 +11,11 @@ const kMaxText = 300;
 
 /** The file that holds the processor time of this thread, on Linux. */
 function threadTimes(): string | undefined {
+  if (globalThis.process?.platform !== 'linux') return undefined;
   try {
-    return `/proc/${nodeModule('node:fs')?.readlinkSync('/proc/thread-self')}/schedstat`;
+    return `/proc/${nodeModule('node:fs')!.readlinkSync('/proc/thread-self')}/schedstat`;
   } catch {
-    return undefined; // another system, or a page
+    return undefined;
   }
 }
 

@@ -201,12 +201,14 @@ class Clock {
   get #now(): { time: number; cpu: number } {
     const time = performance.now();
     try {
-      // Its first number is in nanoseconds.
-      if (this.#times)
-        return { time, cpu: Number.parseInt(nodeModule('node:fs')!.readFileSync(this.#times, 'utf8'), 10) / 1e6 };
+      // Its first number is in nanoseconds; 0 where Linux does not count.
+      const text = this.#times && nodeModule('node:fs')!.readFileSync(this.#times, 'utf8');
+      const cpu = Number.parseInt(text ?? '', 10) / 1e6;
+      if (cpu > 0) return { time, cpu };
     } catch {
       // The thread has ended.
     }
+    this.#times = undefined;
     const used = globalThis.process?.cpuUsage?.();
     return { time, cpu: used ? (used.user + used.system) / 1000 : time };
   }

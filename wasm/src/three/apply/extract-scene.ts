@@ -25,10 +25,10 @@ import { fromOrigin, kSceneOrigin, type Origin, originOf } from '../../parts/ori
 import { morphed, movePoints } from '../../parts/points.js';
 import { type MorphedPart, posesOf } from '../../parts/poses.js';
 import { bareNames } from '../../parts/template-extras.js';
-import type { InPlace } from '../../scene/overlay-mark.js';
 import { endOf } from '../../scene/pieces.js';
 import { wrong } from '../errors.js';
 import { type Attribute, targetDeltas, valuesOf } from './attributes.js';
+import { giveBackTriangles, isLost, isMarked } from './earlier-overlays.js';
 import { isGeometry, isInstanced, isMesh, isObject, isOfInstances } from './flags.js';
 import { isCage, isLoadedGltf, type LoadedCage, type LoadedGltf, objectOf } from './models.js';
 import { groupNames, materialsOf, namesOf } from './names.js';
@@ -226,6 +226,7 @@ function listParts(
     add([], object.name || 'geometry', undefined, object, identity);
     return { parts, leftOut: [], accessories: [], kept: [], excluded: [] };
   }
+  giveBackTriangles(object);
   object.updateWorldMatrix(true, true);
   const meshes: ThreeMesh[] = [];
   object.traverse((child) => {
@@ -297,28 +298,6 @@ function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
     indices: geometry.index?.array,
     matrix: matrix.elements,
   };
-}
-
-/**
- * Whether something is an overlay, by the mark in its `userData`. GLTFLoader sets the same mark on geometries and materials of
- * overlays from a file, from their `extras` (gltf/overlay.ts). Lists of materials may have gaps.
- */
-export const isMarked = (one?: Pick<Object3D, 'userData'>): boolean => one?.userData['cagecastOverlay'];
-
-/**
- * Lays an overlay of a loaded file that is drawn in place of triangles over them, and gives them back to its base: what is seen stays the
- * same, and the model is whole. @returns whether the base is lost, so that the overlay is a part of the model.
- */
-function isLost({ geometry: { userData, index, attributes }, material, parent }: ThreeMesh): boolean {
-  const one = [material].flat()[0]!;
-  const base = parent?.children[(userData as InPlace).cagecastInPlaceOf ?? -1] as ThreeMesh | undefined;
-  const position = attributes['position'];
-  if (base?.geometry?.attributes['position'] !== position) return one.userData['cagecastInPlace'] === true;
-  base!.geometry.setIndex([...base!.geometry.index!.array, ...index!.array]);
-  delete (userData as InPlace).cagecastInPlaceOf;
-  delete one.userData['cagecastInPlace'];
-  Object.assign(one, { transparent: true, depthWrite: false, needsUpdate: true });
-  return false;
 }
 
 const wrongPart = (argument: string, name: string, text: string, at?: number): CagecastError =>

@@ -60,6 +60,7 @@ export async function saveLayers(
     image: urlOf(sheet.texture, () => readStraight(renderer, sheet.texture, savedSize(sheet.texture), storedIn(sheet))),
     normal: normal ? urlOf(normal, () => readRelief(renderer, normal)) : undefined,
   }));
+  await Promise.all(read.values());
   const images: string[] = [];
   const placeOf = (url: string): number => (images.includes(url) ? images.indexOf(url) : images.push(url) - 1);
   const saved: SavedLayer[] = [];

@@ -8,7 +8,8 @@ import {
   MeshStandardMaterial,
   SkinnedMesh,
 } from 'three';
-import { isMarked, type Part } from '../apply/extract-scene.js';
+import { isMarked } from '../apply/earlier-overlays.js';
+import type { Part } from '../apply/extract-scene.js';
 import { isInstanced, isSkinned } from '../apply/flags.js';
 import { disown, disposeOwn, own } from '../apply/own-attributes.js';
 

@@ -84,8 +84,11 @@ export function mendUsd(): void {
 }
 
 /** A geometry whose triangles are counter-clockwise; without an index, as the composer makes it. */
-function turned(geometry: BufferGeometry, { orientation }: Fields): BufferGeometry {
+function turned(geometry: BufferGeometry, { orientation, normals, 'primvars:normals': named }: Fields): BufferGeometry {
   if (orientation !== 'leftHanded') return geometry;
+  // Those that the file does not have were made of clockwise triangles.
+  const made = normals || named ? undefined : geometry.getAttribute('normal');
+  if (made) (made.array as Float32Array).forEach((x, i, all) => (all[i] = -x));
   for (const { array, itemSize } of Object.values(geometry.attributes) as { array: Float32Array; itemSize: number }[])
     for (let t = 0; t + 3 * itemSize <= array.length; t += 3 * itemSize) {
       const second = array.slice(t + itemSize, t + 2 * itemSize);

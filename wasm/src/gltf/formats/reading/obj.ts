@@ -9,7 +9,7 @@ const kPolygon = /^[ \t]*f(?:[ \t]+\S+){4}/m;
 
 /** An OBJ whose faces that are not convex are triangles: three's loader makes fans of all. */
 export function withConvexFaces(text: string): string {
-  if (!kPolygon.test(text)) return text;
+  if (!kPolygon.test(text) && !/\\\r?\n/.test(text)) return text;
   const places: Vector3[] = [];
   return text.replace(kLine, (line, kind: string, values: string) => {
     const words = values.replaceAll('\\', ' ').trim().split(/\s+/);
