@@ -56,8 +56,8 @@ test('a link has a look for a template of the page, in few letters', () => {
   assert.deepEqual(readLook(`#${writeLook(look)}`), look);
   const plain = { template: 'car', layers: [state.layers![1]!], light: 'studio', background: '' } as const;
   assert.equal(writeLook({ ...plain, layers: [...plain.layers] }), 'look=car&layer=checker,1,ffffff,normal');
-  assert.deepEqual(readLook('look=car'), { ...plain, layers: [] });
-  for (const other of ['', '#sample=car', '#look=', '#look=octopus', '#look=toString', '#look=car%00'])
+  assert.equal(readLook('#look=car&lay'), undefined, 'cut off before its layers');
+  for (const other of ['', 'look=car', '#sample=car', '#look=', '#look=octopus', '#look=toString', '#look=car%00'])
     assert.equal(readLook(other), undefined, other);
   assert.equal(readLink('#look=car'), undefined);
 });

@@ -6,7 +6,9 @@ import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { paintGlb } from 'cagecast/gltf';
 import { MeshoptDecoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
+import { loadModel } from '../../../web/src/loading/load-model';
 import type { Sample } from '../../../web/src/state/sample';
+import { packGlb, unpackGlb } from '../../support/glb';
 
 const file = (name: string): string => `examples/samples/${name}`;
 const samples: Sample[] = JSON.parse(readFileSync(file('index.json'), 'utf8'));
@@ -123,4 +125,23 @@ test('under its cage, skin and clothes are painted; eyes, teeth, tongue and hair
     assert.equal(shareOf(name), 0, name);
   for (const name of ['skin', 'shirt', 'trousers', 'shoes'])
     assert.ok(shareOf(name) > 0.7, `${name}: ${shareOf(name)}`);
+});
+
+test('a file that was painted comes back whole, without its paint', async () => {
+  const [model, cage] = ['target.glb', 'cage.glb'].map((name) => readFileSync(file(`human/${name}`)));
+  const opaque = Object.assign(new PNG({ width: 1, height: 1 }), { data: Buffer.of(0, 0, 255, 255) });
+  const decode = async (png: Uint8Array) => PNG.sync.read(Buffer.from(png));
+  const { bytes } = await paintGlb(model!, { cage: cage!, texture: PNG.sync.write(opaque), decode });
+  const countsOf = async (bytes: Uint8Array) => {
+    const { primitives } = (await loadModel(new File([new Uint8Array(bytes)], 'human.glb'), undefined)).mesh;
+    return primitives.map(({ mesh }) => mesh.geometry.index!.count);
+  };
+  // Node decodes no images, and is no worker.
+  Object.assign(globalThis, { self: globalThis });
+  const { json, bin } = unpackGlb(bytes);
+  assert.match(JSON.stringify(json.meshes), /cagecastInPlaceOf/);
+  for (const { pbrMetallicRoughness } of json.materials!) delete pbrMetallicRoughness?.baseColorTexture;
+  delete json.textures;
+  delete json.images;
+  assert.deepEqual(await countsOf(packGlb({ json, bin })), await countsOf(model!));
 });

@@ -78,16 +78,23 @@ export class ExportPanel {
     if (this.#link.checkVisibility()) void this.#refreshLink();
   }
 
-  /** Writes the link: strokes are packed for it. */
-  async #refreshLink(): Promise<void> {
+  /** Writes the link: strokes are packed for it. @returns Its fragment, if there is a link. */
+  async #refreshLink(): Promise<string | undefined> {
     const request = ++this.#requests;
-    const link = await linkOf(this.#linked);
-    if (request !== this.#requests) return;
+    let [link, hint]: [Link | undefined, string] = [undefined, 'The link could not be made.'];
+    try {
+      link = await linkOf(this.#linked);
+      hint = hintOf(link);
+    } catch {
+      // Such as without a network, before the templates are there.
+    }
+    if (request !== this.#requests) return link?.hash;
     if (link) this.#link.href = link.hash;
     else this.#link.removeAttribute('href');
     this.#link.ariaDisabled = link ? null : 'true';
     this.#link.querySelector('small')!.textContent = kindOf(link);
-    element('link-hint', HTMLElement).textContent = hintOf(link);
+    element('link-hint', HTMLElement).textContent = hint;
+    return link?.hash;
   }
 
   get #stem(): string {
@@ -140,9 +147,9 @@ export class ExportPanel {
   }
 
   async #copyLink(): Promise<void> {
-    await this.#refreshLink();
-    if (!this.#link.hasAttribute('href')) return;
-    const url = this.#link.href;
+    const hash = await this.#refreshLink();
+    if (!hash) return;
+    const url = new URL(hash, document.baseURI).href;
     // Where it cannot be shared, or that was refused, it is copied.
     const shared = isTouched() && navigator.share ? navigator.share({ url, title: document.title }) : Promise.reject();
     shared.catch((error?: Error) => {

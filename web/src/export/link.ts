@@ -61,12 +61,13 @@ export function writeLook({ template, layers, light, background }: Look): string
   return textOf(words);
 }
 
-/** Decodes a fragment, as `readLink`. @returns Undefined if it has no look for a template of the page. */
+/** Decodes a fragment, as `readLink`. @returns Undefined if it has no look for a template of the page, or is cut off before its layers. */
 export function readLook(fragment: string): Look | undefined {
   const words = new URLSearchParams(fragment.replace(/^#/, ''));
   const template = words.get('look') as TemplateName;
   if (!Object.hasOwn(kStandIns, template)) return undefined;
-  return { template, layers: readLayers(words) ?? [], ...readLight(words) };
+  const layers = readLayers(words);
+  return layers && { template, layers, ...readLight(words) };
 }
 
 /** Encodes a state as a URL fragment, without `#`. The format is public: people save links. */

@@ -35,7 +35,10 @@ export function exportedPaint(
       async write() {
         const { layers } = stack;
         const texts = await strokes.write(layers);
-        const known = layers.map((layer) => ({ layer, paint: nameOf(layer) ?? texts.get(layer) }));
+        // Strokes of a link may not fit into this one.
+        const paintOf = (layer: Layer) =>
+          texts.get(layer) ?? ((layer.sheet as Paint).linked ? undefined : nameOf(layer));
+        const known = layers.map((layer) => ({ layer, paint: paintOf(layer) }));
         return {
           layers: known.flatMap(({ layer: { opacity, tint, blend, visible }, paint }) =>
             paint ? [{ paint, opacity, tint, blend, visible }] : [],

@@ -98,7 +98,7 @@ export function followLinks(linked: Linked, opener: Opener): boolean {
   return linked.session.begun || restore();
 }
 
-/** Whether the page shows already what its URL says, such as after copying the link; a sample is turned as it says. */
+/** Whether the page shows already what its URL says; a sample is turned as it says. */
 async function isShown(linked: Linked): Promise<boolean> {
   const { hash } = location;
   const link = linked.session.shown && (await linkOf(linked));

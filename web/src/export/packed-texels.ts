@@ -108,7 +108,10 @@ async function unpack(text: string): Promise<Uint8Array> {
   const reader = through(packed, new DecompressionStream('deflate-raw')).getReader();
   for (let part = await reader.read(); !part.done; part = await reader.read()) {
     size += part.value.length;
-    if (size > kMost) throw new Error('too much');
+    if (size > kMost) {
+      await reader.cancel();
+      throw new Error('too much');
+    }
     parts.push(part.value);
   }
   const bytes = new Uint8Array(size);

@@ -25,6 +25,7 @@ export class ShareSheet {
   readonly #isClear = element('clear-picture', HTMLInputElement);
   #timer: ReturnType<typeof setTimeout> | undefined;
   #isFilming = false;
+  #isDrawing = false;
 
   constructor(session: Session, viewer: Viewer, { stack, paint }: { stack: LayerStack; paint: Texture }) {
     this.#paint = paint;
@@ -35,7 +36,8 @@ export class ShareSheet {
     });
     for (const event of ['zones', 'view'] as const) session.on(event, () => this.#refresh());
     stack.on('change', () => this.#refresh());
-    viewer.controls.onMove(() => this.#refresh());
+    // A card moves the camera, too, and back.
+    viewer.controls.onMove(() => this.#isDrawing || this.#refresh());
     for (const input of [this.#name, this.#isClear]) input.addEventListener('input', () => this.#refresh());
     this.#sheet.addEventListener('toggle', () => this.#show());
     this.#setUpLight();
@@ -66,7 +68,9 @@ export class ShareSheet {
   }
 
   #draw(canvas: HTMLCanvasElement, ratio: number): void {
+    this.#isDrawing = true;
     drawCards(this.#viewer, canvas, this.#card, ratio)();
+    this.#isDrawing = false;
   }
 
   /** What goes wrong is said on the stage. */
@@ -101,6 +105,8 @@ export class ShareSheet {
       if (button.ariaBusy || !this.#session.shown) return;
       button.ariaBusy = 'true';
       this.#isFilming = true;
+      const picture = element('save-picture', HTMLButtonElement);
+      picture.disabled = true; // It would draw over the film.
       await this.#try('The film could not be recorded', async () => {
         const { record } = await import('./film');
         const of = { canvas: this.#canvas, card: { ...this.#card, isClear: false }, paint: this.#paint };
@@ -108,6 +114,8 @@ export class ShareSheet {
         await handOver(film, `${this.#stem}.${film.type.startsWith('video/mp4') ? 'mp4' : 'webm'}`);
       });
       this.#isFilming = false;
+      picture.disabled = false;
+      this.#viewer.studio.setBackground(this.#session.view.background);
       this.#turn();
       this.#refresh();
       button.ariaBusy = null;

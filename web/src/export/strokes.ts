@@ -49,6 +49,7 @@ export class Strokes {
     this.#written.set(sheet, { of: sheet.picture, texts });
     const text = texts.get(side) ?? packTexels(readStraight(this.#renderer, sheet.texture, side));
     texts.set(side, text);
+    text.catch(() => texts.delete(side)); // it is tried again
     return kPrefix + (await text);
   }
 

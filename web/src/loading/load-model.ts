@@ -1,5 +1,6 @@
 import { Group, type Light, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { giveBackTriangles } from '#three';
 import { disposeAfterFrame } from '../platform/programs';
 import { noteCarried } from '../state/made-cages';
 import type { Loader, Model } from '../state/model';
@@ -104,6 +105,7 @@ async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
     object.matrixAutoUpdate = false;
     object.matrix.fromArray(matrix);
   });
+  giveBackTriangles(root);
   // Ignore overlays that an earlier transfer added; `cagecast transfer` marks them.
   const overlays: Object3D[] = [];
   root.traverse((object) => {

@@ -1,5 +1,5 @@
 import type { History } from '#three';
-import { readLink } from '../export/link';
+import { readLink, readLook } from '../export/link';
 import { loadPaint } from '../loading/load-paint';
 import type { Opener } from '../loading/opener';
 import { paintName } from '../loading/samples';
@@ -72,7 +72,7 @@ export function setUpProjects(page: ProjectOfPage): Projects {
     viewPart(session, viewer?.controls),
   ];
   for (const part of parts) project.add(part);
-  const shelf = shelfOf((fragment) => readLink(fragment) !== undefined);
+  const shelf = shelfOf((fragment) => (readLink(fragment) ?? readLook(fragment)) !== undefined);
   let close = (): void => {};
   const keeper = new Keeper({ project, session, history }, shelf, {
     offer(offer) {
@@ -85,7 +85,7 @@ export function setUpProjects(page: ProjectOfPage): Projects {
     error: showError,
   });
   document.addEventListener('visibilitychange', () => document.hidden && void keeper.save());
-  // A link that was copied is in the address bar; it is not another's, which would be opened instead of the work.
+  // Else the link in the address bar, which is opened now, would be opened instead of the work at the next visit.
   addEventListener('hashchange', () => project.touch());
   page.opener.onReplace = (target) => (target ? keeper.replaceBy(target) : keeper.putAside());
   const touch = (): void => project.touch();

@@ -49,7 +49,7 @@ export function setUpSectionNav(session: Session, onSheet: (open: boolean) => vo
   addEventListener('scroll', follow, { capture: true, passive: true });
   // What a model, or the face, does not show has no link.
   const offer = (): void => {
-    for (const [section, link] of links) link.hidden = !section.checkVisibility();
+    for (const [section, link] of links) link.hidden = !section.checkVisibility() || section.matches(':popover-open');
     follow();
   };
   addEventListener('resize', offer);

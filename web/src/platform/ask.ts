@@ -14,18 +14,23 @@ export interface Question {
 const box = element('ask', HTMLElement);
 let timer: ReturnType<typeof setTimeout> | undefined;
 let shown: Question | undefined;
-/** A message that came while people had to answer. */
+/** A message that came while another was to be read first. */
 let waiting: Question | undefined;
 /** What had the focus before the box took it. */
 let before: Element | null = null;
 
 /**
- * Shows a message on the stage in place of the last one; after it, if people must answer that first.
+ * Shows a message on the stage in place of the last one; after it, if people must answer that first. One that goes by itself gives way to
+ * one that stays, and comes after it.
  * @returns Takes it away, unless another one has taken its place.
  */
 export function ask(question: Question): () => void {
-  if (shown?.isDialog && !question.isDialog) waiting = question;
-  else show(question);
+  const isUrgent = shown?.isDialog ? question.isDialog : !question.lasts || !shown || shown.lasts;
+  if (!isUrgent) waiting = question;
+  else {
+    if (shown?.lasts && !question.lasts) waiting = shown;
+    show(question);
+  }
   return () => {
     if (waiting === question) waiting = undefined;
     if (shown === question) close();

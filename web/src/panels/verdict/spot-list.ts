@@ -33,7 +33,13 @@ export function showSpots(
   const { bottom, right } = verdict.parentElement!.getBoundingClientRect();
   box.style.setProperty('--top', `${bottom + kGap}px`);
   box.style.setProperty('--right', `${innerWidth - right}px`);
-  box.ontoggle = ({ newState }) => newState === 'closed' && viewer?.stage.highlight('parts', undefined);
+  // Its lines are of this model.
+  const end = session.on('leave', () => box.hidePopover());
+  box.ontoggle = ({ newState }) => {
+    if (newState !== 'closed') return;
+    end();
+    viewer?.stage.highlight('parts', undefined);
+  };
   box.showPopover();
   box.querySelector('button')?.focus({ preventScroll: true });
 }

@@ -65,8 +65,8 @@ const kWords: Record<FindingCode, string> = {
 };
 
 const kFace = /^(eyes|face)/;
-/** Findings that another fit may mend. */
-const kFittable = /^(cage|target|normals|face|skin|limbs|hole|uvs|nothing|cracks|d|n)/;
+/** Findings that another fit does not mend. */
+const kOfModel = /^(eyes|windows|segmentInDoubt|much|piecesApart)/;
 
 /** The spots to look at, the worst first, then the bare parts. */
 export function spotsOf(looked: Looked): Spot[] {
@@ -104,7 +104,8 @@ function bareSpots(session: Session, shown: Shown, stats: Parameters<typeof bare
       return isBare && plainNameOf(primitives[group]!) === name ? [segment] : [];
     });
     const run = (): void => session.lock(segments, 'always');
-    return { text: `${name}: bare`, segments, isOfFace: false, remedy: { title: 'Paint anyway', run } };
+    const remedy = segments.length > 0 ? { title: 'Paint anyway', run } : undefined;
+    return { text: `${name}: bare`, segments, isOfFace: false, remedy };
   });
 }
 
@@ -122,7 +123,7 @@ function helpFor(finding: Finding, of: Inspection, session: Session, maker: Cage
   const { markBare } = maker;
   if (markBare && code === 'windowsUnknown') return { title: 'Mark the windows', run: markBare };
   if (markBare && code.startsWith('eyes')) return { title: 'Mark the eyes', run: markBare };
-  if (!kFittable.test(code)) return undefined;
+  if (kOfModel.test(code)) return undefined;
   // A made cage would be made the same again. A template may know faces better.
   const run = !maker.isMade ? () => maker.make() : code.startsWith('face') ? () => maker.fitLikely() : undefined;
   return run && { title: 'Try another fit', run: () => void run() };
@@ -144,9 +145,10 @@ export function whereAre({ target, projection }: Shown, segments: readonly numbe
   const box = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)] as const;
   const [a, b, c, normal] = [new Vector3(), new Vector3(), new Vector3(), new Vector3()];
   const sum = new Vector3();
+  const wanted = new Set(segments);
   let area = 0;
   for (let t = 0; t < indices.length; t += 3) {
-    if (!segments.includes(projection.segments[indices[t]!]!)) continue;
+    if (!wanted.has(projection.segments[indices[t]!]!)) continue;
     [a, b, c].forEach((corner, i) => {
       corner.fromArray(positions, 3 * indices[t + i]!);
       box[0].min(corner);
