@@ -254,7 +254,7 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
 
   test('shows the painted model and says whether the cage fits', async () => {
     await seen({ page, faults });
-    assert.match(await page.innerText('[role=status]'), /^The cage is (good|usable)\.$/);
+    await page.getByRole('status').getByText(/^The cage is (good|usable)\.$/).waitFor();
     assert.ok(orange(await picture()) > 400);
   });
 
