@@ -413,7 +413,7 @@ describe('with a picture', () => {
     await page.getByTestId('open-wardrobe').click();
     await page.getByTestId('wardrobe-sample').selectOption('human');
     const cards = page.locator('.avatars .avatar');
-    await cards.nth(1).filter({ hasText: 'other cage' }).waitFor();
+    await cards.nth(1).filter({ hasText: 'other paint' }).waitFor();
     await cards.nth(1).click();
     await page.locator('.avatars li:nth-child(2) .avatar[aria-pressed=true]').waitFor();
     await ready(page);

@@ -81,7 +81,7 @@ async function busts(): Promise<Upload[]> {
 /** Shows one paint on busts of other shapes. */
 async function fillWardrobe(page: Page): Promise<void> {
   await drop(page, await busts());
-  const worn = '.avatar:has(.verdict[data-verdict=good], .verdict[data-verdict=usable])';
+  const worn = '.avatars :is([data-verdict=good], [data-verdict=usable])';
   await page.locator(worn).nth(3).waitFor();
   await settled(page);
 }

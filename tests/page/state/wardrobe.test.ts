@@ -42,7 +42,6 @@ async function wardrobe() {
       return figure;
     },
     arrange: (all: typeof figures) => void (figures = all),
-    refresh() {},
     redraw() {},
   };
   const all = new Wardrobe({

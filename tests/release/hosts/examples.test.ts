@@ -254,7 +254,10 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
 
   test('shows the painted model and says whether the cage fits', async () => {
     await seen({ page, faults });
-    await page.getByRole('status').getByText(/^The cage is (good|usable)\.$/).waitFor();
+    await page
+      .getByRole('status')
+      .getByText(/^The cage is (good|usable)\.$/)
+      .waitFor();
     assert.ok(orange(await picture()) > 400);
   });
 

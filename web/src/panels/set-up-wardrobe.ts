@@ -1,7 +1,7 @@
 import { element, showError } from '../platform/page';
 import { modelsAmong } from '../state/intake';
 import { kAlone, type WardrobeOfPage } from '../state/wardrobe/kept';
-import type { WardrobePage, WardrobeStrip } from './wardrobe-strip';
+import type { WardrobePage, WardrobeRow } from './wardrobe-row';
 
 const kSeveral = 3; // models that cannot be a target and its cage
 
@@ -9,17 +9,15 @@ const kSeveral = 3; // models that cannot be a target and its cage
 export function setUpWardrobe(page: Omit<WardrobePage, 'onChange'>): WardrobeOfPage {
   const button = element('open-wardrobe', HTMLButtonElement);
   const strip = element('wardrobe', HTMLElement);
-  let loaded: Promise<WardrobeStrip> | undefined;
-  let opened: WardrobeStrip | undefined;
+  let loaded: Promise<WardrobeRow> | undefined;
+  let opened: WardrobeRow | undefined;
   /** What is to be brought back, until it is loaded. */
   let kept = kAlone;
-  const open = async (): Promise<WardrobeStrip> => {
+  const open = async (): Promise<WardrobeRow> => {
     strip.hidden = false;
     button.ariaExpanded = 'true';
     const onChange = (): void => wardrobe.onChange();
-    loaded ??= import('./wardrobe-strip').then(
-      ({ WardrobeStrip }) => (opened = new WardrobeStrip({ ...page, onChange })),
-    );
+    loaded ??= import('./wardrobe-row').then(({ WardrobeRow }) => (opened = new WardrobeRow({ ...page, onChange })));
     return loaded;
   };
   const failed = (error: Error): void => showError(error.message);

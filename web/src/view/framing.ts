@@ -39,7 +39,7 @@ export interface FreePart {
 type Place = Pick<DOMRect, 'left' | 'right' | 'top' | 'bottom'>;
 
 const kGap = 4; // pixels between a model and controls
-const kMost = 0.4; // of the height that either edge may be covered
+const kMost = 0.45; // of the height that either edge may be covered
 
 /** How much of a view's upper and lower edge strips of controls cover; columns of them stand beside the model. */
 export function coveredBy(view: Place, controls: readonly Place[]): Pick<FreePart, 'top' | 'bottom'> {
@@ -57,21 +57,24 @@ export function coveredBy(view: Place, controls: readonly Place[]): Pick<FreePar
 /**
  * Measures what controls cover, and tells it to the stylesheet, which knows it before any script runs only for the usual size of texts.
  * @param controls Strips and columns of controls on the view.
+ * @param bar Stands on those at the lower edge.
  */
-export function freePartOf(canvas: HTMLElement, controls: readonly HTMLElement[]): FreePart {
+export function freePartOf(canvas: HTMLElement, controls: readonly HTMLElement[], bar: HTMLElement): FreePart {
   const seen = controls.filter((one) => one.checkVisibility());
   const { top, bottom } = coveredBy(
     canvas.getBoundingClientRect(),
     seen.map((one) => one.getBoundingClientRect()),
   );
-  for (const [name, value] of Object.entries({ top, bottom }))
+  const above = bar.offsetHeight;
+  for (const [name, value] of Object.entries({ top, bottom, above }))
     canvas.parentElement!.style.setProperty(`--stage-${name}`, `${value}px`);
   const style = getComputedStyle(canvas);
   const value = (name: string, missing: number): number => parseFloat(style.getPropertyValue(name)) || missing;
   return {
     width: canvas.clientWidth,
     height: canvas.clientHeight,
-    ...{ top, bottom },
+    top,
+    bottom: bottom + above,
     side: value('--stage-side', 0),
     fill: value('--stage-fill', 1),
   };

@@ -35,6 +35,8 @@ export class Viewer {
   readonly #canvas: HTMLCanvasElement;
   /** Controls that models keep clear of. */
   readonly #strips: readonly HTMLElement[];
+  /** Stands on those at the lower edge. */
+  readonly #bar: HTMLElement;
   #view = kFirstView;
   readonly #preparations: (() => void)[] = [];
   #frame = 0;
@@ -47,6 +49,7 @@ export class Viewer {
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
     this.#strips = [...canvas.parentElement!.querySelectorAll<HTMLElement>('.stage-head, .dock, .rail, .toolbar')];
+    this.#bar = canvas.parentElement!.querySelector<HTMLElement>('.wardrobe-bar')!;
     this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true });
     // Checking for errors waits for each shader to compile: seconds, on a slow machine.
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
@@ -79,7 +82,7 @@ export class Viewer {
     });
     // Fires at once with the current size.
     const observer = new ResizeObserver(() => this.#resize());
-    for (const box of [canvas.parentElement!, ...this.#strips]) observer.observe(box);
+    for (const box of [canvas.parentElement!, this.#bar, ...this.#strips]) observer.observe(box);
     this.#watchRatio();
   }
 
@@ -247,7 +250,7 @@ export class Viewer {
     const pose = this.#pose;
     const ratio = pose?.ratio ?? Math.min(devicePixelRatio, 2);
     const before = this.renderer.getSize(new Vector2());
-    const free = pose?.free ?? freePartOf(this.#canvas, this.#strips);
+    const free = pose?.free ?? freePartOf(this.#canvas, this.#strips, this.#bar);
     const { width, height } = free;
     if (!pose && before.x === width && before.y === height && this.renderer.getPixelRatio() === ratio) {
       // Buffers of the same size would be made anew.

@@ -39,7 +39,7 @@ test('of two models that come together, neither is taken as the cage of the othe
   await box.waitFor();
   await page.keyboard.press('Enter');
   await page.waitForFunction(() => document.querySelectorAll('.avatars .avatar').length >= 2);
-  await page.locator('.avatars .avatar[title=c]').waitFor();
+  await page.locator('.avatars .name', { hasText: /^c$/ }).waitFor();
   assert.deepEqual(complaints, []);
 });
 

@@ -71,7 +71,7 @@ async function inspect(page: Page): Promise<void> {
   await ready(page);
   await page.locator('#open-wardrobe').click();
   await page.locator('#wardrobe-sample').selectOption('human');
-  await page.locator('#avatars li:nth-child(2) .verdict', { hasText: /^(?!.*…)/ }).waitFor();
+  await page.locator('#avatars li:nth-child(2) .state', { hasText: /^(?!.*…)/ }).waitFor();
   await page.locator('#open-wardrobe').click();
   await page.locator('#target-input').setInputFiles(glb('poem.glb', Buffer.from('no model')));
   assert.equal(await settled(page), 'error');

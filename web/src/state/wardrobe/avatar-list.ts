@@ -27,7 +27,6 @@ export class AvatarList extends Emitter<{ change: undefined }> {
       cage: undefined,
       follows: false,
       locks: {},
-      picture: '',
       verdict: '',
       takesPaint: false,
       own: undefined,

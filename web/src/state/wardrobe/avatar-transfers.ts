@@ -15,10 +15,10 @@ export class AvatarTransfers {
   readonly #list: AvatarList;
   /** Cages for which nothing can be drawn. */
   readonly #undrawable = new WeakSet<Model>();
-  readonly #onTransfer: (avatar: Avatar) => void;
+  readonly #onTransfer: () => void;
 
   /** @param onTransfer Called when an avatar begins to stand beside the stage. */
-  constructor(around: Surroundings, list: AvatarList, onTransfer: (avatar: Avatar) => void) {
+  constructor(around: Surroundings, list: AvatarList, onTransfer: () => void) {
     this.#around = around;
     this.#list = list;
     this.#onTransfer = onTransfer;
@@ -37,7 +37,7 @@ export class AvatarTransfers {
     avatar.standing = standing;
     this.dress(avatar);
     this.update(avatar);
-    this.#onTransfer(avatar);
+    this.#onTransfer();
     await this.#inspect(avatar);
   }
 
@@ -71,7 +71,7 @@ export class AvatarTransfers {
     if (cage !== avatar.cage || !this.#list.has(avatar)) return dispose(paint);
     this.#setOwn(avatar, { paint, cage: cage! });
     this.dress(avatar);
-    this.#onTransfer(avatar);
+    this.#onTransfer();
   }
 
   #setOwn(avatar: Avatar, own: Avatar['own']): void {

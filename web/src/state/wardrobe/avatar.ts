@@ -49,8 +49,6 @@ export interface Avatar {
   /** Whether its cage was fitted here, and follows that of the model on the stage. */
   follows: boolean;
   locks: Locks;
-  /** URL of a picture; empty until it was drawn. */
-  picture: string;
   verdict: KnownVerdict;
   /** Whether its cage has the UVs of that of the model on the stage. */
   takesPaint: boolean;

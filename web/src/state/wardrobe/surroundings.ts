@@ -2,7 +2,7 @@ import type { Loader, Model } from '../model';
 import type { Paint } from '../paint';
 import type { Session } from '../session';
 import type { SplitProjection, Transferer } from '../transfers';
-import type { Avatar, Figure } from './avatar';
+import type { Figure } from './avatar';
 
 /** How a fit goes on. */
 export interface FitProgress {
@@ -38,7 +38,5 @@ export interface WardrobeView {
   stand(model: Model, projection: SplitProjection | undefined): Figure;
   /** Shows figures side by side, in their order; undefined stands for the model on the stage. Without figures only that is shown. */
   arrange(figures: readonly (Figure | undefined)[] | undefined): void;
-  /** Draws the pictures of some avatars again, once nothing has changed for a while. @param active The one on the stage. */
-  refresh(avatars: readonly Avatar[], active: Avatar): void;
   redraw(): void;
 }

@@ -26,10 +26,7 @@ export class Wardrobe {
     this.#around = around;
     this.#session = session;
     this.list = new AvatarList(around.errors.add);
-    this.#transfers = new AvatarTransfers(around, this.list, (avatar) => {
-      this.#arrange();
-      this.#refresh([avatar]);
-    });
+    this.#transfers = new AvatarTransfers(around, this.list, () => this.#arrange());
     if (session.shown) this.#show(session.shown);
     session.on('transfer', (shown) => this.#show(shown));
     session.on('zones', () => this.#onZones());
@@ -165,11 +162,7 @@ export class Wardrobe {
   /** The colours of all have changed. */
   refresh(): void {
     if (this.#session.shown) for (const avatar of this.list.all) this.#transfers.dress(avatar);
-    this.#refresh(this.list.all);
-  }
-
-  #refresh(avatars: readonly Avatar[]): void {
-    this.#around.view.refresh(avatars, this.list.active);
+    this.list.change();
   }
 
   /** Fits the cage of the model on the stage to all whose cages have other UVs. */
@@ -197,7 +190,7 @@ export class Wardrobe {
       this.#abortFits(active);
       this.#transfers.clear(active);
       const name = target.sample?.title ?? nameOf(target.name);
-      Object.assign(active, { name, files: target.files, sample: target.sample, picture: '', follows: false });
+      Object.assign(active, { name, files: target.files, sample: target.sample, follows: false });
     }
     const isOther = cage !== active.cage;
     if (isOther && active.standing) this.#transfers.clear(active);
@@ -320,16 +313,10 @@ export class Wardrobe {
     const { classification, locks } = this.#session;
     if (!classification) return;
     this.list.active.locks = { ...locks };
-    this.#refresh([this.list.active]);
   }
 
   #onRules(): void {
     for (const avatar of this.list.all) if (avatar !== this.list.active) this.#transfers.update(avatar);
-  }
-
-  /** Shows who is to be seen, again: such as when they were moved to be drawn. */
-  arrange(): void {
-    this.#arrange();
   }
 
   #arrange(): void {

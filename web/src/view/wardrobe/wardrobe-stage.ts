@@ -1,34 +1,50 @@
-import type { Texture } from 'three';
+import { type Camera, type Texture, Vector3 } from 'three';
 import type { Model } from '../../state/model';
 import type { Session } from '../../state/session';
 import type { SplitProjection } from '../../state/transfers';
-import type { Avatar } from '../../state/wardrobe/avatar';
 import type { WardrobeView } from '../../state/wardrobe/surroundings';
 import { frontOf } from '../framing';
 import { pick } from '../pick';
 import type { Viewer } from '../viewer';
 import { Beside, measure } from './beside';
 import { SideBySide } from './side-by-side';
-import { Thumbnails } from './thumbnails';
 
-/** Draws the avatars of the wardrobe beside the model on the stage, and their pictures. */
+/** Where the name of an avatar belongs, in pixels of the view: the middle of its feet, and the width there is for it. */
+export interface Feet {
+  x: number;
+  y: number;
+  width: number;
+}
+
+/** Draws the avatars of the wardrobe beside the model on the stage. */
 export class WardrobeStage implements WardrobeView {
   readonly #session: Session;
   readonly #viewer: Viewer;
   readonly #paint: Texture;
-  readonly #crowd = new SideBySide();
-  readonly #thumbnails: Thumbnails;
+  readonly #crowd: SideBySide;
   #figures: readonly (Beside | undefined)[] | undefined;
 
   /**
    * @param paint  The composite of the layers.
-   * @param onDraw Called when pictures were drawn, which turns and moves the avatars.
+   * @param onMove Called with where the figures stand, in their order, in each frame that shows them side by side.
    */
-  constructor(session: Session, viewer: Viewer, paint: Texture, onDraw: () => void) {
+  constructor(session: Session, viewer: Viewer, paint: Texture, onMove: (feet: Feet[]) => void) {
     this.#session = session;
     this.#viewer = viewer;
     this.#paint = paint;
-    this.#thumbnails = new Thumbnails(session, viewer, onDraw);
+    const canvas = viewer.renderer.domElement;
+    const seen = (place: Vector3, camera: Camera): Vector3 => {
+      const { x, y } = place.clone().project(camera);
+      return new Vector3(((1 + x) / 2) * canvas.clientWidth, ((1 - y) / 2) * canvas.clientHeight);
+    };
+    this.#crowd = new SideBySide((ends, camera) =>
+      onMove(
+        ends.map(([left, right]) => {
+          const [from, to] = [seen(left, camera), seen(right, camera)];
+          return { x: (from.x + to.x) / 2, y: (from.y + to.y) / 2, width: to.x - from.x };
+        }),
+      ),
+    );
   }
 
   stand(model: Model, projection: SplitProjection | undefined): Beside {
@@ -50,10 +66,6 @@ export class WardrobeStage implements WardrobeView {
     }
     this.#crowd.set(figures, room);
     this.#viewer.setCrowd(this.#crowd);
-  }
-
-  refresh(avatars: readonly Avatar[], active: Avatar): void {
-    this.#thumbnails.refresh(avatars, active);
   }
 
   redraw(): void {

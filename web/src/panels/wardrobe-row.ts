@@ -17,7 +17,7 @@ import type { KeptWardrobe } from '../state/wardrobe/kept';
 import type { Surroundings } from '../state/wardrobe/surroundings';
 import { Wardrobe } from '../state/wardrobe/wardrobe';
 import type { Viewer } from '../view/viewer';
-import { WardrobeStage } from '../view/wardrobe/wardrobe-stage';
+import { type Feet, WardrobeStage } from '../view/wardrobe/wardrobe-stage';
 
 /** What the wardrobe needs of the page. */
 export interface WardrobePage {
@@ -38,29 +38,24 @@ export interface WardrobePage {
 
 const kTap = 6; // pixels that a pointer may move during a tap
 
-const kStrip = `
+const kRow = `
   <div class="wardrobe-note" id="wardrobe-note" hidden>
     <p role="status" data-testid="wardrobe-note"></p>
-    <button type="button" class="quiet" id="fit-all" data-testid="fit-all">Fit this cage to all</button>
+    <button type="button" class="quiet" id="fit-all" data-testid="fit-all">Put it on all</button>
   </div>
   <div class="wardrobe-row">
-    <div class="wardrobe-side">
-      <label class="toggle"><input type="checkbox" id="show-all" data-testid="show-all" /><span>Show all</span></label>
-      <button type="button" class="quiet" id="export-all" data-testid="export-all">Save all</button>
-    </div>
+    <label class="toggle"><input type="checkbox" id="show-all" data-testid="show-all" /><span>Show all</span></label>
     <ol class="avatars" id="avatars" data-testid="avatars"></ol>
-    <div class="wardrobe-side">
-      <label class="file quiet">Add files<input type="file" id="wardrobe-input" data-testid="wardrobe-input" multiple accept=".glb,.gltf,.vrm,.bin,.png,.jpg,.jpeg,.webp,.ktx2" /></label>
-      <select id="wardrobe-sample" data-testid="wardrobe-sample" aria-label="Add a sample"></select>
-    </div>
+    <label class="file add" title="Add files"><span class="unseen">Add files</span><svg viewBox="0 0 24 24" aria-hidden="true" focusable="false"><path d="M12 5v14M5 12h14" /></svg><input type="file" id="wardrobe-input" data-testid="wardrobe-input" multiple accept=".glb,.gltf,.vrm,.bin,.png,.jpg,.jpeg,.webp,.ktx2" /></label>
+    <select id="wardrobe-sample" data-testid="wardrobe-sample" aria-label="Add a sample"></select>
   </div>`;
 
-const kCard = `
-  <button type="button" class="avatar"><img alt="" /><span class="name"></span><span class="unseen">, </span><span class="verdict"></span></button>
+const kAvatar = `
+  <button type="button" class="avatar"><i aria-hidden="true"></i><span class="name"></span><span class="unseen">, </span><span class="state"></span></button>
   <button type="button" class="icon remove"><svg viewBox="0 0 24 24" aria-hidden="true" focusable="false"><path d="M6 6l12 12M18 6 6 18"/></svg></button>`;
 
-/** The avatars of the wardrobe, in a strip below the stage. */
-export class WardrobeStrip {
+/** The names of the avatars: in a row on the stage, or below the feet of those who stand side by side. */
+export class WardrobeRow {
   readonly #page: WardrobePage;
   readonly #stage: WardrobeStage;
   readonly #wardrobe: Wardrobe;
@@ -68,12 +63,12 @@ export class WardrobeStrip {
   readonly #all: HTMLInputElement;
   readonly #export: HTMLButtonElement;
   #said = '';
-  readonly #cards = new Map<Avatar, HTMLLIElement>();
+  readonly #items = new Map<Avatar, HTMLLIElement>();
 
   constructor(page: WardrobePage) {
     const { session, viewer, paint, loader, stack } = page;
     this.#page = page;
-    this.#stage = new WardrobeStage(session, viewer, paint, () => this.#wardrobe.arrange());
+    this.#stage = new WardrobeStage(session, viewer, paint, (feet) => this.#place(feet));
     this.#wardrobe = new Wardrobe({
       session,
       loader,
@@ -85,7 +80,7 @@ export class WardrobeStrip {
       errors: { show: showError, add: addError },
     });
     for (const event of ['change', 'pictures'] as const) stack.on(event, () => this.#wardrobe.refresh());
-    element('wardrobe', HTMLElement).innerHTML = kStrip;
+    element('wardrobe-bar', HTMLElement).innerHTML = kRow;
     this.#list = element('avatars', HTMLOListElement);
     this.#all = element('show-all', HTMLInputElement);
     this.#export = element('export-all', HTMLButtonElement);
@@ -127,8 +122,8 @@ export class WardrobeStrip {
 
   /** Moves the focus to the avatar on the stage, or to the first where that one is still to come. */
   focus(): void {
-    const card = this.#cards.get(this.#wardrobe.list.active) ?? this.#list.firstElementChild;
-    card?.querySelector('button')?.focus({ preventScroll: true });
+    const item = this.#items.get(this.#wardrobe.list.active) ?? this.#list.firstElementChild;
+    item?.querySelector('button')?.focus({ preventScroll: true });
   }
 
   /** Only the model on the stage is shown from now on. */
@@ -169,50 +164,65 @@ export class WardrobeStrip {
 
   #show(): void {
     const { all: avatars, active } = this.#wardrobe.list;
-    for (const [avatar, card] of this.#cards) {
+    for (const [avatar, item] of this.#items) {
       if (avatars.includes(avatar)) continue;
-      const focused = card.contains(document.activeElement);
-      card.remove();
-      this.#cards.delete(avatar);
+      const focused = item.contains(document.activeElement);
+      item.remove();
+      this.#items.delete(avatar);
       if (focused) this.focus();
     }
+    const isAlone = !this.#all.checked || avatars.length < 2;
     for (const avatar of avatars) {
-      const card = this.#cards.get(avatar) ?? this.#makeCard(avatar);
-      fillCard(card, avatar, avatar === active, avatars.length > 1);
+      const item = this.#items.get(avatar) ?? this.#makeItem(avatar);
+      if (isAlone) item.className = item.style.cssText = '';
+      fill(item, avatar, avatar === active, avatars.length > 1);
     }
-    const cards = avatars.map((avatar) => this.#cards.get(avatar)!);
-    if (cards.some((card, at) => card !== this.#list.children[at])) this.#list.replaceChildren(...cards);
+    const items = avatars.map((avatar) => this.#items.get(avatar)!);
+    if (items.some((item, at) => item !== this.#list.children[at])) this.#list.replaceChildren(...items);
     const ready = avatars.filter(({ files, doing }) => files.length > 0 && doing === '');
     // What is painted by hand is for the cage on the stage alone.
     const isDrawn = this.#page.stack.layers.length === 1;
     const taking = ready.filter(({ takesPaint, own }) => takesPaint || (own && isDrawn));
     const note = element('wardrobe-note', HTMLElement);
     note.hidden = taking.length === ready.length || ready.length < 2;
-    const text = `${taking.length} of ${ready.length} avatars take this paint; the cages of the others differ.`;
+    const text = `${taking.length} of ${ready.length} wear this paint.`;
     const said = note.querySelector('p')!;
     if (!note.hidden && this.#said !== text) said.textContent = this.#said = text;
     for (const control of [element('wardrobe-input', HTMLInputElement), element('wardrobe-sample', HTMLSelectElement)])
       control.disabled = avatars.length >= kMaxAvatars;
     this.#export.disabled = !ready.some(isPainted);
+    this.#export.hidden = avatars.length < 2;
   }
 
-  #makeCard(avatar: Avatar): HTMLLIElement {
-    const card = document.createElement('li');
-    card.innerHTML = kCard;
-    const [choose, remove] = card.querySelectorAll('button') as unknown as [HTMLButtonElement, HTMLButtonElement];
+  #makeItem(avatar: Avatar): HTMLLIElement {
+    const item = document.createElement('li');
+    item.innerHTML = kAvatar;
+    const [choose, remove] = item.querySelectorAll('button') as unknown as [HTMLButtonElement, HTMLButtonElement];
     choose.addEventListener('click', () => this.#wardrobe.activate(avatar));
     choose.addEventListener('keydown', (event) => {
       if (event.key === 'Delete') this.#remove(avatar);
     });
     remove.addEventListener('click', () => this.#remove(avatar));
-    this.#cards.set(avatar, card);
-    this.#list.append(card);
-    return card;
+    this.#items.set(avatar, item);
+    this.#list.append(item);
+    return item;
   }
 
   #remove(avatar: Avatar): void {
     this.#wardrobe.remove(avatar);
     announce(`${avatar.name} removed.`);
+  }
+
+  /** Puts names below the feet of those who are seen. */
+  #place(feet: readonly Feet[]): void {
+    const { all, active } = this.#wardrobe.list;
+    const seen = all.filter((avatar) => avatar === active || avatar.standing);
+    feet.forEach(({ x, y, width }, i) => {
+      const item = this.#items.get(seen[i]!);
+      if (!item) return;
+      item.classList.add('placed');
+      item.style.cssText = `translate: calc(${x.toFixed(1)}px - 50%) ${y.toFixed(1)}px; max-width: max(${width.toFixed()}px, 6rem)`;
+    });
   }
 
   /** A tap on a model beside the one on the stage puts it there. */
@@ -233,11 +243,12 @@ export class WardrobeStrip {
     // Not disabled, so that it keeps the focus.
     if (button.ariaBusy) return;
     button.ariaBusy = 'true';
+    const note = button.querySelector('small')!;
     const { session, png } = this.#page;
     const { all: avatars, active } = this.#wardrobe.list;
     const taking = avatars.filter((avatar) => isPainted(avatar) && avatar.doing === '');
     try {
-      const report = (done: number): void => void (button.textContent = `Saving ${done + 1} of ${taking.length}`);
+      const report = (done: number): void => void (note.textContent = `Saving ${done + 1} of ${taking.length}`);
       const { file, count, troubles } = await exportAll(taking, session, active, await png(), report);
       download(file, 'avatars-painted.zip');
       announce(`${count} avatars saved: ${(file.size / 1e6).toFixed(1)} megabytes.`);
@@ -252,7 +263,7 @@ export class WardrobeStrip {
       showError((error as Error).message);
     } finally {
       button.ariaBusy = null;
-      button.textContent = 'Save all';
+      note.textContent = 'one ZIP';
     }
   }
 }
@@ -267,21 +278,17 @@ const kVerdictWords: Record<Avatar['verdict'], string> = {
   unfit: 'does not look right',
 };
 
-function fillCard(card: HTMLLIElement, avatar: Avatar, isActive: boolean, isRemovable: boolean): void {
-  const { name, picture, verdict, cage, doing, files } = avatar;
+function fill(item: HTMLLIElement, avatar: Avatar, isActive: boolean, isRemovable: boolean): void {
+  const { name, verdict, cage, doing, files } = avatar;
   const isWorn = isPainted(avatar);
-  const [choose, remove] = card.querySelectorAll('button') as unknown as [HTMLButtonElement, HTMLButtonElement];
-  const image = card.querySelector('img')!;
-  if (picture && image.src !== picture) image.src = picture;
-  image.hidden = picture === '';
-  const badge = doing || (!cage ? 'no cage' : !isWorn ? 'other cage' : kVerdictWords[verdict]);
-  const shown = card.querySelector('.verdict') as HTMLElement;
-  card.querySelector('.name')!.textContent = name;
-  shown.textContent = badge;
-  shown.dataset.verdict = doing || !cage || !isWorn ? '' : verdict;
+  const [choose, remove] = item.querySelectorAll('button') as unknown as [HTMLButtonElement, HTMLButtonElement];
+  item.querySelector('.name')!.textContent = name;
+  const state = doing || (!cage ? 'bare' : !isWorn ? 'other paint' : kVerdictWords[verdict]);
+  item.querySelector('.state')!.textContent = state;
+  item.dataset.verdict = doing || !cage || !isWorn ? '' : verdict || 'good';
   choose.ariaPressed = String(isActive);
   choose.ariaDisabled = files.length === 0 ? 'true' : null;
-  choose.title = name;
+  choose.title = state;
   remove.ariaLabel = `Remove ${name}`;
   remove.hidden = !isRemovable || !isActive;
 }
