@@ -51,7 +51,7 @@ function compose(canvas: HTMLCanvasElement, model: HTMLCanvasElement, { name, ba
   if (isClear) return;
   context.fillStyle = isDark ? '#eceff3' : '#0f1216';
   const write = (text: string, weight: number, size: number, y: number): void => {
-    context.font = `${weight} ${size * height}px system-ui, sans-serif`;
+    context.font = `${weight} ${size * height}px Figtree, system-ui, sans-serif`;
     context.fillText(text, 0.06 * width, y * height, 0.88 * width);
   };
   write(name, 600, 0.046, 0.92);

@@ -21,6 +21,8 @@ export interface Crowd {
   extent(theta: number, aspect: number): Float32Array;
   /** Where the middle of all is, from the middle of the model on the stage. */
   middle(theta: number): Vector3;
+  /** Half the width of the floor, if all stand on one. */
+  readonly floor: number | undefined;
 }
 
 /** The part of the view that no controls cover, in pixels. */

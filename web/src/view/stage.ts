@@ -227,7 +227,6 @@ export class Stage {
 
   #showOthers(shown: boolean): void {
     this.marks.visible = shown;
-    this.#studio.showFloor(shown && !this.#crowd);
     if (this.#crowd) this.#crowd.object.visible = shown;
   }
 

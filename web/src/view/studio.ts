@@ -1,24 +1,24 @@
-import { type Camera, Color, DirectionalLight, Mesh, PlaneGeometry, Scene, ShadowMaterial, Vector3 } from 'three';
+import { type Camera, Color, DirectionalLight, Scene, Vector3, type WebGLRenderer } from 'three';
 import type { LightName } from '../state/view-state';
+import { ContactShadow } from './contact-shadow';
 import { environmentOf, kLights } from './light';
 
+const kFloor = 1.4; // widths of what stands on it
 const kOrigin = new Vector3();
 
 /**
- * The scene around a model: ambient light, a key light over the viewer's shoulder, and a floor with a soft shadow. It fits
- * models of radius 1 at the origin.
+ * The scene around a model: ambient light, a key light over the viewer's shoulder, and a floor with a soft shadow where
+ * something stands on it. It fits models of radius 1 at the origin.
  */
 export class Studio {
   readonly scene = new Scene();
-  readonly #floor = new Mesh(new PlaneGeometry(12, 12), new ShadowMaterial({ opacity: 0.28 }));
+  readonly #floor = new ContactShadow();
+  #height = 0;
   readonly #key = new DirectionalLight();
   #light: LightName | undefined;
 
   constructor() {
     this.setLight('studio');
-    this.#floor.rotation.x = -Math.PI / 2;
-    this.#floor.receiveShadow = true;
-
     const { shadow } = this.#key;
     this.#key.castShadow = true;
     shadow.mapSize.set(1024, 1024);
@@ -28,7 +28,7 @@ export class Studio {
     shadow.camera.far = 10;
     shadow.camera.left = shadow.camera.bottom = -1.6;
     shadow.camera.right = shadow.camera.top = 1.6;
-    this.scene.add(this.#floor, this.#key);
+    this.scene.add(this.#floor.object, this.#key);
   }
 
   setLight(name: LightName): void {
@@ -39,7 +39,7 @@ export class Studio {
     this.scene.environment = environmentOf(kLights[name]);
     this.#key.color.set(key.color);
     this.#key.intensity = key.strength;
-    this.#floor.material.opacity = Math.min(0.28, 0.13 * key.strength);
+    this.#floor.strength = Math.min(0.55, 0.26 * key.strength);
   }
 
   /** @param color As #rrggbb; empty for none. */
@@ -49,12 +49,17 @@ export class Studio {
 
   /** Places the floor under a model whose lowest point is at `height`. */
   setFloor(height: number): void {
-    this.#floor.position.y = height - 0.01;
+    this.#height = height - 0.01;
   }
 
-  /** Shows the floor, or not: several rows of models have no common one. */
-  showFloor(shown: boolean): void {
-    this.#floor.visible = shown;
+  /**
+   * Draws the shadow on the floor.
+   * @param wide  Half the width of what stands there; undefined where rows have no common floor.
+   * @param middle Of it; its height is that of the model on the stage. The origin by default.
+   */
+  castShadow(renderer: WebGLRenderer, wide: number | undefined, { x, y, z } = kOrigin): void {
+    this.#floor.object.visible = wide !== undefined;
+    if (wide) this.#floor.cast(renderer, this.scene, new Vector3(x, y + this.#height, z), kFloor * wide);
   }
 
   /**

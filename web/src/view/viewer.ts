@@ -1,4 +1,4 @@
-import { NeutralToneMapping, PCFShadowMap, Vector2, type Vector3, WebGLRenderer } from 'three';
+import { NeutralToneMapping, PCFShadowMap, Vector2, Vector3, WebGLRenderer } from 'three';
 import { clearError, showError } from '../platform/page';
 import type { Model } from '../state/model';
 import type { SplitProjection } from '../state/transfers';
@@ -160,6 +160,10 @@ export class Viewer {
     const { left, right, at, cage } = sidesOf(this.#pose?.view ?? this.#view);
     stage.arrange(camera, controls.shift, cage);
     studio.follow(camera, stage.crowd?.object.position);
+    const { x, z } = camera.position;
+    const middle = stage.crowd?.middle(Math.atan2(x, z)).add(stage.crowd.object.position);
+    const wide = stage.crowd ? stage.crowd.floor : 1;
+    studio.castShadow(renderer, wide, middle && new Vector3(middle.x, stage.crowd!.object.position.y, middle.z));
     const draw = (look: Look, from: number, to: number): void => {
       const { x: width, y: height } = renderer.getSize(new Vector2());
       renderer.setScissor(from * width, 0, (to - from) * width, height);

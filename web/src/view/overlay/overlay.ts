@@ -3,6 +3,7 @@ import type { Texture } from 'three';
 import type { ExtractedMesh } from '../../state/model';
 import { Pace } from '../../state/pace';
 import type { SplitProjection } from '../../state/transfers';
+import { kCasts } from '../contact-shadow';
 import { Highlight } from './highlight';
 import type { Highlighted, Look } from './looks';
 import { PrimitiveOverlay } from './primitive-overlay';
@@ -31,7 +32,11 @@ export class Overlay {
     };
     const { leftOut } = projection;
     // Its visibility would hide what hangs on it, too.
-    target.primitives.forEach(({ mesh }, group) => mesh.layers.set(leftOut.includes(group) ? kNoLayer : 0));
+    target.primitives.forEach(({ mesh: { layers } }, group) => {
+      layers.set(0);
+      layers.enable(kCasts);
+      if (leftOut.includes(group)) layers.set(kNoLayer);
+    });
     const filled = target.primitives.filter(
       ({ triangleCount }, group) => triangleCount > 0 && !leftOut.includes(group),
     );

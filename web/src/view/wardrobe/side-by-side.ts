@@ -113,6 +113,10 @@ export class SideBySide implements Crowd {
     return new Vector3(Math.cos(theta) * x, y, -Math.sin(theta) * x);
   }
 
+  get floor(): number | undefined {
+    return this.#columns < this.#cells.length ? undefined : this.#bounds().wide;
+  }
+
   /** Chooses the number of columns that makes them largest, or nearly, in fewer rows. */
   #choose(aspect: number): void {
     const count = this.#cells.length;
