@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Bone, Group, type Vector3 } from 'three';
+import { findFace, patchesOf } from '../../../web/src/tools/paint/face-photo';
 import { faceOf } from '../../../web/src/view/face-of';
 
 const kHeight = 1.8;
@@ -51,4 +52,24 @@ test('landmarks of the cage tell better', () => {
   ]);
   scene.userData['landmarks'] = { crown: [0, 1.8, 0] };
   assert.deepEqual(rounded(faceOf(figure('Head'), { scene }))?.[0], [-0.1, 1.5, -0.1], 'too few of them');
+});
+
+test('a photo of a face is seen from the front: its eyes on those of the cage, nothing on what is behind or far away', () => {
+  const face = findFace({ eye_centre_left: [1, 5, 0], eye_inner_right: [-0.5, 5, 0], eye_outer_right: [-1.5, 5, 0] })!;
+  assert.equal(findFace({ eye_centre_left: [1, 5, 0] }), undefined);
+  const triangle = [-1, 5, 0, 1, 5, 0, 0, 7, 0.5]; // between the eyes and the forehead
+  const moved = (x: number, z: number) => triangle.map((value, i) => value + [x, 0, z][i % 3]!);
+  const positions = Float32Array.from([...triangle, ...moved(0, -4), ...moved(9, 0)]);
+  const uvs = Float32Array.from([0, 0, 1, 0, 0.5, 1, ...Array(12).fill(0)]);
+  const indices = Uint32Array.from([0, 1, 2, 0, 2, 1, 3, 4, 5, 6, 7, 8]); // the same from behind, at the back, beside
+  const patches = patchesOf({ positions, indices, uvs }, face);
+  assert.equal(patches.length, 1);
+  const [{ from, to }] = patches as [(typeof patches)[0]];
+  const [[x, y], [x2, y2], [x3, y3]] = from as [[number, number], [number, number], [number, number]];
+  assert.equal(y, y2);
+  assert.ok(
+    Math.abs(x + x2 - 2 * x3) < 1e-3 && Math.abs(x2 - x - (y - y3)) < 1e-3,
+    'a distance of the eyes up is as long as one across',
+  );
+  assert.deepEqual(to[2], [1024, 2048]);
 });

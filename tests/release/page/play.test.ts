@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { Page } from 'playwright-core';
+import { PNG } from 'pngjs';
 import { faults } from '../../support/axe';
 import { head, middleOf } from '../../support/cages';
 import { difference, look, modelArea, watch } from '../../support/picture';
@@ -234,6 +235,27 @@ test('a link carries strokes; opened, they are where they were, and are carried 
   assert.equal(new URL((await linked.getByTestId('share-link').getAttribute('href'))!, site.url).hash, hash);
   const { page: damaged } = await site.visit(kDesk, kPlay, hash.replace(/strokes:.{8}/, 'strokes:AAAAAAAA'));
   await watch(damaged, same, (picture) => difference(picture, bare) < 0.01);
+  assert.deepEqual(complaints, []);
+});
+
+test('a photo of a face is put onto the face of the model by two dots, which the keyboard moves, too', async () => {
+  const { page, complaints } = await site.visit(kDesk, kPlay);
+  await drop(page, [head()]);
+  await ready(page);
+  await page.locator('#stage-verdict:not([data-verdict=""])').waitFor();
+  const area = await modelArea(page);
+  const before = await look(page, area);
+  const photo = new PNG({ width: 60, height: 80 });
+  photo.data.fill(255);
+  await drop(page, [{ name: 'me.png', mimeType: 'image/png', buffer: PNG.sync.write(photo) }]);
+  await page.getByRole('button', { name: 'It is a face' }).click();
+  await page.getByRole('button', { name: 'Left eye in the picture' }).press('ArrowUp');
+  assert.deepEqual(await faults(page, 5), []);
+  await page.getByRole('button', { name: 'Put it on' }).click();
+  await watch(page, area, (picture) => difference(picture, before) > 0.03);
+  assert.ok(difference(await look(page, area), before) < 0.5, 'nothing but the face');
+  await page.keyboard.press('Control+z');
+  await watch(page, area, (picture) => difference(picture, before) < 0.005);
   assert.deepEqual(complaints, []);
 });
 

@@ -1,5 +1,5 @@
 import type { Edits, Layer, LayerStack, Sheet } from '#three';
-import { ask } from '../platform/ask';
+import { ask, kAskedFor, type Question } from '../platform/ask';
 import { onFace } from '../platform/face';
 import { element, showError } from '../platform/page';
 import type { Locks } from '../state/choices';
@@ -21,7 +21,6 @@ import { tellApart } from './tell-apart';
 import { watchOverSample } from './watch-over';
 
 const kOwn = 'own';
-const kAskedFor = 15_000; // milliseconds
 
 /** In which way a sample is opened. */
 interface HowOpened {
@@ -60,7 +59,7 @@ export class Opener implements Samples {
   /** Opens a saved project. */
   onProject: ((file: File) => void) | undefined;
   /** Takes an image that is to be a sticker. */
-  onPicture: ((image: ImageBitmap) => void) | undefined;
+  onPicture: ((image: ImageBitmap) => Question['answers']) | undefined;
   /** Called with each requested target, and without one before the shown model is put aside. */
   onReplace: ((target?: Promise<Model>) => void) | undefined;
 
@@ -225,10 +224,10 @@ export class Opener implements Samples {
     const bitmap = await readImage(image).catch(() => undefined); // as a paint, it is said what is wrong
     const isPaint = !bitmap || (bitmap.width === bitmap.height && (bitmap.width & (bitmap.width - 1)) === 0);
     if (isPaint || !this.onPicture) return open();
-    this.onPicture(bitmap);
+    const others = this.onPicture(bitmap);
     const text = `${image.name}: click where it belongs on the model.`;
     // On a phone it lies over the model.
-    ask({ text, answers: [{ title: 'Use as a whole paint', run: open }], lasts: kAskedFor });
+    ask({ text, answers: [...others, { title: 'Use as a whole paint', run: open }], lasts: kAskedFor });
   }
 
   /** Nobody waits for these files any more. */

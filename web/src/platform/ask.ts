@@ -11,6 +11,9 @@ export interface Question {
   lasts?: number;
 }
 
+/** How long a message stays that says what to do next: milliseconds. */
+export const kAskedFor = 15_000;
+
 const box = element('ask', HTMLElement);
 let timer: ReturnType<typeof setTimeout> | undefined;
 let shown: Question | undefined;

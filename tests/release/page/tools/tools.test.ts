@@ -96,11 +96,11 @@ test('a sticker is seen before it is placed, and is moved, turned, scaled, mirro
   assert.deepEqual(await faults(page), []);
   const first = await bareLook(page, area);
 
-  await drag(page, area, [0.43, 0.5], [0.5, 0.45], [0.56, 0.42]);
+  await drag(page, area, [0.43, 0.5], [0.47, 0.49], [0.51, 0.48]);
   await away(page);
   const moved = await green(page, area);
   assert.ok(moved.x - placed.x > 0.06, `moved by ${moved.x - placed.x}`);
-  assert.ok(Math.abs(moved.share / placed.share - 1) < 0.25, 'one sticker only');
+  assert.ok(Math.abs(moved.share / placed.share - 1) < 0.25, `one sticker only: ${moved.share} of ${placed.share}`);
 
   // Its corner turns and scales it.
   const handle = (await page.locator('.sticker-handle').boundingBox())!;

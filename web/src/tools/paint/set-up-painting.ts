@@ -1,5 +1,5 @@
-import { readImage } from '../../loading/load-paint';
-import { element, showError } from '../../platform/page';
+import type { Question } from '../../platform/ask';
+import { element } from '../../platform/page';
 import type { Session } from '../../state/session';
 import { showsPaint } from '../../state/view-state';
 import type { RailTool, Tools } from '../../view/tool-rail';
@@ -8,6 +8,7 @@ import { BrushTool } from './brush-tool';
 import { EraserTool } from './eraser-tool';
 import { Eyedropper } from './eyedropper';
 import { FillTool } from './fill-tool';
+import { holdImages } from './hold-images';
 import { type PaintTool, paintByKeys } from './keys';
 import { type Kind, PaintOptions } from './paint-options';
 import { type Layers, Painter } from './painter';
@@ -30,8 +31,8 @@ const kRailTools: Record<Kind, Pick<RailTool, 'title' | 'key' | 'icon'>> = {
 /** What paints. */
 interface Painting {
   painter: Painter;
-  /** Lets an image be placed as a sticker. */
-  hold(image: ImageBitmap): void;
+  /** Lets an image be placed as a sticker. @returns What else can be done with it. */
+  hold(image: ImageBitmap): Question['answers'];
 }
 
 /** Adds brush, eraser, stickers and filling to the tool rail, with their options below the layers. */
@@ -108,20 +109,6 @@ export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, la
   element('add-painting', HTMLButtonElement).addEventListener('click', () =>
     layers.edits.do('adding a painting', () => painter.addLayer()),
   );
-  const image = element('sticker-image', HTMLInputElement);
-  image.addEventListener('change', async (event) => {
-    event.stopPropagation(); // it is not read yet
-    const file = image.files?.[0];
-    image.value = ''; // so that the same file can be chosen again
-    try {
-      if (file) sticker.setImage(await readImage(file));
-    } catch (error) {
-      showError((error as Error).message);
-    }
-  });
-  const hold = (picture: ImageBitmap): void => {
-    tools.choose(offers.sticker);
-    sticker.setImage(picture);
-  };
+  const hold = holdImages(session, layers, sticker, (on) => tools.choose(on ? offers.sticker : undefined));
   return { painter, hold };
 }
