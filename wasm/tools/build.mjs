@@ -184,6 +184,10 @@ async function bundleEntries(bundle) {
     plugins: [wasmModules('wasm-file.ts', { index: './index.js' })],
   };
   for (const [module, name] of Object.entries(kModules)) await bundle(`${module}.ts`, `${name}.js`, 'neutral', shared);
+  // Only loaded for a look: what it shares with others stays out of pages without one.
+  await bundle('gltf/look/index.ts', 'gltf-look.js', 'neutral', {
+    plugins: [wasmModules('wasm-file.ts', { shared: { 'core/error.js': './error.js' } })],
+  });
   await bundle('worker/worker-thread.ts', 'worker-thread.js', 'neutral', shared);
   const alone = { plugins: [wasmModules('wasm-file.ts')] };
   await bundle('index.ts', 'slim.js', 'neutral', { ...alone, ...eager, ...reading('cagecast') });
@@ -273,6 +277,7 @@ function filesBeside(index) {
   return {
     ...Object.fromEntries(Object.entries(kModules).map(([module, name]) => [`${module}.js`, `./${name}.js`])),
     'cages/sync.js': './cages-sync.js',
+    'gltf/look/index.js': './gltf-look.js',
     'api/index.js': index,
     'index.js': index,
   };

@@ -197,7 +197,7 @@ test('what cannot be used is named, with what helps', async () => {
       /^paintGlb: cage is .*; the template of this name is fitted by opt/,
       'cage',
     ],
-    [model, { cage: own.cage }, /^paintGlb: texture is undefined, not a Uint8Array/, 'texture'],
+    [model, { cage: own.cage }, /^paintGlb: neither texture nor look is given; one of them is needed/, 'texture'],
     [model, { ...own, texture: model }, /^paintGlb: texture: is not a PNG, JPEG, WebP or KTX2 image/, 'texture'],
     [model, { ...own, cage: texture }, /^paintGlb: cage: /, 'cage'],
     [

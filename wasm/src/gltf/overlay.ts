@@ -1,5 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import { InputError } from '../scene/input-error.js';
+import { emissiveExtension, unlitExtension } from '../scene/materials.js';
 import { uvLayoutOf } from '../scene/uv-layout.js';
 import { imageIsWhole, imageType, ktx2Problem } from './image-file.js';
 
@@ -174,8 +175,3 @@ export const metalnessOf = (factor: number | undefined, extensions: readonly str
   extensions.some((name) => /^(KHR_materials_pbrSpecularGlossiness|VRMC_materials_mtoon)$/.test(name))
     ? 0
     : (factor ?? 1);
-
-/** The extension of glTF for materials without light and shade. */
-export const unlitExtension = 'KHR_materials_unlit';
-/** The extension of glTF for materials that glow more than the screen's white. */
-export const emissiveExtension = 'KHR_materials_emissive_strength';

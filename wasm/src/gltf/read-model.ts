@@ -8,6 +8,7 @@ import { extrasIn, partsWithout, templateOf } from '../scene/cage-model.js';
 import { type Extracted, extract, namedParts, type Part, partOf, primitivePath, uvLayout } from '../scene/extract.js';
 import { InputError } from '../scene/input-error.js';
 import type { SceneSource } from '../scene/source.js';
+import type { Regions } from './look/saved-layers.js';
 import { type GltfFile, openGltf } from './open-gltf.js';
 
 /** A file, and all triangles of its scene. */
@@ -39,6 +40,15 @@ export async function readBack(cage: Cage, path: string, { extracted: { origin }
 export function landmarksIn({ file, extracted }: ReadModel): Landmarks {
   try {
     return templateOf(file, extracted).landmarks;
+  } catch {
+    return {};
+  }
+}
+
+/** The regions in a cage's extras. None if they are damaged. */
+export function regionsIn({ file, extracted }: ReadModel): Regions {
+  try {
+    return templateOf(file, extracted).regions ?? {};
   } catch {
     return {};
   }

@@ -2,6 +2,7 @@ import type { GLTF } from '@gltf-transform/core';
 import { applySplit, ruleOf, splitSkin } from '../parts/blend.js';
 import type { PreparedPart } from '../parts/prepare.js';
 import type { Extracted, Part } from '../scene/extract.js';
+import { unlitExtension } from '../scene/materials.js';
 import { type InPlace, overlayMark } from '../scene/overlay-mark.js';
 import { dracoOf } from './checks/check-geometry.js';
 import { removeAttributes, removeOverlays } from './earlier-in-file.js';
@@ -21,7 +22,6 @@ import {
   isShown,
   metalnessOf,
   type Paint,
-  unlitExtension,
   uvsMark,
   zoneAttribute,
 } from './overlay.js';

@@ -8,6 +8,8 @@ import { type UvLayout, uvLayoutOf } from './uv-layout.js';
 /** What of a material a paint goes to: its base colour, its normals, or occlusion, roughness and metalness. */
 export const slots = ['color', 'normal', 'orm'] as const;
 export type Slot = (typeof slots)[number];
+/** All that a look changes of a material: its own light, too. */
+export type Place = Slot | 'emissive';
 
 /** How a texture is used by a material. */
 export interface TextureUse extends UvLayout {
@@ -26,9 +28,30 @@ export interface ImageCodec {
 /** A wrap mode by its number in glTF. */
 const wrapOf = (wrap?: number): Wrap => (wrap === 33071 ? 'clamp' : wrap === 33648 ? 'mirror' : 'repeat');
 
+/** The extension of glTF for materials without light and shade. */
+export const unlitExtension = 'KHR_materials_unlit';
+/** The extension of glTF for materials that glow more than the screen's white. */
+export const emissiveExtension = 'KHR_materials_emissive_strength';
+/** The extension of VRM 1 for toon materials. */
+export const toonExtension = 'VRMC_materials_mtoon';
+
+/** What VRM 0 says of a material. */
+export interface ToonProperties {
+  shader?: string;
+  floatProperties?: Record<string, number>;
+  vectorProperties?: Record<string, number[]>;
+  textureProperties?: Record<string, number>;
+  keywordMap?: Record<string, boolean>;
+}
+
+/** What VRM 0 says of a material; undefined in other files. */
+export const toonProperties = ({ extensions }: GLTF.IGLTF, material: number): ToonProperties | undefined =>
+  (extensions?.['VRM'] as { materialProperties?: ToonProperties[] } | undefined)?.materialProperties?.[material];
+
 /** The texture of a material in a slot. */
-export function infoOf(material: GLTF.IMaterial, slot: Slot): GLTF.ITextureInfo | undefined {
+export function infoOf(material: GLTF.IMaterial, slot: Place): GLTF.ITextureInfo | undefined {
   if (slot === 'color') return material.pbrMetallicRoughness?.baseColorTexture;
+  if (slot === 'emissive') return material.emissiveTexture;
   return slot === 'normal' ? material.normalTexture : material.pbrMetallicRoughness?.metallicRoughnessTexture;
 }
 
@@ -75,7 +98,7 @@ export class Materials {
     return this.source.accessors[this.#primitive(part).attributes[semantic] ?? -1];
   }
 
-  useOf(material: number, slot: Slot): TextureUse | undefined {
+  useOf(material: number, slot: Place): TextureUse | undefined {
     const info = infoOf(this.material(material), slot);
     if (!info || !this.json.textures?.[info.index]) return undefined;
     return { texture: info.index, ...uvLayoutOf(info), wraps: this.wrapsOf(info.index) };
@@ -88,7 +111,12 @@ export class Materials {
   }
 
   /** By what the values of the texture are multiplied. */
-  factorOf(material: number, slot: Slot): [number, number, number] {
+  factorOf(material: number, slot: Place): [number, number, number] {
+    if (slot === 'emissive') {
+      const { emissiveFactor = [0, 0, 0], extensions } = this.material(material);
+      const { emissiveStrength = 1 } = (extensions?.[emissiveExtension] ?? {}) as { emissiveStrength?: number };
+      return emissiveFactor.map((share) => share * emissiveStrength) as [number, number, number];
+    }
     const {
       baseColorFactor = [1, 1, 1],
       roughnessFactor = 1,
@@ -97,6 +125,19 @@ export class Materials {
     if (slot === 'normal') return [1, 1, 1];
     if (slot === 'orm') return [1, roughnessFactor, metallicFactor];
     return [baseColorFactor[0]!, baseColorFactor[1]!, baseColorFactor[2]!];
+  }
+
+  /** By what the relief of its normal map is multiplied. */
+  reliefOf(material: number): number {
+    return this.material(material).normalTexture?.scale ?? 1;
+  }
+
+  /** How a material is lit: as glTF says, as MToon of avatars does, or not at all. */
+  lightingOf(number: number): 'standard' | 'toon' | 'none' {
+    const { extensions } = this.material(number);
+    const shader = toonProperties(this.json, number)?.shader ?? '';
+    if (extensions?.[toonExtension] || shader === 'VRM/MToon') return 'toon';
+    return extensions?.[unlitExtension] || shader.startsWith('VRM/Unlit') ? 'none' : 'standard';
   }
 
   /** Whether the alpha of its base colour does not count. */

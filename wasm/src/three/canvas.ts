@@ -19,13 +19,6 @@ export async function toPng(image: ImageData): Promise<string> {
   return reader.result as string;
 }
 
-/** The image file of a data URL, its bytes and media type. @throws if it is none. */
-export function fromDataUrl(url: string): { bytes: Uint8Array<ArrayBuffer>; type: string } {
-  const [, type, base64] = /^data:(image\/[\w.+-]+);base64,(.*)$/s.exec(url) ?? [];
-  if (base64 === undefined) throw new Error('it is no data URL of an image');
-  return { bytes: Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0)), type: type! };
-}
-
 /** The picture of an image file, as it is stored. @throws if it is none. */
 export const asStored = (file: Blob): Promise<ImageBitmap> =>
   createImageBitmap(file, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });

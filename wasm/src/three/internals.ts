@@ -1,5 +1,14 @@
 /** All of this folder that other folders and the demo page use. What of it is public is in index.ts. */
+
 export { likelyTemplate } from '../cages/likely-template.js';
+export { maxCompositeSize } from '../gltf/look/saved-images.js';
+export {
+  maxLayers,
+  type PaintingSize,
+  paintingSizes,
+  type SavedLayer,
+  type SavedLayers,
+} from '../gltf/look/saved-layers.js';
 export type { Borders } from '../parts/cut-part.js';
 export type { LeftOut } from '../parts/drawn.js';
 export type { Apart } from '../parts/own-cages.js';
@@ -17,16 +26,15 @@ export { deserialize, serialize } from './apply/saved-transfer.js';
 export type { Calling } from './apply/tasks.js';
 export { readStraight } from './gpu/straight.js';
 export { type InspectModelOptions, inspectModel } from './inspect-model.js';
-export { Composite, maxCompositeSize } from './layers/composite.js';
+export { Composite } from './layers/composite.js';
 export { Edits } from './layers/edits.js';
 export { Emitter } from './layers/emitter.js';
 export { type Command, History } from './layers/history.js';
 export { type Blend, blendModes, type Layer, type Sheet, type Style } from './layers/layer.js';
 export { type ChangeOptions, createLayers, Layers, type LayersOptions, type NewLayer } from './layers/layers.js';
 export { setOwnRenderer } from './layers/own-renderer.js';
-export { PaintedSheet, type PaintingSize, paintingSizes } from './layers/painted-sheet.js';
-export type { SavedLayer, SavedLayers } from './layers/saved-layers.js';
-export { LayerStack, maxLayers } from './layers/stack.js';
+export { PaintedSheet } from './layers/painted-sheet.js';
+export { LayerStack } from './layers/stack.js';
 export { setNodePainter } from './materials/node-paint.js';
 export { type ModelMasks, modelMasks } from './model-masks.js';
 export { type CageMesh, CageTexels, type Capsule, type SurfacePoint } from './painting/cage-texels.js';

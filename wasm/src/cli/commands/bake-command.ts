@@ -3,19 +3,25 @@ import { CagecastError, type CutTarget } from '../../api/index.js';
 import { type Baked, type Image, mostTexels } from '../../bake/index.js';
 import { type AtlasReport, packTextures } from '../../gltf/bake/atlas.js';
 import { FileModel } from '../../gltf/bake/bake-file.js';
-import { type BakeReport, bakeModel, type Paints } from '../../gltf/bake/plan.js';
+import { type BakeReport, bakeModel, type Coats, coatsOf, type Paints } from '../../gltf/bake/plan.js';
 import { removeOverlays } from '../../gltf/earlier-in-file.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
+import { coatsOfLook, readLook } from '../../gltf/look/index.js';
+import { preparePiece } from '../../gltf/primitive-group.js';
+import { regionsIn } from '../../gltf/read-model.js';
 import { percent } from '../../inspect/finding.js';
 import { grouped } from '../../inspect/geometry.js';
 import type { Borders } from '../../parts/cut-part.js';
-import { InputError, withName } from '../../scene/input-error.js';
+import type { Part } from '../../scene/extract.js';
+import { InputError, naming, withName } from '../../scene/input-error.js';
 import type { ImageCodec } from '../../scene/materials.js';
+import { readBytes } from '../io/files.js';
 import { decodeImage, encodeLike, encodePng, readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import { refuseOverwriting, writeFiles } from '../io/output.js';
 import { readGltf } from '../io/read-gltf.js';
 import { UsageError } from '../model/failures.js';
+import { parseObject } from '../model/json.js';
 import { resolveSettings } from '../model/settings.js';
 import { isByTemplate, type Sources, texturePath } from '../model/sources.js';
 import { configLine, quoted, takenAway } from '../model/text.js';
@@ -32,6 +38,8 @@ interface BakeFlags extends common.SettingFlags, common.AroundFlags, common.Read
   /** Files of images in the cage's UVs. */
   texture?: string;
   map?: Maps;
+  /** The file of saved layers. */
+  look?: string;
   /** A GLB or VRM, or a PNG: the paint alone, in the model's UVs. */
   output: string;
   /** Whether the PNG is in the cage's UVs: what is painted on the model. */
@@ -95,6 +103,10 @@ export function addBakeCommand(program: Command, io: Io): void {
         mapOf,
       ),
     )
+    .option(
+      '--look <LOOK.json>',
+      'instead of images: layers as saved by cagecast/three, with tint, gloss, metal, glow and relief',
+    )
     .option('--back', "the way back: write what is painted on TARGET as a PNG in the cage's UV space")
     .addOption(common.parsed('--part <NAME>', 'for a PNG: only these parts; as --keep', common.oneMore))
     .addOption(
@@ -118,7 +130,7 @@ export function addBakeCommand(program: Command, io: Io): void {
     const around = common.aroundOf(flags, target);
     const fault = faultOf(flags);
     if (fault !== undefined) throw new UsageError(fault);
-    const inputs = [target, ...common.inputsOf(flags), ...Object.values(flags.map ?? {})];
+    const inputs = [target, ...common.inputsOf(flags), ...Object.values(flags.map ?? {}), ...[flags.look ?? []].flat()];
     return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
       const settings = resolveSettings(await common.layersFor(flags)(target));
       const reading = common.readingOf(flags);
@@ -128,14 +140,17 @@ export function addBakeCommand(program: Command, io: Io): void {
 }
 
 /** What is wrong with the arguments together, if anything is. */
-function faultOf({ output, texture, map, back, atlas, part = [], set }: BakeFlags): string | undefined {
+function faultOf({ output, texture, map, look, back, atlas, part = [], set }: BakeFlags): string | undefined {
   const isPicture = output.toLowerCase().endsWith('.png');
   const hasMaps = map !== undefined;
   if (back && (!isPicture || texture !== undefined || hasMaps)) return '--back takes no paint, and writes a PNG';
+  if (look !== undefined && (isPicture || texture !== undefined || hasMaps))
+    return '--look takes no other paint, and needs an OUT.glb';
   if (!back && isPicture && texture === undefined) return 'to write a PNG, --texture is needed';
   if (isPicture && hasMaps) return '--map needs an OUT.glb';
   if (isPicture && atlas !== undefined) return '--atlas needs an OUT.glb';
-  if (!back && texture === undefined && !hasMaps) return 'there is nothing to bake: give --texture or --map';
+  if (!back && texture === undefined && !hasMaps && look === undefined)
+    return 'there is nothing to bake: give --texture, --map or --look';
   if (!isPicture && part.length > 0) return '--part is for a PNG; for a GLB, use --exclude';
   return common.wholeCageFault(set);
 }
@@ -160,15 +175,29 @@ async function bakeCommand(command: BakeCommand, io: Io): Promise<Found> {
   const cut = command.borders === 'cut' ? cutTarget(run, io) : undefined;
   io.step('baking');
   const isPicture = command.output.toLowerCase().endsWith('.png');
-  const maps = { color, normal: normals, orm: rough };
-  const baked = isPicture ? bakePicture(command, run, cut, color) : bakeFile(command, run, cut, maps);
+  const baked = isPicture
+    ? bakePicture(command, run, cut, color)
+    : bakeFile(command, run, cut, await coatsFor(command, run, { color, normal: normals, orm: rough }));
   const { data, lines, report } = await baked.catch((error) => {
     throw withName(error instanceof CagecastError ? new InputError(error.reason, { cause: error }) : error, target);
   });
-  refuseOverwriting([...allFilesReadBy(command, run), paint, normal, orm], [command.output]);
+  refuseOverwriting([...allFilesReadBy(command, run), paint, normal, orm, command.look], [command.output]);
   const fitted = command.template === undefined ? undefined : fittedOf(command, run, io);
   writeFiles([{ path: command.output, data }], io);
   return { lines: [...(fitted?.lines ?? []), ...lines], report: { ...report, ...fitted?.report } };
+}
+
+/** What is laid over textures: images, or a look. @throws {InputError} that names the file of the look. */
+async function coatsFor({ look, reading }: BakeCommand, run: Run, paints: Paints): Promise<Coats> {
+  if (look === undefined) return coatsOf(paints);
+  return naming(look, async () => {
+    const saved = parseObject(new TextDecoder().decode(await readBytes(look, reading.limits)));
+    try {
+      return coatsOfLook(await readLook(saved, regionsIn(run.cage), decodeImage));
+    } catch (error) {
+      throw error instanceof CagecastError ? new InputError(error.reason, { cause: error }) : error;
+    }
+  });
 }
 
 /** What is said of the cage that a template came to. */
@@ -183,7 +212,7 @@ function fittedOf(command: BakeCommand, run: Run, io: Io): Found {
 type Made = Found & { data: Uint8Array };
 
 /** The model with the paint in its textures. @throws {InputError} */
-async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefined, paints: Paints): Promise<Made> {
+async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefined, coats: Coats): Promise<Made> {
   const { output, size } = command;
   const { file, extracted } = run.target;
   const writer = await GlbWriter.from(file, 'keep');
@@ -193,8 +222,10 @@ async function bakeFile(command: BakeCommand, run: Run, cut: CutTarget | undefin
     extracted.parts.map(({ mesh }) => writer.json.meshes![mesh]!),
   );
   const codec = { decode: decodeImage, encode: encodeLike };
-  const model = new FileModel(file, extracted.parts, writer);
-  const { report } = await bakeModel(model, { result: run.result, cut, paints, codec, size });
+  const prepared = (part: Part) => preparePiece(part, run.result, cut);
+  const { report } = await bakeModel(new FileModel(file, extracted.parts, writer), {
+    ...{ result: run.result, prepared, size, coats, codec },
+  });
   if (report.textures.length === 0) {
     // The reason of a part's own material before those of variants.
     const first = report.left.find(({ material }) => material === undefined) ?? report.left[0];

@@ -2,6 +2,7 @@ import type { CutTarget } from '../../api/index.js';
 import { mostTexels } from '../../bake/image.js';
 import { type Baked, cageTexture, fill, type Image, type Layout, resize, type Wrap } from '../../bake/index.js';
 import { isEmpty, isPainted, kOutside, layoutOf, scaledTo } from '../../gltf/bake/plan.js';
+import { preparePiece } from '../../gltf/primitive-group.js';
 import { partsNamed } from '../../gltf/read-model.js';
 import type { Part } from '../../scene/extract.js';
 import { InputError } from '../../scene/input-error.js';
@@ -81,7 +82,9 @@ async function imageOf(model: Materials, texture: number | undefined, isNeeded: 
 
 /** How the triangles of parts lie in their texture and in the cage's. */
 function layoutsOf(model: Materials, parts: readonly Part[], run: Run, cut: CutTarget | undefined): Layout[] {
-  return parts.map((part) => layoutOf(model, part, uvLayoutOf(model, part), { result: run.result, cut }));
+  return parts.map((part) =>
+    layoutOf(model, part, uvLayoutOf(model, part), { prepared: (part) => preparePiece(part, run.result, cut) }),
+  );
 }
 
 /** An image of which all is opaque, as the materials have it that show it. */

@@ -7,8 +7,9 @@ import { type ImageCodec, type Slot, slots } from '../../scene/materials.js';
 import { addTransfer } from '../document/add-transfer.js';
 import { removeOverlays } from '../document/earlier-in-document.js';
 import { ofArgument, transferDocument, wrong } from '../document/transfer-document.js';
+import { preparePiece } from '../primitive-group.js';
 import type { MaskSources } from './mask-sources.js';
-import { type BakeReport, bakeModel, type Paints } from './plan.js';
+import { type BakeReport, bakeModel, coatsOf, type Paints } from './plan.js';
 
 /** Options of `bake`: those of `transfer`, and what to bake. */
 export interface BakeOptions extends Omit<TransferOptions, 'parts'>, MaskSources {
@@ -73,8 +74,8 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
     const { target, model, result, cut, paint } = await transferDocument('bake', document, own, cuts);
     const { report, baked } = await bakeModel(model, {
       result,
-      cut,
-      paints,
+      prepared: (part) => preparePiece(part, result, cut),
+      coats: coatsOf(paints),
       codec: images,
       size,
     }).catch((error) => {

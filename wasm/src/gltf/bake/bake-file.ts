@@ -1,10 +1,22 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { Part } from '../../scene/extract.js';
-import { infoOf, Materials, type Slot, type TextureUse } from '../../scene/materials.js';
+import {
+  emissiveExtension,
+  infoOf,
+  Materials,
+  type Place,
+  type TextureUse,
+  toonExtension,
+  toonProperties,
+} from '../../scene/materials.js';
 import type { GlbWriter } from '../glb-writer.js';
 import { imageType } from '../image-file.js';
 import { type GltfFile, sourceExtensions, sourceOf } from '../open-gltf.js';
 import type { BakeModel } from './plan.js';
+
+const kToonShader = 'VRM/MToon';
+/** Of the colours of VRM 0. */
+const kGamma = 2.2;
 
 /** A file whose materials are painted. What is painted goes to a writer of the file. */
 export class FileModel extends Materials implements BakeModel {
@@ -15,7 +27,7 @@ export class FileModel extends Materials implements BakeModel {
     this.#writer = writer;
   }
 
-  replace(materials: readonly number[], slot: Slot, bytes: Uint8Array, use: TextureUse): void {
+  replace(materials: readonly number[], slot: Place, bytes: Uint8Array, use: TextureUse, strength = 1): void {
     const [json, writer] = [this.json, this.#writer];
     const before = json.textures![use.texture]!;
     const isOwn = infoOf(this.material(materials[0]!), slot) !== undefined;
@@ -45,39 +57,58 @@ export class FileModel extends Materials implements BakeModel {
       if (isOwn && slot === 'color') this.#followInExtensions(material, use.texture, number);
       lay(this.material(material), slot, number);
       resetFactors(this.material(material), slot);
+      if (slot === 'normal') this.#setToon(material, '_BumpMap', number);
+      if (slot === 'emissive') this.#glow(material, number, strength);
     }
+  }
+
+  /** Makes a material glow as its texture says. */
+  #glow(number: number, texture: number, strength: number): void {
+    const material = this.material(number);
+    material.emissiveFactor = [1, 1, 1];
+    if (strength === 1) delete material.extensions?.[emissiveExtension];
+    else {
+      material.extensions = { ...material.extensions, [emissiveExtension]: { emissiveStrength: strength } };
+      if (!this.json.extensionsUsed?.includes(emissiveExtension))
+        (this.json.extensionsUsed ??= []).push(emissiveExtension);
+    }
+    if (Object.keys(material.extensions ?? {}).length === 0) delete material.extensions;
+    // What reads VRM 0 takes its colours for ones of a display.
+    const stored = strength ** (1 / kGamma);
+    this.#setToon(number, '_EmissionMap', texture, { _EmissionColor: [stored, stored, stored, 1] });
+  }
+
+  /** Gives a toon material of VRM 0 a texture, and the colours that belong to it. */
+  #setToon(number: number, name: string, texture: number, colors: Record<string, number[]> = {}): void {
+    const properties = toonProperties(this.json, number);
+    if (properties?.shader !== kToonShader) return;
+    properties.textureProperties = { ...properties.textureProperties, [name]: texture };
+    properties.vectorProperties = { ...properties.vectorProperties, ...colors };
+    if (name === '_BumpMap') properties.keywordMap = { ...properties.keywordMap, _NORMALMAP: true };
   }
 
   /** Makes the materials of avatars, which name their textures once more, show a new one, too. */
   #followInExtensions(material: number, before: number, now: number): void {
-    const vrm = this.json.extensions?.['VRM'] as
-      | {
-          materialProperties?: {
-            textureProperties?: Record<string, number>;
-            vectorProperties?: Record<string, number[]>;
-          }[];
-        }
-      | undefined;
-    const { textureProperties: textures = {}, vectorProperties: colors } = vrm?.materialProperties?.[material] ?? {};
+    const { textureProperties: textures = {}, vectorProperties: colors } = toonProperties(this.json, material) ?? {};
     // The factor, once more: it is in the texture now.
     if (colors?.['_Color']) colors['_Color'] = [1, 1, 1, colors['_Color'][3] ?? 1];
     for (const [name, texture] of Object.entries(textures)) if (texture === before) textures[name] = now;
-    const mtoon = this.material(material).extensions?.['VRMC_materials_mtoon'] as
+    const mtoon = this.material(material).extensions?.[toonExtension] as
       | { shadeMultiplyTexture?: GLTF.ITextureInfo }
       | undefined;
     if (mtoon?.shadeMultiplyTexture?.index === before) mtoon.shadeMultiplyTexture.index = now;
   }
 
   /** Whether the standard materials and their extensions, which add to them, use a texture in no other way. */
-  #isOnlyFor(texture: number, materials: readonly number[], slot: Slot): boolean {
+  #isOnlyFor(texture: number, materials: readonly number[], slot: Place): boolean {
     return (this.json.materials ?? []).every((material, m) => {
       const { pbrMetallicRoughness: pbr, normalTexture, occlusionTexture, emissiveTexture } = material;
-      const uses: [GLTF.ITextureInfo | undefined, Slot | undefined][] = [
+      const uses: [GLTF.ITextureInfo | undefined, Place | undefined][] = [
         [pbr?.baseColorTexture, 'color'],
         [pbr?.metallicRoughnessTexture, 'orm'],
         [occlusionTexture, 'orm'],
         [normalTexture, 'normal'],
-        [emissiveTexture, undefined],
+        [emissiveTexture, 'emissive'],
         ...addedTextures(material).map((info) => [info, undefined] as [GLTF.ITextureInfo, undefined]),
       ];
       return uses.every(([info, used]) => info?.index !== texture || (used === slot && materials.includes(m)));
@@ -94,11 +125,12 @@ function addedTextures({ extensions }: GLTF.IMaterial): GLTF.ITextureInfo[] {
 }
 
 /** Gives a material a texture. A new one lies as that of the base colour does. */
-function lay(material: GLTF.IMaterial, slot: Slot, index: number): void {
+function lay(material: GLTF.IMaterial, slot: Place, index: number): void {
   const pbr = (material.pbrMetallicRoughness ??= {});
   const info = { ...(infoOf(material, slot) ?? pbr.baseColorTexture), index };
   if (slot === 'color') pbr.baseColorTexture = info;
   else if (slot === 'normal') material.normalTexture = info;
+  else if (slot === 'emissive') material.emissiveTexture = info;
   else {
     const { occlusionTexture } = material;
     if (!occlusionTexture || occlusionTexture.index === pbr.metallicRoughnessTexture?.index)
@@ -108,8 +140,8 @@ function lay(material: GLTF.IMaterial, slot: Slot, index: number): void {
 }
 
 /** The factors are in the texture now. */
-function resetFactors({ pbrMetallicRoughness: pbr }: GLTF.IMaterial, slot: Slot): void {
-  if (!pbr || slot === 'normal') return;
+function resetFactors({ pbrMetallicRoughness: pbr }: GLTF.IMaterial, slot: Place): void {
+  if (!pbr || slot === 'normal' || slot === 'emissive') return;
   if (slot === 'orm') {
     delete pbr.roughnessFactor;
     delete pbr.metallicFactor;

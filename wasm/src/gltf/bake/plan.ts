@@ -1,22 +1,26 @@
-import type { CutTarget, TransferResult } from '../../api/index.js';
+import type { TransferResult } from '../../api/index.js';
 import { areaOf, type Baked, fill, type Image, type Kind, type Layout, layOver, resize } from '../../bake/index.js';
 import { kMaxLayers } from '../../bake/pattern.js';
 import { CagecastError } from '../../core/error.js';
 import { applySplit } from '../../parts/blend.js';
+import type { PreparedPart } from '../../parts/prepare.js';
 import { gather } from '../../parts/split-part.js';
 import type { Part } from '../../scene/extract.js';
-import { type ImageCodec, type Materials, type Slot, slots, type TextureUse } from '../../scene/materials.js';
+import type { ImageCodec, Materials, Place, Slot, TextureUse } from '../../scene/materials.js';
 import { requireFinite } from '../../scene/pieces.js';
 import { layUvs, type UvLayout } from '../../scene/uv-layout.js';
 import { imageType } from '../image-file.js';
-import { preparePiece } from '../primitive-group.js';
 
 const kindOf: Record<Slot, Kind> = { color: 'color', normal: 'normal', orm: 'data' };
 
 /** A model whose materials can be painted. */
 export interface BakeModel extends Materials {
-  /** Gives materials a new texture in a slot, a file with the factor in it. @param use  Whose UVs and wrap modes it has. */
-  replace(materials: readonly number[], slot: Slot, bytes: Uint8Array, use: TextureUse): void;
+  /**
+   * Gives materials a new texture in a slot, a file with the factor in it.
+   * @param use       Whose UVs and wrap modes it has.
+   * @param strength  Of what glows: by what its colours have to be multiplied.
+   */
+  replace(materials: readonly number[], slot: Place, bytes: Uint8Array, use: TextureUse, strength: number): void;
 }
 
 /** Whether a triangle of a part may be painted. */
@@ -36,7 +40,7 @@ export interface Paints {
 export interface BakeReport {
   /** The textures that have paint now: of which parts, and how their UVs overlap. */
   textures: {
-    slot: Slot;
+    slot: Place;
     parts: string[];
     width: number;
     height: number;
@@ -49,11 +53,56 @@ export interface BakeReport {
   left: { part: string; material?: string; reason: string }[];
 }
 
+/** Bakes an image in the cage's UVs into those of a texture. */
+export type Fill = (image: Image, kind: Kind) => Baked;
+
+/** The texture of a material as it was, and by what its values are multiplied. */
+export interface Base {
+  image: Image;
+  factor: readonly [number, number, number];
+  /** By what the relief of a normal map is multiplied. */
+  relief: number;
+}
+
+/** A texture as it is to be, with all factors in it. */
+interface Coated {
+  image: Image;
+  /** The paint that is in it. */
+  baked: Baked;
+  /** Of what glows: by what its colours have to be multiplied. Default: 1. */
+  strength?: number;
+}
+
+/** Lays something over a texture. @returns undefined if that leaves it as it is. */
+export type Coat = (base: Base, fill: Fill) => Coated | undefined;
+
+/** What is laid over textures, and on the materials of which lighting it is seen; by default, of any. */
+export type Coats = Partial<Record<Place, { lay: Coat; on?: readonly ReturnType<Materials['lightingOf']>[] }>>;
+
+const kPlaces: readonly Place[] = ['color', 'normal', 'orm', 'emissive'];
+
+/** Paints as they are laid over textures. */
+export function coatsOf(paints: Paints): Coats {
+  const coats: Coats = {};
+  for (const slot of Object.keys(kindOf) as Slot[]) {
+    const paint = paints[slot];
+    if (!paint) continue;
+    coats[slot] = {
+      lay({ image, factor }, fill) {
+        const baked = fill(paint, kindOf[slot]);
+        return { baked, image: layOver(image, baked, factor) };
+      },
+    };
+  }
+  return coats;
+}
+
 /** What is baked. */
-interface BakeInput {
-  result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>;
-  cut: CutTarget | undefined;
-  paints: Paints;
+export interface BakeInput {
+  result: Pick<TransferResult, 'cosmeticTriangles'>;
+  /** What the transfer makes of a part. */
+  prepared: (part: Part) => PreparedPart;
+  coats: Coats;
   codec: ImageCodec;
   /** The longer side of new textures; that of the model's own by default. */
   size?: number | undefined;
@@ -68,7 +117,12 @@ const kPng = 'image/png';
 /** Side of a texture that a material did not have. */
 const kNewSide = 1024;
 
-const slotNames: Record<Slot, string> = { color: 'base colour', normal: 'normal', orm: 'metallic-roughness' };
+const slotNames: Record<Place, string> = {
+  color: 'base colour',
+  normal: 'normal',
+  orm: 'metallic-roughness',
+  emissive: 'emissive',
+};
 
 /** A part, and its material or one that a variant gives it. */
 interface User {
@@ -80,13 +134,14 @@ interface User {
 interface SharedTexture {
   /** How the texture is used: whoever uses it in the same way shares its copy. */
   key: string;
-  slot: Slot;
+  slot: Place;
   use: TextureUse;
   /** Whether the material has no texture in this slot yet. */
   isNew: boolean;
   /** Whether the red of its texture meant nothing, and will be occlusion. */
   redIsNew: boolean;
   factor: readonly [number, number, number];
+  relief: number;
   users: (User & { material: number })[];
 }
 
@@ -98,42 +153,55 @@ export async function bakeModel(model: BakeModel, input: BakeInput): Promise<{ r
   const report: BakeReport = { textures: [], left: [] };
   const baked = new Set<Part>();
   const replacements: (() => void)[] = [];
-  for (const slot of slots) {
-    const paint = input.paints[slot];
-    if (!paint) continue;
+  for (const slot of kPlaces) {
+    const coat = input.coats[slot];
+    if (!coat) continue;
     const refused = new Map<User, string>();
-    for (const shared of listTextures(model, slot, refused)) {
+    const isSeen = (material: number) => coat.on?.includes(model.lightingOf(material)) ?? true;
+    for (const shared of listTextures(model, slot, refused, isSeen)) {
       const painted = new Set(shared.users.map(({ part }) => part).filter((part) => isPainted(part, input.result)));
       if (painted.size === 0) continue;
-      const made = await bakeTexture(model, shared, paint, input);
+      const made = await bakeTexture(model, shared, coat.lay, input);
+      if (!made) continue;
       if (typeof made === 'string') {
         for (const user of shared.users) refused.set(user, made);
         continue;
       }
-      const { width, height, overlap, bytes, before } = made;
+      const { width, height, overlap, bytes, before, strength } = made;
       const materials = [...new Set(shared.users.map(({ material }) => material))];
-      replacements.push(() => model.replace(materials, slot, bytes, shared.use));
+      replacements.push(() => model.replace(materials, slot, bytes, shared.use, strength));
       for (const { part, material } of shared.users) if (material === model.materialOf(part)) baked.add(part);
       const parts = [...painted].map(({ name }) => name);
       report.textures.push({ slot, parts, width, height, overlap, mimeType: imageType(bytes) ?? kPng, before });
     }
     for (const [{ part, material }, reason] of refused) {
       const ofVariant = material !== model.materialOf(part) && { material: model.nameOf(material!) };
-      if (isPainted(part, input.result)) report.left.push({ part: part.name, ...ofVariant, reason });
+      const left = { part: part.name, ...ofVariant, reason };
+      const isTold = report.left.some((one) => JSON.stringify(one) === JSON.stringify(left));
+      if (isPainted(part, input.result) && !isTold) report.left.push(left);
     }
   }
   for (const replace of replacements) replace();
   return { report, baked };
 }
 
-/** The textures that can be painted. @param refused  Gets what cannot be, and why. */
-function listTextures(model: BakeModel, slot: Slot, refused: Map<User, string>): SharedTexture[] {
+/**
+ * The textures that can be painted.
+ * @param refused  Gets what cannot be, and why.
+ * @param isSeen   Whether the slot of a material is seen; the others are left out.
+ */
+function listTextures(
+  model: BakeModel,
+  slot: Place,
+  refused: Map<User, string>,
+  isSeen: (material: number) => boolean,
+): SharedTexture[] {
   const textures: SharedTexture[] = [];
   const users = new Map<number, Part[]>();
   for (const part of model.parts)
     for (const material of new Set([model.materialOf(part), ...model.variantsOf(part)]))
       if (material === undefined) refused.set({ part, material }, 'it has no material');
-      else users.set(material, [...(users.get(material) ?? []), part]);
+      else if (isSeen(material)) users.set(material, [...(users.get(material) ?? []), part]);
   for (const [material, parts] of users) {
     const own = model.useOf(material, slot);
     const use = own ?? model.useOf(material, 'color');
@@ -149,12 +217,13 @@ function listTextures(model: BakeModel, slot: Slot, refused: Map<User, string>):
       continue;
     }
     const factor = model.factorOf(material, slot);
+    const relief = slot === 'normal' ? model.reliefOf(material) : 1;
     const isNew = !own;
     const redIsNew = slot === 'orm' && !model.hasOcclusion(material);
     // A new texture lies as that of the colours, which are painted once for each factor.
-    const key = JSON.stringify([isNew && model.factorOf(material, 'color'), redIsNew, factor, use.wraps]);
+    const key = JSON.stringify([isNew && model.factorOf(material, 'color'), redIsNew, factor, relief, use.wraps]);
     const known = textures.find((shared) => shared.key === key && shared.use.texture === use.texture);
-    const shared = known ?? { key, slot, use, isNew, redIsNew, factor, users: [] };
+    const shared = known ?? { key, slot, use, isNew, redIsNew, factor, relief, users: [] };
     if (!known) textures.push(shared);
     for (const part of parts) shared.users.push({ part, material });
   }
@@ -167,26 +236,32 @@ function isTinted(model: BakeModel, part: Part): boolean | undefined {
   return colors?.values.some((value, i) => i % colors.size < 3 && value !== 1);
 }
 
-/** Bakes a shared texture. @returns what was baked, the whole texture as a file, and the type of the one before; or why not. */
+/** A texture that was baked: as a file, and the type of the one before. */
+type Made = Baked & { bytes: Uint8Array; before: string | undefined; strength: number };
+
+/** Bakes a shared texture. @returns why not, if it cannot be; undefined if it stays as it is. */
 async function bakeTexture(
   model: BakeModel,
   shared: SharedTexture,
-  paint: Image,
+  lay: Coat,
   input: BakeInput,
-): Promise<(Baked & { bytes: Uint8Array; before: string | undefined }) | string> {
-  const { slot, use, factor } = shared;
+): Promise<Made | string | undefined> {
+  const { use, factor, relief } = shared;
   const base = await baseOf(model, shared, input);
   if (typeof base === 'string') return base;
   const layouts = layoutsOn(model, shared, input);
   const wrong = unusable(layouts, base.width * base.height);
   if (wrong) return wrong;
   const { width, height } = base;
-  const baked = fill('bake', layouts, paint, { width, height, wrap: use.wraps, kind: kindOf[slot] });
+  const coated = lay({ image: base, factor, relief }, (image, kind) =>
+    fill('bake', layouts, image, { width, height, wrap: use.wraps, kind }),
+  );
+  if (!coated) return undefined;
+  const { image, baked, strength = 1 } = coated;
   if (use.wraps.includes('clamp') && isEmpty(baked)) return kOutside;
   if (baked.overlap.lost > kMaxLost) return 'most of its paint would lie on that of others';
-  const image = layOver(base, baked, slot === 'normal' ? [1, 1, 1] : factor);
   const before = shared.isNew ? undefined : (await model.source.imageOf(use.texture))?.mimeType;
-  return { ...baked, bytes: await input.codec.encode(image, before), before };
+  return { ...baked, bytes: await input.codec.encode(image, before), before, strength };
 }
 
 /** Why a texture that is clamped has nothing of a paint. */
@@ -250,9 +325,9 @@ export function layoutOf(
   model: Materials,
   part: Part,
   { set, transform }: UvLayout,
-  { result, cut }: Pick<BakeInput, 'result' | 'cut'>,
+  { prepared: prepare }: Pick<BakeInput, 'prepared'>,
 ): Layout {
-  const prepared = preparePiece(part, result, cut);
+  const prepared = prepare(part);
   const stored = model.uvsOf(part, set)!;
   requireFinite(`"${part.name}"`, set, stored, 2);
   const ofCorners = (values: Float32Array, size: number) =>

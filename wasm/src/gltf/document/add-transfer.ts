@@ -14,19 +14,18 @@ import type {
 import type { CutTarget, TransferResult } from '../../api/index.js';
 import { type AttributeArray, applySplit, ruleOf, splitSkin } from '../../parts/blend.js';
 import type { PreparedPart } from '../../parts/prepare.js';
+import { emissiveExtension, unlitExtension } from '../../scene/materials.js';
 import { overlayMark } from '../../scene/overlay-mark.js';
 import type { Piece } from '../../scene/pieces.js';
 import { uvLayoutOf } from '../../scene/uv-layout.js';
 import {
   cosmeticCorners,
-  emissiveExtension,
   type Finish,
   freeUvSet,
   isMorphed,
   isOverlaid,
   metalnessOf,
   type Paint,
-  unlitExtension,
   uvsMark,
   zoneAttribute,
 } from '../overlay.js';

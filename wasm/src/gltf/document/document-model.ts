@@ -1,6 +1,6 @@
 import type { Document, ExtensionProperty, Material, Texture, TextureInfo } from '@gltf-transform/core';
 import type { Part } from '../../scene/extract.js';
-import { Materials, type Slot, type TextureUse } from '../../scene/materials.js';
+import { Materials, type Place, type Slot, type TextureUse } from '../../scene/materials.js';
 import type { BakeModel } from '../bake/plan.js';
 import { imageType } from '../image-file.js';
 import type { DocumentSource } from './document-source.js';
@@ -16,13 +16,13 @@ export class DocumentModel extends Materials implements BakeModel {
     this.#source = source;
   }
 
-  replace(materials: readonly number[], slot: Slot, png: Uint8Array, use: TextureUse): void {
+  replace(materials: readonly number[], slot: Place, png: Uint8Array, use: TextureUse): void {
     const before = this.#source.textureOf(use.texture);
     const painted = this.#document
       .createTexture(before.getName())
       .setMimeType(imageType(png) ?? 'image/png')
       .setImage(png as Uint8Array<ArrayBuffer>);
-    for (const material of materials) setTexture(this.#source.materials[material]!, slot, painted);
+    for (const material of materials) setTexture(this.#source.materials[material]!, slot as Slot, painted);
     if (before.listParents().every((parent) => parent.propertyType === 'Root')) before.dispose();
   }
 }

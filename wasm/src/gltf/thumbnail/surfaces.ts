@@ -9,10 +9,9 @@ import { laidUvs, remembered } from '../../scene/base-colors.js';
 import type { Part } from '../../scene/extract.js';
 import { firstLine } from '../../scene/input-error.js';
 import type { ImageCodec } from '../../scene/materials.js';
-import { Materials } from '../../scene/materials.js';
+import { Materials, unlitExtension } from '../../scene/materials.js';
 import { isMirrored } from '../../scene/matrix.js';
 import type { GltfFile } from '../open-gltf.js';
-import { unlitExtension } from '../overlay.js';
 import { Texture } from './texture.js';
 
 /** A part of a model, and what it looks like. */

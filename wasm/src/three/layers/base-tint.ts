@@ -1,8 +1,6 @@
+import { kWhite } from '../../gltf/look/saved-layers.js';
 import { checkColor } from '../errors.js';
 import { type Command, type History, kOneGo } from './history.js';
-
-/** No tint. */
-export const kWhite = '#ffffff';
 
 /** By what the model's own colour is multiplied. Changes in quick succession are one step. */
 export class BaseTint {

@@ -1,15 +1,14 @@
 import type { Texture, WebGLRenderer, WebGLRenderTarget } from 'three';
+import { maxCompositeSize } from '../../gltf/look/saved-images.js';
+import type { Regions } from '../../gltf/look/saved-layers.js';
 import { kMaxRects } from '../gpu/pass.js';
 import { disjoint, kWhole, type Rect, toTexels } from '../gpu/rect.js';
 import { type Channel, channels, layersOf } from './kinds.js';
 import type { Layer } from './layer.js';
 import { type ActiveStroke, isSquare, LayerPass, sidesOf } from './layer-pass.js';
 import { Plane } from './plane.js';
-import type { Regions } from './regions.js';
 
 const kMinSize = 1024; // texels per side
-/** The greatest number of texels per side of a composite. @internal */
-export const maxCompositeSize = 2048;
 
 /**
  * The layers blended into one texture, with mipmaps and premultiplied alpha, and into one more for each channel that some of them

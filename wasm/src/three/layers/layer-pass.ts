@@ -7,6 +7,7 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
+import type { Regions } from '../../gltf/look/saved-layers.js';
 import { checkColorSpace } from '../color-space.js';
 import { Pass } from '../gpu/pass.js';
 import type { Rect } from '../gpu/rect.js';
@@ -14,7 +15,7 @@ import { Stored } from '../gpu/straight.js';
 import { fragmentShader } from './composite-shader.js';
 import { type Kind, maxAtOnce } from './kinds.js';
 import { type Blend, blendModes, type Layer, type Sheet } from './layer.js';
-import { RegionMasks, type Regions } from './regions.js';
+import { RegionMasks } from './regions.js';
 
 const kMax = Math.max(...Object.values(maxAtOnce));
 

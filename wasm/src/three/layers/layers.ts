@@ -1,9 +1,11 @@
 import type { Texture, WebGLRenderer } from 'three';
+import { maxCompositeSize } from '../../gltf/look/saved-images.js';
+import { checkRegion, kWhite, type Regions, type SavedLayers } from '../../gltf/look/saved-layers.js';
 import type { LoadedCage } from '../apply/models.js';
 import { check, notA, wrong } from '../errors.js';
 import { readStraight } from '../gpu/straight.js';
-import { BaseTint, kWhite } from './base-tint.js';
-import { Composite, maxCompositeSize } from './composite.js';
+import { BaseTint } from './base-tint.js';
+import { Composite } from './composite.js';
 import { CopiedTexture } from './copied-texture.js';
 import { Edits } from './edits.js';
 import { Emitter } from './emitter.js';
@@ -11,8 +13,8 @@ import { History } from './history.js';
 import { checkTexture, freeName, type Layer, readStyle, type Style } from './layer.js';
 import { giveBack, lendRenderer, type OtherRenderer } from './own-renderer.js';
 import { PaintedSheet } from './painted-sheet.js';
-import { checkRegion, type Regions, regionsOf } from './regions.js';
-import { loadLayers, type SavedLayers, saveLayers } from './saved-layers.js';
+import { regionsOf } from './regions.js';
+import { loadLayers, saveLayers } from './saved-layers.js';
 import { ShownChannels } from './shown-channels.js';
 import { LayerStack } from './stack.js';
 
@@ -32,7 +34,8 @@ export interface LayersOptions {
 
 const kSizes = [256, 512, 1024, maxCompositeSize] as const;
 
-const kColorsOnly = 'cagecast/three: toImageData has the colours only, not gloss, metal, glow, relief, base tint';
+const kColorsOnly =
+  'cagecast/three: toImageData has the colours only, not gloss, metal, glow, relief, base tint; what save returns has all, also for paintGlb';
 
 /** How a change is made. */
 export interface ChangeOptions {
@@ -228,7 +231,7 @@ export class Layers extends Emitter<{
 
   /**
    * Reads the texture, as image files have it: sRGB, colours not multiplied by alpha. Waits for the GPU. Roughness, metalness, glow,
-   * relief and the base tint are not in it, of which the console warns once.
+   * relief and the base tint are not in it, of which the console warns once; `paintGlb` of `cagecast/gltf` writes all of what `save` returns.
    * @param size  Texels per side, 1 to 2048. Default: those of the texture.
    * @throws {CagecastError} `badArgument` for another size.
    */

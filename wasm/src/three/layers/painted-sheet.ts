@@ -1,10 +1,7 @@
 import { DataTexture, SRGBColorSpace, type Texture, Vector2, type WebGLRenderer, WebGLRenderTarget } from 'three';
+import type { PaintingSize } from '../../gltf/look/saved-layers.js';
 import { isEmpty, type Rect } from '../gpu/rect.js';
 import type { Sheet } from './layer.js';
-
-/** Sizes of paintings, in texels per side. */
-export const paintingSizes = [1024, 2048] as const;
-export type PaintingSize = (typeof paintingSizes)[number];
 
 /** A render target to paint on: sRGB, premultiplied alpha, transparent at first. */
 export function makePaintTarget(size: number): WebGLRenderTarget {

@@ -1,15 +1,8 @@
 import { DataArrayTexture, LinearFilter, RedFormat } from 'three';
 import { regionMask } from '../../bake/region-mask.js';
-import { show } from '../../core/error.js';
+import { maskSize, type Regions } from '../../gltf/look/saved-layers.js';
 import { isRegion, type Outline } from '../../parts/template.js';
 import { type LoadedCage, objectOf } from '../apply/models.js';
-import { wrong } from '../errors.js';
-
-/** Outlines in UVs, by the names of regions. */
-export type Regions = Readonly<Record<string, readonly Outline[]>>;
-
-/** Texels per side of a mask. */
-const kMaskSize = 1024;
 
 /** The regions of a cage, which loaded ones have in their `userData`. @throws {CagecastError} `badArgument` */
 export function regionsOf(cage: LoadedCage): Regions {
@@ -26,18 +19,6 @@ export function regionsOf(cage: LoadedCage): Regions {
       if ('geometry' in one) read(one.geometry as typeof one);
     });
   return found;
-}
-
-/** @throws {CagecastError} `badOption` that lists the regions, for a name that none has. */
-export function checkRegion(name: string | null | undefined, regions: Regions | undefined): void {
-  if (name === null || name === undefined || (regions && Object.hasOwn(regions, name))) return;
-  const known = Object.keys(regions ?? {});
-  const why = !regions
-    ? 'give createLayers the cage'
-    : known.length > 0
-      ? `the cage has these: ${known.map(show).join(', ')}`
-      : 'the cage has none';
-  throw wrong(`region is ${show(name)}, which is not known; ${why}`, undefined, 'badOption');
 }
 
 /** The masks of regions in one texture, so that any number of layers needs one unit of the GPU. */
@@ -57,9 +38,9 @@ export class RegionMasks {
     this.dispose();
     if (names.length === 0) return null;
     this.#names = names;
-    const data = new Uint8Array(kMaskSize * kMaskSize * names.length);
-    names.forEach((name, n) => data.set(this.#mask(name), kMaskSize * kMaskSize * n));
-    const texture = new DataArrayTexture(data, kMaskSize, kMaskSize, names.length);
+    const data = new Uint8Array(maskSize * maskSize * names.length);
+    names.forEach((name, n) => data.set(this.#mask(name), maskSize * maskSize * n));
+    const texture = new DataArrayTexture(data, maskSize, maskSize, names.length);
     Object.assign(texture, { format: RedFormat, minFilter: LinearFilter, magFilter: LinearFilter, needsUpdate: true });
     this.#texture = texture;
     return texture;
@@ -75,8 +56,8 @@ export class RegionMasks {
   #mask(name: string): Uint8Array {
     const known = this.#known.get(name);
     if (known) return known;
-    const { data } = regionMask(this, name, { width: kMaskSize });
-    const mask = Uint8Array.from({ length: kMaskSize ** 2 }, (_, at) => data[4 * at + 3]!);
+    const { data } = regionMask(this, name, { width: maskSize });
+    const mask = Uint8Array.from({ length: maskSize ** 2 }, (_, at) => data[4 * at + 3]!);
     this.#known.set(name, mask);
     return mask;
   }

@@ -1,46 +1,25 @@
 import { SRGBColorSpace, Texture, type WebGLRenderer } from 'three';
-import { CagecastError, show } from '../../core/error.js';
+import { maxCompositeSize } from '../../gltf/look/saved-images.js';
+import {
+  type CheckedLayer,
+  kWhite,
+  type PaintingSize,
+  type Regions,
+  readSavedLayers,
+  type SavedChannels,
+  type SavedLayer,
+  type SavedLayers,
+  savedChannels,
+  savedVersion,
+} from '../../gltf/look/saved-layers.js';
 import { toPng } from '../canvas.js';
-import { checkColor, notA, wrong } from '../errors.js';
 import { kWhole, toTexels } from '../gpu/rect.js';
 import { readStraight, Stored } from '../gpu/straight.js';
-import { kWhite } from './base-tint.js';
-import { Composite, maxCompositeSize } from './composite.js';
-import { type Layer, plainStyle, readStyle, type Sheet, type Style } from './layer.js';
+import { Composite } from './composite.js';
+import { type Layer, plainStyle, type Sheet, type Style } from './layer.js';
 import { sidesOf, storedIn } from './layer-pass.js';
-import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';
-import { checkRegion, type Regions } from './regions.js';
-import { decoded, readImage, type SavedImage } from './saved-images.js';
-import { maxLayers } from './stack.js';
-
-const kVersion = 1;
-
-/** What a layer makes of the surface; as in `Style`, of whose defaults a saved layer says nothing. */
-const kChannels = ['roughness', 'metalness', 'emissive', 'normalScale'] as const;
-type SavedChannels = Partial<Pick<Style, (typeof kChannels)[number]>>;
-
-/** A layer as plain data. */
-export interface SavedLayer extends Omit<Style, (typeof kChannels)[number] | 'normal'>, SavedChannels {
-  name: string;
-  /** Its image in the cage's UV space, the first row at v = 0, as glTF has it: a place in `images`, or the data URL of an image file. */
-  image: number | string;
-  /** Texels per side of a painting, which can be painted on again. Default: it is no painting. */
-  painting?: PaintingSize | undefined;
-  /** Its normal map, in the same way. Default: it has none. */
-  normal?: number | string | undefined;
-}
-
-/** Layers as plain data, for `JSON.stringify`. */
-export interface SavedLayers {
-  /** Of this format. */
-  version: typeof kVersion;
-  /** From the lowest to the uppermost. */
-  layers: SavedLayer[];
-  /** The data URLs of image files, each once, of the size that it has as a layer, or of 2048 pixels along the longer side. Default: none. */
-  images?: string[] | undefined;
-  /** As `Layers.baseTint`. Default: white. */
-  baseTint?: string | undefined;
-}
+import { PaintedSheet } from './painted-sheet.js';
+import { decoded } from './saved-images.js';
 
 /** The layers as data. */
 export async function saveLayers(
@@ -74,7 +53,7 @@ export async function saveLayers(
       ...(normal !== undefined && { normal: placeOf(normal) }),
     });
   }
-  return { version: kVersion, layers: saved, images, ...(baseTint !== kWhite && { baseTint }) };
+  return { version: savedVersion, layers: saved, images, ...(baseTint !== kWhite && { baseTint }) };
 }
 
 /** As many texels as a texture has, or as many as can be loaded, in its proportions. */
@@ -87,7 +66,7 @@ function savedSize(texture: Texture): readonly [width: number, height: number] {
 
 /** Those channels of a layer that are not as by default. */
 function channelsIn(layer: Required<SavedChannels>): SavedChannels {
-  const given = kChannels.filter((name) => layer[name] !== plainStyle[name]);
+  const given = savedChannels.filter((name) => layer[name] !== plainStyle[name]);
   return Object.fromEntries(given.map((name) => [name, layer[name]]));
 }
 
@@ -117,20 +96,7 @@ export async function loadLayers(
   saved: SavedLayers,
   regions: Regions | undefined,
 ): Promise<{ layers: LoadedLayer[]; baseTint: string }> {
-  const { version, layers, images, baseTint = kWhite } = Object(saved) as Partial<SavedLayers>;
-  if (!Array.isArray(layers)) throw notA('what save returned', 'saved', saved);
-  if (version !== kVersion) throw wrong(`saved.version is ${show(version)}, not ${kVersion}`);
-  if (layers.length > maxLayers) throw wrong(`saved.layers are ${layers.length}, more than ${maxLayers}`);
-  checkColor('saved.baseTint', baseTint);
-  const placeOf = (i: number): string => `saved.layers[${i}]`;
-  const styles = Array.from(layers, (layer, i) => checkLayer(layer, placeOf(i), regions));
-  const checked = layers.map(({ name, painting, image, normal }, i): CheckedLayer => {
-    return {
-      ...{ name, painting, style: styles[i]! },
-      image: readImage(urlIn(images, image), `${placeOf(i)}.image`, painting),
-      normal: normal === undefined ? undefined : readImage(urlIn(images, normal), `${placeOf(i)}.normal`),
-    };
-  });
+  const { layers: checked, baseTint } = readSavedLayers(saved, regions);
   const loaded: LoadedLayer[] = [];
   try {
     // One after the other: each takes more memory while it is decoded.
@@ -145,40 +111,9 @@ export async function loadLayers(
   return { layers: loaded, baseTint };
 }
 
-/** The image that a layer names by its place in a list; or what else it says. */
-const urlIn = (images: unknown, image: unknown): unknown =>
-  typeof image === 'number' ? ((images as unknown[] | undefined)?.[image] ?? image) : image;
-
-const kMaxName = 1000; // characters
-
-/** A layer of which all but its pixels is read. */
-interface CheckedLayer {
-  name: string;
-  style: Partial<Style>;
-  painting: PaintingSize | undefined;
-  image: SavedImage;
-  normal: SavedImage | undefined;
-}
-
-/** Checks all of a layer but its images. @param place  Of the layer, for messages. @returns its style. @throws {CagecastError} */
-function checkLayer(layer: SavedLayer, place: string, regions: Regions | undefined): Partial<Style> {
-  const { name, painting, normal: _, ...rest } = Object(layer) as SavedLayer;
-  if (typeof name !== 'string') throw notA('a name', `${place}.name`, name);
-  if (name.length > kMaxName) throw wrong(`${place}.name has ${name.length} characters, more than ${kMaxName}`);
-  if (painting !== undefined && !paintingSizes.includes(painting))
-    throw notA(paintingSizes.join(' or '), `${place}.painting`, painting);
-  try {
-    const style = readStyle(rest);
-    checkRegion(style.region, regions);
-    return style;
-  } catch (error) {
-    if (!(error instanceof CagecastError)) throw error;
-    throw wrong(`${place}.${error.reason}`, undefined, error.code, { cause: error });
-  }
-}
-
 async function loadLayer(renderer: WebGLRenderer, layer: CheckedLayer): Promise<LoadedLayer> {
-  const { name, style, painting, image, normal } = layer;
+  const { name, painting, image, normal } = layer;
+  const style: Partial<Style> = { ...layer.style };
   const sheet = new ImageSheet(await decoded(image));
   try {
     if (normal) style.normal = reliefOf(await decoded(normal));

@@ -1,6 +1,6 @@
 import { Color, type Texture, type WebGLRenderer } from 'three';
+import { kWhite } from '../../gltf/look/saved-layers.js';
 import { type Channels, noChannels, setChannels } from '../materials/channels.js';
-import { kWhite } from './base-tint.js';
 import type { Composite } from './composite.js';
 import { CopiedTexture } from './copied-texture.js';
 import type { Channel } from './kinds.js';

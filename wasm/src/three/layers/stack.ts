@@ -1,10 +1,8 @@
 import type { CagecastError } from '../../api/index.js';
+import { maxLayers } from '../../gltf/look/saved-layers.js';
 import { notA, wrong } from '../errors.js';
 import { Emitter } from './emitter.js';
 import { checkTexture, difference, type Layer, plainStyle, readStyle, type Sheet, type Style } from './layer.js';
-
-/** The greatest number of layers. */
-export const maxLayers = 16;
 
 /** @returns the error for a layer too many. */
 const full = (): CagecastError => wrong(`There are already ${maxLayers} layers, the maximum. Remove one first.`, '');

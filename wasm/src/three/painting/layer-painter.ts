@@ -1,11 +1,12 @@
 import type { Vector2, Vector3, WebGLRenderer } from 'three';
+import { type PaintingSize, paintingSizes } from '../../gltf/look/saved-layers.js';
 import { check, wrong } from '../errors.js';
 import { type Rect, toShares } from '../gpu/rect.js';
 import type { Composite } from '../layers/composite.js';
 import type { Edits } from '../layers/edits.js';
 import { Emitter } from '../layers/emitter.js';
 import { freeName, type Layer } from '../layers/layer.js';
-import { PaintedSheet, type PaintingSize, paintingSizes } from '../layers/painted-sheet.js';
+import { PaintedSheet } from '../layers/painted-sheet.js';
 import type { LayerStack } from '../layers/stack.js';
 import { type CageMesh, CageTexels, type Capsule, type SurfacePoint } from './cage-texels.js';
 import type { StickerSheet, StickerStyle } from './sticker.js';

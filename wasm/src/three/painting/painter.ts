@@ -1,12 +1,12 @@
 import { type Camera, Raycaster, type Texture, Vector2, Vector3 } from 'three';
 import { show } from '../../core/error.js';
+import type { PaintingSize } from '../../gltf/look/saved-layers.js';
 import type { Applied } from '../apply/apply-options.js';
 import { extract } from '../apply/extract-scene.js';
 import type { LoadedCage } from '../apply/models.js';
 import { check, checkColor, checkShare, notA, wrong } from '../errors.js';
 import { Emitter } from '../layers/emitter.js';
 import { createLayers, type Layers, type LayersOptions } from '../layers/layers.js';
-import type { PaintingSize } from '../layers/painted-sheet.js';
 import type { SurfacePoint } from './cage-texels.js';
 import { LayerPainter } from './layer-painter.js';
 import { pickSpot, pixelsPerUnit, type Spot } from './pick.js';

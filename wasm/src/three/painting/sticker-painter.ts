@@ -1,8 +1,8 @@
 import type { Vector3 } from 'three';
+import type { PaintingSize } from '../../gltf/look/saved-layers.js';
 import { kMaxRects } from '../gpu/pass.js';
 import { disjoint, type Rect, toShares, toTexels } from '../gpu/rect.js';
 import { freeName, type Layer, plainStyle } from '../layers/layer.js';
-import type { PaintingSize } from '../layers/painted-sheet.js';
 import type { SurfacePoint } from './cage-texels.js';
 import type { LayerPainter, PaintedLayers } from './layer-painter.js';
 import { type StickerPicture, StickerSheet } from './sticker.js';

@@ -1,0 +1,53 @@
+import type { Part } from '../../scene/extract.js';
+import type { ImageCodec } from '../../scene/materials.js';
+import { FileModel } from '../bake/bake-file.js';
+import { type BakeInput, type BakeReport, bakeModel } from '../bake/plan.js';
+import type { GlbWriter } from '../glb-writer.js';
+import { hostDecode } from '../host-decode.js';
+import type { GltfFile } from '../open-gltf.js';
+import { coatsOfLook } from './coats.js';
+import { composeLook, type Look } from './compose.js';
+import { decodePng, encodePng } from './png.js';
+import { type Regions, readSavedLayers } from './saved-layers.js';
+
+/** What reads and writes images; by default, what the host has, and else a reader of PNGs and a writer of them. */
+export interface Codec {
+  decode?: ImageCodec['decode'] | undefined;
+  encode?: ImageCodec['encode'] | undefined;
+}
+
+/** What a look is drawn on. */
+interface Drawn extends Pick<BakeInput, 'result' | 'prepared' | 'size'> {
+  file: GltfFile;
+  parts: readonly Part[];
+  /** Of the file. */
+  writer: GlbWriter;
+  /** Of the cage. */
+  regions: Regions;
+}
+
+export { coatsOfLook } from './coats.js';
+
+/**
+ * Reads and draws saved layers.
+ * @throws {CagecastError} as `load` of layers does; for an image that cannot be read, too.
+ */
+export const readLook = (saved: unknown, regions: Regions, decode: ImageCodec['decode']): Promise<Look> =>
+  composeLook(readSavedLayers(saved, regions), regions, decode);
+
+/**
+ * Draws a look into the textures of a file's materials.
+ * @returns what was done, and as a PNG the colours alone if some part cannot have them in a texture of its own.
+ */
+export async function bakeLook(
+  saved: unknown,
+  { file, parts, writer, regions, ...input }: Drawn,
+  { decode = hostDecode() ?? decodePng, encode = encodePng }: Codec,
+): Promise<{ report: BakeReport; baked: Set<Part>; overlay: Uint8Array | undefined }> {
+  const look = await readLook(saved, regions, decode);
+  const codec = { decode, encode };
+  const model = new FileModel(file, parts, writer);
+  const done = await bakeModel(model, { ...input, coats: coatsOfLook(look), codec });
+  const hasOverlay = look.color !== undefined && done.report.left.length > 0;
+  return { ...done, overlay: hasOverlay ? await encodePng(look.color!) : undefined };
+}
