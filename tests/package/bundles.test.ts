@@ -29,28 +29,28 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'applyTransferAsync',
-    31_200,
+    31_400,
     "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
     'applyTransferAsync, for WebGPURenderer',
-    32_500,
+    32_700,
     "import 'cagecast/three/webgpu'; import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
     'applyTransferAsync, layers and painting',
-    56_000,
+    56_600,
     `import { applyTransferAsync, createLayers, createPainter } from 'cagecast/three';
     console.log(applyTransferAsync, createLayers, createPainter);`,
   ],
   [
     'layers, for WebGPURenderer',
-    18_100,
+    19_100,
     `import { enableLayers } from 'cagecast/three/webgpu';
     import { createLayers } from 'cagecast/three';
     console.log(enableLayers, createLayers);`,
   ],
-  ['layers', 17_500, "import { createLayers } from 'cagecast/three'; console.log(createLayers);"],
+  ['layers', 17_900, "import { createLayers } from 'cagecast/three'; console.log(createLayers);"],
   ['<cagecast-viewer>', 67_000, "import 'cagecast/viewer';"],
   ['useCagecast', 75_500, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
   ['inspect', 33_000, "import { inspect } from 'cagecast'; console.log(inspect);"],

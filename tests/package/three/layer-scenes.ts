@@ -36,6 +36,16 @@ async function sizeOf(url: string): Promise<string> {
   const { width, height } = await createImageBitmap(await (await fetch(url)).blob());
   return `${width} × ${height}`;
 }
+/** Two colours, the first on the left. */
+function halvesOf(left: number, right: number): DataTexture {
+  const texels = Array.from({ length: 64 * 64 }, (_, i) => (i % 64 < 32 ? left : right));
+  const texture = new DataTexture(
+    new Uint8Array(texels.flatMap((c) => [c >> 16, (c >> 8) & 255, c & 255, 255])),
+    64,
+    64,
+  );
+  return Object.assign(texture, { colorSpace: SRGBColorSpace, needsUpdate: true });
+}
 const plain = () => modelOf(new MeshBasicMaterial({ color: 0xbbbbbb }));
 const decode = (byte: number): number =>
   byte <= 0.04045 * 255 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4;
@@ -303,6 +313,60 @@ export const layerScenes: Scenes = {
       for (const pixels of [a, b]) equal(red(pixels), [!flipY, flipY]);
       layers.dispose();
     }
+  },
+
+  async 'a layer lies where it is moved, turned and scaled to; it is kept, undone, and not painted on there'() {
+    const layers = createLayers({ renderer, size: 256 });
+    // Red on the left of green.
+    const layer = layers.add(halvesOf(0xff0000, 0x00ff00));
+    const drawn = (x: number, y: number): number[] => {
+      const { data } = layers.toImageData(256);
+      const at = 4 * (256 * Math.floor(256 * y) + Math.floor(256 * x));
+      return [...data.subarray(at, at + 4)];
+    };
+    const [kRed, kGreen, kNone] = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 0, 0]]; // biome-ignore format: colours
+    const lies = (places: readonly [x: number, y: number, color: number[] | undefined][]) => {
+      for (const [x, y, color] of places) near(drawn(x, y), color!, 1);
+    };
+    lies([[0.1, 0.5, kRed], [0.9, 0.5, kGreen]]); // biome-ignore format: places
+    layers.set(layer, { offset: [0.25, 0] });
+    lies([[0.1, 0.5, kNone], [0.4, 0.5, kRed], [0.9, 0.5, kGreen]]); // biome-ignore format: places
+    layers.set(layer, { offset: [0, 0], scale: 0.5 });
+    lies([[0.1, 0.5, kNone], [0.4, 0.5, kRed], [0.6, 0.5, kGreen], [0.5, 0.1, kNone]]); // biome-ignore format: places
+    layers.set(layer, { rotation: Math.PI / 2 }); // clockwise: what was on the left is above
+    lies([[0.5, 0.4, kRed], [0.5, 0.6, kGreen]]); // biome-ignore format: places
+    layers.set(layer, { scale: 0.5, rotation: Math.PI, center: [0.25, 0.25] });
+    lies([[0.3, 0.2, kRed], [0.05, 0.2, kGreen], [0.6, 0.6, kNone]]); // biome-ignore format: places
+
+    const before = [...layers.toImageData(64).data];
+    const other = createLayers({ renderer, size: 256 });
+    await other.load(JSON.parse(JSON.stringify(await layers.save())));
+    equal([...other.toImageData(64).data].join(), before.join());
+    const { center, scale, rotation } = other.list[0]!;
+    equal([center, scale, rotation], [[0.25, 0.25], 0.5, Math.PI]);
+    equal(layers.undo(), 'changing scale, rotation, center of Layer 1');
+    equal(layers.list[0]!.rotation, Math.PI / 2);
+    layers.redo();
+    equal([...layers.toImageData(64).data].join(), before.join());
+    const { programs } = renderer.info;
+    const count = programs!.length;
+    for (let i = 0; i < 5; ++i) {
+      layers.set(layer, { rotation: i, offset: [0.01 * i, 0] }, { undoable: false });
+      ok(layers.update(), 'nothing was drawn');
+    }
+    equal(programs!.length, count, 'the number of programs');
+
+    const around = cage();
+    const applied = applyTransfer(plain(), { cage: around, texture: layers.texture });
+    const painter = createPainter({ renderer, layers, applied, cage: around });
+    painter.stroke([{ x: 0.5, y: 0.5 }], { color: '#0000ff', size: 0.2 });
+    equal(layers.list.length, 2);
+    layers.set(layers.list[1]!, { offset: [0.2, 0] });
+    ok(drawn(0.7, 0.5)[2]! > 200, drawn(0.7, 0.5));
+    painter.stroke([{ x: 0.5, y: 0.5 }], { color: '#0000ff', size: 0.2 });
+    equal(layers.list.length, 3, 'the number of layers');
+    layers.dispose();
+    other.dispose();
   },
 
   'a texture of colours without a colour space is told of once'() {

@@ -154,6 +154,12 @@ export const lookScenes: Scenes = {
     compare(standard({ normalMap: bumps(3) }), (layers) => {
       layers.add(flat(0xffffff), { blend: 'none', normal: bumps(), normalScale: 0.8 });
     }),
+  'a file shows layers that were moved, turned and scaled, with their relief': () =>
+    compare(standard(), (layers) => {
+      const place = { offset: [0.04, -0.1], rotation: 0.6, center: [0.27, 0.5] } as const;
+      layers.add(halves(0xff4040, 0x40ff40), { ...place, scale: 0.3, normal: bumps(), normalScale: 0.7 });
+      layers.add(disc([40, 40, 255]), { offset: [-0.05, 0.1], scale: 1.5, center: [0.27, 0.5], roughness: 0.2 });
+    }),
   'a file without light shows the colours': () =>
     compare(new MeshBasicMaterial({ map: skin() }), (layers) => {
       layers.setBaseTint('#b0c0ff');

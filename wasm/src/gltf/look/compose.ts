@@ -5,7 +5,7 @@ import { firstLine } from '../../scene/input-error.js';
 import type { ImageCodec } from '../../scene/materials.js';
 import { counted, maxCompositeSize, type SavedImage } from './saved-images.js';
 import { type CheckedLayer, kWhite, maskSize, type Regions } from './saved-layers.js';
-import { plainData } from './style.js';
+import { isMoved, type PlainStyle, plainData, readingOf, samplesOf } from './style.js';
 
 type Triple = readonly [number, number, number];
 
@@ -26,11 +26,11 @@ export interface Look {
   tint: Triple | undefined;
 }
 
-/** Reads an image at a place: 4 numbers, colours multiplied by alpha. */
-type Take = (u: number, v: number, out: Float64Array) => void;
+/** Reads an image at a place: 4 numbers, colours multiplied by alpha. @param size  Texels along a side of what is drawn. */
+type Take = (u: number, v: number, out: Float64Array, size: number) => void;
 
 /** A layer as it is drawn. */
-interface Drawn extends Required<Omit<CheckedLayer['style'], 'tint' | 'region'>> {
+interface Drawn extends Omit<PlainStyle, 'tint'> {
   take: Take;
   tint: Triple;
   mask: Take | undefined;
@@ -63,12 +63,14 @@ export async function composeLook(
   for (const { image, normal, style } of seen) {
     const whole = { ...plainData, ...style };
     const { region } = whole;
+    const edge = isMoved(whole) ? 'clear' : 'repeat';
+    const samples = samplesOf(whole, Math.max(image.width, image.height), size);
     const mask = region === null ? undefined : regionMask({ regions }, region, { width: maskSize });
     drawn.push({
       ...whole,
-      take: takerOf(await read(image, decode), linearOf),
-      relief: normal && takerOf(await read(normal, decode), shareOf, { isOpaque: true }),
-      mask: mask && takerOf(mask, shareOf, { isClamped: true }),
+      take: placed(takerOf(await read(image, decode), linearOf, { edge }), whole, samples),
+      relief: normal && placed(takerOf(await read(normal, decode), shareOf, { edge, isOpaque: true }), whole, samples),
+      mask: mask && takerOf(mask, shareOf, { edge: 'clamp' }),
       tint: linear(whole.tint),
       isInGlow: whole.emissive > 0 || (whole.blend === 'normal' && drawn.some(({ isInGlow }) => isInGlow)),
     });
@@ -88,18 +90,41 @@ async function read({ name, bytes, type, width, height }: SavedImage, decode: Im
   throw wrong(`${name} has ${counted(image.width)} × ${counted(image.height)} pixels, not as many as it says`);
 }
 
+/** Reads a layer that lies elsewhere, at some places along each side of a texel. */
+function placed(take: Take, style: PlainStyle, samples: number): Take {
+  if (!isMoved(style)) return take;
+  const [a, b, c, d, e, f] = readingOf(style);
+  const sum = new Float64Array(4);
+  return (u, v, out, size) => {
+    sum.fill(0);
+    for (let i = 0; i < samples * samples; ++i) {
+      const x = u + (((i % samples) + 0.5) / samples - 0.5) / size;
+      const y = v + ((Math.floor(i / samples) + 0.5) / samples - 0.5) / size;
+      take(a * x + b * y + c, d * x + e * y + f, out, size);
+      for (let k = 0; k < 4; ++k) sum[k]! += out[k]! / samples ** 2;
+    }
+    out.set(sum);
+  };
+}
+
+/** What lies beyond the border of an image: it once more, its last texels, or nothing. */
+type Edge = 'repeat' | 'clamp' | 'clear';
+
 /**
- * Samples an image bilinearly. It repeats, unless it is clamped.
+ * Samples an image bilinearly.
  * @param table  What its bytes stand for.
  */
 function takerOf(
   { width, height, data }: Image,
   table: Float32Array,
-  { isOpaque = false, isClamped = false }: { isOpaque?: boolean; isClamped?: boolean } = {},
+  { edge, isOpaque = false }: { edge: Edge; isOpaque?: boolean },
 ): Take {
-  const placed = isClamped
-    ? (at: number, count: number) => Math.min(count - 1, Math.max(0, at))
-    : (at: number, count: number) => ((at % count) + count) % count;
+  const within =
+    edge === 'clear'
+      ? (at: number, count: number) => (at >= 0 && at < count ? at : Number.NaN)
+      : edge === 'clamp'
+        ? (at: number, count: number) => Math.min(count - 1, Math.max(0, at))
+        : (at: number, count: number) => ((at % count) + count) % count;
   // Called for each texel of each layer, so nothing is allocated here.
   return (u, v, out) => {
     const x = u * width - 0.5;
@@ -112,7 +137,8 @@ function takerOf(
       const down = corner >> 1;
       const weight = (right ? x - left : 1 + left - x) * (down ? y - top : 1 + top - y);
       if (weight === 0) continue;
-      const at = 4 * (placed(top + down, height) * width + placed(left + right, width));
+      const at = 4 * (within(top + down, height) * width + within(left + right, width));
+      if (Number.isNaN(at)) continue;
       const share = isOpaque ? weight : (weight * data[at + 3]!) / 255;
       if (share === 0) continue;
       out[0]! += share * table[data[at]!]!;
@@ -136,7 +162,7 @@ function draw(layers: readonly Drawn[], size: number): Omit<Look, 'tint'> {
     glow: imageIf(layers.some(({ emissive }) => emissive > 0)),
     strength,
   };
-  const texel = new Texel(strength);
+  const texel = new Texel(strength, size);
   const toByte = colorByte();
   for (let y = 0, at = 0; y < size; ++y)
     for (let x = 0; x < size; ++x, at += 4) {
@@ -185,8 +211,11 @@ class Texel {
   readonly #layer = new Float64Array(4);
   readonly #other = new Float64Array(4);
 
-  /** @param strength  Of the glow, which is a share of it. */
-  constructor(readonly strength: number) {}
+  /** @param strength  Of the glow, which is a share of it. @param size  Texels along a side. */
+  constructor(
+    readonly strength: number,
+    readonly size: number,
+  ) {}
 
   draw(layers: readonly Drawn[], u: number, v: number): void {
     for (let i = 0; i < this.#all.length; ++i) this.#all[i]!.fill(0);
@@ -195,9 +224,9 @@ class Texel {
     for (let i = 0; i < layers.length; ++i) {
       const one = layers[i]!;
       const { take, mask, opacity, tint, blend, roughness, metalness, relief } = one;
-      take(u, v, layer);
+      take(u, v, layer, this.size);
       if (layer[3] === 0) continue;
-      mask?.(u, v, other);
+      mask?.(u, v, other, this.size);
       const share = opacity * (mask ? other[3]! : 1);
       for (let k = 0; k < 3; ++k) layer[k]! *= share * tint[k]!;
       layer[3]! *= share;
@@ -211,8 +240,8 @@ class Texel {
           this.glow[k] = Math.min(1, left * this.glow[k]! + (one.emissive / this.strength) * layer[k]!);
       }
       if (relief) {
-        relief(u, v, other);
-        lean(other, one.normalScale);
+        relief(u, v, other, this.size);
+        lean(other, one);
         this.tilt[0]! += alpha * (other[0]! - this.tilt[0]!);
         this.tilt[1]! += alpha * (other[1]! - this.tilt[1]!);
       }
@@ -242,13 +271,18 @@ function cover(below: Float64Array, value: number, alpha: number): void {
 }
 
 /** Makes a unit vector of a texel of a normal map: to where u and v grow, and up. */
-function lean(texel: Float64Array, scale: number): void {
+function lean(texel: Float64Array, { normalScale: scale, rotation }: Drawn): void {
+  // At the border of a layer that lies elsewhere.
+  const whole = texel[3]! || 1;
+  for (let k = 0; k < 3; ++k) texel[k]! /= whole;
   const x = 2 * texel[0]! - 1;
   const y = 2 * texel[1]! - 1;
   // Some compressed ones have red and green only.
   const z = texel[2] === 0 ? Math.sqrt(Math.max(0, 1 - x * x - y * y)) : 2 * texel[2]! - 1;
   const length = Math.hypot(scale * x, scale * y, Math.max(z, 1e-3));
-  texel[0] = (scale * x) / length;
   // In glTF, v grows downwards, and green means up.
-  texel[1] = (-scale * y) / length;
+  const [across, down] = [(scale * x) / length, (-scale * y) / length];
+  const [c, s] = [Math.cos(rotation), Math.sin(rotation)];
+  texel[0] = c * across - s * down;
+  texel[1] = s * across + c * down;
 }

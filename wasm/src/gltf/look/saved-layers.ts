@@ -20,8 +20,17 @@ export type Regions = Readonly<Record<string, readonly Outline[]>>;
 /** The version of saved layers. */
 export const savedVersion = 1;
 
-/** What a layer makes of the surface; as in `PlainStyle`, of whose defaults a saved layer says nothing. */
-export const savedChannels = ['roughness', 'metalness', 'emissive', 'normalScale'] as const;
+/** Where a layer lies, and what it makes of the surface; as in `PlainStyle`, of whose defaults a saved layer says nothing. */
+export const savedChannels = [
+  'roughness',
+  'metalness',
+  'emissive',
+  'normalScale',
+  'offset',
+  'scale',
+  'rotation',
+  'center',
+] as const;
 export type SavedChannels = Partial<Pick<PlainStyle, (typeof savedChannels)[number]>>;
 
 /** A layer as plain data. */

@@ -1,6 +1,7 @@
 import {
   Color,
   type IUniform,
+  Matrix3,
   SRGBColorSpace,
   type Texture,
   Vector4,
@@ -8,6 +9,7 @@ import {
   type WebGLRenderTarget,
 } from 'three';
 import type { Regions } from '../../gltf/look/saved-layers.js';
+import { isMoved, readingOf, samplesOf } from '../../gltf/look/style.js';
 import { checkColorSpace } from '../color-space.js';
 import { Pass } from '../gpu/pass.js';
 import type { Rect } from '../gpu/rect.js';
@@ -49,6 +51,7 @@ export class LayerPass {
     stored: { value: new Array<number>(kMax).fill(0) },
     masks: { value: null as Texture | null },
     slices: { value: new Array<number>(kMax).fill(0) },
+    places: { value: Array.from({ length: kMax }, () => new Matrix3()) },
     stroke: { value: null as Texture | null },
     below: { value: null as Texture | null },
     strokeOpacity: { value: 1 },
@@ -85,11 +88,12 @@ export class LayerPass {
   draw(renderer: WebGLRenderer, target: WebGLRenderTarget, batch: Batch, rects: readonly Rect[]): void {
     const { kind, layers, below } = batch;
     this.#fill(batch, target.width);
-    const how = (texture: Texture) => (isSquare(texture, target.width) ? 'whole' : 'spread');
+    const how = (texture: Texture, layer: Layer) =>
+      isMoved(layer) ? 'moved' : isSquare(texture, target.width) ? 'whole' : 'spread';
     const recipe = {
       kind,
-      takes: layers.map(({ sheet }) => how(sheet.texture)),
-      reliefs: kind === 'normals' ? layers.map(({ normal }) => how(normal!)) : [],
+      takes: layers.map((layer) => how(layer.sheet.texture, layer)),
+      reliefs: kind === 'normals' ? layers.map((layer) => how(layer.normal!, layer)) : [],
       masked: layers.map(({ region }) => region !== null),
       stroke: layers.findIndex(({ sheet }) => sheet === this.#strokeSheet),
       hasBelow: below !== undefined,
@@ -109,7 +113,7 @@ export class LayerPass {
   }
 
   #fill({ kind, layers, below }: Batch, width: number): void {
-    const { sheets, normals, tints, values, blends, stored, slices, size, ...one } = this.#uniforms;
+    const { sheets, normals, tints, values, blends, stored, slices, places, size, ...one } = this.#uniforms;
     // Set all entries: a stale one could be the texture that is drawn to, which WebGL forbids.
     const all = Array.from({ length: maxAtOnce[kind] }, (_, index) => layers[index]);
     sheets.value = all.map((layer) => layer?.sheet.texture ?? null);
@@ -125,6 +129,10 @@ export class LayerPass {
       values.value[index]!.set(...this.#valuesOf(kind, layer));
       blends.value[index] = blendModes.indexOf(blend as Blend);
       stored.value[index] = storedIn(sheet);
+      if (!isMoved(layer)) return;
+      const samples = samplesOf(layer, Math.max(...sidesOf(sheet.texture)), width);
+      // There is room in its last row.
+      places.value[index]!.set(...readingOf(layer), samples, 0, 1);
     });
     one.stroke.value = this.#stroke?.texture ?? null;
     one.strokeOpacity.value = this.#stroke?.opacity ?? 0;
@@ -139,7 +147,8 @@ export class LayerPass {
       return [roughness ?? 0, Number(roughness !== null), metalness ?? 0, Number(metalness !== null)];
     if (kind === 'glow') return [emissive / this.glow, Number(blend === 'normal'), 0, 0];
     // In glTF, v grows downwards, and green means up.
-    return [normalScale, normal?.flipY ? normalScale : -normalScale, 0, 0];
+    const { rotation } = layer;
+    return [normalScale, normal?.flipY ? normalScale : -normalScale, Math.cos(rotation), Math.sin(rotation)];
   }
 }
 

@@ -1,5 +1,5 @@
 import { SRGBColorSpace, type Texture } from 'three';
-import { type PlainStyle, plainData, readPlainStyle } from '../../gltf/look/style.js';
+import { areEqual, type PlainStyle, plainData, readPlainStyle } from '../../gltf/look/style.js';
 import { check, notA } from '../errors.js';
 
 export { type Blend, blendModes } from '../../gltf/look/style.js';
@@ -68,7 +68,7 @@ const kKeys = ['name', 'sheet', ...(Object.keys(plainStyle) as (keyof Style)[])]
 
 /** The fields in which `other`, another state of the layer, differs from `layer`. */
 export function difference(layer: Layer, other: Layer): Partial<Layer> {
-  const keys = kKeys.filter((key) => layer[key] !== other[key]);
+  const keys = kKeys.filter((key) => !areEqual(layer[key], other[key]));
   return Object.fromEntries(keys.map((key) => [key, other[key]]));
 }
 

@@ -126,7 +126,7 @@ export class Layers extends Emitter<{
   /**
    * Adds a layer.
    * @param texture  In the cage's UV space; its `colorSpace` and `flipY` count (false for what is drawn for a glTF), its offset, repeat and rotation
-   *                 do not. One whose `needsUpdate` is set later, such as a canvas, is drawn again by `update`. It is not disposed of
+   *                 do not, but those of the options. One whose `needsUpdate` is set later, such as a canvas, is drawn again by `update`. It is not disposed of
    *                 with the layer.
    * @throws {CagecastError} `badArgument` for the 17th layer or if it is not a texture, `badOption` that names an option and its value.
    */
@@ -145,7 +145,7 @@ export class Layers extends Emitter<{
   }
 
   /**
-   * Changes opacity, tint, blend mode, visibility, region, roughness, metalness, glow or relief. Equal changes of a layer in quick succession, as by a slider, are one step.
+   * Changes opacity, tint, blend mode, visibility, region, place, roughness, metalness, glow or relief. Equal changes of a layer in quick succession, as by a slider, are one step.
    * @throws {CagecastError} `badOption` that names a field and its value, `badArgument` if the layer was removed.
    */
   set(layer: Pick<Layer, 'id'>, style: Partial<Style>, { undoable }: ChangeOptions = {}): void {

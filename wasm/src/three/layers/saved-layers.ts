@@ -12,6 +12,7 @@ import {
   savedChannels,
   savedVersion,
 } from '../../gltf/look/saved-layers.js';
+import { areEqual } from '../../gltf/look/style.js';
 import { toPng } from '../canvas.js';
 import { kWhole, toTexels } from '../gpu/rect.js';
 import { readStraight, Stored } from '../gpu/straight.js';
@@ -64,9 +65,9 @@ function savedSize(texture: Texture): readonly [width: number, height: number] {
   return [width!, height!];
 }
 
-/** Those channels of a layer that are not as by default. */
+/** The place and the channels of a layer, as far as they are not as by default. */
 function channelsIn(layer: Required<SavedChannels>): SavedChannels {
-  const given = savedChannels.filter((name) => layer[name] !== plainStyle[name]);
+  const given = savedChannels.filter((name) => !areEqual(layer[name], plainStyle[name]));
   return Object.fromEntries(given.map((name) => [name, layer[name]]));
 }
 

@@ -1,7 +1,8 @@
 import type { Vector2, Vector3, WebGLRenderer } from 'three';
 import { type PaintingSize, paintingSizes } from '../../gltf/look/saved-layers.js';
+import { isMoved } from '../../gltf/look/style.js';
 import { check, wrong } from '../errors.js';
-import { type Rect, toShares } from '../gpu/rect.js';
+import { kWhole, type Rect, toShares } from '../gpu/rect.js';
 import type { Composite } from '../layers/composite.js';
 import type { Edits } from '../layers/edits.js';
 import { Emitter } from '../layers/emitter.js';
@@ -216,15 +217,19 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
   }
 
   #changed(sheet: PaintedSheet, rects: readonly Rect[]): void {
-    this.touch(rects.map((rect) => toShares(rect, sheet.size)));
+    const isElsewhere = this.#layers.stack.layers.some((layer) => layer.sheet === sheet && isMoved(layer));
+    this.touch(isElsewhere ? [kWhole] : rects.map((rect) => toShares(rect, sheet.size)));
     this.emit('painted', sheet);
   }
 
-  /** The layer to paint on: the selected one if it is a painting of the chosen size, else the uppermost such painting. */
+  /** The layer to paint on: the selected one if it is a painting of the chosen size in its own place, else the uppermost such painting. */
   #paintedLayer(): Layer | undefined {
     const { selected, layers } = this.#layers.stack;
-    const fits = ({ sheet }: Layer): boolean =>
-      sheet instanceof PaintedSheet && sheet.size === this.size && !(sheet instanceof StickersSheet && !sheet.fixed);
+    const fits = ({ sheet, ...style }: Layer): boolean =>
+      !isMoved(style) &&
+      sheet instanceof PaintedSheet &&
+      sheet.size === this.size &&
+      !(sheet instanceof StickersSheet && !sheet.fixed);
     return selected && fits(selected) ? selected : [...layers].reverse().find(fits);
   }
 
