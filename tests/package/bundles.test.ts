@@ -55,7 +55,7 @@ const kPages: [what: string, most: number, script: string][] = [
   ['useCagecast', 75_500, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
   ['inspect', 33_000, "import { inspect } from 'cagecast'; console.log(inspect);"],
   ['bakeTexture', 6500, "import { bakeTexture } from 'cagecast/engines'; console.log(bakeTexture);"],
-  ['cagecast of cagecast/gltf', 131_500, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
+  ['cagecast of cagecast/gltf', 132_000, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
   ['paintGlb', 70_000, "import { paintGlb } from 'cagecast/gltf'; console.log(paintGlb);"],
   ['makeCage', 3250, "import { makeCage } from 'cagecast/cages'; console.log(makeCage);"],
 ];

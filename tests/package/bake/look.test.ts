@@ -8,7 +8,7 @@ import { type PaintOptions, paintGlb } from 'cagecast/gltf';
 import type { SavedLayer, SavedLayers } from 'cagecast/three';
 import { terminate } from 'cagecast/worker';
 import { PNG } from 'pngjs';
-import { fails, json } from '../../support/command.js';
+import { fails, json, ok } from '../../support/command.js';
 import { packGlb, unpackGlb, validate } from '../../support/gltf.js';
 import { islandCage, texturedBox } from '../../support/models';
 import { temporaryFolder } from '../../support/temporary.js';
@@ -57,6 +57,7 @@ before(async () => {
   writeFileSync('cage.glb', cage);
   writeFileSync('box.glb', box);
   writeFileSync('look.json', JSON.stringify(whole));
+  writeFileSync('red.json', JSON.stringify(lookOf([layer([200, 20, 20, 255])])));
 });
 after(terminate);
 
@@ -186,20 +187,48 @@ describe('a look in a file', () => {
   });
 });
 
-/** The box as an avatar with a toon material. */
-function avatar(version: 0 | 1): Uint8Array {
+interface Vrm0 {
+  materialProperties: {
+    textureProperties: Record<string, number>;
+    vectorProperties: Record<string, number[]>;
+    floatProperties: Record<string, number>;
+  }[];
+  blendShapeMaster?: object;
+}
+interface Toon {
+  shadeMultiplyTexture?: { index: number };
+  shadeColorFactor: number[];
+  uvAnimationScrollXSpeedFactor?: number;
+}
+
+/**
+ * The box as an avatar with a toon material, half as bright in the shade.
+ * @param shade   Its texture there: one of its own, that of the light, or none.
+ * @param factor  By which its colour is multiplied in the light.
+ */
+function avatar(version: 0 | 1, shade: 'own' | 'same' | 'none' = 'none', factor = 1): Uint8Array {
   const { json, bin } = unpackGlb(box);
   const [material] = json.materials as GLTF.IMaterial[];
+  const pbr = material!.pbrMetallicRoughness!;
+  pbr.baseColorFactor = [factor, factor, factor, 1];
+  const { index } = pbr.baseColorTexture!;
+  const own = shade === 'own' ? json.textures!.push({ ...json.textures![index] }) - 1 : index;
   if (version === 1) {
     json.extensionsUsed = ['VRMC_vrm', 'VRMC_materials_mtoon'];
-    material!.extensions = { VRMC_materials_mtoon: { specVersion: '1.0', shadeColorFactor: [0.5, 0.5, 0.5] } };
+    const toon: Toon = {
+      shadeColorFactor: [0.5, 0.5, 0.5],
+      ...(shade !== 'none' && { shadeMultiplyTexture: { index: own } }),
+    };
+    material!.extensions = { VRMC_materials_mtoon: { specVersion: '1.0', ...toon } };
   } else {
+    const half = 0.5 ** (1 / 2.2);
+    const lit = factor ** (1 / 2.2);
     const properties = {
       name: 'skin',
       shader: 'VRM/MToon',
       ...{ floatProperties: {}, keywordMap: {}, tagMap: {} },
-      vectorProperties: { _Color: [1, 1, 1, 1], _ShadeColor: [0.5, 0.5, 0.5, 1] },
-      textureProperties: { _MainTex: material!.pbrMetallicRoughness!.baseColorTexture!.index },
+      vectorProperties: { _Color: [lit, lit, lit, 1], _ShadeColor: [half, half, half, 1] },
+      textureProperties: { _MainTex: index, ...(shade !== 'none' && { _ShadeTexture: own }) },
     };
     json.extensionsUsed = ['VRM'];
     Object.assign(json, { extensions: { VRM: { materialProperties: [properties] } } });
@@ -207,21 +236,136 @@ function avatar(version: 0 | 1): Uint8Array {
   return packGlb({ json, bin });
 }
 
-test('toon materials of avatars get what they show: no gloss, but relief and glow', async () => {
-  for (const version of [0, 1] as const) {
-    const { bytes } = await paint(avatar(version), whole);
-    const { json } = unpackGlb(bytes);
-    const [material] = json.materials!;
-    assert.equal(material!.pbrMetallicRoughness!.metallicRoughnessTexture, undefined);
-    assert.ok(material!.normalTexture && material!.emissiveTexture);
-    if (version === 1) continue;
-    type Vrm = { materialProperties: { textureProperties: Record<string, number>; vectorProperties: object }[] };
-    const [{ textureProperties, vectorProperties }] = (json.extensions!['VRM'] as Vrm).materialProperties as [never];
-    assert.deepEqual(textureProperties, {
-      _MainTex: material!.pbrMetallicRoughness!.baseColorTexture!.index,
-      _BumpMap: material!.normalTexture.index,
-      _EmissionMap: material!.emissiveTexture.index,
-    });
-    assert.deepEqual((vectorProperties as { _EmissionColor: number[] })._EmissionColor.length, 4);
-  }
+/** The texel of a texture of a file. */
+function texelIn(bytes: Uint8Array, texture: number, at: readonly [number, number]): number[] {
+  const { json, bin } = unpackGlb(bytes);
+  const { byteOffset = 0, byteLength } =
+    json.bufferViews![json.images![json.textures![texture]!.source!]!.bufferView!]!;
+  return texel(bin.subarray(byteOffset, byteOffset + byteLength), at);
+}
+
+/** The textures of a toon material: in the light, and in the shade. */
+function texturesOf(bytes: Uint8Array): { lit: number; shade: number | undefined } {
+  const { json } = unpackGlb(bytes);
+  const [material] = json.materials!;
+  const toon = material!.extensions?.['VRMC_materials_mtoon'] as Toon | undefined;
+  const { textureProperties: old } = (json.extensions?.['VRM'] as Vrm0 | undefined)?.materialProperties[0] ?? {};
+  return {
+    lit: material!.pbrMetallicRoughness!.baseColorTexture!.index,
+    shade: toon ? toon.shadeMultiplyTexture?.index : old!['_ShadeTexture'],
+  };
+}
+
+describe('a toon material of an avatar', () => {
+  test('gets what it shows: no gloss, but relief and glow', async () => {
+    for (const version of [0, 1] as const) {
+      const { bytes } = await paint(avatar(version), whole);
+      const { json } = unpackGlb(bytes);
+      const [material] = json.materials!;
+      assert.equal(material!.pbrMetallicRoughness!.metallicRoughnessTexture, undefined);
+      assert.ok(material!.normalTexture && material!.emissiveTexture);
+      if (version === 1) continue;
+      const [{ textureProperties, vectorProperties }] = (json.extensions!['VRM'] as Vrm0).materialProperties as [
+        Vrm0['materialProperties'][0],
+      ];
+      const { lit, shade } = texturesOf(bytes);
+      assert.deepEqual(textureProperties, {
+        _MainTex: lit,
+        _ShadeTexture: shade,
+        _BumpMap: material!.normalTexture.index,
+        _EmissionMap: material!.emissiveTexture.index,
+      });
+      assert.equal(vectorProperties['_EmissionColor']!.length, 4);
+    }
+  });
+
+  const red = lookOf([layer([200, 20, 20, 255])]);
+  for (const version of [0, 1] as const)
+    for (const shade of ['own', 'same', 'none'] as const)
+      test(`of VRM ${version} has paint in the shade, too, where its texture is ${shade}`, async () => {
+        writeFileSync('avatar.vrm', avatar(version, shade));
+        writeFileSync('red.png', pngOf(picture(4, () => [200, 20, 20, 255])));
+        await json('bake avatar.vrm --cage cage.glb --texture red.png -o out.vrm');
+        for (const bytes of [(await paint(avatar(version, shade), red)).bytes, readFileSync('out.vrm')]) {
+          const textures = texturesOf(bytes);
+          assert.equal(textures.lit === textures.shade, shade === 'same');
+          for (const one of [textures.lit, textures.shade!]) near(texelIn(bytes, one, kIsland), [200, 20, 20]);
+          const before = shade === 'none' ? [255, 255, 255] : [100, 120, 200];
+          near(texelIn(bytes, textures.shade!, kBeside), before, 0);
+        }
+      });
+
+  test('darkens paint as its own two colours differ', async () => {
+    for (const version of [0, 1] as const) {
+      // Three.js shows paint · min(0.5 / 0.8, 1) in the shade, whose factor stays.
+      const { bytes } = await paint(avatar(version, 'own', 0.8), red, { size: 96 });
+      near(texelIn(bytes, texturesOf(bytes).lit, kIsland), [200, 20, 20]);
+      near(
+        texelIn(bytes, texturesOf(bytes).shade!, kIsland),
+        [200, 20, 20].map((byte) => srgb(linear(byte) / 0.8)),
+      );
+      near(texelIn(bytes, texturesOf(bytes).shade!, kBeside), [100, 120, 200], 0);
+      const same = await paint(avatar(version, 'same', 0.8), red, { size: 96 });
+      assert.notEqual(texturesOf(same.bytes).lit, texturesOf(same.bytes).shade, 'they are not the same any more');
+    }
+  });
+
+  test('has the base tint in the shade', async () => {
+    const { bytes } = await paint(avatar(1, 'own'), lookOf([], { baseTint: '#808080' }));
+    for (const one of [texturesOf(bytes).lit, texturesOf(bytes).shade!])
+      near(
+        texelIn(bytes, one, kIsland),
+        [100, 120, 200].map((byte) => srgb(linear(byte) * linear(128))),
+      );
+  });
+
+  test('is named where something moves its textures, and the paint with them', async () => {
+    const moved: [version: 0 | 1, change: (json: GLTF.IGLTF) => void, reason: RegExp][] = [
+      [
+        1,
+        ({ materials }) =>
+          Object.assign(materials![0]!.extensions!['VRMC_materials_mtoon'] as Toon, {
+            uvAnimationScrollXSpeedFactor: 0.1,
+          }),
+        /its UVs scroll or turn/,
+      ],
+      [
+        1,
+        (json) => {
+          const happy = { textureTransformBinds: [{ material: 0, offset: [0.5, 0] }] };
+          json.extensions = { VRMC_vrm: { expressions: { preset: { happy } } } };
+        },
+        /the expression "happy" moves its textures/,
+      ],
+      [
+        0,
+        ({ extensions }) => {
+          (extensions!['VRM'] as Vrm0).materialProperties[0]!.floatProperties['_UvAnimRotation'] = 1;
+        },
+        /its UVs scroll or turn/,
+      ],
+      [
+        0,
+        (json) => {
+          json.materials![0]!.name = 'skin';
+          const materialValues = [{ materialName: 'skin', propertyName: '_MainTex_ST', targetValue: [1, 1, 0.5, 0] }];
+          (json.extensions!['VRM'] as Vrm0).blendShapeMaster = {
+            blendShapeGroups: [{ name: 'blush', materialValues }],
+          };
+        },
+        /the expression "blush" moves its textures/,
+      ],
+    ];
+    for (const [version, change, reason] of moved) {
+      const glb = unpackGlb(avatar(version));
+      change(glb.json);
+      const { moving } = await paint(packGlb(glb), red);
+      assert.equal(moving.length, 1);
+      assert.match(moving[0]!.reason, reason);
+      writeFileSync('moving.vrm', packGlb(glb));
+      const lines = await ok('bake moving.vrm --cage cage.glb --look red.json -o out.vrm');
+      assert.match(lines, new RegExp(`the paint moves on ".*": ${reason.source}`));
+    }
+    assert.deepEqual((await paint(avatar(1), red)).moving, []);
+  });
 });

@@ -2,14 +2,16 @@ import type { GLTF } from '@gltf-transform/core';
 import type { Image, Wrap } from '../bake/index.js';
 import { type AccessorData, decodeFloats } from './accessor.js';
 import type { Part } from './extract.js';
+import { movedBy } from './moved-uvs.js';
 import type { SceneSource } from './source.js';
+import { shadeFactorOf, shadeInfoOf, toonExtension, toonProperties } from './toon.js';
 import { type UvLayout, uvLayoutOf } from './uv-layout.js';
 
 /** What of a material a paint goes to: its base colour, its normals, or occlusion, roughness and metalness. */
 export const slots = ['color', 'normal', 'orm'] as const;
 export type Slot = (typeof slots)[number];
-/** All that a look changes of a material: its own light, too. */
-export type Place = Slot | 'emissive';
+/** All that paint changes of a material: its own light, and what MToon of avatars shows in the shade, too. */
+export type Place = Slot | 'emissive' | 'shade';
 
 /** How a texture is used by a material. */
 export interface TextureUse extends UvLayout {
@@ -28,28 +30,14 @@ export interface ImageCodec {
 /** A wrap mode by its number in glTF. */
 const wrapOf = (wrap?: number): Wrap => (wrap === 33071 ? 'clamp' : wrap === 33648 ? 'mirror' : 'repeat');
 
+/** A factor below stands for darkness, as none can be divided by. */
+const kDarkest = 1e-3;
 /** The extension of glTF for materials without light and shade. */
 export const unlitExtension = 'KHR_materials_unlit';
 /** The extension of glTF for materials that glow more than the screen's white. */
 export const emissiveExtension = 'KHR_materials_emissive_strength';
-/** The extension of VRM 1 for toon materials. */
-export const toonExtension = 'VRMC_materials_mtoon';
-
-/** What VRM 0 says of a material. */
-export interface ToonProperties {
-  shader?: string;
-  floatProperties?: Record<string, number>;
-  vectorProperties?: Record<string, number[]>;
-  textureProperties?: Record<string, number>;
-  keywordMap?: Record<string, boolean>;
-}
-
-/** What VRM 0 says of a material; undefined in other files. */
-export const toonProperties = ({ extensions }: GLTF.IGLTF, material: number): ToonProperties | undefined =>
-  (extensions?.['VRM'] as { materialProperties?: ToonProperties[] } | undefined)?.materialProperties?.[material];
-
 /** The texture of a material in a slot. */
-export function infoOf(material: GLTF.IMaterial, slot: Place): GLTF.ITextureInfo | undefined {
+export function infoOf(material: GLTF.IMaterial, slot: Exclude<Place, 'shade'>): GLTF.ITextureInfo | undefined {
   if (slot === 'color') return material.pbrMetallicRoughness?.baseColorTexture;
   if (slot === 'emissive') return material.emissiveTexture;
   return slot === 'normal' ? material.normalTexture : material.pbrMetallicRoughness?.metallicRoughnessTexture;
@@ -99,7 +87,7 @@ export class Materials {
   }
 
   useOf(material: number, slot: Place): TextureUse | undefined {
-    const info = infoOf(this.material(material), slot);
+    const info = slot === 'shade' ? shadeInfoOf(this.json, material) : infoOf(this.material(material), slot);
     if (!info || !this.json.textures?.[info.index]) return undefined;
     return { texture: info.index, ...uvLayoutOf(info), wraps: this.wrapsOf(info.index) };
   }
@@ -110,8 +98,12 @@ export class Materials {
     return [wrapOf(wrapS), wrapOf(wrapT)];
   }
 
-  /** By what the values of the texture are multiplied. */
+  /** By what the values of the texture are multiplied; for the shade, paint that it shows, so that there it is as much darker as the material's own two colours differ. */
   factorOf(material: number, slot: Place): [number, number, number] {
+    if (slot === 'shade') {
+      const [lit, shade] = [this.factorOf(material, 'color'), shadeFactorOf(this.json, material)];
+      return lit.map((share, k) => 1 / Math.max(share, shade[k]!, kDarkest)) as [number, number, number];
+    }
     if (slot === 'emissive') {
       const { emissiveFactor = [0, 0, 0], extensions } = this.material(material);
       const { emissiveStrength = 1 } = (extensions?.[emissiveExtension] ?? {}) as { emissiveStrength?: number };
@@ -130,6 +122,11 @@ export class Materials {
   /** By what the relief of its normal map is multiplied. */
   reliefOf(material: number): number {
     return this.material(material).normalTexture?.scale ?? 1;
+  }
+
+  /** What moves its textures while they are shown. */
+  movedBy(material: number): string[] {
+    return movedBy(this.json, material);
   }
 
   /** How a material is lit: as glTF says, as MToon of avatars does, or not at all. */

@@ -271,7 +271,7 @@ async function withAtlas(
   return { data: bytes ?? data, lines, atlas: report };
 }
 
-function summary(output: string, { textures, left }: BakeReport): string[] {
+function summary(output: string, { textures, left, moving }: BakeReport): string[] {
   return [
     `wrote ${output}`,
     ...textures.map(
@@ -279,6 +279,7 @@ function summary(output: string, { textures, left }: BakeReport): string[] {
         `${slot}: ${width} × ${height}, on ${listNames(parts)}${mimeType === before ? '' : `; ${mimeType} now, ${before} before`}${overlapText(overlap)}`,
     ),
     ...left.map((one) => `not painted: ${leftText(one)}`),
+    ...moving.map(({ material, reason }) => `the paint moves on ${quoted(material)}: ${reason}`),
   ];
 }
 

@@ -1,22 +1,13 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { Part } from '../../scene/extract.js';
-import {
-  emissiveExtension,
-  infoOf,
-  Materials,
-  type Place,
-  type TextureUse,
-  toonExtension,
-  toonProperties,
-} from '../../scene/materials.js';
+import { emissiveExtension, infoOf, Materials, type Place, type TextureUse } from '../../scene/materials.js';
+import { shadeInfoOf, toonExtension, toonGamma, toonProperties } from '../../scene/toon.js';
 import type { GlbWriter } from '../glb-writer.js';
 import { imageType } from '../image-file.js';
 import { type GltfFile, sourceExtensions, sourceOf } from '../open-gltf.js';
 import type { BakeModel } from './plan.js';
 
 const kToonShader = 'VRM/MToon';
-/** Of the colours of VRM 0. */
-const kGamma = 2.2;
 
 /** A file whose materials are painted. What is painted goes to a writer of the file. */
 export class FileModel extends Materials implements BakeModel {
@@ -30,7 +21,7 @@ export class FileModel extends Materials implements BakeModel {
   replace(materials: readonly number[], slot: Place, bytes: Uint8Array, use: TextureUse, strength = 1): void {
     const [json, writer] = [this.json, this.#writer];
     const before = json.textures![use.texture]!;
-    const isOwn = infoOf(this.material(materials[0]!), slot) !== undefined;
+    const isOwn = this.useOf(materials[0]!, slot) !== undefined;
     const name = before.name ?? json.images?.[sourceOf(before) ?? -1]?.name ?? 'painted';
     let number = writer.addTexture({ bytes, mimeType: imageType(bytes) ?? 'image/png', name });
     const made = json.textures![number]!;
@@ -55,11 +46,20 @@ export class FileModel extends Materials implements BakeModel {
     }
     for (const material of materials) {
       if (isOwn && slot === 'color') this.#followInExtensions(material, use.texture, number);
-      lay(this.material(material), slot, number);
+      if (slot === 'shade') this.#layInShade(material, number);
+      else lay(this.material(material), slot, number);
       resetFactors(this.material(material), slot);
       if (slot === 'normal') this.#setToon(material, '_BumpMap', number);
       if (slot === 'emissive') this.#glow(material, number, strength);
     }
+  }
+
+  /** Gives a toon material a texture for the shade. */
+  #layInShade(number: number, texture: number): void {
+    const toon = this.material(number).extensions?.[toonExtension] as { shadeMultiplyTexture?: object } | undefined;
+    const own = shadeInfoOf(this.json, number) ?? this.material(number).pbrMetallicRoughness?.baseColorTexture;
+    if (toon) toon.shadeMultiplyTexture = { ...own, index: texture };
+    else this.#setToon(number, '_ShadeTexture', texture);
   }
 
   /** Makes a material glow as its texture says. */
@@ -74,7 +74,7 @@ export class FileModel extends Materials implements BakeModel {
     }
     if (Object.keys(material.extensions ?? {}).length === 0) delete material.extensions;
     // What reads VRM 0 takes its colours for ones of a display.
-    const stored = strength ** (1 / kGamma);
+    const stored = strength ** (1 / toonGamma);
     this.#setToon(number, '_EmissionMap', texture, { _EmissionColor: [stored, stored, stored, 1] });
   }
 
@@ -99,8 +99,24 @@ export class FileModel extends Materials implements BakeModel {
     if (mtoon?.shadeMultiplyTexture?.index === before) mtoon.shadeMultiplyTexture.index = now;
   }
 
+  /** Whether toon materials use a texture in the shade of some materials alone. */
+  #isOnlyInShade(texture: number, materials: readonly number[]): boolean {
+    return (this.json.materials ?? []).every(({ extensions }, m) => {
+      const toon = Object.entries(
+        (extensions?.[toonExtension] ?? {}) as Record<string, { index?: number } | undefined>,
+      );
+      const old = Object.entries(toonProperties(this.json, m)?.textureProperties ?? {});
+      const uses = [
+        ...toon.flatMap(([name, info]) => (info?.index === texture ? name : [])),
+        ...old.flatMap(([name, index]) => (index === texture ? name : [])),
+      ];
+      return uses.every((name) => materials.includes(m) && /^(shadeMultiplyTexture|_ShadeTexture)$/.test(name));
+    });
+  }
+
   /** Whether the standard materials and their extensions, which add to them, use a texture in no other way. */
   #isOnlyFor(texture: number, materials: readonly number[], slot: Place): boolean {
+    if (slot === 'shade' && !this.#isOnlyInShade(texture, materials)) return false;
     return (this.json.materials ?? []).every((material, m) => {
       const { pbrMetallicRoughness: pbr, normalTexture, occlusionTexture, emissiveTexture } = material;
       const uses: [GLTF.ITextureInfo | undefined, Place | undefined][] = [
@@ -125,7 +141,7 @@ function addedTextures({ extensions }: GLTF.IMaterial): GLTF.ITextureInfo[] {
 }
 
 /** Gives a material a texture. A new one lies as that of the base colour does. */
-function lay(material: GLTF.IMaterial, slot: Place, index: number): void {
+function lay(material: GLTF.IMaterial, slot: Exclude<Place, 'shade'>, index: number): void {
   const pbr = (material.pbrMetallicRoughness ??= {});
   const info = { ...(infoOf(material, slot) ?? pbr.baseColorTexture), index };
   if (slot === 'color') pbr.baseColorTexture = info;
@@ -141,12 +157,12 @@ function lay(material: GLTF.IMaterial, slot: Place, index: number): void {
 
 /** The factors are in the texture now. */
 function resetFactors({ pbrMetallicRoughness: pbr }: GLTF.IMaterial, slot: Place): void {
-  if (!pbr || slot === 'normal' || slot === 'emissive') return;
-  if (slot === 'orm') {
+  if (slot === 'orm' && pbr) {
     delete pbr.roughnessFactor;
     delete pbr.metallicFactor;
     return;
   }
+  if (slot !== 'color' || !pbr) return;
   const alpha = pbr.baseColorFactor?.[3] ?? 1;
   if (alpha === 1) delete pbr.baseColorFactor;
   else pbr.baseColorFactor = [1, 1, 1, alpha];

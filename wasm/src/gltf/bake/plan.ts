@@ -1,4 +1,5 @@
 import type { TransferResult } from '../../api/index.js';
+import { colorByte, linearOf } from '../../bake/image.js';
 import { areaOf, type Baked, fill, type Image, type Kind, type Layout, layOver, resize } from '../../bake/index.js';
 import { kMaxLayers } from '../../bake/pattern.js';
 import { CagecastError } from '../../core/error.js';
@@ -51,6 +52,8 @@ export interface BakeReport {
   }[];
   /** Parts whose textures cannot hold the paint, and why; with the material, if it is a variant's. */
   left: { part: string; material?: string; reason: string }[];
+  /** Materials whose textures are moved while they are shown, by scrolling UVs or an expression of an avatar: the paint moves, too. */
+  moving: { material: string; reason: string }[];
 }
 
 /** Bakes an image in the cage's UVs into those of a texture. */
@@ -79,7 +82,14 @@ export type Coat = (base: Base, fill: Fill) => Coated | undefined;
 /** What is laid over textures, and on the materials of which lighting it is seen; by default, of any. */
 export type Coats = Partial<Record<Place, { lay: Coat; on?: readonly ReturnType<Materials['lightingOf']>[] }>>;
 
-const kPlaces: readonly Place[] = ['color', 'normal', 'orm', 'emissive'];
+const kPlaces: readonly Place[] = ['color', 'shade', 'normal', 'orm', 'emissive'];
+
+/** Paint as it is in the texture of the shade. */
+export function inShade(baked: Baked, factor: Base['factor']): Baked {
+  const toByte = colorByte();
+  const data = baked.data.map((byte, at) => (at % 4 === 3 ? byte : toByte(linearOf[byte]! * factor[at % 4]!)));
+  return factor.every((share) => share === 1) ? baked : { ...baked, data };
+}
 
 /** Paints as they are laid over textures. */
 export function coatsOf(paints: Paints): Coats {
@@ -94,6 +104,15 @@ export function coatsOf(paints: Paints): Coats {
       },
     };
   }
+  const { color } = paints;
+  if (color)
+    coats.shade = {
+      lay({ image, factor }, fill) {
+        const baked = fill(color, 'color');
+        return { baked, image: layOver(image, inShade(baked, factor)) };
+      },
+      on: ['toon'],
+    };
   return coats;
 }
 
@@ -122,6 +141,7 @@ const slotNames: Record<Place, string> = {
   normal: 'normal',
   orm: 'metallic-roughness',
   emissive: 'emissive',
+  shade: 'shade',
 };
 
 /** A part, and its material or one that a variant gives it. */
@@ -150,7 +170,7 @@ interface SharedTexture {
  * @returns what was done, and the parts that are baked.
  */
 export async function bakeModel(model: BakeModel, input: BakeInput): Promise<{ report: BakeReport; baked: Set<Part> }> {
-  const report: BakeReport = { textures: [], left: [] };
+  const report: BakeReport = { textures: [], left: [], moving: [] };
   const baked = new Set<Part>();
   const replacements: (() => void)[] = [];
   for (const slot of kPlaces) {
@@ -182,6 +202,8 @@ export async function bakeModel(model: BakeModel, input: BakeInput): Promise<{ r
     }
   }
   for (const replace of replacements) replace();
+  for (const number of new Set([...baked].flatMap((part) => [model.materialOf(part)!, ...model.variantsOf(part)])))
+    for (const reason of model.movedBy(number)) report.moving.push({ material: model.nameOf(number), reason });
   return { report, baked };
 }
 
@@ -216,6 +238,8 @@ function listTextures(
       for (const part of parts) refused.set({ part, material }, reason!);
       continue;
     }
+    // It is painted with the colours then.
+    if (slot === 'shade' && isSameInShade(model, material)) continue;
     const factor = model.factorOf(material, slot);
     const relief = slot === 'normal' ? model.reliefOf(material) : 1;
     const isNew = !own;
@@ -228,6 +252,13 @@ function listTextures(
     for (const part of parts) shared.users.push({ part, material });
   }
   return textures;
+}
+
+/** Whether a toon material shows in the shade the very texture that it shows in the light. */
+function isSameInShade(model: BakeModel, material: number): boolean {
+  const [lit, shade] = [model.useOf(material, 'color'), model.useOf(material, 'shade')];
+  const isPlain = model.factorOf(material, 'color').every((share) => share === 1);
+  return isPlain && lit !== undefined && lit.texture === shade?.texture;
 }
 
 /** Whether its vertices have colours, by which its texture is multiplied. Many programs write white ones. */

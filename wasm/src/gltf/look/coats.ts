@@ -1,6 +1,6 @@
 import { colorByte, type Image, linearOf } from '../../bake/image.js';
 import { type Baked, layOver } from '../../bake/index.js';
-import type { Coat, Coats } from '../bake/plan.js';
+import { type Coat, type Coats, inShade } from '../bake/plan.js';
 import type { Look } from './compose.js';
 
 /** An image that says where paint is. */
@@ -11,7 +11,7 @@ const kOne = [1, 1, 1] as const;
 export function coatsOfLook(look: Look): Coats {
   const { color, roughness, metalness, normal, glow, tint } = look;
   return {
-    ...((color || tint) && { color: { lay: colorCoat(look) } }),
+    ...((color || tint) && { color: { lay: colorCoat(look) }, shade: { lay: colorCoat(look, true), on: ['toon'] } }),
     ...(normal && { normal: { lay: normalCoat(normal), on: ['standard', 'toon'] } }),
     ...((roughness || metalness) && { orm: { lay: surfaceCoat(look), on: ['standard'] } }),
     ...(glow && { emissive: { lay: glowCoat(glow, look.strength), on: ['standard', 'toon'] } }),
@@ -27,9 +27,11 @@ function changed(image: Image, change: (data: Uint8ClampedArray, at: number) => 
   return { ...image, data };
 }
 
+/** @param isShade  Whether it is for the texture of the shade, whose factor is that of the paint. */
 const colorCoat =
-  ({ color, tint }: Look): Coat =>
-  ({ image, factor }, fill) => {
+  ({ color, tint }: Look, isShade = false): Coat =>
+  ({ image, factor: whole }, fill) => {
+    const [factor, ofPaint] = isShade ? [kOne, whole] : [whole, kOne];
     const toByte = colorByte();
     const where = tint && fill(kFull, 'data');
     const base = where
@@ -41,7 +43,7 @@ const colorCoat =
       : image;
     if (!color) return { image: base, baked: where! };
     const baked = fill(color, 'color');
-    return { baked, image: layOver(base, baked, where ? kOne : factor) };
+    return { baked, image: layOver(base, inShade(baked, ofPaint), where ? kOne : factor) };
   };
 
 const surfaceCoat =

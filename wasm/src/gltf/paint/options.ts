@@ -98,6 +98,8 @@ export interface PaintedGlb {
   bare: string[];
   /** With a look: the parts that it is not seen on, and why. */
   left: BakeReport['left'];
+  /** With a look: the materials whose textures are moved while they are shown, and by what; the paint moves, too. */
+  moving: BakeReport['moving'];
   /** Whether the cage fits, as `inspect` says it, and what was found, the most severe first. */
   verdict: Verdict;
   findings: Finding[];

@@ -110,8 +110,8 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
         form,
         hasAttributes: attributes,
       });
-    const { data, left } = paint
-      ? { data: (await write(target, prepared.parts, paint)).data, left: [] }
+    const { data, ...done } = paint
+      ? { data: (await write(target, prepared.parts, paint)).data, left: [], moving: [] }
       : await withLook(look!, target, {
           ...{ form, result, size, decode, encode, write },
           regions: regionsIn(around),
@@ -129,7 +129,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
       },
       note: noteOf(mesh, result, parts, around.extracted.mesh),
       bare: [...new Set(bare.filter((p) => !kept.includes(p)).map((p) => parts[p]!.name))],
-      left,
+      ...done,
       ...{ verdict, findings, cage: fitted?.cage, fit: fitted?.fit, template: fitted?.template, tried: fitted?.tried },
     };
   } catch (error) {

@@ -27,7 +27,7 @@ export async function withLook(
   look: SavedLayers,
   { file, extracted: { parts } }: ReadModel,
   { result, prepared, regions, size, form, read, write, ...codec }: LookWriting,
-): Promise<{ data: Uint8Array; left: BakeReport['left'] }> {
+): Promise<{ data: Uint8Array } & Pick<BakeReport, 'left' | 'moving'>> {
   // A file of its own, which is only loaded for a look.
   const { bakeLook } = await import('../look/index.js');
   const writer = await GlbWriter.from(file, form);
@@ -36,7 +36,11 @@ export async function withLook(
     file,
     parts.map(({ mesh }) => writer.json.meshes![mesh]!),
   );
-  const { report, baked, overlay } = await bakeLook(
+  const {
+    report: { left, moving },
+    baked,
+    overlay,
+  } = await bakeLook(
     look,
     { file, parts, writer, regions, result, size, prepared: (part) => prepared[parts.indexOf(part)]! },
     codec,
@@ -49,6 +53,6 @@ export async function withLook(
     baked.has(parts[p]!) ? { ...one, cosmeticTriangles: new Uint8Array(one.cosmeticTriangles.length) } : one,
   );
   const isDone = rest.every(({ cosmeticTriangles }) => !cosmeticTriangles.includes(1));
-  if (isDone || !overlay) return { data, left: report.left };
-  return { data: (await write(await read(data), rest, paintOf(overlay, 'look'))).data, left: report.left };
+  if (isDone || !overlay) return { data, left, moving };
+  return { data: (await write(await read(data), rest, paintOf(overlay, 'look'))).data, left, moving };
 }
